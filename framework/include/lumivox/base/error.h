@@ -1,0 +1,61 @@
+// Errors of input. A bug is an assertion; an expected absence is an optional; everything a user can cause is one of these.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace lumivox {
+
+/// A place in a text file. Lines and columns count from 1; 0 means that the place is the file as a whole.
+struct SourcePlace {
+  std::string file;
+  int line = 0;
+  int column = 0;
+
+  /// "file:line:column", shortened where line or column are unknown.
+  std::string text() const;
+};
+
+/// One finding in an input file: what is wrong there, what would have been right, and the nearest known word.
+struct Diagnostic {
+  enum class Severity { error, warning };
+
+  Severity severity = Severity::error;
+  SourcePlace place;
+  std::string what;        ///< e.g. "unknown property 'fow'"
+  std::string expected;    ///< e.g. "one of eye, target, up, fov, resolution"; may be empty
+  std::string suggestion;  ///< e.g. "fov"; may be empty
+  std::string sourceLine;  ///< the line that holds the place, without its end; may be empty
+  int length = 1;          ///< how many columns the caret line marks
+
+  /// `file:line:column: what; expected ...; did you mean '...'?` followed by the source line and a caret line.
+  std::string text() const;
+};
+
+/// Bad input. The message names the file or object, what is wrong and what was expected. The command line turns it into exit code 2.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// All findings of one or more text files, reported together.
+class DiagnosticsError : public Error {
+ public:
+  explicit DiagnosticsError(std::vector<Diagnostic> diagnostics);
+  const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
+
+ private:
+  std::vector<Diagnostic> diagnostics_;
+};
+
+/// Something that may legitimately be absent on this machine (a model, a GPU). Tests count it as skipped.
+class AbsentError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// The candidate nearest to `word` by edit distance, or an empty string when none is near enough to be a slip of the pen.
+std::string nearestWord(const std::string& word, const std::vector<std::string>& candidates);
+
+}  // namespace lumivox

@@ -1,0 +1,233 @@
+// The only door to OpenGL. An OpenGL 4.5 core context without a display, the resources in it and the commands on them.
+// No OpenGL name appears in this header; one Device at a time is current, on the thread that made it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace lumivox::gpu {
+
+enum class Format { r8, rgba8, r16f, rg16f, rgba16f, r32f, rg32f, rgba32f, r32ui, rg32ui, rgba32ui, depth32f };
+std::size_t bytesPerTexel(Format format);
+
+enum class TextureKind { d2, d2Array, d3 };
+
+struct TextureDescription {
+  TextureKind kind = TextureKind::d2;
+  Format format = Format::rgba16f;
+  int width = 1, height = 1, depth = 1;  ///< depth: layers of an array, slices of a volume
+  int levels = 1;                        ///< mip levels
+  bool operator==(const TextureDescription&) const = default;
+  std::uint64_t sizeBytes() const;
+};
+
+/// Number of mip levels down to one texel.
+int fullLevelCount(int width, int height, int depth = 1);
+
+class Device;
+
+/// A texture with immutable storage. Allocation is refused with an Error that names the size when it cannot fit.
+class Texture {
+ public:
+  Texture(Device& device, const TextureDescription& description, std::string label = {});
+  ~Texture();
+  Texture(const Texture&) = delete;
+  Texture& operator=(const Texture&) = delete;
+
+  const TextureDescription& description() const { return description_; }
+  std::uint64_t sizeBytes() const { return description_.sizeBytes(); }
+  const std::string& label() const { return label_; }
+
+  /// All texels of one level, tightly packed in the texture's own format, row 0 first.
+  void upload(int level, std::span<const std::byte> texels);
+  std::vector<std::byte> download(int level = 0) const;
+  /// Float formats only, as floats: texel-major, `components` of the format.
+  std::vector<float> downloadFloats(int level = 0) const;
+  void uploadFloats(int level, std::span<const float> values);
+  /// Fills every texel of a level (all levels when -1). Integer formats take the value rounded.
+  void clear(const glm::vec4& value, int level = -1);
+  /// Box-filtered mips made by the driver; for surface textures only.
+  void generateLevels();
+
+  std::uint32_t handle() const { return handle_; }  ///< for framework/src/gpu alone
+
+ private:
+  TextureDescription description_;
+  std::string label_;
+  std::uint32_t handle_ = 0;
+};
+
+class Buffer {
+ public:
+  Buffer(Device& device, std::uint64_t sizeBytes, std::string label = {});
+  ~Buffer();
+  Buffer(const Buffer&) = delete;
+  Buffer& operator=(const Buffer&) = delete;
+
+  std::uint64_t sizeBytes() const { return sizeBytes_; }
+  const std::string& label() const { return label_; }
+  void upload(std::span<const std::byte> bytes, std::uint64_t offsetBytes = 0);
+  std::vector<std::byte> download(std::uint64_t offsetBytes = 0, std::uint64_t sizeBytes = ~std::uint64_t{0}) const;
+  void clear(std::uint32_t word = 0);  ///< fills with one 32-bit word
+
+  template <class T>
+  void uploadValues(std::span<const T> values) { upload(std::as_bytes(values)); }
+  template <class T>
+  std::vector<T> downloadValues() const {
+    const std::vector<std::byte> bytes = download();
+    std::vector<T> values(bytes.size() / sizeof(T));
+    std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+    return values;
+  }
+
+  std::uint32_t handle() const { return handle_; }  ///< for framework/src/gpu alone
+
+ private:
+  std::uint64_t sizeBytes_;
+  std::string label_;
+  std::uint32_t handle_ = 0;
+};
+
+using TextureRef = std::shared_ptr<Texture>;
+using BufferRef = std::shared_ptr<Buffer>;
+
+/// How a texture is read. `border` means zero outside; `shadow` compares depth (reference <= stored) with bilinear filtering.
+enum class Sampling { nearest, linear, linearMips, linearMipsRepeat, linearBorder, linearMipsBorder, shadow };
+
+// ---- programs -------------------------------------------------------------------------------------------------------------------
+
+enum class Stage { vertex, geometry, fragment, compute };
+
+/// The code of one stage: SPIR-V words for drivers with ARB_gl_spirv, and GLSL text made from the same words.
+struct StageCode {
+  Stage stage;
+  std::span<const std::uint32_t> spirv;
+  std::string_view glsl;
+};
+/// Value of a specialisation constant, as the 32 bits of its type.
+struct SpecialisationValue {
+  std::uint32_t id;
+  std::uint32_t bits;
+};
+
+enum class ShaderInput { automatic, spirv, glsl };
+
+/// A linked program. Errors carry the driver's log and the name.
+class Program {
+ public:
+  Program(Device& device, std::string name, std::span<const StageCode> stages, std::span<const SpecialisationValue> constants);
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+  const std::string& name() const { return name_; }
+  std::uint32_t handle() const { return handle_; }
+
+ private:
+  std::string name_;
+  std::uint32_t handle_ = 0;
+};
+
+// ---- commands -------------------------------------------------------------------------------------------------------------------
+
+/// One resource at one binding point of a program. Made by the slots in shader/slots.h, so that names and kinds are checked.
+struct ResourceBinding {
+  struct Sampled { const Texture* texture; Sampling sampling; };
+  struct StorageImage { const Texture* texture; int level; };
+  struct Storage { const Buffer* buffer; };
+  struct Uniform { std::vector<std::byte> bytes; };
+  const char* name = "";
+  std::uint32_t binding = 0;
+  std::variant<Sampled, StorageImage, Storage, Uniform> resource;
+};
+
+struct RasterState {
+  bool depthTest = false, depthWrite = false, depthClamp = false;
+  float depthBiasSlope = 0.0f, depthBiasConstant = 0.0f;  ///< polygon offset
+};
+
+struct ColourTarget { const Texture* texture; int layer = -1; };
+
+/// Where drawing goes. With no target at all, width and height give the size of an empty framebuffer (voxelisation).
+struct RenderTargets {
+  std::vector<ColourTarget> colours;
+  const Texture* depth = nullptr;
+  int depthLayer = -1;
+  int width = 0, height = 0;
+  bool clear = true;  ///< colours to 0, depth to 1
+};
+
+struct DeviceInfo {
+  std::string vendor, renderer, version;  ///< the driver's own words
+  std::string platform;                   ///< "EGL device 0", "EGL surfaceless", ...
+  bool software = false;                  ///< a software rasteriser
+  bool spirv = false;                     ///< ARB_gl_spirv usable
+  bool timerQueriesTrusted = false;       ///< after the check against the fenced clock
+  std::string timerNote;                  ///< what that check found
+  int maxTextureSize3d = 0;
+  std::uint64_t maxStorageBytes = 0;
+};
+
+struct DeviceOptions {
+  std::string device = "auto";            ///< "auto", "software", "surfaceless", or the index of an EGL device
+  ShaderInput shaderInput = ShaderInput::automatic;
+};
+
+class Device {
+ public:
+  /// Makes the context current on this thread. AbsentError when there is no EGL or no OpenGL 4.5.
+  explicit Device(const DeviceOptions& options = {});
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  const DeviceInfo& info() const;
+  ShaderInput shaderInput() const;        ///< spirv or glsl, never automatic
+
+  /// Every command between enter and leave belongs to this pass: driver errors are reported under its name.
+  void enterPass(const std::string& name);
+  void leavePass();                       ///< throws Error for a driver error since enterPass
+
+  void dispatch(const Program& program, std::span<const ResourceBinding> bindings, glm::uvec3 groups);
+  /// Group counts read from three words of `arguments` at `offsetBytes`.
+  void dispatchIndirect(const Program& program, std::span<const ResourceBinding> bindings, const Buffer& arguments,
+                        std::uint64_t offsetBytes = 0);
+
+  /// Binds targets and state for the draws until endDrawing. Viewport = the whole target.
+  void beginDrawing(const RenderTargets& targets, const RasterState& state);
+  /// Indexed triangles (32-bit indices); attributes are pulled from storage buffers by gl_VertexID.
+  void drawIndexed(const Program& program, std::span<const ResourceBinding> bindings, const Buffer& indices, std::uint32_t firstIndex,
+                   std::uint32_t indexCount);
+  void draw(const Program& program, std::span<const ResourceBinding> bindings, std::uint32_t vertexCount);
+  void endDrawing();
+
+  /// Makes all earlier writes visible to all later reads (also to download, indirect arguments and texture fetches).
+  void barrier();
+  void finish();                          ///< waits until the device is idle
+
+  /// Milliseconds that `work` took: {host, device}. The device time comes from a timer query where those are trusted, else from the
+  /// fenced clock (finish before and after).
+  struct Elapsed { double hostMs, deviceMs; };
+  Elapsed time(const std::function<void()>& work);
+
+  /// Bytes in textures and buffers that are alive now, and the most so far.
+  std::uint64_t allocatedBytes() const;
+  std::uint64_t peakBytes() const;
+  void resetPeak();
+
+  struct State;
+  State& state() { return *state_; }      ///< for framework/src/gpu alone
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lumivox::gpu

@@ -1,0 +1,282 @@
+// What a technique author writes: a pass is a class whose members are its contract.
+#pragma once
+
+#include <any>
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lumivox/pipeline/ports.h"
+#include "lumivox/scene/scene.h"
+#include "lumivox/shader/library.h"
+
+namespace lumivox {
+
+class GpuScene;
+class Pass;
+
+/// The component of the picture that an output holds; decides which truth it is judged against.
+enum class Contributes { nothing, direct, indirectDiffuse, indirectGlossy, ambientOcclusion, scattered, final };
+const char* name(Contributes component);  ///< "direct", "indirect_diffuse", ...
+
+/// What the scene must have for an output (or a whole pass) to differ from its neutral element, black.
+enum class Needs : std::uint32_t {
+  nothing = 0, anyLight = 1u << 0, glossyMaterial = 1u << 1, environment = 1u << 2, medium = 1u << 3, emission = 1u << 4,
+  textures = 1u << 5, movingGeometry = 1u << 6, triangles = 1u << 7
+};
+constexpr Needs operator|(Needs a, Needs b) { return static_cast<Needs>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b)); }
+/// The first need that the scene does not meet, in words ("a glossy material"), or empty.
+std::string unmetNeed(Needs needs, const SceneTraits& traits);
+
+/// What a pass reads besides its inputs and parameters. A pass is run again only when one of these or an input changed.
+enum class Reads : std::uint32_t { nothing = 0, geometry = 1u << 0, materials = 1u << 1, lights = 1u << 2, camera = 1u << 3, time = 1u << 4 };
+constexpr Reads operator|(Reads a, Reads b) { return static_cast<Reads>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b)); }
+constexpr bool reads(Reads set, Reads one) { return (static_cast<std::uint32_t>(set) & static_cast<std::uint32_t>(one)) != 0; }
+
+/// Members of a pass register themselves with it, in the order of declaration.
+class PortBase {
+ public:
+  PortBase(std::string name, std::string portKind, std::string meaning);
+  virtual ~PortBase() = default;
+  PortBase(const PortBase&) = delete;
+  PortBase& operator=(const PortBase&) = delete;
+  const std::string& name() const { return name_; }
+  const std::string& portKind() const { return portKind_; }
+  const std::string& meaning() const { return meaning_; }
+
+ private:
+  std::string name_, portKind_, meaning_;
+};
+
+class OutBase : public PortBase {
+ public:
+  OutBase(Pass* pass, std::string name, std::string portKind, Contributes contributes, Needs needs, std::string meaning);
+  Contributes contributes() const { return contributes_; }
+  Needs needs() const { return needs_; }
+  /// Whether anything wants this output in this run: false when it was pruned. A pass asks before it computes the output.
+  bool wanted() const { return wanted_; }
+  virtual bool hasValue() const = 0;
+  virtual void reset() = 0;
+  virtual std::vector<gpu::TextureRef> textures() const = 0;  ///< for the health scan and downloads
+
+ private:
+  friend class PipelineExecutor;
+  friend class PassHarness;
+  Contributes contributes_;
+  Needs needs_;
+  bool wanted_ = true;
+};
+
+/// The textures in a port value, found by overload for each port kind.
+std::vector<gpu::TextureRef> texturesOf(const Image&);
+std::vector<gpu::TextureRef> texturesOf(const GBuffer&);
+std::vector<gpu::TextureRef> texturesOf(const ShadowMap&);
+std::vector<gpu::TextureRef> texturesOf(const VoxelFragments&);
+std::vector<gpu::TextureRef> texturesOf(const OccupancyGrid&);
+std::vector<gpu::TextureRef> texturesOf(const RadianceGrid&);
+std::vector<gpu::TextureRef> texturesOf(const ShGrid&);
+std::vector<gpu::TextureRef> texturesOf(const ScatteringGrid&);
+
+/// An output: assigned by run(). The resources go back to the executor's pool after the last reader has run.
+template <class Port>
+class Out : public OutBase {
+ public:
+  Out(Pass* pass, std::string name, Contributes contributes = Contributes::nothing, Needs needs = Needs::nothing, std::string meaning = {})
+      : OutBase(pass, std::move(name), Port::kPortKind, contributes, needs, std::move(meaning)) {}
+  Out(Pass* pass, std::string name, std::string meaning)
+      : Out(pass, std::move(name), Contributes::nothing, Needs::nothing, std::move(meaning)) {}
+  Out& operator=(Port value) {
+    value_ = std::move(value);
+    return *this;
+  }
+  const Port& value() const { return *value_; }
+  bool hasValue() const override { return value_.has_value(); }
+  void reset() override { value_.reset(); }
+  std::vector<gpu::TextureRef> textures() const override { return value_ ? texturesOf(*value_) : std::vector<gpu::TextureRef>{}; }
+
+ private:
+  std::optional<Port> value_;
+};
+
+enum class Presence { required, optional };
+
+class InBase : public PortBase {
+ public:
+  InBase(Pass* pass, std::string name, std::string portKind, Presence presence, std::string meaning);
+  Presence presence() const { return presence_; }
+  /// False when nothing is connected or what is connected was pruned away: the pass then uses the variant without this input.
+  bool present() const { return source_ != nullptr && source_->hasValue(); }
+  explicit operator bool() const { return present(); }
+  /// Connects or disconnects; the kinds must agree (checked by the graph with a message; asserted here).
+  void connect(const OutBase* source);
+
+ protected:
+  const OutBase* source_ = nullptr;
+
+ private:
+  Presence presence_;
+};
+
+template <class Port>
+class In : public InBase {
+ public:
+  In(Pass* pass, std::string name, std::string meaning = {}) : InBase(pass, std::move(name), Port::kPortKind, Presence::required, std::move(meaning)) {}
+  In(Pass* pass, std::string name, Presence presence, std::string meaning = {})
+      : InBase(pass, std::move(name), Port::kPortKind, presence, std::move(meaning)) {}
+  const Port& operator*() const { return static_cast<const Out<Port>*>(source_)->value(); }
+  const Port* operator->() const { return &**this; }
+};
+
+/// A parameter of a pass: a number, a switch (on/off) or a word, with its range and default. Set from the pipeline text.
+class ParamBase {
+ public:
+  enum class Type { integer, number, flag, word };
+  ParamBase(Pass* pass, std::string name, Type type, std::string meaning);
+  virtual ~ParamBase() = default;
+  ParamBase(const ParamBase&) = delete;
+  ParamBase& operator=(const ParamBase&) = delete;
+  const std::string& name() const { return name_; }
+  Type type() const { return type_; }
+  const std::string& meaning() const { return meaning_; }
+  double low() const { return low_; }
+  double high() const { return high_; }
+  const std::vector<std::string>& choices() const { return choices_; }
+  const std::string& unit() const { return unit_; }        ///< "", "m", "rad", "/m"
+  virtual std::string valueText() const = 0;
+  virtual std::string defaultText() const = 0;
+  /// Error text ("must be in 1..32") when the value does not fit, else empty. Numbers arrive in base units.
+  virtual std::string set(double number) = 0;
+  virtual std::string set(const std::string& word) = 0;
+
+ protected:
+  double low_ = 0, high_ = 0;
+  std::vector<std::string> choices_;
+  std::string unit_;
+
+ private:
+  std::string name_, meaning_;
+  Type type_;
+};
+
+template <class T>
+struct ParamRange { T low, high; };
+
+template <class T>
+class Param;
+
+template <>
+class Param<int> : public ParamBase {
+ public:
+  Param(Pass* pass, std::string name, int value, ParamRange<int> range, std::string meaning);
+  operator int() const { return value_; }
+  std::string valueText() const override;
+  std::string defaultText() const override;
+  std::string set(double number) override;
+  std::string set(const std::string& word) override;
+
+ private:
+  int value_, default_;
+};
+
+template <>
+class Param<float> : public ParamBase {
+ public:
+  Param(Pass* pass, std::string name, float value, ParamRange<float> range, std::string unit, std::string meaning);
+  operator float() const { return value_; }
+  std::string valueText() const override;
+  std::string defaultText() const override;
+  std::string set(double number) override;
+  std::string set(const std::string& word) override;
+
+ private:
+  float value_, default_;
+};
+
+template <>
+class Param<bool> : public ParamBase {
+ public:
+  Param(Pass* pass, std::string name, bool value, std::string meaning);
+  operator bool() const { return value_; }
+  std::string valueText() const override;   ///< "on" or "off"
+  std::string defaultText() const override;
+  std::string set(double number) override;
+  std::string set(const std::string& word) override;
+
+ private:
+  bool value_, default_;
+};
+
+template <>
+class Param<std::string> : public ParamBase {
+ public:
+  Param(Pass* pass, std::string name, std::string value, std::vector<std::string> choices, std::string meaning);
+  operator const std::string&() const { return value_; }
+  bool operator==(const char* other) const { return value_ == other; }
+  std::string valueText() const override { return value_; }
+  std::string defaultText() const override { return default_; }
+  std::string set(double number) override;
+  std::string set(const std::string& word) override;
+
+ private:
+  std::string value_, default_;
+};
+
+/// Everything that a pass may use while it runs.
+class PassContext {
+ public:
+  virtual ~PassContext() = default;
+  virtual gpu::Device& device() = 0;
+  virtual shader::ShaderLibrary& shaders() = 0;
+  virtual GpuScene& scene() = 0;
+  virtual const Scene& sceneDescription() const = 0;
+  virtual const SceneSnapshot& snapshot() const = 0;
+  /// What the scene has; all of it with --keep-everything. Choose variants by this, never by looking at the scene.
+  virtual const SceneTraits& traits() const = 0;
+  virtual int frameIndex() const = 0;
+  virtual std::uint64_t seed() const = 0;
+
+  /// Resources from the pool: contents are undefined. They return to the pool when the last reference goes.
+  virtual gpu::TextureRef texture(const gpu::TextureDescription& description, const std::string& label) = 0;
+  virtual gpu::BufferRef buffer(std::uint64_t sizeBytes, const std::string& label) = 0;
+  /// Told to the user once per run, with the pass's name.
+  virtual void warn(const std::string& text) = 0;
+
+  const shader::BoundProgram& program(const shader::ProgramName& name, const shader::VariantKey& variant = {},
+                                      const std::vector<gpu::SpecialisationValue>& constants = {}) {
+    return shaders().program(name, variant, constants);
+  }
+  /// One invocation per item, in groups of `groupSize`; a barrier follows.
+  void dispatch(const shader::BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings, glm::ivec3 items, glm::ivec3 groupSize);
+  gpu::TextureRef image(gpu::Format format, const std::string& label);  ///< picture-sized d2 texture
+};
+
+class Pass {
+ public:
+  virtual ~Pass() = default;
+  virtual void run(PassContext& frame) = 0;
+  /// What it reads besides its inputs.
+  virtual Reads readsFrom() const { return Reads::nothing; }
+  /// What the scene must have for the pass as a whole.
+  virtual Needs needs() const { return Needs::nothing; }
+  /// Contradictions between parameters, in words; empty when there are none.
+  virtual std::string checkParameters() const { return {}; }
+
+  const std::vector<InBase*>& inputs() const { return inputs_; }
+  const std::vector<OutBase*>& outputs() const { return outputs_; }
+  const std::vector<ParamBase*>& parameters() const { return parameters_; }
+
+ private:
+  friend class OutBase;
+  friend class InBase;
+  friend class ParamBase;
+  std::vector<InBase*> inputs_;
+  std::vector<OutBase*> outputs_;
+  std::vector<ParamBase*> parameters_;
+};
+
+}  // namespace lumivox

@@ -1,0 +1,179 @@
+// Pipeline texts: parsing, binding to the passes of technique libraries, pruning, running.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lumivox/base/hash.h"
+#include "lumivox/base/picture.h"
+#include "lumivox/dsl/document.h"
+#include "lumivox/dsl/schema.h"
+#include "lumivox/pipeline/pass.h"
+#include "lumivox/pipeline/technique_source.h"
+#include "lumivox/scene/scene.h"
+
+namespace lumivox {
+
+/// One value of a pipeline parameter.
+struct ParameterValue {
+  double number = 0.0;
+  std::string word;                 ///< non-empty: a word in place of a number
+  std::string text() const;
+  bool operator==(const ParameterValue&) const = default;
+};
+using ParameterValues = std::map<std::string, ParameterValue>;
+
+struct PipelineParameter {
+  std::string name;
+  ParameterValue value;             ///< default
+  std::optional<double> low, high;  ///< declared range
+  std::vector<std::string> choices;
+};
+
+/// `sweep NAME { parameter [values] ... }`: the grid over its lists.
+struct Sweep {
+  std::string name;
+  std::vector<std::pair<std::string, std::vector<ParameterValue>>> axes;
+  std::vector<ParameterValues> points() const;  ///< in text order, the last axis fastest
+};
+
+struct PassText {
+  std::string name, technique, pass;
+  SourcePlace place;
+  const dsl::Block* block = nullptr;
+};
+
+/// A parsed pipeline text, not yet bound.
+class Pipeline {
+ public:
+  /// Throws DiagnosticsError with every finding that needs no technique library.
+  static Pipeline load(const std::filesystem::path& file);
+  static Pipeline parse(std::string source, std::filesystem::path file);
+
+  std::string name;                 ///< the string in the text
+  std::filesystem::path file;
+  ContentHash hash;                 ///< of the text with its includes
+  std::vector<PipelineParameter> parameters;
+  std::vector<PassText> passes;
+  struct Output { std::string name, pass, port; SourcePlace place; };
+  std::vector<Output> outputs;
+  std::vector<Sweep> sweeps;
+  std::shared_ptr<const dsl::Document> document;
+
+  /// Parses "name=value" settings; Error names an unknown parameter (with the nearest) or a value out of its range.
+  ParameterValues settings(const std::vector<std::string>& assignments) const;
+  /// Names of the techniques that it needs.
+  std::vector<std::string> techniques() const;
+};
+
+/// Tables of the pipeline grammar, for check, describe and the reference.
+const std::vector<dsl::BlockSpecification>& pipelineSpecifications();
+/// Tables of the scene grammar are in scene/text.h.
+
+/// All findings of a pipeline against the techniques: unknown techniques, passes, ports, parameters, kinds, cycles, ranges.
+void checkPipeline(const Pipeline& pipeline, TechniqueSource& techniques);
+
+struct RenderOptions {
+  bool keepEverything = false;
+  ParameterValues parameters;       ///< over the defaults
+  std::vector<std::string> wanted;  ///< output names; empty: all
+  std::uint64_t seed = 1;
+  bool health = false;              ///< scan every pass output for NaN, Inf and negative values
+  std::string camera;
+  int width = 0, height = 0;        ///< 0: the camera's
+};
+
+struct PassRecord {
+  std::string name, technique, pass;
+  bool ran = true;                  ///< false: its inputs had not changed
+  double hostMs = 0, deviceMs = 0;
+  std::uint64_t bytes = 0;          ///< resources that it took from the pool
+};
+
+struct FrameResult {
+  std::map<std::string, Picture> outputs;       ///< rgb each (one channel for ambient occlusion); only when pictures were asked for
+  std::map<std::string, Contributes> components;
+  std::vector<PassRecord> passes;
+  double frameMs = 0;               ///< whole frame, device idle before and after
+  double betweenPassesMs = 0;       ///< frameMs minus the passes: what the framework itself costs
+  std::uint64_t peakBytes = 0;
+  std::vector<std::string> healthFindings;      ///< "pass gather, port diffuse: 3 NaN, first at pixel (12, 40)"
+};
+
+/// One thing that a run does without.
+struct LeftOut {
+  enum class Level { plugin, pass, variant, resource, time } level;
+  std::string what, why;
+  std::uint64_t savedBytes = 0;
+  double savedMs = 0;               ///< 0 when not measured
+};
+const char* name(LeftOut::Level level);
+
+struct Explanation {
+  std::vector<LeftOut> leftOut;
+  std::size_t passesKept = 0, passesTotal = 0;
+  std::size_t variantsPossible = 0, variantsCompiled = 0, variantsNeeded = 0;
+};
+
+/// A pipeline bound to a scene and a device, ready to render frames.
+class PipelineExecutor {
+ public:
+  /// Binds, prunes and schedules. Throws DiagnosticsError with all binding errors at once.
+  PipelineExecutor(gpu::Device& device, TechniqueSource& techniques, const Scene& scene, const Pipeline& pipeline, const RenderOptions& options);
+  ~PipelineExecutor();
+
+  enum class Pictures { no, yes };
+  /// Renders the scene at `time`. Passes whose inputs did not change since the last call are not run again.
+  FrameResult render(double time, int frameIndex = 0, Pictures pictures = Pictures::yes);
+  /// Forgets cached results, so that the next frame runs every kept pass.
+  void invalidate();
+
+  Explanation explain() const;
+  const std::vector<std::string>& outputNames() const;  ///< kept and pruned; a pruned one renders as black
+  shader::ShaderLibrary& shaders();
+  /// An output of a pass after the last render (kept alive on request before rendering); for exporters and tests.
+  void keepOutput(const std::string& pass, const std::string& port);
+  const OutBase* output(const std::string& pass, const std::string& port) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Runs one pass alone on hand-made inputs: for the closed-form tests of techniques.
+class PassHarness {
+ public:
+  PassHarness(gpu::Device& device, TechniqueSource& techniques, const std::string& technique, const std::string& pass, const Scene& scene,
+              const SceneSnapshot& snapshot);
+  ~PassHarness();
+  Pass& pass();
+  void setParameter(const std::string& name, double value);
+  void setParameter(const std::string& name, const std::string& word);
+  /// Gives an input a value made by the test.
+  template <class Port>
+  void setInput(const std::string& name, Port value) {
+    auto source = std::make_unique<Out<Port>>(&holder(), name);
+    *source = std::move(value);
+    connectInput(name, std::move(source));
+  }
+  void run(std::uint64_t seed = 1);
+  template <class Port>
+  const Port& output(const std::string& name) { return static_cast<const Out<Port>&>(outputNamed(name)).value(); }
+  PassContext& context();
+
+ private:
+  Pass& holder();
+  void connectInput(const std::string& name, std::unique_ptr<OutBase> source);
+  OutBase& outputNamed(const std::string& name);
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// A texture's picture as the framework stores pictures: row 0 on top.
+Picture pictureOf(const gpu::Texture& texture, int channels = 3);
+
+}  // namespace lumivox
