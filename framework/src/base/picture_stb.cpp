@@ -1,0 +1,218 @@
+// 8-bit pictures by stb: PNG out; PNG, JPG and TGA in. stb checks neither sums nor ends, so the containers
+// are walked here first: a damaged or truncated file must not pass for a picture.
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <string_view>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/base/picture.h"
+
+namespace {
+
+/// stb's hook for the deflate step of PNG; zlib is smaller and faster than its own. The result is freed by
+/// stb.
+unsigned char* deflateForStb(unsigned char* data, int size, int* compressedSize, int quality) {
+  uLongf capacity = compressBound(static_cast<uLong>(size));
+  auto* compressed = static_cast<unsigned char*>(std::malloc(capacity));
+  if (compressed == nullptr ||
+      compress2(compressed, &capacity, data, static_cast<uLong>(size), std::min(quality, 9)) != Z_OK) {
+    std::free(compressed);
+    return nullptr;
+  }
+  *compressedSize = static_cast<int>(capacity);
+  return compressed;
+}
+
+}  // namespace
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wall"
+#pragma GCC diagnostic ignored "-Wextra"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_TGA
+#define STBI_NO_STDIO
+#include <stb/stb_image.h>
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
+#define STBIW_ZLIB_COMPRESS deflateForStb
+#include <stb/stb_image_write.h>
+#pragma GCC diagnostic pop
+
+namespace lumivox {
+namespace {
+
+using Bytes = std::basic_string_view<unsigned char>;
+
+[[noreturn]] void refuse(std::string_view what) {
+  throw Error(std::string(what));
+}
+
+std::uint32_t bigEndian32(Bytes bytes, std::size_t at) {
+  return std::uint32_t{bytes[at]} << 24 | std::uint32_t{bytes[at + 1]} << 16 |
+         std::uint32_t{bytes[at + 2]} << 8 | bytes[at + 3];
+}
+
+/// PNG specification, Sec. 5.3: chunks of length, type, data and checksum, up to IEND.
+void checkPng(Bytes bytes) {
+  constexpr std::size_t kSignature = 8, kChunkFrame = 12;
+  for (std::size_t at = kSignature;;) {
+    if (bytes.size() - at < kChunkFrame) refuse("the PNG is truncated");
+    const std::size_t length = bigEndian32(bytes, at);
+    if (length > bytes.size() - at - kChunkFrame) refuse("the PNG is truncated");
+    const auto sum = crc32(0, bytes.data() + at + 4, static_cast<uInt>(length + 4));
+    if (sum != bigEndian32(bytes, at + 8 + length)) refuse("a chunk of the PNG fails its checksum");
+    if (std::memcmp(bytes.data() + at + 4, "IEND", 4) == 0) return;
+    at += kChunkFrame + length;
+  }
+}
+
+/// JPEG (ITU-T T.81, Annex B): marker segments, entropy-coded data after each start of scan, and the
+/// end-of-image marker.
+void checkJpeg(Bytes bytes) {
+  constexpr unsigned kStartOfScan = 0xDA, kEndOfImage = 0xD9, kFirstRestart = 0xD0, kLastRestart = 0xD7,
+                     kTemporary = 0x01;
+  bool inScan = false;
+  for (std::size_t at = 2; at + 1 < bytes.size();) {
+    if (bytes[at] != 0xFF) {
+      if (!inScan) refuse("the JPEG has no marker where one is due");
+      ++at;
+      continue;
+    }
+    const unsigned marker = bytes[at + 1];
+    if (marker == kEndOfImage) return;
+    if (marker == 0xFF) {  // fill byte
+      ++at;
+    } else if (marker == 0 || marker == kTemporary || (marker >= kFirstRestart && marker <= kLastRestart)) {
+      at += 2;  // a stuffed 0xFF, or a marker without a segment
+    } else {
+      if (at + 3 >= bytes.size()) break;
+      inScan = marker == kStartOfScan;
+      at += 2 + (std::size_t{bytes[at + 2]} << 8 | bytes[at + 3]);
+    }
+  }
+  refuse("the JPEG is truncated");
+}
+
+/// Truevision TGA 2.0: an 18-byte header, the identification, the palette, then pixels, raw or in run-length
+/// packets.
+void checkTga(Bytes bytes) {
+  constexpr std::size_t kHeader = 18;
+  constexpr unsigned kRunLengthCoded = 8;
+  if (bytes.size() < kHeader) refuse("is no PNG, JPG or TGA");
+  const auto littleEndian16 = [&](std::size_t at) {
+    return std::size_t{bytes[at]} | std::size_t{bytes[at + 1]} << 8;
+  };
+  std::size_t at = kHeader + bytes[0];
+  if (bytes[1] != 0) at += littleEndian16(5) * ((bytes[7] + 7u) / 8);
+  const std::size_t pixelBytes = (bytes[16] + 7u) / 8;
+  const std::size_t pixels = littleEndian16(12) * littleEndian16(14);
+  if ((bytes[2] & kRunLengthCoded) == 0) {
+    at += pixels * pixelBytes;
+  } else {
+    for (std::size_t decoded = 0; decoded < pixels && at < bytes.size();) {
+      const std::size_t run = (bytes[at] & 0x7Fu) + 1;
+      at += 1 + ((bytes[at] & 0x80u) != 0 ? pixelBytes : run * pixelBytes);
+      decoded += run;
+      if (decoded < pixels && at >= bytes.size()) refuse("the TGA is truncated");
+    }
+  }
+  if (at > bytes.size()) refuse("the TGA is truncated");
+}
+
+BytePicture decode(Bytes bytes) {
+  if (bytes.empty()) refuse("the file is empty; expected a PNG, JPG or TGA");
+  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    refuse("the picture file is over 2 GiB");
+  const int size = static_cast<int>(bytes.size());
+  BytePicture picture;
+  if (stbi_info_from_memory(bytes.data(), size, &picture.width, &picture.height, &picture.channels) == 0) {
+    refuse(fmt::format("is no readable PNG, JPG or TGA: {}", stbi_failure_reason()));
+  }
+  if (bytes[0] == 0x89) {
+    checkPng(bytes);
+  } else if (bytes[0] == 0xFF && bytes[1] == 0xD8) {
+    checkJpeg(bytes);
+  } else {
+    checkTga(bytes);
+  }
+  // The decoder holds the unpacked stream and the picture at once, up to two bytes a channel.
+  const std::uint64_t valueCount = static_cast<std::uint64_t>(picture.width) *
+                                   static_cast<std::uint64_t>(picture.height) *
+                                   static_cast<std::uint64_t>(picture.channels);
+  requireMemory(valueCount * 4, fmt::format("a picture of {} x {} pixels", picture.width, picture.height));
+  const std::unique_ptr<stbi_uc, decltype(&std::free)> pixels(
+      stbi_load_from_memory(bytes.data(), size, &picture.width, &picture.height, &picture.channels, 0),
+      &std::free);
+  if (!pixels) refuse(fmt::format("is no readable PNG, JPG or TGA: {}", stbi_failure_reason()));
+  picture.values.assign(pixels.get(), pixels.get() + valueCount);
+  return picture;
+}
+
+unsigned char encodeByte(float linear) {
+  constexpr float kSteps = 255.0f;
+  return static_cast<unsigned char>(std::lround(kSteps * linearToSrgb(std::clamp(linear, 0.0f, 1.0f))));
+}
+
+}  // namespace
+
+std::string encodePng(const Picture& linear, float exposure) {
+  if (linear.empty() || (linear.channels() != 1 && linear.channels() != 3)) {
+    throw Error(
+        fmt::format("a picture with {} channels cannot become a PNG; expected 1 or 3", linear.channels()));
+  }
+  constexpr int kChannels = 3;
+  const std::size_t sourceChannels = static_cast<std::size_t>(linear.channels());
+  std::vector<unsigned char> bytes(linear.pixelCount() * kChannels);
+  for (std::size_t pixel = 0; pixel < linear.pixelCount(); ++pixel) {
+    const float* source = linear.values().data() + pixel * sourceChannels;
+    unsigned char* target = bytes.data() + pixel * kChannels;
+    const bool isNan = std::any_of(source, source + sourceChannels,
+                                   [&](float value) { return std::isnan(value * exposure); });
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      target[c] = isNan ? (c == 1 ? 0 : 255) : encodeByte(source[c % sourceChannels] * exposure);
+    }
+  }
+  std::string png;
+  const auto append = [](void* context, void* data, int size) {
+    static_cast<std::string*>(context)->append(static_cast<const char*>(data),
+                                               static_cast<std::size_t>(size));
+  };
+  if (stbi_write_png_to_func(append, &png, linear.width(), linear.height(), kChannels, bytes.data(),
+                             linear.width() * kChannels) == 0) {
+    throw Error(fmt::format("a PNG of {} x {} pixels could not be encoded", linear.width(), linear.height()));
+  }
+  return png;
+}
+
+void writePng(const std::filesystem::path& path, const Picture& linear, float exposure) {
+  std::string bytes;
+  try {
+    bytes = encodePng(linear, exposure);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path.string(), error.what()));
+  }
+  writeFileAtomically(path, bytes);
+}
+
+BytePicture readBytePicture(const std::filesystem::path& path) {
+  const std::string bytes = readFile(path);
+  try {
+    return decode(Bytes(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path.string(), error.what()));
+  }
+}
+
+}  // namespace lumivox

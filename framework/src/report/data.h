@@ -1,0 +1,92 @@
+// What a report holds between measuring and writing: the public records, and pictures already encoded for the page.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "lumivox/report/report.h"
+
+namespace lumivox::report {
+
+/// Pictures of one output at one point, as PNG bytes.
+struct OutputPictures {
+  std::string output, component;
+  std::string picture;
+  struct Against {
+    std::string truth;
+    std::string flipMap;
+    double flip = 0.0;
+  };
+  std::vector<Against> against;  ///< one per truth layer
+};
+
+struct PointRecord {
+  ReportPoint point;
+  bool isDefault = false;  ///< every parameter as the text has it (with --set)
+  std::string failure;     ///< why there are no numbers; empty when there are
+  std::vector<OutputPictures> pictures;
+};
+
+struct TruthRecord {
+  std::string layer;
+  std::string picture;       ///< PNG
+  double exposure = 1.0;     ///< common to every picture of this component
+  double noise = 0.0;        ///< sqrt of the mean variance of a pixel value
+  double mean = 0.0, largest = 0.0;
+};
+
+struct PipelineRecord {
+  std::string file, name, hash;
+};
+
+struct SceneRecord {
+  std::string file, name, hash, camera;
+  int width = 0, height = 0;
+  double time = 0.0;
+  std::size_t triangles = 0;
+  int truthSamples = 0;
+  double truthSeconds = 0.0;  ///< to make or to read from the cache
+  std::map<std::string, std::string> truthAttributes;
+  std::vector<TruthRecord> truths;
+  std::vector<PointRecord> points;
+  std::vector<PruningRecord> pruning;
+  std::vector<std::pair<std::string, std::string>> unsuited;  ///< pipeline, why
+};
+
+struct TechniqueRecord {
+  std::string name, libraryHash, shaderHash, meaning, paper;
+};
+
+struct ReportData {
+  ReportOptions options;
+  gpu::DeviceInfo device;
+  std::string shaderInput, host, date;
+  std::vector<PipelineRecord> pipelines;
+  std::vector<TechniqueRecord> techniques;
+  std::vector<SkippedTechnique> skipped;
+  std::vector<SceneRecord> scenes;
+};
+
+/// Everything but the pictures.
+nlohmann::ordered_json toJson(const ReportData& data);
+/// One row per point, output and truth layer (RFC 4180).
+std::string toCsv(const ReportData& data);
+
+/// The one self-contained page. `chartLibrary` is the text of Chart.js.
+std::string toHtml(const ReportData& data, const std::string& chartLibrary);
+
+/// Chart.js of the distribution (package libjs-chart.js). AbsentError names the package and where it was sought.
+std::string chartLibrary();
+
+std::string base64(const std::string& bytes);
+
+/// Points that no other point of the same output beats in both time and error: the front. Keyed by index into SceneRecord::points.
+std::vector<bool> frontOf(const std::vector<PointRecord>& points, const std::string& output, bool bias);
+
+/// The error record of an output, if it was measured: against the bias truth or the full one (a component with one truth has only the
+/// first, which then answers for both).
+const ComponentError* errorOf(const ReportPoint& point, const std::string& output, bool bias);
+
+}  // namespace lumivox::report

@@ -1,0 +1,363 @@
+// Float pictures, EXR, PNG and the sRGB transfer functions.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <ImfTiledOutputFile.h>
+#include <half.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/base/picture.h"
+#include "support/support.h"
+
+using namespace lumivox;
+using Catch::Matchers::Contains;
+using lumivox::test::messageOf;
+using lumivox::test::TemporaryDirectory;
+
+namespace {
+
+Picture numbered(int width, int height, int channels, float start) {
+  Picture picture(width, height, channels);
+  for (float& value : picture.values()) value = start += 0.37f;
+  return picture;
+}
+
+bool sameBits(const Picture& a, const Picture& b) {
+  return a.sameShape(b) &&
+         std::memcmp(a.values().data(), b.values().data(), a.values().size() * sizeof(float)) == 0;
+}
+
+/// A valid small EXR, to be damaged.
+std::string exrBytes(const TemporaryDirectory& directory, int width = 16, int height = 40) {
+  const auto path = directory.path() / "whole.exr";
+  writeExr(path, {{{"", numbered(width, height, 3, 0.0f)}}, {}});
+  return readFile(path);
+}
+
+/// The place of the data window's four 32-bit numbers (least significant byte first) in an EXR's header.
+std::size_t dataWindowPlace(const std::string& bytes) {
+  // Attribute layout: name, 0, type, 0, size (4 bytes), value.
+  const std::string lead = std::string("dataWindow") + '\0' + "box2i" + '\0';
+  return bytes.find(lead) + lead.size() + 4;
+}
+
+void setInt32(std::string& bytes, std::size_t place, std::int32_t value) {
+  for (int i = 0; i < 4; ++i)
+    bytes[place + static_cast<std::size_t>(i)] = static_cast<char>(value >> (8 * i));
+}
+
+}  // namespace
+
+TEST_CASE("an EXR returns every layer bit for bit, with dots in names, and its attributes") {
+  const TemporaryDirectory directory;
+  LayeredPicture written;
+  written.layers[""] = numbered(7, 5, 3, 0.0f);
+  written.layers["direct"] = numbered(7, 5, 4, 100.0f);
+  written.layers["direct.variance"] = numbered(7, 5, 3, 200.0f);
+  written.layers["depth"] = numbered(7, 5, 1, 300.0f);
+  written.layers["motion.last.frame"] = numbered(7, 5, 2, 400.0f);
+  written.layers["depth"].at(3, 2, 0) = std::numeric_limits<float>::quiet_NaN();
+  written.layers["depth"].at(4, 2, 0) = std::numeric_limits<float>::infinity();
+  written.layers["depth"].at(5, 2, 0) = -1e-42f;  // denormal
+  written.attributes = {
+      {"scene", "Cornell box"}, {"samples", "1024"}, {"note", "two\nlines, µ"}, {"none", ""}};
+  const auto path = directory.path() / "layers.exr";
+  writeExr(path, written);
+  const LayeredPicture read = readExr(path);
+  REQUIRE(read.layers.size() == written.layers.size());
+  for (const auto& [name, picture] : written.layers) {
+    INFO(name);
+    REQUIRE(read.layers.count(name) == 1);
+    REQUIRE(sameBits(read.layers.at(name), picture));
+  }
+  REQUIRE(read.attributes == written.attributes);
+}
+
+TEST_CASE("the same picture gives the same EXR bytes") {
+  const TemporaryDirectory directory;
+  const LayeredPicture picture{{{"a", numbered(33, 21, 3, 0.0f)}}, {{"seed", "1"}}};
+  writeExr(directory.path() / "one.exr", picture);
+  writeExr(directory.path() / "two.exr", picture);
+  REQUIRE(readFile(directory.path() / "one.exr") == readFile(directory.path() / "two.exr"));
+}
+
+TEST_CASE(
+    "row 0 of a written EXR is the top row for a foreign reader's tiled half-float file with a data window, "
+    "too") {
+  const TemporaryDirectory directory;
+  const std::string path = (directory.path() / "tiled.exr").string();
+  constexpr int kWidth = 10, kHeight = 6;
+  const Imath::Box2i window({-3, 100}, {-3 + kWidth - 1, 100 + kHeight - 1});
+  Imf::Header header(Imath::Box2i({0, 0}, {99, 199}), window);
+  header.setTileDescription(Imf::TileDescription(4, 4, Imf::ONE_LEVEL));
+  for (const char* name : {"R", "G", "B", "Z", "id"}) {
+    header.channels().insert(name, Imf::Channel(std::string(name) == "id" ? Imf::UINT : Imf::HALF));
+  }
+  std::vector<half> values(kWidth * kHeight);
+  std::vector<unsigned> ids(kWidth * kHeight);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      values[static_cast<std::size_t>(y * kWidth + x)] =
+          half(static_cast<float>(y) + 0.0625f * static_cast<float>(x));
+      ids[static_cast<std::size_t>(y * kWidth + x)] = static_cast<unsigned>(1000 * y + x);
+    }
+  }
+  {
+    Imf::TiledOutputFile file(path.c_str(), header);
+    Imf::FrameBuffer frame;
+    for (const char* name : {"R", "G", "B", "Z"})
+      frame.insert(name, Imf::Slice::Make(Imf::HALF, values.data(), window));
+    frame.insert("id", Imf::Slice::Make(Imf::UINT, ids.data(), window));
+    file.setFrameBuffer(frame);
+    file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
+  }
+  const LayeredPicture picture = readExr(path);
+  // R, G, B form the main picture; depth and identifier stand beside it under their own names.
+  REQUIRE(picture.layers.size() == 3);
+  const Picture& main = picture.layers.at("");
+  REQUIRE((main.width() == kWidth && main.height() == kHeight && main.channels() == 3));
+  REQUIRE(main.at(7, 4, 2) == 4.0f + 7.0f / 16.0f);
+  REQUIRE(picture.layers.at("Z").at(9, 5, 0) == 5.0f + 9.0f / 16.0f);
+  REQUIRE(picture.layers.at("id").at(2, 3, 0) == 3002.0f);
+}
+
+TEST_CASE("foreign channel names group sensibly") {
+  const TemporaryDirectory directory;
+  const std::string path = (directory.path() / "foreign.exr").string();
+  Imf::Header header(1, 1);
+  const std::vector<std::string> names = {
+      "r",    "g",       "b",       "normal.X", "normal.Y", "normal.Z", "view.V",    "uv.U",
+      "uv.V", "light.A", "light.B", "light.G",  "light.R",  "only.R",   "odd.first", "odd.second"};
+  std::vector<float> values(names.size());
+  Imf::FrameBuffer frame;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    values[i] = static_cast<float>(i + 1);
+    header.channels().insert(names[i], Imf::Channel(Imf::FLOAT));
+    frame.insert(names[i], Imf::Slice::Make(Imf::FLOAT, &values[i], header.dataWindow()));
+  }
+  {
+    Imf::OutputFile file(path.c_str(), header);
+    file.setFrameBuffer(frame);
+    file.writePixels(1);
+  }
+  const auto layers = readExr(path).layers;
+  const auto values_of = [&](const std::string& name) { return layers.at(name).values(); };
+  CHECK(layers.size() == 8);
+  CHECK(values_of("") == std::vector<float>{1, 2, 3});
+  CHECK(values_of("normal") == std::vector<float>{4, 5, 6});
+  CHECK(values_of("view") == std::vector<float>{7});
+  CHECK(values_of("uv") == std::vector<float>{8, 9});
+  CHECK(values_of("light") == std::vector<float>{13, 12, 11, 10});
+  CHECK(values_of("only") == std::vector<float>{14});
+  CHECK(values_of("odd.first") == std::vector<float>{15});
+  CHECK(values_of("odd.second") == std::vector<float>{16});
+}
+
+TEST_CASE("an EXR cut at any length is an error that names the file") {
+  const TemporaryDirectory directory;
+  const std::string bytes = exrBytes(directory);
+  std::size_t refused = 0, cuts = 0;
+  for (std::size_t size = 0; size < bytes.size(); size += size < 400 ? 7 : 97, ++cuts) {
+    const auto path = directory.write("cut.exr", bytes.substr(0, size));
+    refused += messageOf<Error>([&] { readExr(path); }).find("cut.exr") != std::string::npos ? 1 : 0;
+  }
+  REQUIRE(refused == cuts);
+  REQUIRE_NOTHROW(readExr(directory.write("cut.exr", bytes)));
+}
+
+TEST_CASE("an EXR with any one byte of its header changed is read or refused, and nothing else happens") {
+  const TemporaryDirectory directory;
+  const std::string bytes = exrBytes(directory, 8, 8);
+  for (std::size_t place = 0; place < std::min<std::size_t>(bytes.size(), 420); ++place) {
+    std::string damaged = bytes;
+    damaged[place] = static_cast<char>(damaged[place] ^ 0x85);
+    const auto path = directory.write("damaged.exr", damaged);
+    try {
+      readExr(path);
+    } catch (const Error& error) {
+      REQUIRE_THAT(error.what(), Contains("damaged.exr"));
+    }
+  }
+}
+
+TEST_CASE("an EXR that claims an absurd size is refused before memory is taken") {
+  const TemporaryDirectory directory;
+  const std::string whole = exrBytes(directory);
+  for (const std::int32_t side : {2'000'000'000, 9'000'000}) {
+    std::string bytes = whole;
+    setInt32(bytes, dataWindowPlace(bytes) + 8, side);
+    const auto wide = directory.write("huge.exr", bytes);
+    REQUIRE_THAT(messageOf<Error>([&] { readExr(wide); }), Contains("huge.exr"));
+    setInt32(bytes, dataWindowPlace(bytes) + 12, side);
+    const auto both = directory.write("huge.exr", bytes);
+    REQUIRE_THAT(messageOf<Error>([&] { readExr(both); }), Contains("huge.exr"));
+  }
+  // 39 rows stand in three chunks, whatever the width: only the width's memory can give this one away.
+  std::string bytes = whole;
+  setInt32(bytes, dataWindowPlace(bytes) + 8, (1 << 24) - 1);
+  const auto path = directory.write("wide.exr", bytes);
+  REQUIRE_THAT(messageOf<Error>([&] { readExr(path); }), Contains("wide.exr"));
+}
+
+TEST_CASE("what is no EXR, or missing, or a directory, is an error that names it") {
+  const TemporaryDirectory directory;
+  const auto text = directory.write("text.exr", "this is no picture");
+  REQUIRE_THAT(messageOf<Error>([&] { readExr(text); }), Contains("text.exr") && Contains("OpenEXR"));
+  const auto empty = directory.write("empty.exr", "");
+  REQUIRE_THAT(messageOf<Error>([&] { readExr(empty); }), Contains("empty.exr"));
+  REQUIRE_THAT(messageOf<Error>([&] { readExr(directory.path() / "none.exr"); }), Contains("none.exr"));
+  REQUIRE_THROWS_AS(readExr(directory.path()), Error);
+}
+
+TEST_CASE("a picture that cannot be written leaves the earlier file as it was") {
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "kept.exr";
+  writeExr(path, {{{"", numbered(4, 4, 3, 0.0f)}}, {}});
+  const std::string before = readFile(path);
+  const auto refuse = [&](const LayeredPicture& picture, const std::string& reason) {
+    REQUIRE_THAT(messageOf<Error>([&] { writeExr(path, picture); }),
+                 Contains("kept.exr") && Contains(reason));
+    REQUIRE(readFile(path) == before);
+  };
+  refuse({}, "without layers");
+  refuse({{{"a", numbered(4, 4, 3, 0.0f)}, {"b", numbered(4, 5, 3, 0.0f)}}, {}}, "'b'");
+  refuse({{{"a", numbered(4, 4, 5, 0.0f)}}, {}}, "5 channels");
+  refuse({{{"a", Picture()}}, {}}, "empty");
+  refuse({{{"a", numbered(4, 4, 1, 0.0f)}}, {{"compression", "none"}}}, "compression");
+  refuse({{{"a", numbered(4, 4, 1, 0.0f)}}, {{"type", "deepscanline"}}}, "type");
+  REQUIRE_THROWS_AS(writeExr(directory.path() / "no" / "folder.exr", {{{"", numbered(1, 1, 1, 0.0f)}}, {}}),
+                    Error);
+  REQUIRE(std::distance(std::filesystem::directory_iterator(directory.path()), {}) == 1);
+}
+
+TEST_CASE("a picture larger than the memory is refused with the sizes") {
+  REQUIRE_THAT(messageOf<Error>([] { Picture(2'000'000'000, 2'000'000'000, 2'000'000'000); }),
+               Contains("2000000000 x 2000000000"));
+  REQUIRE_THAT(messageOf<Error>([] { Picture(1 << 30, 1 << 14, 3); }), Contains("192.0 TiB"));
+  REQUIRE_THROWS_AS(Picture(0, 4, 3), Error);
+  REQUIRE_THROWS_AS(Picture(4, -1, 3), Error);
+  REQUIRE_THROWS_AS(Picture(4, 4, 0), Error);
+}
+
+TEST_CASE("the sRGB transfer functions are each other's inverse and meet the standard's values") {
+  // IEC 61966-2-1: 0.5 encoded is ((0.5 + 0.055) / 1.055)^2.4 = 0.21404114; mid grey 0.18 encodes to 1.055 *
+  // 0.18^(1/2.4) - 0.055.
+  REQUIRE(srgbToLinear(0.5f) == Approx(0.21404114).epsilon(1e-6));
+  REQUIRE(linearToSrgb(0.18f) == Approx(0.46135613).epsilon(1e-6));
+  REQUIRE(srgbToLinear(0.04f) == Approx(0.04 / 12.92));
+  REQUIRE((srgbToLinear(0.0f) == 0.0f && srgbToLinear(1.0f) == 1.0f && linearToSrgb(0.0f) == 0.0f));
+  REQUIRE(linearToSrgb(1.0f) == Approx(1.0f));
+  for (int i = 0; i <= 255; ++i) {
+    const float encoded = static_cast<float>(i) / 255.0f;
+    REQUIRE(std::lround(255.0f * linearToSrgb(srgbToLinear(encoded))) == i);
+  }
+}
+
+TEST_CASE("a PNG holds the exposed, clipped sRGB values, and NaN is magenta") {
+  const TemporaryDirectory directory;
+  Picture picture(3, 2, 3);
+  const float infinity = std::numeric_limits<float>::infinity();
+  picture.values() = {0.0f, 0.09f, 0.5f, 7.0f, -2.0f, infinity, 0.25f, std::nanf(""), 0.25f,
+                      1,    1,     1,    0,    0,     0,        0.09f, 0.09f,         0.09f};
+  writePng(directory.path() / "p.png", picture, 2.0f);
+  const BytePicture bytes = readBytePicture(directory.path() / "p.png");
+  REQUIRE((bytes.width == 3 && bytes.height == 2 && bytes.channels == 3));
+  // 0.09 at exposure 2 is 0.18: 255 * 0.46135613 = 117.6 -> 118.
+  REQUIRE(bytes.values == std::vector<unsigned char>{0, 118, 255, 255, 0, 255, 255, 0, 255, 255, 255, 255, 0,
+                                                     0, 0, 118, 118, 118});
+  REQUIRE(encodePng(picture, 2.0f) == readFile(directory.path() / "p.png"));
+
+  Picture grey(1, 1, 1, 0.18f);
+  writePng(directory.path() / "g.png", grey);
+  REQUIRE(readBytePicture(directory.path() / "g.png").values == std::vector<unsigned char>{118, 118, 118});
+  REQUIRE_THROWS_AS(encodePng(Picture(1, 1, 4)), Error);
+  REQUIRE_THROWS_AS(encodePng(Picture()), Error);
+}
+
+TEST_CASE("a PNG that is cut, damaged, empty or something else is an error that names the file") {
+  const TemporaryDirectory directory;
+  Picture picture(20, 20, 3);
+  for (std::size_t i = 0; i < picture.values().size(); ++i)
+    picture.values()[i] = static_cast<float>(i * 7919 % 256) / 255.0f;
+  const std::string whole = encodePng(picture);
+  for (std::size_t size = 0; size < whole.size(); size += 11) {
+    const auto path = directory.write("cut.png", whole.substr(0, size));
+    REQUIRE_THAT(messageOf<Error>([&] { readBytePicture(path); }), Contains("cut.png"));
+  }
+  // A changed byte breaks the checksum of its chunk (or the signature, or the frame of the chunk).
+  for (std::size_t place = 0; place < whole.size(); place += 13) {
+    std::string damaged = whole;
+    damaged[place] = static_cast<char>(damaged[place] ^ 0x20);
+    const auto path = directory.write("damaged.png", damaged);
+    REQUIRE_THAT(messageOf<Error>([&] { readBytePicture(path); }), Contains("damaged.png"));
+  }
+  const auto text = directory.write("text.png", "this is a text and no picture at all");
+  REQUIRE_THAT(messageOf<Error>([&] { readBytePicture(text); }), Contains("text.png"));
+  REQUIRE_THROWS_AS(readBytePicture(directory.path() / "none.png"), Error);
+}
+
+TEST_CASE("a TGA is read, raw and in runs, and refused when it is cut") {
+  const TemporaryDirectory directory;
+  const auto header = [](char type, char width, char height, char bits) {
+    std::string bytes(18, '\0');
+    bytes[2] = type;
+    bytes[12] = width;
+    bytes[14] = height;
+    bytes[16] = bits;
+    bytes[17] = 0x20;  // row 0 at the top
+    return bytes;
+  };
+  const std::string raw = header(2, 2, 1, 24) + "\x01\x02\x03\x04\x05\x06";  // blue, green, red
+  const auto rawPath = directory.write("raw.tga", raw);
+  REQUIRE(readBytePicture(rawPath).values == std::vector<unsigned char>{3, 2, 1, 6, 5, 4});
+  const std::string runs =
+      header(10, 5, 1, 24) + "\x83\x01\x02\x03" + std::string("\0\x07\x08\x09", 4);  // four equal, then one
+  const auto runsPath = directory.write("runs.tga", runs);
+  REQUIRE(readBytePicture(runsPath).values ==
+          std::vector<unsigned char>{3, 2, 1, 3, 2, 1, 3, 2, 1, 3, 2, 1, 9, 8, 7});
+  for (const std::string& whole : {raw, runs}) {
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+      const auto path = directory.write("cut.tga", whole.substr(0, size));
+      REQUIRE_THAT(messageOf<Error>([&] { readBytePicture(path); }), Contains("cut.tga"));
+    }
+  }
+}
+
+TEST_CASE("a JPEG is read, and refused when it is cut") {
+  const TemporaryDirectory directory;
+  // A baseline JPEG of one grey 8 x 8 block, written out by hand: quantisation all 1, one Huffman code of
+  // length 1 for each table (0: no difference / end of block), and the scan's bits 00 padded with ones: 0x3F.
+  std::string bytes = "\xFF\xD8";
+  const auto segment = [&](unsigned char marker, const std::string& content) {
+    bytes += '\xFF';
+    bytes += static_cast<char>(marker);
+    bytes += '\0';
+    bytes += static_cast<char>(content.size() + 2);
+    bytes += content;
+  };
+  const std::string table =
+      std::string("\x01", 1) + std::string(15, '\0') + std::string(1, '\0');  // counts, then the one symbol
+  segment(0xDB, std::string(1, '\0') + std::string(64, '\x01'));
+  segment(0xC0, std::string("\x08\0\x08\0\x08\x01\x01\x11\0", 9));
+  segment(0xC4, std::string(1, '\0') + table);
+  segment(0xC4, std::string(1, '\x10') + table);
+  segment(0xDA, std::string("\x01\x01\0\0\x3F\0", 6));
+  bytes += "\x3F\xFF\xD9";
+  const auto path = directory.write("grey.jpg", bytes);
+  const BytePicture picture = readBytePicture(path);
+  REQUIRE((picture.width == 8 && picture.height == 8 && picture.channels == 1));
+  REQUIRE(picture.values ==
+          std::vector<unsigned char>(64, 128));  // no coefficient: the level shift alone (T.81, A.3.1)
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    const auto cut = directory.write("cut.jpg", bytes.substr(0, size));
+    REQUIRE_THAT(messageOf<Error>([&] { readBytePicture(cut); }), Contains("cut.jpg"));
+  }
+}
