@@ -59,12 +59,13 @@ std::filesystem::path besideName(const std::filesystem::path& path) {
 std::string readFile(const std::filesystem::path& path, std::uint64_t limitBytes) {
   const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0) fail(path, "read");
-  struct stat status{};
+  struct stat status {};
   if (fstat(file.get(), &status) != 0) fail(path, "read");
   if (S_ISDIR(status.st_mode)) throw Error(fmt::format("{}: is a directory; expected a file", path.string()));
   const auto size = static_cast<std::uint64_t>(status.st_size);
   if (size > limitBytes) {
-    throw Error(fmt::format("{}: is too large ({}); expected at most {}", path.string(), formatBytes(size), formatBytes(limitBytes)));
+    throw Error(fmt::format("{}: is too large ({}); expected at most {}", path.string(), formatBytes(size),
+                            formatBytes(limitBytes)));
   }
   std::string content;
   content.reserve(static_cast<std::size_t>(size) + 1);
@@ -76,7 +77,8 @@ std::string readFile(const std::filesystem::path& path, std::uint64_t limitBytes
     if (count == 0) break;
     content.append(block, static_cast<std::size_t>(count));
     if (content.size() > limitBytes) {
-      throw Error(fmt::format("{}: is too large; expected at most {}", path.string(), formatBytes(limitBytes)));
+      throw Error(
+          fmt::format("{}: is too large; expected at most {}", path.string(), formatBytes(limitBytes)));
     }
   }
   return content;
@@ -87,7 +89,8 @@ std::string readFileMaybeGzip(const std::filesystem::path& path, std::uint64_t l
   if (path.extension() != ".gz") return packed;
   constexpr int kWindowBits = 15 + 16;  // zlib: the largest window, gzip framing
   z_stream stream{};
-  if (inflateInit2(&stream, kWindowBits) != Z_OK) throw Error(fmt::format("{}: cannot start to unpack", path.string()));
+  if (inflateInit2(&stream, kWindowBits) != Z_OK)
+    throw Error(fmt::format("{}: cannot start to unpack", path.string()));
   stream.next_in = reinterpret_cast<Bytef*>(packed.data());
   stream.avail_in = static_cast<uInt>(packed.size());
   std::string content;
@@ -99,11 +102,13 @@ std::string readFileMaybeGzip(const std::filesystem::path& path, std::uint64_t l
     result = inflate(&stream, Z_NO_FLUSH);
     content.append(block.data(), block.size() - stream.avail_out);
     if (content.size() > limitBytes) break;
-    if (result == Z_STREAM_END && stream.avail_in > 0) result = inflateReset(&stream);  // concatenated members
+    if (result == Z_STREAM_END && stream.avail_in > 0)
+      result = inflateReset(&stream);  // concatenated members
   }
   inflateEnd(&stream);
   if (content.size() > limitBytes) {
-    throw Error(fmt::format("{}: is too large when unpacked; expected at most {}", path.string(), formatBytes(limitBytes)));
+    throw Error(fmt::format("{}: is too large when unpacked; expected at most {}", path.string(),
+                            formatBytes(limitBytes)));
   }
   if (result != Z_STREAM_END) {
     throw Error(fmt::format("{}: is not a whole gzip file ({}); expected RFC 1952 data", path.string(),
@@ -121,8 +126,10 @@ void createParentDirectories(const std::filesystem::path& file) {
 }
 
 void writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  const std::filesystem::path parent = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  if (std::filesystem::is_directory(path)) throw Error(fmt::format("{}: cannot write: is a directory", path.string()));
+  const std::filesystem::path parent =
+      path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  if (std::filesystem::is_directory(path))
+    throw Error(fmt::format("{}: cannot write: is a directory", path.string()));
   const std::filesystem::path beside = besideName(path);
   constexpr mode_t kMode = 0666;
   // An unnamed file vanishes by itself when this process is killed; only a whole one ever gets a name.
@@ -157,10 +164,12 @@ void requireMemory(std::uint64_t bytes, std::string_view what) {
   std::ifstream information("/proc/meminfo");
   for (std::string line; std::getline(information, line);) {
     unsigned long long kibibytes = 0;
-    if (std::sscanf(line.c_str(), "MemAvailable: %llu kB", &kibibytes) == 1) availableBytes = std::uint64_t{kibibytes} * 1024;
+    if (std::sscanf(line.c_str(), "MemAvailable: %llu kB", &kibibytes) == 1)
+      availableBytes = std::uint64_t{kibibytes} * 1024;
   }
   if (bytes > availableBytes) {
-    throw Error(fmt::format("{} needs {}, but only {} of memory are available", what, formatBytes(bytes), formatBytes(availableBytes)));
+    throw Error(fmt::format("{} needs {}, but only {} of memory are available", what, formatBytes(bytes),
+                            formatBytes(availableBytes)));
   }
 }
 
@@ -188,7 +197,8 @@ std::filesystem::path cacheDirectory() {
   }
   std::error_code error;
   std::filesystem::create_directories(directory, error);
-  if (error) throw Error(fmt::format("{}: cannot make the cache directory: {}", directory.string(), error.message()));
+  if (error)
+    throw Error(fmt::format("{}: cannot make the cache directory: {}", directory.string(), error.message()));
   return directory;
 }
 

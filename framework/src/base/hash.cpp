@@ -7,7 +7,9 @@
 
 namespace lumivox {
 
-std::string ContentHash::text() const { return fmt::format("{:016x}{:016x}", high, low); }
+std::string ContentHash::text() const {
+  return fmt::format("{:016x}{:016x}", high, low);
+}
 
 struct Hasher::State {
   XXH3_state_t* state = XXH3_createState();

@@ -29,9 +29,15 @@ std::string formatSeconds(double seconds) {
 
 }  // namespace
 
-void setLogLevel(LogLevel level) { currentLevel = level; }
-LogLevel logLevel() { return currentLevel; }
-std::uint64_t warningCount() { return warnings; }
+void setLogLevel(LogLevel level) {
+  currentLevel = level;
+}
+LogLevel logLevel() {
+  return currentLevel;
+}
+std::uint64_t warningCount() {
+  return warnings;
+}
 
 void logMessage(LogLevel level, std::string_view text) {
   if (level == LogLevel::warnings) ++warnings;
@@ -74,8 +80,10 @@ struct Progress::State {
     const int filled = static_cast<int>(share * kWidth);
     const std::lock_guard lock(outputMutex);
     if (captured != nullptr) return;
-    std::fprintf(stderr, "\r\x1b[K%s [%s%s] %3.0f %%, %s left", what.c_str(), std::string(static_cast<std::size_t>(filled), '#').c_str(),
-                 std::string(static_cast<std::size_t>(kWidth - filled), ' ').c_str(), share * 100, formatSeconds(remaining).c_str());
+    std::fprintf(stderr, "\r\x1b[K%s [%s%s] %3.0f %%, %s left", what.c_str(),
+                 std::string(static_cast<std::size_t>(filled), '#').c_str(),
+                 std::string(static_cast<std::size_t>(kWidth - filled), ' ').c_str(), share * 100,
+                 formatSeconds(remaining).c_str());
     barOnScreen = true;
   }
 };

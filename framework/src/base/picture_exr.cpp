@@ -10,6 +10,7 @@
 #include <ImfPartType.h>
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cstring>
@@ -134,8 +135,28 @@ std::vector<LayerPlan> planLayers(const Imf::ChannelList& channels) {
   return plans;
 }
 
+std::size_t pixelTypeBytes(Imf::PixelType type) {
+  return type == Imf::HALF ? 2 : 4;
+}
+
+/// How many bytes of pixels one byte of a file can stand for at most: a header that claims more is wrong.
+std::uint64_t mostExpansion(Imf::Compression compression) {
+  switch (compression) {
+    case Imf::NO_COMPRESSION:
+      return 1;
+    case Imf::RLE_COMPRESSION:
+      return 64;  // a run of at most 128 bytes takes two
+    case Imf::ZIP_COMPRESSION:
+    case Imf::ZIPS_COMPRESSION:
+    case Imf::PXR24_COMPRESSION:
+      return 2 * 1032;  // deflate's limit; PXR24 halves at most besides
+    default:
+      return std::uint64_t{1} << 17;  // DWA: a deflated mean for every 8 x 8 block
+  }
+}
+
 /// Everything that can be refused is refused here, before memory is taken for the pixels.
-void checkPart(const Imf::MultiPartInputFile& file, int part) {
+void checkPart(const Imf::MultiPartInputFile& file, int part, std::uint64_t fileBytes) {
   const Imf::Header& header = file.header(part);
   if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE) {
     throw Error(fmt::format("holds a part of type '{}'; expected scanlines or tiles with one value a pixel",
@@ -150,27 +171,68 @@ void checkPart(const Imf::MultiPartInputFile& file, int part) {
     throw Error(fmt::format("has a data window of {} x {} pixels; expected 1 to {} each", width, height,
                             kLongestSide));
   }
-  std::uint64_t channelCount = 0;
+  std::uint64_t channelCount = 0, storedBytes = 0;
   for (auto channel = header.channels().begin(); channel != header.channels().end();
        ++channel, ++channelCount) {
     if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {
       throw Error(
           fmt::format("has the subsampled channel '{}'; expected a value in every pixel", channel.name()));
     }
+    storedBytes += pixelTypeBytes(channel.channel().type);
   }
   if (channelCount == 0) throw Error("has no channels");
-  constexpr std::uint64_t kMostChannels = 1u << 16;
+  constexpr std::uint64_t kMostChannels = 1u << 12;
   if (channelCount > kMostChannels)
     throw Error(fmt::format("has {} channels; expected at most {}", channelCount, kMostChannels));
-  requireMemory(
-      static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * channelCount * sizeof(float),
-      fmt::format("an EXR of {} x {} pixels with {} channels", width, height, channelCount));
+  const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  if (pixels * storedBytes > fileBytes * mostExpansion(header.compression())) {
+    throw Error(fmt::format("claims {} x {} pixels with {} channels, which {} cannot hold", width, height,
+                            channelCount, formatBytes(fileBytes)));
+  }
+  requireMemory(pixels * channelCount * sizeof(float),
+                fmt::format("an EXR of {} x {} pixels with {} channels", width, height, channelCount));
+}
+
+/// The library takes a block that unpacks to fewer bytes than the header promises and leaves the rest of the
+/// pixels undefined; so the blocks of the common kinds of file are measured first.
+void checkBlocks(Imf::InputPart& part) {
+  const Imf::Header& header = part.header();
+  const auto compression = header.compression();
+  const bool packed = compression == Imf::ZIP_COMPRESSION || compression == Imf::ZIPS_COMPRESSION;
+  if (header.hasTileDescription() || (!packed && compression != Imf::NO_COMPRESSION)) return;
+  const Imath::Box2i window = header.dataWindow();
+  std::size_t rowBytes = 0;
+  for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
+    rowBytes +=
+        pixelTypeBytes(channel.channel().type) * static_cast<std::size_t>(window.max.x - window.min.x + 1);
+  }
+  constexpr int kZipRows = 16;  // OpenEXR file layout: scan lines of a ZIP block
+  const int rowsOfBlock = compression == Imf::ZIP_COMPRESSION ? kZipRows : 1;
+  std::vector<Bytef> unpacked;
+  for (int y = window.min.y; y <= window.max.y; y += rowsOfBlock) {
+    const char* block = nullptr;
+    int blockBytes = 0;
+    part.rawPixelData(y, block, blockBytes);
+    const std::size_t expected =
+        rowBytes * static_cast<std::size_t>(std::min(rowsOfBlock, window.max.y - y + 1));
+    if (static_cast<std::size_t>(blockBytes) == expected) continue;  // stored unpacked
+    unpacked.resize(expected);
+    uLongf unpackedBytes = static_cast<uLongf>(expected);
+    if (!packed ||
+        uncompress(unpacked.data(), &unpackedBytes, reinterpret_cast<const Bytef*>(block),
+                   static_cast<uLong>(blockBytes)) != Z_OK ||
+        unpackedBytes != expected) {
+      throw Error(fmt::format("the block of pixels at row {} is damaged", y - window.min.y));
+    }
+  }
 }
 
 void readPart(Imf::MultiPartInputFile& file, int partIndex, LayeredPicture& result) {
   const Imf::Header& header = file.header(partIndex);
   const Imath::Box2i window = header.dataWindow();
   const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
+  Imf::InputPart part(file, partIndex);
+  checkBlocks(part);
   const std::string partName = file.parts() > 1 && header.hasName() ? header.name() : "";
 
   Imf::FrameBuffer frame;
@@ -188,7 +250,6 @@ void readPart(Imf::MultiPartInputFile& file, int partIndex, LayeredPicture& resu
                                     pixelStride * static_cast<std::size_t>(width)));
     }
   }
-  Imf::InputPart part(file, partIndex);
   part.setFrameBuffer(frame);
   part.readPixels(window.min.y, window.max.y);
 
@@ -238,7 +299,7 @@ LayeredPicture readExr(const std::filesystem::path& path) {
     constexpr bool kRebuildTable = false;  // a file without its table of chunks was not written to its end
     Imf::MultiPartInputFile file(stream, kThreads, kRebuildTable);
     for (int part = 0; part < file.parts(); ++part) {
-      checkPart(file, part);
+      checkPart(file, part, bytes.size());
       if (file.header(part).dataWindow() != file.header(0).dataWindow()) {
         throw Error("holds parts of different sizes; expected one size");
       }

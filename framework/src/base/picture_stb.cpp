@@ -121,11 +121,11 @@ void checkTga(Bytes bytes) {
   if ((bytes[2] & kRunLengthCoded) == 0) {
     at += pixels * pixelBytes;
   } else {
-    for (std::size_t decoded = 0; decoded < pixels && at < bytes.size();) {
+    for (std::size_t decoded = 0; decoded < pixels;) {
+      if (at >= bytes.size()) refuse("the TGA is truncated");
       const std::size_t run = (bytes[at] & 0x7Fu) + 1;
       at += 1 + ((bytes[at] & 0x80u) != 0 ? pixelBytes : run * pixelBytes);
       decoded += run;
-      if (decoded < pixels && at >= bytes.size()) refuse("the TGA is truncated");
     }
   }
   if (at > bytes.size()) refuse("the TGA is truncated");

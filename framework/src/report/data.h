@@ -1,4 +1,5 @@
-// What a report holds between measuring and writing: the public records, and pictures already encoded for the page.
+// What a report holds between measuring and writing: the public records, and pictures already encoded for the
+// page.
 #pragma once
 
 #include <map>
@@ -31,9 +32,9 @@ struct PointRecord {
 
 struct TruthRecord {
   std::string layer;
-  std::string picture;       ///< PNG
-  double exposure = 1.0;     ///< common to every picture of this component
-  double noise = 0.0;        ///< sqrt of the mean variance of a pixel value
+  std::string picture;    ///< PNG
+  double exposure = 1.0;  ///< common to every picture of this component
+  double noise = 0.0;     ///< sqrt of the mean variance of a pixel value
   double mean = 0.0, largest = 0.0;
 };
 
@@ -77,16 +78,22 @@ std::string toCsv(const ReportData& data);
 /// The one self-contained page. `chartLibrary` is the text of Chart.js.
 std::string toHtml(const ReportData& data, const std::string& chartLibrary);
 
-/// Chart.js of the distribution (package libjs-chart.js). AbsentError names the package and where it was sought.
+/// Chart.js of the distribution (package libjs-chart.js). AbsentError names the package and where it was
+/// sought.
 std::string chartLibrary();
 
 std::string base64(const std::string& bytes);
 
-/// Points that no other point of the same output beats in both time and error: the front. Keyed by index into SceneRecord::points.
-std::vector<bool> frontOf(const std::vector<PointRecord>& points, const std::string& output, bool bias);
+/// The components that some point of the scene has an error for, in the order of a picture's making; the
+/// whole picture last.
+std::vector<std::string> componentsOf(const SceneRecord& scene);
 
-/// The error record of an output, if it was measured: against the bias truth or the full one (a component with one truth has only the
-/// first, which then answers for both).
-const ComponentError* errorOf(const ReportPoint& point, const std::string& output, bool bias);
+/// The error of a component at a point, if it was measured: against the bias truth or the full one (a
+/// component with one truth has only the first, which then answers for both). For the component "final" it is
+/// that of the whole picture.
+const ComponentError* errorOf(const ReportPoint& point, const std::string& component, bool bias);
+
+/// Points that no other point beats in both time and error: the front. One value per point of the scene.
+std::vector<bool> frontOf(const std::vector<PointRecord>& points, const std::string& component, bool bias);
 
 }  // namespace lumivox::report

@@ -1,4 +1,5 @@
-// One scene's share of a report: the truth, and every point measured for error and, apart from that, for time.
+// One scene's share of a report: the truth, and every point measured for error and, apart from that, for
+// time.
 #pragma once
 
 #include <map>

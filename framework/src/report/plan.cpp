@@ -28,8 +28,8 @@ std::optional<fs::path> scenesAbove(fs::path start) {
   return std::nullopt;
 }
 
-/// Why an output of a pass stays at its neutral element on a scene with these traits: its own need, its pass's, or that of a pass that a
-/// required input comes from.
+/// Why an output of a pass stays at its neutral element on a scene with these traits: its own need, its
+/// pass's, or that of a pass that a required input comes from.
 class NeedsWalk {
  public:
   NeedsWalk(const Pipeline& pipeline, TechniqueSource& techniques, const SceneTraits& traits)
@@ -103,7 +103,8 @@ std::vector<fs::path> pipelinesIn(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code failure;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, failure))
-    if (entry.path().extension() == ".pipeline" && entry.is_regular_file(failure)) files.push_back(entry.path());
+    if (entry.path().extension() == ".pipeline" && entry.is_regular_file(failure))
+      files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -134,7 +135,8 @@ std::pair<int, int> reducedResolution(int width, int height, int limit) {
 }
 
 int truthSamplesFor(int width, int height) {
-  // Paths in the whole picture; measured so that the committed scenes take about a minute on two cores at 128 x 128.
+  // Paths in the whole picture; measured so that the committed scenes take about a minute on two cores at 128
+  // x 128.
   constexpr double kPaths = 8.0e6;
   constexpr int kFewest = 64, kMost = 4096;
   const double pixels = std::max(1.0, static_cast<double>(width) * height);
@@ -145,27 +147,37 @@ void requireWritable(const fs::path& file) {
   if (file.empty() || file.filename().empty())
     throw Error(fmt::format("{}: not the name of a file to write", file.empty() ? "''" : file.string()));
   std::error_code failure;
-  if (fs::is_directory(file, failure)) throw Error(fmt::format("{}: is a directory; a file name is expected", file.string()));
+  if (fs::is_directory(file, failure))
+    throw Error(fmt::format("{}: is a directory; a file name is expected", file.string()));
   createParentDirectories(file);
   const fs::path parent = file.parent_path().empty() ? fs::path(".") : file.parent_path();
-  if (!fs::is_directory(parent, failure)) throw Error(fmt::format("{}: {} is not a directory", file.string(), parent.string()));
+  if (!fs::is_directory(parent, failure))
+    throw Error(fmt::format("{}: {} is not a directory", file.string(), parent.string()));
   if (access(parent.c_str(), W_OK | X_OK) != 0)
-    throw Error(fmt::format("{}: cannot write into {}: {}", file.string(), parent.string(), std::strerror(errno)));
+    throw Error(
+        fmt::format("{}: cannot write into {}: {}", file.string(), parent.string(), std::strerror(errno)));
 }
 
 }  // namespace lumivox
 
 namespace lumivox::report {
 
-std::vector<PlannedPoint> plannedPoints(const Pipeline& pipeline, const ParameterValues& settings, bool openSweeps) {
+std::vector<PlannedPoint> plannedPoints(const Pipeline& pipeline, const ParameterValues& settings,
+                                        bool openSweeps) {
   ParameterValues defaults;
   for (const PipelineParameter& parameter : pipeline.parameters) defaults[parameter.name] = parameter.value;
   for (const auto& [name, value] : settings) defaults[name] = value;
 
+  // By what they say: 64 is 64, whether written in the text or in a sweep.
+  const auto same = [](const ParameterValues& a, const ParameterValues& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& one, const auto& other) {
+      return one.first == other.first && one.second.text() == other.second.text();
+    });
+  };
   std::vector<PlannedPoint> points;
   const auto add = [&](PlannedPoint point) {
-    const auto same = [&](const PlannedPoint& other) { return other.parameters == point.parameters; };
-    if (std::none_of(points.begin(), points.end(), same)) points.push_back(std::move(point));
+    const auto known = [&](const PlannedPoint& other) { return same(other.parameters, point.parameters); };
+    if (std::none_of(points.begin(), points.end(), known)) points.push_back(std::move(point));
   };
   if (openSweeps)
     for (const Sweep& sweep : pipeline.sweeps)
@@ -176,7 +188,7 @@ std::vector<PlannedPoint> plannedPoints(const Pipeline& pipeline, const Paramete
         add({sweep.name, values, false});
       }
   add({"", defaults, false});
-  for (PlannedPoint& point : points) point.isDefault = point.parameters == defaults;
+  for (PlannedPoint& point : points) point.isDefault = same(point.parameters, defaults);
   return points;
 }
 
@@ -201,19 +213,23 @@ std::string shownPath(const std::filesystem::path& path) {
 }
 
 std::string shellQuoted(const std::string& argument) {
-  const auto plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("_-./=:,+@%", c) != nullptr; };
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) || std::strchr("_-./=:,+@%", c) != nullptr;
+  };
   if (!argument.empty() && std::all_of(argument.begin(), argument.end(), plain)) return argument;
   std::string quoted = "'";
   for (const char c : argument) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
 }
 
-std::string repeatingCommand(const ReportOptions& options, const std::string& scene, const std::string& pipeline,
-                             const ParameterValues& parameters, int width, int height, int samples) {
-  std::string command = fmt::format("lumivox report {} --pipeline {}", shellQuoted(scene), shellQuoted(pipeline));
+std::string repeatingCommand(const ReportOptions& options, const std::string& scene,
+                             const std::string& pipeline, const ParameterValues& parameters, int width,
+                             int height, int samples) {
+  std::string command =
+      fmt::format("lumivox report {} --pipeline {}", shellQuoted(scene), shellQuoted(pipeline));
   for (const auto& [name, value] : parameters) command += " --set " + shellQuoted(name + "=" + value.text());
-  command += fmt::format(" --no-sweep --resolution {}x{} --spp {} --repeats {} --seeds {} --seed {}", width, height, samples,
-                         options.repeats, options.seeds, options.seed);
+  command += fmt::format(" --no-sweep --resolution {}x{} --spp {} --repeats {} --seeds {} --seed {}", width,
+                         height, samples, options.repeats, options.seeds, options.seed);
   if (!options.camera.empty()) command += " --camera " + shellQuoted(options.camera);
   if (options.time != 0.0) command += fmt::format(" --time {}", options.time);
   for (const std::string& argument : options.repeatArguments) command += " " + shellQuoted(argument);

@@ -15,7 +15,8 @@ struct PlannedPoint {
 };
 
 /// The default point and the points of every sweep, each once. Settings pin their axes.
-std::vector<PlannedPoint> plannedPoints(const Pipeline& pipeline, const ParameterValues& settings, bool openSweeps);
+std::vector<PlannedPoint> plannedPoints(const Pipeline& pipeline, const ParameterValues& settings,
+                                        bool openSweeps);
 
 /// Of the assignments "name=value", those whose parameter the pipeline has.
 std::vector<std::string> settingsFor(const Pipeline& pipeline, const std::vector<std::string>& assignments);
@@ -27,7 +28,8 @@ std::string shownPath(const std::filesystem::path& path);
 std::string shellQuoted(const std::string& argument);
 
 /// The command that repeats one point.
-std::string repeatingCommand(const ReportOptions& options, const std::string& scene, const std::string& pipeline,
-                             const ParameterValues& parameters, int width, int height, int samples);
+std::string repeatingCommand(const ReportOptions& options, const std::string& scene,
+                             const std::string& pipeline, const ParameterValues& parameters, int width,
+                             int height, int samples);
 
 }  // namespace lumivox::report

@@ -1,5 +1,12 @@
 // The only door to OpenGL. An OpenGL 4.5 core context without a display, the resources in it and the commands on them.
-// No OpenGL name appears in this header; one Device at a time is current, on the thread that made it.
+// No OpenGL name appears in this header; a Device is used on the thread that made it.
+//
+// What a shader author must know:
+// - Clip space: x to the right, y UP, z from 0 (near) to 1 (far), as glm::perspectiveRH_ZO gives. Row 0 of what is drawn is the TOP of
+//   the picture (clip y = +1), so texel (x, y) means the same in raster passes (gl_FragCoord), compute passes and sampled textures:
+//   texture coordinates of a clip position are u = 0.5 + 0.5 x, v = 0.5 - 0.5 y. Front faces stay counter-clockwise with y up.
+// - Nothing is culled. The depth test passes where depth <= stored. Depth buffers clear to 1, colours to 0.
+// - Bindings of sampled textures, images, storage buffers and uniform blocks are four separate number spaces.
 #pragma once
 
 #include <cstddef>
@@ -18,6 +25,8 @@ namespace lumivox::gpu {
 
 enum class Format { r8, rgba8, r16f, rg16f, rgba16f, r32f, rg32f, rgba32f, r32ui, rg32ui, rgba32ui, depth32f };
 std::size_t bytesPerTexel(Format format);
+int componentCount(Format format);
+const char* name(Format format);  ///< as in GLSL: "rgba16f"
 
 enum class TextureKind { d2, d2Array, d3 };
 
@@ -34,6 +43,7 @@ struct TextureDescription {
 int fullLevelCount(int width, int height, int depth = 1);
 
 class Device;
+struct DeviceState;
 
 /// A texture with immutable storage. Allocation is refused with an Error that names the size when it cannot fit.
 class Texture {
@@ -50,7 +60,7 @@ class Texture {
   /// All texels of one level, tightly packed in the texture's own format, row 0 first.
   void upload(int level, std::span<const std::byte> texels);
   std::vector<std::byte> download(int level = 0) const;
-  /// Float formats only, as floats: texel-major, `components` of the format.
+  /// Every format but the integer ones, as floats: texel-major, `components` of the format (half floats widened, bytes divided by 255).
   std::vector<float> downloadFloats(int level = 0) const;
   void uploadFloats(int level, std::span<const float> values);
   /// Fills every texel of a level (all levels when -1). Integer formats take the value rounded.
@@ -61,6 +71,7 @@ class Texture {
   std::uint32_t handle() const { return handle_; }  ///< for framework/src/gpu alone
 
  private:
+  std::shared_ptr<DeviceState> device_;
   TextureDescription description_;
   std::string label_;
   std::uint32_t handle_ = 0;
@@ -92,6 +103,7 @@ class Buffer {
   std::uint32_t handle() const { return handle_; }  ///< for framework/src/gpu alone
 
  private:
+  std::shared_ptr<DeviceState> device_;
   std::uint64_t sizeBytes_;
   std::string label_;
   std::uint32_t handle_ = 0;
@@ -100,7 +112,8 @@ class Buffer {
 using TextureRef = std::shared_ptr<Texture>;
 using BufferRef = std::shared_ptr<Buffer>;
 
-/// How a texture is read. `border` means zero outside; `shadow` compares depth (reference <= stored) with bilinear filtering.
+/// How a texture is read. Without `repeat` or `border` the edge texel continues outside; `border` means zero outside; `shadow` compares
+/// depth (1 where reference <= stored) and filters the four results. Integer formats are read with `nearest` only.
 enum class Sampling { nearest, linear, linearMips, linearMipsRepeat, linearBorder, linearMipsBorder, shadow };
 
 // ---- programs -------------------------------------------------------------------------------------------------------------------
@@ -132,6 +145,7 @@ class Program {
   std::uint32_t handle() const { return handle_; }
 
  private:
+  std::shared_ptr<DeviceState> device_;
   std::string name_;
   std::uint32_t handle_ = 0;
 };
@@ -223,11 +237,10 @@ class Device {
   std::uint64_t peakBytes() const;
   void resetPeak();
 
-  struct State;
-  State& state() { return *state_; }      ///< for framework/src/gpu alone
+  const std::shared_ptr<DeviceState>& state() { return state_; }  ///< for framework/src/gpu alone
 
  private:
-  std::unique_ptr<State> state_;
+  std::shared_ptr<DeviceState> state_;    ///< shared with the resources, which may outlive the Device
 };
 
 }  // namespace lumivox::gpu

@@ -1,8 +1,10 @@
-// Differences between pictures, in linear radiance unless said otherwise.
+// Differences between pictures, in linear radiance unless said otherwise; voxels, health and repeated
+// timings. Definitions, reasons and how the truth's noise enters: docs/metrics.md. Everything here gives the
+// same bits on any number of threads.
 #pragma once
 
-#include <optional>
-#include <string>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "lumivox/base/picture.h"
@@ -15,59 +17,87 @@ struct Measured {
   double uncertainty = 0.0;
 };
 
-/// Every number compares a picture with a truth; pixels that are NaN or infinite in either are left out and counted.
+/// Every number compares a picture with a truth; pixels that are NaN or infinite in either are left out and
+/// counted. A number that does not exist (every pixel left out, a ratio to a black truth) is NaN. Alpha, the
+/// fourth channel, does not count.
 struct PictureError {
-  Measured rmse;                ///< root mean square over pixels and channels
-  Measured relativeMse;         ///< mean of (x - t)^2 / (t^2 + epsilon^2), epsilon = 1 % of the truth's mean
-  Measured meanRatio;           ///< sum of picture / sum of truth; NaN when the truth is black
-  Measured bias;                ///< mean signed difference
-  double percentile95 = 0.0;    ///< of the absolute difference of luminance
-  double ssim = 1.0;            ///< mean structural similarity of luminance, tone-mapped to [0,1] by the truth's exposure (Wang et al. 2004)
-  double flip = 0.0;            ///< mean HDR-FLIP (Andersson et al. 2021)
-  double flipLdr = 0.0;         ///< mean LDR-FLIP (Andersson et al. 2020) of the exposed, clipped pictures
-  double noiseFloor = 0.0;      ///< RMSE that the truth's own noise alone causes: sqrt(mean variance)
-  std::uint64_t nonFinitePicture = 0, nonFiniteTruth = 0;
+  Measured rmse;         ///< root mean square over pixels and channels
+  Measured relativeMse;  ///< mean of (x - t)^2 / (t^2 + epsilon^2), epsilon = 1 % of the truth's mean
+  Measured meanRatio;    ///< sum of picture / sum of truth; NaN when the truth is black
+  Measured bias;         ///< mean signed difference
+  /// 95th percentile of the absolute difference of luminance.
+  double percentile95 = 0.0;
+  /// Mean structural similarity (Wang et al. 2004) of luminance as displayed at the truth's exposure.
+  double ssim = 1.0;
+  /// Mean HDR-FLIP (Andersson et al. 2021).
+  double flip = 0.0;
+  /// Mean LDR-FLIP (Andersson et al. 2020) of the pictures at the truth's exposure, clipped.
+  double flipLdr = 0.0;
+  /// How far doubling the truth's noise moves these four; 0 when the noise is not known.
+  double percentile95Uncertainty = 0.0, ssimUncertainty = 0.0, flipUncertainty = 0.0,
+         flipLdrUncertainty = 0.0;
+  /// The RMSE that the truth's own noise alone causes, sqrt(mean variance). It is a part of `rmse`.
+  double noiseFloor = 0.0;
+  std::uint64_t nonFinitePicture = 0, nonFiniteTruth = 0;  ///< pixels
 };
 
-/// `truthVariance` (variance of each truth value) may be empty. The uncertainty of each number is propagated from it to first order.
-/// Error when the shapes differ.
+/// `truthVariance` (variance of each truth value, as of its mean) may be empty: then all uncertainties are 0.
+/// Those of the first four numbers are propagated from it to first order. Error when the shapes differ, the
+/// channels are not 1, 3 or 4, or a variance is negative or not finite.
 PictureError compare(const Picture& picture, const Picture& truth, const Picture& truthVariance = {});
 
-/// FLIP maps, one channel in [0,1]. 67 pixels per degree unless said otherwise (the papers' default viewing condition).
+/// FLIP maps, one channel in [0,1], NaN where a pixel is left out. Radiance below 0 counts as 0; flipLdr
+/// clips at 1. 67 pixels per degree unless said otherwise (the papers' default viewing condition).
 Picture flipLdr(const Picture& linearPicture, const Picture& linearTruth, double pixelsPerDegree = 67.0206);
 Picture flipHdr(const Picture& linearPicture, const Picture& linearTruth, double pixelsPerDegree = 67.0206);
 
+/// Mean structural similarity of two one-channel pictures with values in [0,1], over the windows that lie
+/// within the picture.
 double ssim(const Picture& pictureLuminance, const Picture& truthLuminance);
 
 /// Changes between consecutive frames that the truth does not make: RMS over pixels of ((p1-p0) - (t1-t0)).
 double flicker(const Picture& frame0, const Picture& frame1, const Picture& truth0, const Picture& truth1);
 
-/// The exposure at which the truth's 99th percentile of luminance becomes 0.8: used for display and LDR metrics; 1 for a black picture.
+/// The exposure at which the truth's 99th percentile of luminance (its largest, when that is 0) becomes 0.8:
+/// used for display and LDR metrics; 1 for a black picture.
 float displayExposure(const Picture& truth);
 
-/// A one-channel map in [0,1] in the magma-like ramp of the report, as linear RGB for writePng.
+/// A one-channel map in [0,1] in the report's ramp, black over violet and orange to pale yellow, whose
+/// lightness grows in proportion to the value; linear RGB for writePng. NaN stays NaN.
 Picture falseColour(const Picture& map);
 
-Picture luminance(const Picture& rgb);  ///< Rec. 709 weights
+Picture luminance(const Picture& rgb);  ///< Rec. 709 weights; one channel is luminance already
 
 // ---- voxels
-struct VoxelError { std::uint64_t truePositive = 0, falsePositive = 0, falseNegative = 0; double precision() const; double recall() const; };
+struct VoxelError {
+  std::uint64_t truePositive = 0, falsePositive = 0, falseNegative = 0;
+  double precision() const;  ///< share of the occupied voxels that are rightly so; 1 when none is occupied
+  double recall() const;     ///< share of the truth's voxels that are occupied; 1 when the truth has none
+};
+/// Error when the sizes differ.
 VoxelError compareVoxels(const std::vector<bool>& occupied, const std::vector<bool>& truth);
 
 // ---- health
 struct Health {
   std::uint64_t nan = 0, infinite = 0, negative = 0;
-  std::int64_t firstBad = -1;   ///< index of the first bad value
-  double sum = 0.0, largest = 0.0;
+  std::int64_t firstBad = -1;       ///< index of the first bad value
+  double sum = 0.0, largest = 0.0;  ///< of the finite values
   bool good() const { return nan == 0 && infinite == 0 && negative == 0; }
 };
+/// `count` numbers, `components` to an element. -infinity counts as infinite, not as negative. Without
+/// `alphaToo` every element's fourth number is passed over.
 Health scanHealth(const float* values, std::size_t count, int components, bool alphaToo = true);
 
 // ---- repeated timings
-struct TimingStatistics { double median = 0, lowerQuartile = 0, upperQuartile = 0, smallest = 0, largest = 0; int repeats = 0; };
+/// Quartiles are interpolated linearly between the sorted values. Without values all is 0.
+struct TimingStatistics {
+  double median = 0, lowerQuartile = 0, upperQuartile = 0, smallest = 0, largest = 0;
+  int repeats = 0;
+};
 TimingStatistics statisticsOf(std::vector<double> values);
 
-/// Mean and standard error over seeds.
+/// Mean and standard error of the mean over seeds. One seed has no spread to measure: its uncertainty is 0,
+/// and whoever reports it says that there was one.
 Measured meanOverSeeds(const std::vector<double>& values);
 
 }  // namespace lumivox

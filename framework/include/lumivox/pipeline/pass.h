@@ -34,6 +34,7 @@ constexpr Needs operator|(Needs a, Needs b) { return static_cast<Needs>(static_c
 std::string unmetNeed(Needs needs, const SceneTraits& traits);
 
 /// What a pass reads besides its inputs and parameters. A pass is run again only when one of these or an input changed.
+/// lights: also the motion of emissive objects. camera: also the size of the picture. time: also the frame's index.
 enum class Reads : std::uint32_t { nothing = 0, geometry = 1u << 0, materials = 1u << 1, lights = 1u << 2, camera = 1u << 3, time = 1u << 4 };
 constexpr Reads operator|(Reads a, Reads b) { return static_cast<Reads>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b)); }
 constexpr bool reads(Reads set, Reads one) { return (static_cast<std::uint32_t>(set) & static_cast<std::uint32_t>(one)) != 0; }
@@ -82,7 +83,8 @@ std::vector<gpu::TextureRef> texturesOf(const RadianceGrid&);
 std::vector<gpu::TextureRef> texturesOf(const ShGrid&);
 std::vector<gpu::TextureRef> texturesOf(const ScatteringGrid&);
 
-/// An output: assigned by run(). The resources go back to the executor's pool after the last reader has run.
+/// An output: assigned by run() whenever it is wanted. The resources go back to the executor's pool after the last reader has run,
+/// unless a later frame may need them again.
 template <class Port>
 class Out : public OutBase {
  public:
@@ -149,7 +151,8 @@ class ParamBase {
   const std::string& unit() const { return unit_; }        ///< "", "m", "rad", "/m"
   virtual std::string valueText() const = 0;
   virtual std::string defaultText() const = 0;
-  /// Error text ("must be in 1..32") when the value does not fit, else empty. Numbers arrive in base units.
+  /// "must be a whole number in 1..32" when the value does not fit (it then stays as it was), else empty. Numbers arrive in base
+  /// units.
   virtual std::string set(double number) = 0;
   virtual std::string set(const std::string& word) = 0;
 
@@ -237,6 +240,8 @@ class PassContext {
   virtual const SceneSnapshot& snapshot() const = 0;
   /// What the scene has; all of it with --keep-everything. Choose variants by this, never by looking at the scene.
   virtual const SceneTraits& traits() const = 0;
+  /// True with --keep-everything: every draw uses the fullest variant, with neutral textures.
+  virtual bool keepsEverything() const = 0;
   virtual int frameIndex() const = 0;
   virtual std::uint64_t seed() const = 0;
 

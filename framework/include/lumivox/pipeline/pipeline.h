@@ -20,9 +20,10 @@ namespace lumivox {
 
 /// One value of a pipeline parameter.
 struct ParameterValue {
-  double number = 0.0;
+  double number = 0.0;              ///< in base units
   std::string word;                 ///< non-empty: a word in place of a number
-  std::string text() const;
+  dsl::Dimension dimension;         ///< of the unit that the number was written with
+  std::string text() const;         ///< as settings() reads it: the number in base units, or the word
   bool operator==(const ParameterValue&) const = default;
 };
 using ParameterValues = std::map<std::string, ParameterValue>;
@@ -31,7 +32,9 @@ struct PipelineParameter {
   std::string name;
   ParameterValue value;             ///< default
   std::optional<double> low, high;  ///< declared range
-  std::vector<std::string> choices;
+  std::vector<std::string> choices; ///< declared words, or numbers as text
+  /// "must be in 16..512" when the value does not fit the declaration, else empty.
+  std::string misfit(const ParameterValue& candidate) const;
 };
 
 /// `sweep NAME { parameter [values] ... }`: the grid over its lists.
@@ -64,9 +67,10 @@ class Pipeline {
   std::vector<Sweep> sweeps;
   std::shared_ptr<const dsl::Document> document;
 
-  /// Parses "name=value" settings; Error names an unknown parameter (with the nearest) or a value out of its range.
+  /// Parses "name=value" settings, and returns those alone; Error names an unknown parameter (with the nearest) or a value out of its
+  /// range.
   ParameterValues settings(const std::vector<std::string>& assignments) const;
-  /// Names of the techniques that it needs.
+  /// Names of the techniques that it needs, each once, in text order.
   std::vector<std::string> techniques() const;
 };
 
@@ -82,7 +86,8 @@ struct RenderOptions {
   ParameterValues parameters;       ///< over the defaults
   std::vector<std::string> wanted;  ///< output names; empty: all
   std::uint64_t seed = 1;
-  bool health = false;              ///< scan every pass output for NaN, Inf and negative values
+  bool health = false;              ///< scan every pass output for NaN, Inf and negative values; not part of the times
+  bool interactive = false;         ///< camera, lights and objects may change in ways that the scene text does not announce
   std::string camera;
   int width = 0, height = 0;        ///< 0: the camera's
 };
@@ -108,35 +113,42 @@ struct FrameResult {
 struct LeftOut {
   enum class Level { plugin, pass, variant, resource, time } level;
   std::string what, why;
-  std::uint64_t savedBytes = 0;
-  double savedMs = 0;               ///< 0 when not measured
+  std::string pass;                 ///< the pass that it belongs to; empty for plugins, variants and the pool
+  std::uint64_t savedBytes = 0;     ///< 0 when not known
+  double savedMs = 0;               ///< per frame; 0 when not measured
 };
 const char* name(LeftOut::Level level);
 
+/// What a pipeline does without on a scene. Variants, shared memory and times are known once a frame was rendered.
 struct Explanation {
   std::vector<LeftOut> leftOut;
   std::size_t passesKept = 0, passesTotal = 0;
   std::size_t variantsPossible = 0, variantsCompiled = 0, variantsNeeded = 0;
+  std::uint64_t poolBytes = 0;      ///< of all resources of the passes after the last frame
+  std::uint64_t sharedBytes = 0;    ///< how much more they would need, did they not share memory
 };
 
 /// A pipeline bound to a scene and a device, ready to render frames.
 class PipelineExecutor {
  public:
-  /// Binds, prunes and schedules. Throws DiagnosticsError with all binding errors at once.
+  /// Binds and prunes. Throws DiagnosticsError with all binding errors at once. Device, techniques and scene must outlive it.
   PipelineExecutor(gpu::Device& device, TechniqueSource& techniques, const Scene& scene, const Pipeline& pipeline, const RenderOptions& options);
   ~PipelineExecutor();
 
   enum class Pictures { no, yes };
   /// Renders the scene at `time`. Passes whose inputs did not change since the last call are not run again.
   FrameResult render(double time, int frameIndex = 0, Pictures pictures = Pictures::yes);
+  /// The same for a snapshot made elsewhere: the viewer's own camera.
+  FrameResult render(const SceneSnapshot& snapshot, int frameIndex = 0, Pictures pictures = Pictures::yes);
   /// Forgets cached results, so that the next frame runs every kept pass.
   void invalidate();
 
   Explanation explain() const;
   const std::vector<std::string>& outputNames() const;  ///< kept and pruned; a pruned one renders as black
   shader::ShaderLibrary& shaders();
-  /// An output of a pass after the last render (kept alive on request before rendering); for exporters and tests.
+  /// Keeps an output of a pass alive after each render, and its pass with it; for exporters and tests. Error for an unknown name.
   void keepOutput(const std::string& pass, const std::string& port);
+  /// After the last render. Null when it was left out or given back. Error for an unknown name.
   const OutBase* output(const std::string& pass, const std::string& port) const;
 
  private:

@@ -2,6 +2,7 @@
 // agrees to the byte is anything of C++ exchanged.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -22,11 +23,47 @@ struct TechniqueVersionRecord {
   char compiler[64];               ///< e.g. "gcc 12"
   char standardLibrary[32];        ///< "libstdc++ cxx11-abi 1"
   char buildType[32];              ///< "release", "debug", "sanitized": what changes the layout or the runtime
-  std::uint32_t passSize, passContextSize, sceneSize, snapshotSize, deviceSize;
+  std::uint32_t passSize, passContextSize, sceneSize, snapshotSize, deviceSize, portsSize;
 };
 
-/// The record of the code that includes this header.
-TechniqueVersionRecord techniqueVersionHere();
+/// The record of the code that includes this header. Evaluated by the compiler: an ordinary function would be merged with the
+/// framework's own when the library is opened, and would then describe the framework in place of the technique.
+consteval TechniqueVersionRecord techniqueVersionHere() {
+  TechniqueVersionRecord record{};
+  record.recordSize = sizeof(TechniqueVersionRecord);
+  record.apiVersion = kTechniqueApiVersion;
+  const auto write = [](auto& target, const char* text, int number) {
+    std::size_t at = 0;
+    for (; *text != '\0'; ++text) target[at++] = *text;
+    if (number >= 10) target[at++] = static_cast<char>('0' + number / 10 % 10);
+    if (number >= 0) target[at++] = static_cast<char>('0' + number % 10);
+  };
+#if defined(__clang__)
+  write(record.compiler, "clang ", __clang_major__);
+#else
+  write(record.compiler, "gcc ", __GNUC__);
+#endif
+#if defined(_LIBCPP_VERSION)
+  write(record.standardLibrary, "libc++ abi ", _LIBCPP_ABI_VERSION);
+#else
+  write(record.standardLibrary, "libstdc++ cxx11-abi ", _GLIBCXX_USE_CXX11_ABI);
+#endif
+#if defined(__SANITIZE_ADDRESS__)
+  write(record.buildType, "sanitized", -1);
+#elif defined(_GLIBCXX_DEBUG)
+  write(record.buildType, "debug", -1);
+#else
+  write(record.buildType, "release", -1);
+#endif
+  record.passSize = sizeof(Pass);
+  record.passContextSize = sizeof(PassContext);
+  record.sceneSize = sizeof(Scene);
+  record.snapshotSize = sizeof(SceneSnapshot);
+  record.deviceSize = sizeof(gpu::Device);
+  record.portsSize = sizeof(GBuffer) + sizeof(ShadowMap) + sizeof(VoxelFragments) + sizeof(OccupancyGrid) + sizeof(RadianceGrid) +
+                     sizeof(ShGrid) + sizeof(ScatteringGrid) + sizeof(Image);
+  return record;
+}
 
 /// Filled by the technique: which passes it has.
 class TechniqueRegistry {
@@ -47,7 +84,7 @@ class TechniqueRegistry {
 #define LUMIVOX_TECHNIQUE(registry)                                                                                        \
   static void lumivoxRegisterTechnique(::lumivox::TechniqueRegistry&(registry));                                             \
   extern "C" __attribute__((visibility("default"))) const ::lumivox::TechniqueVersionRecord* lumivox_technique_version() {  \
-    static const ::lumivox::TechniqueVersionRecord record = ::lumivox::techniqueVersionHere();                              \
+    static constexpr ::lumivox::TechniqueVersionRecord record = ::lumivox::techniqueVersionHere();                            \
     return &record;                                                                                                         \
   }                                                                                                                         \
   extern "C" __attribute__((visibility("default"))) void lumivox_technique_register(::lumivox::TechniqueRegistry* target) { \

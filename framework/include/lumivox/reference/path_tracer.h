@@ -20,7 +20,8 @@ namespace lumivox {
 
 struct ReferenceOptions {
   int samplesPerPixel = 256;
-  int bounces = 32;                     ///< indirect bounces of the full transport; Russian roulette only shortens paths unbiasedly
+  int bounces = 32;                     ///< indirect bounces of the full transport: what lies beyond is cut off
+  bool roulette = true;                 ///< Russian roulette: ends dim paths early, without bias
   std::uint64_t seed = 1;
   double time = 0.0;                    ///< s
   std::string camera;

@@ -22,13 +22,13 @@ inline constexpr const char* kWholePicture = "whole_picture";
 
 /// Error of one output against one truth layer.
 struct ComponentError {
-  std::string output;       ///< name in the pipeline text, or kWholePicture
-  std::string component;    ///< name(Contributes)
-  std::string truth;        ///< layer: one_bounce_diffuse (bias) or indirect_diffuse (what the viewer misses), ...
-  bool bias = true;         ///< against the truth of the technique's own model; false: against the full truth
-  PictureError error;       ///< of the first seed; uncertainties come from the truth's noise
-  Measured rmseOverSeeds;   ///< mean and standard error over the seeds that were run
-  int seeds = 1;            ///< that were run
+  std::string output;     ///< name in the pipeline text, or kWholePicture
+  std::string component;  ///< name(Contributes)
+  std::string truth;   ///< layer: one_bounce_diffuse (bias) or indirect_diffuse (what the viewer misses), ...
+  bool bias = true;    ///< against the truth of the technique's own model; false: against the full truth
+  PictureError error;  ///< of the first seed; uncertainties come from the truth's noise
+  Measured rmseOverSeeds;       ///< mean and standard error over the seeds that were run
+  int seeds = 1;                ///< that were run
   bool deterministic = false;   ///< two seeds gave the same bits, so that there is no noise to average
   double noiseRmse = 0.0;       ///< RMS of the picture's own noise, from the differences between the seeds
   PictureError errorOfNothing;  ///< of a black picture: what leaving the component out would cost
@@ -52,6 +52,7 @@ struct ReportPoint {
   std::uint64_t peakBytes = 0;
   std::vector<ComponentError> errors;
   std::vector<std::string> healthFindings;
+  std::string failure;  ///< why it has no numbers (it did not fit into memory, ...); empty when it has
   std::string command;  ///< that repeats it
 };
 
@@ -60,13 +61,13 @@ struct PruningRecord {
   std::string scene, pipeline;
   Explanation explanation;  ///< savedMs is filled in for passes
   TimingStatistics prunedMs, unprunedMs;
-  std::map<std::string, TimingStatistics> prunedPassMs, unprunedPassMs;  ///< device; a missing pass did not run
-  std::vector<std::string> passOrder;                                    ///< of the unpruned pipeline
+  std::map<std::string, TimingStatistics> prunedPassMs,
+      unprunedPassMs;                  ///< device; a missing pass did not run
+  std::vector<std::string> passOrder;  ///< of the unpruned pipeline
   std::map<std::string, std::uint64_t> prunedPassBytes, unprunedPassBytes;
-  bool samePicture = false;  ///< bit for bit: the law of leaving out
+  std::uint64_t prunedBytes = 0, unprunedBytes = 0;  ///< all resources of the passes
+  bool samePicture = false;                          ///< bit for bit: the law of leaving out
 
-  std::uint64_t prunedBytes() const;
-  std::uint64_t unprunedBytes() const;
   double savedShare() const;  ///< of the unpruned frame time, 0..1
 };
 
@@ -75,15 +76,16 @@ struct ReportOptions {
       pipelines;                      ///< no pipelines: every committed one that suits the scene
   std::vector<std::string> settings;  ///< "name=value"; pins that axis of a sweep
   std::filesystem::path output = "out/report/index.html";
-  int truthSamples = 0;      ///< per pixel; 0: truthSamplesFor(width, height)
-  int width = 0, height = 0; ///< 0: the camera's, reduced to at most 160 on a software rasteriser
+  int truthSamples = 0;       ///< per pixel; 0: truthSamplesFor(width, height)
+  int width = 0, height = 0;  ///< 0: the camera's, reduced to at most 160 on a software rasteriser
   std::string camera;
-  double time = 0.0;         ///< s
-  std::uint64_t seed = 1;    ///< the first one
+  double time = 0.0;       ///< s
+  std::uint64_t seed = 1;  ///< the first one
   int repeats = 5, seeds = 2;
-  bool openSweeps = true;    ///< false: only the default point
-  std::string commandLine;   ///< as typed, for the page
-  std::vector<std::string> repeatArguments;  ///< further options that a repeating command needs, e.g. --device
+  bool openSweeps = true;   ///< false: only the default point
+  std::string commandLine;  ///< as typed, for the page
+  std::vector<std::string>
+      repeatArguments;  ///< further options that a repeating command needs, e.g. --device
 };
 
 struct ReportSummary {
@@ -93,8 +95,8 @@ struct ReportSummary {
   std::filesystem::path page, csv, json;
 };
 
-/// Writes the page, and beside it the same stem with .csv and .json. Error (before any work) when it cannot be written, when the packaged
-/// chart library is absent, or when a text is wrong.
+/// Writes the page, and beside it the same stem with .csv and .json. Error (before any work) when it cannot
+/// be written, when the packaged chart library is absent, or when a text is wrong.
 ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
                          const std::function<Scene(const std::filesystem::path&)>& loadScene);
 
@@ -102,36 +104,41 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
 /// Empty names: a component without a truth.
 std::pair<std::string, std::string> truthLayers(Contributes component);
 
-/// One layer of a truth and its variance. "one_bounce" (direct + both one-bounce layers) is added up here; nullopt when it is not there.
+/// One layer of a truth and its variance. "one_bounce" (direct + both one-bounce layers) is added up here;
+/// nullopt when it is not there.
 struct TruthLayer {
   Picture mean, variance;
 };
 std::optional<TruthLayer> truthLayer(const LayeredPicture& truth, const std::string& name);
 
-/// What an output adds to the whole picture: the output named "final" or contributing final if there is one, else the sum of the radiance
-/// components (direct, indirect_diffuse, indirect_glossy, scattered). Empty when there is none of them.
+/// What an output adds to the whole picture: the output named "final" or contributing final if there is one,
+/// else the sum of the radiance components (direct, indirect_diffuse, indirect_glossy, scattered). Empty when
+/// there is none of them.
 Picture compositePicture(const FrameResult& frame);
 
 /// Renders pruned and unpruned alternately, `repeats` times each after one warm-up.
 PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, const Scene& scene,
                              const Pipeline& pipeline, RenderOptions options, double time, int repeats);
 
-/// The folder with the committed scenes (its `pipelines` beside them): found upwards from `start`, from the working directory and from the
-/// running program; nullopt when there is none.
+/// The folder with the committed scenes (its `pipelines` beside them): found upwards from `start`, from the
+/// working directory and from the running program; nullopt when there is none.
 std::optional<std::filesystem::path> committedScenes(const std::filesystem::path& start = {});
 /// Sorted *.pipeline files of a folder.
 std::vector<std::filesystem::path> pipelinesIn(const std::filesystem::path& folder);
 
-/// Why a pipeline does not suit a scene, or empty: it suits unless all that it adds to direct light needs something that the scene lacks.
+/// Why a pipeline does not suit a scene, or empty: it suits unless all that it adds to direct light needs
+/// something that the scene lacks.
 std::string whyUnsuited(const Pipeline& pipeline, TechniqueSource& techniques, const SceneTraits& traits);
 
-/// Size of the camera's picture reduced to fit within `limit` pixels on its longer side, at least 1, aspect kept.
+/// Size of the camera's picture reduced to fit within `limit` pixels on its longer side, at least 1, aspect
+/// kept.
 std::pair<int, int> reducedResolution(int width, int height, int limit);
-/// Samples per pixel at which the truth's noise is well below the techniques' errors and a small picture takes less than a minute or two.
+/// Samples per pixel at which the truth's noise is well below the techniques' errors and a small picture
+/// takes less than a minute or two.
 int truthSamplesFor(int width, int height);
 
-/// Throws Error when a file could not be written there (folder missing and not creatable, not writable, or the path is a folder), so that
-/// this is told before the work and not after it. Creates the folders.
+/// Throws Error when a file could not be written there (folder missing and not creatable, not writable, or
+/// the path is a folder), so that this is told before the work and not after it. Creates the folders.
 void requireWritable(const std::filesystem::path& file);
 
 }  // namespace lumivox

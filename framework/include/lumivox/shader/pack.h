@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,17 @@
 
 namespace lumivox::shader {
 
+/// What a variant is chosen by. The macro of the axis holds the number itself where the values are numbers, and 0, 1, 2... where they
+/// are words; then every word has a macro of its own too: axis LIGHT with value spot gives LIGHT_SPOT.
 struct Axis {
   std::string name;                 ///< as in the shader, e.g. "GLOSSY"
-  std::vector<std::string> values;  ///< value i is defined as i; named values are defined as macros too
+  std::vector<std::string> values;  ///< in the order of declaration; the first is the default
+  bool named = false;               ///< the values are words
+
+  /// What the macro of the axis is for value `index`.
+  int value(std::size_t index) const;
+  /// The word or number for what the macro is.
+  std::string text(int value) const;
 };
 
 struct PackedStage {
@@ -26,25 +35,47 @@ struct PackedStage {
 
 /// One reachable combination of axis values.
 struct PackedVariant {
-  std::vector<int> values;          ///< per axis
+  std::vector<int> values;          ///< per axis, what its macro is
   std::vector<PackedStage> stages;
   std::vector<std::uint32_t> bindingsUsed;  ///< see PackedProgram::bindings: indices of those that this variant reads or writes
 };
 
 enum class BindingKind { sampled, image, storage, uniform };
 
+const char* name(BindingKind kind);
+
 struct PackedBinding {
   std::string name;
-  BindingKind kind;
-  std::uint32_t binding;
+  BindingKind kind = BindingKind::sampled;
+  std::uint32_t binding = 0;
+  std::string type;                 ///< as in GLSL: "sampler2DArrayShadow", "image3D r32ui", or the block's name
+  gpu::TextureKind textureKind = gpu::TextureKind::d2;  ///< of sampled textures and images
+  bool shadow = false;              ///< a sampled texture that compares depth
+  std::optional<gpu::Format> format;  ///< of images
+  std::uint64_t minimumBytes = 0;   ///< of blocks: without the array of open length at their end
+};
+
+enum class ConstantType { boolean, integer, unsignedInteger, real };
+
+struct PackedConstant {
+  std::string name;
+  std::uint32_t id = 0;
+  ConstantType type = ConstantType::integer;
+  std::uint32_t defaultBits = 0;
 };
 
 struct PackedProgram {
   std::string name;                 ///< stem of the entry files
   std::vector<Axis> axes;
   std::vector<PackedBinding> bindings;
+  std::vector<PackedConstant> constants;
   std::vector<PackedVariant> variants;
   std::size_t possible = 0;         ///< size of the full product of the axes, before constraints
+
+  /// Null when the constraints of the shader exclude this combination.
+  const PackedVariant* find(const VariantKey& key) const;
+  /// "GLOSSY=1 LIGHT=spot"
+  std::string text(const std::vector<int>& values) const;
 };
 
 /// Code shared by all variants whose SPIR-V is the same.

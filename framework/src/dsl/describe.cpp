@@ -1,0 +1,149 @@
+// Descriptions for readers, from the tables that the checker uses.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <set>
+
+#include "dsl/wording.h"
+
+namespace lumivox::dsl {
+namespace {
+
+using Path = std::vector<std::string>;
+
+std::string where(const Path& path) {
+  return path.empty() ? "" : fmt::format(" (in {})", fmt::join(path, " > "));
+}
+
+std::string signature(const BlockSpecification& block) {
+  std::string text = block.word;
+  if (block.name == HeaderUse::required) text += " NAME";
+  if (block.name == HeaderUse::optional) text += " [NAME]";
+  if (!block.kinds.empty()) text += fmt::format(" {}", fmt::join(block.kinds, "|"));
+  if (block.anyKind) text += " KIND";
+  return text + " { ... }";
+}
+
+std::string notes(const PropertySpecification& property) {
+  std::string text = expectation(property);
+  if (property.required) {
+    text += "; required";
+  } else if (!property.defaultText.empty()) {
+    text += "; default " + property.defaultText;
+  }
+  if (property.repeatable) text += "; may be repeated";
+  return text;
+}
+
+std::string propertyLines(const PropertySpecification& property, const Path& path) {
+  return fmt::format("{}{}\n  {}\n  {}\n", property.word, where(path), property.meaning, notes(property));
+}
+
+std::string propertyList(const std::vector<PropertySpecification>& properties) {
+  std::size_t width = 0;
+  for (const PropertySpecification& property : properties) width = std::max(width, property.word.size());
+  std::string text;
+  for (const PropertySpecification& property : properties) {
+    text += fmt::format("  {:<{}}  {} ({})\n", property.word, width, property.meaning, notes(property));
+  }
+  return text;
+}
+
+std::string blockLines(const BlockSpecification& block, const Path& path) {
+  std::string text = fmt::format("{}{}\n  {}\n", signature(block), where(path), block.meaning);
+  text += propertyList(block.properties);
+  for (const auto& [kind, properties] : block.kindProperties) {
+    text += fmt::format(" {} {}:\n{}", block.word, kind, propertyList(properties));
+  }
+  for (const BlockSpecification& inner : block.blocks)
+    text += fmt::format("  {}  {}\n", signature(inner), inner.meaning);
+  return text;
+}
+
+/// Calls back for every block and every property, with the words of the blocks around it.
+struct Visitor {
+  std::function<void(const BlockSpecification&, const Path&)> block;
+  std::function<void(const PropertySpecification&, const Path&)> property;
+
+  void visit(const std::vector<BlockSpecification>& blocks, Path& path) const {
+    for (const BlockSpecification& one : blocks) {
+      block(one, path);
+      path.push_back(one.word);
+      for (const PropertySpecification& inner : one.properties) property(inner, path);
+      for (const auto& [kind, properties] : one.kindProperties) {
+        path.back() = one.word + ' ' + kind;
+        for (const PropertySpecification& inner : properties) property(inner, path);
+      }
+      path.back() = one.word;
+      visit(one.blocks, path);
+      path.pop_back();
+    }
+  }
+};
+
+std::string cell(std::string text) {
+  for (std::size_t i = 0; (i = text.find('|', i)) != std::string::npos; i += 2) text.insert(i, 1, '\\');
+  return text;
+}
+
+std::string table(const std::vector<PropertySpecification>& properties) {
+  if (properties.empty()) return {};
+  std::string text = "| property | value | default | meaning |\n|---|---|---|---|\n";
+  for (const PropertySpecification& property : properties) {
+    text += fmt::format("| `{}` | {}{} | {} | {} |\n", property.word, cell(expectation(property)),
+                        property.repeatable ? "; may be repeated" : "",
+                        property.required              ? "required"
+                        : property.defaultText.empty() ? "-"
+                                                       : '`' + cell(property.defaultText) + '`',
+                        cell(property.meaning));
+  }
+  return text + '\n';
+}
+
+void markdown(const std::vector<BlockSpecification>& blocks, const std::string& level, std::string& text) {
+  constexpr std::size_t kDeepestHeading = 6;
+  for (const BlockSpecification& block : blocks) {
+    text += fmt::format("{} `{}`\n\n{}\n\n", level, signature(block), block.meaning);
+    text += table(block.properties);
+    for (const auto& [kind, properties] : block.kindProperties) {
+      text += fmt::format("Of the kind `{}`:\n\n{}", kind, table(properties));
+    }
+    markdown(block.blocks, level.size() < kDeepestHeading ? level + '#' : level, text);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> words(const std::vector<BlockSpecification>& specifications) {
+  std::set<std::string> all;
+  const Visitor visitor{
+      [&](const BlockSpecification& block, const Path&) { all.insert(block.word); },
+      [&](const PropertySpecification& property, const Path&) { all.insert(property.word); }};
+  Path path;
+  visitor.visit(specifications, path);
+  return {all.begin(), all.end()};
+}
+
+std::string describe(const std::vector<BlockSpecification>& specifications, const std::string& word) {
+  std::string text;
+  const Visitor visitor{[&](const BlockSpecification& block, const Path& path) {
+                          if (block.word == word)
+                            text += (text.empty() ? "" : "\n") + blockLines(block, path);
+                        },
+                        [&](const PropertySpecification& property, const Path& path) {
+                          if (property.word == word)
+                            text += (text.empty() ? "" : "\n") + propertyLines(property, path);
+                        }};
+  Path path;
+  visitor.visit(specifications, path);
+  return text;
+}
+
+std::string describeAsMarkdown(const std::vector<BlockSpecification>& specifications) {
+  std::string text;
+  markdown(specifications, "##", text);
+  return text;
+}
+
+}  // namespace lumivox::dsl

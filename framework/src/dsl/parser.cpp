@@ -1,0 +1,521 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "dsl/lexer.h"
+
+namespace lumivox::dsl {
+namespace {
+
+/// Recursive descent over the tokens. After an error it goes on at the next word that starts a line, or at a
+/// brace.
+class Parser {
+ public:
+  Parser(Document& document, std::vector<Token> tokens) : document_(document), tokens_(std::move(tokens)) {}
+
+  void run() {
+    document_.items = items(document_.commentsAtEnd, 0);
+    if (!unclosed_.empty()) reportUnclosed();
+  }
+
+ private:
+  const Token& now() const { return tokens_[position_]; }
+  const Token& next(std::size_t ahead) const {
+    return tokens_[std::min(position_ + ahead, tokens_.size() - 1)];
+  }
+  bool is(TokenKind kind) const { return now().kind == kind; }
+  Token& take() {
+    Token& token = tokens_[position_];
+    if (position_ + 1 < tokens_.size()) ++position_;
+    return token;
+  }
+
+  void report(const Token& token, std::string what, std::string expected) {
+    if (document_.findings.size() >= kMaximumFindings) return;
+    document_.findings.push_back(
+        document_.finding(token.place, token.length, std::move(what), std::move(expected)));
+  }
+
+  static bool isPlain(const Token& token) {
+    return token.kind == TokenKind::word && token.text.find_first_of("./*?") == std::string::npos;
+  }
+
+  /// The word of a block: words and strings that follow on the same line end in '{'. A '{' at the start of
+  /// the next line is taken as a slip.
+  bool blockStarts() {
+    std::size_t ahead = 1;
+    while ((next(ahead).kind == TokenKind::word || next(ahead).kind == TokenKind::text) &&
+           !next(ahead).startsLine) {
+      ++ahead;
+    }
+    if (next(ahead).kind != TokenKind::open) return false;
+    if (next(ahead).startsLine) {
+      report(next(ahead), "'{' starts a line", "'{' on the line of its block's word");
+    }
+    return true;
+  }
+
+  std::vector<Item> items(std::vector<std::string>& commentsAtEnd, int depth) {
+    std::vector<Item> result;
+    while (!is(TokenKind::end)) {
+      if (document_.findings.size() >= kMaximumFindings) {
+        position_ = tokens_.size() - 1;
+      } else if (is(TokenKind::close)) {
+        if (depth > 0) break;
+        report(now(), "unexpected '}'", "no '}' here: no block is open");
+        take();
+      } else if (!isPlain(now())) {
+        reportStray();
+      } else {
+        result.push_back(item(depth));
+      }
+    }
+    commentsAtEnd = commentTexts(tokens_[position_], true);
+    return result;
+  }
+
+  Item item(int depth) {
+    Item result;
+    Token& first = now_();
+    result.blankLineBefore = first.blankLineBefore;
+    result.startsLine = first.startsLine;
+    result.commentsBefore = commentTexts(first, false);
+    if (blockStarts()) {
+      result.block = std::make_unique<Block>(block(result, depth));
+    } else {
+      result.property = property(result);
+    }
+    result.commentAfter = commentOnLine();
+    return result;
+  }
+
+  Token& now_() { return tokens_[position_]; }
+
+  Property property(Item& owner) {
+    Property result;
+    const Token& word = take();
+    result.word = word.text;
+    result.place = word.place;
+    bool first = true;
+    while (valueStarts(first, result)) {
+      keepComments(owner);
+      result.values.push_back(value(owner));
+      first = false;
+    }
+    return result;
+  }
+
+  bool valueStarts(bool first, const Property& property) const {
+    switch (now().kind) {
+      case TokenKind::number:
+      case TokenKind::text:
+      case TokenKind::parameter:
+      case TokenKind::listOpen:
+        return true;
+      case TokenKind::word: {
+        if (!isPlain(now())) return true;
+        if (now().text == "in" && !first) return true;
+        // `param NAME VALUE`: the value behind a name may be a word too.
+        if (property.word == "param" && property.values.size() == 1 && !now().startsLine) return true;
+        return first && !now().startsLine;
+      }
+      default:
+        return false;
+    }
+  }
+
+  Value value(Item& owner) {
+    Token& token = take();
+    Value result;
+    result.place = token.place;
+    result.length = token.length;
+    result.text = token.text;
+    switch (token.kind) {
+      case TokenKind::number:
+        return number(token, owner);
+      case TokenKind::listOpen:
+        return list(token, owner);
+      case TokenKind::text:
+        result.kind = ValueKind::text;
+        break;
+      case TokenKind::parameter:
+        result.kind = ValueKind::parameter;
+        if (is(TokenKind::range)) return range(std::move(result), owner);
+        break;
+      default:
+        result.kind = ValueKind::word;
+        break;
+    }
+    return result;
+  }
+
+  Value plainNumber(const Token& token) {
+    Value result;
+    result.kind = ValueKind::number;
+    result.place = token.place;
+    result.length = token.length;
+    result.number = token.number;
+    result.integral = token.integral;
+    result.text = token.text;
+    result.unit = token.unit;
+    if (!result.unit) readUnit(result);
+    return result;
+  }
+
+  Value number(const Token& token, Item& owner) {
+    Value result = plainNumber(token);
+    if (is(TokenKind::range)) return range(std::move(result), owner);
+    return result;
+  }
+
+  /// A unit behind a blank: `30 deg`, `40 /m`.
+  void readUnit(Value& value) {
+    if (now().startsLine) return;
+    if (is(TokenKind::unit) || is(TokenKind::word)) {
+      if (const Unit* unit = findUnit(now().text)) {
+        value.unit = *unit;
+        const Token& token = take();
+        if (token.place.line == value.place.line) {
+          value.length = token.place.column + token.length - value.place.column;
+        }
+      } else if (is(TokenKind::unit)) {
+        reportUnknownUnit(take());
+      }
+    }
+  }
+
+  void reportUnknownUnit(const Token& token) {
+    const std::vector<std::string> names = unitNameList();
+    report(token, fmt::format("unknown unit '{}'", token.text),
+           fmt::format("one of {}", fmt::join(names, ", ")));
+    if (!document_.findings.empty()) document_.findings.back().suggestion = nearestWord(token.text, names);
+  }
+
+  Value range(Value low, Item& owner) {
+    const Token& dots = take();
+    Value result;
+    result.kind = ValueKind::range;
+    result.place = low.place;
+    keepComments(owner);
+    Value high;
+    if (is(TokenKind::number)) {
+      high = plainNumber(take());
+    } else if (is(TokenKind::parameter)) {
+      const Token& token = take();
+      high.kind = ValueKind::parameter;
+      high.place = token.place;
+      high.length = token.length;
+      high.text = token.text;
+    } else {
+      report(dots, "'..' without an upper end", "a range such as 16..512");
+      return low;
+    }
+    if (high.unit && !low.unit) low.unit = high.unit;  // 1..2 m
+    if (high.place.line == low.place.line) {
+      result.length = high.place.column + high.length - low.place.column;
+    }
+    result.items = {std::move(low), std::move(high)};
+    return result;
+  }
+
+  Value list(const Token& bracket, Item& owner) {
+    Value result;
+    result.kind = ValueKind::list;
+    result.place = bracket.place;
+    const Token opening = bracket;
+    bool tooMany = false;
+    for (;;) {
+      keepComments(owner);
+      if (is(TokenKind::listClose)) break;
+      if (is(TokenKind::open) || is(TokenKind::close) || is(TokenKind::end)) {
+        report(opening, "the list is not closed", "']' before the end of the block");
+        return result;
+      }
+      if (is(TokenKind::listOpen)) {
+        report(take(), "a list in a list", "numbers or words");
+        continue;
+      }
+      if (is(TokenKind::range) || is(TokenKind::unit)) {
+        report(now(), fmt::format("unexpected '{}' in a list", is(TokenKind::range) ? ".." : now().text),
+               "numbers or words");
+        take();
+        continue;
+      }
+      Value item = value(owner);
+      if (result.items.size() < kMaximumListItems) {
+        result.items.push_back(std::move(item));
+      } else if (!tooMany) {
+        tooMany = true;
+        report(opening, "the list is too long", fmt::format("at most {} items", kMaximumListItems));
+      }
+    }
+    const Token& end = take();
+    if (end.place.line == result.place.line) result.length = end.place.column + 1 - result.place.column;
+    return result;
+  }
+
+  Block block(Item& owner, int depth) {
+    Block result;
+    const Token& word = take();
+    result.word = word.text;
+    result.place = word.place;
+    while (!is(TokenKind::open)) result.header.push_back(value(owner));
+    keepComments(owner);
+    const Token& brace = take();
+    result.commentAfterOpen = commentOnLine();
+    if (depth + 1 > kMaximumNesting) {
+      report(brace, "blocks are nested too deeply", fmt::format("at most {} levels", kMaximumNesting));
+      skipBlock();
+      return result;
+    }
+    result.items = items(result.commentsAtEnd, depth + 1);
+    if (is(TokenKind::close)) {
+      take();
+    } else {
+      result.closed = false;
+      unclosed_.push_back({result.title(), result.place, static_cast<int>(result.word.size())});
+    }
+    return result;
+  }
+
+  /// From behind '{' to behind its '}'.
+  void skipBlock() {
+    int open = 1;
+    while (open > 0 && !is(TokenKind::end)) {
+      if (is(TokenKind::open)) ++open;
+      if (is(TokenKind::close)) --open;
+      take();
+    }
+  }
+
+  void reportStray() {
+    const Token& token = now();
+    switch (token.kind) {
+      case TokenKind::open:
+        report(token, "unexpected '{'", "a block's word before it, and only words and strings between");
+        take();
+        skipBlock();
+        return;
+      case TokenKind::unit:
+        if (findUnit(token.text) == nullptr) {
+          reportUnknownUnit(token);
+        } else {
+          report(token, fmt::format("unit '{}' without a number", token.text), "a number before it");
+        }
+        break;
+      case TokenKind::range:
+        report(token, "unexpected '..'", "a number on both sides, as in 16..512");
+        break;
+      case TokenKind::listClose:
+        report(token, "unexpected ']'", "no ']' here: no list is open");
+        break;
+      case TokenKind::word:
+        report(token, fmt::format("unexpected '{}'", token.text),
+               "a plain word: the name of a property or block");
+        break;
+      default:
+        report(token, "unexpected value", "the name of a property or block before it");
+        break;
+    }
+    take();
+    skipStatement();
+  }
+
+  /// To the next plain word that starts a line, or a brace: one stray token makes one finding.
+  void skipStatement() {
+    while (!is(TokenKind::end) && !is(TokenKind::open) && !is(TokenKind::close) && !isPlain(now())) take();
+  }
+
+  static std::vector<std::string> commentTexts(Token& token, bool atEnd) {
+    std::vector<std::string> texts;
+    if (atEnd && token.blankLineBefore && !token.comments.empty()) texts.emplace_back();
+    for (Comment& comment : token.comments) texts.push_back(std::move(comment.text));
+    token.comments.clear();
+    if (atEnd) {
+      while (!texts.empty() && texts.back().empty()) texts.pop_back();
+    }
+    return texts;
+  }
+
+  /// A comment behind the last token on its line.
+  std::string commentOnLine() {
+    std::vector<Comment>& comments = now_().comments;
+    if (comments.empty() || comments.front().startsLine) return {};
+    std::string text = std::move(comments.front().text);
+    comments.erase(comments.begin());
+    // A blank line right behind it belongs to what follows.
+    if (!comments.empty() && comments.front().text.empty()) {
+      comments.erase(comments.begin());
+      now_().blankLineBefore = true;
+    }
+    return text;
+  }
+
+  /// Comments inside a statement move above it.
+  void keepComments(Item& owner) {
+    for (Comment& comment : now_().comments) {
+      if (!comment.text.empty()) owner.commentsBefore.push_back(std::move(comment.text));
+    }
+    now_().comments.clear();
+  }
+
+  void reportUnclosed() {
+    // The innermost open block stands first.
+    std::vector<std::string> titles;
+    for (auto block = unclosed_.rbegin(); block != unclosed_.rend(); ++block) titles.push_back(block->title);
+    document_.findings.push_back(document_.finding(
+        unclosed_.front().place, unclosed_.front().length,
+        unclosed_.size() == 1 ? fmt::format("the file ends inside block '{}'", titles.front())
+                              : fmt::format("the file ends inside blocks '{}'", fmt::join(titles, "', '")),
+        "'}' for every '{'"));
+  }
+
+  struct OpenBlock {
+    std::string title;
+    SourcePlace place;
+    int length;
+  };
+  Document& document_;
+  std::vector<Token> tokens_;
+  std::size_t position_ = 0;
+  std::vector<OpenBlock> unclosed_;
+};
+
+/// The place of the first byte that no text holds, if any.
+std::optional<SourcePlace> firstControlCharacter(const Document& document) {
+  int line = 1, column = 1;
+  for (const char c : document.source) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '\n') {
+      ++line;
+      column = 1;
+    } else if ((byte < 0x20 && c != '\t' && c != '\r') || byte == 0x7F) {
+      return SourcePlace{document.file.string(), line, column};
+    } else {
+      ++column;
+    }
+  }
+  return std::nullopt;
+}
+
+std::string lineOf(const std::string& source, int number) {
+  std::size_t start = 0;
+  for (int i = 1; i < number; ++i) {
+    start = source.find('\n', start);
+    if (start == std::string::npos) return {};
+    ++start;
+  }
+  std::string line = source.substr(start, source.find('\n', start) - start);
+  while (!line.empty() && line.back() == '\r') line.pop_back();
+  return line;
+}
+
+}  // namespace
+
+bool Value::isPlainWord() const {
+  return kind == ValueKind::word && text.find_first_of("./*?") == std::string::npos;
+}
+
+std::string Value::written() const {
+  switch (kind) {
+    case ValueKind::number:
+      return unit ? text + ' ' + unit->name : text;
+    case ValueKind::word:
+      return text;
+    case ValueKind::parameter:
+      return '$' + text;
+    case ValueKind::text: {
+      std::string result = "\"";
+      for (const char c : text) {
+        if (c == '"' || c == '\\') result += '\\';
+        result += c;
+      }
+      return result + '"';
+    }
+    case ValueKind::list: {
+      std::string result = "[";
+      for (const Value& item : items) result += (result.size() > 1 ? " " : "") + item.written();
+      return result + ']';
+    }
+    case ValueKind::range: {
+      // A unit of both ends stands once, behind the upper end.
+      Value low = items.at(0);
+      const Value& high = items.at(1);
+      if (low.unit && high.unit && low.unit->name == high.unit->name) low.unit.reset();
+      return low.written() + ".." + high.written();
+    }
+  }
+  return {};
+}
+
+std::string Block::title() const {
+  std::string result = word;
+  for (const Value& value : header) result += ' ' + value.written();
+  return result;
+}
+
+std::string Document::line(int number) const {
+  return lineOf(source, number);
+}
+
+std::string Document::line(const SourcePlace& place) const {
+  const auto included = includedSources.find(place.file);
+  return lineOf(included != includedSources.end() ? included->second : source, place.line);
+}
+
+Diagnostic Document::finding(const SourcePlace& place, int length, std::string what, std::string expected,
+                             std::string suggestion) const {
+  // A line that no terminal could show helps nobody.
+  constexpr int kLongestShownLine = 240;
+  Diagnostic result;
+  result.place = place;
+  result.what = std::move(what);
+  result.expected = std::move(expected);
+  result.suggestion = std::move(suggestion);
+  result.length = std::max(1, length);
+  if (place.line > 0 && place.column <= kLongestShownLine) {
+    result.sourceLine = line(place);
+    if (result.sourceLine.size() > kLongestShownLine) result.sourceLine.resize(kLongestShownLine);
+    result.length =
+        std::clamp(static_cast<int>(result.sourceLine.size()) + 1 - place.column, 1, result.length);
+  }
+  return result;
+}
+
+Document parse(std::string source, std::filesystem::path file) {
+  Document document;
+  document.file = std::move(file);
+  document.source = std::move(source);
+  const SourcePlace whole{document.file.string(), 0, 0};
+  if (document.source.size() > kMaximumTextBytes) {
+    document.findings.push_back(
+        document.finding(whole, 1, fmt::format("the text is too large ({} bytes)", document.source.size()),
+                         fmt::format("at most {} bytes", kMaximumTextBytes)));
+    return document;
+  }
+  if (const auto place = firstControlCharacter(document)) {
+    Diagnostic finding =
+        document.finding(*place, 1, "not a text file: it holds control characters", "UTF-8 text");
+    finding.sourceLine.clear();
+    document.findings.push_back(std::move(finding));
+    return document;
+  }
+  std::vector<Token> tokens = lex(document);
+  if (tokens.size() == 1 && document.findings.empty()) {
+    document.commentsAtEnd.clear();
+    document.findings.push_back(document.finding(whole, 1, "the text is empty", "at least one block"));
+    return document;
+  }
+  Parser(document, std::move(tokens)).run();
+  std::stable_sort(document.findings.begin(), document.findings.end(),
+                   [](const Diagnostic& a, const Diagnostic& b) {
+                     return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
+                   });
+  if (document.findings.size() >= kMaximumFindings) {
+    document.findings.push_back(
+        document.finding(whole, 1, "too many errors; the rest of the file was not read", "a text of blocks"));
+  }
+  return document;
+}
+
+}  // namespace lumivox::dsl

@@ -1,0 +1,382 @@
+#include "lumivox/dsl/schema.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+
+#include "dsl/wording.h"
+
+namespace lumivox::dsl {
+namespace {
+
+using Findings = std::vector<Diagnostic>;
+
+std::vector<std::string> wordsOf(const std::vector<const PropertySpecification*>& properties,
+                                 const std::vector<BlockSpecification>& blocks) {
+  std::vector<std::string> words;
+  for (const PropertySpecification* property : properties) words.push_back(property->word);
+  for (const BlockSpecification& block : blocks) words.push_back(block.word);
+  return words;
+}
+
+/// The properties that a block of this kind may have; of every kind when the kind is unknown.
+std::vector<const PropertySpecification*> propertiesOf(const BlockSpecification& specification,
+                                                       const std::string& kind) {
+  std::vector<const PropertySpecification*> result;
+  for (const PropertySpecification& property : specification.properties) result.push_back(&property);
+  const auto& kinds = specification.kinds;
+  const bool known = std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+  for (const auto& [name, properties] : specification.kindProperties) {
+    if (known && name != kind) continue;
+    for (const PropertySpecification& property : properties) result.push_back(&property);
+  }
+  return result;
+}
+
+template <class Specification>
+const Specification* byWord(const std::vector<Specification>& all, const std::string& word) {
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const Specification& one) { return one.word == word; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+/// Which header values are name and kind.
+struct Header {
+  const Value* name = nullptr;
+  const Value* kind = nullptr;
+};
+
+Header headerOf(const Block& block, const BlockSpecification& specification) {
+  Header header;
+  const bool hasKind = specification.anyKind || !specification.kinds.empty();
+  if (block.header.empty()) return header;
+  if (!hasKind) {
+    header.name = &block.header[0];
+  } else if (specification.name == HeaderUse::none) {
+    header.kind = &block.header[0];
+  } else if (block.header.size() == 1) {
+    const auto& kinds = specification.kinds;
+    const bool isKind = std::find(kinds.begin(), kinds.end(), block.header[0].text) != kinds.end();
+    (isKind && specification.name == HeaderUse::optional ? header.kind : header.name) = &block.header[0];
+  } else {
+    header.name = &block.header[0];
+    header.kind = &block.header[1];
+  }
+  return header;
+}
+
+/// Checks of one block.
+class BlockChecker {
+ public:
+  BlockChecker(const Document& document, const Block& block, const BlockSpecification& specification,
+               Findings& findings)
+      : document_(document), block_(block), specification_(specification), findings_(findings) {}
+
+  void run() {
+    checkHeader();
+    const Header header = headerOf(block_, specification_);
+    properties_ = propertiesOf(specification_, header.kind != nullptr ? header.kind->text : std::string());
+    for (const Item& item : block_.items) {
+      if (item.property) {
+        checkItem(*item.property);
+      } else {
+        checkItem(*item.block);
+      }
+    }
+    // What stands behind the end of a truncated text is not missing.
+    if (block_.closed) checkMissing();
+  }
+
+ private:
+  int wordLength() const { return static_cast<int>(block_.word.size()); }
+
+  void report(const SourcePlace& place, int length, std::string what, std::string expected = {},
+              std::string suggestion = {}) {
+    findings_.push_back(
+        document_.finding(place, length, std::move(what), std::move(expected), std::move(suggestion)));
+  }
+
+  void checkHeader() {
+    const Header header = headerOf(block_, specification_);
+    const bool hasKind = specification_.anyKind || !specification_.kinds.empty();
+    if (specification_.name == HeaderUse::required && header.name == nullptr) {
+      report(block_.place, wordLength(), fmt::format("block '{}' lacks a name", block_.word),
+             fmt::format("{} NAME {}{{ ... }}", block_.word, hasKind ? "KIND " : ""));
+    }
+    if (hasKind) checkKind(header);
+    const std::size_t allowed = (specification_.name != HeaderUse::none ? 1u : 0u) + (hasKind ? 1u : 0u);
+    if (block_.header.size() > allowed) {
+      const Value& extra = block_.header[allowed];
+      report(extra.place, extra.length,
+             fmt::format("unexpected '{}' in the header of block '{}'", extra.text, block_.word),
+             allowed == 0 ? "'{' right behind the word"
+                          : fmt::format("'{{' behind {} value{}", allowed, allowed == 1 ? "" : "s"));
+    }
+  }
+
+  void checkKind(const Header& header) {
+    if (header.kind == nullptr) {
+      report(block_.place, wordLength(), fmt::format("block '{}' lacks its kind", block_.title()),
+             specification_.anyKind ? "a second word in its header" : oneOf(specification_.kinds));
+      return;
+    }
+    const auto& kinds = specification_.kinds;
+    if (!specification_.anyKind && std::find(kinds.begin(), kinds.end(), header.kind->text) == kinds.end()) {
+      report(header.kind->place, header.kind->length,
+             fmt::format("unknown kind '{}' of block '{}'", header.kind->text, block_.word), oneOf(kinds),
+             nearestWord(header.kind->text, kinds));
+    }
+  }
+
+  void checkItem(const Property& property) {
+    const auto found =
+        std::find_if(properties_.begin(), properties_.end(),
+                     [&](const PropertySpecification* one) { return one->word == property.word; });
+    if (found == properties_.end()) return reportUnknown(property);
+    const auto [first, isNew] = firstPlaces_.emplace(property.word, property.place);
+    if (!isNew && !(*found)->repeatable) {
+      report(property.place, static_cast<int>(property.word.size()),
+             fmt::format("property '{}' is given twice", property.word),
+             fmt::format("it once; it was given first at {}", first->second.text()));
+    }
+    checkProperty(document_, property, **found, findings_);
+  }
+
+  void reportUnknown(const Property& property) {
+    if (specification_.open) return;
+    const int length = static_cast<int>(property.word.size());
+    if (byWord(specification_.blocks, property.word) != nullptr) {
+      return report(property.place, length, fmt::format("'{}' is a block", property.word),
+                    fmt::format("{} ... {{ ... }}", property.word));
+    }
+    // Behind a number without a unit, on its line, a lone word was meant as a unit.
+    if (property.values.empty() && mayBeUnit(property)) {
+      const std::vector<std::string> units = unitNames();
+      if (const std::string unit = nearestWord(property.word, units); !unit.empty()) {
+        return report(property.place, length, fmt::format("unknown unit or property '{}'", property.word),
+                      oneOf(units), unit);
+      }
+    }
+    const std::vector<std::string> known = wordsOf(properties_, specification_.blocks);
+    report(property.place, length,
+           fmt::format("unknown property '{}' in block '{}'", property.word, block_.title()),
+           known.empty() ? "no property here" : oneOf(known), nearestWord(property.word, known));
+  }
+
+  bool mayBeUnit(const Property& property) const {
+    for (std::size_t i = 1; i < block_.items.size(); ++i) {
+      if (!block_.items[i].property || &*block_.items[i].property != &property) continue;
+      const auto& before = block_.items[i - 1].property;
+      return before && !before->values.empty() && before->values.back().kind == ValueKind::number &&
+             !before->values.back().unit && before->values.back().place.line == property.place.line;
+    }
+    return false;
+  }
+
+  static std::vector<std::string> unitNames() {
+    std::vector<std::string> names;
+    for (const Unit& unit : knownUnits()) names.push_back(unit.name);
+    return names;
+  }
+
+  void checkItem(const Block& inner) {
+    const BlockSpecification* specification = byWord(specification_.blocks, inner.word);
+    const int length = static_cast<int>(inner.word.size());
+    if (specification == nullptr) {
+      const bool isProperty =
+          std::any_of(properties_.begin(), properties_.end(),
+                      [&](const PropertySpecification* one) { return one->word == inner.word; });
+      if (isProperty) {
+        return report(inner.place, length, fmt::format("'{}' is a property, not a block", inner.word),
+                      fmt::format("{} and its values; a block behind them starts a new line", inner.word));
+      }
+      std::vector<std::string> known;
+      for (const BlockSpecification& one : specification_.blocks) known.push_back(one.word);
+      return report(inner.place, length,
+                    fmt::format("unknown block '{}' in block '{}'", inner.word, block_.title()),
+                    known.empty() ? "no block here" : oneOf(known), nearestWord(inner.word, known));
+    }
+    checkDuplicate(inner, *specification);
+    check(document_, inner, *specification, findings_);
+  }
+
+  void checkDuplicate(const Block& inner, const BlockSpecification& specification) {
+    const Header header = headerOf(inner, specification);
+    if (specification.repeatable && header.name == nullptr) return;
+    const std::string key = specification.repeatable ? inner.word + ' ' + header.name->text : inner.word;
+    const auto [first, isNew] = firstPlaces_.emplace(key, inner.place);
+    if (isNew) return;
+    report(inner.place, static_cast<int>(inner.word.size()),
+           specification.repeatable
+               ? fmt::format("block '{}' named '{}' is given twice", inner.word, header.name->text)
+               : fmt::format("block '{}' is given twice", inner.word),
+           fmt::format("{}; it was given first at {}", specification.repeatable ? "another name" : "it once",
+                       first->second.text()));
+  }
+
+  void checkMissing() {
+    for (const PropertySpecification* property : properties_) {
+      if (!property->required || firstPlaces_.count(property->word) > 0) continue;
+      report(block_.place, wordLength(),
+             fmt::format("block '{}' lacks the property '{}'", block_.title(), property->word),
+             fmt::format("{} with {}", property->word, expectation(*property)));
+    }
+    for (const BlockSpecification& inner : specification_.blocks) {
+      if (!inner.required) continue;
+      const bool present = std::any_of(block_.items.begin(), block_.items.end(), [&](const Item& item) {
+        return item.block && item.block->word == inner.word;
+      });
+      if (present) continue;
+      report(block_.place, wordLength(),
+             fmt::format("block '{}' lacks a block '{}'", block_.title(), inner.word),
+             fmt::format("{} ... {{ ... }}: {}", inner.word, inner.meaning));
+    }
+  }
+
+  const Document& document_;
+  const Block& block_;
+  const BlockSpecification& specification_;
+  Findings& findings_;
+  std::vector<const PropertySpecification*> properties_;
+  std::map<std::string, SourcePlace> firstPlaces_;  // of properties by word, of blocks by word and name
+};
+
+}  // namespace
+
+void check(const Document& document, const Block& block, const BlockSpecification& specification,
+           Findings& findings) {
+  BlockChecker(document, block, specification, findings).run();
+}
+
+void check(const Document& document, const std::vector<BlockSpecification>& allowed, Findings& findings) {
+  std::vector<std::string> known;
+  for (const BlockSpecification& one : allowed) known.push_back(one.word);
+  std::map<std::string, SourcePlace> firstPlaces;
+  std::set<std::string> present;
+  bool whole = true;  // a text that was cut off lacks nothing
+  for (const Item& item : document.items) {
+    const std::string& word = item.block ? item.block->word : item.property->word;
+    const SourcePlace& place = item.block ? item.block->place : item.property->place;
+    const int length = static_cast<int>(word.size());
+    const BlockSpecification* specification = byWord(allowed, word);
+    if (specification == nullptr) {
+      findings.push_back(document.finding(
+          place, length, fmt::format("unknown {} '{}'", item.block ? "block" : "property", word),
+          oneOf(known), nearestWord(word, known)));
+      continue;
+    }
+    present.insert(word);
+    if (!item.block) {
+      findings.push_back(document.finding(place, length, fmt::format("'{}' is a block", word),
+                                          fmt::format("{} ... {{ ... }}", word)));
+      continue;
+    }
+    whole = whole && item.block->closed;
+    const Header header = headerOf(*item.block, *specification);
+    const std::string key =
+        word + (specification->repeatable && header.name != nullptr ? ' ' + header.name->text : "");
+    const auto [first, isNew] = firstPlaces.emplace(key, place);
+    if (!isNew && (!specification->repeatable || header.name != nullptr)) {
+      findings.push_back(
+          document.finding(place, length, fmt::format("block '{}' is given twice", item.block->title()),
+                           fmt::format("one; it was given first at {}", first->second.text())));
+    }
+    check(document, *item.block, *specification, findings);
+  }
+  if (!document.findings.empty() && document.items.empty()) return;
+  for (const BlockSpecification& one : allowed) {
+    if (!one.required || present.count(one.word) > 0 || !whole) continue;
+    findings.push_back(document.finding({document.file.string(), 0, 0}, 1,
+                                        fmt::format("the text lacks a block '{}'", one.word),
+                                        fmt::format("{} ... {{ ... }}: {}", one.word, one.meaning)));
+  }
+}
+
+std::string CheckedBlock::name() const {
+  const Header header = headerOf(*block_, *specification_);
+  return header.name != nullptr ? header.name->text : std::string();
+}
+
+std::string CheckedBlock::kind() const {
+  const Header header = headerOf(*block_, *specification_);
+  return header.kind != nullptr ? header.kind->text : std::string();
+}
+
+std::vector<const Block*> CheckedBlock::blocks(const std::string& word) const {
+  std::vector<const Block*> result;
+  for (const Item& item : block_->items) {
+    if (item.block && item.block->word == word) result.push_back(item.block.get());
+  }
+  return result;
+}
+
+const Property* CheckedBlock::find(const std::string& word) const {
+  for (const Item& item : block_->items) {
+    if (item.property && item.property->word == word) return &*item.property;
+  }
+  return nullptr;
+}
+
+std::vector<const Property*> CheckedBlock::findAll(const std::string& word) const {
+  std::vector<const Property*> result;
+  for (const Item& item : block_->items) {
+    if (item.property && item.property->word == word) result.push_back(&*item.property);
+  }
+  return result;
+}
+
+double CheckedBlock::number(const std::string& word, double fallback) const {
+  const std::vector<double> found = numbers(word, {});
+  return found.empty() ? fallback : found.front();
+}
+
+bool CheckedBlock::flag(const std::string& word, bool fallback) const {
+  const Property* property = find(word);
+  return property == nullptr || property->values.empty() ? fallback : property->values.front().text == "on";
+}
+
+std::vector<double> CheckedBlock::numbers(const std::string& word, std::vector<double> fallback) const {
+  const Property* property = find(word);
+  if (property == nullptr) return fallback;
+  std::vector<double> result = numbersInBaseUnits(*property);
+  const Header header = headerOf(*block_, *specification_);
+  for (const PropertySpecification* one :
+       propertiesOf(*specification_, header.kind != nullptr ? header.kind->text : "")) {
+    if (one->word == word && one->type == PropertyType::oneOrThree && result.size() == 1)
+      result.resize(3, result[0]);
+  }
+  return result;
+}
+
+std::string CheckedBlock::text(const std::string& word, std::string fallback) const {
+  const Property* property = find(word);
+  return property == nullptr || property->values.empty() ? fallback : property->values.front().text;
+}
+
+std::vector<double> numbersInBaseUnits(const Property& property) {
+  std::vector<const Value*> values;
+  const std::function<void(const std::vector<Value>&)> collect = [&](const std::vector<Value>& all) {
+    for (const Value& value : all) {
+      if (value.kind == ValueKind::number) values.push_back(&value);
+      if (value.kind == ValueKind::list || value.kind == ValueKind::range) collect(value.items);
+    }
+  };
+  collect(property.values);
+  // A unit behind the last component only holds for all; but an axis before an angle has none of its own.
+  const bool lastOnly = !values.empty() && values.back()->unit &&
+                        std::none_of(values.begin(), values.end() - 1,
+                                     [](const Value* value) { return value->unit.has_value(); });
+  constexpr std::size_t kAxisAndNumber = 4;
+  const bool shared = lastOnly && values.size() < kAxisAndNumber && property.values.size() > 1;
+  std::vector<double> result;
+  for (const Value* value : values) {
+    result.push_back(shared ? value->number * values.back()->unit->toBase : value->inBaseUnits());
+  }
+  return result;
+}
+
+}  // namespace lumivox::dsl

@@ -1,0 +1,269 @@
+// Dispatches and draws: what is bound, what is drawn to.
+#include <fmt/format.h>
+
+#include <cassert>
+
+#include "gpu/state.h"
+#include "lumivox/base/error.h"
+
+namespace lumivox::gpu {
+namespace {
+
+struct Binder {
+  DeviceState& state;
+  const Program& program;
+  const ResourceBinding& slot;
+
+  void checkUnit(std::size_t count, const char* what) const {
+    if (slot.binding >= count) {
+      throw Error(fmt::format("{}: '{}' is at {} {}, but {} has only {}", program.name(), slot.name, what,
+                              slot.binding, state.info.renderer, count));
+    }
+  }
+
+  void operator()(const ResourceBinding::Sampled& sampled) const {
+    assert(sampled.texture != nullptr);
+    checkUnit(state.cache.sampled.size(), "texture unit");
+    auto& bound = state.cache.sampled[slot.binding];
+    if (bound.texture != sampled.texture->handle()) {
+      bound.texture = sampled.texture->handle();
+      glBindTextureUnit(slot.binding, bound.texture);
+    }
+    const GLuint sampler = state.samplers[static_cast<std::size_t>(sampled.sampling)];
+    if (bound.sampler != sampler) {
+      bound.sampler = sampler;
+      glBindSampler(slot.binding, sampler);
+    }
+  }
+
+  void operator()(const ResourceBinding::StorageImage& image) const {
+    assert(image.texture != nullptr);
+    checkUnit(state.cache.images.size(), "image unit");
+    auto& bound = state.cache.images[slot.binding];
+    if (bound.texture == image.texture->handle() && bound.level == image.level) return;
+    const TextureDescription& description = image.texture->description();
+    assert(image.level >= 0 && image.level < description.levels);
+    if (traitsOf(description.format).depth) {
+      throw Error(fmt::format("{}: '{}': a depth texture ('{}') cannot be a storage image", program.name(),
+                              slot.name, image.texture->label()));
+    }
+    bound = {image.texture->handle(), image.level};
+    // Volumes and arrays are bound whole: shaders address all slices.
+    const GLboolean layered = description.kind == TextureKind::d2 ? GL_FALSE : GL_TRUE;
+    glBindImageTexture(slot.binding, bound.texture, bound.level, layered, 0, GL_READ_WRITE,
+                       traitsOf(description.format).internal);
+  }
+
+  void operator()(const ResourceBinding::Storage& storage) const {
+    assert(storage.buffer != nullptr);
+    checkUnit(state.cache.storage.size(), "storage buffer");
+    GLuint& bound = state.cache.storage[slot.binding];
+    if (bound == storage.buffer->handle()) return;
+    bound = storage.buffer->handle();
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, slot.binding, bound);
+  }
+
+  void operator()(const ResourceBinding::Uniform& uniform) const {
+    assert(!uniform.bytes.empty());
+    checkUnit(state.cache.uniforms.size(), "uniform block");
+    if (uniform.bytes.size() > static_cast<std::size_t>(state.limits.uniformBlockBytes)) {
+      throw Error(fmt::format("{}: uniform block '{}' has {} bytes, but {} allows {}", program.name(),
+                              slot.name, uniform.bytes.size(), state.info.renderer,
+                              state.limits.uniformBlockBytes));
+    }
+    auto& bound = state.cache.uniforms[slot.binding];
+    if (bound.segmentSerial == state.uniforms.segmentSerial() && bound.bytes == uniform.bytes) return;
+    const GLintptr offset = state.uniforms.write(uniform.bytes);
+    bound.bytes = uniform.bytes;
+    bound.segmentSerial = state.uniforms.segmentSerial();
+    glBindBufferRange(GL_UNIFORM_BUFFER, slot.binding, state.uniforms.buffer(), offset,
+                      static_cast<GLsizeiptr>(uniform.bytes.size()));
+  }
+};
+
+const char* framebufferProblem(GLenum status) {
+  switch (status) {
+    case GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT:
+      return "a target cannot be drawn to";
+    case GL_FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT:
+      return "no target and no size";
+    case GL_FRAMEBUFFER_INCOMPLETE_LAYER_TARGETS:
+      return "targets with all layers and with one layer are mixed";
+    case GL_FRAMEBUFFER_UNSUPPORTED:
+      return "the driver does not support this combination of formats";
+    default:
+      return "incomplete";
+  }
+}
+
+void attach(GLuint framebuffer, GLenum point, const Texture& texture, int layer) {
+  const bool hasLayers = texture.description().kind != TextureKind::d2;
+  if (hasLayers && layer >= 0) {
+    glNamedFramebufferTextureLayer(framebuffer, point, texture.handle(), 0, layer);
+  } else {
+    glNamedFramebufferTexture(framebuffer, point, texture.handle(), 0);
+  }
+}
+
+void setRasterState(const RasterState& state) {
+  const auto enable = [](GLenum what, bool on) { on ? glEnable(what) : glDisable(what); };
+  // Depth is written only while the test is on: without reading, it passes always.
+  enable(GL_DEPTH_TEST, state.depthTest || state.depthWrite);
+  glDepthFunc(state.depthTest ? GL_LEQUAL : GL_ALWAYS);
+  glDepthMask(state.depthWrite ? GL_TRUE : GL_FALSE);
+  enable(GL_DEPTH_CLAMP, state.depthClamp);
+  enable(GL_POLYGON_OFFSET_FILL, state.depthBiasSlope != 0.0f || state.depthBiasConstant != 0.0f);
+  glPolygonOffset(state.depthBiasSlope, state.depthBiasConstant);
+}
+
+void clearTargets(GLuint framebuffer, const RenderTargets& targets) {
+  for (std::size_t i = 0; i < targets.colours.size(); ++i) {
+    const GLint buffer = static_cast<GLint>(i);
+    if (traitsOf(targets.colours[i].texture->description().format).integer) {
+      constexpr std::array<GLuint, 4> kZero{};
+      glClearNamedFramebufferuiv(framebuffer, GL_COLOR, buffer, kZero.data());
+    } else {
+      constexpr std::array<GLfloat, 4> kZero{};
+      glClearNamedFramebufferfv(framebuffer, GL_COLOR, buffer, kZero.data());
+    }
+  }
+  if (targets.depth != nullptr) {
+    constexpr GLfloat kFar = 1.0f;
+    glDepthMask(GL_TRUE);
+    glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &kFar);
+  }
+}
+
+}  // namespace
+
+void DeviceState::bind(const Program& program, std::span<const ResourceBinding> bindings) {
+  if (cache.program != program.handle()) {
+    cache.program = program.handle();
+    glUseProgram(cache.program);
+  }
+  for (const ResourceBinding& binding : bindings)
+    std::visit(Binder{*this, program, binding}, binding.resource);
+}
+
+void Device::dispatch(const Program& program, std::span<const ResourceBinding> bindings, glm::uvec3 groups) {
+  DeviceState& state = *state_;
+  state.use();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto limit = static_cast<std::uint32_t>(state.limits.groupCount[static_cast<std::size_t>(axis)]);
+    if (groups[axis] > limit) {
+      throw Error(fmt::format("{}: {} work groups along {}, but {} starts at most {}", program.name(),
+                              groups[axis], "xyz"[axis], state.info.renderer, limit));
+    }
+  }
+  state.bind(program, bindings);
+  glDispatchCompute(groups.x, groups.y, groups.z);
+  if (!state.driverErrors.empty()) state.check("dispatching " + program.name());
+}
+
+void Device::dispatchIndirect(const Program& program, std::span<const ResourceBinding> bindings,
+                              const Buffer& arguments, std::uint64_t offsetBytes) {
+  DeviceState& state = *state_;
+  state.use();
+  assert(offsetBytes % 4 == 0 && offsetBytes + 12 <= arguments.sizeBytes());
+  state.bind(program, bindings);
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, arguments.handle());
+  glDispatchComputeIndirect(static_cast<GLintptr>(offsetBytes));
+  if (!state.driverErrors.empty()) state.check("dispatching " + program.name());
+}
+
+void Device::beginDrawing(const RenderTargets& targets, const RasterState& raster) {
+  DeviceState& state = *state_;
+  state.use();
+  assert(!state.drawing && "beginDrawing without endDrawing");
+  glm::ivec2 size(targets.width, targets.height);
+  const auto narrow = [&](const Texture& texture) {
+    const TextureDescription& d = texture.description();
+    size =
+        size == glm::ivec2(0) ? glm::ivec2(d.width, d.height) : glm::min(size, glm::ivec2(d.width, d.height));
+  };
+  if (!targets.colours.empty() || targets.depth != nullptr) size = glm::ivec2(0);
+
+  glCreateFramebuffers(1, &state.framebuffer);
+  std::vector<GLenum> drawBuffers;
+  for (const ColourTarget& colour : targets.colours) {
+    const GLenum point = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(drawBuffers.size());
+    attach(state.framebuffer, point, *colour.texture, colour.layer);
+    narrow(*colour.texture);
+    drawBuffers.push_back(point);
+  }
+  if (targets.depth != nullptr) {
+    attach(state.framebuffer, GL_DEPTH_ATTACHMENT, *targets.depth, targets.depthLayer);
+    narrow(*targets.depth);
+  }
+  if (drawBuffers.empty()) {
+    glNamedFramebufferDrawBuffer(state.framebuffer, GL_NONE);
+  } else {
+    glNamedFramebufferDrawBuffers(state.framebuffer, static_cast<GLsizei>(drawBuffers.size()),
+                                  drawBuffers.data());
+  }
+  if (drawBuffers.empty() && targets.depth == nullptr) {
+    glNamedFramebufferParameteri(state.framebuffer, GL_FRAMEBUFFER_DEFAULT_WIDTH, size.x);
+    glNamedFramebufferParameteri(state.framebuffer, GL_FRAMEBUFFER_DEFAULT_HEIGHT, size.y);
+  }
+  state.drawing = true;
+  const GLenum status = glCheckNamedFramebufferStatus(state.framebuffer, GL_DRAW_FRAMEBUFFER);
+  if (status != GL_FRAMEBUFFER_COMPLETE || !state.driverErrors.empty()) {
+    endDrawing();
+    state.check("choosing what to draw to");
+    throw Error(fmt::format("{}cannot draw to these targets: {}",
+                            state.pass.empty() ? "" : "pass " + state.pass + ": ",
+                            framebufferProblem(status)));
+  }
+  glBindFramebuffer(GL_FRAMEBUFFER, state.framebuffer);
+  glViewport(0, 0, size.x, size.y);
+  if (targets.clear) clearTargets(state.framebuffer, targets);
+  setRasterState(raster);
+}
+
+void Device::drawIndexed(const Program& program, std::span<const ResourceBinding> bindings,
+                         const Buffer& indices, std::uint32_t firstIndex, std::uint32_t indexCount) {
+  DeviceState& state = *state_;
+  state.use();
+  assert(state.drawing);
+  assert((std::uint64_t{firstIndex} + indexCount) * 4 <= indices.sizeBytes());
+  state.bind(program, bindings);
+  if (state.elementBuffer != indices.handle()) {
+    state.elementBuffer = indices.handle();
+    glVertexArrayElementBuffer(state.vertexArray, state.elementBuffer);
+  }
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(indexCount), GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(std::uintptr_t{firstIndex} * 4));
+  if (!state.driverErrors.empty()) state.check("drawing " + program.name());
+}
+
+void Device::draw(const Program& program, std::span<const ResourceBinding> bindings,
+                  std::uint32_t vertexCount) {
+  DeviceState& state = *state_;
+  state.use();
+  assert(state.drawing);
+  state.bind(program, bindings);
+  glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(vertexCount));
+  if (!state.driverErrors.empty()) state.check("drawing " + program.name());
+}
+
+void Device::endDrawing() {
+  DeviceState& state = *state_;
+  state.use();
+  assert(state.drawing);
+  state.drawing = false;
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glDeleteFramebuffers(1, &state.framebuffer);
+  state.framebuffer = 0;
+}
+
+void Device::barrier() {
+  state_->use();
+  glMemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
+void Device::finish() {
+  state_->use();
+  glFinish();
+}
+
+}  // namespace lumivox::gpu

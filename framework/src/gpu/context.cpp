@@ -1,0 +1,221 @@
+// EGL without a display: the device platform where there is a hardware device, the surfaceless platform
+// otherwise.
+#include <dlfcn.h>
+#include <epoxy/egl.h>
+#include <fmt/format.h>
+
+#include <charconv>
+#include <map>
+#include <mutex>
+
+#include "gpu/state.h"
+#include "lumivox/base/error.h"
+
+namespace lumivox::gpu {
+namespace {
+
+// EGL hands out one display per platform and process: it is terminated when its last context has gone.
+std::mutex displayMutex;
+std::map<EGLDisplay, int>& displayUsers() {
+  static std::map<EGLDisplay, int> users;
+  return users;
+}
+
+bool acquireDisplay(EGLDisplay display) {
+  const std::lock_guard lock(displayMutex);
+  if (!eglInitialize(display, nullptr, nullptr)) return false;
+  ++displayUsers()[display];
+  return true;
+}
+
+void releaseDisplay(EGLDisplay display) {
+  const std::lock_guard lock(displayMutex);
+  if (--displayUsers()[display] == 0) eglTerminate(display);
+}
+
+std::string eglErrorName() {
+  switch (eglGetError()) {
+    case EGL_NOT_INITIALIZED:
+      return "EGL_NOT_INITIALIZED";
+    case EGL_BAD_ALLOC:
+      return "EGL_BAD_ALLOC";
+    case EGL_BAD_MATCH:
+      return "EGL_BAD_MATCH (no OpenGL 4.5 core profile)";
+    case EGL_BAD_CONFIG:
+      return "EGL_BAD_CONFIG";
+    case EGL_BAD_ATTRIBUTE:
+      return "EGL_BAD_ATTRIBUTE";
+    case EGL_BAD_ACCESS:
+      return "EGL_BAD_ACCESS";
+    case EGL_BAD_PARAMETER:
+      return "EGL_BAD_PARAMETER";
+    default:
+      return "no further reason given";
+  }
+}
+
+bool hasWord(const char* words, std::string_view word) {
+  if (words == nullptr) return false;
+  const std::string_view text = words;
+  for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    if ((at == 0 || text[at - 1] == ' ') && (end == text.size() || text[end] == ' ')) return true;
+  }
+  return false;
+}
+
+struct EglDevice {
+  EGLDeviceEXT handle;
+  bool software;
+};
+
+std::vector<EglDevice> eglDevices() {
+  std::vector<EglDevice> devices;
+  if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device") ||
+      !(epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") ||
+        epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_base"))) {
+    return devices;
+  }
+  EGLint count = 0;
+  if (!eglQueryDevicesEXT(0, nullptr, &count) || count <= 0) return devices;
+  std::vector<EGLDeviceEXT> handles(static_cast<std::size_t>(count));
+  if (!eglQueryDevicesEXT(count, handles.data(), &count)) return devices;
+  for (EGLint i = 0; i < count; ++i) {
+    const EGLDeviceEXT handle = handles[static_cast<std::size_t>(i)];
+    devices.push_back(
+        {handle, hasWord(eglQueryDeviceStringEXT(handle, EGL_EXTENSIONS), "EGL_MESA_device_software")});
+  }
+  return devices;
+}
+
+EGLDisplay deviceDisplay(const EglDevice& device) {
+  return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device.handle, nullptr);
+}
+
+EGLDisplay surfacelessDisplay() {
+  if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless")) return EGL_NO_DISPLAY;
+  return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+}
+
+}  // namespace
+
+bool isSoftwareRenderer(const std::string& renderer) {
+  for (const char* word : {"llvmpipe", "softpipe", "swrast", "SWR", "SwiftShader", "Software Rasterizer"}) {
+    if (renderer.find(word) != std::string::npos) return true;
+  }
+  return false;
+}
+
+bool Context::tryDisplay(void* display, const std::string& platform, std::string& failures) {
+  const auto fail = [&](const std::string& why) {
+    failures += fmt::format("\n  {}: {}", platform, why);
+    return false;
+  };
+  if (display == EGL_NO_DISPLAY) return fail("not offered by EGL");
+  if (!acquireDisplay(display)) return fail("eglInitialize failed, " + eglErrorName());
+  const auto failInitialised = [&](const std::string& why) {
+    fail(why);
+    releaseDisplay(display);
+    return false;
+  };
+  if (!epoxy_has_egl_extension(display, "EGL_KHR_surfaceless_context")) {
+    return failInitialised("lacks EGL_KHR_surfaceless_context");
+  }
+  if (!eglBindAPI(EGL_OPENGL_API)) return failInitialised("has no OpenGL, only OpenGL ES");
+  const EGLint configAttributes[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_PBUFFER_BIT,
+                                     EGL_NONE};
+  EGLConfig config = nullptr;
+  EGLint count = 0;
+  if (!eglChooseConfig(display, configAttributes, &config, 1, &count) || count == 0)
+    config = EGL_NO_CONFIG_KHR;
+  const EGLint contextAttributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                      4,
+                                      EGL_CONTEXT_MINOR_VERSION,
+                                      5,
+                                      EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                      EGL_CONTEXT_OPENGL_DEBUG,
+                                      EGL_TRUE,
+                                      EGL_NONE};
+  EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, contextAttributes);
+  if (context == EGL_NO_CONTEXT) return failInitialised("no OpenGL 4.5 core context, " + eglErrorName());
+  if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
+    const std::string why = "eglMakeCurrent failed, " + eglErrorName();
+    eglDestroyContext(display, context);
+    return failInitialised(why);
+  }
+  display_ = display;
+  context_ = context;
+  platform_ = platform;
+  return true;
+}
+
+Context::Context(const std::string& request) {
+  // epoxy ends the process when this library is missing; ask first.
+  void* library = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL);
+  if (library == nullptr)
+    throw AbsentError("no OpenGL: libEGL.so.1 is not installed (Debian package libegl1)");
+
+  const std::vector<EglDevice> devices = eglDevices();
+  const auto platformOf = [](std::size_t index) { return fmt::format("EGL device {}", index); };
+  std::string failures;
+  const auto renderer = [] { return std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))); };
+  const auto dropContext = [&](const std::string& why) {
+    failures += fmt::format("\n  {}: {}", platform_, why);
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display_, context_);
+    releaseDisplay(display_);
+    context_ = nullptr;
+  };
+
+  if (request == "auto" || request == "software") {
+    const bool wantSoftware = request == "software";
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+      // Mesa's software device comes after the surfaceless platform, which is the older and better tried
+      // path.
+      if (wantSoftware || devices[i].software) continue;
+      if (!tryDisplay(deviceDisplay(devices[i]), platformOf(i), failures)) continue;
+      if (!isSoftwareRenderer(renderer())) return;
+      dropContext("draws in software");
+    }
+    if (tryDisplay(surfacelessDisplay(), "EGL surfaceless", failures)) {
+      if (!wantSoftware || isSoftwareRenderer(renderer())) return;
+      dropContext("is not a software rasteriser but " + renderer());
+    }
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+      if (devices[i].software && tryDisplay(deviceDisplay(devices[i]), platformOf(i), failures)) return;
+    }
+  } else if (request == "surfaceless") {
+    if (tryDisplay(surfacelessDisplay(), "EGL surfaceless", failures)) return;
+  } else {
+    std::size_t index = 0;
+    const auto [end, problem] = std::from_chars(request.data(), request.data() + request.size(), index);
+    if (request.empty() || problem != std::errc{} || end != request.data() + request.size()) {
+      throw Error(fmt::format(
+          "unknown device '{}'; expected auto, software, surfaceless or the index of an EGL device",
+          request));
+    }
+    if (index >= devices.size()) {
+      throw AbsentError(fmt::format("there is no EGL device {}; this machine has {} (counted from 0)", index,
+                                    devices.size()));
+    }
+    if (tryDisplay(deviceDisplay(devices[index]), platformOf(index), failures)) return;
+  }
+  throw AbsentError(fmt::format(
+      "no OpenGL 4.5 core context for device '{}':{}", request,
+      failures.empty() ? "\n  EGL offers neither a device nor the surfaceless platform" : failures));
+}
+
+Context::~Context() {
+  eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  eglDestroyContext(display_, context_);
+  releaseDisplay(display_);
+}
+
+void Context::makeCurrent() const {
+  if (!eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) {
+    throw Error(fmt::format("{}: cannot make the OpenGL context current, {}", platform_, eglErrorName()));
+  }
+}
+
+}  // namespace lumivox::gpu

@@ -1,0 +1,277 @@
+// The errors of a picture against its truth, and how far the truth's own noise may have moved them.
+//
+// Propagation to first order. A metric f of the truth's values t_i, each with the variance v_i, has the
+// variance
+//   Var f = sum over pixels of Var(sum over the pixel's channels of g_i n_i),   g_i = df/dt_i,
+// because pixels are sampled independently. The channels of one pixel are not: the same light paths fill all
+// of them. Their covariance is not recorded, so the bound for full correlation is taken, which is exact for
+// grey light and never too small:
+//   Var f <= sum over pixels of (sum over channels of |g_i| sqrt(v_i))^2.
+// With d_i = x_i - t_i, N values, M = mean d^2:
+//   RMSE = sqrt(M)           g_i = -d_i / (N RMSE)
+//   relative MSE             g_i = -(2 / N) (d_i / q_i + d_i^2 t_i / q_i^2) - (2 e 0.01 / N) mean(d^2 / q^2),
+//                            q_i = t_i^2 + e^2, e = 0.01 mean(t); the last term is the truth's share in e
+//   mean ratio = X / T       g_i = -X / T^2
+//   bias = mean d            g_i = -1 / N
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/random.h"
+#include "lumivox/measure/metrics.h"
+#include "measure/pixels.h"
+#include "measure/quantile.h"
+
+namespace lumivox {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Sums of one kind of term over all pixels that count. Rows are summed in parallel and then added from the
+/// top, so that the result does not depend on the number of threads. `addPixel(pixel, sums)` adds one pixel's
+/// terms.
+template <std::size_t count, class AddPixel>
+std::array<double, count> sumPixels(const ComparablePair& pair, const AddPixel& addPixel) {
+  const auto width = static_cast<std::size_t>(pair.truth.width());
+  std::vector<std::array<double, count>> rows(static_cast<std::size_t>(pair.truth.height()));
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
+    std::array<double, count> sums{};
+    for (std::size_t pixel = y * width; pixel < (y + 1) * width; ++pixel) {
+      if (pair.counts[pixel] != 0) addPixel(pixel, sums);
+    }
+    rows[y] = sums;
+  });
+  std::array<double, count> total{};
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < count; ++i) total[i] += row[i];
+  }
+  return total;
+}
+
+/// The deviations sqrt(v) of the truth's values, in the channels of the pair; empty when no variance is
+/// known.
+Picture deviationsOf(const Picture& variance, const Picture& truth, const ComparablePair& pair) {
+  if (variance.empty()) return {};
+  if (!variance.sameShape(truth)) {
+    throw Error(fmt::format(
+        "the truth's variance is {} x {} pixels with {} channels; expected the truth's {} x {} with {}",
+        variance.width(), variance.height(), variance.channels(), truth.width(), truth.height(),
+        truth.channels()));
+  }
+  Picture deviations(truth.width(), truth.height(), pair.truth.channels());
+  for (int y = 0; y < truth.height(); ++y) {
+    for (int x = 0; x < truth.width(); ++x) {
+      const std::size_t pixel =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(truth.width()) + static_cast<std::size_t>(x);
+      if (pair.counts[pixel] == 0) continue;
+      for (int c = 0; c < deviations.channels(); ++c) {
+        const float value = variance.at(x, y, c);
+        if (!(value >= 0.0f) || !std::isfinite(value)) {
+          throw Error(fmt::format(
+              "the truth's variance is {} at pixel {}, {}; expected a finite number of at least 0", value, x,
+              y));
+        }
+        deviations.at(x, y, c) = std::sqrt(value);
+      }
+    }
+  }
+  return deviations;
+}
+
+/// The metrics that are sums over pixels, with their uncertainties.
+void compareValues(const ComparablePair& pair, const Picture& deviations, PictureError& result) {
+  const auto channels = static_cast<std::size_t>(pair.truth.channels());
+  const auto& x = pair.picture.values();
+  const auto& t = pair.truth.values();
+  const auto& s = deviations.values();
+  const auto forChannels = [&](std::size_t pixel, auto&& visit) {
+    for (std::size_t i = pixel * channels; i < (pixel + 1) * channels; ++i)
+      visit(i, double{x[i]} - double{t[i]}, double{t[i]});
+  };
+
+  enum { pixels, sumPicture, sumTruth, sumSquares, sumVariance, firstCount };
+  const auto first = sumPixels<firstCount>(pair, [&](std::size_t pixel, auto& sums) {
+    sums[pixels] += 1.0;
+    forChannels(pixel, [&](std::size_t i, double d, double truth) {
+      sums[sumPicture] += double{x[i]};
+      sums[sumTruth] += truth;
+      sums[sumSquares] += d * d;
+      if (!s.empty()) sums[sumVariance] += double{s[i]} * double{s[i]};
+    });
+  });
+  const double n = first[pixels] * static_cast<double>(channels);
+  const double meanTruth = first[sumTruth] / n;
+  const double epsilon = 0.01 * meanTruth;
+  result.rmse.value = std::sqrt(first[sumSquares] / n);
+  result.bias.value = (first[sumPicture] - first[sumTruth]) / n;
+  result.meanRatio.value = first[sumTruth] != 0.0 ? first[sumPicture] / first[sumTruth] : kNan;
+  result.noiseFloor = std::sqrt(first[sumVariance] / n);
+
+  enum { relative, epsilonSlope, secondCount };
+  const auto second = sumPixels<secondCount>(pair, [&](std::size_t pixel, auto& sums) {
+    forChannels(pixel, [&](std::size_t, double d, double truth) {
+      const double q = truth * truth + epsilon * epsilon;
+      sums[relative] += d * d / q;
+      sums[epsilonSlope] += d * d / (q * q);
+    });
+  });
+  result.relativeMse.value = epsilon != 0.0 ? second[relative] / n : kNan;
+  if (s.empty()) return;
+
+  enum { ofRmse, ofRelative, ofSum, thirdCount };
+  const double throughEpsilon = -2.0 * epsilon * 0.01 / n * second[epsilonSlope] / n;
+  const auto third = sumPixels<thirdCount>(pair, [&](std::size_t pixel, auto& sums) {
+    double rmse = 0.0, relativeMse = 0.0, sum = 0.0;
+    forChannels(pixel, [&](std::size_t i, double d, double truth) {
+      const double q = truth * truth + epsilon * epsilon;
+      rmse += std::abs(d) * double{s[i]};
+      relativeMse += std::abs(-2.0 / n * (d / q + d * d * truth / (q * q)) + throughEpsilon) * double{s[i]};
+      sum += double{s[i]};
+    });
+    sums[ofRmse] += rmse * rmse;
+    sums[ofRelative] += relativeMse * relativeMse;
+    sums[ofSum] += sum * sum;
+  });
+  // Without any difference the slope of the root is undefined; the noise floor is then how far the RMSE may
+  // be off.
+  result.rmse.uncertainty =
+      result.rmse.value > 0.0 ? std::sqrt(third[ofRmse]) / (n * result.rmse.value) : result.noiseFloor;
+  result.relativeMse.uncertainty = epsilon != 0.0 ? std::sqrt(third[ofRelative]) : kNan;
+  result.meanRatio.uncertainty = std::abs(result.meanRatio.value / first[sumTruth]) * std::sqrt(third[ofSum]);
+  result.bias.uncertainty = std::sqrt(third[ofSum]) / n;
+}
+
+/// The metrics that have no simple derivative.
+struct Perceived {
+  double percentile95 = 0.0, ssim = 0.0, flip = 0.0, flipLdr = 0.0;
+};
+
+/// sRGB-encoded luminance in [0,1] as a display shows it: what SSIM was made for.
+Picture displayed(const Picture& picture, float exposure) {
+  Picture result = luminance(picture);
+  for (float& value : result.values()) value = linearToSrgb(std::clamp(value * exposure, 0.0f, 1.0f));
+  return result;
+}
+
+Picture scaled(Picture picture, float factor) {
+  for (float& value : picture.values()) value *= factor;
+  return picture;
+}
+
+Perceived perceivedDifference(const ComparablePair& pair, float exposure, const std::vector<double>& stops) {
+  std::vector<double> differences;
+  for (std::size_t pixel = 0; pixel < pair.counts.size(); ++pixel) {
+    if (pair.counts[pixel] != 0)
+      differences.push_back(std::abs(luminanceAt(pair.picture, pixel) - luminanceAt(pair.truth, pixel)));
+  }
+  const auto meanOf = [&](const Picture& map, bool windowsInside) {
+    enum { sum, count, sums };
+    const auto width = static_cast<std::size_t>(map.width());
+    const auto total = sumPixels<sums>(pair, [&](std::size_t pixel, auto& into) {
+      if (windowsInside && !ssimCounts(map, static_cast<int>(pixel % width), static_cast<int>(pixel / width)))
+        return;
+      into[sum] += double{map.values()[pixel]};
+      into[count] += 1.0;
+    });
+    return total[sum] / total[count];
+  };
+  Perceived result;
+  result.percentile95 = quantileOf(differences, 0.95);
+  result.ssim = meanOf(ssimMap(displayed(pair.picture, exposure), displayed(pair.truth, exposure)), true);
+  result.flip = meanOf(flipHdrOf(pair.picture, pair.truth, kDefaultPixelsPerDegree, stops), false);
+  result.flipLdr =
+      meanOf(flipLdrOf(scaled(pair.picture, exposure), scaled(pair.truth, exposure), kDefaultPixelsPerDegree),
+             false);
+  return result;
+}
+
+/// The truth with its noise doubled in variance: one more draw of it on top, the same in all channels of a
+/// pixel (see above).
+Picture withNoiseDoubled(const Picture& truth, const Picture& deviations) {
+  constexpr std::uint64_t kSeed = 0x6c756d69766f78;  // any fixed number: the result must be repeatable
+  Picture noisy = truth;
+  const auto channels = static_cast<std::size_t>(truth.channels());
+  tbb::parallel_for(std::size_t{0}, truth.pixelCount(), [&](std::size_t pixel) {
+    RandomStream random(kSeed, static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(pixel >> 32));
+    // Box and Muller 1958: a standard normal number from two uniform ones.
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - double{random.uniform()}));
+    const double normal = radius * std::cos(2.0 * std::numbers::pi * double{random.uniform()});
+    for (std::size_t i = pixel * channels; i < (pixel + 1) * channels; ++i) {
+      noisy.values()[i] += static_cast<float>(normal * double{deviations.values()[i]});
+    }
+  });
+  return noisy;
+}
+
+}  // namespace
+
+PictureError compare(const Picture& picture, const Picture& truth, const Picture& truthVariance) {
+  ComparablePair pair = comparable(picture, truth);
+  const Picture deviations = deviationsOf(truthVariance, truth, pair);
+  PictureError result;
+  result.nonFinitePicture = pair.nonFinitePicture;
+  result.nonFiniteTruth = pair.nonFiniteTruth;
+  compareValues(pair, deviations, result);
+
+  const float exposure = displayExposure(truth);
+  const std::vector<double> stops = flipExposures(pair.truth);
+  const Perceived measured = perceivedDifference(pair, exposure, stops);
+  result.percentile95 = measured.percentile95;
+  result.ssim = measured.ssim;
+  result.flip = measured.flip;
+  result.flipLdr = measured.flipLdr;
+  if (deviations.empty()) return result;
+
+  // These have no simple derivative. Doubling the noise moves them about as far as the noise that is there
+  // already did.
+  pair.truth = withNoiseDoubled(pair.truth, deviations);
+  const Perceived moved = perceivedDifference(pair, exposure, stops);
+  result.percentile95Uncertainty = std::abs(moved.percentile95 - measured.percentile95);
+  result.ssimUncertainty = std::abs(moved.ssim - measured.ssim);
+  result.flipUncertainty = std::abs(moved.flip - measured.flip);
+  result.flipLdrUncertainty = std::abs(moved.flipLdr - measured.flipLdr);
+  return result;
+}
+
+double flicker(const Picture& frame0, const Picture& frame1, const Picture& truth0, const Picture& truth1) {
+  const ComparablePair before = comparable(frame0, truth0);
+  const ComparablePair after = comparable(frame1, truth1);
+  if (!before.truth.sameShape(after.truth))
+    throw Error("consecutive frames of different shapes cannot be compared");
+  const auto channels = static_cast<std::size_t>(before.truth.channels());
+  enum { sumSquares, values, count };
+  const auto total = sumPixels<count>(before, [&](std::size_t pixel, auto& sums) {
+    if (after.counts[pixel] == 0) return;
+    for (std::size_t i = pixel * channels; i < (pixel + 1) * channels; ++i) {
+      const double change = double{after.picture.values()[i]} - double{before.picture.values()[i]};
+      const double trueChange = double{after.truth.values()[i]} - double{before.truth.values()[i]};
+      sums[sumSquares] += (change - trueChange) * (change - trueChange);
+      sums[values] += 1.0;
+    }
+  });
+  return std::sqrt(total[sumSquares] / total[values]);
+}
+
+float displayExposure(const Picture& truth) {
+  radianceChannels(truth, "a truth whose exposure is wanted");
+  constexpr double kQuantile = 0.99, kShownAs = 0.8;
+  std::vector<double> luminances;
+  for (std::size_t pixel = 0; pixel < truth.pixelCount(); ++pixel) {
+    const double value = luminanceAt(truth, pixel);
+    if (std::isfinite(value)) luminances.push_back(value);
+  }
+  if (luminances.empty()) return 1.0f;
+  double bright = quantileOf(luminances, kQuantile);
+  // A few bright pixels on black: they are what there is to see.
+  if (bright <= 0.0) bright = *std::max_element(luminances.begin(), luminances.end());
+  if (bright <= 0.0) return 1.0f;
+  return static_cast<float>(std::min(kShownAs / bright, double{std::numeric_limits<float>::max()}));
+}
+
+}  // namespace lumivox

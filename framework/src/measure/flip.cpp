@@ -1,0 +1,341 @@
+// FLIP: how visible the difference is to a person who flips between two pictures.
+// Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astroem, Fairchild 2020, "FLIP: A Difference Evaluator for
+// Alternating Images", and Andersson, Nilsson, Shirley, Akenine-Moeller 2021, "Visualizing Errors in Rendered
+// High Dynamic Range Images" (HDR-FLIP).
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
+#include <numbers>
+
+#include "lumivox/base/error.h"
+#include "lumivox/measure/metrics.h"
+#include "measure/filter.h"
+#include "measure/pixels.h"
+#include "measure/quantile.h"
+
+namespace lumivox {
+namespace {
+
+using glm::dmat3;
+using glm::dvec2;
+using glm::dvec3;
+
+constexpr double kPi = std::numbers::pi;
+
+// ---- the spaces of colour vision
+
+/// Linear Rec. 709 R, G, B to CIE XYZ: from the chromaticities of the primaries and of the white that the
+/// definition uses (D65 with five digits), scaled so that R = G = B = 1 is white of Y = 1.
+struct ColourSpace {
+  dmat3 xyzFromRgb, rgbFromXyz;
+  dvec3 white;
+
+  ColourSpace() {
+    const auto xyzOf = [](double x, double y) { return dvec3(x / y, 1.0, (1.0 - x - y) / y); };
+    white = xyzOf(0.31271, 0.32902);
+    const dmat3 primaries(xyzOf(0.64, 0.33), xyzOf(0.30, 0.60), xyzOf(0.15, 0.06));
+    const dvec3 scale = glm::inverse(primaries) * white;
+    xyzFromRgb = dmat3(primaries[0] * scale.x, primaries[1] * scale.y, primaries[2] * scale.z);
+    rgbFromXyz = glm::inverse(xyzFromRgb);
+  }
+};
+
+const ColourSpace kSpace;
+
+/// The linearised CIELab of Sec. 4.1: achromatic Y, red-green Cx, blue-yellow Cz.
+dvec3 opponentFromRgb(const dvec3& rgb) {
+  const dvec3 relative = (kSpace.xyzFromRgb * rgb) / kSpace.white;
+  return {116.0 * relative.y - 16.0, 500.0 * (relative.x - relative.y), 200.0 * (relative.y - relative.z)};
+}
+
+dvec3 rgbFromOpponent(const dvec3& opponent) {
+  const double y = (opponent.x + 16.0) / 116.0;
+  return kSpace.rgbFromXyz * (dvec3(y + opponent.y / 500.0, y, y - opponent.z / 200.0) * kSpace.white);
+}
+
+/// CIE 1976 L*a*b*, then Hunt's adjustment (Sec. 4.1, Eq. 4): saturation shows less in the dark.
+dvec3 huntLabFromRgb(const dvec3& rgb) {
+  constexpr double kDelta = 6.0 / 29.0;  // CIE 15: where the cube root passes into its tangent
+  const dvec3 relative = (kSpace.xyzFromRgb * rgb) / kSpace.white;
+  const auto root = [](double t) {
+    return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3.0 * kDelta * kDelta) + 4.0 / 29.0;
+  };
+  const dvec3 f(root(relative.x), root(relative.y), root(relative.z));
+  const double lightness = 116.0 * f.y - 16.0;
+  return {lightness, 0.01 * lightness * 500.0 * (f.x - f.y), 0.01 * lightness * 200.0 * (f.y - f.z)};
+}
+
+/// HyAB distance (Eq. 5): lightness and chroma apart, for large differences.
+double hyab(const dvec3& a, const dvec3& b) {
+  return std::abs(a.x - b.x) + glm::length(dvec2(a.y - b.y, a.z - b.z));
+}
+
+// ---- filters
+
+/// One Gaussian of a contrast sensitivity function, a sqrt(pi / b) exp(-pi^2 r^2 / b), r in degrees
+/// (Sec. 4.1, Eq. 2 and Table 1).
+struct Sensitivity {
+  double a, b;
+};
+constexpr Sensitivity kAchromatic{1.0, 0.0047}, kRedGreen{1.0, 0.0053}, kBlueYellowWide{34.1, 0.04},
+    kBlueYellowNarrow{13.5, 0.025};
+
+struct Filters {
+  std::vector<double> achromatic, redGreen, blueYellowWide,
+      blueYellowNarrow;    ///< along one axis, each of sum 1
+  double wideShare = 0.0;  ///< of the wide Gaussian in blue-yellow
+  std::vector<double> blur, edge,
+      point;  ///< of the features: along the other axis, and the first and second derivative
+
+  explicit Filters(double pixelsPerDegree) {
+    // Three standard deviations of the widest Gaussian; exp(-pi^2 r^2 / b) has the deviation sqrt(b / (2
+    // pi^2)) degrees.
+    const auto deviation = [&](double b) { return std::sqrt(b / (2.0 * kPi * kPi)) * pixelsPerDegree; };
+    const int radius = static_cast<int>(std::ceil(3.0 * deviation(kBlueYellowWide.b)));
+    achromatic = normalised(gaussian(deviation(kAchromatic.b), radius));
+    redGreen = normalised(gaussian(deviation(kRedGreen.b), radius));
+    // The sum of two Gaussians is not separable, but each of them is. The two-dimensional sum of all weights
+    // is scaled to 1.
+    const auto weightOf = [&](const Sensitivity& s) {
+      double sum = 0.0;
+      for (const double weight : gaussian(deviation(s.b), radius)) sum += weight;
+      return s.a * std::sqrt(kPi / s.b) * sum * sum;
+    };
+    wideShare = weightOf(kBlueYellowWide) / (weightOf(kBlueYellowWide) + weightOf(kBlueYellowNarrow));
+    blueYellowWide = normalised(gaussian(deviation(kBlueYellowWide.b), radius));
+    blueYellowNarrow = normalised(gaussian(deviation(kBlueYellowNarrow.b), radius));
+
+    // Sec. 4.2: derivatives of a Gaussian whose width is that of the eye's edge detector, 0.082 degrees from
+    // trough to peak.
+    constexpr double kPeakToTrough = 0.082;
+    const double sigma = 0.5 * kPeakToTrough * pixelsPerDegree;
+    const int featureRadius = static_cast<int>(std::ceil(3.0 * sigma));
+    blur = normalised(gaussian(sigma, featureRadius));
+    edge = point = gaussian(sigma, featureRadius);
+    for (int x = -featureRadius; x <= featureRadius; ++x) {
+      edge[static_cast<std::size_t>(x + featureRadius)] *= -x;
+      point[static_cast<std::size_t>(x + featureRadius)] *= x * x / (sigma * sigma) - 1.0;
+    }
+    balance(edge);
+    balance(point);
+  }
+
+ private:
+  /// Scales the positive weights to the sum 1 and the negative ones to -1, so that a constant picture has no
+  /// features.
+  static void balance(std::vector<double>& weights) {
+    double positive = 0.0, negative = 0.0;
+    for (const double weight : weights) (weight > 0.0 ? positive : negative) += std::abs(weight);
+    for (double& weight : weights) weight /= weight > 0.0 ? positive : negative;
+  }
+};
+
+// ---- the two pipelines
+
+/// What FLIP compares, for one picture.
+struct Percept {
+  std::vector<dvec3> lab;  ///< filtered by contrast sensitivity, Hunt-adjusted
+  Plane edges, points;     ///< strength of the features
+};
+
+Plane strength(const Plane& alongRows, const Plane& alongColumns) {
+  Plane result(alongRows.width, alongRows.height);
+  for (std::size_t i = 0; i < result.values.size(); ++i) {
+    result.values[i] = std::sqrt(alongRows.values[i] * alongRows.values[i] +
+                                 alongColumns.values[i] * alongColumns.values[i]);
+  }
+  return result;
+}
+
+/// `rgb` gives the linear R, G, B in [0,1] of a pixel.
+template <class Rgb>
+Percept perceive(int width, int height, const Filters& filters, const Rgb& rgb) {
+  std::array<Plane, 3> opponent{Plane(width, height), Plane(width, height), Plane(width, height)};
+  Plane normalisedLuminance(width, height);
+  tbb::parallel_for(0, height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      const std::size_t pixel =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+      const dvec3 value = opponentFromRgb(rgb(pixel));
+      for (int c = 0; c < 3; ++c) opponent[static_cast<std::size_t>(c)].values[pixel] = value[c];
+      normalisedLuminance.values[pixel] = (value.x + 16.0) / 116.0;
+    }
+  });
+  const auto blurred = [](const Plane& plane, const std::vector<double>& weights) {
+    return filterColumns(filterRows(plane, weights), weights);
+  };
+  Percept percept;
+  {
+    const Plane achromatic = blurred(opponent[0], filters.achromatic);
+    const Plane redGreen = blurred(opponent[1], filters.redGreen);
+    const Plane wide = blurred(opponent[2], filters.blueYellowWide);
+    const Plane narrow = blurred(opponent[2], filters.blueYellowNarrow);
+    percept.lab.resize(achromatic.values.size());
+    tbb::parallel_for(0, height, [&](int y) {
+      const std::size_t begin = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+      for (std::size_t i = begin; i < begin + static_cast<std::size_t>(width); ++i) {
+        const double blueYellow =
+            filters.wideShare * wide.values[i] + (1.0 - filters.wideShare) * narrow.values[i];
+        // What the display cannot show is clipped before the distance is taken.
+        const dvec3 shown = rgbFromOpponent({achromatic.values[i], redGreen.values[i], blueYellow});
+        percept.lab[i] = huntLabFromRgb(glm::clamp(shown, 0.0, 1.0));
+      }
+    });
+  }
+  const Plane blurredDown = filterColumns(normalisedLuminance, filters.blur);
+  const Plane blurredAcross = filterRows(normalisedLuminance, filters.blur);
+  percept.edges = strength(filterRows(blurredDown, filters.edge), filterColumns(blurredAcross, filters.edge));
+  percept.points =
+      strength(filterRows(blurredDown, filters.point), filterColumns(blurredAcross, filters.point));
+  return percept;
+}
+
+/// Sec. 4.1, Eq. 6 and Sec. 4.2-4.3, Eqs. 7-9: both differences in [0,1], the colour difference raised by
+/// that of the features.
+double flipOf(const Percept& picture, const Percept& truth, std::size_t pixel) {
+  constexpr double kColourExponent = 0.7, kFeatureExponent = 0.5;  // q_c, q_f
+  constexpr double kKnee = 0.4, kKneeValue = 0.95;                 // p_c, p_t
+  // The largest distance between two colours of the display is that between green and blue.
+  static const double largest =
+      std::pow(hyab(huntLabFromRgb({0.0, 1.0, 0.0}), huntLabFromRgb({0.0, 0.0, 1.0})), kColourExponent);
+  const double distance = std::pow(hyab(picture.lab[pixel], truth.lab[pixel]), kColourExponent);
+  const double knee = kKnee * largest;
+  const double colour = distance < knee
+                            ? distance * kKneeValue / knee
+                            : kKneeValue + (distance - knee) / (largest - knee) * (1.0 - kKneeValue);
+  const double edges = std::abs(picture.edges.values[pixel] - truth.edges.values[pixel]);
+  const double points = std::abs(picture.points.values[pixel] - truth.points.values[pixel]);
+  const double feature = std::pow(std::max(edges, points) / std::numbers::sqrt2, kFeatureExponent);
+  return std::clamp(std::pow(colour, 1.0 - feature), 0.0, 1.0);
+}
+
+template <class Tone>
+Picture flipWith(const Picture& picture, const Picture& truth, const Filters& filters, const Tone& tone) {
+  const int width = truth.width(), height = truth.height();
+  const auto reader = [&](const Picture& source) {
+    return [&source, &tone, channels = static_cast<std::size_t>(source.channels())](std::size_t pixel) {
+      const float* values = source.values().data() + pixel * channels;
+      if (channels == 1) return dvec3(tone(values[0]));
+      return dvec3(tone(values[0]), tone(values[1]), tone(values[2]));
+    };
+  };
+  const Percept seen = perceive(width, height, filters, reader(picture));
+  const Percept expected = perceive(width, height, filters, reader(truth));
+  Picture map(width, height, 1);
+  tbb::parallel_for(0, height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      const std::size_t pixel =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+      map.values()[pixel] = static_cast<float>(flipOf(seen, expected, pixel));
+    }
+  });
+  return map;
+}
+
+void requireViewing(double pixelsPerDegree) {
+  if (!(pixelsPerDegree > 0.0) ||
+      pixelsPerDegree > 1e4) {  // beyond, a kernel would be thousands of pixels wide
+    throw Error(fmt::format(
+        "FLIP cannot be taken at {} pixels per degree; expected above 0 and at most 10000", pixelsPerDegree));
+  }
+}
+
+Picture withBadPixelsMarked(Picture map, const std::vector<unsigned char>& counts) {
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] == 0) map.values()[i] = std::numeric_limits<float>::quiet_NaN();
+  }
+  return map;
+}
+
+// ---- HDR-FLIP
+
+/// The rational tone curve (k0 x^2 + k1 x + k2) / (k3 x^2 + k4 x + k5) of the 2021 paper, with its
+/// coefficients for ACES: Narkowicz's fit (2.51, 0.03, 2.43, 0.59, 0.14) with the film exposure 0.6 taken in.
+struct ToneCurve {
+  static constexpr double kFilm = 0.6;
+  static constexpr double k0 = kFilm * kFilm * 2.51, k1 = kFilm * 0.03, k2 = 0.0;
+  static constexpr double k3 = kFilm * kFilm * 2.43, k4 = kFilm * 0.59, k5 = 0.14;
+
+  static double apply(double radiance) {
+    if (radiance <= 0.0) return 0.0;
+    // Divided by x^2, so that the brightest finite radiance does not overflow.
+    const double inverse = 1.0 / radiance;
+    const double value = (k0 + (k1 + k2 * inverse) * inverse) / (k3 + (k4 + k5 * inverse) * inverse);
+    return std::isnan(value) ? 0.0 : std::clamp(value, 0.0, 1.0);
+  }
+  /// The radiance that the curve maps to `value`: the positive root of a quadratic.
+  static double inverse(double value) {
+    const double c0 = (k1 - k4 * value) / (k0 - k3 * value);
+    const double c1 = (k2 - k5 * value) / (k0 - k3 * value);
+    return -0.5 * c0 + std::sqrt(0.25 * c0 * c0 - c1);
+  }
+};
+
+}  // namespace
+
+std::vector<double> flipExposures(const Picture& truth) {
+  // The shortest exposure maps the brightest luminance, the longest the median one, to 0.85 of the display's
+  // white.
+  constexpr double kTarget = 0.85;
+  std::vector<double> luminances(truth.pixelCount());
+  for (std::size_t pixel = 0; pixel < luminances.size(); ++pixel)
+    luminances[pixel] = std::max(0.0, luminanceAt(truth, pixel));
+  const double largest = *std::max_element(luminances.begin(), luminances.end());
+  constexpr std::size_t kFewest = 2;
+  if (largest <= 0.0) return std::vector<double>(kFewest, 0.0);
+  double median = quantileOf(luminances, 0.5);
+  if (median <= 0.0) {
+    // Deviates: a truth that is black in more than half of its pixels has no finite longest exposure; its lit
+    // pixels decide.
+    luminances.erase(std::remove(luminances.begin(), luminances.end(), 0.0), luminances.end());
+    median = quantileOf(luminances, 0.5);
+  }
+  const double start = std::log2(ToneCurve::inverse(kTarget) / largest);
+  const double stop = std::log2(ToneCurve::inverse(kTarget) / median);
+  const std::size_t count = std::max(kFewest, static_cast<std::size_t>(std::ceil(stop - start)));
+  std::vector<double> stops(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    stops[i] = start + (stop - start) * static_cast<double>(i) / static_cast<double>(count - 1);
+  }
+  return stops;
+}
+
+Picture flipLdrOf(const Picture& picture, const Picture& truth, double pixelsPerDegree) {
+  const auto clip = [](float value) { return std::clamp(static_cast<double>(value), 0.0, 1.0); };
+  return flipWith(picture, truth, Filters(pixelsPerDegree), clip);
+}
+
+Picture flipHdrOf(const Picture& picture, const Picture& truth, double pixelsPerDegree,
+                  const std::vector<double>& stops) {
+  const Filters filters(pixelsPerDegree);
+  Picture largest(truth.width(), truth.height(), 1);
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    if (i > 0 && stops[i] == stops[i - 1]) continue;
+    const double exposure = std::exp2(stops[i]);
+    const Picture map =
+        flipWith(picture, truth, filters, [&](float value) { return ToneCurve::apply(exposure * value); });
+    std::transform(map.values().begin(), map.values().end(), largest.values().begin(),
+                   largest.values().begin(), [](float a, float b) { return std::max(a, b); });
+  }
+  return largest;
+}
+
+Picture flipLdr(const Picture& linearPicture, const Picture& linearTruth, double pixelsPerDegree) {
+  requireViewing(pixelsPerDegree);
+  const ComparablePair pair = comparable(linearPicture, linearTruth);
+  return withBadPixelsMarked(flipLdrOf(pair.picture, pair.truth, pixelsPerDegree), pair.counts);
+}
+
+Picture flipHdr(const Picture& linearPicture, const Picture& linearTruth, double pixelsPerDegree) {
+  requireViewing(pixelsPerDegree);
+  const ComparablePair pair = comparable(linearPicture, linearTruth);
+  return withBadPixelsMarked(flipHdrOf(pair.picture, pair.truth, pixelsPerDegree, flipExposures(pair.truth)),
+                             pair.counts);
+}
+
+}  // namespace lumivox

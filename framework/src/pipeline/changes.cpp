@@ -1,0 +1,36 @@
+#include "pipeline/changes.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace lumivox {
+
+namespace {
+
+bool emits(const Scene& scene, const Object& object) {
+  return std::any_of(object.parts.begin(), object.parts.end(), [&](const Part& part) {
+    return scene.materials[static_cast<std::size_t>(part.material)].emissive();
+  });
+}
+
+}  // namespace
+
+Reads whatChanged(const Scene& scene, const SceneSnapshot& before, const SceneSnapshot& after) {
+  assert(before.objects.size() == after.objects.size());
+  Reads changed = Reads::nothing;
+  const bool otherOrigin = before.origin != after.origin;
+  for (std::size_t i = 0; i < after.objects.size(); ++i) {
+    const ObjectState &a = before.objects[i], &b = after.objects[i];
+    if (!otherOrigin && a.toWorld == b.toWorld && a.positions == b.positions && a.normals == b.normals)
+      continue;
+    changed = changed | Reads::geometry;
+    // What emits is a light.
+    if (emits(scene, scene.objects[i])) changed = changed | Reads::lights;
+  }
+  if (otherOrigin || before.lights != after.lights) changed = changed | Reads::lights;
+  if (otherOrigin || before.camera != after.camera) changed = changed | Reads::camera;
+  if (before.time != after.time) changed = changed | Reads::time;
+  return changed;
+}
+
+}  // namespace lumivox

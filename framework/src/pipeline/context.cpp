@@ -1,0 +1,70 @@
+#include "pipeline/context.h"
+
+#include <exception>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/log.h"
+
+namespace lumivox {
+
+GpuScene& FrameContext::scene() {
+  if (!gpuScene_) {
+    gpuScene_.emplace(device_, scene_);
+    gpuScene_->update(snapshot_);
+  }
+  return *gpuScene_;
+}
+
+gpu::TextureRef FrameContext::texture(const gpu::TextureDescription& description, const std::string& label) {
+  gpu::TextureRef texture = pool_.texture(description, passName_ + ": " + label);
+  bytesOfRun_ += texture->sizeBytes();
+  return texture;
+}
+
+gpu::BufferRef FrameContext::buffer(std::uint64_t sizeBytes, const std::string& label) {
+  gpu::BufferRef buffer = pool_.buffer(sizeBytes, passName_ + ": " + label);
+  bytesOfRun_ += buffer->sizeBytes();
+  return buffer;
+}
+
+void FrameContext::warn(const std::string& text) {
+  const std::string message = "pass " + passName_ + ": " + text;
+  if (warnings_.insert(message).second) logWarning("{}", message);
+}
+
+void FrameContext::setFrame(SceneSnapshot snapshot, int frameIndex, bool geometryChanged) {
+  snapshot_ = std::move(snapshot);
+  frameIndex_ = frameIndex;
+  if (gpuScene_ && geometryChanged) gpuScene_->update(snapshot_);
+}
+
+gpu::Device::Elapsed FrameContext::run(Pass& pass, const std::string& name) {
+  passName_ = name;
+  bytesOfRun_ = 0;
+  // Errors are carried past the timer, so that it is always stopped.
+  std::exception_ptr failure;
+  device_.enterPass(name);
+  const gpu::Device::Elapsed elapsed = device_.time([&] {
+    try {
+      pass.run(*this);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  });
+  try {
+    device_.leavePass();
+  } catch (...) {
+    // The pass's own error came first and explains more.
+    if (!failure) throw;
+  }
+  if (!failure) return elapsed;
+  try {
+    std::rethrow_exception(failure);
+  } catch (const AbsentError& error) {
+    throw AbsentError("pass " + name + ": " + error.what());
+  } catch (const std::exception& error) {
+    throw Error("pass " + name + ": " + error.what());
+  }
+}
+
+}  // namespace lumivox

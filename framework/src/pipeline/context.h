@@ -1,0 +1,64 @@
+// What a pass sees while it runs; one for the executor and for the harness.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "lumivox/pipeline/gpu_scene.h"
+#include "lumivox/pipeline/pass.h"
+#include "pipeline/pool.h"
+
+namespace lumivox {
+
+class FrameContext : public PassContext {
+ public:
+  FrameContext(gpu::Device& device, const Scene& scene, bool keepsEverything)
+      : device_(device),
+        scene_(scene),
+        keepsEverything_(keepsEverything),
+        traits_(keepsEverything ? SceneTraits::everything() : SceneTraits::of(scene)),
+        shaders_(device),
+        pool_(device, !keepsEverything) {}
+
+  gpu::Device& device() override { return device_; }
+  shader::ShaderLibrary& shaders() override { return shaders_; }
+  GpuScene& scene() override;
+  const Scene& sceneDescription() const override { return scene_; }
+  const SceneSnapshot& snapshot() const override { return snapshot_; }
+  const SceneTraits& traits() const override { return traits_; }
+  bool keepsEverything() const override { return keepsEverything_; }
+  int frameIndex() const override { return frameIndex_; }
+  std::uint64_t seed() const override { return seed_; }
+  gpu::TextureRef texture(const gpu::TextureDescription& description, const std::string& label) override;
+  gpu::BufferRef buffer(std::uint64_t sizeBytes, const std::string& label) override;
+  void warn(const std::string& text) override;
+
+  ResourcePool& pool() { return pool_; }
+  void setSeed(std::uint64_t seed) { seed_ = seed; }
+  /// The device's copy of the scene follows when `geometryChanged`.
+  void setFrame(SceneSnapshot snapshot, int frameIndex, bool geometryChanged);
+
+  /// Runs one pass under its name: driver errors and errors of the pass carry it. `pass` is how people know
+  /// it.
+  gpu::Device::Elapsed run(Pass& pass, const std::string& name);
+  /// Bytes that the last run asked the pool for.
+  std::uint64_t bytesOfRun() const { return bytesOfRun_; }
+
+ private:
+  gpu::Device& device_;
+  const Scene& scene_;
+  bool keepsEverything_;
+  SceneTraits traits_;
+  shader::ShaderLibrary shaders_;
+  ResourcePool pool_;
+  std::optional<GpuScene> gpuScene_;
+  SceneSnapshot snapshot_;
+  int frameIndex_ = 0;
+  std::uint64_t seed_ = 1, bytesOfRun_ = 0;
+  std::string passName_;
+  std::set<std::string> warnings_;
+};
+
+}  // namespace lumivox

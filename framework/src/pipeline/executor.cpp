@@ -1,0 +1,290 @@
+// Running a bound pipeline: what changed since the last frame decides which of the kept passes run again.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <optional>
+
+#include "lumivox/base/error.h"
+#include "pipeline/changes.h"
+#include "pipeline/context.h"
+#include "pipeline/explain.h"
+#include "pipeline/graph.h"
+#include "pipeline/health.h"
+#include "pipeline/prune.h"
+#include "pipeline/text_values.h"
+
+namespace lumivox {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Black of the size of the frame, for an output that was left out.
+Picture neutralPicture(const SceneSnapshot& snapshot, Contributes component) {
+  return {snapshot.camera.width, snapshot.camera.height, component == Contributes::ambientOcclusion ? 1 : 3};
+}
+
+}  // namespace
+
+struct PipelineExecutor::State {
+  gpu::Device& device;
+  TechniqueSource& techniques;
+  const Scene& scene;
+  Pipeline pipeline;
+  RenderOptions options;
+  BoundGraph graph;
+  PruneRequest request;
+  std::vector<std::string> outputNames;
+  FrameContext context;
+
+  std::optional<PrunePlan> plan;      ///< made when the first frame or an explanation asks for it
+  std::optional<SceneSnapshot> last;  ///< of the last frame; nothing: every pass runs
+  std::optional<int> lastFrameIndex;
+  std::map<int, PassRecord> lastRun;  ///< per pass, from the last time that it ran
+
+  State(gpu::Device& gpuDevice, TechniqueSource& source, const Scene& sceneToRender, const Pipeline& text,
+        const RenderOptions& renderOptions);
+  const PrunePlan& planned();
+  std::vector<bool> passesToRun(Reads changed);
+  void runPass(std::size_t index, FrameResult& result);
+  FrameResult frame(SceneSnapshot snapshot, int frameIndex, Pictures pictures, Clock::time_point start);
+  void collectPictures(FrameResult& result, Pictures pictures);
+};
+
+PipelineExecutor::State::State(gpu::Device& gpuDevice, TechniqueSource& source, const Scene& sceneToRender,
+                               const Pipeline& text, const RenderOptions& renderOptions)
+    : device(gpuDevice),
+      techniques(source),
+      scene(sceneToRender),
+      pipeline(text),
+      options(renderOptions),
+      graph(bindPipeline(pipeline, source, renderOptions.parameters)),
+      context(gpuDevice, sceneToRender, renderOptions.keepEverything) {
+  scene.camera(options.camera);
+  for (const BoundOutput& output : graph.outputs) outputNames.push_back(output.name);
+  for (const std::string& wanted : options.wanted) {
+    if (std::find(outputNames.begin(), outputNames.end(), wanted) != outputNames.end()) continue;
+    const std::string nearest = nearestWord(wanted, outputNames);
+    throw Error(fmt::format("pipeline \"{}\" has no output '{}'; expected {}{}", pipeline.name, wanted,
+                            oneOf(outputNames, "none"),
+                            nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+  }
+  request.traits = context.traits();
+  request.keepEverything = options.keepEverything;
+  request.interactive = options.interactive;
+  for (const std::string& output : outputNames) {
+    request.wanted.push_back(options.wanted.empty() || std::find(options.wanted.begin(), options.wanted.end(),
+                                                                 output) != options.wanted.end());
+  }
+  for (const std::string& name : pipeline.techniques()) {
+    const Technique* technique = techniques.technique(name);
+    if (!technique->shaders.technique.empty()) context.shaders().addPack(technique->shaders);
+  }
+  context.setSeed(options.seed);
+}
+
+const PrunePlan& PipelineExecutor::State::planned() {
+  if (plan) return *plan;
+  plan = prune(graph, request);
+  for (std::size_t pass = 0; pass < graph.passes.size(); ++pass) {
+    const auto& outputs = graph.passes[pass].object->outputs();
+    for (std::size_t port = 0; port < outputs.size(); ++port)
+      outputs[port]->wanted_ = plan->passes[pass].outputs[port].wanted;
+  }
+  last.reset();
+  return *plan;
+}
+
+/// Per pass of the graph. A pass runs when something that it reads changed, when a source of it did, or when
+/// a value that such a pass needs was given back meanwhile.
+std::vector<bool> PipelineExecutor::State::passesToRun(Reads changed) {
+  const bool all = !last || options.keepEverything;
+  std::vector<bool> runs(graph.passes.size(), false);
+  for (const int position : plan->order) {
+    const auto index = static_cast<std::size_t>(position);
+    runs[index] = all || (static_cast<std::uint32_t>(graph.passes[index].object->readsFrom()) &
+                          static_cast<std::uint32_t>(changed)) != 0;
+    for (const OutputIndex source : graph.passes[index].sources) {
+      if (source.valid() && runs[static_cast<std::size_t>(source.pass)]) runs[index] = true;
+    }
+  }
+  // From here on a pass may be added without running its readers: the same inputs give the same values again.
+  for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
+    const OutputIndex source = graph.outputs[i].source;
+    if (request.wanted[i] && plan->output(source).wanted && !graph.output(source).hasValue()) {
+      runs[static_cast<std::size_t>(source.pass)] = true;
+    }
+  }
+  for (auto index = plan->order.rbegin(); index != plan->order.rend(); ++index) {
+    if (!runs[static_cast<std::size_t>(*index)]) continue;
+    for (const OutputIndex source : graph.passes[static_cast<std::size_t>(*index)].sources) {
+      if (source.valid() && plan->output(source).wanted && !graph.output(source).hasValue()) {
+        runs[static_cast<std::size_t>(source.pass)] = true;
+      }
+    }
+  }
+  return runs;
+}
+
+void PipelineExecutor::State::runPass(std::size_t index, FrameResult& result) {
+  const BoundPass& bound = graph.passes[index];
+  PassRecord record{bound.name, bound.technique, bound.pass};
+  const gpu::Device::Elapsed elapsed = context.run(*bound.object, bound.name);
+  record.hostMs = elapsed.hostMs;
+  record.deviceMs = elapsed.deviceMs;
+  record.bytes = context.bytesOfRun();
+  const auto& outputs = bound.object->outputs();
+  for (std::size_t port = 0; port < outputs.size(); ++port) {
+    const bool wanted = plan->passes[index].outputs[port].wanted;
+    // An output that was left out is absent for its readers, whatever the pass did.
+    if (!wanted) outputs[port]->reset();
+    if (wanted && !outputs[port]->hasValue()) {
+      throw Error(fmt::format("pass {}: it did not set its output '{}'", bound.name, outputs[port]->name()));
+    }
+  }
+  lastRun[static_cast<int>(index)] = record;
+  result.passes.push_back(std::move(record));
+}
+
+FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameIndex, Pictures pictures,
+                                           Clock::time_point start) {
+  planned();
+  FrameResult result;
+  const bool first = !last;
+  Reads changed = first ? Reads::geometry : whatChanged(scene, *last, snapshot);
+  if (lastFrameIndex && *lastFrameIndex != frameIndex) changed = changed | Reads::time;
+  const std::vector<bool> runs = passesToRun(changed);
+  context.pool().beginFrame();
+  context.setFrame(snapshot, frameIndex, reads(changed, Reads::geometry));
+  // Until the frame is complete, an error leaves nothing that a later frame could take for current.
+  last.reset();
+  for (const int index : plan->order) {
+    if (!runs[static_cast<std::size_t>(index)]) continue;
+    for (OutBase* output : graph.passes[static_cast<std::size_t>(index)].object->outputs()) output->reset();
+  }
+
+  double passesMs = 0.0, scanMs = 0.0;
+  for (std::size_t position = 0; position < plan->order.size(); ++position) {
+    const auto index = static_cast<std::size_t>(plan->order[position]);
+    const BoundPass& bound = graph.passes[index];
+    if (runs[index]) {
+      const auto passStart = Clock::now();
+      runPass(index, result);
+      passesMs += millisecondsSince(passStart);
+      if (options.health) {
+        const auto scanStart = Clock::now();
+        for (const OutBase* output : bound.object->outputs())
+          scanHealth(bound.name, *output, result.healthFindings);
+        scanMs += millisecondsSince(scanStart);
+      }
+    } else {
+      PassRecord record{bound.name, bound.technique, bound.pass};
+      record.ran = false;
+      record.bytes = lastRun[static_cast<int>(index)].bytes;
+      result.passes.push_back(std::move(record));
+    }
+    for (const OutputIndex source : bound.sources) {
+      if (!source.valid()) continue;
+      const OutputPlan& output = plan->output(source);
+      if (!output.keep && output.lastReader == static_cast<int>(position)) graph.output(source).reset();
+    }
+  }
+  device.finish();
+  result.frameMs = millisecondsSince(start) - scanMs;
+  result.betweenPassesMs = result.frameMs - passesMs;
+  result.peakBytes = device.peakBytes();
+  context.pool().endFrame();
+  last = std::move(snapshot);
+  lastFrameIndex = frameIndex;
+  collectPictures(result, pictures);
+  return result;
+}
+
+void PipelineExecutor::State::collectPictures(FrameResult& result, Pictures pictures) {
+  for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
+    if (!request.wanted[i]) continue;
+    const BoundOutput& bound = graph.outputs[i];
+    const OutBase& output = graph.output(bound.source);
+    result.components[bound.name] = output.contributes();
+    if (pictures == Pictures::no) continue;
+    if (!output.hasValue()) {
+      result.outputs[bound.name] = neutralPicture(*last, output.contributes());
+      continue;
+    }
+    const std::vector<gpu::TextureRef> textures = output.textures();
+    if (textures.empty())
+      throw Error(fmt::format("pass output '{}' holds no texture", graph.outputText(bound.source)));
+    result.outputs[bound.name] =
+        pictureOf(*textures.front(), output.contributes() == Contributes::ambientOcclusion ? 1 : 3);
+  }
+}
+
+// ---- public --------------------------------------------------------------------------------------------
+
+PipelineExecutor::PipelineExecutor(gpu::Device& device, TechniqueSource& techniques, const Scene& scene,
+                                   const Pipeline& pipeline, const RenderOptions& options)
+    : state_(new State(device, techniques, scene, pipeline, options)) {}
+
+PipelineExecutor::~PipelineExecutor() = default;
+
+FrameResult PipelineExecutor::render(double time, int frameIndex, Pictures pictures) {
+  State& s = *state_;
+  s.device.finish();
+  s.device.resetPeak();
+  const auto start = Clock::now();
+  return s.frame(snapshotOf(s.scene, time, s.options.camera, s.options.width, s.options.height), frameIndex,
+                 pictures, start);
+}
+
+FrameResult PipelineExecutor::render(const SceneSnapshot& snapshot, int frameIndex, Pictures pictures) {
+  State& s = *state_;
+  s.device.finish();
+  s.device.resetPeak();
+  return s.frame(snapshot, frameIndex, pictures, Clock::now());
+}
+
+void PipelineExecutor::invalidate() {
+  state_->last.reset();
+}
+
+Explanation PipelineExecutor::explain() const {
+  State& s = *state_;
+  ExplainedRun run{s.graph,
+                   s.planned(),
+                   s.pipeline,
+                   s.techniques,
+                   s.context.shaders().usage(),
+                   s.context.shaders().packs(),
+                   {}};
+  for (const auto& [index, record] : s.lastRun) run.passMs[index] = record.deviceMs;
+  run.keepEverything = s.options.keepEverything;
+  run.poolBytes = s.context.pool().bytes();
+  run.sharedBytes = s.context.pool().sharedBytes();
+  return explainRun(run);
+}
+
+const std::vector<std::string>& PipelineExecutor::outputNames() const {
+  return state_->outputNames;
+}
+
+shader::ShaderLibrary& PipelineExecutor::shaders() {
+  return state_->context.shaders();
+}
+
+void PipelineExecutor::keepOutput(const std::string& pass, const std::string& port) {
+  state_->request.forced.push_back(state_->graph.find(pass, port));
+  state_->plan.reset();
+}
+
+const OutBase* PipelineExecutor::output(const std::string& pass, const std::string& port) const {
+  const OutBase& output = state_->graph.output(state_->graph.find(pass, port));
+  return output.hasValue() ? &output : nullptr;
+}
+
+}  // namespace lumivox

@@ -1,0 +1,141 @@
+#include "pipeline/explain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace lumivox {
+
+const char* name(LeftOut::Level level) {
+  switch (level) {
+    case LeftOut::Level::plugin:
+      return "plugin";
+    case LeftOut::Level::pass:
+      return "pass";
+    case LeftOut::Level::variant:
+      return "variant";
+    case LeftOut::Level::resource:
+      return "resource";
+    case LeftOut::Level::time:
+      return "time";
+  }
+  return "";
+}
+
+namespace {
+
+std::string passText(const BoundPass& pass) {
+  return fmt::format("{} ({}.{})", pass.name, pass.technique, pass.pass);
+}
+
+void explainPlugins(const ExplainedRun& run, Explanation& explanation) {
+  const std::vector<std::string> named = run.pipeline.techniques();
+  for (const std::string& technique : run.techniques.available()) {
+    if (std::find(named.begin(), named.end(), technique) != named.end()) continue;
+    explanation.leftOut.push_back({LeftOut::Level::plugin, technique, "the pipeline does not name it", {}});
+  }
+}
+
+void explainPasses(const ExplainedRun& run, Explanation& explanation) {
+  for (std::size_t i = 0; i < run.graph.passes.size(); ++i) {
+    const BoundPass& pass = run.graph.passes[i];
+    if (run.plan.passes[i].kept) continue;
+    explanation.leftOut.push_back({LeftOut::Level::pass, passText(pass), run.plan.passes[i].why, pass.name});
+  }
+}
+
+/// Outputs of kept passes that are not computed, and so have no memory.
+void explainResources(const ExplainedRun& run, Explanation& explanation) {
+  for (std::size_t i = 0; i < run.graph.passes.size(); ++i) {
+    const BoundPass& pass = run.graph.passes[i];
+    if (!run.plan.passes[i].kept) continue;
+    for (std::size_t port = 0; port < pass.object->outputs().size(); ++port) {
+      const OutputPlan& output = run.plan.passes[i].outputs[port];
+      if (output.wanted) continue;
+      const OutputIndex index{static_cast<int>(i), static_cast<int>(port)};
+      explanation.leftOut.push_back(
+          {LeftOut::Level::resource, run.graph.outputText(index), output.why, pass.name});
+    }
+  }
+  if (run.sharedBytes > 0) {
+    explanation.leftOut.push_back({LeftOut::Level::resource,
+                                   "memory of its own for every resource",
+                                   "short-lived ones of the same shape share it",
+                                   {},
+                                   run.sharedBytes});
+  }
+}
+
+/// "GLOSSY=0, TEXTURES=off": the axes that have one value in all variants that were needed.
+std::string fixedAxes(const shader::PackedProgram& program, const std::set<std::vector<int>>& needed) {
+  std::string text;
+  for (std::size_t axis = 0; axis < program.axes.size(); ++axis) {
+    std::set<int> values;
+    for (const std::vector<int>& variant : needed) {
+      if (axis < variant.size()) values.insert(variant[axis]);
+    }
+    if (values.size() != 1 || program.axes[axis].values.size() < 2) continue;
+    if (!text.empty()) text += ", ";
+    text += fmt::format("{}={}", program.axes[axis].name, program.axes[axis].text(*values.begin()));
+  }
+  return text;
+}
+
+void explainVariants(const ExplainedRun& run, Explanation& explanation) {
+  for (const auto& [program, usage] : run.usage) {
+    explanation.variantsPossible += usage.possible;
+    explanation.variantsCompiled += usage.compiled;
+    explanation.variantsNeeded += usage.needed.size();
+    // Before the first frame nothing was asked for yet.
+    if (run.passMs.empty() || usage.needed.size() >= usage.compiled) continue;
+    std::string why = "no pass that ran uses this program";
+    if (!usage.needed.empty()) {
+      why = "no pass that ran asked for them";
+      const std::size_t slash = program.find('/');
+      if (const auto pack = run.packs.find(program.substr(0, slash)); pack != run.packs.end()) {
+        const std::string fixed = fixedAxes(pack->second.program(program.substr(slash + 1)), usage.needed);
+        if (!fixed.empty()) why = "this run needs only " + fixed;
+      }
+    }
+    explanation.leftOut.push_back({LeftOut::Level::variant,
+                                   fmt::format("{} of {} variants of {}",
+                                               usage.compiled - usage.needed.size(), usage.compiled, program),
+                                   why,
+                                   {}});
+  }
+}
+
+/// Kept passes that later frames of this scene do not run again.
+void explainTime(const ExplainedRun& run, Explanation& explanation) {
+  for (const int index : run.plan.order) {
+    const PassPlan& plan = run.plan.passes[static_cast<std::size_t>(index)];
+    const BoundPass& pass = run.graph.passes[static_cast<std::size_t>(index)];
+    if ((static_cast<std::uint32_t>(plan.dependsOn) & static_cast<std::uint32_t>(run.plan.mayChange)) != 0)
+      continue;
+    LeftOut leftOut{
+        LeftOut::Level::time, passText(pass) + " in later frames",
+        fmt::format("it depends on {}, which this scene does not change", readsText(plan.dependsOn)),
+        pass.name};
+    if (const auto ms = run.passMs.find(index); ms != run.passMs.end()) leftOut.savedMs = ms->second;
+    explanation.leftOut.push_back(std::move(leftOut));
+  }
+}
+
+}  // namespace
+
+Explanation explainRun(const ExplainedRun& run) {
+  Explanation explanation;
+  explanation.passesTotal = run.graph.passes.size();
+  explanation.passesKept = run.plan.order.size();
+  explanation.poolBytes = run.poolBytes;
+  explanation.sharedBytes = run.sharedBytes;
+  explainPlugins(run, explanation);
+  explainPasses(run, explanation);
+  explainVariants(run, explanation);
+  explainResources(run, explanation);
+  if (!run.keepEverything) explainTime(run, explanation);
+  return explanation;
+}
+
+}  // namespace lumivox

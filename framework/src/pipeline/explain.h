@@ -1,0 +1,27 @@
+// What a run does without, in words.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "lumivox/pipeline/pipeline.h"
+#include "pipeline/graph.h"
+#include "pipeline/prune.h"
+
+namespace lumivox {
+
+struct ExplainedRun {
+  const BoundGraph& graph;
+  const PrunePlan& plan;
+  const Pipeline& pipeline;
+  const TechniqueSource& techniques;
+  std::map<std::string, shader::ShaderLibrary::Usage> usage;
+  const std::map<std::string, shader::ShaderPack>& packs;
+  std::map<int, double> passMs;  ///< per pass that ran so far, its last device time
+  bool keepEverything = false;
+  std::uint64_t poolBytes = 0, sharedBytes = 0;
+};
+
+Explanation explainRun(const ExplainedRun& run);
+
+}  // namespace lumivox

@@ -1,0 +1,452 @@
+// Binding: from the words of a pipeline text to passes, parameters and connections. Every finding is
+// collected; nothing is run.
+#include "pipeline/graph.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "pipeline/text_values.h"
+
+namespace lumivox {
+
+namespace {
+
+template <class Named>
+std::vector<std::string> namesOf(const std::vector<Named*>& members) {
+  std::vector<std::string> names;
+  for (const Named* member : members) names.push_back(member->name());
+  return names;
+}
+
+template <class Named>
+int indexOf(const std::vector<Named*>& members, const std::string& name) {
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    if (members[i]->name() == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+/// "diffuse (Image), grid (RadianceGrid)"
+std::string portsText(const Pass& pass) {
+  std::vector<std::string> texts;
+  for (const OutBase* output : pass.outputs())
+    texts.push_back(fmt::format("{} ({})", output->name(), output->portKind()));
+  return oneOf(texts, "nothing, since the pass has no outputs");
+}
+
+dsl::Dimension dimensionOf(const ParamBase& parameter) {
+  for (const dsl::Unit& unit : dsl::knownUnits()) {
+    if (unit.name == parameter.unit()) return unit.dimension;
+  }
+  return {};
+}
+
+class Binder {
+ public:
+  Binder(const Pipeline& pipeline, TechniqueSource& techniques, const ParameterValues& values)
+      : pipeline_(pipeline), techniques_(techniques), values_(values) {}
+
+  BoundGraph bind() {
+    checkValues();
+    for (const PassText& text : pipeline_.passes) graph_.passes.push_back(makePass(text));
+    for (std::size_t i = 0; i < graph_.passes.size(); ++i) {
+      if (graph_.passes[i].object) bindPass(static_cast<int>(i));
+    }
+    bindOutputs();
+    schedule();
+    throwOrLog(std::move(findings_));
+    for (BoundPass& pass : graph_.passes) {
+      for (std::size_t i = 0; i < pass.sources.size(); ++i) {
+        if (pass.sources[i].valid()) pass.object->inputs()[i]->connect(&graph_.output(pass.sources[i]));
+      }
+    }
+    return std::move(graph_);
+  }
+
+ private:
+  void report(const SourcePlace& place, int length, std::string what, std::string expected = {},
+              std::string suggestion = {}) {
+    findings_.push_back(pipeline_.document->finding(place, length, std::move(what), std::move(expected),
+                                                    std::move(suggestion)));
+  }
+  void report(const PassText& pass, std::string what, std::string expected = {},
+              std::string suggestion = {}) {
+    report(pass.place, static_cast<int>(pass.name.size()), std::move(what), std::move(expected),
+           std::move(suggestion));
+  }
+  void report(const dsl::Property& property, std::string what, std::string expected = {},
+              std::string suggestion = {}) {
+    report(property.place, static_cast<int>(property.word.size()), std::move(what), std::move(expected),
+           std::move(suggestion));
+  }
+  void report(const dsl::Value& value, std::string what, std::string expected = {},
+              std::string suggestion = {}) {
+    report(value.place, value.length, std::move(what), std::move(expected), std::move(suggestion));
+  }
+
+  /// Values given from outside the text (settings, sweep points) must fit as well.
+  void checkValues() {
+    for (const auto& [name, value] : values_) {
+      const PipelineParameter* parameter = findParameter(pipeline_, name);
+      if (parameter == nullptr) {
+        throw Error(fmt::format("pipeline \"{}\" has no parameter '{}'; expected {}", pipeline_.name, name,
+                                oneOf(parameterNames(pipeline_), "none, since it declares no parameters")));
+      }
+      if (const std::string misfit = parameter->misfit(value); !misfit.empty()) {
+        throw Error(fmt::format("parameter '{}' of pipeline \"{}\" is {}: it {}", name, pipeline_.name,
+                                value.text(), misfit));
+      }
+    }
+  }
+
+  BoundPass makePass(const PassText& text) {
+    BoundPass bound{text.name, text.technique, text.pass, nullptr, {}};
+    const Technique* technique = techniques_.technique(text.technique);
+    // The place of "TECHNIQUE.PASS" in the header.
+    const dsl::Value& place = text.block->header.at(1);
+    if (technique == nullptr) {
+      if (missingReported_.insert(text.technique).second) {
+        const MissingTechnique missing = explainMissing(techniques_, text.technique);
+        report(place, missing.what, missing.expected, missing.suggestion);
+      }
+      return bound;
+    }
+    const PassEntry* entry = technique->find(text.pass);
+    if (entry == nullptr) {
+      std::vector<std::string> names;
+      for (const PassEntry& one : technique->passes) names.push_back(one.name);
+      report(place, fmt::format("technique '{}' has no pass '{}'", text.technique, text.pass),
+             oneOf(names, "nothing, since it has no passes"), nearestWord(text.pass, names));
+      return bound;
+    }
+    bound.object = entry->make();
+    bound.sources.resize(bound.object->inputs().size());
+    return bound;
+  }
+
+  void bindPass(int index) {
+    const PassText& text = pipeline_.passes[static_cast<std::size_t>(index)];
+    Pass& pass = *graph_.passes[static_cast<std::size_t>(index)].object;
+    const std::size_t findingsBefore = findings_.size();
+    std::set<std::string> given;
+    for (const dsl::Item& item : text.block->items) {
+      if (item.block) {
+        report(item.block->place, static_cast<int>(item.block->word.size()), "a pass holds no blocks",
+               "inputs and parameters");
+        continue;
+      }
+      const dsl::Property& property = *item.property;
+      if (!given.insert(property.word).second) {
+        report(property, fmt::format("'{}' is given twice", property.word),
+               "each input and parameter at most once");
+        continue;
+      }
+      bindProperty(index, property);
+    }
+    for (const InBase* input : pass.inputs()) {
+      if (input->presence() == Presence::required && !given.contains(input->name())) {
+        report(text, fmt::format("pass '{}' lacks its required input '{}'", text.name, input->name()),
+               fmt::format("{} PASS.PORT, where the port is of kind {}", input->name(), input->portKind()),
+               offer(index, input->name(), input->portKind()));
+      }
+    }
+    if (findings_.size() == findingsBefore) {
+      if (const std::string contradiction = pass.checkParameters(); !contradiction.empty()) {
+        report(text, fmt::format("the parameters of pass '{}' contradict each other: {}", text.name,
+                                 contradiction));
+      }
+    }
+  }
+
+  /// The one output of this kind that another pass has, as the text that would connect it; empty when there
+  /// is none or a choice.
+  std::string offer(int reader, const std::string& input, const std::string& kind) const {
+    std::string found;
+    for (std::size_t i = 0; i < graph_.passes.size(); ++i) {
+      if (static_cast<int>(i) == reader || !graph_.passes[i].object) continue;
+      for (const OutBase* output : graph_.passes[i].object->outputs()) {
+        if (output->portKind() != kind) continue;
+        if (!found.empty()) return {};
+        found = fmt::format("{} {}.{}", input, graph_.passes[i].name, output->name());
+      }
+    }
+    return found;
+  }
+
+  void bindProperty(int index, const dsl::Property& property) {
+    BoundPass& bound = graph_.passes[static_cast<std::size_t>(index)];
+    const int input = indexOf(bound.object->inputs(), property.word);
+    const int parameter = indexOf(bound.object->parameters(), property.word);
+    if (input < 0 && parameter < 0) {
+      std::vector<std::string> known = namesOf(bound.object->inputs());
+      for (const std::string& name : namesOf(bound.object->parameters())) known.push_back(name);
+      report(property,
+             fmt::format("{}.{} has no input or parameter '{}'", bound.technique, bound.pass, property.word),
+             oneOf(known, "an empty block, since it has none"), nearestWord(property.word, known));
+      return;
+    }
+    if (property.values.size() != 1) {
+      report(property, fmt::format("'{}' takes one value, not {}", property.word, property.values.size()));
+      return;
+    }
+    if (input >= 0) {
+      bound.sources[static_cast<std::size_t>(input)] =
+          connect(property.values[0], bound.object->inputs()[static_cast<std::size_t>(input)]->portKind(),
+                  fmt::format("input '{}' of pass '{}'", property.word, bound.name));
+    } else {
+      setParameter(*bound.object->parameters()[static_cast<std::size_t>(parameter)], property.values[0]);
+    }
+  }
+
+  // ---- connections ---------------------------------------------------------------------------------------
+
+  /// The output that a value names, for a reader that wants this kind; invalid after a finding.
+  OutputIndex connect(const dsl::Value& value, const std::string& kind, const std::string& reader) {
+    const auto parts = splitDotted(value);
+    if (!parts && !value.isPlainWord()) {
+      report(value, fmt::format("{} is connected to no output", reader), "PASS.PORT");
+      return {};
+    }
+    return connect(value.place, value.length, parts ? parts->first : value.text,
+                   parts ? parts->second : std::string(), kind, reader);
+  }
+
+  OutputIndex connect(const SourcePlace& place, int length, const std::string& passName,
+                      const std::string& portName, const std::string& kind, const std::string& reader) {
+    int source = -1;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < graph_.passes.size(); ++i) {
+      names.push_back(graph_.passes[i].name);
+      if (source < 0 && graph_.passes[i].name == passName) source = static_cast<int>(i);
+    }
+    if (source < 0) {
+      report(place, length, fmt::format("unknown pass '{}'", passName), oneOf(names, "a pass"),
+             nearestWord(passName, names));
+      return {};
+    }
+    const Pass* pass = graph_.passes[static_cast<std::size_t>(source)].object.get();
+    if (pass == nullptr) return {};  // Already reported: its technique or pass is unknown.
+    const auto& outputs = pass->outputs();
+    int port = portName.empty() ? -1 : indexOf(outputs, portName);
+    if (!portName.empty() && port < 0) {
+      report(place, length, fmt::format("pass '{}' has no output '{}'", passName, portName), portsText(*pass),
+             nearestWord(portName, namesOf(outputs)));
+      return {};
+    }
+    if (portName.empty()) {
+      std::vector<int> fitting;
+      for (std::size_t i = 0; i < outputs.size(); ++i) {
+        if (outputs[i]->portKind() == kind) fitting.push_back(static_cast<int>(i));
+      }
+      if (fitting.size() > 1 || (fitting.empty() && outputs.size() != 1)) {
+        report(place, length,
+               fmt::format("pass '{}' has {} outputs of kind {}", passName, fitting.size(), kind),
+               fmt::format("{}.PORT, where PORT is {}", passName, portsText(*pass)));
+        return {};
+      }
+      port = fitting.empty() ? 0 : fitting.front();
+    }
+    const OutBase& output = *outputs[static_cast<std::size_t>(port)];
+    if (output.portKind() != kind) {
+      std::vector<std::string> fitting;
+      for (const OutBase* other : outputs) {
+        if (other->portKind() == kind) fitting.push_back(passName + "." + other->name());
+      }
+      report(place, length,
+             fmt::format("output '{}.{}' is of kind {}, but {} takes {}", passName, output.name(),
+                         output.portKind(), reader, kind),
+             "an output of kind " + kind, fitting.size() == 1 ? fitting.front() : std::string());
+      return {};
+    }
+    return {source, port};
+  }
+
+  void bindOutputs() {
+    for (const Pipeline::Output& output : pipeline_.outputs) {
+      const int length =
+          static_cast<int>(output.pass.size() + (output.port.empty() ? 0 : output.port.size() + 1));
+      graph_.outputs.push_back(
+          {output.name, connect(output.place, length, output.pass, output.port, Image::kPortKind,
+                                fmt::format("output '{}' of the pipeline", output.name))});
+    }
+  }
+
+  // ---- parameters ----------------------------------------------------------------------------------------
+
+  void setParameter(ParamBase& parameter, const dsl::Value& value) {
+    if (value.kind != dsl::ValueKind::parameter) {
+      const auto constant = parameterValue(value);
+      if (!constant) {
+        report(value, fmt::format("this is no value for the parameter '{}'", parameter.name()),
+               expectation(parameter));
+        return;
+      }
+      if (const std::string misfit = tryValue(parameter, *constant); !misfit.empty()) {
+        report(value,
+               fmt::format("parameter '{}' is {}, which does not fit", parameter.name(), constant->text()),
+               misfitExpectation(misfit));
+      }
+      return;
+    }
+    const PipelineParameter* declared = findParameter(pipeline_, value.text);
+    if (declared == nullptr) {
+      const std::vector<std::string> names = parameterNames(pipeline_);
+      report(value, fmt::format("unknown parameter '${}'", value.text),
+             oneOf(names, "a parameter declared with param"), nearestWord(value.text, names));
+      return;
+    }
+    // Every value that a sweep will set must fit too, so that a report does not stop half-way.
+    for (const Sweep& sweep : pipeline_.sweeps) {
+      for (const auto& [name, values] : sweep.axes) {
+        if (name != value.text) continue;
+        for (const ParameterValue& one : values) {
+          if (const std::string misfit = tryValue(parameter, one); !misfit.empty()) {
+            report(value,
+                   fmt::format("sweep '{}' makes '{}' {}, which does not fit '{}'", sweep.name, name,
+                               one.text(), parameter.name()),
+                   misfitExpectation(misfit));
+          }
+        }
+      }
+    }
+    const auto given = values_.find(value.text);
+    const ParameterValue& chosen = given == values_.end() ? declared->value : given->second;
+    if (const std::string misfit = tryValue(parameter, chosen); !misfit.empty()) {
+      report(value,
+             fmt::format("'${}' is {}, which does not fit '{}'", value.text, chosen.text(), parameter.name()),
+             misfitExpectation(misfit));
+    }
+  }
+
+  static std::string tryValue(ParamBase& parameter, const ParameterValue& value) {
+    if (!value.word.empty()) return parameter.set(value.word);
+    const dsl::Dimension wanted = dimensionOf(parameter);
+    const bool isNumber =
+        parameter.type() == ParamBase::Type::integer || parameter.type() == ParamBase::Type::number;
+    if (isNumber && value.dimension != dsl::Dimension{} && value.dimension != wanted) {
+      return fmt::format("must be a number that measures {}, not {}", wanted.text(), value.dimension.text());
+    }
+    return parameter.set(value.number);
+  }
+
+  static std::string expectation(ParamBase& parameter) {
+    switch (parameter.type()) {
+      case ParamBase::Type::integer:
+      case ParamBase::Type::number:
+        return misfitExpectation(parameter.set(std::string()));
+      case ParamBase::Type::flag:
+        return "on or off";
+      case ParamBase::Type::word:
+        return oneOf(parameter.choices(), "a word");
+    }
+    return {};
+  }
+
+  // ---- order ---------------------------------------------------------------------------------------------
+
+  /// Sources before readers; of passes that may run, the first in the text. What is left over feeds itself.
+  void schedule() {
+    const std::size_t count = graph_.passes.size();
+    std::vector<bool> done(count, false);
+    const auto ready = [&](std::size_t index) {
+      for (const OutputIndex& source : graph_.passes[index].sources) {
+        if (source.valid() && !done[static_cast<std::size_t>(source.pass)]) return false;
+      }
+      return true;
+    };
+    for (bool progress = true; progress;) {
+      progress = false;
+      for (std::size_t i = 0; i < count && !progress; ++i) {
+        if (done[i] || !ready(i)) continue;
+        done[i] = progress = true;
+        graph_.order.push_back(static_cast<int>(i));
+      }
+    }
+    std::vector<bool> explained = done;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!explained[i]) reportCycle(i, done, explained);
+    }
+  }
+
+  /// Follows sources that could not be scheduled until a pass comes up again: that is a cycle. Passes that
+  /// merely read one are on the way to it and get no finding of their own.
+  void reportCycle(std::size_t start, const std::vector<bool>& done, std::vector<bool>& explained) {
+    std::vector<std::size_t> path;
+    std::size_t at = start;
+    while (std::find(path.begin(), path.end(), at) == path.end()) {
+      path.push_back(at);
+      for (const OutputIndex& source : graph_.passes[at].sources) {
+        if (source.valid() && !done[static_cast<std::size_t>(source.pass)]) {
+          at = static_cast<std::size_t>(source.pass);
+          break;
+        }
+      }
+    }
+    const auto first = std::find(path.begin(), path.end(), at);
+    const bool known = explained[at];
+    for (const std::size_t pass : path) explained[pass] = true;
+    if (known) return;
+    // The path runs from readers to sources; data flows the other way.
+    std::vector<std::size_t> cycle(first, path.end());
+    std::reverse(cycle.begin(), cycle.end());
+    std::rotate(cycle.begin(), std::min_element(cycle.begin(), cycle.end()), cycle.end());
+    std::string text;
+    for (const std::size_t pass : cycle) text += graph_.passes[pass].name + " -> ";
+    text += graph_.passes[cycle.front()].name;
+    report(pipeline_.passes[cycle.front()], "passes feed each other in a circle: " + text,
+           "an order in which they can run");
+  }
+
+  const Pipeline& pipeline_;
+  TechniqueSource& techniques_;
+  const ParameterValues& values_;
+  BoundGraph graph_;
+  std::vector<Diagnostic> findings_;
+  std::set<std::string> missingReported_;
+};
+
+}  // namespace
+
+std::string BoundGraph::outputText(OutputIndex index) const {
+  return passes[static_cast<std::size_t>(index.pass)].name + "." + output(index).name();
+}
+
+OutputIndex BoundGraph::find(const std::string& pass, const std::string& port) const {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    names.push_back(passes[i].name);
+    if (passes[i].name != pass) continue;
+    const int index = indexOf(passes[i].object->outputs(), port);
+    if (index >= 0) return {static_cast<int>(i), index};
+    throw Error(
+        fmt::format("pass '{}' has no output '{}'; expected {}", pass, port, portsText(*passes[i].object)));
+  }
+  throw Error(fmt::format("the pipeline has no pass '{}'; expected {}", pass, oneOf(names, "none")));
+}
+
+MissingTechnique explainMissing(const TechniqueSource& techniques, const std::string& name) {
+  for (const SkippedTechnique& skipped : techniques.skipped()) {
+    if (skipped.library.filename() == "lib" + name + ".so") {
+      return {
+          fmt::format("technique '{}' was skipped: {}: {}", name, skipped.library.string(), skipped.reason),
+          {},
+          {}};
+    }
+  }
+  const std::vector<std::string> available = techniques.available();
+  return {fmt::format("unknown technique '{}'", name),
+          oneOf(available, "a technique, but no technique library was found"), nearestWord(name, available)};
+}
+
+BoundGraph bindPipeline(const Pipeline& pipeline, TechniqueSource& techniques,
+                        const ParameterValues& values) {
+  return Binder(pipeline, techniques, values).bind();
+}
+
+void checkPipeline(const Pipeline& pipeline, TechniqueSource& techniques) {
+  bindPipeline(pipeline, techniques, {});
+}
+
+}  // namespace lumivox

@@ -1,0 +1,175 @@
+#include "pipeline/prune.h"
+
+#include <fmt/format.h>
+
+namespace lumivox {
+
+namespace {
+
+constexpr std::uint32_t bits(Reads set) {
+  return static_cast<std::uint32_t>(set);
+}
+
+/// Forward through the pipeline: what the scene can give a value other than the neutral element at all.
+class Availability {
+ public:
+  Availability(const BoundGraph& graph, const PruneRequest& request, PrunePlan& plan)
+      : graph_(graph), request_(request), plan_(plan) {}
+
+  /// Per pass and output.
+  std::vector<std::vector<bool>> run() {
+    available_.resize(graph_.passes.size());
+    for (const int index : graph_.order) visit(static_cast<std::size_t>(index));
+    return std::move(available_);
+  }
+
+ private:
+  void visit(std::size_t index) {
+    const BoundPass& bound = graph_.passes[index];
+    PassPlan& pass = plan_.passes[index];
+    const auto& outputs = bound.object->outputs();
+    available_[index].assign(outputs.size(), true);
+    if (request_.keepEverything) return;
+
+    pass.why = whyImpossible(bound);
+    bool any = false;
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+      const std::string need = unmetNeed(outputs[i]->needs(), request_.traits);
+      if (!need.empty()) pass.outputs[i].why = fmt::format("needs {}, which the scene does not have", need);
+      available_[index][i] = pass.why.empty() && need.empty();
+      any = any || available_[index][i];
+    }
+    if (pass.why.empty() && !any && !outputs.empty())
+      pass.why = "every output of it " + pass.outputs.front().why;
+    if (pass.why.empty()) return;
+    for (OutputPlan& output : pass.outputs) {
+      if (output.why.empty()) output.why = "its pass was left out";
+    }
+  }
+
+  std::string whyImpossible(const BoundPass& bound) const {
+    if (const std::string need = unmetNeed(bound.object->needs(), request_.traits); !need.empty()) {
+      return fmt::format("needs {}, which the scene does not have", need);
+    }
+    for (std::size_t i = 0; i < bound.sources.size(); ++i) {
+      const InBase& input = *bound.object->inputs()[i];
+      const OutputIndex source = bound.sources[i];
+      if (input.presence() == Presence::optional || !source.valid()) continue;
+      if (!available_[static_cast<std::size_t>(source.pass)][static_cast<std::size_t>(source.port)]) {
+        return fmt::format("its input '{}' comes from '{}', which was left out", input.name(),
+                           graph_.outputText(source));
+      }
+    }
+    return {};
+  }
+
+  const BoundGraph& graph_;
+  const PruneRequest& request_;
+  PrunePlan& plan_;
+  std::vector<std::vector<bool>> available_;
+};
+
+void markWanted(const BoundGraph& graph, const PruneRequest& request,
+                const std::vector<std::vector<bool>>& available, PrunePlan& plan) {
+  const auto want = [&](OutputIndex index) {
+    if (available[static_cast<std::size_t>(index.pass)][static_cast<std::size_t>(index.port)])
+      plan.output(index).wanted = true;
+  };
+  for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
+    if (request.wanted[i] || request.keepEverything) want(graph.outputs[i].source);
+  }
+  for (const OutputIndex forced : request.forced) want(forced);
+
+  // Backward: a pass is kept when one of its outputs is wanted, and then wants its sources.
+  for (auto index = graph.order.rbegin(); index != graph.order.rend(); ++index) {
+    const BoundPass& bound = graph.passes[static_cast<std::size_t>(*index)];
+    PassPlan& pass = plan.passes[static_cast<std::size_t>(*index)];
+    for (OutputPlan& output : pass.outputs) {
+      output.wanted = output.wanted || request.keepEverything;
+      pass.kept = pass.kept || output.wanted;
+    }
+    pass.kept = pass.kept || request.keepEverything;
+    if (!pass.kept) {
+      if (pass.why.empty()) pass.why = "nothing that is wanted depends on it";
+      continue;
+    }
+    for (const OutputIndex source : bound.sources) {
+      if (source.valid()) want(source);
+    }
+    for (OutputPlan& output : pass.outputs) {
+      if (!output.wanted && output.why.empty()) output.why = "nothing that is wanted depends on it";
+    }
+  }
+}
+
+Reads whatMayChange(const PruneRequest& request) {
+  if (request.interactive) return Reads::geometry | Reads::lights | Reads::camera | Reads::time;
+  Reads result = Reads::time;
+  if (request.traits.movingGeometry) result = result | Reads::geometry;
+  if (request.traits.movingGeometry && request.traits.areaLights > 0) result = result | Reads::lights;
+  if (request.traits.movingCamera) result = result | Reads::camera;
+  return result;
+}
+
+/// How long each output must live.
+void planLifetimes(const BoundGraph& graph, const PruneRequest& request, PrunePlan& plan) {
+  for (const int index : graph.order) {
+    if (plan.passes[static_cast<std::size_t>(index)].kept) plan.order.push_back(index);
+  }
+  for (std::size_t position = 0; position < plan.order.size(); ++position) {
+    const std::size_t index = static_cast<std::size_t>(plan.order[position]);
+    PassPlan& pass = plan.passes[index];
+    pass.dependsOn = graph.passes[index].object->readsFrom();
+    for (const OutputIndex source : graph.passes[index].sources) {
+      if (!source.valid() || !plan.output(source).wanted) continue;
+      pass.dependsOn = pass.dependsOn | plan.passes[static_cast<std::size_t>(source.pass)].dependsOn;
+      plan.output(source).lastReader = static_cast<int>(position);
+    }
+  }
+  // A reader that something changes which leaves its source alone runs again without it.
+  for (const int index : plan.order) {
+    const PassPlan& reader = plan.passes[static_cast<std::size_t>(index)];
+    for (const OutputIndex source : graph.passes[static_cast<std::size_t>(index)].sources) {
+      if (!source.valid() || !plan.output(source).wanted) continue;
+      const std::uint32_t more =
+          bits(reader.dependsOn) & ~bits(plan.passes[static_cast<std::size_t>(source.pass)].dependsOn);
+      if ((more & bits(plan.mayChange)) != 0) plan.output(source).keep = true;
+    }
+  }
+  for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
+    OutputPlan& output = plan.output(graph.outputs[i].source);
+    if (request.wanted[i] && output.wanted) output.keep = true;
+  }
+  for (const OutputIndex forced : request.forced) plan.output(forced).keep = true;
+  if (!request.keepEverything) return;
+  for (PassPlan& pass : plan.passes) {
+    for (OutputPlan& output : pass.outputs) output.keep = true;
+  }
+}
+
+}  // namespace
+
+PrunePlan prune(const BoundGraph& graph, const PruneRequest& request) {
+  PrunePlan plan;
+  plan.mayChange = whatMayChange(request);
+  plan.passes.resize(graph.passes.size());
+  for (std::size_t i = 0; i < graph.passes.size(); ++i) {
+    plan.passes[i].outputs.resize(graph.passes[i].object->outputs().size());
+  }
+  const auto available = Availability(graph, request, plan).run();
+  markWanted(graph, request, available, plan);
+  planLifetimes(graph, request, plan);
+  return plan;
+}
+
+std::string readsText(Reads set) {
+  std::vector<const char*> words;
+  if (reads(set, Reads::geometry)) words.push_back("geometry");
+  if (reads(set, Reads::materials)) words.push_back("materials");
+  if (reads(set, Reads::lights)) words.push_back("lights");
+  if (reads(set, Reads::camera)) words.push_back("camera");
+  if (reads(set, Reads::time)) words.push_back("time");
+  return words.empty() ? "nothing of the scene" : fmt::format("{}", fmt::join(words, ", "));
+}
+
+}  // namespace lumivox

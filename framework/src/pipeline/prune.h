@@ -1,0 +1,52 @@
+// Which passes and outputs a scene needs, and why the others are left out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/graph.h"
+
+namespace lumivox {
+
+/// Needs of one run.
+struct PruneRequest {
+  SceneTraits traits;
+  bool keepEverything = false;
+  bool interactive = false;
+  std::vector<bool> wanted;         ///< per output of the pipeline
+  std::vector<OutputIndex> forced;  ///< outputs that stay alive after the frame
+};
+
+struct OutputPlan {
+  bool wanted = false;  ///< computed and stored
+  bool keep = false;    ///< must outlive the frame: a later frame may read it without running its pass
+  int lastReader = -1;  ///< position in PrunePlan::order after which it is no longer read
+  std::string why;      ///< when not wanted
+};
+
+struct PassPlan {
+  bool kept = false;
+  std::string why;  ///< when not kept
+  std::vector<OutputPlan> outputs;
+  Reads dependsOn = Reads::nothing;  ///< what it and all of its kept sources read
+};
+
+struct PrunePlan {
+  std::vector<PassPlan> passes;      ///< parallel to BoundGraph::passes
+  std::vector<int> order;            ///< kept passes, sources first
+  Reads mayChange = Reads::nothing;  ///< between the frames of this scene
+
+  const OutputPlan& output(OutputIndex index) const {
+    return passes[static_cast<std::size_t>(index.pass)].outputs[static_cast<std::size_t>(index.port)];
+  }
+  OutputPlan& output(OutputIndex index) {
+    return passes[static_cast<std::size_t>(index.pass)].outputs[static_cast<std::size_t>(index.port)];
+  }
+};
+
+PrunePlan prune(const BoundGraph& graph, const PruneRequest& request);
+
+/// "geometry, camera"
+std::string readsText(Reads set);
+
+}  // namespace lumivox

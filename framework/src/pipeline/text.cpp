@@ -1,0 +1,484 @@
+// Pipeline texts: what needs no technique library.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "lumivox/base/log.h"
+#include "lumivox/pipeline/pipeline.h"
+#include "pipeline/text_values.h"
+
+namespace lumivox {
+
+namespace {
+
+dsl::PropertySpecification property(const std::string& word, dsl::PropertyType type,
+                                    const std::string& meaning) {
+  dsl::PropertySpecification specification;
+  specification.word = word;
+  specification.type = type;
+  specification.repeatable = true;
+  specification.meaning = meaning;
+  return specification;
+}
+
+std::vector<dsl::BlockSpecification> makeSpecifications() {
+  dsl::BlockSpecification pass;
+  pass.word = "pass";
+  pass.name = dsl::HeaderUse::required;
+  pass.meaning =
+      "`pass NAME TECHNIQUE.PASS { ... }`: one stage of a technique. Inside, a word is an input of the pass "
+      "followed by "
+      "`pass.port` (or by the name of a pass that has one fitting output), or a parameter followed by its "
+      "value: a "
+      "number with its unit, a word, on or off, or `$name` for a parameter of the pipeline. `lumivox "
+      "describe "
+      "TECHNIQUE.PASS` lists both.";
+
+  dsl::BlockSpecification pipeline;
+  pipeline.word = "pipeline";
+  pipeline.name = dsl::HeaderUse::required;
+  pipeline.repeatable = false;
+  pipeline.meaning = "A chain of passes from a scene to pictures. It names techniques, never geometry.";
+  pipeline.properties = {
+      property(
+          "param", dsl::PropertyType::name,
+          "`param NAME DEFAULT in LOW..HIGH` or `param NAME DEFAULT in [a b c]`: a value that passes read as "
+          "`$NAME`, that --set NAME=VALUE changes and that a sweep varies."),
+      property("output", dsl::PropertyType::output,
+               "`output NAME pass.port`: a picture that the pipeline delivers under this name.")};
+  pipeline.blocks = {pass};
+
+  dsl::BlockSpecification sweep;
+  sweep.word = "sweep";
+  sweep.name = dsl::HeaderUse::required;
+  sweep.meaning =
+      "`sweep NAME { parameter [values] ... }`: the points at which a report measures the pipeline, the grid "
+      "over all "
+      "of its lists.";
+  return {pipeline, sweep};
+}
+
+bool isNumberRange(const dsl::Value& value) {
+  return value.kind == dsl::ValueKind::range && value.items.at(0).kind == dsl::ValueKind::number &&
+         value.items.at(1).kind == dsl::ValueKind::number;
+}
+
+/// Collects what one text says, and every finding in it.
+class TextReader {
+ public:
+  TextReader(Pipeline& pipeline, const dsl::Document& document) : pipeline_(pipeline), document_(document) {}
+
+  std::vector<Diagnostic> read() {
+    findings_ = document_.findings;
+    const dsl::Block* main = nullptr;
+    for (const dsl::Item& item : document_.items) {
+      if (item.property) {
+        report(item.property->place, item.property->word,
+               fmt::format("unknown statement '{}'", item.property->word),
+               "a pipeline or sweep block, or an include",
+               nearestWord(item.property->word, {"pipeline", "sweep"}));
+      } else if (item.block->word == "pipeline") {
+        if (main != nullptr)
+          report(item.block->place, "pipeline", "a second pipeline in one text", "one per file");
+        if (main == nullptr) main = item.block.get();
+      } else if (item.block->word != "sweep") {
+        report(item.block->place, item.block->word, fmt::format("unknown block '{}'", item.block->word),
+               "pipeline or sweep", nearestWord(item.block->word, {"pipeline", "sweep"}));
+      }
+    }
+    if (main != nullptr) {
+      readPipeline(*main);
+    } else if (findings_.empty()) {
+      findings_.push_back(document_.finding({document_.file.string(), 0, 0}, 1,
+                                            "the text has no pipeline block", "pipeline \"Name\" { ... }"));
+    }
+    for (const dsl::Item& item : document_.items) {
+      if (item.block && item.block->word == "sweep") readSweep(*item.block);
+    }
+    warnOfUnused();
+    return std::move(findings_);
+  }
+
+ private:
+  void report(const SourcePlace& place, int length, std::string what, std::string expected = {},
+              std::string suggestion = {}) {
+    findings_.push_back(
+        document_.finding(place, length, std::move(what), std::move(expected), std::move(suggestion)));
+  }
+  void report(const SourcePlace& place, const std::string& word, std::string what, std::string expected = {},
+              std::string suggestion = {}) {
+    report(place, static_cast<int>(word.size()), std::move(what), std::move(expected), std::move(suggestion));
+  }
+
+  void readPipeline(const dsl::Block& block) {
+    if (block.header.size() != 1 ||
+        (block.header[0].kind != dsl::ValueKind::text && !block.header[0].isPlainWord())) {
+      report(block.place, block.word, "the pipeline needs one name", "pipeline \"Name\" { ... }");
+    } else {
+      pipeline_.name = block.header[0].text;
+    }
+    for (const dsl::Item& item : block.items) {
+      if (item.block) {
+        if (item.block->word == "pass") {
+          readPass(*item.block);
+        } else {
+          report(item.block->place, item.block->word,
+                 fmt::format("unknown block '{}' in a pipeline", item.block->word), "pass",
+                 nearestWord(item.block->word, {"pass"}));
+        }
+      } else if (item.property->word == "param") {
+        readParameter(*item.property);
+      } else if (item.property->word == "output") {
+        readOutput(*item.property);
+      } else {
+        report(item.property->place, item.property->word,
+               fmt::format("unknown property '{}' in a pipeline", item.property->word),
+               "param, pass or output", nearestWord(item.property->word, {"param", "pass", "output"}));
+      }
+    }
+    if (pipeline_.passes.empty() && findings_.empty())
+      report(block.place, block.word, "the pipeline has no pass", "pass NAME TECHNIQUE.PASS { ... }");
+    if (pipeline_.outputs.empty() && findings_.empty())
+      report(block.place, block.word, "the pipeline has no output", "output NAME pass.port");
+  }
+
+  void readPass(const dsl::Block& block) {
+    static const char* const kForm = "pass NAME TECHNIQUE.PASS { ... }";
+    const auto& header = block.header;
+    if (header.size() != 2 || !header[0].isPlainWord()) {
+      report(block.place, block.word, "a pass needs its own name and that of a technique's pass", kForm);
+      return;
+    }
+    const auto parts = splitDotted(header[1]);
+    if (!parts) {
+      report(header[1].place, header[1].length, "a technique and one of its passes are needed here", kForm);
+      return;
+    }
+    for (const PassText& other : pipeline_.passes) {
+      if (other.name == header[0].text) {
+        report(header[0].place, header[0].length, fmt::format("a second pass named '{}'", other.name),
+               fmt::format("another name; the first is at {}", other.place.text()));
+      }
+    }
+    pipeline_.passes.push_back({header[0].text, parts->first, parts->second, header[0].place, &block});
+    for (const dsl::Item& item : block.items) {
+      if (!item.property) continue;
+      for (const dsl::Value& value : item.property->values) {
+        if (value.kind == dsl::ValueKind::parameter) usedParameters_.insert(value.text);
+      }
+    }
+  }
+
+  void readParameter(const dsl::Property& property) {
+    static const char* const kForm = "param NAME DEFAULT in LOW..HIGH, or in [a b c]";
+    const auto& values = property.values;
+    const bool ranged = values.size() == 4 && values[2].isPlainWord() && values[2].text == "in" &&
+                        (isNumberRange(values[3]) || values[3].kind == dsl::ValueKind::list);
+    const auto value = values.size() >= 2 ? parameterValue(values[1]) : std::nullopt;
+    if (values.empty() || !values[0].isPlainWord() || !value || (values.size() != 2 && !ranged)) {
+      report(property.place, property.word, "a param is not written like this", kForm);
+      return;
+    }
+    PipelineParameter parameter;
+    parameter.name = values[0].text;
+    parameter.value = *value;
+    if (ranged && values[3].kind == dsl::ValueKind::range) {
+      parameter.low = values[3].items.at(0).inBaseUnits();
+      parameter.high = values[3].items.at(1).inBaseUnits();
+      for (const dsl::Value& end : values[3].items) {
+        const dsl::Dimension dimension = end.unit ? end.unit->dimension : dsl::Dimension{};
+        if (dimension != value->dimension) {
+          report(end.place, end.length, fmt::format("the range's unit measures {}", dimension.text()),
+                 fmt::format("{}, as the default", value->dimension.text()));
+        }
+      }
+    } else if (ranged) {
+      for (const dsl::Value& choice : values[3].items) {
+        if (const auto one = parameterValue(choice)) {
+          parameter.choices.push_back(one->text());
+        } else {
+          report(choice.place, choice.length, "this cannot be a choice", "numbers or words");
+        }
+      }
+    }
+    if (const std::string misfit = parameter.misfit(*value); !misfit.empty()) {
+      report(values[1].place, values[1].length,
+             fmt::format("the default of '{}' is {}, which does not fit", parameter.name, value->text()),
+             misfitExpectation(misfit));
+    }
+    for (const PipelineParameter& other : pipeline_.parameters) {
+      if (other.name == parameter.name) {
+        report(values[0].place, values[0].length, fmt::format("a second parameter named '{}'", other.name));
+      }
+    }
+    parameterPlaces_.push_back(values[0].place);
+    pipeline_.parameters.push_back(std::move(parameter));
+  }
+
+  void readOutput(const dsl::Property& property) {
+    const auto& values = property.values;
+    if (values.size() != 2 || !values[0].isPlainWord() || values[1].kind != dsl::ValueKind::word) {
+      report(property.place, property.word, "an output is not written like this", "output NAME pass.port");
+      return;
+    }
+    for (const Pipeline::Output& other : pipeline_.outputs) {
+      if (other.name == values[0].text) {
+        report(values[0].place, values[0].length, fmt::format("a second output named '{}'", other.name),
+               fmt::format("another name; the first is at {}", other.place.text()));
+      }
+    }
+    const auto parts = splitDotted(values[1]);
+    if (!parts && !values[1].isPlainWord()) {
+      report(values[1].place, values[1].length, "this names no output of a pass", "pass.port");
+      return;
+    }
+    // Without a dot the pass's only output is meant; binding finds which.
+    pipeline_.outputs.push_back(
+        {values[0].text, parts ? parts->first : values[1].text, parts ? parts->second : "", values[1].place});
+  }
+
+  void readSweep(const dsl::Block& block) {
+    Sweep sweep;
+    if (block.header.size() == 1 && block.header[0].isPlainWord()) {
+      sweep.name = block.header[0].text;
+    } else {
+      report(block.place, block.word, "a sweep needs one name", "sweep NAME { parameter [values] }");
+    }
+    for (const Sweep& other : pipeline_.sweeps) {
+      if (other.name == sweep.name)
+        report(block.place, block.word, fmt::format("a second sweep named '{}'", sweep.name));
+    }
+    for (const dsl::Item& item : block.items) {
+      if (item.block) {
+        report(item.block->place, item.block->word, "a sweep holds no blocks", "parameter [values]");
+      } else {
+        readAxis(*item.property, sweep);
+      }
+    }
+    if (sweep.axes.empty() && findings_.empty())
+      report(block.place, block.word, "the sweep is empty", "parameter [values]");
+    pipeline_.sweeps.push_back(std::move(sweep));
+  }
+
+  void readAxis(const dsl::Property& property, Sweep& sweep) {
+    const PipelineParameter* parameter = findParameter(pipeline_, property.word);
+    if (parameter == nullptr) {
+      const std::vector<std::string> names = parameterNames(pipeline_);
+      report(property.place, property.word, fmt::format("unknown parameter '{}'", property.word),
+             oneOf(names, "a parameter, but this pipeline declares none"), nearestWord(property.word, names));
+      return;
+    }
+    for (const auto& axis : sweep.axes) {
+      if (axis.first == property.word)
+        report(property.place, property.word, fmt::format("'{}' is swept twice", property.word));
+    }
+    if (property.values.size() != 1 || property.values[0].kind != dsl::ValueKind::list ||
+        property.values[0].items.empty()) {
+      report(property.place, property.word, "a sweep needs a list of values", property.word + " [a b c]");
+      return;
+    }
+    std::vector<ParameterValue> values;
+    for (const dsl::Value& item : property.values[0].items) {
+      const auto value = parameterValue(item);
+      const std::string misfit =
+          value ? parameter->misfit(*value) : std::string("must be a number or a word");
+      if (misfit.empty()) {
+        values.push_back(*value);
+        values.back().dimension = parameter->value.dimension;
+      } else {
+        report(item.place, item.length,
+               fmt::format("this value does not fit the parameter '{}'", parameter->name),
+               misfitExpectation(misfit));
+      }
+    }
+    sweep.axes.emplace_back(parameter->name, std::move(values));
+  }
+
+  void warnOfUnused() {
+    for (std::size_t i = 0; i < pipeline_.parameters.size(); ++i) {
+      const std::string& name = pipeline_.parameters[i].name;
+      if (usedParameters_.contains(name)) continue;
+      report(parameterPlaces_[i], name, fmt::format("no pass uses the parameter '{}'", name),
+             "$" + name + " in a pass");
+      findings_.back().severity = Diagnostic::Severity::warning;
+    }
+  }
+
+  Pipeline& pipeline_;
+  const dsl::Document& document_;
+  std::vector<Diagnostic> findings_;
+  std::vector<SourcePlace> parameterPlaces_;
+  std::set<std::string> usedParameters_;
+};
+
+Pipeline fromDocument(dsl::Document parsed) {
+  Pipeline pipeline;
+  const auto document = std::make_shared<const dsl::Document>(std::move(parsed));
+  pipeline.file = document->file;
+  pipeline.document = document;
+  Hasher hasher;
+  hasher.add(document->source);
+  for (const auto& included : document->includedFiles)
+    hasher.add(document->includedSources.at(included.string()));
+  pipeline.hash = hasher.finish();
+  throwOrLog(TextReader(pipeline, *document).read());
+  return pipeline;
+}
+
+}  // namespace
+
+// ---- values --------------------------------------------------------------------------------------------
+
+std::optional<std::pair<std::string, std::string>> splitDotted(const dsl::Value& value) {
+  if (value.kind != dsl::ValueKind::word) return std::nullopt;
+  const std::size_t dot = value.text.find('.');
+  if (dot == std::string::npos || dot == 0 || dot + 1 == value.text.size()) return std::nullopt;
+  const std::string second = value.text.substr(dot + 1);
+  if (second.find_first_of("./") != std::string::npos || value.text.find('/') < dot) return std::nullopt;
+  return std::pair(value.text.substr(0, dot), second);
+}
+
+std::optional<ParameterValue> parameterValue(const dsl::Value& value) {
+  ParameterValue result;
+  if (value.kind == dsl::ValueKind::number) {
+    result.number = value.inBaseUnits();
+    if (value.unit) result.dimension = value.unit->dimension;
+    return result;
+  }
+  if (value.isPlainWord() || (value.kind == dsl::ValueKind::text && !value.text.empty())) {
+    result.word = value.text;
+    return result;
+  }
+  return std::nullopt;
+}
+
+const PipelineParameter* findParameter(const Pipeline& pipeline, const std::string& name) {
+  for (const PipelineParameter& parameter : pipeline.parameters) {
+    if (parameter.name == name) return &parameter;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> parameterNames(const Pipeline& pipeline) {
+  std::vector<std::string> names;
+  for (const PipelineParameter& parameter : pipeline.parameters) names.push_back(parameter.name);
+  return names;
+}
+
+std::string oneOf(const std::vector<std::string>& words, const std::string& otherwise) {
+  if (words.empty()) return otherwise;
+  if (words.size() == 1) return words.front();
+  return fmt::format("one of {}", fmt::join(words, ", "));
+}
+
+std::string misfitExpectation(const std::string& misfit) {
+  static const std::string kMust = "must be ";
+  return misfit.rfind(kMust, 0) == 0 ? misfit.substr(kMust.size()) : misfit;
+}
+
+void throwOrLog(std::vector<Diagnostic> findings) {
+  const bool anyError = std::any_of(findings.begin(), findings.end(), [](const Diagnostic& finding) {
+    return finding.severity == Diagnostic::Severity::error;
+  });
+  if (anyError) throw DiagnosticsError(std::move(findings));
+  for (const Diagnostic& finding : findings) logWarning("{}", finding.text());
+}
+
+// ---- public --------------------------------------------------------------------------------------------
+
+std::string ParameterValue::text() const {
+  return word.empty() ? fmt::format("{}", number) : word;
+}
+
+std::string PipelineParameter::misfit(const ParameterValue& candidate) const {
+  if (!choices.empty()) {
+    const bool known = std::find(choices.begin(), choices.end(), candidate.text()) != choices.end();
+    return known ? std::string() : fmt::format("must be one of {}", fmt::join(choices, ", "));
+  }
+  const std::string range = low ? fmt::format(" in {}..{}", *low, *high) : std::string();
+  if (candidate.word.empty() != value.word.empty()) {
+    return value.word.empty() ? "must be a number" + range : "must be a word";
+  }
+  if (!candidate.word.empty()) return {};
+  // A number without unit is taken in base units, so only a different unit is wrong.
+  if (candidate.dimension != dsl::Dimension{} && candidate.dimension != value.dimension) {
+    return fmt::format("must be a number that measures {}", value.dimension.text());
+  }
+  const bool inside =
+      std::isfinite(candidate.number) && (!low || (candidate.number >= *low && candidate.number <= *high));
+  return inside ? std::string() : "must be a number" + range;
+}
+
+std::vector<ParameterValues> Sweep::points() const {
+  std::vector<ParameterValues> points{{}};
+  for (const auto& [parameter, values] : axes) {
+    std::vector<ParameterValues> longer;
+    for (const ParameterValues& point : points) {
+      for (const ParameterValue& value : values) {
+        longer.push_back(point);
+        longer.back()[parameter] = value;
+      }
+    }
+    points = std::move(longer);
+  }
+  return points;
+}
+
+const std::vector<dsl::BlockSpecification>& pipelineSpecifications() {
+  static const std::vector<dsl::BlockSpecification> specifications = makeSpecifications();
+  return specifications;
+}
+
+Pipeline Pipeline::load(const std::filesystem::path& file) {
+  return fromDocument(dsl::parseFile(file));
+}
+
+Pipeline Pipeline::parse(std::string source, std::filesystem::path file) {
+  dsl::Document document = dsl::parse(std::move(source), std::move(file));
+  dsl::resolveIncludes(document);
+  return fromDocument(std::move(document));
+}
+
+ParameterValues Pipeline::settings(const std::vector<std::string>& assignments) const {
+  ParameterValues values;
+  for (const std::string& assignment : assignments) {
+    const std::size_t equals = assignment.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw Error(fmt::format("setting '{}': expected NAME=VALUE", assignment));
+    }
+    const std::string parameterName = assignment.substr(0, equals), text = assignment.substr(equals + 1);
+    const PipelineParameter* parameter = findParameter(*this, parameterName);
+    if (parameter == nullptr) {
+      const std::vector<std::string> names = parameterNames(*this);
+      const std::string nearest = nearestWord(parameterName, names);
+      throw Error(fmt::format("setting '{}': pipeline \"{}\" has no parameter '{}'; expected {}{}",
+                              assignment, name, parameterName,
+                              oneOf(names, "no setting, since it declares no parameters"),
+                              nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+    }
+    // The value is read by the one parser, so that units work as in the text.
+    const dsl::Document parsed = dsl::parse("value " + text + "\n", "--set");
+    std::optional<ParameterValue> value;
+    if (parsed.findings.empty() && parsed.items.size() == 1 && parsed.items[0].property &&
+        parsed.items[0].property->values.size() == 1) {
+      value = parameterValue(parsed.items[0].property->values[0]);
+    }
+    const std::string misfit = value ? parameter->misfit(*value) : std::string("must be a number or a word");
+    if (!misfit.empty()) throw Error(fmt::format("setting '{}': the value {}", assignment, misfit));
+    value->dimension = parameter->value.dimension;
+    values[parameterName] = *value;
+  }
+  return values;
+}
+
+std::vector<std::string> Pipeline::techniques() const {
+  std::vector<std::string> names;
+  for (const PassText& pass : passes) {
+    if (std::find(names.begin(), names.end(), pass.technique) == names.end()) names.push_back(pass.technique);
+  }
+  return names;
+}
+
+}  // namespace lumivox

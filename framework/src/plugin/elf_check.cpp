@@ -1,0 +1,59 @@
+#include "plugin/elf_check.h"
+
+#include <elf.h>
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <cstring>
+
+namespace lumivox {
+
+namespace {
+
+#if defined(__x86_64__)
+constexpr Elf64_Half kMachine = EM_X86_64;
+#elif defined(__aarch64__)
+constexpr Elf64_Half kMachine = EM_AARCH64;
+#else
+#error "name this machine's ELF architecture here"
+#endif
+
+/// Whether [offset, offset + size) lies in the file; free of overflow.
+bool inside(std::string_view bytes, std::uint64_t offset, std::uint64_t size) {
+  return offset <= bytes.size() && size <= bytes.size() - offset;
+}
+
+}  // namespace
+
+std::string sharedLibraryDefect(std::string_view bytes) {
+  if (bytes.empty()) return "the file is empty";
+  if (bytes.size() < SELFMAG || std::memcmp(bytes.data(), ELFMAG, SELFMAG) != 0)
+    return "not a shared library";
+  Elf64_Ehdr header;
+  if (bytes.size() < sizeof(header)) return "the file is truncated: its header is incomplete";
+  std::memcpy(&header, bytes.data(), sizeof(header));
+  if (header.e_ident[EI_CLASS] != ELFCLASS64 || header.e_ident[EI_DATA] != ELFDATA2LSB ||
+      header.e_machine != kMachine) {
+    return "a shared library for another kind of machine";
+  }
+  if (header.e_type != ET_DYN || header.e_phentsize != sizeof(Elf64_Phdr)) return "not a shared library";
+  const std::uint64_t programHeaders = std::uint64_t{header.e_phnum} * sizeof(Elf64_Phdr);
+  if (!inside(bytes, header.e_phoff, programHeaders))
+    return "the file is truncated: its program headers are incomplete";
+  std::uint64_t needed = header.e_shoff + std::uint64_t{header.e_shnum} * header.e_shentsize;
+  bool broken = needed < header.e_shoff;
+  for (std::uint64_t i = 0; i < header.e_phnum; ++i) {
+    Elf64_Phdr segment;
+    std::memcpy(&segment, bytes.data() + header.e_phoff + i * sizeof(segment), sizeof(segment));
+    const std::uint64_t end = segment.p_offset + segment.p_filesz;
+    broken = broken || end < segment.p_offset;
+    if (segment.p_type == PT_LOAD && end > needed) needed = end;
+  }
+  if (broken) return "the file is damaged: its headers name impossible sizes";
+  if (needed > bytes.size()) {
+    return fmt::format("the file is truncated: {} of {} bytes", bytes.size(), needed);
+  }
+  return {};
+}
+
+}  // namespace lumivox

@@ -1,0 +1,197 @@
+#include "lumivox/plugin/loader.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <set>
+#include <sstream>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/base/log.h"
+#include "plugin/elf_check.h"
+
+namespace lumivox {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// What makes one library unfit; carries the reason.
+class Unfit : public Error {
+ public:
+  using Error::Error;
+};
+
+class Registry : public TechniqueRegistry {
+ public:
+  explicit Registry(Technique& technique) : technique_(technique) {}
+  void describe(std::string meaning, std::string paper) override {
+    technique_.meaning = std::move(meaning);
+    technique_.paper = std::move(paper);
+  }
+  void add(PassEntry entry) override {
+    if (entry.name.empty() || !entry.make)
+      throw Unfit("it registers a pass without a name or without a way to make it");
+    if (technique_.find(entry.name) != nullptr)
+      throw Unfit(fmt::format("it registers the pass '{}' twice", entry.name));
+    technique_.passes.push_back(std::move(entry));
+  }
+
+ private:
+  Technique& technique_;
+};
+
+/// Compares member by member. The strings may lack their end in a broken record.
+void requireSameVersion(const TechniqueVersionRecord& theirs) {
+  static constexpr TechniqueVersionRecord ours = techniqueVersionHere();
+  // The size first: with another one, nothing behind it can be trusted.
+  const auto number = [](const char* what, std::uint32_t their, std::uint32_t our) {
+    if (their != our)
+      throw Unfit(fmt::format("built for another Lumivox: {} is {}, expected {}", what, their, our));
+  };
+  const auto word = [](const char* what, const char* their, const char* our, std::size_t size) {
+    if (std::strncmp(their, our, size) != 0) {
+      throw Unfit(fmt::format("built for another Lumivox: {} is '{}', expected '{}'", what,
+                              std::string_view(their, strnlen(their, size)), our));
+    }
+  };
+  number("the size of the version record", theirs.recordSize, ours.recordSize);
+  number("the API version", theirs.apiVersion, ours.apiVersion);
+  word("the compiler", theirs.compiler, ours.compiler, sizeof(ours.compiler));
+  word("the standard library", theirs.standardLibrary, ours.standardLibrary, sizeof(ours.standardLibrary));
+  word("the build type", theirs.buildType, ours.buildType, sizeof(ours.buildType));
+  number("the size of Pass", theirs.passSize, ours.passSize);
+  number("the size of PassContext", theirs.passContextSize, ours.passContextSize);
+  number("the size of Scene", theirs.sceneSize, ours.sceneSize);
+  number("the size of SceneSnapshot", theirs.snapshotSize, ours.snapshotSize);
+  number("the size of Device", theirs.deviceSize, ours.deviceSize);
+  number("the size of the ports", theirs.portsSize, ours.portsSize);
+}
+
+template <class Function>
+Function* symbol(void* handle, const char* name) {
+  void* address = dlsym(handle, name);
+  if (address == nullptr) throw Unfit(fmt::format("the symbol {} is missing", name));
+  return reinterpret_cast<Function*>(address);
+}
+
+/// Throws Unfit or another Error with the reason why it cannot be used.
+std::unique_ptr<Technique> open(const std::string& name, const fs::path& library) {
+  auto technique = std::make_unique<Technique>();
+  technique->name = name;
+  technique->library = library;
+  const std::string bytes = readFile(library);
+  if (const std::string defect = sharedLibraryDefect(bytes); !defect.empty()) throw Unfit(defect);
+  technique->hash = hashOf(bytes);
+
+  // The path holds a slash, so that the loader searches nowhere else. The handle stays open until the end of
+  // the program: passes and their functions live in it.
+  void* handle = dlopen(fs::absolute(library).c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (handle == nullptr) {
+    const char* reason = dlerror();
+    throw Unfit(reason != nullptr ? reason : "the dynamic loader refused it");
+  }
+  requireSameVersion(*symbol<const TechniqueVersionRecord*()>(handle, "lumivox_technique_version")());
+  Registry registry(*technique);
+  symbol<void(TechniqueRegistry*)>(handle, "lumivox_technique_register")(&registry);
+  if (technique->passes.empty()) throw Unfit("it registers no pass");
+
+  fs::path pack = library.parent_path() / (name + ".shaderpack");
+  if (fs::exists(pack)) {
+    technique->shaders = shader::readShaderPack(pack);
+    if (technique->shaders.technique != name) {
+      throw Unfit(fmt::format("{} holds the shaders of '{}'", pack.string(), technique->shaders.technique));
+    }
+  }
+  return technique;
+}
+
+/// Names of folders and libraries, and so never a path.
+bool isTechniqueName(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(),
+                                      [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+}
+
+}  // namespace
+
+struct TechniqueSet::State {
+  std::vector<fs::path> directories;
+  std::map<std::string, std::unique_ptr<Technique>> opened;  ///< null: absent or skipped
+  std::vector<SkippedTechnique> skipped;
+};
+
+TechniqueSet::TechniqueSet(std::vector<fs::path> directories)
+    : state_(new State{std::move(directories), {}, {}}) {}
+TechniqueSet::~TechniqueSet() = default;
+
+std::vector<fs::path> TechniqueSet::defaultDirectories(const std::vector<fs::path>& given) {
+  for (const fs::path& directory : given) {
+    if (!fs::is_directory(directory))
+      throw Error(directory.string() + ": no such directory; expected one with technique libraries");
+  }
+  std::vector<fs::path> directories = given;
+  if (const char* variable = std::getenv("LUMIVOX_TECHNIQUES")) {
+    std::istringstream stream(variable);
+    for (std::string directory; std::getline(stream, directory, ':');) {
+      if (!directory.empty()) directories.emplace_back(directory);
+    }
+  }
+  Dl_info info{};
+  if (dladdr(reinterpret_cast<const void*>(&TechniqueSet::defaultDirectories), &info) != 0 &&
+      info.dli_fname != nullptr) {
+    directories.push_back(fs::absolute(info.dli_fname).parent_path() / "techniques");
+  }
+  return directories;
+}
+
+const Technique* TechniqueSet::technique(const std::string& name) {
+  State& s = *state_;
+  if (const auto known = s.opened.find(name); known != s.opened.end()) return known->second.get();
+  std::unique_ptr<Technique>& slot = s.opened[name];
+  if (!isTechniqueName(name)) return nullptr;
+  for (const fs::path& directory : s.directories) {
+    const fs::path library = directory / ("lib" + name + ".so");
+    std::error_code ignored;
+    if (!fs::exists(library, ignored)) continue;
+    try {
+      slot = open(name, library);
+      return slot.get();
+    } catch (const std::exception& error) {
+      s.skipped.push_back({library, error.what()});
+      logWarning("skipped {}: {}", library.string(), error.what());
+    }
+  }
+  return nullptr;
+}
+
+std::vector<std::string> TechniqueSet::available() const {
+  std::set<std::string> names;
+  for (const fs::path& directory : state_->directories) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(directory, ignored)) {
+      const std::string file = entry.path().filename().string();
+      if (file.size() <= 6 || file.rfind("lib", 0) != 0 || entry.path().extension() != ".so") continue;
+      const std::string name = file.substr(3, file.size() - 6);
+      if (isTechniqueName(name)) names.insert(name);
+    }
+  }
+  return {names.begin(), names.end()};
+}
+
+const std::vector<SkippedTechnique>& TechniqueSet::skipped() const {
+  return state_->skipped;
+}
+
+std::vector<std::string> TechniqueSet::opened() const {
+  std::vector<std::string> names;
+  for (const auto& [name, technique] : state_->opened) {
+    if (technique) names.push_back(name);
+  }
+  return names;
+}
+
+}  // namespace lumivox

@@ -1,0 +1,165 @@
+#include "reference/cache.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/base/log.h"
+
+namespace lumivox {
+namespace reference {
+namespace {
+
+void add(Hasher& hasher, const glm::vec3& value) { hasher.add(value.x).add(value.y).add(value.z); }
+void add(Hasher& hasher, const glm::dvec3& value) { hasher.add(value.x).add(value.y).add(value.z); }
+
+void add(Hasher& hasher, const Object& object) {
+  hasher.add(object.firstVertex).add(object.vertexCount).add(std::uint64_t{object.parts.size()});
+  for (const Part& part : object.parts) hasher.add(part.material).add(part.firstIndex).add(part.indexCount);
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) hasher.add(object.placement[column][row]);
+  }
+  hasher.add(object.motion.has_value());
+  if (object.motion) {
+    add(hasher, object.motion->axis);
+    hasher.add(object.motion->angularSpeed);
+    add(hasher, object.motion->pivot);
+    add(hasher, object.motion->velocity);
+  }
+  hasher.add(object.sequence.has_value());
+  if (object.sequence) {
+    hasher.add(object.sequence->framesPerSecond).add(object.sequence->loop);
+    hasher.add(std::uint64_t{object.sequence->positions.size()}).add(std::uint64_t{object.sequence->normals.size()});
+    for (const auto& frame : object.sequence->positions) hasher.add(frame);
+    for (const auto& frame : object.sequence->normals) hasher.add(frame);
+  }
+}
+
+void add(Hasher& hasher, const Material& material) {
+  add(hasher, material.diffuse);
+  add(hasher, material.specular);
+  add(hasher, material.emission);
+  hasher.add(material.exponent).add(material.diffuseTexture).add(material.maskTexture);
+}
+
+void add(Hasher& hasher, const Light& light) {
+  hasher.add(light.kind);
+  add(hasher, light.position);
+  add(hasher, light.direction);
+  add(hasher, light.power);
+  hasher.add(light.innerAngle).add(light.outerAngle);
+}
+
+void add(Hasher& hasher, const Camera& camera) {
+  hasher.add(camera.name);
+  add(hasher, camera.eye);
+  add(hasher, camera.target);
+  add(hasher, camera.up);
+  hasher.add(camera.fov).add(camera.width).add(camera.height).add(std::uint64_t{camera.keys.size()});
+  for (const CameraKey& key : camera.keys) {
+    hasher.add(key.time);
+    add(hasher, key.eye);
+    add(hasher, key.target);
+  }
+}
+
+/// Of all pixels, so that damage inside an entry that still reads as a picture is noticed.
+ContentHash contentOf(const LayeredPicture& picture) {
+  Hasher hasher;
+  for (const auto& [name, layer] : picture.layers) {
+    hasher.add(name).add(layer.width()).add(layer.height()).add(layer.channels()).add(layer.values());
+  }
+  return hasher.finish();
+}
+
+constexpr const char* kPixelHash = "pixels";
+
+/// The entry, or nothing when there is none or it is damaged (which is said).
+std::optional<LayeredPicture> readEntry(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  try {
+    LayeredPicture picture = readExr(file);
+    const auto stated = picture.attributes.find(kPixelHash);
+    if (stated != picture.attributes.end() && stated->second == contentOf(picture).text()) return picture;
+    logWarning("{}: this cached reference is damaged (its pixels are not those that were written); it is made anew", file.string());
+  } catch (const Error& error) {
+    logWarning("this cached reference is damaged and is made anew: {}", error.what());
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+ContentHash contentOf(const Scene& scene) {
+  if (scene.hash != ContentHash{}) return scene.hash;
+  Hasher hasher;
+  hasher.add(scene.positions).add(scene.normals).add(scene.texcoords).add(scene.indices);
+  hasher.add(std::uint64_t{scene.objects.size()});
+  for (const Object& object : scene.objects) add(hasher, object);
+  hasher.add(std::uint64_t{scene.materials.size()});
+  for (const Material& material : scene.materials) add(hasher, material);
+  hasher.add(std::uint64_t{scene.textures.size()});
+  for (const SurfaceTexture& texture : scene.textures) {
+    hasher.add(texture.width).add(texture.height).add(texture.mask).add(texture.values);
+  }
+  hasher.add(std::uint64_t{scene.lights.size()});
+  for (const Light& light : scene.lights) add(hasher, light);
+  hasher.add(std::uint64_t{scene.cameras.size()});
+  for (const Camera& camera : scene.cameras) add(hasher, camera);
+  add(hasher, scene.environment);
+  return hasher.finish();
+}
+
+ContentHash cacheKey(const Scene& scene, const ResolvedOptions& resolved) {
+  const ReferenceOptions& options = resolved.options;
+  Hasher hasher;
+  hasher.add("lumivox reference").add(kTracerVersion);
+  const ContentHash content = contentOf(scene);
+  hasher.add(content.high).add(content.low);
+  hasher.add(options.samplesPerPixel).add(options.bounces).add(options.roulette).add(options.seed).add(options.time);
+  hasher.add(options.camera).add(options.width).add(options.height).add(options.occlusionDistance);
+  return hasher.finish();
+}
+
+std::map<std::string, std::string> provenance(const Scene& scene, const ResolvedOptions& resolved) {
+  const ReferenceOptions& options = resolved.options;
+  return {{"scene", scene.name},
+          {"hash", contentOf(scene).text()},
+          {"samples", std::to_string(options.samplesPerPixel)},
+          {"bounces", std::to_string(options.bounces)},
+          {"roulette", options.roulette ? "on" : "off"},
+          {"seed", std::to_string(options.seed)},
+          {"time", fmt::format("{}", options.time)},
+          {"camera", options.camera},
+          {"resolution", fmt::format("{} {}", options.width, options.height)},
+          {"occlusion_distance", fmt::format("{}", options.occlusionDistance)},
+          {"version", std::to_string(kTracerVersion)}};
+}
+
+}  // namespace reference
+
+LayeredPicture cachedReference(const Scene& scene, const ReferenceOptions& options) {
+  using namespace reference;
+  if (!options.useCache) return renderReference(scene, options);
+  const std::filesystem::path file =
+      cacheDirectory() / fmt::format("reference-{}.exr", cacheKey(scene, resolve(scene, options)).text());
+  if (std::optional<LayeredPicture> entry = readEntry(file)) {
+    entry->attributes.erase(kPixelHash);
+    return *std::move(entry);
+  }
+  LayeredPicture picture = renderReference(scene, options);
+  picture.attributes[kPixelHash] = contentOf(picture).text();
+  try {
+    writeExr(file, picture);
+  } catch (const Error& error) {
+    // The picture is good; only the next call pays.
+    logWarning("the reference could not be kept for later: {}", error.what());
+  }
+  picture.attributes.erase(kPixelHash);
+  return picture;
+}
+
+}  // namespace lumivox

@@ -1,0 +1,23 @@
+// Keys and provenance of truths.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "lumivox/base/hash.h"
+#include "reference/render.h"
+
+namespace lumivox::reference {
+
+/// The version of the path tracer; raise it with every change that changes pictures, so that older cached truths are not taken.
+inline constexpr int kTracerVersion = 1;
+
+/// Scene::hash, or for a scene made by code the hash of all that the path tracer reads.
+ContentHash contentOf(const Scene& scene);
+
+/// Everything that the picture depends on.
+ContentHash cacheKey(const Scene& scene, const ResolvedOptions& resolved);
+
+std::map<std::string, std::string> provenance(const Scene& scene, const ResolvedOptions& resolved);
+
+}  // namespace lumivox::reference

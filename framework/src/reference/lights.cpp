@@ -1,0 +1,155 @@
+#include "reference/lights.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lumivox::reference {
+namespace {
+
+double meanOf(const glm::vec3& rgb) {
+  return (std::max(0.0, double(rgb.x)) + std::max(0.0, double(rgb.y)) + std::max(0.0, double(rgb.z))) / 3.0;
+}
+
+/// Flux of a light without extent, W: how often it is worth choosing, not a radiometric result.
+double fluxOf(const LightState& light, double sceneRadius) {
+  constexpr double pi = std::numbers::pi;
+  switch (light.kind) {
+    case LightKind::directional: return meanOf(light.power) * pi * sceneRadius * sceneRadius;
+    case LightKind::point: return meanOf(light.power) * 4.0 * pi;
+    case LightKind::spot: return meanOf(light.power) * 2.0 * pi * (1.0 - std::cos(0.5 * (light.innerAngle + light.outerAngle)));
+  }
+  return 0.0;
+}
+
+/// scene.h: smoothstep(cos outer, cos inner, cos theta); a step where both angles are equal.
+float spotFalloff(const LightState& light, float cosine) {
+  const float outer = std::cos(light.outerAngle), inner = std::cos(light.innerAngle);
+  if (inner <= outer) return cosine >= inner ? 1.0f : 0.0f;
+  const float t = std::clamp((cosine - outer) / (inner - outer), 0.0f, 1.0f);
+  return t * t * (3.0f - 2.0f * t);
+}
+
+}  // namespace
+
+AliasTable::AliasTable(const std::vector<double>& weights) {
+  const std::size_t count = weights.size();
+  double sum = 0.0;
+  for (const double weight : weights) sum += weight;
+  std::vector<double> scaled(count);
+  std::vector<std::uint32_t> small, large;
+  slots_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    scaled[i] = weights[i] / sum * static_cast<double>(count);
+    slots_[i] = {0xffffffffu, static_cast<std::uint32_t>(i)};
+    (scaled[i] < 1.0 ? small : large).push_back(static_cast<std::uint32_t>(i));
+  }
+  while (!small.empty() && !large.empty()) {
+    const std::uint32_t less = small.back(), more = large.back();
+    small.pop_back();
+    slots_[less] = {static_cast<std::uint32_t>(std::min(scaled[less] * 0x1.0p32, 4294967295.0)), more};
+    scaled[more] -= 1.0 - scaled[less];
+    if (scaled[more] < 1.0) {
+      large.pop_back();
+      small.push_back(more);
+    }
+  }
+}
+
+LightSampler::LightSampler(RayScene& scene, const SceneSnapshot& snapshot) : lights_(snapshot.lights) {
+  const double radius = 0.5 * glm::length(glm::dvec3(snapshot.bounds.high) - glm::dvec3(snapshot.bounds.low));
+  std::vector<double> flux;
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    const double value = fluxOf(lights_[i], std::max(radius, 1e-30));
+    if (value <= 0.0) continue;
+    choices_.push_back({false, static_cast<std::uint32_t>(i), 0.0f});
+    flux.push_back(value);
+  }
+  const std::size_t firstTriangle = choices_.size();
+  double emittedFlux = 0.0;
+  for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
+    const TriangleRecord& triangle = scene.triangles[i];
+    if (!scene.materials[triangle.material].emissive) continue;
+    const double area = 0.5 * glm::length(glm::cross(glm::dvec3(triangle.edge1), glm::dvec3(triangle.edge2)));
+    const double value = meanOf(scene.materials[triangle.material].emission) * std::numbers::pi * area;
+    if (value <= 0.0) continue;
+    choices_.push_back({true, static_cast<std::uint32_t>(i), 0.0f});
+    flux.push_back(value);
+    emittedFlux += value;
+  }
+  emitters_ = choices_.size() - firstTriangle;
+  if (choices_.empty()) return;
+
+  // Half of the choices by flux, half evenly among the lights (all emissive triangles together being one): a lamp indoors is not
+  // starved by a sun that does not reach it.
+  double totalFlux = 0.0;
+  for (const double value : flux) totalFlux += value;
+  const double share = 0.5 / static_cast<double>(firstTriangle + (emitters_ > 0 ? 1 : 0));
+  for (std::size_t i = 0; i < choices_.size(); ++i) {
+    const double even = choices_[i].triangle ? share * flux[i] / emittedFlux : share;
+    const double probability = 0.5 * flux[i] / totalFlux + even;
+    flux[i] = probability;
+    choices_[i].inverseProbability = static_cast<float>(1.0 / probability);
+    if (choices_[i].triangle) {
+      TriangleRecord& triangle = scene.triangles[choices_[i].index];
+      const double area = 0.5 * glm::length(glm::cross(glm::dvec3(triangle.edge1), glm::dvec3(triangle.edge2)));
+      triangle.emitterDensity = static_cast<float>(probability / area);
+    }
+  }
+  choice_ = AliasTable(flux);
+}
+
+LightSample LightSampler::sample(const RayScene& scene, const Surface& surface, RandomStream& random) const {
+  const Choice& choice = choices_[choices_.size() == 1 ? 0 : choice_.pick(random.bits())];
+  return choice.triangle ? sampleTriangle(scene, surface, choice, random)
+                         : sampleLight(lights_[choice.index], choice.inverseProbability, surface);
+}
+
+LightSample LightSampler::sampleTriangle(const RayScene& scene, const Surface& surface, const Choice& choice,
+                                         RandomStream& random) const {
+  LightSample result;
+  const TriangleRecord& triangle = scene.triangles[choice.index];
+  const SurfaceMaterial& material = scene.materials[triangle.material];
+  // Uniform over the parallelogram, its far half folded back. Turk 1990, "Generating random points in triangles", method 2.
+  float u = random.uniform(), v = random.uniform();
+  const bool beyond = u + v > 1.0f;
+  u = beyond ? 1.0f - u : u;
+  v = beyond ? 1.0f - v : v;
+  // The shadow ray ends in front of the light, at the height where rays leave it.
+  const glm::vec3 end = triangle.corner + u * triangle.edge1 + v * triangle.edge2 + triangle.offset * triangle.normal;
+  const glm::vec3 path = end - surface.position;
+  const float squaredDistance = glm::dot(path, path);
+  if (!(squaredDistance > 0.0f)) return result;
+  result.direction = (1.0f / std::sqrt(squaredDistance)) * path;
+  const float cosine = -glm::dot(triangle.normal, result.direction);
+  if (!(cosine > 0.0f)) return result;
+  if (material.maskTexture != nullptr && scene.cutOut(choice.index, u, v)) return result;
+  result.density = density(triangle, squaredDistance, cosine);
+  result.irradiance = (1.0f / result.density) * material.emission;
+  result.shadowDirection = path;
+  result.shadowReach = 1.0f;
+  result.shines = true;
+  return result;
+}
+
+LightSample LightSampler::sampleLight(const LightState& light, float inverseProbability, const Surface& surface) const {
+  LightSample result;
+  if (light.kind == LightKind::directional) {
+    result.direction = result.shadowDirection = -light.direction;
+    result.shadowReach = std::numeric_limits<float>::infinity();
+    result.shines = true;
+    result.irradiance = inverseProbability * light.power;
+    return result;
+  }
+  const glm::vec3 path = light.position - surface.position;
+  const float squaredDistance = glm::dot(path, path);
+  if (!(squaredDistance > 0.0f)) return result;
+  result.direction = (1.0f / std::sqrt(squaredDistance)) * path;
+  result.shadowDirection = path;
+  result.shadowReach = 1.0f;
+  const float falloff = light.kind == LightKind::spot ? spotFalloff(light, -glm::dot(result.direction, light.direction)) : 1.0f;
+  result.irradiance = (inverseProbability * falloff / squaredDistance) * light.power;
+  result.shines = falloff > 0.0f;
+  return result;
+}
+
+}  // namespace lumivox::reference

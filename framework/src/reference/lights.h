@@ -1,0 +1,55 @@
+// Choosing a light, and a point of it, for next-event estimation.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <limits>
+#include <vector>
+
+#include "lumivox/base/random.h"
+#include "reference/ray_scene.h"
+#include "reference/sampling.h"
+
+namespace lumivox::reference {
+
+/// One light seen from a point.
+struct LightSample {
+  bool shines = false;         ///< whether the light can reach the point at all; if not, the rest is not set
+  glm::vec3 direction;         ///< unit, from the point towards the light
+  glm::vec3 irradiance;        ///< estimate on a plane that faces the light, divided by the probability of the choice
+  float density = 0.0f;        ///< 1/sr at which sampling of emissive triangles gives this direction; 0 for a light without extent
+  glm::vec3 shadowDirection;   ///< not unit: for the shadow ray
+  float shadowReach = 0.0f;    ///< in lengths of shadowDirection
+};
+
+class LightSampler {
+ public:
+  /// Sets emitterDensity of the scene's triangles.
+  LightSampler(RayScene& scene, const SceneSnapshot& snapshot);
+
+  bool empty() const { return choice_.empty(); }
+  bool hasEmitters() const { return emitters_ > 0; }
+
+  /// A light for this surface.
+  LightSample sample(const RayScene& scene, const Surface& surface, RandomStream& random) const;
+
+  /// 1/sr: density at which sample() would have picked the direction to this point of an emissive triangle.
+  static float density(const TriangleRecord& triangle, float squaredDistance, float cosineAtLight) {
+    return triangle.emitterDensity * squaredDistance / cosineAtLight;
+  }
+
+ private:
+  struct Choice {
+    bool triangle;
+    std::uint32_t index;
+    float inverseProbability;
+  };
+  LightSample sampleTriangle(const RayScene& scene, const Surface& surface, const Choice& choice, RandomStream& random) const;
+  LightSample sampleLight(const LightState& light, float inverseProbability, const Surface& surface) const;
+
+  std::vector<LightState> lights_;
+  std::vector<Choice> choices_;
+  AliasTable choice_;
+  std::size_t emitters_ = 0;
+};
+
+}  // namespace lumivox::reference

@@ -1,0 +1,139 @@
+#include "lumivox/reference/path_tracer.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/log.h"
+#include "reference/cache.h"
+#include "reference/render.h"
+
+namespace lumivox {
+namespace reference {
+namespace {
+
+constexpr std::array<const char*, PixelStatistics::kColourLayers + 1> kLayerNames = {
+    "direct", "one_bounce_diffuse", "one_bounce_glossy", "indirect_diffuse", "indirect_glossy", "full", "ambient_occlusion"};
+constexpr int kOcclusionLayer = PixelStatistics::kColourLayers;
+
+void require(bool good, const char* option, const std::string& value, const char* expected) {
+  if (!good) throw Error(fmt::format("reference: {} is {}; expected {}", option, value, expected));
+}
+
+}  // namespace
+
+ResolvedOptions resolve(const Scene& scene, const ReferenceOptions& given) {
+  require(given.samplesPerPixel >= 1, "the number of samples per pixel", std::to_string(given.samplesPerPixel), "at least 1");
+  require(given.bounces >= 0, "the number of bounces", std::to_string(given.bounces), "at least 0");
+  require(given.threads >= 0, "the number of threads", std::to_string(given.threads), "at least 0 (0 for all)");
+  require(given.width >= 0 && given.height >= 0, "the resolution", fmt::format("{} x {}", given.width, given.height),
+          "positive numbers of pixels (0 for the camera's)");
+  require(std::isfinite(given.time), "the time", std::to_string(given.time), "a finite number of seconds");
+  require(given.occlusionDistance >= 0.0 && !std::isnan(given.occlusionDistance), "the distance of ambient occlusion",
+          std::to_string(given.occlusionDistance), "a positive number of metres (0 for a tenth of the scene's diagonal)");
+  if (!scene.media.empty()) {
+    logWarning("reference: '{}' has participating media; the path tracer leaves them out", scene.name);
+  }
+  ResolvedOptions resolved{given, snapshotOf(scene, given.time, given.camera, given.width, given.height)};
+  resolved.options.camera = scene.camera(given.camera).name;
+  resolved.options.width = resolved.snapshot.camera.width;
+  resolved.options.height = resolved.snapshot.camera.height;
+  if (given.occlusionDistance == 0.0 && !resolved.snapshot.bounds.empty) {
+    resolved.options.occlusionDistance = 0.1 * glm::length(resolved.snapshot.bounds.high - resolved.snapshot.bounds.low);
+  }
+  return resolved;
+}
+
+Tracer::Tracer(const Scene& scene, const ResolvedOptions& resolved)
+    : rays(scene, resolved.snapshot),
+      lights(rays, resolved.snapshot),
+      integrator{rays, lights, scene.environment, resolved.options.bounces, resolved.options.roulette,
+                 static_cast<float>(resolved.options.occlusionDistance)} {}
+
+Film::Film(int width, int height) {
+  for (int layer = 0; layer <= kOcclusionLayer; ++layer) {
+    const auto index = static_cast<std::size_t>(layer);
+    means_[index] = Picture(width, height, layer == kOcclusionLayer ? 1 : 3);
+    variances_[index] = Picture(width, height, layer == kOcclusionLayer ? 1 : 3);
+  }
+}
+
+void Film::write(int x, int y, const PixelStatistics& pixel) {
+  for (int layer = 0; layer <= kOcclusionLayer; ++layer) {
+    const auto index = static_cast<std::size_t>(layer);
+    for (int channel = 0; channel < means_[index].channels(); ++channel) {
+      means_[index].at(x, y, channel) = pixel.mean(3 * layer + channel);
+      variances_[index].at(x, y, channel) = pixel.varianceOfMean(3 * layer + channel);
+    }
+  }
+}
+
+LayeredPicture Film::take() {
+  LayeredPicture result;
+  for (std::size_t layer = 0; layer < kLayerNames.size(); ++layer) {
+    result.layers.emplace(kLayerNames[layer], std::move(means_[layer]));
+    result.layers.emplace(std::string(kLayerNames[layer]) + ".variance", std::move(variances_[layer]));
+  }
+  return result;
+}
+
+void forEachTile(const Tiles& tiles, int threads, const std::function<void(int)>& work) {
+  tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : threads);
+  arena.execute([&] { tbb::parallel_for(0, tiles.count(), work); });
+}
+
+}  // namespace reference
+
+LayeredPicture renderReference(const Scene& scene, const ReferenceOptions& given) {
+  using namespace reference;
+  const ResolvedOptions resolved = resolve(scene, given);
+  const ReferenceOptions& options = resolved.options;
+  if (options.samplesPerPixel < 2) {
+    throw Error("reference: one sample per pixel; expected at least 2, because the noise is told from their spread");
+  }
+  Film film(options.width, options.height);
+  const Tracer tracer(scene, resolved);
+  const Tiles tiles(options.width, options.height);
+  std::optional<Progress> progress;
+  if (options.progress) {
+    progress.emplace(fmt::format("reference of {}: {} x {} pixels, {} samples", scene.name, options.width, options.height,
+                                 options.samplesPerPixel),
+                     static_cast<std::uint64_t>(tiles.count()));
+  }
+  forEachTile(tiles, options.threads, [&](int tile) {
+    CountingRays rays{tracer.rays};
+    renderTile(tracer, resolved, tiles, tile, rays, film);
+    if (progress) progress->advance();
+  });
+  LayeredPicture picture = film.take();
+  picture.attributes = provenance(scene, resolved);
+  return picture;
+}
+
+glm::vec3 referenceRadiance(const Scene& scene, double time, glm::dvec3 originWorld, glm::vec3 direction,
+                            const ReferenceOptions& given) {
+  using namespace reference;
+  ReferenceOptions timed = given;
+  timed.time = time;
+  ResolvedOptions resolved = resolve(scene, timed);
+  const float length = glm::length(direction);
+  if (!(length > 0.0f) || !std::isfinite(length)) throw Error("reference: the ray's direction has no length");
+  Tracer tracer(scene, resolved);
+  tracer.integrator.occlusionDistance = 0.0f;
+  const glm::vec3 origin(originWorld - resolved.snapshot.origin);
+  CountingRays rays{tracer.rays};
+  glm::dvec3 sum(0.0);
+  for (int sample = 0; sample < resolved.options.samplesPerPixel; ++sample) {
+    // A stream of its own, apart from those of pixels.
+    RandomStream random(resolved.options.seed, std::numeric_limits<std::uint32_t>::max(), static_cast<std::uint32_t>(sample));
+    sum += glm::dvec3(tracer.integrator.trace(rays, random, origin, direction / length).full());
+  }
+  return glm::vec3(sum / static_cast<double>(resolved.options.samplesPerPixel));
+}
+
+}  // namespace lumivox

@@ -1,0 +1,241 @@
+#include "reference/ray_scene.h"
+
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cassert>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+
+namespace lumivox::reference {
+namespace {
+
+/// How far above a triangle rays start, so that rounding never puts the start below it. The vertices, the interpolated point and
+/// Embree's differences each carry an error of about one unit in the last place (2^-23) of the largest coordinate or of the triangle's
+/// extent; the factor of 16 covers their sum with room to spare and stays below 2e-6 of the scene.
+float selfIntersectionOffset(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+  constexpr float kUnitsInLastPlace = 16.0f * 0x1.0p-23f;
+  float largest = std::numeric_limits<float>::min();
+  for (int axis = 0; axis < 3; ++axis) {
+    largest = std::max({largest, std::abs(a[axis]), std::abs(b[axis]), std::abs(c[axis])});
+  }
+  return kUnitsInLastPlace * largest;
+}
+
+void throwOnEmbreeError(RTCDevice device, const char* step) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_NONE) return;
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw Error(fmt::format("reference: not enough memory to {}", step));
+  throw Error(fmt::format("reference: Embree failed to {} (error code {})", step, static_cast<int>(error)));
+}
+
+/// Which triangles of a scene can be rays' targets, and where they lie.
+struct CollectedTriangle {
+  std::uint32_t corner[3];
+  std::uint32_t material;
+};
+
+}  // namespace
+
+glm::vec3 sampleRepeated(const SurfaceTexture& texture, const glm::vec2& texcoord) {
+  const int width = texture.width, height = texture.height;
+  const glm::vec2 wrapped = texcoord - glm::floor(texcoord);
+  const float x = wrapped.x * static_cast<float>(width) - 0.5f;
+  const float y = (1.0f - wrapped.y) * static_cast<float>(height) - 0.5f;
+  const float floorX = std::floor(x), floorY = std::floor(y);
+  const float weightX = x - floorX, weightY = y - floorY;
+  const auto repeat = [](int value, int size) { return value < 0 ? value + size : value >= size ? value - size : value; };
+  const int left = repeat(static_cast<int>(floorX), width), right = repeat(static_cast<int>(floorX) + 1, width);
+  const int top = repeat(static_cast<int>(floorY), height), bottom = repeat(static_cast<int>(floorY) + 1, height);
+  const auto texel = [&](int column, int row) {
+    const std::size_t index = static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
+    if (texture.mask) return glm::vec3(texture.values[index]);
+    return glm::vec3(texture.values[3 * index], texture.values[3 * index + 1], texture.values[3 * index + 2]);
+  };
+  return glm::mix(glm::mix(texel(left, top), texel(right, top), weightX),
+                  glm::mix(texel(left, bottom), texel(right, bottom), weightX), weightY);
+}
+
+RayScene::RayScene(const Scene& scene, const SceneSnapshot& snapshot) {
+  materials.reserve(scene.materials.size());
+  for (const Material& material : scene.materials) {
+    const auto textureAt = [&](int index) {
+      return index < 0 ? nullptr : &scene.textures.at(static_cast<std::size_t>(index));
+    };
+    materials.push_back({material.diffuse, material.specular, material.emission, material.exponent,
+                         textureAt(material.diffuseTexture), textureAt(material.maskTexture), material.glossy(),
+                         material.emissive()});
+  }
+  collect(scene, snapshot);
+  build();
+}
+
+RayScene::~RayScene() {
+  if (scene_ != nullptr) rtcReleaseScene(scene_);
+  if (device_ != nullptr) rtcReleaseDevice(device_);
+}
+
+void RayScene::collect(const Scene& scene, const SceneSnapshot& snapshot) {
+  assert(snapshot.objects.size() == scene.objects.size());
+  // Per triangle: its record, three indices and about 200 bytes of Embree's tree while it is built.
+  constexpr std::uint64_t kBytesPerTriangle = sizeof(TriangleRecord) + 12 + 200;
+  requireMemory(scene.triangleCount() * kBytesPerTriangle, "the reference path tracer's triangles");
+
+  std::vector<CollectedTriangle> plain, masked;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    const ObjectState& state = snapshot.objects[i];
+    const std::uint32_t base = static_cast<std::uint32_t>(vertices_.size());
+    const bool deformed = !state.positions.empty();
+    for (std::uint32_t k = 0; k < object.vertexCount; ++k) {
+      const std::uint32_t source = object.firstVertex + k;
+      const glm::vec3 position = deformed ? state.positions[k] : scene.positions[source];
+      const glm::vec3 normal = deformed && !state.normals.empty() ? state.normals[k] : scene.normals[source];
+      vertices_.push_back(glm::vec3(state.toWorld * glm::vec4(position, 1.0f)));
+      const glm::vec3 turned = state.normalToWorld * normal;
+      const float length = glm::length(turned);
+      normals_.push_back(length > 0.0f ? turned / length : glm::vec3(0.0f));
+      texcoords_.push_back(scene.texcoords[source]);
+    }
+    // A mirroring placement turns the winding around; the front side stays with the surface.
+    const bool mirrored = glm::determinant(glm::mat3(state.toWorld)) < 0.0f;
+    for (const Part& part : object.parts) {
+      const bool cut = scene.materials[static_cast<std::size_t>(part.material)].maskTexture >= 0;
+      for (std::uint32_t k = part.firstIndex; k + 2 < part.firstIndex + part.indexCount; k += 3) {
+        const auto vertex = [&](std::uint32_t n) {
+          assert(scene.indices[k + n] - object.firstVertex < object.vertexCount);
+          return scene.indices[k + n] - object.firstVertex + base;
+        };
+        (cut ? masked : plain)
+            .push_back({{vertex(0), vertex(mirrored ? 2 : 1), vertex(mirrored ? 1 : 2)},
+                        static_cast<std::uint32_t>(part.material)});
+      }
+    }
+  }
+
+  triangles.reserve(plain.size() + masked.size());
+  corners_.reserve(3 * (plain.size() + masked.size()));
+  const auto append = [&](const CollectedTriangle& triangle) {
+    const auto [a, b, c] = triangle.corner;
+    const glm::vec3 edge1 = vertices_[b] - vertices_[a], edge2 = vertices_[c] - vertices_[a];
+    const glm::dvec3 cross = glm::cross(glm::dvec3(edge1), glm::dvec3(edge2));
+    const double length = glm::length(cross);
+    if (!(length > 0.0)) return;  // no area: no ray can meet it
+    const glm::vec3 normal(cross / length);
+    // Vertex normals within 0.08 degrees of the geometric one (cosine 1 - 1e-6) are rounding, not curvature.
+    const auto bent = [&](std::uint32_t vertex) {
+      return normals_[vertex] != glm::vec3(0.0f) && glm::dot(normals_[vertex], normal) < 1.0f - 1e-6f;
+    };
+    triangles.push_back({vertices_[a], edge1, edge2, normal,
+                         selfIntersectionOffset(vertices_[a], vertices_[b], vertices_[c]), triangle.material, 0.0f,
+                         bent(a) || bent(b) || bent(c) ? 1u : 0u});
+    corners_.insert(corners_.end(), {a, b, c});
+  };
+  std::for_each(plain.begin(), plain.end(), append);
+  maskedBegin_ = static_cast<std::uint32_t>(triangles.size());
+  std::for_each(masked.begin(), masked.end(), append);
+  vertices_.emplace_back(0.0f);
+}
+
+void RayScene::build() {
+  device_ = rtcNewDevice(nullptr);
+  if (device_ == nullptr) throw Error("reference: Embree cannot be started on this processor");
+  scene_ = rtcNewScene(device_);
+  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);  // watertight: no light between adjoining triangles
+  rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
+  attach(kPlainGeometry, 0, maskedBegin_);
+  attach(kMaskedGeometry, maskedBegin_, static_cast<std::uint32_t>(triangles.size()));
+  // One thread builds, so that the tree, and with it the choice among hits at equal distance, does not depend on the number of threads.
+  // (Embree's own setting "threads=1" would hold for all of TBB as long as the device lives.)
+  tbb::task_arena(1).execute([&] { rtcJoinCommitScene(scene_); });
+  throwOnEmbreeError(device_, "build the tree over the triangles");
+}
+
+void RayScene::attach(unsigned geometryId, std::uint32_t begin, std::uint32_t end) {
+  if (begin == end) return;
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices_.data(), 0, sizeof(glm::vec3),
+                             vertices_.size() - 1);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, corners_.data(),
+                             std::size_t{begin} * 3 * sizeof(std::uint32_t), 3 * sizeof(std::uint32_t), end - begin);
+  if (geometryId == kMaskedGeometry) {
+    rtcSetGeometryUserData(geometry, this);
+    rtcSetGeometryIntersectFilterFunction(geometry, filter);
+    rtcSetGeometryOccludedFilterFunction(geometry, filter);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene_, geometry, geometryId);
+  rtcReleaseGeometry(geometry);
+  throwOnEmbreeError(device_, "take over the triangles");
+}
+
+void RayScene::filter(const RTCFilterFunctionNArguments* arguments) {
+  const auto& self = *static_cast<const RayScene*>(arguments->geometryUserPtr);
+  for (unsigned i = 0; i < arguments->N; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    const std::uint32_t triangle = RTCHitN_primID(arguments->hit, arguments->N, i) + self.maskedBegin_;
+    if (self.cutOut(triangle, RTCHitN_u(arguments->hit, arguments->N, i), RTCHitN_v(arguments->hit, arguments->N, i))) {
+      arguments->valid[i] = 0;
+    }
+  }
+}
+
+glm::vec2 RayScene::texcoordAt(std::uint32_t triangle, float u, float v) const {
+  const std::uint32_t* corner = &corners_[std::size_t{3} * triangle];
+  return (1.0f - u - v) * texcoords_[corner[0]] + u * texcoords_[corner[1]] + v * texcoords_[corner[2]];
+}
+
+bool RayScene::cutOut(std::uint32_t triangle, float u, float v) const {
+  const SurfaceTexture* mask = materials[triangles[triangle].material].maskTexture;
+  if (mask == nullptr) return false;
+  return sampleRepeated(*mask, texcoordAt(triangle, u, v)).x < 0.5f;  // scene.h: coverage below 0.5 is a hole
+}
+
+Surface RayScene::surfaceAt(const Hit& hit, const glm::vec3& direction) const {
+  const TriangleRecord& triangle = triangles[hit.triangle];
+  const SurfaceMaterial& material = materials[triangle.material];
+  Surface surface;
+  const float side = glm::dot(triangle.normal, direction) < 0.0f ? 1.0f : -1.0f;
+  surface.geometricNormal = side * triangle.normal;
+
+  // Points stay a hair inside their triangle, so that rounding never puts a point of an edge behind the adjoining surface: 2^-18 of the
+  // triangle's extent outweighs the rounding of its coordinates.
+  constexpr float kInset = 0x1.0p-18f;
+  float u = std::max(hit.u, kInset), v = std::max(hit.v, kInset);
+  if (u + v > 1.0f - kInset) {
+    const float scale = (1.0f - kInset) / (u + v);
+    u *= scale, v *= scale;
+  }
+  surface.position =
+      triangle.corner + u * triangle.edge1 + v * triangle.edge2 + triangle.offset * surface.geometricNormal;
+
+  surface.normal = surface.geometricNormal;
+  if (triangle.interpolate != 0) {
+    const std::uint32_t* corner = &corners_[std::size_t{3} * hit.triangle];
+    const glm::vec3 sum = (1.0f - u - v) * normals_[corner[0]] + u * normals_[corner[1]] + v * normals_[corner[2]];
+    const float squared = glm::dot(sum, sum);
+    if (squared > 0.0f) {
+      const float facing = glm::dot(sum, surface.geometricNormal) < 0.0f ? -1.0f : 1.0f;
+      surface.normal = (facing / std::sqrt(squared)) * sum;
+    }
+  }
+
+  surface.diffuse = material.diffuse;
+  if (material.diffuseTexture != nullptr) {
+    surface.diffuse *= sampleRepeated(*material.diffuseTexture, texcoordAt(hit.triangle, u, v));
+  }
+  if (material.glossy) {
+    surface.glossy = true;
+    surface.specular = material.specular;
+    surface.exponent = material.exponent;
+    surface.mirror = direction - 2.0f * glm::dot(direction, surface.normal) * surface.normal;
+    const float diffuse = surface.diffuse.x + surface.diffuse.y + surface.diffuse.z;
+    const float specular = surface.specular.x + surface.specular.y + surface.specular.z;
+    surface.glossyProbability = specular / (diffuse + specular);
+  }
+  return surface;
+}
+
+}  // namespace lumivox::reference

@@ -1,0 +1,132 @@
+// A scene at one time as rays meet it: all triangles in world space in one Embree scene, and what shading needs to know of each.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <vector>
+
+#include "lumivox/scene/scene.h"
+
+namespace lumivox::reference {
+
+/// What shading reads of a triangle; one cache line.
+struct alignas(64) TriangleRecord {
+  glm::vec3 corner;         ///< first vertex, metres relative to the snapshot's origin
+  glm::vec3 edge1, edge2;   ///< from the first to the second and third vertex
+  glm::vec3 normal;         ///< geometric, unit length, on the front (counter-clockwise) side
+  float offset;             ///< m; rays leave the surface from this far above it (see selfIntersectionOffset)
+  std::uint32_t material;   ///< index into RayScene::materials
+  float emitterDensity;     ///< 1/m^2: density at which light sampling picks points of this triangle; 0 when it emits nothing
+  std::uint32_t interpolate;  ///< nonzero: the vertices' normals differ from the geometric normal
+};
+static_assert(sizeof(TriangleRecord) == 64);
+
+/// A material as the path tracer reads it.
+struct SurfaceMaterial {
+  glm::vec3 diffuse, specular, emission;
+  float exponent;
+  const SurfaceTexture* diffuseTexture;
+  const SurfaceTexture* maskTexture;
+  bool glossy, emissive;
+};
+
+struct Hit {
+  std::uint32_t triangle;
+  float u, v;      ///< barycentric coordinates of the second and third vertex
+  float distance;  ///< in lengths of the ray's direction
+};
+
+/// A point of a surface seen from one side. Both normals lie on the side of the viewer, so no light passes through a surface.
+struct Surface {
+  glm::vec3 position;         ///< a little above the surface on the viewer's side: where rays leave from
+  glm::vec3 geometricNormal;  ///< unit, on the viewer's side
+  glm::vec3 normal;           ///< interpolated, unit, turned to the side of geometricNormal
+  glm::vec3 diffuse;          ///< albedo
+  glm::vec3 specular;
+  glm::vec3 mirror;           ///< mirror direction of the viewing direction; set where glossy
+  float exponent = 0.0f;
+  float glossyProbability = 0.0f;  ///< of choosing the Phong lobe when sampling; 0 where not glossy
+  bool glossy = false;
+};
+
+class RayScene {
+ public:
+  RayScene(const Scene& scene, const SceneSnapshot& snapshot);
+  ~RayScene();
+  RayScene(const RayScene&) = delete;
+  RayScene& operator=(const RayScene&) = delete;
+
+  /// The nearest surface along the ray that is not cut out by a mask.
+  bool closestHit(const glm::vec3& origin, const glm::vec3& direction, Hit& hit) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit ray;
+    setRay(ray.ray, origin, direction, std::numeric_limits<float>::infinity());
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_, &context, &ray);
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    hit = {ray.hit.primID + (ray.hit.geomID == kMaskedGeometry ? maskedBegin_ : 0u), ray.hit.u, ray.hit.v, ray.ray.tfar};
+    return true;
+  }
+
+  /// Whether anything lies between the origin and `reach` lengths of the direction.
+  bool occluded(const glm::vec3& origin, const glm::vec3& direction, float reach) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay ray;
+    setRay(ray, origin, direction, reach);
+    rtcOccluded1(scene_, &context, &ray);
+    return ray.tfar < 0.0f;
+  }
+
+  /// The surface at a hit, seen from a ray with this unit direction.
+  Surface surfaceAt(const Hit& hit, const glm::vec3& direction) const;
+
+  /// Emitted radiance towards a ray with this direction: from the front side only.
+  glm::vec3 emissionTowards(const TriangleRecord& triangle, const glm::vec3& direction) const {
+    const SurfaceMaterial& material = materials[triangle.material];
+    return material.emissive && glm::dot(triangle.normal, direction) < 0.0f ? material.emission : glm::vec3(0.0f);
+  }
+
+  /// Whether a mask cuts the surface out at this point of a triangle.
+  bool cutOut(std::uint32_t triangle, float u, float v) const;
+
+  std::vector<TriangleRecord> triangles;  ///< those without a mask first
+  std::vector<SurfaceMaterial> materials;
+  RTCScene embree() const { return scene_; }
+
+  static void setRay(RTCRay& ray, const glm::vec3& origin, const glm::vec3& direction, float reach) {
+    ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
+    ray.tnear = 0.0f;
+    ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
+    ray.time = 0.0f;
+    ray.tfar = reach;
+    ray.mask = ~0u, ray.id = 0u, ray.flags = 0u;
+  }
+
+ private:
+  static constexpr unsigned kPlainGeometry = 0, kMaskedGeometry = 1;
+
+  void collect(const Scene& scene, const SceneSnapshot& snapshot);
+  void build();
+  void attach(unsigned geometryId, std::uint32_t begin, std::uint32_t end);
+  glm::vec2 texcoordAt(std::uint32_t triangle, float u, float v) const;
+  static void filter(const RTCFilterFunctionNArguments* arguments);
+
+  std::vector<glm::vec3> vertices_;  ///< with one more at the end: Embree reads 16 bytes at each
+  std::vector<glm::vec3> normals_;
+  std::vector<glm::vec2> texcoords_;
+  std::vector<std::uint32_t> corners_;  ///< three vertices per triangle
+  std::uint32_t maskedBegin_ = 0;
+  RTCDevice device_ = nullptr;
+  RTCScene scene_ = nullptr;
+};
+
+/// Bilinear lookup with the texture repeated; texel centres at half integers, v = 1 at the top row.
+glm::vec3 sampleRepeated(const SurfaceTexture& texture, const glm::vec2& texcoord);
+
+}  // namespace lumivox::reference

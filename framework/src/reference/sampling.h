@@ -1,0 +1,67 @@
+// Random directions and the estimators' weights.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <numbers>
+#include <vector>
+
+#include "lumivox/base/random.h"
+
+namespace lumivox::reference {
+
+inline constexpr float kPi = std::numbers::pi_v<float>;
+
+/// Veach 1997, "Robust Monte Carlo methods for light transport simulation", Sec. 9.2.4: the power heuristic with exponent 2. `chosen` is
+/// the density of the technique that made the sample. Written so that infinite densities give no NaN.
+inline float powerHeuristic(float chosen, float other) {
+  const float ratio = other / chosen;
+  return 1.0f / (1.0f + ratio * ratio);
+}
+
+/// The vector with these coordinates about an axis. Duff et al. 2017, "Building an orthonormal basis, revisited", Listing 3.
+inline glm::vec3 aboutAxis(const glm::vec3& axis, float x, float y, float z) {
+  const float sign = std::copysign(1.0f, axis.z);
+  const float a = -1.0f / (sign + axis.z);
+  const float b = axis.x * axis.y * a;
+  const glm::vec3 tangent(1.0f + sign * axis.x * axis.x * a, sign * b, -sign * axis.x);
+  const glm::vec3 bitangent(b, sign + axis.y * axis.y * a, -axis.y);
+  return x * tangent + y * bitangent + z * axis;
+}
+
+/// Density cos/pi about the axis.
+inline glm::vec3 sampleCosine(const glm::vec3& axis, float u1, float u2) {
+  const float radius = std::sqrt(u1), angle = 2.0f * kPi * u2;
+  return aboutAxis(axis, radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1.0f - u1));
+}
+
+/// Density (n+1)/(2 pi) cos^n about the axis.
+inline glm::vec3 samplePowerCosine(const glm::vec3& axis, float exponent, float u1, float u2) {
+  const float cosine = std::pow(1.0f - u1, 1.0f / (exponent + 1.0f));
+  const float radius = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)), angle = 2.0f * kPi * u2;
+  return aboutAxis(axis, radius * std::cos(angle), radius * std::sin(angle), cosine);
+}
+
+/// Picks an index with given probabilities in constant time. Vose 1991, "A linear algorithm for generating random numbers with a given
+/// distribution".
+class AliasTable {
+ public:
+  AliasTable() = default;
+  explicit AliasTable(const std::vector<double>& weights);  ///< not negative, with a positive sum
+  bool empty() const { return slots_.empty(); }
+  /// One of the indices for 32 random bits.
+  std::uint32_t pick(std::uint32_t bits) const {
+    const std::uint64_t product = std::uint64_t{bits} * slots_.size();
+    const auto index = static_cast<std::uint32_t>(product >> 32);
+    return static_cast<std::uint32_t>(product) <= slots_[index].threshold ? index : slots_[index].alias;
+  }
+
+ private:
+  struct Slot {
+    std::uint32_t threshold, alias;
+  };
+  std::vector<Slot> slots_;
+};
+
+}  // namespace lumivox::reference

@@ -1,0 +1,109 @@
+// How much of the path tracer's time is traversal: its rays per second beside those of a bare loop over the very same rays.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <limits>
+#include <numeric>
+
+#include "lumivox/base/error.h"
+#include "lumivox/reference/path_tracer.h"
+#include "reference/render.h"
+
+namespace lumivox {
+namespace reference {
+namespace {
+
+struct RecordedRay {
+  glm::vec3 origin, direction;
+  float reach;  ///< negative: a ray for the closest hit
+};
+
+/// Notes every ray, and shoots it.
+struct RecordingRays {
+  const RayScene& scene;
+  std::vector<RecordedRay>& rays;
+
+  bool closestHit(const glm::vec3& origin, const glm::vec3& direction, Hit& hit) {
+    rays.push_back({origin, direction, -1.0f});
+    return scene.closestHit(origin, direction, hit);
+  }
+  bool occluded(const glm::vec3& origin, const glm::vec3& direction, float reach) {
+    rays.push_back({origin, direction, reach});
+    return scene.occluded(origin, direction, reach);
+  }
+};
+
+double secondsOf(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The bare loop. Returns the number of rays that met something, so that no compiler leaves the work out.
+std::uint64_t replay(RTCScene scene, const std::vector<RecordedRay>& rays) {
+  std::uint64_t met = 0;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  for (const RecordedRay& recorded : rays) {
+    if (recorded.reach < 0.0f) {
+      RTCRayHit ray;
+      RayScene::setRay(ray.ray, recorded.origin, recorded.direction, std::numeric_limits<float>::infinity());
+      ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(scene, &context, &ray);
+      met += ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+    } else {
+      RTCRay ray;
+      RayScene::setRay(ray, recorded.origin, recorded.direction, recorded.reach);
+      rtcOccluded1(scene, &context, &ray);
+      met += ray.tfar < 0.0f;
+    }
+  }
+  return met;
+}
+
+}  // namespace
+}  // namespace reference
+
+TraversalSpeed measureTraversalSpeed(const Scene& scene, const ReferenceOptions& given) {
+  using namespace reference;
+  const ResolvedOptions resolved = resolve(scene, given);
+  const Tracer tracer(scene, resolved);
+  const Tiles tiles(resolved.options.width, resolved.options.height);
+  Film film(resolved.options.width, resolved.options.height);
+
+  std::vector<std::vector<RecordedRay>> recorded(static_cast<std::size_t>(tiles.count()));
+  forEachTile(tiles, given.threads, [&](int tile) {
+    RecordingRays rays{tracer.rays, recorded[static_cast<std::size_t>(tile)]};
+    renderTile(tracer, resolved, tiles, tile, rays, film);
+  });
+  TraversalSpeed speed;
+  for (const auto& tile : recorded) speed.rays += tile.size();
+  if (speed.rays == 0) throw Error("reference: the picture needs no rays, so there is no speed to measure");
+
+  // Both in turn, so that a change of the processor's clock meets both; the medians are reported.
+  constexpr std::size_t kRepeats = 5;
+  std::array<double, kRepeats> tracerSeconds, bareSeconds;
+  std::vector<std::uint64_t> met(recorded.size());
+  for (std::size_t repeat = 0; repeat < kRepeats; ++repeat) {
+    tracerSeconds[repeat] = secondsOf([&] {
+      forEachTile(tiles, given.threads, [&](int tile) {
+        CountingRays rays{tracer.rays};
+        renderTile(tracer, resolved, tiles, tile, rays, film);
+      });
+    });
+    bareSeconds[repeat] = secondsOf([&] {
+      forEachTile(tiles, given.threads, [&](int tile) {
+        const auto index = static_cast<std::size_t>(tile);
+        met[index] = replay(tracer.rays.embree(), recorded[index]);
+      });
+    });
+  }
+  if (std::accumulate(met.begin(), met.end(), std::uint64_t{0}) > speed.rays) throw Error("reference: more hits than rays");
+  std::nth_element(tracerSeconds.begin(), tracerSeconds.begin() + kRepeats / 2, tracerSeconds.end());
+  std::nth_element(bareSeconds.begin(), bareSeconds.begin() + kRepeats / 2, bareSeconds.end());
+  speed.tracerRaysPerSecond = static_cast<double>(speed.rays) / tracerSeconds[kRepeats / 2];
+  speed.bareRaysPerSecond = static_cast<double>(speed.rays) / bareSeconds[kRepeats / 2];
+  return speed;
+}
+
+}  // namespace lumivox

@@ -1,0 +1,201 @@
+#include "report/measure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/log.h"
+
+namespace lumivox {
+
+Measured ComponentError::rmse() const {
+  return {rmseOverSeeds.value, std::hypot(error.rmse.uncertainty, rmseOverSeeds.uncertainty)};
+}
+
+double ComponentError::ratioToNothing() const {
+  return errorOfNothing.rmse.value > 0.0 ? rmseOverSeeds.value / errorOfNothing.rmse.value
+                                         : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace lumivox
+
+namespace lumivox::report {
+namespace {
+
+/// The pictures of every output that has a truth, and the whole picture; per seed.
+struct Judged {
+  std::string output;
+  Contributes component;
+  std::vector<Picture> seeds;
+};
+
+RenderOptions renderOptions(const MeasureContext& context, const PointRecord& record) {
+  RenderOptions options;
+  options.parameters = record.point.parameters;
+  options.seed = context.options.seed;
+  options.camera = context.options.camera;
+  options.width = context.width;
+  options.height = context.height;
+  return options;
+}
+
+void collect(std::vector<Judged>& judged, const std::string& output, Contributes component, Picture picture) {
+  if (picture.empty() || truthLayers(component).first.empty()) return;
+  const auto found =
+      std::find_if(judged.begin(), judged.end(), [&](const Judged& one) { return one.output == output; });
+  if (found == judged.end())
+    judged.push_back({output, component, {std::move(picture)}});
+  else
+    found->seeds.push_back(std::move(picture));
+}
+
+/// RMSE over the values that are finite in both, as `compare` counts them.
+double rmseOf(const Picture& picture, const Picture& truth) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < picture.values().size(); ++i) {
+    const double difference = static_cast<double>(picture.values()[i]) - truth.values()[i];
+    if (!std::isfinite(difference)) continue;
+    sum += difference * difference;
+    ++count;
+  }
+  return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count));
+}
+
+/// Root of the mean unbiased variance of a value over the seeds: the picture's own noise.
+double noiseOver(const std::vector<Picture>& seeds) {
+  if (seeds.size() < 2) return 0.0;
+  double sum = 0.0;
+  std::size_t values = 0;
+  for (std::size_t i = 0; i < seeds.front().values().size(); ++i) {
+    double mean = 0.0, squares = 0.0;
+    for (const Picture& seed : seeds) mean += seed.values()[i];
+    mean /= static_cast<double>(seeds.size());
+    for (const Picture& seed : seeds) squares += (seed.values()[i] - mean) * (seed.values()[i] - mean);
+    if (!std::isfinite(squares)) continue;
+    sum += squares / static_cast<double>(seeds.size() - 1);
+    ++values;
+  }
+  return values == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(values));
+}
+
+bool sameValues(const Picture& a, const Picture& b) {
+  return a.sameShape(b) &&
+         std::equal(a.values().begin(), a.values().end(), b.values().begin(),
+                    [](float x, float y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
+ComponentError errorAgainst(const Judged& judged, Truth& truth, const std::string& layer, bool bias) {
+  const TruthLayer& reference = *truth.layer(layer);
+  ComponentError record;
+  record.output = judged.output;
+  record.component = name(judged.component);
+  record.truth = layer;
+  record.bias = bias;
+  record.error = compare(judged.seeds.front(), reference.mean, reference.variance);
+  record.seeds = static_cast<int>(judged.seeds.size());
+  record.noiseRmse = noiseOver(judged.seeds);
+  record.deterministic = judged.seeds.size() > 1 && record.noiseRmse == 0.0;
+  std::vector<double> rmses{record.error.rmse.value};
+  for (std::size_t seed = 1; seed < judged.seeds.size(); ++seed)
+    rmses.push_back(rmseOf(judged.seeds[seed], reference.mean));
+  record.rmseOverSeeds =
+      record.deterministic || rmses.size() == 1 ? Measured{rmses.front(), 0.0} : meanOverSeeds(rmses);
+  record.errorOfNothing = truth.errorOfNothing(layer);
+  return record;
+}
+
+}  // namespace
+
+void measureErrors(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
+  RenderOptions options = renderOptions(context, record);
+  std::vector<Judged> judged;
+  for (int seed = 0; seed < std::max(1, context.options.seeds); ++seed) {
+    options.seed = context.options.seed + static_cast<std::uint64_t>(seed);
+    options.health = seed == 0;
+    PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
+    FrameResult frame = executor.render(context.options.time);
+    if (seed == 0) record.point.healthFindings = frame.healthFindings;
+    Picture whole = compositePicture(frame);
+    for (const std::string& output : executor.outputNames()) {
+      const auto picture = frame.outputs.find(output);
+      const auto component = frame.components.find(output);
+      if (picture != frame.outputs.end() && component != frame.components.end())
+        collect(judged, output, component->second, std::move(picture->second));
+    }
+    collect(judged, kWholePicture, Contributes::final, std::move(whole));
+    // A technique without random numbers gives the same bits for every seed: two show it, more would only
+    // cost time.
+    if (seed == 1 && std::all_of(judged.begin(), judged.end(),
+                                 [](const Judged& one) { return sameValues(one.seeds[0], one.seeds[1]); }))
+      break;
+  }
+
+  for (const Judged& one : judged) {
+    const auto [biasLayer, missLayer] = truthLayers(one.component);
+    OutputPictures pictures;
+    pictures.output = one.output;
+    pictures.component = name(one.component);
+    const float exposure = context.truth.exposure(missLayer);
+    pictures.picture = encodePng(one.seeds.front(), exposure);
+    for (const bool bias : {true, false}) {
+      const std::string& layer = bias ? biasLayer : missLayer;
+      const TruthLayer* reference = context.truth.layer(layer);
+      if (reference == nullptr || (!bias && missLayer == biasLayer)) continue;
+      if (!reference->mean.sameShape(one.seeds.front()))
+        throw Error(fmt::format(
+            "output '{}' has {} x {} pixels of {} channels, but its truth '{}' has {} x {} of {}", one.output,
+            one.seeds.front().width(), one.seeds.front().height(), one.seeds.front().channels(), layer,
+            reference->mean.width(), reference->mean.height(), reference->mean.channels()));
+      ComponentError error = errorAgainst(one, context.truth, layer, bias);
+      pictures.against.push_back(
+          {layer, encodePng(falseColour(flipHdr(one.seeds.front(), reference->mean))), error.error.flip});
+      record.point.errors.push_back(std::move(error));
+    }
+    record.pictures.push_back(std::move(pictures));
+  }
+}
+
+void measureTimes(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
+  ReportPoint& point = record.point;
+  constexpr double kNextFrame = 1.0 / 60.0;  // s
+  PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline,
+                            renderOptions(context, record));
+  const double time = context.options.time;
+  executor.render(time, 0, PipelineExecutor::Pictures::no);  // warm-up: links programs, fills the pool
+
+  std::vector<double> frameMs, shares, nextMs;
+  std::map<std::string, std::vector<double>> deviceMs, hostMs;
+  for (int repeat = 0; repeat < std::max(1, context.options.repeats); ++repeat) {
+    executor.invalidate();
+    const FrameResult frame = executor.render(time, 0, PipelineExecutor::Pictures::no);
+    frameMs.push_back(frame.frameMs);
+    if (frame.frameMs > 0.0) shares.push_back(frame.betweenPassesMs / frame.frameMs);
+    if (repeat == 0) {
+      point.peakBytes = frame.peakBytes;
+      for (const PassRecord& pass : frame.passes) {
+        point.passOrder.push_back(pass.name);
+        point.passBytes[pass.name] = pass.bytes;
+      }
+    }
+    for (const PassRecord& pass : frame.passes) {
+      deviceMs[pass.name].push_back(pass.deviceMs);
+      hostMs[pass.name].push_back(pass.hostMs);
+    }
+  }
+  for (int repeat = 0; repeat < std::max(1, context.options.repeats); ++repeat)
+    nextMs.push_back(
+        executor.render(time + (repeat + 1) * kNextFrame, repeat + 1, PipelineExecutor::Pictures::no)
+            .frameMs);
+
+  point.frameMs = statisticsOf(frameMs);
+  point.nextFrameMs = statisticsOf(nextMs);
+  point.frameworkShare = shares.empty() ? 0.0 : statisticsOf(shares).median;
+  for (auto& [name, values] : deviceMs) point.passDeviceMs[name] = statisticsOf(std::move(values));
+  for (auto& [name, values] : hostMs) point.passHostMs[name] = statisticsOf(std::move(values));
+}
+
+}  // namespace lumivox::report

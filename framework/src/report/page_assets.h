@@ -1,0 +1,9 @@
+// The page's style and script.
+#pragma once
+
+namespace lumivox::report {
+
+extern const char* const kPageStyle;
+extern const char* const kPageScript;
+
+}  // namespace lumivox::report

@@ -1,0 +1,129 @@
+// What leaving out saves, and the whole picture of a pipeline.
+#include <cmath>
+#include <cstring>
+
+#include "lumivox/base/error.h"
+#include "lumivox/report/report.h"
+
+namespace lumivox {
+namespace {
+
+bool sameBits(const Picture& a, const Picture& b) {
+  return a.sameShape(b) && (a.values().empty() || std::memcmp(a.values().data(), b.values().data(),
+                                                              a.values().size() * sizeof(float)) == 0);
+}
+
+bool sameBits(const FrameResult& a, const FrameResult& b) {
+  if (a.outputs.size() != b.outputs.size()) return false;
+  for (const auto& [name, picture] : a.outputs) {
+    const auto other = b.outputs.find(name);
+    if (other == b.outputs.end() || !sameBits(picture, other->second)) return false;
+  }
+  return true;
+}
+
+/// Times of several frames of one executor.
+struct Series {
+  std::vector<double> frameMs;
+  std::map<std::string, std::vector<double>> passMs;
+
+  void add(const FrameResult& frame) {
+    frameMs.push_back(frame.frameMs);
+    for (const PassRecord& pass : frame.passes)
+      if (pass.ran) passMs[pass.name].push_back(pass.deviceMs);
+  }
+  std::map<std::string, TimingStatistics> passStatistics() const {
+    std::map<std::string, TimingStatistics> statistics;
+    for (const auto& [name, values] : passMs) statistics[name] = statisticsOf(values);
+    return statistics;
+  }
+};
+
+}  // namespace
+
+std::uint64_t PruningRecord::prunedBytes() const {
+  return sumOf(prunedPassBytes);
+}
+std::uint64_t PruningRecord::unprunedBytes() const {
+  return sumOf(unprunedPassBytes);
+}
+double PruningRecord::savedShare() const {
+  return unprunedMs.median > 0.0 ? 1.0 - prunedMs.median / unprunedMs.median : 0.0;
+}
+
+PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, const Scene& scene,
+                             const Pipeline& pipeline, RenderOptions options, double time, int repeats) {
+  options.health = false;
+  options.keepEverything = false;
+  PipelineExecutor pruned(device, techniques, scene, pipeline, options);
+  options.keepEverything = true;
+  PipelineExecutor unpruned(device, techniques, scene, pipeline, options);
+
+  PruningRecord record;
+  record.scene = scene.file.string();
+  record.pipeline = pipeline.file.string();
+  // The warm-up frames give the pictures and the bytes of each pass.
+  {
+    const FrameResult prunedFrame = pruned.render(time);
+    const FrameResult unprunedFrame = unpruned.render(time);
+    record.samePicture = sameBits(prunedFrame, unprunedFrame);
+    for (const PassRecord& pass : prunedFrame.passes) record.prunedPassBytes[pass.name] = pass.bytes;
+    for (const PassRecord& pass : unprunedFrame.passes) {
+      record.unprunedPassBytes[pass.name] = pass.bytes;
+      record.passOrder.push_back(pass.name);
+    }
+  }
+  // Alternately, so that a machine that grows slower or faster meanwhile does so for both.
+  Series prunedSeries, unprunedSeries;
+  for (int repeat = 0; repeat < std::max(1, repeats); ++repeat) {
+    pruned.invalidate();
+    prunedSeries.add(pruned.render(time, 0, PipelineExecutor::Pictures::no));
+    unpruned.invalidate();
+    unprunedSeries.add(unpruned.render(time, 0, PipelineExecutor::Pictures::no));
+  }
+  record.prunedMs = statisticsOf(prunedSeries.frameMs);
+  record.unprunedMs = statisticsOf(unprunedSeries.frameMs);
+  record.prunedPassMs = prunedSeries.passStatistics();
+  record.unprunedPassMs = unprunedSeries.passStatistics();
+
+  record.explanation = pruned.explain();
+  record.prunedBytes = record.explanation.poolBytes;
+  record.unprunedBytes = unpruned.explain().poolBytes;
+  for (LeftOut& leftOut : record.explanation.leftOut) {
+    const auto unprunedTime = record.unprunedPassMs.find(leftOut.pass);
+    if (leftOut.level != LeftOut::Level::pass || unprunedTime == record.unprunedPassMs.end()) continue;
+    if (record.prunedPassMs.count(leftOut.pass) != 0) continue;
+    leftOut.savedMs = unprunedTime->second.median;
+    if (leftOut.savedBytes == 0) leftOut.savedBytes = record.unprunedPassBytes[leftOut.pass];
+  }
+  return record;
+}
+
+Picture compositePicture(const FrameResult& frame) {
+  const auto named = frame.outputs.find("final");
+  if (named != frame.outputs.end()) return named->second;
+  for (const auto& [name, component] : frame.components)
+    if (component == Contributes::final)
+      if (const auto found = frame.outputs.find(name); found != frame.outputs.end()) return found->second;
+
+  Picture sum;
+  for (const auto& [name, picture] : frame.outputs) {
+    const auto component = frame.components.find(name);
+    if (component == frame.components.end() || picture.empty()) continue;
+    const bool radiance =
+        component->second == Contributes::direct || component->second == Contributes::indirectDiffuse ||
+        component->second == Contributes::indirectGlossy || component->second == Contributes::scattered;
+    if (!radiance) continue;
+    if (sum.empty()) {
+      sum = picture;
+      continue;
+    }
+    if (!sum.sameShape(picture))
+      throw Error("output '" + name +
+                  "': its picture has another size or number of channels than the others");
+    for (std::size_t i = 0; i < sum.values().size(); ++i) sum.values()[i] += picture.values()[i];
+  }
+  return sum;
+}
+
+}  // namespace lumivox

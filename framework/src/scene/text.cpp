@@ -1,0 +1,232 @@
+#include "lumivox/scene/text.h"
+
+#include <numbers>
+
+namespace lumivox {
+namespace {
+
+using dsl::BlockSpecification;
+using dsl::Dimension;
+using dsl::HeaderUse;
+using dsl::PropertySpecification;
+using dsl::PropertyType;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+// The widest picture of OpenGL 4.5's guaranteed minimum texture size.
+constexpr double kLargestPicture = 16384;
+// Beyond it Phong lobes are narrower than single precision resolves: cos^n of one ulp below 1 is already
+// exp(-n 6e-8).
+constexpr double kLargestExponent = 1e6;
+constexpr double kSmallestScale = 1e-9, kLargestScale = 1e9;
+
+/// A property that is being described; each step returns it, so that a table row reads as one line.
+struct Row {
+  PropertySpecification specification;
+
+  Row(const char* word, PropertyType type, const char* meaning, Dimension dimension = dsl::kNoDimension) {
+    specification.word = word;
+    specification.type = type;
+    specification.dimension = dimension;
+    specification.meaning = meaning;
+  }
+  Row from(double low) const { return between(low, specification.high); }
+  Row between(double low, double high) const {
+    Row row = *this;
+    row.specification.low = low;
+    row.specification.high = high;
+    return row;
+  }
+  Row required() const {
+    Row row = *this;
+    row.specification.required = true;
+    return row;
+  }
+  Row byDefault(const char* text) const {
+    Row row = *this;
+    row.specification.defaultText = text;
+    return row;
+  }
+  operator PropertySpecification() const { return specification; }  // NOLINT: rows become table entries
+};
+
+BlockSpecification block(const char* word, HeaderUse name, const char* meaning,
+                         std::vector<PropertySpecification> properties) {
+  BlockSpecification result;
+  result.word = word;
+  result.name = name;
+  result.meaning = meaning;
+  result.properties = std::move(properties);
+  return result;
+}
+
+BlockSpecification camera() {
+  BlockSpecification key =
+      block("key", HeaderUse::none,
+            "a point of the camera's path; between keys eye and target move linearly, outside they rest",
+            {Row("time", PropertyType::number, "when the camera is there", dsl::kTime).required(),
+             Row("eye", PropertyType::vector3, "where it is", dsl::kLength).required(),
+             Row("target", PropertyType::vector3, "where it looks", dsl::kLength).required()});
+  BlockSpecification result =
+      block("camera", HeaderUse::required,
+            "a pinhole camera with square pixels; the first one is used unless another is asked for",
+            {Row("eye", PropertyType::vector3, "position; required without keys", dsl::kLength),
+             Row("target", PropertyType::vector3,
+                 "the point in the middle of the picture; required without keys", dsl::kLength),
+             Row("up", PropertyType::vector3, "the direction that is up in the picture").byDefault("0 1 0"),
+             Row("fov", PropertyType::number, "full vertical angle of view", dsl::kAngle)
+                 .between(0.1 * kDegree, 179.0 * kDegree)
+                 .byDefault("40 deg"),
+             Row("resolution", PropertyType::resolution, "width and height of the picture in pixels")
+                 .between(1, kLargestPicture)
+                 .byDefault("256 256")});
+  result.blocks = {key};
+  result.required = true;
+  return result;
+}
+
+BlockSpecification material() {
+  return block(
+      "material", HeaderUse::required,
+      "Lambert diffuse/pi plus Phong specular (n+2)/(2 pi) cos^n about the mirror direction",
+      {Row("diffuse", PropertyType::oneOrThree, "diffuse albedo, multiplied by the texture")
+           .between(0, 1)
+           .byDefault("0"),
+       Row("specular", PropertyType::oneOrThree,
+           "Phong albedo at normal incidence; diffuse + specular is at most 1")
+           .between(0, 1)
+           .byDefault("0"),
+       Row("exponent", PropertyType::number, "Phong exponent n").between(0, kLargestExponent).byDefault("1"),
+       Row("emission", PropertyType::oneOrThree, "radiance of the front side in W/(sr m^2)")
+           .from(0)
+           .byDefault("0"),
+       Row("texture", PropertyType::text,
+           "picture file that multiplies diffuse; sRGB values are made linear"),
+       Row("mask", PropertyType::text,
+           "picture file of coverage (alpha, else the first channel); below a half is a hole")});
+}
+
+BlockSpecification mesh() {
+  BlockSpecification use =
+      block("use", HeaderUse::none,
+            "gives another material to a part or to what an MTL material covers; later ones win",
+            {Row("part", PropertyType::name, "object or group of the file; * and ? match any letters"),
+             Row("mtl", PropertyType::name, "material name in the file; * and ? match any letters"),
+             Row("material", PropertyType::name, "the material block to use").required()});
+  BlockSpecification without =
+      block("without", HeaderUse::none, "leaves out a part or what an MTL material covers",
+            {Row("part", PropertyType::name, "object or group of the file; * and ? match any letters"),
+             Row("mtl", PropertyType::name, "material name in the file; * and ? match any letters")});
+  BlockSpecification result =
+      block("mesh", HeaderUse::required,
+            "a model; its objects and groups are named MESH/OBJECT, a file without any is MESH alone",
+            {Row("file", PropertyType::text,
+                 "OBJ file, also .obj.gz, beside the scene text or on the asset path; ## stands for the "
+                 "frame number of a sequence")
+                 .required(),
+             Row("material", PropertyType::name, "one material for the whole mesh in place of the file's"),
+             Row("crease", PropertyType::number,
+                 "makes smooth normals anew where faces meet at no more than this angle, 0 deg for flat "
+                 "faces; without it the file's "
+                 "normals hold and only missing ones are made, with 30 deg",
+                 dsl::kAngle)
+                 .between(0, 180.0 * kDegree),
+             Row("scale", PropertyType::oneOrThree, "size of the file's unit in metres; done first")
+                 .between(kSmallestScale, kLargestScale)
+                 .byDefault("1"),
+             Row("rotate", PropertyType::axisAndNumber, "turn about an axis through the origin; done second",
+                 dsl::kAngle),
+             Row("translate", PropertyType::vector3, "shift; done last", dsl::kLength).byDefault("0 0 0"),
+             Row("sequence", PropertyType::range,
+                 "first and last frame of a deforming mesh with equal faces in all files")
+                 .between(0, 1e6),
+             Row("rate", PropertyType::number, "frames of the sequence per second")
+                 .between(1e-3, 1e4)
+                 .byDefault("24"),
+             Row("loop", PropertyType::flag, "after the last frame of the sequence comes the first")
+                 .byDefault("on")});
+  result.blocks = {use, without};
+  return result;
+}
+
+BlockSpecification light() {
+  BlockSpecification result =
+      block("light", HeaderUse::optional, "a source of light; emissive materials shine too", {});
+  result.kinds = {"area", "directional", "point", "spot"};
+  const PropertySpecification position =
+      Row("position", PropertyType::vector3, "where it is", dsl::kLength).required();
+  const PropertySpecification direction =
+      Row("direction", PropertyType::vector3, "the way the light travels").required();
+  const PropertySpecification intensity =
+      Row("intensity", PropertyType::oneOrThree, "radiant intensity in W/sr").from(0).required();
+  const auto halfAngle = [](const char* word, const char* meaning) {
+    return Row(word, PropertyType::number, meaning, dsl::kAngle).between(0, 90.0 * kDegree).required();
+  };
+  result.kindProperties = {
+      {"area",
+       {Row("mesh", PropertyType::name, "MESH or MESH/OBJECT whose triangles shine from their front sides")
+            .required(),
+        Row("radiance", PropertyType::oneOrThree, "emitted radiance in W/(sr m^2)").from(0).required()}},
+      {"directional",
+       {direction,
+        Row("irradiance", PropertyType::oneOrThree, "on a plane perpendicular to the light, in W/m^2")
+            .from(0)
+            .required()}},
+      {"point", {position, intensity}},
+      {"spot",
+       {position, direction, intensity,
+        halfAngle("inner", "half angle from the axis up to which the intensity is full"),
+        halfAngle("outer", "half angle from the axis where the light ends")}}};
+  return result;
+}
+
+BlockSpecification medium() {
+  return block(
+      "medium", HeaderUse::required, "a participating medium with Henyey-Greenstein scattering",
+      {Row("extinction", PropertyType::oneOrThree, "extinction coefficient sigma_t", dsl::kInverseLength)
+           .from(0)
+           .required(),
+       Row("albedo", PropertyType::oneOrThree, "scattering / extinction").between(0, 1).byDefault("0"),
+       Row("anisotropy", PropertyType::number, "mean cosine g of the scattering angle")
+           .between(-0.999, 0.999)
+           .byDefault("0"),
+       Row("particles", PropertyType::integer,
+           "number of particles; 0 for a medium that fills the scene evenly")
+           .between(0, 1e8)
+           .byDefault("0"),
+       Row("source", PropertyType::vector3, "where particles start", dsl::kLength).byDefault("0 0 0"),
+       Row("radius", PropertyType::number, "radius of a particle's cloud", dsl::kLength)
+           .from(0)
+           .byDefault("0"),
+       Row("rise", PropertyType::number, "speed of rising particles", dsl::kSpeed).byDefault("0")});
+}
+
+std::vector<BlockSpecification> makeSpecifications() {
+  BlockSpecification environment =
+      block("environment", HeaderUse::none,
+            "constant radiance from all directions, seen by rays that miss everything",
+            {Row("radiance", PropertyType::oneOrThree, "in W/(sr m^2)").from(0).required()});
+  environment.repeatable = false;
+  BlockSpecification animate =
+      block("animate", HeaderUse::required,
+            "rigid motion of MESH or MESH/OBJECT: turns about a point while it moves along a line",
+            {Row("rotate", PropertyType::axisAndNumber, "axis and angular speed", dsl::kAngularSpeed),
+             Row("translate", PropertyType::vector3, "velocity", dsl::kSpeed),
+             Row("about", PropertyType::vector3,
+                 "a point on the axis; without it the centre of the bounds of what moves", dsl::kLength)});
+  BlockSpecification scene =
+      block("scene", HeaderUse::required,
+            "a scene: metres, seconds, Y up, right-handed; all light is linear, in Rec. 709 primaries", {});
+  scene.blocks = {camera(), material(), mesh(), light(), environment, medium(), animate};
+  scene.repeatable = false;
+  scene.required = true;
+  return {scene};
+}
+
+}  // namespace
+
+const std::vector<dsl::BlockSpecification>& sceneSpecifications() {
+  static const std::vector<dsl::BlockSpecification> specifications = makeSpecifications();
+  return specifications;
+}
+
+}  // namespace lumivox

@@ -1,0 +1,210 @@
+#include "lumivox/shader/library.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "lumivox/base/error.h"
+
+namespace lumivox::shader {
+namespace {
+
+using gpu::ResourceBinding;
+
+std::string programName(const BoundProgram& program) {
+  return program.program->name();
+}
+
+BindingKind kindOf(const ResourceBinding& binding) {
+  // In the order of the alternatives of ResourceBinding::resource.
+  constexpr BindingKind kKinds[] = {BindingKind::sampled, BindingKind::image, BindingKind::storage,
+                                    BindingKind::uniform};
+  return kKinds[binding.resource.index()];
+}
+
+const char* name(gpu::TextureKind kind) {
+  switch (kind) {
+    case gpu::TextureKind::d2:
+      return "a picture";
+    case gpu::TextureKind::d2Array:
+      return "an array of pictures";
+    case gpu::TextureKind::d3:
+      return "a volume";
+  }
+  return "";
+}
+
+/// What is wrong with giving this resource to this binding; empty when nothing is.
+struct Mismatch {
+  const PackedBinding& expected;
+
+  std::string texture(const gpu::Texture* given) const {
+    if (given == nullptr) return "no texture is given";
+    const gpu::TextureDescription& d = given->description();
+    if (d.kind != expected.textureKind) {
+      return fmt::format("texture '{}' is {}, but the shader reads {}", given->label(), name(d.kind),
+                         name(expected.textureKind));
+    }
+    return {};
+  }
+
+  std::string operator()(const ResourceBinding::Sampled& sampled) const {
+    if (std::string wrong = texture(sampled.texture); !wrong.empty()) return wrong;
+    if (expected.shadow != (sampled.sampling == gpu::Sampling::shadow)) {
+      return expected.shadow ? "the shader compares depth; use Sampling::shadow"
+                             : "the shader does not compare depth, as Sampling::shadow does";
+    }
+    return {};
+  }
+  std::string operator()(const ResourceBinding::StorageImage& image) const {
+    if (std::string wrong = texture(image.texture); !wrong.empty()) return wrong;
+    const gpu::TextureDescription& d = image.texture->description();
+    if (expected.format && d.format != *expected.format) {
+      return fmt::format("texture '{}' holds {}, but the shader declares {}", image.texture->label(),
+                         gpu::name(d.format), gpu::name(*expected.format));
+    }
+    if (image.level < 0 || image.level >= d.levels) {
+      return fmt::format("texture '{}' has {} levels, and level {} is not one of them",
+                         image.texture->label(), d.levels, image.level);
+    }
+    return {};
+  }
+  std::string operator()(const ResourceBinding::Storage& storage) const {
+    if (storage.buffer == nullptr) return "no buffer is given";
+    return block(storage.buffer->sizeBytes());
+  }
+  std::string operator()(const ResourceBinding::Uniform& uniform) const {
+    return block(uniform.bytes.size());
+  }
+
+  std::string block(std::uint64_t bytes) const {
+    if (bytes >= expected.minimumBytes) return {};
+    return fmt::format("{} bytes are given, but the shader's block needs at least {}", bytes,
+                       expected.minimumBytes);
+  }
+};
+
+struct ProgramKey {
+  std::string technique, program;
+  std::vector<int> values;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> constants;
+  auto operator<=>(const ProgramKey&) const = default;
+};
+
+}  // namespace
+
+struct ShaderLibrary::State {
+  gpu::Device& device;
+  std::map<std::string, ShaderPack> packs;
+  std::map<ProgramKey, BoundProgram> programs;
+};
+
+ShaderLibrary::ShaderLibrary(gpu::Device& device) : state_(new State{device, {}, {}}) {}
+ShaderLibrary::~ShaderLibrary() = default;
+
+void ShaderLibrary::addPack(ShaderPack pack) {
+  const std::string technique = pack.technique;
+  if (!state_->packs.emplace(technique, std::move(pack)).second) {
+    throw Error(fmt::format("the shaders of technique {} are loaded already", technique));
+  }
+}
+
+const BoundProgram& ShaderLibrary::program(const ProgramName& name, const VariantKey& variant,
+                                           const std::vector<gpu::SpecialisationValue>& constants) {
+  ProgramKey key{name.technique, name.program, variant.values, {}};
+  for (const gpu::SpecialisationValue& constant : constants)
+    key.constants.emplace_back(constant.id, constant.bits);
+  std::sort(key.constants.begin(), key.constants.end());
+  if (const auto found = state_->programs.find(key); found != state_->programs.end()) return found->second;
+
+  const auto pack = state_->packs.find(name.technique);
+  if (pack == state_->packs.end())
+    throw Error(fmt::format("the shaders of technique {} are not loaded", name.technique));
+  const PackedProgram& packed = pack->second.program(name.program);
+  const PackedVariant* found = packed.find(variant);
+  if (found == nullptr) {
+    throw Error(fmt::format("shader program {}/{} has no variant {}: {}", name.technique, name.program,
+                            variant.values.empty() ? "without axis values" : packed.text(variant.values),
+                            variant.values.size() != packed.axes.size()
+                                ? fmt::format("it has {} axes", packed.axes.size())
+                                : "its constraints exclude it"));
+  }
+  std::vector<gpu::StageCode> stages;
+  for (const PackedStage& stage : found->stages) {
+    const PackedCode& code = pack->second.codes[stage.code];
+    stages.push_back({stage.stage, code.spirv, code.glsl});
+  }
+  std::string label = fmt::format("{}/{}", name.technique, name.program);
+  if (!variant.values.empty()) label += " [" + packed.text(variant.values) + "]";
+  BoundProgram bound{std::make_unique<gpu::Program>(state_->device, std::move(label), stages, constants),
+                     &packed, found};
+  return state_->programs.emplace(std::move(key), std::move(bound)).first->second;
+}
+
+std::vector<ResourceBinding> ShaderLibrary::select(const BoundProgram& program,
+                                                   const std::vector<ResourceBinding>& bindings) {
+  std::vector<ResourceBinding> selected;
+  selected.reserve(program.variant->bindingsUsed.size());
+  for (const std::uint32_t index : program.variant->bindingsUsed) {
+    const PackedBinding& expected = program.packed->bindings[index];
+    const auto given = std::find_if(bindings.begin(), bindings.end(), [&](const ResourceBinding& binding) {
+return kindOf(binding) == expected.kind && expected.name == binding.name;
+    });
+    const auto refuse = [&](const std::string& why) {
+      throw Error(fmt::format("shader program {}: {} '{}' (binding {}): {}", programName(program),
+                              shader::name(expected.kind), expected.name, expected.binding, why));
+    };
+    if (given == bindings.end()) {
+      refuse("nothing is bound to it");
+    } else {
+      const std::string wrong = std::visit(Mismatch{expected}, given->resource);
+      if (!wrong.empty()) refuse(wrong);
+      selected.push_back(*given);
+    }
+  }
+  return selected;
+}
+
+void ShaderLibrary::dispatch(const BoundProgram& program, const std::vector<ResourceBinding>& bindings,
+                             glm::uvec3 groups) {
+  state_->device.dispatch(*program.program, select(program, bindings), groups);
+}
+
+void ShaderLibrary::dispatchIndirect(const BoundProgram& program,
+                                     const std::vector<ResourceBinding>& bindings,
+                                     const gpu::Buffer& arguments, std::uint64_t offsetBytes) {
+  state_->device.dispatchIndirect(*program.program, select(program, bindings), arguments, offsetBytes);
+}
+
+void ShaderLibrary::drawIndexed(const BoundProgram& program, const std::vector<ResourceBinding>& bindings,
+                                const gpu::Buffer& indices, std::uint32_t firstIndex,
+                                std::uint32_t indexCount) {
+  state_->device.drawIndexed(*program.program, select(program, bindings), indices, firstIndex, indexCount);
+}
+
+void ShaderLibrary::draw(const BoundProgram& program, const std::vector<ResourceBinding>& bindings,
+                         std::uint32_t vertexCount) {
+  state_->device.draw(*program.program, select(program, bindings), vertexCount);
+}
+
+std::map<std::string, ShaderLibrary::Usage> ShaderLibrary::usage() const {
+  std::map<std::string, Usage> usage;
+  for (const auto& [technique, pack] : state_->packs) {
+    for (const PackedProgram& program : pack.programs) {
+      usage[technique + "/" + program.name] = {program.possible, program.variants.size(), {}};
+    }
+  }
+  for (const auto& [key, bound] : state_->programs)
+    usage[key.technique + "/" + key.program].needed.insert(key.values);
+  return usage;
+}
+
+const std::map<std::string, ShaderPack>& ShaderLibrary::packs() const {
+  return state_->packs;
+}
+gpu::Device& ShaderLibrary::device() {
+  return state_->device;
+}
+
+}  // namespace lumivox::shader

@@ -1,0 +1,236 @@
+#include "lumivox/shader/pack.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "shader/bytes.h"
+
+namespace lumivox::shader {
+namespace {
+
+constexpr std::string_view kMagic{"LVXSHPK\n", 8};
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kHeaderBytes = 8 + 4 + 8 + 16;  // magic, version, size and hash of the content
+constexpr std::uint64_t kLimitBytes = std::uint64_t{1} << 30;
+
+// One list of members for both directions: Archive is a ByteWriter or a ByteReader.
+template <class Archive, class Binding>
+void exchangeBinding(Archive& archive, Binding& binding) {
+  archive.value(binding.name);
+  archive.value(binding.kind);
+  archive.value(binding.binding);
+  archive.value(binding.type);
+  archive.value(binding.textureKind);
+  archive.value(binding.shadow);
+  archive.value(binding.minimumBytes);
+}
+
+template <class Archive, class Program>
+void exchangeProgram(Archive& archive, Program& program) {
+  archive.value(program.name);
+  archive.each(program.axes, [&](auto& axis) {
+    archive.value(axis.name);
+    archive.value(axis.values);
+    archive.value(axis.named);
+  });
+  archive.each(program.constants, [&](auto& constant) {
+    archive.value(constant.name);
+    archive.value(constant.id);
+    archive.value(constant.type);
+    archive.value(constant.defaultBits);
+  });
+  archive.each(program.variants, [&](auto& variant) {
+    archive.value(variant.values);
+    archive.value(variant.bindingsUsed);
+  });
+}
+
+void writeContent(ByteWriter& out, const ShaderPack& pack) {
+  out.value(pack.technique);
+  out.each(pack.programs, [&](const PackedProgram& program) {
+    exchangeProgram(out, program);
+    out.value(std::uint64_t{program.possible});
+    out.each(program.bindings, [&](const PackedBinding& binding) {
+      exchangeBinding(out, binding);
+      out.value(static_cast<std::int32_t>(binding.format ? static_cast<int>(*binding.format) : -1));
+    });
+    for (const PackedVariant& variant : program.variants) {
+      out.each(variant.stages, [&](const PackedStage& stage) {
+        out.value(stage.stage);
+        out.value(std::uint64_t{stage.code});
+      });
+    }
+  });
+  out.each(pack.codes, [&](const PackedCode& code) {
+    out.value(code.hash.high);
+    out.value(code.hash.low);
+    out.value(code.spirv);
+    out.value(code.glsl);
+  });
+}
+
+/// An index or an enumerator beyond its end; only a wrong writer can cause it, since the checksum has been
+/// checked.
+struct OutOfRange {};
+
+template <class Value>
+void requireBelow(Value value, std::uint64_t end) {
+  if (static_cast<std::uint64_t>(value) >= end) throw OutOfRange{};
+}
+
+void readContent(ByteReader& in, ShaderPack& pack) {
+  constexpr std::uint64_t kFormats = static_cast<std::uint64_t>(gpu::Format::depth32f) + 1;
+  in.value(pack.technique);
+  in.each(pack.programs, [&](PackedProgram& program) {
+    exchangeProgram(in, program);
+    std::uint64_t possible = 0;
+    in.value(possible);
+    program.possible = possible;
+    in.each(program.bindings, [&](PackedBinding& binding) {
+      exchangeBinding(in, binding);
+      requireBelow(static_cast<int>(binding.kind), 4);
+      std::int32_t format = -1;
+      in.value(format);
+      if (format >= 0) {
+        requireBelow(format, kFormats);
+        binding.format = static_cast<gpu::Format>(format);
+      }
+    });
+    for (PackedVariant& variant : program.variants) {
+      if (variant.values.size() != program.axes.size()) throw OutOfRange{};
+      for (const std::uint32_t used : variant.bindingsUsed) requireBelow(used, program.bindings.size());
+      in.each(variant.stages, [&](PackedStage& stage) {
+        in.value(stage.stage);
+        requireBelow(static_cast<int>(stage.stage), 4);
+        std::uint64_t code = 0;
+        in.value(code);
+        stage.code = code;
+      });
+    }
+  });
+  in.each(pack.codes, [&](PackedCode& code) {
+    in.value(code.hash.high);
+    in.value(code.hash.low);
+    in.value(code.spirv);
+    in.value(code.glsl);
+  });
+  for (const PackedProgram& program : pack.programs) {
+    for (const PackedVariant& variant : program.variants) {
+      for (const PackedStage& stage : variant.stages) requireBelow(stage.code, pack.codes.size());
+    }
+  }
+}
+
+}  // namespace
+
+int Axis::value(std::size_t index) const {
+  if (named) return static_cast<int>(index);
+  int number = 0;
+  const std::string& text = values[index];
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+std::string Axis::text(int value) const {
+  if (named && value >= 0 && static_cast<std::size_t>(value) < values.size())
+    return values[static_cast<std::size_t>(value)];
+  return std::to_string(value);
+}
+
+const char* name(BindingKind kind) {
+  switch (kind) {
+    case BindingKind::sampled:
+      return "sampled texture";
+    case BindingKind::image:
+      return "image";
+    case BindingKind::storage:
+      return "storage buffer";
+    case BindingKind::uniform:
+      return "uniform block";
+  }
+  return "";
+}
+
+const PackedVariant* PackedProgram::find(const VariantKey& key) const {
+  const auto found = std::find_if(variants.begin(), variants.end(),
+                                  [&](const auto& variant) { return variant.values == key.values; });
+  return found == variants.end() ? nullptr : &*found;
+}
+
+std::string PackedProgram::text(const std::vector<int>& values) const {
+  std::string text;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) text += ' ';
+    text += i < axes.size() ? axes[i].name + "=" + axes[i].text(values[i]) : std::to_string(values[i]);
+  }
+  return text;
+}
+
+const PackedProgram& ShaderPack::program(const std::string& wanted) const {
+  std::vector<std::string> names;
+  for (const PackedProgram& program : programs) {
+    if (program.name == wanted) return program;
+    names.push_back(program.name);
+  }
+  throw Error(fmt::format("technique {} has no shader program '{}'; it has {}", technique, wanted,
+                          fmt::join(names, ", ")));
+}
+
+ShaderPack readShaderPack(const std::filesystem::path& path) {
+  const std::string file = readFile(path, kLimitBytes);
+  const auto refuse = [&](const std::string& why) {
+    throw Error(fmt::format("{}: {}; rebuild the shaders", path.string(), why));
+  };
+  if (std::string_view(file).substr(0, kMagic.size()) !=
+          kMagic.substr(0, std::min(kMagic.size(), file.size())) ||
+      file.empty()) {
+    refuse("not a shader pack");
+  }
+  if (file.size() < kHeaderBytes) refuse("the shader pack is truncated");
+  std::uint32_t version = 0;
+  std::uint64_t size = 0;
+  ContentHash expected;
+  ByteReader header(std::string_view(file).substr(kMagic.size()));
+  header.value(version);
+  header.value(size);
+  header.value(expected.high);
+  header.value(expected.low);
+  if (version != kVersion)
+    refuse(fmt::format("the shader pack has version {}, expected {}", version, kVersion));
+  const std::string_view content = std::string_view(file).substr(kHeaderBytes);
+  if (content.size() < size) {
+    refuse(fmt::format("the shader pack is truncated: {} of {} bytes", content.size(), size));
+  }
+  if (content.size() > size) refuse("the shader pack is followed by other data");
+  if (hashOf(content) != expected) refuse("the shader pack is damaged (wrong checksum)");
+  ShaderPack pack;
+  pack.hash = expected;
+  try {
+    ByteReader reader(content);
+    readContent(reader, pack);
+    if (!reader.atEnd()) refuse("the shader pack is damaged (more content than expected)");
+  } catch (const Truncated&) {
+    refuse("the shader pack is damaged (less content than expected)");
+  } catch (const OutOfRange&) {
+    refuse("the shader pack is damaged (an index is out of range)");
+  }
+  return pack;
+}
+
+void writeShaderPack(const std::filesystem::path& path, const ShaderPack& pack) {
+  ByteWriter content;
+  writeContent(content, pack);
+  const ContentHash hash = hashOf(content.bytes());
+  ByteWriter header;
+  header.value(kVersion);
+  header.value(std::uint64_t{content.bytes().size()});
+  header.value(hash.high);
+  header.value(hash.low);
+  writeFileAtomically(path, std::string(kMagic) + header.bytes() + content.bytes());
+}
+
+}  // namespace lumivox::shader

@@ -1,0 +1,74 @@
+// Direct light: an array of point samples with shadow views. C++ side: techniques/direct_lighting/light_samples.h, port ShadowMap.
+#ifndef LUMIVOX_LIGHTS
+#define LUMIVOX_LIGHTS
+#include "common/constants.glsl"
+
+const int kLightDirectional = 0;
+const int kLightPoint = 1;
+const int kLightSpot = 2;
+const int kLightArea = 3;  // one sample of an emissive triangle
+
+struct LightSample {
+  vec4 positionKind;    // xyz posWorld, w kind
+  vec4 directionLayer;  // xyz the way the light travels (area: normal of the front side), w first shadow layer, -1 without shadow
+  vec4 power;           // directional: irradiance W/m^2; point, spot: intensity W/sr; area: radiance times area W/sr;
+                        // w: shadow views, 1 or the 6 faces of a cube
+  vec4 shape;           // x cos inner, y cos outer of a spot; z width of a shadow texel, in metres (directional) or per metre of
+                        // distance; w squared radius of the patch that an area sample stands for
+};
+
+layout(std430, binding = 5) readonly buffer Lights { LightSample lights[]; };
+#ifdef SHADOW_VIEWS
+layout(std430, binding = 6) readonly buffer Views { mat4 views[]; };
+layout(binding = 7) uniform sampler2DArrayShadow shadowDepth;
+#endif
+
+// Irradiance on a plane perpendicular to the arriving light, W/m^2, without visibility; toLight is made unit length.
+vec3 arrivingIrradiance(LightSample light, vec3 posWorld, out vec3 toLight) {
+  int kind = int(light.positionKind.w);
+  if (kind == kLightDirectional) {
+    toLight = -light.directionLayer.xyz;
+    return light.power.rgb;
+  }
+  vec3 path = light.positionKind.xyz - posWorld;
+  toLight = normalize(path);
+  // A disc of radius r seen from its axis at distance d gives pi r^2 L / (d^2 + r^2); for a point r is 0.
+  float distanceSquared = dot(path, path) + light.shape.w;
+  float cosLight = dot(-toLight, light.directionLayer.xyz);
+  float shape = 1.0;
+  if (kind == kLightSpot) shape = smoothstep(light.shape.y, light.shape.x, cosLight);
+  if (kind == kLightArea) shape = max(0.0, cosLight);
+  return light.power.rgb * (shape / distanceSquared);
+}
+
+#ifdef SHADOW_VIEWS
+// Face of a cube map that holds a direction: +x -x +y -y +z -z.
+int cubeFace(vec3 direction) {
+  vec3 size = abs(direction);
+  if (size.x >= size.y && size.x >= size.z) return direction.x >= 0.0 ? 0 : 1;
+  if (size.y >= size.z) return direction.y >= 0.0 ? 2 : 3;
+  return direction.z >= 0.0 ? 4 : 5;
+}
+
+// Visible fraction in [0,1]. The point is moved along its normal by a texel of the shadow view, so that a surface does not shadow
+// itself (normal offset); geometricNormal faces the side that is lit.
+float visibility(LightSample light, vec3 posWorld, vec3 geometricNormal, vec3 toLight) {
+  int layer = int(light.directionLayer.w);
+  if (layer < 0) return 1.0;
+  int kind = int(light.positionKind.w);
+  vec3 path = posWorld - light.positionKind.xyz;
+  float texel = light.shape.z * (kind == kLightDirectional ? 1.0 : length(path));
+  float sine = sqrt(max(0.0, 1.0 - dot(geometricNormal, toLight) * dot(geometricNormal, toLight)));
+  vec3 lookup = posWorld + geometricNormal * (texel * (0.5 + 1.5 * sine));
+  if (light.power.w > 1.0) layer += cubeFace(lookup - light.positionKind.xyz);
+  vec4 clip = views[layer] * vec4(lookup, 1.0);
+  if (clip.w <= 0.0) return 1.0;
+  vec3 projected = clip.xyz / clip.w;
+  // Row 0 of a shadow layer is its top, as in every texture that is drawn to.
+  vec2 texcoord = vec2(0.5 + 0.5 * projected.x, 0.5 - 0.5 * projected.y);
+  if (any(lessThan(texcoord, vec2(0.0))) || any(greaterThan(texcoord, vec2(1.0)))) return 1.0;
+  return texture(shadowDepth, vec4(texcoord, float(layer), min(projected.z, 1.0)));
+}
+#endif
+
+#endif

@@ -1,0 +1,28 @@
+#version 450
+// The picture is the sum of its components. The input that is absent adds nothing.
+#pragma lumivox axis DIFFUSE 0 1
+#pragma lumivox axis GLOSSY 0 1
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(binding = 0) uniform sampler2D directRadiance;
+#if DIFFUSE
+layout(binding = 1) uniform sampler2D diffuseRadiance;
+#endif
+#if GLOSSY
+layout(binding = 2) uniform sampler2D glossyRadiance;
+#endif
+layout(binding = 0, rgba32f) uniform writeonly image2D radianceImage;
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, imageSize(radianceImage)))) return;
+  vec3 radiance = texelFetch(directRadiance, pixel, 0).rgb;
+#if DIFFUSE
+  radiance += texelFetch(diffuseRadiance, pixel, 0).rgb;
+#endif
+#if GLOSSY
+  radiance += texelFetch(glossyRadiance, pixel, 0).rgb;
+#endif
+  imageStore(radianceImage, pixel, vec4(radiance, 1.0));
+}

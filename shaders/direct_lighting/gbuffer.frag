@@ -1,0 +1,65 @@
+#version 450
+// What the camera sees: the attributes of the nearest surface, in linear units.
+#pragma lumivox axis TEXTURES 0 1
+#pragma lumivox axis MASKS 0 1
+#pragma lumivox axis GLOSSY 0 1
+#pragma lumivox axis EMISSION 0 1
+#define SCENE_MATERIALS
+#include "common/scene.glsl"
+
+layout(std140, binding = 2) uniform Eye { vec3 eyeWorld; };
+
+#if TEXTURES
+layout(binding = 0) uniform sampler2D diffuseTexture;
+#endif
+#if MASKS
+layout(binding = 1) uniform sampler2D maskTexture;
+#endif
+
+layout(location = 0) in vec3 posWorld;
+layout(location = 1) in vec3 normalWorld;
+#if TEXTURES || MASKS
+layout(location = 2) in vec2 texcoord;
+#endif
+
+layout(location = 0) out vec4 outPosition;
+layout(location = 1) out vec4 outNormal;
+layout(location = 2) out vec4 outGeometricNormal;
+layout(location = 3) out vec4 outDiffuse;
+#if GLOSSY
+layout(location = 4) out vec4 outSpecular;
+#endif
+#if EMISSION
+layout(location = 5) out vec4 outEmission;
+#endif
+
+void main() {
+  // Derivatives before any discard: they are undefined after it.
+  vec3 geometricNormal = cross(dFdx(posWorld), dFdy(posWorld));
+#if MASKS
+  if (texture(maskTexture, texcoord).r < kMaskThreshold) discard;
+#endif
+  MaterialData material = materials[materialIndex];
+  vec3 toEye = eyeWorld - posWorld;
+  float size = length(geometricNormal);
+  geometricNormal = size > 0.0 ? geometricNormal / size : normalize(normalWorld);
+  if (dot(geometricNormal, toEye) < 0.0) geometricNormal = -geometricNormal;
+  // Surfaces are two-sided: the shading normal is turned to the side of the geometric one that is seen.
+  vec3 normal = normalize(normalWorld);
+  if (dot(normal, geometricNormal) < 0.0) normal = -normal;
+
+  vec3 albedo = material.diffuse.rgb;
+#if TEXTURES
+  albedo *= texture(diffuseTexture, texcoord).rgb;
+#endif
+  outPosition = vec4(posWorld, 1.0);
+  outNormal = vec4(normal, gl_FrontFacing ? 1.0 : 0.0);
+  outGeometricNormal = vec4(geometricNormal, 0.0);
+  outDiffuse = vec4(albedo, 1.0);
+#if GLOSSY
+  outSpecular = material.specular;
+#endif
+#if EMISSION
+  outEmission = vec4(gl_FrontFacing ? material.emission.rgb : vec3(0.0), 1.0);
+#endif
+}

@@ -1,0 +1,79 @@
+#version 450
+// Pre-filtering of one level from the next finer one (Crassin et al. 2011, Sec. 5; thesis 004 Sec. 4.2.1 Mipmapping).
+//
+// The isotropic value of a coarse voxel is the mean, over the three axes and both ways along each, of what looking through it along that
+// axis would see: the children are composited front to back in each column, and the columns are averaged. So a uniform medium of opacity a
+// per voxel gets 1 - (1-a)^2 one level up: its transmittance does not depend on the level that a cone reads.
+// Deviates from the thesis, which averages the eight children; `average` does that.
+#pragma lumivox axis HALF 0 1
+
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+
+layout(std140, binding = 0) uniform Parameters {
+  ivec3 coarse;   // voxels of the level that is written
+  int fineLevel;
+  ivec3 fine;     // voxels of the level that is read
+  int average;    // 1: plain mean of the children
+};
+layout(binding = 0) uniform sampler3D radianceGrid;
+#if HALF
+layout(binding = 0, rgba16f) uniform writeonly image3D radianceImage;
+#else
+layout(binding = 0, rgba32f) uniform writeonly image3D radianceImage;
+#endif
+
+// Part of child `child` that lies in coarse voxel `cell` along one axis, in children. With an even number of children it is 1 for two of
+// them; with an odd number a coarse voxel is a little wider than two, and shares children with its neighbours.
+float share(int cell, int child, float childrenPerCell) {
+  float low = float(cell) * childrenPerCell, high = low + childrenPerCell;
+  return clamp(min(high, float(child + 1)) - max(low, float(child)), 0.0, 1.0);
+}
+
+// A child seen through `length` of its own width.
+vec4 slab(vec4 value, float length) {
+  if (length >= 1.0 || value.a <= 0.0) return length >= 1.0 ? value : vec4(0.0);
+  float opacity = 1.0 - pow(1.0 - value.a, length);
+  return vec4(value.rgb * (opacity / value.a), opacity);
+}
+
+vec4 over(vec4 front, vec4 back) { return front + (1.0 - front.a) * back; }
+
+void main() {
+  ivec3 cell = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(cell, coarse))) return;
+  vec3 ratio = vec3(fine) / vec3(coarse);
+  ivec3 first = ivec3(floor(vec3(cell) * ratio)), last = min(ivec3(ceil(vec3(cell + 1) * ratio)) - 1, fine - 1);
+
+  vec4 sum = vec4(0.0);
+  float weight = 0.0;
+  if (average != 0) {
+    for (int z = first.z; z <= last.z; ++z)
+      for (int y = first.y; y <= last.y; ++y)
+        for (int x = first.x; x <= last.x; ++x) {
+          float part = share(cell.x, x, ratio.x) * share(cell.y, y, ratio.y) * share(cell.z, z, ratio.z);
+          sum += part * texelFetch(radianceGrid, ivec3(x, y, z), fineLevel);
+          weight += part;
+        }
+  } else {
+    for (int axis = 0; axis < 3; ++axis) {
+      int side = (axis + 1) % 3, up = (axis + 2) % 3;
+      for (int v = first[up]; v <= last[up]; ++v)
+        for (int u = first[side]; u <= last[side]; ++u) {
+          float part = share(cell[up], v, ratio[up]) * share(cell[side], u, ratio[side]);
+          vec4 ahead = vec4(0.0), back = vec4(0.0);
+          for (int w = first[axis]; w <= last[axis]; ++w) {
+            ivec3 child;
+            child[axis] = w;
+            child[side] = u;
+            child[up] = v;
+            vec4 value = slab(texelFetch(radianceGrid, child, fineLevel), share(cell[axis], w, ratio[axis]));
+            ahead = over(ahead, value);
+            back = over(value, back);
+          }
+          sum += part * (ahead + back);
+          weight += 2.0 * part;
+        }
+    }
+  }
+  imageStore(radianceImage, cell, sum / weight);
+}

@@ -1,0 +1,138 @@
+#version 450
+// Crassin et al. 2011, Sec. 7: final gathering with a few wide cones, and one narrow cone for glossy light.
+// Thesis 004, Sec. 4.2.1, Listings 4.11 to 4.13.
+#pragma lumivox axis DIFFUSE 0 1
+#pragma lumivox axis GLOSSY 0 1
+#pragma lumivox axis ENVIRONMENT 0 1
+#pragma lumivox require DIFFUSE || GLOSSY
+#include "common/constants.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const int coneCount = 6;
+layout(constant_id = 1) const int publishedCones = 0;
+
+layout(std140, binding = 0) uniform Parameters {
+  vec3 gridLow;       // m
+  float voxelSize;    // m
+  vec3 gridExtent;    // m
+  float stepShare;    // step along a cone as a share of its diameter
+  vec3 eyeWorld;
+  float maxDistance;  // m
+  vec3 environment;   // radiance of a cone that meets nothing
+  float offset;       // start of a cone along the normal, in voxels
+  float startShare;   // start of a cone along its axis, in voxels
+  float coarsest;     // coarsest level
+};
+layout(binding = 0) uniform sampler2D gPosition;
+layout(binding = 1) uniform sampler2D gNormal;
+layout(binding = 2) uniform sampler2D gGeometricNormal;
+layout(binding = 4) uniform sampler3D radianceGrid;
+#if DIFFUSE
+layout(binding = 3) uniform sampler2D gDiffuse;
+layout(binding = 0, rgba32f) uniform writeonly image2D diffuseImage;
+#endif
+#if GLOSSY
+layout(binding = 5) uniform sampler2D gSpecular;
+layout(binding = 1, rgba32f) uniform writeonly image2D glossyImage;
+#endif
+
+const float kOpaque = 0.999;  // what lies behind this opacity adds less than a thousandth
+
+// Radiance along a cone. The sample at distance t has the diameter of the cone there and is read from the level whose voxels have that
+// size: between the levels l and l+1 the linear blend stands for voxels of (1 + f) 2^l, so that f = size / 2^l - 1.
+vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle) {
+  vec3 radiance = vec3(0.0);
+  float opacity = 0.0;
+  float distance = startShare * voxelSize;
+  while (distance < maxDistance && opacity < kOpaque) {
+    float diameter = max(voxelSize, 2.0 * tanHalfAngle * distance);
+    float stride = min(stepShare * diameter, maxDistance - distance);
+    vec3 texcoord = (apex + direction * (distance + 0.5 * stride) - gridLow) / gridExtent;
+    if (any(lessThan(texcoord, vec3(0.0))) || any(greaterThan(texcoord, vec3(1.0)))) {
+      // Leaving the grid for good: it is convex. A start outside, at a camera far away, has to come in first.
+      vec3 outward = max(texcoord - 1.0, 0.0) - max(-texcoord, 0.0);
+      if (dot(outward, direction) >= 0.0) break;
+    }
+    float size = diameter / voxelSize;
+    float level = floor(log2(size));
+    level = min(level + (size * exp2(-level) - 1.0), coarsest);
+    vec4 value = textureLod(radianceGrid, texcoord, level);
+    if (value.a > 0.0) {
+      // Thesis Sec. 4.2.1: opacity for a step that is not a voxel wide. Pre-multiplied radiance scales with it; listing 4.13 mixes
+      // pre-multiplied and plain radiance, which this does not.
+      float stepOpacity = 1.0 - pow(max(1.0 - value.a, 0.0), stride / diameter);
+      radiance += (1.0 - opacity) * stepOpacity / value.a * value.rgb;
+      opacity += (1.0 - opacity) * stepOpacity;
+    }
+    distance += stride;
+  }
+#if ENVIRONMENT
+  radiance += max(1.0 - opacity, 0.0) * environment;
+#endif
+  return radiance;
+}
+
+#if DIFFUSE
+// Mean of the arriving radiance over the hemisphere, weighted by the cosine; the weights sum to 1.
+vec3 gatherDiffuse(vec3 apex, vec3 normal) {
+  vec3 helper = abs(normal.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+  vec3 tangent = normalize(cross(helper, normal)), bitangent = cross(normal, tangent);
+  if (publishedCones != 0) {
+    // Listing 4.12: one cone along the normal and four at 45 degrees, weighted by the cosine. Deviates: divided by the sum of the
+    // weights, 1 + 4 / sqrt 2, so that a constant environment keeps its radiance.
+    const float kTilted = 0.70710678118654752440;
+    float tanHalfAngle = tan(kPi / 6.0);
+    vec3 sum = traceCone(apex, normal, tanHalfAngle);
+    for (int i = 0; i < 4; ++i) {
+      vec3 side = (i & 1) == 0 ? tangent : bitangent;
+      sum += kTilted * traceCone(apex, normalize(normal + (i < 2 ? side : -side)), tanHalfAngle);
+    }
+    return sum / (1.0 + 4.0 * kTilted);
+  }
+  // Cones of equal weight: a spiral over the unit disc, lifted onto the hemisphere (Malley's method), is distributed as the cosine. Each
+  // stands for the solid angle pi / (n cos theta), and its half angle is that of a circular cone of this solid angle.
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < coneCount; ++i) {
+    float radiusSquared = (float(i) + 0.5) / float(coneCount);
+    float radius = sqrt(radiusSquared), angle = float(i) * kGoldenAngle;
+    float cosTheta = sqrt(1.0 - radiusSquared);
+    vec3 direction = tangent * (radius * cos(angle)) + bitangent * (radius * sin(angle)) + normal * cosTheta;
+    float cosHalfAngle = max(1.0 - 0.5 / (float(coneCount) * cosTheta), 0.5);
+    sum += traceCone(apex, direction, sqrt(1.0 - cosHalfAngle * cosHalfAngle) / cosHalfAngle);
+  }
+  return sum / float(coneCount);
+}
+#endif
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, textureSize(gPosition, 0)))) return;
+  vec4 position = texelFetch(gPosition, pixel, 0);
+  vec3 diffuse = vec3(0.0), glossy = vec3(0.0);
+  if (position.w > 0.0) {
+    vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
+    vec3 apex = position.xyz + texelFetch(gGeometricNormal, pixel, 0).xyz * (offset * voxelSize);
+#if DIFFUSE
+    vec3 albedo = texelFetch(gDiffuse, pixel, 0).rgb;
+    if (any(greaterThan(albedo, vec3(0.0)))) diffuse = albedo * gatherDiffuse(apex, normal);
+#endif
+#if GLOSSY
+    vec4 specular = texelFetch(gSpecular, pixel, 0);
+    if (any(greaterThan(specular.rgb, vec3(0.0)))) {
+      vec3 mirror = reflect(normalize(position.xyz - eyeWorld), normal);
+      // The lobe cos^n has the solid angle 2 pi / (n + 1): that of a cone with 1 - cos(half angle) = 1 / (n + 1).
+      // Its integral with the cosine of the surface is specular times the cosine of the mirror direction.
+      float cosHalfAngle = max(1.0 - 1.0 / (specular.w + 1.0), 0.5);
+      float tanHalfAngle = sqrt(1.0 - cosHalfAngle * cosHalfAngle) / cosHalfAngle;
+      glossy = specular.rgb * max(dot(mirror, normal), 0.0) * traceCone(apex, mirror, tanHalfAngle);
+    }
+#endif
+  }
+#if DIFFUSE
+  imageStore(diffuseImage, pixel, vec4(diffuse, 1.0));
+#endif
+#if GLOSSY
+  imageStore(glossyImage, pixel, vec4(glossy, 1.0));
+#endif
+}

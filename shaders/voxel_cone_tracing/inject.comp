@@ -1,0 +1,69 @@
+#version 450
+// Crassin et al. 2011, Sec. 6; thesis 004 Sec. 4.2.1, Listing 4.8: light that each fragment reflects diffusely, averaged per voxel.
+// Deviates from Listing 4.9: its running average in 8 bits depends on the order of the writes and overflows past 255 fragments. Here each
+// fragment adds its share of the average as an integer, and integer sums do not depend on the order:
+//   sum over fragments of round(value / range * 2^31 / n),  0 <= value <= range,  so that the sum fits into 32 bits for any n.
+#pragma lumivox axis LIGHTS 0 1
+#pragma lumivox axis SHADOWS 0 1
+#pragma lumivox require !SHADOWS || LIGHTS
+#include "common/constants.glsl"
+#include "common/voxel.glsl"
+#if SHADOWS
+#define SHADOW_VIEWS
+#endif
+#if LIGHTS
+#include "common/lights.glsl"
+#endif
+
+layout(local_size_x = 64) in;
+
+layout(std140, binding = 0) uniform Grid {
+  vec3 gridLow;     // m
+  float voxelSize;  // m
+  ivec3 resolution;
+  int lightCount;
+  float radianceRange;  // W/(sr m^2): the largest radiance that can be stored
+  int twoSided;         // 1: light on the back side counts as well
+};
+layout(std430, binding = 0) readonly buffer FragmentCount { uint fragmentCount; };
+layout(std430, binding = 1) readonly buffer Fragments { VoxelFragment fragments[]; };
+layout(std430, binding = 2) readonly buffer Counts { uint counts[]; };
+layout(std430, binding = 3) buffer Sums { uint sums[]; };  // per voxel: r, g, b, coverage
+
+const float kFixedPoint = 2147483648.0;  // 2^31
+
+void main() {
+  uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  if (index >= fragmentCount) return;
+  VoxelFragment fragment = fragments[index];
+  ivec3 voxel = unpackVoxel(fragment.voxel);
+  vec2 blueCoverage = unpackHalf2x16(fragment.albedoBCoverage);
+  vec3 albedo = vec3(unpackHalf2x16(fragment.albedoRg), blueCoverage.x);
+  float coverage = clamp(blueCoverage.y, 0.0, 1.0);
+
+  vec3 irradiance = vec3(0.0);
+#if LIGHTS
+  vec3 posWorld = gridLow + (vec3(voxel) + unpackOffset(fragment.offset)) * voxelSize;
+  vec3 normal = unpackNormal(fragment.normal);
+  for (int i = 0; i < lightCount; ++i) {
+    LightSample light = lights[i];
+    vec3 toLight;
+    vec3 perpendicular = arrivingIrradiance(light, posWorld, toLight);
+    float cosSurface = dot(normal, toLight);
+    if (twoSided != 0) cosSurface = abs(cosSurface);
+    if (cosSurface <= 0.0) continue;
+    vec3 arriving = perpendicular * cosSurface;
+#if SHADOWS
+    arriving *= visibility(light, posWorld, dot(normal, toLight) < 0.0 ? -normal : normal, toLight);
+#endif
+    irradiance += arriving;
+  }
+#endif
+  vec3 radiance = min(albedo / kPi * irradiance, radianceRange);
+  uint cell = uint((voxel.z * resolution.y + voxel.y) * resolution.x + voxel.x);
+  float share = kFixedPoint / float(max(counts[cell], 1u));
+  uvec4 addend = uvec4(vec4(radiance / radianceRange, 1.0) * (coverage * share) + 0.5);
+  for (int c = 0; c < 4; ++c) {
+    if (addend[c] != 0u) atomicAdd(sums[4u * cell + uint(c)], addend[c]);
+  }
+}

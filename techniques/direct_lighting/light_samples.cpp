@@ -1,0 +1,161 @@
+#include "light_samples.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace lumivox::direct_lighting {
+namespace {
+
+/// Perspective with z in [0,1], looking along `forward`.
+glm::mat4 perspectiveView(const glm::vec3& eye, const glm::vec3& forward, float halfAngle, float near, float far) {
+  const glm::vec3 helper = std::abs(forward.y) > 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
+  return glm::perspectiveRH_ZO(2.0f * halfAngle, 1.0f, near, far) * glm::lookAtRH(eye, eye + forward, helper);
+}
+
+/// The six faces in the order of cubeFace() in shaders/common/lights.glsl.
+const std::array<glm::vec3, 6> kFaces{glm::vec3(1, 0, 0),  glm::vec3(-1, 0, 0), glm::vec3(0, 1, 0),
+                                      glm::vec3(0, -1, 0), glm::vec3(0, 0, 1),  glm::vec3(0, 0, -1)};
+
+/// A light that shines away from the scene's bounds cannot need a longer reach than this.
+float reachFrom(const Bounds& bounds, const glm::vec3& point) {
+  const glm::vec3 farCorner = glm::max(glm::abs(bounds.low - point), glm::abs(bounds.high - point));
+  return std::max(glm::length(farCorner), 1e-6f) * 1.01f;
+}
+
+constexpr float kCubeViews = 6.0f;
+constexpr float kNearShare = 1e-3f;  // near plane of a perspective shadow view, as a share of its far plane
+
+float texelPerMetre(float halfAngle, int size) { return 2.0f * std::tan(halfAngle) / static_cast<float>(size); }
+
+void addCube(LightSet& set, const glm::vec3& eye, const Bounds& bounds, const glm::vec3* front) {
+  const float far = reachFrom(bounds, eye);
+  for (const glm::vec3& face : kFaces) {
+    ShadowView view;
+    view.worldToClip = perspectiveView(eye, face, glm::radians(45.0f), far * kNearShare, far);
+    // A face opposite to the normal of an area light sees nothing that the light shines on: all of it is more than 90 degrees away
+    // only when the normal is the axis itself.
+    view.used = front == nullptr || glm::dot(*front, face) > -0.999f;
+    set.views.push_back(view);
+  }
+}
+
+struct Emitter {
+  glm::vec3 a, b, c, normal;
+  glm::vec3 radiance;
+  float area, weight;
+};
+
+std::vector<Emitter> emittersOf(const Scene& scene, const SceneSnapshot& snapshot) {
+  std::vector<Emitter> emitters;
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    const ObjectState& state = snapshot.objects[o];
+    for (const Part& part : scene.objects[o].parts) {
+      const Material& material = scene.materials[static_cast<std::size_t>(part.material)];
+      if (!material.emissive()) continue;
+      for (std::uint32_t i = 0; i + 2 < part.indexCount; i += 3) {
+        std::array<glm::vec3, 3> corner;
+        for (std::uint32_t k = 0; k < 3; ++k) {
+          const std::uint32_t index = scene.indices[part.firstIndex + i + k];
+          const glm::vec3 local = state.positions.empty() ? scene.positions[index] : state.positions[index - scene.objects[o].firstVertex];
+          corner[k] = glm::vec3(state.toWorld * glm::vec4(local, 1.0f));
+        }
+        const glm::vec3 cross = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+        const float area = 0.5f * glm::length(cross);
+        if (!(area > 0.0f)) continue;
+        const float weight = area * glm::dot(material.emission, glm::vec3(0.2126f, 0.7152f, 0.0722f));  // Rec. 709 luminance
+        emitters.push_back({corner[0], corner[1], corner[2], cross / (2.0f * area), material.emission, area, weight});
+      }
+    }
+  }
+  return emitters;
+}
+
+void addAreaLights(LightSet& set, const Scene& scene, const SceneSnapshot& snapshot, int count, int shadowSize) {
+  const std::vector<Emitter> emitters = emittersOf(scene, snapshot);
+  double total = 0.0;
+  for (const Emitter& emitter : emitters) total += emitter.weight;
+  if (!(total > 0.0)) return;
+  std::vector<double> cumulative;
+  double sum = 0.0;
+  for (const Emitter& emitter : emitters) cumulative.push_back(sum += emitter.weight / total);
+  const float diagonal = glm::length(snapshot.bounds.high - snapshot.bounds.low);
+  for (int i = 0; i < count; ++i) {
+    const double stratum = (i + 0.5) / count;
+    const auto found = std::lower_bound(cumulative.begin(), cumulative.end(), stratum);
+    const Emitter& emitter = emitters[std::min<std::size_t>(static_cast<std::size_t>(found - cumulative.begin()), emitters.size() - 1)];
+    // Roberts 2018, R2: powers of the reciprocal plastic number, the two-dimensional golden ratio.
+    constexpr double kPlastic1 = 0.7548776662466927, kPlastic2 = 0.5698402909980532;
+    double u = std::fmod(0.5 + kPlastic1 * (i + 1), 1.0), v = std::fmod(0.5 + kPlastic2 * (i + 1), 1.0);
+    // Area-uniform on a triangle: fold the unit square along its diagonal.
+    if (u + v > 1.0) {
+      u = 1.0 - u;
+      v = 1.0 - v;
+    }
+    const glm::vec3 onSurface = emitter.a + static_cast<float>(u) * (emitter.b - emitter.a) + static_cast<float>(v) * (emitter.c - emitter.a);
+    const glm::vec3 position = onSurface + emitter.normal * (1e-5f * diagonal);
+    const double probability = emitter.weight / total;
+    const glm::vec3 power = emitter.radiance * static_cast<float>(emitter.area / (probability * count));
+    // A point sample stands for a patch of area A/N: nearer than its radius the inverse square law of a point does not hold for it.
+    const float patchRadius = std::sqrt(static_cast<float>(emitter.area / (probability * count)) / glm::pi<float>());
+    set.samples.push_back({glm::vec4(position, static_cast<float>(Kind::area)), glm::vec4(emitter.normal, static_cast<float>(set.views.size())),
+                           glm::vec4(power, kCubeViews), glm::vec4(0.0f, 0.0f, texelPerMetre(glm::radians(45.0f), shadowSize), patchRadius * patchRadius)});
+    addCube(set, position, snapshot.bounds, &emitter.normal);
+  }
+}
+
+void addDirectional(LightSet& set, const LightState& light, const Bounds& bounds, int shadowSize) {
+  // The orthographic view that just holds the bounding sphere.
+  const glm::vec3 centre = 0.5f * (bounds.low + bounds.high);
+  const float radius = std::max(0.5f * glm::length(bounds.high - bounds.low), 1e-6f) * 1.01f;
+  const glm::vec3 helper = std::abs(light.direction.y) > 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
+  ShadowView view;
+  view.worldToClip = glm::orthoRH_ZO(-radius, radius, -radius, radius, 0.0f, 2.0f * radius) *
+                     glm::lookAtRH(centre - light.direction * radius, centre, helper);
+  set.samples.push_back({glm::vec4(0.0f, 0.0f, 0.0f, static_cast<float>(Kind::directional)),
+                         glm::vec4(light.direction, static_cast<float>(set.views.size())), glm::vec4(light.power, 1.0f),
+                         glm::vec4(0.0f, 0.0f, 2.0f * radius / static_cast<float>(shadowSize), 0.0f)});
+  set.views.push_back(view);
+}
+
+}  // namespace
+
+LightSet sampleLights(const Scene& scene, const SceneSnapshot& snapshot, int areaSamples, int shadowSize) {
+  LightSet set;
+  for (const LightState& light : snapshot.lights) {
+    const float far = reachFrom(snapshot.bounds, light.position);
+    switch (light.kind) {
+      case LightKind::directional:
+        addDirectional(set, light, snapshot.bounds, shadowSize);
+        break;
+      case LightKind::point:
+        set.samples.push_back({glm::vec4(light.position, static_cast<float>(Kind::point)), glm::vec4(0, 0, 0, static_cast<float>(set.views.size())),
+                               glm::vec4(light.power, kCubeViews), glm::vec4(0.0f, 0.0f, texelPerMetre(glm::radians(45.0f), shadowSize), 0.0f)});
+        addCube(set, light.position, snapshot.bounds, nullptr);
+        break;
+      case LightKind::spot: {
+        // A spot wider than one perspective view can hold has the six views of a point light; its cone is shaped in the shader.
+        constexpr float kWidestView = glm::radians(80.0f);
+        const bool wide = light.outerAngle > kWidestView;
+        const float halfAngle = wide ? glm::radians(45.0f) : std::clamp(light.outerAngle * 1.02f, glm::radians(0.5f), kWidestView);
+        // smoothstep needs distinct edges: a hard edge gets a width of one millionth.
+        const float cosInner = std::cos(light.innerAngle), cosOuter = std::min(std::cos(light.outerAngle), cosInner - 1e-6f);
+        set.samples.push_back({glm::vec4(light.position, static_cast<float>(Kind::spot)),
+                               glm::vec4(light.direction, static_cast<float>(set.views.size())),
+                               glm::vec4(light.power, wide ? kCubeViews : 1.0f),
+                               glm::vec4(cosInner, cosOuter, texelPerMetre(halfAngle, shadowSize), 0.0f)});
+        if (wide) {
+          addCube(set, light.position, snapshot.bounds, nullptr);
+        } else {
+          set.views.push_back({perspectiveView(light.position, light.direction, halfAngle, far * kNearShare, far), true});
+        }
+        break;
+      }
+    }
+  }
+  addAreaLights(set, scene, snapshot, areaSamples, shadowSize);
+  return set;
+}
+
+}  // namespace lumivox::direct_lighting

@@ -1,0 +1,37 @@
+// Every light as point samples, and the views in which they cast shadows.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "lumivox/scene/scene.h"
+
+namespace lumivox::direct_lighting {
+
+/// Mirror of LightSample in shaders/common/lights.glsl (std430).
+struct LightSample {
+  glm::vec4 positionKind;
+  glm::vec4 directionLayer;
+  glm::vec4 power;
+  glm::vec4 shape;
+};
+
+enum class Kind { directional = 0, point = 1, spot = 2, area = 3 };
+
+/// One layer of the shadow array; an unused one (behind an area light) is left empty.
+struct ShadowView {
+  glm::mat4 worldToClip{1.0f};  ///< x, y in [-1,1] with y up, z in [0,1]
+  bool used = true;
+};
+
+struct LightSet {
+  std::vector<LightSample> samples;
+  std::vector<ShadowView> views;
+};
+
+/// Lights without extent become one sample each. Emissive triangles together become `areaSamples` samples, chosen by emitted power with
+/// stratified numbers and placed by the R2 sequence, so that the same scene always gives the same samples.
+LightSet sampleLights(const Scene& scene, const SceneSnapshot& snapshot, int areaSamples, int shadowSize);
+
+}  // namespace lumivox::direct_lighting

@@ -1,0 +1,208 @@
+// Voxel cone tracing on a dense isotropic grid: Crassin et al. 2011, "Interactive indirect illumination using voxel cone tracing"; thesis
+// Gomes 2015, Sec. 4.2.1. Injection of direct light, pre-filtering, final gathering.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "lumivox/base/error.h"
+#include "lumivox/plugin/technique.h"
+#include "voxel_cone_tracing_shaders.h"
+
+namespace lumivox::voxel_cone_tracing {
+namespace {
+
+namespace countShader = shaders::voxel_cone_tracing::count;
+namespace injectShader = shaders::voxel_cone_tracing::inject;
+namespace resolveShader = shaders::voxel_cone_tracing::resolve;
+namespace filterShader = shaders::voxel_cone_tracing::filter;
+namespace gatherShader = shaders::voxel_cone_tracing::gather;
+
+constexpr glm::ivec3 kVoxelGroup{4, 4, 4};  // local size of the passes over voxels
+constexpr glm::ivec3 kImageGroup{8, 8, 1};
+
+/// The largest radiance that a fragment can reflect: what the fixed-point sums must hold. The albedo is at most 1.
+float largestRadiance(const Scene& scene, const SceneSnapshot& snapshot, float voxelSize) {
+  const auto largest = [](const glm::vec3& v) { return std::max({v.x, v.y, v.z}); };
+  float sum = 0.0f;
+  for (const LightState& light : snapshot.lights) {
+    // Nearer to a point light than half a voxel the grid cannot say anything.
+    const float distance = 0.5f * voxelSize;
+    const float irradiance = light.kind == LightKind::directional ? largest(light.power) : largest(light.power) / (distance * distance);
+    sum += irradiance / glm::pi<float>();
+  }
+  // Area lights fill at most the hemisphere: the irradiance is at most pi times their radiance.
+  float brightest = 0.0f;
+  for (const Object& object : scene.objects) {
+    for (const Part& part : object.parts) {
+      brightest = std::max(brightest, largest(scene.materials[static_cast<std::size_t>(part.material)].emission));
+    }
+  }
+  sum += brightest;
+  return sum > 0.0f ? sum : 1.0f;
+}
+
+class InjectPass : public Pass {
+  In<VoxelFragments> fragments{this, "fragments", "surface samples"};
+  In<ShadowMap> shadow{this, "shadow", Presence::optional, "lights and their visibility; without it the grid is dark but opaque"};
+  Param<bool> twoSided{this, "two_sided", true, "light on the back of a triangle counts; off, as published: only on the front"};
+  Param<std::string> precision{this, "precision", "float", {"float", "half"}, "of the grid: 16 or 8 bytes a voxel"};
+  Out<RadianceGrid> radiance{this, "radiance", "reflected radiance and opacity; the finest level only"};
+
+  Reads readsFrom() const override { return Reads::lights | Reads::materials; }
+
+  void run(PassContext& frame) override {
+    RadianceGrid result;
+    result.grid = fragments->grid;
+    const glm::ivec3 size = result.grid.resolution;
+    gpu::TextureDescription description;
+    description.kind = gpu::TextureKind::d3;
+    description.format = precision == "half" ? gpu::Format::rgba16f : gpu::Format::rgba32f;
+    description.width = size.x;
+    description.height = size.y;
+    description.depth = size.z;
+    description.levels = gpu::fullLevelCount(size.x, size.y, size.z);
+    result.radiance = frame.texture(description, "radiance grid");
+
+    const std::uint64_t voxels = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) * static_cast<std::uint64_t>(size.z);
+    const gpu::BufferRef counts = frame.buffer(voxels * sizeof(std::uint32_t), "fragments per voxel");
+    const gpu::BufferRef sums = frame.buffer(4 * voxels * sizeof(std::uint32_t), "radiance sums");
+    counts->clear(0);
+    sums->clear(0);
+    const float range = largestRadiance(frame.sceneDescription(), frame.snapshot(), result.grid.voxelSize);
+
+    frame.shaders().dispatchIndirect(
+        frame.program(countShader::kProgram),
+        {countShader::grid({size}), countShader::fragmentCount(*fragments->count), countShader::fragments(*fragments->fragments),
+         countShader::counts(*counts)},
+        *fragments->count, sizeof(std::uint32_t));
+    frame.device().barrier();
+
+    injectShader::Variant variant;
+    variant.lights = variant.shadows = shadow.present();
+    injectShader::Grid grid{};
+    grid.gridLow = result.grid.low;
+    grid.voxelSize = result.grid.voxelSize;
+    grid.resolution = size;
+    grid.lightCount = shadow.present() ? shadow->lightCount : 0;
+    grid.radianceRange = range;
+    grid.twoSided = twoSided ? 1 : 0;
+    std::vector<gpu::ResourceBinding> bindings{injectShader::grid(grid), injectShader::fragmentCount(*fragments->count),
+                                               injectShader::fragments(*fragments->fragments), injectShader::counts(*counts),
+                                               injectShader::sums(*sums)};
+    if (shadow.present()) {
+      bindings.push_back(injectShader::lights(*shadow->lights));
+      bindings.push_back(injectShader::views(*shadow->views));
+      bindings.push_back(injectShader::shadowDepth(*shadow->depth, gpu::Sampling::shadow));
+    }
+    frame.shaders().dispatchIndirect(frame.program(injectShader::kProgram, variant.key()), bindings, *fragments->count,
+                                     sizeof(std::uint32_t));
+    frame.device().barrier();
+
+    resolveShader::Variant format;
+    format.half = precision == "half";
+    frame.dispatch(frame.program(resolveShader::kProgram, format.key()),
+                   {resolveShader::parameters({size, range}), resolveShader::sums(*sums), resolveShader::radianceImage(*result.radiance)},
+                   size, kVoxelGroup);
+    radiance = result;
+  }
+};
+
+class FilterPass : public Pass {
+  In<RadianceGrid> radiance{this, "radiance", "the finest level"};
+  Param<std::string> opacity{this, "opacity", "composite", {"composite", "average"},
+                             "how children make a parent: seen through along the axes, or, as published, their plain mean"};
+  Out<RadianceGrid> mips{this, "mips", "the same grid with one level per halving"};
+
+  void run(PassContext& frame) override {
+    const gpu::Texture& texture = *radiance->radiance;
+    const gpu::TextureDescription& description = texture.description();
+    filterShader::Variant variant;
+    variant.half = description.format == gpu::Format::rgba16f;
+    const auto levelSize = [&](int level) {
+      return glm::max(glm::ivec3(description.width >> level, description.height >> level, description.depth >> level), glm::ivec3(1));
+    };
+    for (int level = 1; level < description.levels; ++level) {
+      filterShader::Parameters parameters{};
+      parameters.coarse = levelSize(level);
+      parameters.fineLevel = level - 1;
+      parameters.fine = levelSize(level - 1);
+      parameters.average = opacity == "average" ? 1 : 0;
+      frame.dispatch(frame.program(filterShader::kProgram, variant.key()),
+                     {filterShader::parameters(parameters), filterShader::radianceGrid(texture, gpu::Sampling::nearest),
+                      filterShader::radianceImage(texture, level)},
+                     parameters.coarse, kVoxelGroup);
+    }
+    mips = *radiance;
+  }
+};
+
+class GatherPass : public Pass {
+  In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
+  In<RadianceGrid> grid{this, "grid", "pre-filtered radiance, one mip per halving"};
+  Param<int> cones{this, "cones", 6, {1, 256}, "diffuse cones per pixel"};
+  Param<std::string> distribution{this, "distribution", "cosine", {"cosine", "published"},
+                                  "cones of equal weight distributed as the cosine, or one upright and four at 45 degrees"};
+  Param<float> step{this, "step", 0.5f, {0.05f, 2.0f}, "", "step along a cone as a share of its diameter"};
+  Param<float> offset{this, "offset", 1.0f, {0.0f, 8.0f}, "", "start of a cone along the normal, in voxels"};
+  Param<float> start{this, "start", 1.0f, {0.0f, 8.0f}, "", "start of a cone along its axis, in voxels"};
+  Param<float> reach{this, "reach", 0.0f, {0.0f, 1e9f}, "m", "length of a cone; 0: to the end of the grid"};
+  Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing, "indirect light reflected by the diffuse lobe"};
+  Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::glossyMaterial, "indirect light reflected by the Phong lobe"};
+
+  Reads readsFrom() const override { return Reads::camera; }
+
+  void run(PassContext& frame) override {
+    const RadianceGrid& input = *grid;
+    gatherShader::Variant variant;
+    variant.diffuse = diffuse.wanted();
+    variant.glossy = glossy.wanted() && gbuffer->specular != nullptr;
+    variant.environment = frame.traits().environment;
+    gatherShader::Constants constants;
+    constants.coneCount = cones;
+    constants.publishedCones = distribution == "published" ? 1 : 0;
+    gatherShader::Parameters parameters{};
+    parameters.gridLow = input.grid.low;
+    parameters.voxelSize = input.grid.voxelSize;
+    parameters.gridExtent = glm::vec3(input.grid.resolution) * input.grid.voxelSize;
+    parameters.stepShare = step;
+    parameters.eyeWorld = frame.snapshot().camera.eye;
+    parameters.maxDistance = reach > 0.0f ? static_cast<float>(reach) : 2.0f * glm::length(parameters.gridExtent);
+    parameters.environment = frame.sceneDescription().environment;
+    parameters.offset = offset;
+    parameters.startShare = start;
+    parameters.coarsest = static_cast<float>(input.radiance->description().levels - 1);
+
+    using gpu::Sampling;
+    std::vector<gpu::ResourceBinding> bindings{
+        gatherShader::parameters(parameters), gatherShader::gPosition(*gbuffer->position, Sampling::nearest),
+        gatherShader::gNormal(*gbuffer->normal, Sampling::nearest),
+        gatherShader::gGeometricNormal(*gbuffer->geometricNormal, Sampling::nearest),
+        gatherShader::radianceGrid(*input.radiance, Sampling::linearMipsBorder)};
+    Image diffuseImage, glossyImage;
+    if (variant.diffuse) {
+      diffuseImage.texture = frame.image(gpu::Format::rgba32f, "indirect diffuse radiance");
+      bindings.push_back(gatherShader::gDiffuse(*gbuffer->diffuse, Sampling::nearest));
+      bindings.push_back(gatherShader::diffuseImage(*diffuseImage.texture));
+    }
+    if (variant.glossy) {
+      glossyImage.texture = frame.image(gpu::Format::rgba32f, "indirect glossy radiance");
+      bindings.push_back(gatherShader::gSpecular(*gbuffer->specular, Sampling::nearest));
+      bindings.push_back(gatherShader::glossyImage(*glossyImage.texture));
+    }
+    frame.dispatch(frame.program(gatherShader::kProgram, variant.key(), constants.values()), bindings,
+                   {frame.snapshot().camera.width, frame.snapshot().camera.height, 1}, kImageGroup);
+    if (variant.diffuse) diffuse = diffuseImage;
+    if (variant.glossy) glossy = glossyImage;
+  }
+};
+
+}  // namespace
+}  // namespace lumivox::voxel_cone_tracing
+
+LUMIVOX_TECHNIQUE(registry) {
+  using namespace lumivox::voxel_cone_tracing;
+  registry.describe("Voxel cone tracing on a dense isotropic grid", "Crassin et al. 2011; thesis Gomes 2015, Sec. 4.2.1");
+  registry.add<InjectPass>("inject", "Direct light into the finest level (Crassin et al. 2011, Sec. 6)");
+  registry.add<FilterPass>("filter", "Pre-filtered coarser levels (Crassin et al. 2011, Sec. 5)");
+  registry.add<GatherPass>("gather", "Final gathering with cones (Crassin et al. 2011, Sec. 7)");
+}

@@ -1,0 +1,251 @@
+#include <cmath>
+
+#include "framework/reference_scenes.h"
+#include "lumivox/measure/metrics.h"
+#include "lumivox/reference/path_tracer.h"
+#include "support/techniques.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+constexpr int kPixels = 8;
+
+/// A g-buffer of one surface point in every pixel.
+GBuffer surfacePoint(const glm::vec3& position, const glm::vec3& normal, const glm::vec3& albedo) {
+  gpu::TextureDescription description;
+  description.format = gpu::Format::rgba32f;
+  description.width = description.height = kPixels;
+  const auto filled = [&](const glm::vec4& value) {
+    auto texture = std::make_shared<gpu::Texture>(device(), description, "test g-buffer");
+    texture->clear(value);
+    return texture;
+  };
+  GBuffer result;
+  result.position = filled(glm::vec4(position, 1.0f));
+  result.normal = filled(glm::vec4(normal, 1.0f));
+  result.geometricNormal = filled(glm::vec4(normal, 0.0f));
+  result.diffuse = filled(glm::vec4(albedo, 1.0f));
+  return result;
+}
+
+/// A grid of [-1,1]^3 with all levels allocated; `fill` gives the finest.
+RadianceGrid makeGrid(int resolution, const std::function<glm::vec4(int, int, int)>& fill) {
+  gpu::TextureDescription description;
+  description.kind = gpu::TextureKind::d3;
+  description.format = gpu::Format::rgba32f;
+  description.width = description.height = description.depth = resolution;
+  description.levels = gpu::fullLevelCount(resolution, resolution, resolution);
+  RadianceGrid grid;
+  grid.grid = {glm::vec3(-1.0f), 2.0f / static_cast<float>(resolution), glm::ivec3(resolution)};
+  grid.radiance = std::make_shared<gpu::Texture>(device(), description, "test grid");
+  grid.radiance->clear(glm::vec4(0.0f));
+  std::vector<float> values;
+  for (int z = 0; z < resolution; ++z)
+    for (int y = 0; y < resolution; ++y)
+      for (int x = 0; x < resolution; ++x) {
+        const glm::vec4 value = fill(x, y, z);
+        values.insert(values.end(), {value.r, value.g, value.b, value.a});
+      }
+  grid.radiance->uploadFloats(0, values);
+  return grid;
+}
+
+Scene emptyScene(const glm::vec3& environment = glm::vec3(0.0f)) {
+  SceneBuilder builder;
+  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, kPixels, kPixels);
+  builder.scene.environment = environment;
+  return builder.scene;
+}
+
+RadianceGrid filtered(RadianceGrid grid, const char* opacity = "composite") {
+  const Scene scene = emptyScene();
+  PassHarness harness(device(), techniques(), "voxel_cone_tracing", "filter", scene, snapshotOf(scene, 0.0));
+  harness.setParameter("opacity", std::string(opacity));
+  harness.setInput("radiance", grid);
+  harness.run();
+  return harness.output<RadianceGrid>("mips");
+}
+
+struct GatherSettings {
+  int cones = 6;
+  const char* distribution = "cosine";
+  double offset = 0, start = 0, reach = 0, step = 0.25;
+};
+
+/// Indirect diffuse radiance at one surface point of albedo 1.
+glm::vec3 gather(const Scene& scene, const RadianceGrid& grid, const glm::vec3& position, const glm::vec3& normal, const GatherSettings& settings) {
+  PassHarness harness(device(), techniques(), "voxel_cone_tracing", "gather", scene, snapshotOf(scene, 0.0));
+  harness.setParameter("cones", settings.cones);
+  harness.setParameter("distribution", std::string(settings.distribution));
+  harness.setParameter("offset", settings.offset);
+  harness.setParameter("start", settings.start);
+  harness.setParameter("reach", settings.reach);
+  harness.setParameter("step", settings.step);
+  harness.setInput("gbuffer", surfacePoint(position, normal, glm::vec3(1.0f)));
+  harness.setInput("grid", grid);
+  harness.run();
+  const Picture picture = pictureOf(*harness.output<Image>("diffuse").texture);
+  return {picture.at(3, 3, 0), picture.at(3, 3, 1), picture.at(3, 3, 2)};
+}
+
+/// The finest level after injecting the fragments of a scene under its lights.
+std::vector<float> injected(const Scene& scene, int resolution, GridPlacement* placement = nullptr) {
+  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
+  PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshot);
+  voxels.setParameter("resolution", resolution);
+  voxels.run();
+  PassHarness shadow(device(), techniques(), "direct_lighting", "shadow_map", scene, snapshot);
+  shadow.run();
+  PassHarness inject(device(), techniques(), "voxel_cone_tracing", "inject", scene, snapshot);
+  inject.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
+  inject.setInput("shadow", shadow.output<ShadowMap>("depth"));
+  inject.run();
+  const auto& grid = inject.output<RadianceGrid>("radiance");
+  if (placement != nullptr) *placement = grid.grid;
+  return grid.radiance->downloadFloats(0);
+}
+
+}  // namespace
+
+TEST_CASE("a constant environment passes the weights of the cones unchanged") {
+  const glm::vec3 environment(0.5f, 1.0f, 2.0f);
+  const RadianceGrid empty = makeGrid(16, [](int, int, int) { return glm::vec4(0.0f); });
+  const Scene scene = emptyScene(environment);
+  for (const int cones : {1, 2, 5, 6, 16, 32}) {
+    const glm::vec3 radiance = gather(scene, empty, glm::vec3(0.1f), glm::normalize(glm::vec3(1, 2, 3)), {cones});
+    for (int c = 0; c < 3; ++c) CHECK(radiance[c] == Approx(environment[c]).epsilon(1e-5));
+  }
+  const glm::vec3 published = gather(scene, empty, glm::vec3(0.1f), glm::vec3(0, 1, 0), {5, "published"});
+  for (int c = 0; c < 3; ++c) CHECK(published[c] == Approx(environment[c]).epsilon(1e-5));
+}
+
+TEST_CASE("a uniform grid of opacity and radiance returns L (1 - (1-a)^(d / voxel)) whatever the width of the cone") {
+  // In a medium of opacity a per voxel the transmittance over a distance d is (1-a)^(d / voxel size), and the radiance that a ray
+  // collects is L times what is absorbed. The composite filter keeps this on every level, so that wide cones see the same.
+  constexpr int kResolution = 64;
+  const double voxel = 2.0 / kResolution;
+  for (const float opacity : {0.02f, 0.1f}) {
+    const glm::vec3 radiance(1.0f, 2.0f, 0.5f);
+    const RadianceGrid grid = filtered(makeGrid(kResolution, [&](int, int, int) { return glm::vec4(radiance * opacity, opacity); }));
+    for (const int cones : {6, 64}) {  // wide and narrow
+      for (const double distance : {0.1, 0.25, 0.5}) {
+        const double expected = 1.0 - std::pow(1.0 - opacity, distance / voxel);
+        const glm::vec3 gathered = gather(emptyScene(), grid, glm::vec3(0.0f), {0, 1, 0}, {cones, "cosine", 0, 0, distance, 0.25});
+        INFO("opacity " << opacity << ", cones " << cones << ", distance " << distance);
+        for (int c = 0; c < 3; ++c) CHECK(gathered[c] == Approx(radiance[c] * expected).epsilon(0.01));
+      }
+    }
+  }
+}
+
+TEST_CASE("an opaque wall fills the cones that face it with its radiance and hides what lies behind") {
+  // Everything beyond y = 0.5 is a wall of radiance 3; behind its first voxels it is brighter, which must not be seen.
+  const RadianceGrid grid = filtered(makeGrid(64, [](int, int y, int) { return y < 48 ? glm::vec4(0.0f) : y < 52 ? glm::vec4(3, 3, 3, 1) : glm::vec4(50, 50, 50, 1); }));
+  const glm::vec3 radiance = gather(emptyScene(), grid, {0, 0.4f, 0}, {0, 1, 0}, {64});
+  CHECK(radiance.x == Approx(3.0f).epsilon(0.03));
+}
+
+TEST_CASE("one level up a uniform medium of opacity a has 1 - (1-a)^2 with the composite filter and a with the plain mean") {
+  const auto uniform = [](int, int, int) { return glm::vec4(0.6f, 0.3f, 0.15f, 0.3f); };  // radiance (2, 1, 0.5) times 0.3
+  for (const int resolution : {16, 17, 6}) {  // even, odd, even then odd
+    const std::vector<float> composite = filtered(makeGrid(resolution, uniform)).radiance->downloadFloats(1);
+    const std::vector<float> mean = filtered(makeGrid(resolution, uniform), "average").radiance->downloadFloats(1);
+    const double children = static_cast<double>(resolution) / (resolution / 2);  // along each axis: 2 or a little more
+    const double expected = 1.0 - std::pow(0.7, children);
+    REQUIRE(!composite.empty());
+    for (std::size_t i = 0; i < composite.size(); i += 4) {
+      CHECK(composite[i + 3] == Approx(expected).epsilon(1e-5));
+      CHECK(composite[i] == Approx(2.0 * expected).epsilon(1e-5));
+      CHECK(mean[i + 3] == Approx(0.3).epsilon(1e-5));
+    }
+  }
+}
+
+TEST_CASE("filtering keeps radiance divided by opacity of what it blends") {
+  // One voxel of radiance 5 in empty space: however diluted, every parent that sees it has radiance / opacity = 5.
+  const RadianceGrid grid = filtered(makeGrid(16, [](int x, int y, int z) { return x == 3 && y == 5 && z == 9 ? glm::vec4(5, 5, 5, 1) : glm::vec4(0.0f); }));
+  for (int level = 1; level < 5; ++level) {
+    const std::vector<float> texels = grid.radiance->downloadFloats(level);
+    int seen = 0;
+    for (std::size_t i = 0; i < texels.size(); i += 4) {
+      if (texels[i + 3] == 0.0f) continue;
+      ++seen;
+      CHECK(texels[i] / texels[i + 3] == Approx(5.0f).epsilon(1e-4));
+    }
+    CHECK(seen == 1);
+  }
+}
+
+TEST_CASE("injection averages what the fragments of a voxel reflect, and a thousand equal ones count as one") {
+  const auto scene = [](int copies) {
+    SceneBuilder builder;
+    const int grey = builder.lambert(0.5f);
+    builder.quad({-1, -1, -1}, {0, 0, 2}, {2, 0, 0}, grey);
+    for (int i = 1; i < copies; ++i) builder.quad({-1, -1, -1}, {0, 0, 2}, {2, 0, 0}, grey);
+    builder.quad({-1, 1, -1}, {0, 0, 0.01f}, {0.01f, 0, 0}, grey);  // gives the grid its height
+    builder.light(LightKind::directional, {2, 2, 2}, {}, {0, -1, 0});
+    return builder.scene;
+  };
+  const std::vector<float> one = injected(scene(1), 8), thousand = injected(scene(1000), 8);
+  REQUIRE(one.size() == thousand.size());
+  int occupied = 0;
+  for (std::size_t i = 0; i < one.size(); i += 4) {
+    CHECK(thousand[i] == Approx(one[i]).epsilon(1e-4).margin(1e-6));
+    CHECK(thousand[i + 3] == Approx(one[i + 3]).epsilon(1e-5));
+    occupied += one[i + 3] > 0.0f;
+  }
+  CHECK(occupied > 20);
+}
+
+TEST_CASE("a lit plane stores albedo / pi times its irradiance in its voxels") {
+  SceneBuilder builder;
+  builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.6f));
+  builder.light(LightKind::directional, {3, 3, 3}, {}, {0, -1, 0});
+  const std::vector<float> texels = injected(builder.scene, 16);
+  const double expected = 0.6 / 3.14159265358979 * 3.0;
+  int occupied = 0;
+  for (std::size_t i = 0; i < texels.size(); i += 4) {
+    if (texels[i + 3] == 0.0f) continue;
+    ++occupied;
+    CHECK(texels[i] == Approx(expected).epsilon(0.002));  // albedo is kept in half floats
+    CHECK(texels[i + 3] == Approx(1.0f));
+  }
+  CHECK(occupied >= 14 * 14);
+}
+
+TEST_CASE("injecting twice gives the same bits, however the fragments were ordered") {
+  const Scene scene = litRoom(16, 16);
+  CHECK(injected(scene, 32) == injected(scene, 32));
+}
+
+TEST_CASE("indirect light on the Cornell box is at least twice as good as none, and its energy is right within a quarter") {
+  const Scene scene = loadScene(sourceDirectory() / "scenes/cornell.scene");
+  ReferenceOptions truthOptions;
+  truthOptions.width = truthOptions.height = 64;
+  truthOptions.samplesPerPixel = 256;
+  truthOptions.progress = false;
+  const LayeredPicture truth = cachedReference(scene, truthOptions);
+  const Picture& oneBounce = truth.layers.at("one_bounce_diffuse");
+  const Pipeline text = pipeline("voxel_cone_tracing");
+  for (const char* resolution : {"resolution=64", "resolution=128"}) {
+    RenderOptions options;
+    options.width = options.height = 64;
+    options.parameters = text.settings({resolution});
+    const Picture picture = renderOnce(scene, text, options).outputs.at("indirect_diffuse");
+    const PictureError error = compare(picture, oneBounce, truth.layers.at("one_bounce_diffuse.variance"));
+    const PictureError nothing = compare(Picture(64, 64, 3), oneBounce);
+    INFO(resolution << ": RMSE " << error.rmse.value << " against " << nothing.rmse.value << ", ratio " << error.meanRatio.value);
+    CHECK(error.rmse.value <= 0.5 * nothing.rmse.value);
+    CHECK(error.meanRatio.value >= 0.75);
+    CHECK(error.meanRatio.value <= 1.25);
+  }
+}
+
+TEST_CASE("the same seed and device give the same bits twice") {
+  const Scene scene = litRoom(32, 32);
+  const FrameResult first = renderOnce(scene, pipeline("voxel_cone_tracing")), second = renderOnce(scene, pipeline("voxel_cone_tracing"));
+  REQUIRE(first.outputs.size() == 4);
+  for (const auto& [name, picture] : first.outputs) CHECK(picture.values() == second.outputs.at(name).values());
+}

@@ -1,0 +1,165 @@
+// compare: two EXR files.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "command.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/picture.h"
+#include "lumivox/measure/metrics.h"
+
+namespace lumivox::command {
+namespace {
+
+struct CompareCommand {
+  std::filesystem::path picture, truth;
+  std::vector<std::string> layers;
+  bool json = false;
+  double rmseAtMost = -1.0;
+};
+
+/// A layer of the picture and the layer of the truth that it is compared with.
+using LayerPair = std::pair<std::string, std::string>;
+
+constexpr const char* kMainLayer = "main";  // how the command line names the layer without a name
+constexpr const char* kVariance = ".variance";
+
+std::string shown(const std::string& layer) {
+  return layer.empty() ? kMainLayer : layer;
+}
+bool isVariance(const std::string& layer) {
+  return layer.size() > 9 && layer.rfind(kVariance) == layer.size() - 9;
+}
+
+std::vector<std::string> namesIn(const LayeredPicture& file) {
+  std::vector<std::string> names;
+  for (const auto& [name, picture] : file.layers)
+    if (!isVariance(name)) names.push_back(shown(name));
+  return names;
+}
+
+const Picture& layerIn(const LayeredPicture& file, const std::filesystem::path& path,
+                       const std::string& layer) {
+  const auto found = file.layers.find(layer == kMainLayer && file.layers.count(layer) == 0 ? "" : layer);
+  if (found != file.layers.end()) return found->second;
+  const std::vector<std::string> names = namesIn(file);
+  const std::string nearest = nearestWord(layer, names);
+  throw Error(fmt::format("{}: no layer '{}'; expected one of {}{}", path.string(), shown(layer),
+                          fmt::join(names, ", "),
+                          nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+}
+
+std::vector<LayerPair> pairsOf(const CompareCommand& command, const LayeredPicture& picture,
+                               const LayeredPicture& truth) {
+  std::vector<LayerPair> pairs;
+  for (const std::string& layer : command.layers) {
+    const std::size_t equals = layer.find('=');
+    const std::string own = layer.substr(0, equals);
+    pairs.emplace_back(own, equals == std::string::npos ? own : layer.substr(equals + 1));
+  }
+  if (!pairs.empty()) return pairs;
+  for (const auto& [name, values] : picture.layers)
+    if (!isVariance(name) && truth.layers.count(name) != 0) pairs.emplace_back(name, name);
+  if (pairs.empty())
+    throw Error(fmt::format(
+        "{} and {} have no layer in common; choose with --layer A=B; the first has {}; the second has {}",
+        command.picture.string(), command.truth.string(), fmt::join(namesIn(picture), ", "),
+        fmt::join(namesIn(truth), ", ")));
+  return pairs;
+}
+
+/// Without its fourth channel, which is coverage and no radiance.
+Picture withoutAlpha(const Picture& picture) {
+  if (picture.channels() != 4) return picture;
+  Picture rgb(picture.width(), picture.height(), 3);
+  for (std::size_t pixel = 0; pixel < picture.pixelCount(); ++pixel)
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      rgb.values()[3 * pixel + channel] = picture.values()[4 * pixel + channel];
+  return rgb;
+}
+
+Json toJson(const Measured& measured) {
+  const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
+  return {{"value", number(measured.value)}, {"uncertainty", number(measured.uncertainty)}};
+}
+
+Json toJson(const LayerPair& pair, const PictureError& error) {
+  return {{"layer", shown(pair.first)},
+          {"truth_layer", shown(pair.second)},
+          {"rmse", toJson(error.rmse)},
+          {"relative_mse", toJson(error.relativeMse)},
+          {"mean_ratio", toJson(error.meanRatio)},
+          {"mean_difference", toJson(error.bias)},
+          {"percentile_95", error.percentile95},
+          {"ssim", error.ssim},
+          {"flip_hdr", error.flip},
+          {"flip_ldr", error.flipLdr},
+          {"truth_noise", error.noiseFloor},
+          {"non_finite_picture", error.nonFinitePicture},
+          {"non_finite_truth", error.nonFiniteTruth}};
+}
+
+std::string text(const Measured& measured) {
+  if (!std::isfinite(measured.value)) return "-";
+  return measured.uncertainty > 0.0 ? fmt::format("{:.4g} ± {:.1g}", measured.value, measured.uncertainty)
+                                    : fmt::format("{:.4g}", measured.value);
+}
+
+int compareFiles(const CompareCommand& command) {
+  const LayeredPicture picture = readExr(command.picture), truth = readExr(command.truth);
+  Json list = Json::array();
+  std::vector<std::vector<std::string>> rows{{"Layer", "RMSE", "Relative MSE", "Mean ratio",
+                                              "Mean difference", "95 %", "SSIM", "FLIP", "FLIP LDR",
+                                              "Truth's noise", "NaN or Inf"}};
+  bool good = true;
+  for (const LayerPair& pair : pairsOf(command, picture, truth)) {
+    const Picture& own = layerIn(picture, command.picture, pair.first);
+    const Picture& other = layerIn(truth, command.truth, pair.second);
+    const bool alpha = own.channels() + other.channels() == 7;  // RGBA with RGB
+    const Picture left = alpha ? withoutAlpha(own) : own, right = alpha ? withoutAlpha(other) : other;
+    if (!left.sameShape(right))
+      throw Error(fmt::format(
+          "layer '{}' of {} has {} x {} pixels of {} channels, layer '{}' of {} has {} x {} of {}",
+          shown(pair.first), command.picture.string(), left.width(), left.height(), left.channels(),
+          shown(pair.second), command.truth.string(), right.width(), right.height(), right.channels()));
+    const auto variance = truth.layers.find((pair.second == kMainLayer ? "" : pair.second) + kVariance);
+    const bool known = variance != truth.layers.end() && variance->second.sameShape(right);
+    const PictureError error = compare(left, right, known ? variance->second : Picture{});
+    if (command.rmseAtMost >= 0.0 && !(error.rmse.value <= command.rmseAtMost)) good = false;
+    list.push_back(toJson(pair, error));
+    rows.push_back(
+        {pair.first == pair.second ? shown(pair.first) : shown(pair.first) + " = " + shown(pair.second),
+         text(error.rmse), text(error.relativeMse), text(error.meanRatio), text(error.bias),
+         threeDigits(error.percentile95), fmt::format("{:.4f}", error.ssim),
+         fmt::format("{:.4f}", error.flip), fmt::format("{:.4f}", error.flipLdr),
+         threeDigits(error.noiseFloor),
+         fmt::format("{}", error.nonFinitePicture) +
+             (error.nonFiniteTruth > 0 ? fmt::format(", truth {}", error.nonFiniteTruth) : "")});
+  }
+  if (command.json)
+    printJson({{"picture", command.picture.string()}, {"truth", command.truth.string()}, {"layers", list}});
+  else
+    print(textTable(rows));
+  return good ? kGood : kNotGood;
+}
+
+}  // namespace
+
+void addCompareCommand(Commands& commands) {
+  auto* command = commands.app.add_subcommand(
+      "compare", "how far a picture is from another; NaN and Inf are counted, not spread");
+  auto options = std::make_shared<CompareCommand>();
+  command->add_option("PICTURE", options->picture, "an EXR file")->required();
+  command->add_option("TRUTH", options->truth, "an EXR file; its layers NAME.variance give the uncertainties")
+      ->required();
+  addRepeatable(
+      *command, "--layer", options->layers,
+      "this layer of both, or A=B: A of the first with B of the second; 'main' is the layer without a name "
+      "(default: all that both have)");
+  command->add_option("--rmse-at-most", options->rmseAtMost, "exit code 1 when an RMSE is larger")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--json", options->json, "print JSON");
+  commands.onChosen(command, [=] { return compareFiles(*options); });
+}
+
+}  // namespace lumivox::command

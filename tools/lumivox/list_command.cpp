@@ -1,0 +1,131 @@
+// list scenes|pipelines|techniques|passes
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "command.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/dsl/document.h"
+#include "lumivox/report/report.h"
+
+namespace lumivox::command {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The string in the first block of a text: its title.
+std::string titleOf(const fs::path& file) {
+  const dsl::Document document = dsl::parse(readFile(file), file);
+  for (const dsl::Item& item : document.items)
+    if (item.block && !item.block->header.empty()) return item.block->header.front().text;
+  return {};
+}
+
+Json texts(const std::string& extension, const fs::path& subfolder) {
+  const auto scenes = committedScenes();
+  if (!scenes)
+    throw AbsentError(
+        "no project here: no folder scenes/pipelines in this folder or above, nor beside the program");
+  std::vector<fs::path> files;
+  const fs::path folder = *scenes / subfolder;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == extension && entry.is_regular_file()) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  Json list = Json::array();
+  std::error_code failure;
+  for (const fs::path& file : files) {
+    const fs::path shown = fs::proximate(file, failure);
+    list.push_back({{"name", file.stem().string()},
+                    {"title", titleOf(file)},
+                    {"file", (failure ? file : shown).string()}});
+  }
+  return list;
+}
+
+Json techniquesList(TechniqueSet& techniques) {
+  Json list = Json::array();
+  for (const std::string& name : techniques.available()) {
+    const Technique* technique = techniques.technique(name);
+    if (technique == nullptr) continue;
+    list.push_back({{"name", name},
+                    {"passes", technique->passes.size()},
+                    {"meaning", technique->meaning},
+                    {"paper", technique->paper},
+                    {"library", technique->library.string()}});
+  }
+  for (const SkippedTechnique& skipped : techniques.skipped())
+    std::cerr << fmt::format("{}: skipped: {}\n", skipped.library.string(), skipped.reason);
+  return list;
+}
+
+Json passesList(TechniqueSet& techniques) {
+  Json list = Json::array();
+  for (const std::string& name : techniques.available())
+    if (const Technique* technique = techniques.technique(name))
+      for (const PassEntry& entry : technique->passes) {
+        const std::unique_ptr<Pass> pass = entry.make();
+        std::vector<std::string> inputs, outputs;
+        for (const InBase* input : pass->inputs()) inputs.push_back(input->name());
+        for (const OutBase* output : pass->outputs()) outputs.push_back(output->name());
+        list.push_back({{"name", name + "." + entry.name},
+                        {"inputs", inputs},
+                        {"outputs", outputs},
+                        {"meaning", entry.meaning}});
+      }
+  return list;
+}
+
+/// Columns for the terminal; the JSON has more.
+std::string asTable(const Json& list, const std::vector<std::string>& columns) {
+  std::vector<std::vector<std::string>> rows{columns};
+  for (const Json& entry : list) {
+    std::vector<std::string> row;
+    for (const std::string& column : columns) {
+      const Json& value = entry.at(column);
+      if (value.is_string()) {
+        row.push_back(value.get<std::string>());
+      } else if (value.is_array()) {
+        row.push_back(fmt::format("{}", fmt::join(value.get<std::vector<std::string>>(), " ")));
+      } else {
+        row.push_back(value.dump());
+      }
+    }
+    rows.push_back(std::move(row));
+  }
+  return textTable(rows);
+}
+
+}  // namespace
+
+void addListCommand(Commands& commands) {
+  auto* command = commands.app.add_subcommand("list", "lists what there is");
+  auto what = std::make_shared<std::string>();
+  auto json = std::make_shared<bool>(false);
+  command->add_option("WHAT", *what, "scenes, pipelines, techniques or passes")
+      ->required()
+      ->check(CLI::IsMember({"scenes", "pipelines", "techniques", "passes"}));
+  command->add_flag("--json", *json, "print JSON");
+  const GlobalOptions& global = commands.global;
+  commands.onChosen(command, [=, &global] {
+    Json list;
+    std::vector<std::string> columns{"name", "title", "file"};
+    if (*what == "scenes") {
+      list = texts(".scene", "");
+    } else if (*what == "pipelines") {
+      list = texts(".pipeline", "pipelines");
+    } else {
+      TechniqueSet techniques = global.techniqueSet();
+      list = *what == "techniques" ? techniquesList(techniques) : passesList(techniques);
+      columns = *what == "techniques" ? std::vector<std::string>{"name", "passes", "meaning"}
+                                      : std::vector<std::string>{"name", "inputs", "outputs", "meaning"};
+    }
+    if (*json)
+      printJson(list);
+    else
+      print(asTable(list, columns));
+    return kGood;
+  });
+}
+
+}  // namespace lumivox::command

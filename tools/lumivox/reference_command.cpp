@@ -1,0 +1,78 @@
+// reference: the path-traced truth.
+#include <fmt/format.h>
+
+#include "command.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/log.h"
+#include "lumivox/base/picture.h"
+#include "lumivox/measure/metrics.h"
+#include "lumivox/reference/path_tracer.h"
+#include "lumivox/report/report.h"
+
+namespace lumivox::command {
+namespace {
+
+struct ReferenceCommand {
+  std::filesystem::path scene, output;
+  std::string resolution;
+  ReferenceOptions options;
+  bool noCache = false;
+};
+
+int reference(ReferenceCommand command, const GlobalOptions& global) {
+  const std::string extension = command.output.extension().string();
+  if (extension != ".exr" && extension != ".png")
+    throw Error(fmt::format("{}: unknown kind of picture; expected a name that ends in .exr or .png",
+                            command.output.string()));
+  requireWritable(command.output);
+  if (!command.resolution.empty())
+    std::tie(command.options.width, command.options.height) = parseResolution(command.resolution);
+  command.options.useCache = !command.noCache;
+  command.options.progress = !global.quiet;
+  const Scene scene = global.loadScene(command.scene);
+  scene.camera(command.options.camera);
+  LayeredPicture truth = command.options.useCache ? cachedReference(scene, command.options)
+                                                  : renderReference(scene, command.options);
+  const Picture full = truth.layers.at("full");
+  if (extension == ".png") {
+    writePng(command.output, full, displayExposure(full));
+  } else {
+    truth.layers[""] = full;  // what a viewer of pictures shows first
+    truth.attributes["lumivox.command"] = global.commandLine;
+    truth.attributes["lumivox.version"] = LUMIVOX_VERSION;
+    writeExr(command.output, truth);
+  }
+  logInformation("{}: {} x {}, {} samples per pixel", command.output.string(), full.width(), full.height(),
+                 command.options.samplesPerPixel);
+  return kGood;
+}
+
+}  // namespace
+
+void addReferenceCommand(Commands& commands) {
+  auto* command = commands.app.add_subcommand("reference", "path-traces the truth of a scene");
+  auto all = std::make_shared<ReferenceCommand>();
+  ReferenceOptions& options = all->options;
+  command->add_option("SCENE", all->scene, "the scene's text")->required();
+  command->add_option("-o,--out", all->output, ".exr (every layer and its variance) or .png (full transport)")
+      ->required();
+  command->add_option("--spp", options.samplesPerPixel, "samples per pixel (default 256)")
+      ->check(CLI::Range(1, 1 << 24));
+  command->add_option("--bounces", options.bounces, "indirect bounces of the full transport (default 32)")
+      ->check(CLI::Range(0, 1 << 16));
+  command->add_option("--seed", options.seed, "of the random numbers");
+  command->add_option("--time", options.time, "seconds");
+  command->add_option("--camera", options.camera, "the scene's camera of this name (default: the first)");
+  command->add_option("--resolution", all->resolution,
+                      "width and height in pixels, as 640x360 (default: the camera's)");
+  command
+      ->add_option("--occlusion-distance", options.occlusionDistance,
+                   "metres, of ambient occlusion (default: a tenth of the diagonal of the scene's bounds)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--threads", options.threads, "default: all")->check(CLI::Range(0, 4096));
+  command->add_flag("--no-cache", all->noCache, "neither read nor write the cache of truths");
+  const GlobalOptions& global = commands.global;
+  commands.onChosen(command, [=, &global] { return reference(*all, global); });
+}
+
+}  // namespace lumivox::command

@@ -1,0 +1,175 @@
+// render: pictures alone.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "command.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/log.h"
+#include "lumivox/base/picture.h"
+#include "lumivox/measure/metrics.h"
+#include "lumivox/report/report.h"
+
+namespace lumivox::command {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RenderCommand {
+  fs::path scene, pipeline, output;
+  RunOptions run;
+  std::string frames, onlyOutput;
+  double framesPerSecond = 24.0;
+  bool keepEverything = false, health = false;
+};
+
+/// "3..9" or "3"; both ends belong to it.
+std::pair<int, int> parseFrames(const std::string& text) {
+  int first = 0, last = 0, used = 0;
+  const auto whole = [&] { return text.size() <= 24 && static_cast<std::size_t>(used) == text.size(); };
+  if (std::sscanf(text.c_str(), "%d..%d%n", &first, &last, &used) == 2 && whole() && first >= 0 &&
+      last >= first)
+    return {first, last};
+  used = 0;
+  if (std::sscanf(text.c_str(), "%d%n", &first, &used) == 1 && whole() && first >= 0) return {first, first};
+  throw Error(fmt::format("--frames '{}': expected FIRST..LAST, whole numbers from 0, as 0..47", text));
+}
+
+/// The numbered name of a frame: a run of # in the file's name is the number, else it goes before the
+/// extension as _0007.
+fs::path numberedName(const fs::path& output, int frame) {
+  std::string stem = output.filename().string();
+  const std::size_t first = stem.find('#');
+  if (first != std::string::npos) {
+    const std::size_t end = stem.find_first_not_of('#', first);
+    const std::size_t digits = (end == std::string::npos ? stem.size() : end) - first;
+    return output.parent_path() / stem.replace(first, digits, fmt::format("{:0{}}", frame, digits));
+  }
+  return output.parent_path() /
+         fmt::format("{}_{:04}{}", output.stem().string(), frame, output.extension().string());
+}
+
+std::map<std::string, std::string> provenance(const GlobalOptions& global, const Scene& scene,
+                                              const Pipeline& pipeline, const RenderOptions& options,
+                                              const gpu::Device& device, double time) {
+  std::string parameters;
+  for (const PipelineParameter& parameter : pipeline.parameters) {
+    const auto set = options.parameters.find(parameter.name);
+    parameters += (parameters.empty() ? "" : " ") + parameter.name + "=" +
+                  (set == options.parameters.end() ? parameter.value : set->second).text();
+  }
+  return {{"lumivox.version", LUMIVOX_VERSION},
+          {"lumivox.command", global.commandLine},
+          {"lumivox.scene", scene.name},
+          {"lumivox.scene_hash", scene.hash.text()},
+          {"lumivox.pipeline", pipeline.name},
+          {"lumivox.pipeline_hash", pipeline.hash.text()},
+          {"lumivox.parameters", parameters},
+          {"lumivox.keep_everything", options.keepEverything ? "yes" : "no"},
+          {"lumivox.seed", fmt::format("{}", options.seed)},
+          {"lumivox.time", fmt::format("{}", time)},
+          {"lumivox.camera", scene.camera(options.camera).name},
+          {"lumivox.device", device.info().renderer},
+          {"lumivox.driver", device.info().version},
+          {"lumivox.shaders", device.shaderInput() == gpu::ShaderInput::spirv ? "spirv" : "glsl"}};
+}
+
+Picture mainPicture(const RenderCommand& command, const FrameResult& frame) {
+  if (command.onlyOutput.empty()) return compositePicture(frame);
+  const auto found = frame.outputs.find(command.onlyOutput);
+  return found == frame.outputs.end() ? Picture{} : found->second;
+}
+
+void writeFrame(const RenderCommand& command, const fs::path& file, const FrameResult& frame,
+                const std::map<std::string, std::string>& attributes) {
+  Picture main = mainPicture(command, frame);
+  if (file.extension() == ".png") {
+    if (main.empty()) throw Error("the pipeline has no output that is a radiance; name one with --output");
+    writePng(file, main, main.channels() == 1 ? 1.0f : displayExposure(main));
+    return;
+  }
+  LayeredPicture layered;
+  layered.attributes = attributes;
+  if (command.onlyOutput.empty())
+    for (const auto& [name, picture] : frame.outputs)
+      if (!picture.empty()) layered.layers[name] = picture;
+  if (!main.empty()) layered.layers[""] = std::move(main);
+  writeExr(file, layered);
+}
+
+int render(const RenderCommand& command, const GlobalOptions& global) {
+  const std::string extension = command.output.extension().string();
+  if (extension != ".exr" && extension != ".png")
+    throw Error(fmt::format("{}: unknown kind of picture; expected a name that ends in .exr or .png",
+                            command.output.string()));
+  if (!(command.framesPerSecond > 0.0) || !std::isfinite(command.framesPerSecond))
+    throw Error("--fps: expected a number above 0");
+  const bool animation = !command.frames.empty();
+  const auto [first, last] = animation ? parseFrames(command.frames) : std::pair(0, 0);
+  for (const int frame : {first, last})
+    requireWritable(animation ? numberedName(command.output, frame) : command.output);
+
+  const Pipeline pipeline = Pipeline::load(command.pipeline);
+  RenderOptions options = command.run.renderOptions(pipeline);
+  options.keepEverything = command.keepEverything;
+  options.health = command.health;
+  if (!command.onlyOutput.empty()) {
+    std::vector<std::string> names;
+    for (const Pipeline::Output& output : pipeline.outputs) names.push_back(output.name);
+    if (std::find(names.begin(), names.end(), command.onlyOutput) == names.end()) {
+      const std::string nearest = nearestWord(command.onlyOutput, names);
+      throw Error(fmt::format("--output '{}': not an output of {}; expected one of {}{}", command.onlyOutput,
+                              command.pipeline.string(), fmt::join(names, ", "),
+                              nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+    }
+    options.wanted = {command.onlyOutput};
+  }
+  TechniqueSet techniques = global.techniqueSet();
+  checkPipeline(pipeline, techniques);
+  const Scene scene = global.loadScene(command.scene);
+  const auto device = global.openDevice();
+  PipelineExecutor executor(*device, techniques, scene, pipeline, options);
+
+  std::size_t findings = 0;
+  Progress progress("rendering", static_cast<std::uint64_t>(last - first + 1));
+  for (int frame = first; frame <= last; ++frame) {
+    const double time = command.run.time + (animation ? frame / command.framesPerSecond : 0.0);
+    const FrameResult result = executor.render(time, frame);
+    for (const std::string& finding : result.healthFindings)
+      std::cerr << (animation ? fmt::format("frame {}: ", frame) : std::string()) << finding << "\n";
+    findings += result.healthFindings.size();
+    const fs::path file = animation ? numberedName(command.output, frame) : command.output;
+    auto attributes = provenance(global, scene, pipeline, options, *device, time);
+    if (animation) attributes["lumivox.frame"] = fmt::format("{}", frame);
+    writeFrame(command, file, result, attributes);
+    logInformation("{}: {:.1f} ms", file.string(), result.frameMs);
+    progress.advance();
+  }
+  return findings == 0 ? kGood : kNotGood;
+}
+
+}  // namespace
+
+void addRenderCommand(Commands& commands) {
+  auto* command = commands.app.add_subcommand("render", "renders a scene with a pipeline into pictures");
+  auto options = std::make_shared<RenderCommand>();
+  command->add_option("SCENE", options->scene, "the scene's text")->required();
+  command->add_option("PIPELINE", options->pipeline, "the pipeline's text")->required();
+  command
+      ->add_option("-o,--out", options->output,
+                   "the picture: .exr (every output as a layer, the whole picture as the main layer) or .png "
+                   "(the whole picture)")
+      ->required();
+  options->run.addTo(*command);
+  command->add_option("--frames", options->frames,
+                      "FIRST..LAST: numbered pictures, out_0007.exr or a run of # in the name");
+  command->add_option("--fps", options->framesPerSecond, "frames per second of --frames (default 24)");
+  command->add_option("--output", options->onlyOutput, "only this output of the pipeline, as the main layer");
+  command->add_flag("--keep-everything", options->keepEverything, "leave nothing out");
+  command->add_flag("--health", options->health,
+                    "scan every output of every pass for NaN, Inf and negative values");
+  const GlobalOptions& global = commands.global;
+  commands.onChosen(command, [=, &global] { return render(*options, global); });
+}
+
+}  // namespace lumivox::command

@@ -1,0 +1,287 @@
+// check, fmt and describe: what the texts say, without rendering.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "command.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/base/log.h"
+#include "lumivox/dsl/document.h"
+#include "lumivox/dsl/schema.h"
+#include "lumivox/scene/text.h"
+
+namespace lumivox::command {
+namespace {
+
+namespace fs = std::filesystem;
+
+// ---- check
+
+Json findingAsJson(const Diagnostic& finding) {
+  return {{"file", finding.place.file},
+          {"line", finding.place.line},
+          {"column", finding.place.column},
+          {"severity", finding.severity == Diagnostic::Severity::error ? "error" : "warning"},
+          {"what", finding.what},
+          {"expected", finding.expected},
+          {"suggestion", finding.suggestion}};
+}
+
+/// What is wrong with one file: findings with their places, or one message for what has none.
+struct CheckedFile {
+  std::vector<Diagnostic> findings;
+  std::string message;
+  bool good() const { return findings.empty() && message.empty(); }
+};
+
+CheckedFile checkFile(const fs::path& file, const GlobalOptions& global, TechniqueSet& techniques) {
+  CheckedFile checked;
+  try {
+    if (kindOfText(file) == TextKind::scene)
+      checkScene(file, global.sceneLoad());
+    else
+      checkPipeline(Pipeline::load(file), techniques);
+  } catch (const DiagnosticsError& error) {
+    checked.findings = error.diagnostics();
+  } catch (const Error& error) {
+    checked.message = error.what();
+  }
+  return checked;
+}
+
+int check(const std::vector<fs::path>& files, bool json, const GlobalOptions& global) {
+  TechniqueSet techniques = global.techniqueSet();
+  Json list = Json::array();
+  std::size_t bad = 0;
+  for (const fs::path& file : files) {
+    const CheckedFile checked = checkFile(file, global, techniques);
+    if (!checked.good()) ++bad;
+    if (json) {
+      Json findings = Json::array();
+      for (const Diagnostic& finding : checked.findings) findings.push_back(findingAsJson(finding));
+      if (!checked.message.empty())
+        findings.push_back({{"file", file.string()}, {"severity", "error"}, {"what", checked.message}});
+      list.push_back({{"file", file.string()}, {"good", checked.good()}, {"findings", std::move(findings)}});
+      continue;
+    }
+    for (const Diagnostic& finding : checked.findings) std::cerr << finding.text() << "\n";
+    if (!checked.message.empty()) std::cerr << "lumivox: " << checked.message << "\n";
+    if (checked.good() && !global.quiet) print(file.string() + ": good\n");
+  }
+  if (json) printJson(list);
+  return bad == 0 ? kGood : kBadInput;
+}
+
+// ---- fmt
+
+int formatFiles(const std::vector<fs::path>& files, bool onlyCheck, bool quiet) {
+  // All files are read before the first is written: one wrong text leaves every file as it was.
+  std::vector<Diagnostic> findings;
+  std::vector<std::pair<fs::path, std::string>> changed;
+  for (const fs::path& file : files) {
+    std::string source = readFile(file);
+    const dsl::Document document = dsl::parse(source, file);
+    findings.insert(findings.end(), document.findings.begin(), document.findings.end());
+    if (!document.findings.empty()) continue;
+    std::string formatted = dsl::format(document);
+    if (formatted != source) changed.emplace_back(file, std::move(formatted));
+  }
+  if (!findings.empty()) throw DiagnosticsError(findings);
+  for (const auto& [file, text] : changed) {
+    if (onlyCheck) {
+      print(file.string() + ": would be laid out anew\n");
+    } else {
+      writeFileAtomically(file, text);
+      if (!quiet) print(file.string() + ": laid out anew\n");
+    }
+  }
+  return onlyCheck && !changed.empty() ? kNotGood : kGood;
+}
+
+// ---- describe
+
+std::string rangeText(const ParamBase& parameter) {
+  if (!parameter.choices().empty()) return fmt::format("one of {}", fmt::join(parameter.choices(), ", "));
+  if (parameter.type() == ParamBase::Type::flag) return "on or off";
+  const std::string unit = parameter.unit().empty() ? "" : " " + parameter.unit();
+  return fmt::format("{} in {}..{}{}",
+                     parameter.type() == ParamBase::Type::integer ? "an integer" : "a number",
+                     parameter.low(), parameter.high(), unit);
+}
+
+std::string inputText(const InBase& input) {
+  return fmt::format("{}{}", input.portKind(),
+                     input.presence() == Presence::optional ? ", may be left out" : "");
+}
+
+std::string outputText(const OutBase& output) {
+  return output.contributes() == Contributes::nothing
+             ? output.portKind()
+             : fmt::format("{}, {}", output.portKind(), name(output.contributes()));
+}
+
+std::string meaningAfter(const std::string& meaning) {
+  return meaning.empty() ? "" : ": " + meaning;
+}
+
+std::string passText(const std::string& technique, const PassEntry& entry) {
+  const std::unique_ptr<Pass> pass = entry.make();
+  std::string text = fmt::format("pass NAME {}.{}\n  {}\n", technique, entry.name, entry.meaning);
+  const auto section = [&](const char* title, const auto& members, const auto& line) {
+    if (members.empty()) return;
+    text += fmt::format("  {}\n", title);
+    for (const auto* member : members)
+      text += fmt::format("    {} ({}){}\n", member->name(), line(*member), meaningAfter(member->meaning()));
+  };
+  section("inputs", pass->inputs(), inputText);
+  section("outputs", pass->outputs(), outputText);
+  section("parameters", pass->parameters(), [](const ParamBase& parameter) {
+    return rangeText(parameter) + "; default " + parameter.defaultText();
+  });
+  return text;
+}
+
+/// Calls back with every pass of every technique that can be opened.
+template <class Visit>
+void forEachPass(TechniqueSet& techniques, const Visit& visit) {
+  for (const std::string& name : techniques.available())
+    if (const Technique* technique = techniques.technique(name))
+      for (const PassEntry& entry : technique->passes) visit(*technique, entry);
+}
+
+/// Everything among the techniques that has this name; adds all names to `known`.
+std::string describeInTechniques(TechniqueSet& techniques, const std::string& word,
+                                 std::vector<std::string>& known) {
+  std::string text;
+  for (const std::string& name : techniques.available()) {
+    const Technique* technique = techniques.technique(name);
+    if (technique == nullptr) continue;
+    known.push_back(name);
+    if (name != word) continue;
+    text += fmt::format("technique {}\n  {}\n  {}\n  passes:", name, technique->meaning, technique->paper);
+    for (const PassEntry& entry : technique->passes) text += " " + entry.name;
+    text += "\n\n";
+  }
+  forEachPass(techniques, [&](const Technique& technique, const PassEntry& entry) {
+    const std::string full = technique.name + "." + entry.name;
+    known.push_back(entry.name);
+    known.push_back(full);
+    if (word == entry.name || word == full) {
+      text += passText(technique.name, entry) + "\n";
+      return;
+    }
+    const std::unique_ptr<Pass> pass = entry.make();
+    const auto member = [&](const char* kind, const auto& members, const auto& line) {
+      for (const auto* one : members) {
+        known.push_back(one->name());
+        if (one->name() == word)
+          text += fmt::format("{} {} of {} ({}){}\n\n", kind, word, full, line(*one),
+                              meaningAfter(one->meaning()));
+      }
+    };
+    member("input", pass->inputs(), inputText);
+    member("output", pass->outputs(), outputText);
+    member("parameter", pass->parameters(), [](const ParamBase& parameter) {
+      return rangeText(parameter) + "; default " + parameter.defaultText();
+    });
+  });
+  return text;
+}
+
+int describe(const std::string& word, const GlobalOptions& global) {
+  TechniqueSet techniques = global.techniqueSet();
+  std::vector<std::string> known;
+  std::string text;
+  for (const auto* specifications : {&sceneSpecifications(), &pipelineSpecifications()}) {
+    std::string found = dsl::describe(*specifications, word);
+    if (!found.empty()) text += found + (found.back() == '\n' ? "\n" : "\n\n");
+    for (const std::string& one : dsl::words(*specifications)) known.push_back(one);
+  }
+  text += describeInTechniques(techniques, word, known);
+  if (text.empty()) {
+    const std::string nearest = nearestWord(word, known);
+    throw Error(fmt::format(
+        "nothing is called '{}'; expected a block, property, technique, pass, port or parameter{}", word,
+        nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+  }
+  text.erase(text.find_last_not_of('\n') + 1);
+  print(text + "\n");
+  return kGood;
+}
+
+std::string markdownCell(std::string text) {
+  for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2))
+    text.insert(at, "\\");
+  return text;
+}
+
+int describeAsMarkdown(const GlobalOptions& global) {
+  TechniqueSet techniques = global.techniqueSet();
+  std::string text =
+      "# Reference\n\nWritten by `lumivox describe --markdown` from the tables that the parser uses.\n\n";
+  text += "## Scene texts\n\n" + dsl::describeAsMarkdown(sceneSpecifications()) + "\n";
+  text += "## Pipeline texts\n\n" + dsl::describeAsMarkdown(pipelineSpecifications()) + "\n## Techniques\n";
+  std::string technique;
+  forEachPass(techniques, [&](const Technique& owner, const PassEntry& entry) {
+    if (owner.name != technique)
+      text += fmt::format("\n### {}\n\n{}\n\n{}\n", owner.name, owner.meaning, owner.paper);
+    technique = owner.name;
+    text += fmt::format("\n#### {}.{}\n\n{}\n\n| Word | Kind | Values | Meaning |\n|---|---|---|---|\n",
+                        owner.name, entry.name, entry.meaning);
+    const std::unique_ptr<Pass> pass = entry.make();
+    const auto row = [&](const std::string& word, const char* kind, const std::string& values,
+                         const std::string& meaning) {
+      text +=
+          fmt::format("| `{}` | {} | {} | {} |\n", word, kind, markdownCell(values), markdownCell(meaning));
+    };
+    for (const InBase* input : pass->inputs())
+      row(input->name(), "input", inputText(*input), input->meaning());
+    for (const OutBase* output : pass->outputs())
+      row(output->name(), "output", outputText(*output), output->meaning());
+    for (const ParamBase* parameter : pass->parameters())
+      row(parameter->name(), "parameter", rangeText(*parameter) + "; default " + parameter->defaultText(),
+          parameter->meaning());
+  });
+  print(text);
+  return kGood;
+}
+
+}  // namespace
+
+void addTextCommands(Commands& commands) {
+  const GlobalOptions& global = commands.global;
+  {
+    auto* command =
+        commands.app.add_subcommand("check", "finds everything that is wrong in scenes and pipelines");
+    auto files = std::make_shared<std::vector<fs::path>>();
+    auto json = std::make_shared<bool>(false);
+    command->add_option("FILE", *files, "scenes and pipelines")->required();
+    command->add_flag("--json", *json, "print the findings as JSON");
+    commands.onChosen(command, [=, &global] { return check(*files, *json, global); });
+  }
+  {
+    auto* command = commands.app.add_subcommand("fmt", "lays texts out in the one canonical way");
+    auto files = std::make_shared<std::vector<fs::path>>();
+    auto onlyCheck = std::make_shared<bool>(false);
+    command->add_option("FILE", *files, "scenes and pipelines")->required();
+    command->add_flag("--check", *onlyCheck, "change nothing; exit code 1 when a file would change");
+    commands.onChosen(command, [=, &global] { return formatFiles(*files, *onlyCheck, global.quiet); });
+  }
+  {
+    auto* command = commands.app.add_subcommand("describe", "tells what a word of the texts means");
+    auto word = std::make_shared<std::string>();
+    auto markdown = std::make_shared<bool>(false);
+    auto* positional =
+        command->add_option("WORD", *word, "a block, property, technique, pass, port or parameter");
+    command->add_flag("--markdown", *markdown, "print the whole reference")->excludes(positional);
+    commands.onChosen(command, [=, &global] {
+      if (*markdown) return describeAsMarkdown(global);
+      if (word->empty()) throw Error("describe: expected a word, or --markdown for the whole reference");
+      return describe(*word, global);
+    });
+  }
+}
+
+}  // namespace lumivox::command

@@ -1,0 +1,16 @@
+// The models of scenes/models, each written into a folder.
+#pragma once
+
+#include <filesystem>
+
+namespace lumivox::models {
+
+void writeCornell(const std::filesystem::path& directory);
+void writeCorridor(const std::filesystem::path& directory);
+void writeFurnace(const std::filesystem::path& directory);
+void writeSkylight(const std::filesystem::path& directory);
+void writeArcade(const std::filesystem::path& directory);
+void writeArcadeTextures(const std::filesystem::path& directory);
+void writeStressModels(const std::filesystem::path& directory);
+
+}  // namespace lumivox::models

@@ -1,0 +1,237 @@
+#include "stage.h"
+
+#include <SPIRV/GlslangToSpv.h>
+#include <fmt/format.h>
+#include <glslang/Public/ResourceLimits.h>
+#include <glslang/Public/ShaderLang.h>
+
+#include <spirv-tools/libspirv.hpp>
+#include <spirv-tools/optimizer.hpp>
+#include <spirv_cross/spirv_glsl.hpp>
+#include <sstream>
+
+#include "lumivox/base/error.h"
+#include "shader/bytes.h"
+
+namespace lumivox::shaderpack {
+namespace {
+
+// Counts up whenever this program makes something else of the same source.
+constexpr int kArtifactVersion = 1;
+
+// Line numbers follow from "#line N "file"" directives, which need this extension.
+constexpr const char* kPreamble = "#version 450 core\n#extension GL_GOOGLE_cpp_style_line_directive : require\n";
+
+EShLanguage languageOf(gpu::Stage stage) {
+  switch (stage) {
+    case gpu::Stage::vertex: return EShLangVertex;
+    case gpu::Stage::geometry: return EShLangGeometry;
+    case gpu::Stage::fragment: return EShLangFragment;
+    case gpu::Stage::compute: return EShLangCompute;
+  }
+  return EShLangCompute;
+}
+
+/// glslang's "ERROR: file:line: what" in the form that editors follow: "file:line: error: what".
+std::string readableLog(const std::string& log, const StageSource& source, bool warnings) {
+  std::istringstream lines(log);
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    const bool isWarning = line.rfind("WARNING: ", 0) == 0;
+    if (line.empty() || isWarning != warnings || line.find("compilation errors.  No code generated") != std::string::npos) continue;
+    const std::string_view severity = isWarning ? "warning" : "error";
+    if (isWarning || line.rfind("ERROR: ", 0) == 0) line.erase(0, line.find(' ') + 1);
+    // The place ends at the second colon; a message without a place is about the whole entry file.
+    std::size_t colon = line.find(": ");
+    const std::size_t number = colon == std::string::npos ? colon : line.rfind(':', colon - 1);
+    const bool placed = number != std::string::npos && number + 1 < colon &&
+                        line.find_first_not_of("0123456789", number + 1) == colon;
+    if (!text.empty()) text += '\n';
+    text += placed ? fmt::format("{}: {}: {}", line.substr(0, colon), severity, line.substr(colon + 2))
+                   : fmt::format("{}: {}: {}", source.source->entry.string(), severity, line);
+  }
+  return text;
+}
+
+[[noreturn]] void failStage(const StageSource& source, const std::string& what) {
+  throw Error(fmt::format("{}: error: {}", source.source->entry.string(), what));
+}
+
+std::vector<std::uint32_t> toSpirv(const StageSource& source, std::string& warnings) {
+  const EShLanguage language = languageOf(source.stage);
+  const std::string text = kPreamble + source.definitions + source.source->text;
+  const char* string = text.c_str();
+  const int length = static_cast<int>(text.size());
+  const std::string name = source.source->entry.string();
+  const char* names[] = {name.c_str()};
+  glslang::TShader shader(language);
+  shader.setStringsWithLengthsAndNames(&string, &length, names, 1);
+  constexpr int kDialect = 100;  // the version of the OpenGL dialect of GLSL for SPIR-V (ARB_gl_spirv)
+  shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientOpenGL, kDialect);
+  shader.setEnvClient(glslang::EShClientOpenGL, glslang::EShTargetOpenGL_450);
+  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_0);
+  constexpr auto kMessages = static_cast<EShMessages>(EShMsgDefault | EShMsgSpvRules);
+  if (!shader.parse(GetDefaultResources(), 450, ECoreProfile, false, false, kMessages)) {
+    throw Error(readableLog(shader.getInfoLog(), source, false));
+  }
+  warnings = readableLog(shader.getInfoLog(), source, true);
+  glslang::TProgram program;
+  program.addShader(&shader);
+  if (!program.link(kMessages)) throw Error(readableLog(program.getInfoLog(), source, false));
+  std::vector<std::uint32_t> words;
+  spv::SpvBuildLogger logger;
+  glslang::SpvOptions options;
+  options.disableOptimizer = true;
+  glslang::GlslangToSpv(*program.getIntermediate(language), words, &logger, &options);
+  if (const std::string log = logger.getAllMessages(); !log.empty()) failStage(source, log);
+  return words;
+}
+
+std::string toolMessage(const char* message, const spv_position_t& position) {
+  return fmt::format("{} (SPIR-V word {})", message, position.index);
+}
+
+std::vector<std::uint32_t> optimise(const std::vector<std::uint32_t>& words, const StageSource& source) {
+  std::string problems;
+  spvtools::Optimizer optimizer(SPV_ENV_OPENGL_4_5);
+  optimizer.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t& position, const char* message) {
+    if (level <= SPV_MSG_ERROR) problems += "\n  " + toolMessage(message, position);
+  });
+  optimizer.RegisterPerformancePasses();
+  spvtools::OptimizerOptions options;
+  options.set_run_validator(false);  // validated below, after optimisation
+  std::vector<std::uint32_t> optimised;
+  if (!optimizer.Run(words.data(), words.size(), &optimised, options)) failStage(source, "the SPIR-V optimiser failed:" + problems);
+  return optimised;
+}
+
+void validate(const std::vector<std::uint32_t>& words, const StageSource& source) {
+  std::string problems;
+  spvtools::SpirvTools tools(SPV_ENV_OPENGL_4_5);
+  tools.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t& position, const char* message) {
+    if (level <= SPV_MSG_ERROR) problems += "\n  " + toolMessage(message, position);
+  });
+  if (!tools.Validate(words)) failStage(source, "the SPIR-V is not valid for OpenGL 4.5:" + problems);
+}
+
+std::string toGlsl(const std::vector<std::uint32_t>& words, const StageSource& source) {
+  try {
+    spirv_cross::CompilerGLSL compiler(words);
+    spirv_cross::CompilerGLSL::Options options;
+    options.version = 450;
+    options.es = false;
+    options.separate_shader_objects = false;
+    compiler.set_common_options(options);
+    return compiler.compile();
+  } catch (const spirv_cross::CompilerError& error) {
+    failStage(source, fmt::format("SPIRV-Cross cannot write it as GLSL: {}", error.what()));
+  }
+}
+
+}  // namespace
+
+ContentHash StageSource::key() const {
+  const glslang::Version version = glslang::GetVersion();
+  Hasher hasher;
+  hasher.add(kArtifactVersion).add(version.major).add(version.minor).add(version.patch);
+  hasher.add(std::string_view(spvSoftwareVersionString())).add(std::string_view(kPreamble));
+  hasher.add(stage).add(definitions).add(source->text).add(source->entry.string());
+  return hasher.finish();
+}
+
+void startCompiler() { glslang::InitializeProcess(); }
+
+Artifact compileStage(const StageSource& source) {
+  Artifact artifact;
+  const std::vector<std::uint32_t> declared = toSpirv(source, artifact.warnings);
+  artifact.spirv = optimise(declared, source);
+  validate(artifact.spirv, source);
+  artifact.glsl = toGlsl(artifact.spirv, source);
+  reflect(declared, artifact.spirv, source, artifact);
+  return artifact;
+}
+
+// ---- cache --------------------------------------------------------------------------------------------------------
+
+namespace {
+
+template <class Archive, class SomeArtifact>
+void exchange(Archive& archive, SomeArtifact& a) {
+  archive.value(a.spirv);
+  archive.value(a.glsl);
+  archive.each(a.bindings, [&](auto& b) {
+    archive.value(b.name);
+    archive.value(b.kind);
+    archive.value(b.binding);
+    archive.value(b.type);
+    archive.value(b.textureKind);
+    archive.value(b.shadow);
+    archive.value(b.minimumBytes);
+  });
+  archive.value(a.used);
+  archive.each(a.structs, [&](auto& s) {
+    archive.value(s.name);
+    archive.value(s.size);
+    archive.each(s.members, [&](auto& m) {
+      archive.value(m.name);
+      archive.value(m.type);
+      archive.value(m.offset);
+      archive.value(m.alignment);
+      archive.value(m.arrayLength);
+    });
+  });
+  archive.each(a.constants, [&](auto& c) {
+    archive.value(c.name);
+    archive.value(c.id);
+    archive.value(c.type);
+    archive.value(c.defaultBits);
+  });
+  for (auto* variables : {&a.inputs, &a.outputs}) {
+    archive.each(*variables, [&](auto& v) {
+      archive.value(v.location);
+      archive.value(v.type);
+      archive.value(v.name);
+    });
+  }
+  archive.value(a.groupSize);
+  archive.value(a.warnings);
+}
+
+}  // namespace
+
+std::string serialise(const Artifact& artifact) {
+  shader::ByteWriter content;
+  exchange(content, artifact);
+  for (const auto& binding : artifact.bindings) content.value(binding.format ? static_cast<int>(*binding.format) : -1);
+  const ContentHash hash = hashOf(content.bytes());
+  shader::ByteWriter whole;
+  whole.value(hash.high);
+  whole.value(hash.low);
+  whole.value(content.bytes());
+  return whole.bytes();
+}
+
+std::optional<Artifact> deserialise(std::string_view bytes) {
+  try {
+    ContentHash hash;
+    std::string content;
+    shader::ByteReader whole(bytes);
+    whole.value(hash.high);
+    whole.value(hash.low);
+    whole.value(content);
+    if (!whole.atEnd() || hashOf(content) != hash) return std::nullopt;
+    Artifact artifact;
+    shader::ByteReader reader(content);
+    exchange(reader, artifact);
+    for (auto& binding : artifact.bindings) {
+      int format = -1;
+      reader.value(format);
+      if (format >= 0) binding.format = static_cast<gpu::Format>(format);
+    }
+    return artifact;
+  } catch (const shader::Truncated&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace lumivox::shaderpack
