@@ -1,15 +1,24 @@
-# add_shaders(NAME): compiles shaders/NAME/*.{vert,geom,frag,comp} offline into lib/techniques/NAME.shaderpack and generates
-# <NAME>_shaders.h, the C++ side of their interfaces. Target: shaders_NAME.
+# add_shaders(NAME [SOURCE folder] [PACKS folder]): compiles shaders/NAME/*.{vert,geom,frag,comp} (or those of another folder) offline into
+# lib/techniques/NAME.shaderpack (or another folder) and generates generated/NAME_shaders.h, the C++ side of their interfaces.
+# Target: shaders_NAME. Which files were included is taken from what shaderpack read.
 function(add_shaders name)
-  set(pack ${CMAKE_BINARY_DIR}/lib/techniques/${name}.shaderpack)
+  cmake_parse_arguments(shaders "" "SOURCE;PACKS" "" ${ARGN})
+  if(NOT shaders_SOURCE)
+    set(shaders_SOURCE ${CMAKE_SOURCE_DIR}/shaders/${name})
+  endif()
+  if(NOT shaders_PACKS)
+    set(shaders_PACKS ${CMAKE_BINARY_DIR}/lib/techniques)
+  endif()
+  set(pack ${shaders_PACKS}/${name}.shaderpack)
   set(header ${CMAKE_BINARY_DIR}/generated/${name}_shaders.h)
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/shaders/${name}/* ${CMAKE_SOURCE_DIR}/shaders/common/*)
+  file(GLOB entries CONFIGURE_DEPENDS ${shaders_SOURCE}/*.vert ${shaders_SOURCE}/*.geom ${shaders_SOURCE}/*.frag
+       ${shaders_SOURCE}/*.comp)
   add_custom_command(
     OUTPUT ${pack} ${header}
-    COMMAND ${CMAKE_COMMAND} -E make_directory ${CMAKE_BINARY_DIR}/lib/techniques ${CMAKE_BINARY_DIR}/generated
-    COMMAND shaderpack --technique ${name} --source ${CMAKE_SOURCE_DIR}/shaders/${name} --include ${CMAKE_SOURCE_DIR}/shaders
-            --cache ${CMAKE_BINARY_DIR}/shadercache --pack ${pack} --header ${header}
-    DEPENDS shaderpack ${sources}
+    COMMAND shaderpack --technique ${name} --source ${shaders_SOURCE} --include ${CMAKE_SOURCE_DIR}/shaders
+            --cache ${CMAKE_BINARY_DIR}/shadercache --pack ${pack} --header ${header} --depfile ${pack}.d
+    DEPENDS shaderpack ${entries}
+    DEPFILE ${pack}.d
     COMMENT "Compiling shaders of ${name}"
     VERBATIM)
   add_custom_target(shaders_${name} DEPENDS ${pack} ${header})
@@ -22,6 +31,7 @@ function(add_technique name)
   set_target_properties(technique_${name} PROPERTIES
     OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/techniques)
   target_link_libraries(technique_${name} PRIVATE lumivox)
+  set_property(GLOBAL APPEND PROPERTY LUMIVOX_TECHNIQUES technique_${name})
   if(EXISTS ${CMAKE_SOURCE_DIR}/shaders/${name})
     add_shaders(${name})
     add_dependencies(technique_${name} shaders_${name})

@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # The set-up that ./run and ./test share: `. cmake/setup.sh`, then `lumivox_set_up ROOT`.
 # It installs the packages that are missing, configures once and builds what changed. All of its words go to stderr, so that the
 # output of the program that follows stays clean.
@@ -30,7 +31,7 @@ lumivox_apt_get() {
 }
 
 lumivox_install_packages() {
-  local root=$1 log=$root/build/packages.log
+  local root=$1 log=$1/build/packages.log
   local -a missing
   if ! command -v dpkg-query >/dev/null; then
     lumivox_say "this is no Debian system, so the packages of cmake/packages.txt (or their like) are taken to be there"

@@ -5,7 +5,6 @@
 // axis would see: the children are composited front to back in each column, and the columns are averaged. So a uniform medium of opacity a
 // per voxel gets 1 - (1-a)^2 one level up: its transmittance does not depend on the level that a cone reads.
 // Deviates from the thesis, which averages the eight children; `average` does that.
-#pragma lumivox axis HALF 0 1
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
@@ -16,11 +15,7 @@ layout(std140, binding = 0) uniform Parameters {
   int average;    // 1: plain mean of the children
 };
 layout(binding = 0) uniform sampler3D radianceGrid;
-#if HALF
-layout(binding = 0, rgba16f) uniform writeonly image3D radianceImage;
-#else
-layout(binding = 0, rgba32f) uniform writeonly image3D radianceImage;
-#endif
+layout(binding = 0) uniform writeonly image3D radianceImage;  // of whatever float format the grid has
 
 // Part of child `child` that lies in coarse voxel `cell` along one axis, in children. With an even number of children it is 1 for two of
 // them; with an odd number a coarse voxel is a little wider than two, and shares children with its neighbours.

@@ -1,7 +1,6 @@
 #version 450
 // Integer sums to the finest level of the grid: radiance pre-multiplied by opacity, and opacity.
 // An occupied voxel is opaque as far as its fragments cover (thesis 004 Listing 4.10: fully).
-#pragma lumivox axis HALF 0 1
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
@@ -10,11 +9,7 @@ layout(std140, binding = 0) uniform Parameters {
   float radianceRange;
 };
 layout(std430, binding = 3) readonly buffer Sums { uint sums[]; };
-#if HALF
-layout(binding = 0, rgba16f) uniform writeonly image3D radianceImage;
-#else
-layout(binding = 0, rgba32f) uniform writeonly image3D radianceImage;
-#endif
+layout(binding = 0) uniform writeonly image3D radianceImage;  // of whatever float format the grid has
 
 const float kFixedPoint = 2147483648.0;  // 2^31, as in inject.comp
 

@@ -35,29 +35,38 @@ layout(location = 8) flat in vec2 cornerTexcoords[3];
 
 vec3 unpermute(vec3 v, int axis) { return axis == 0 ? v.zxy : axis == 1 ? v.yzx : v; }
 
-// Schwarz & Seidel 2010, Eq. 4 ff.: the projections of the triangle and of the box [voxel, voxel + 1] on one coordinate plane overlap.
-bool overlap2d(vec2 a, vec2 b, vec2 c, vec2 voxel, float facing) {
-  vec2 corner[3] = vec2[3](a, b, c);
+// Rounding of float arithmetic, relative: what lies closer than this to touching counts as touching, so that no voxel is lost.
+// Sharper corners than this, in radians, make a needle.
+const float kNeedle = 1e-3;
+
+const float kRounding = 3e-7;
+
+// Separating axis test of the projections of the triangle and of the box around `centre` on one coordinate plane: the axes are the normals
+// of the three projected edges. Only intervals are compared, so that it does not matter how a sliver happens to be oriented.
+bool overlap2d(vec2 a, vec2 b, vec2 c, vec2 centre) {
+  vec2 corner[3] = vec2[3](a - centre, b - centre, c - centre);
   for (int i = 0; i < 3; ++i) {
     vec2 edge = corner[i == 2 ? 0 : i + 1] - corner[i];
-    vec2 inward = facing * vec2(-edge.y, edge.x);
-    // The box corner that lies farthest inward.
-    vec2 critical = voxel + vec2(inward.x > 0.0 ? 1.0 : 0.0, inward.y > 0.0 ? 1.0 : 0.0) - corner[i];
-    if (dot(inward, critical) < 0.0) return false;
+    vec2 axis = vec2(-edge.y, edge.x);
+    // Both ends of the edge project to one value.
+    float onEdge = dot(axis, corner[i]), opposite = dot(axis, corner[i == 0 ? 2 : i - 1]);
+    float reach = 0.5 * (abs(axis.x) + abs(axis.y));
+    reach += kRounding * (abs(axis.x) + abs(axis.y)) * (abs(corner[i].x) + abs(corner[i].y) + 1.0);
+    if (min(onEdge, opposite) > reach || max(onEdge, opposite) < -reach) return false;
   }
   return true;
 }
 
+// The thirteen axes of a triangle and a box (Schwarz & Seidel 2010, Sec. 3.1): three of the box, the plane, nine of the edges.
 bool overlap(vec3 voxel, vec3 normal) {
   vec3 a = corners[0], b = corners[1], c = corners[2];
   if (any(greaterThan(min(a, min(b, c)), voxel + 1.0)) || any(lessThan(max(a, max(b, c)), voxel))) return false;
-  // Plane: the two box corners farthest along the normal lie on different sides.
-  vec3 critical = vec3(greaterThan(normal, vec3(0.0)));
-  float high = dot(normal, voxel + critical - a), low = dot(normal, voxel + 1.0 - critical - a);
-  if (high * low > 0.0) return false;
-  return overlap2d(a.xy, b.xy, c.xy, voxel.xy, normal.z >= 0.0 ? 1.0 : -1.0) &&
-         overlap2d(a.yz, b.yz, c.yz, voxel.yz, normal.x >= 0.0 ? 1.0 : -1.0) &&
-         overlap2d(a.zx, b.zx, c.zx, voxel.zx, normal.y >= 0.0 ? 1.0 : -1.0);
+  vec3 centre = voxel + 0.5;
+  // The normal of a needle is the small difference of large products: its rounding is that of the products.
+  float rounding = kRounding * length(b - a) * length(c - a) * (length(centre - a) + 1.0);
+  float reach = 0.5 * (abs(normal.x) + abs(normal.y) + abs(normal.z)) + rounding;
+  if (abs(dot(normal, centre - a)) > reach) return false;
+  return overlap2d(a.xy, b.xy, c.xy, centre.xy) && overlap2d(a.yz, b.yz, c.yz, centre.yz) && overlap2d(a.zx, b.zx, c.zx, centre.zx);
 }
 
 // Barycentric coordinates in the projection, clamped to the triangle.
@@ -78,13 +87,21 @@ void main() {
   vec3 centre = corners * weights;
 
   float first = centre.z, last = centre.z;
-  if (depthRange != 0 && normal.z != 0.0) {
-    // Depth of the plane over the whole pixel. The slope along the dominant axis is at most 1 in each direction.
-    vec2 slope = -normal.xy / normal.z;
-    float depth = corners[0].z + dot(slope, pixel + 0.5 - corners[0].xy);
-    float reach = 0.5 * (abs(slope.x) + abs(slope.y));
-    first = clamp(depth - reach, lowest, highest);
-    last = clamp(depth + reach, lowest, highest);
+  if (depthRange != 0) {
+    vec3 e0 = corners[1] - corners[0], e1 = corners[2] - corners[0], e2 = corners[2] - corners[1];
+    float longest = max(dot(e0, e0), max(dot(e1, e1), dot(e2, e2)));
+    if (dot(normal, normal) <= kNeedle * kNeedle * longest * longest) {
+      // The plane of a needle is rounding: every voxel of its extent in this column is tested.
+      first = lowest;
+      last = highest;
+    } else {
+      // Depth of the plane over the whole pixel. The slope along the dominant axis is at most 1 in each direction.
+      vec2 slope = -normal.xy / normal.z;
+      float depth = corners[0].z + dot(slope, pixel + 0.5 - corners[0].xy);
+      float reach = 0.5 * (abs(slope.x) + abs(slope.y));
+      first = clamp(depth - reach, lowest, highest);
+      last = clamp(depth + reach, lowest, highest);
+    }
   }
 
   MaterialData material = materials[materialIndex];
@@ -108,8 +125,7 @@ void main() {
   if (coverage <= 0.0) discard;
   vec3 normalWorld = cornerNormals * weights;
 
-  // At most four voxels: the range is at most two deep and may start anywhere inside a voxel.
-  int from = int(floor(first)), to = min(int(floor(last)), from + 3);
+  int from = max(int(floor(first)), 0), to = int(floor(last));
   for (int depth = from; depth <= to; ++depth) {
     vec3 voxel = vec3(pixel, float(depth));
     if (!overlap(voxel, normal)) continue;

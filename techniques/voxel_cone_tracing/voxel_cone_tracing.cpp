@@ -98,9 +98,7 @@ class InjectPass : public Pass {
                                      sizeof(std::uint32_t));
     frame.device().barrier();
 
-    resolveShader::Variant format;
-    format.half = precision == "half";
-    frame.dispatch(frame.program(resolveShader::kProgram, format.key()),
+    frame.dispatch(frame.program(resolveShader::kProgram),
                    {resolveShader::parameters({size, range}), resolveShader::sums(*sums), resolveShader::radianceImage(*result.radiance)},
                    size, kVoxelGroup);
     radiance = result;
@@ -116,8 +114,6 @@ class FilterPass : public Pass {
   void run(PassContext& frame) override {
     const gpu::Texture& texture = *radiance->radiance;
     const gpu::TextureDescription& description = texture.description();
-    filterShader::Variant variant;
-    variant.half = description.format == gpu::Format::rgba16f;
     const auto levelSize = [&](int level) {
       return glm::max(glm::ivec3(description.width >> level, description.height >> level, description.depth >> level), glm::ivec3(1));
     };
@@ -127,7 +123,7 @@ class FilterPass : public Pass {
       parameters.fineLevel = level - 1;
       parameters.fine = levelSize(level - 1);
       parameters.average = opacity == "average" ? 1 : 0;
-      frame.dispatch(frame.program(filterShader::kProgram, variant.key()),
+      frame.dispatch(frame.program(filterShader::kProgram),
                      {filterShader::parameters(parameters), filterShader::radianceGrid(texture, gpu::Sampling::nearest),
                       filterShader::radianceImage(texture, level)},
                      parameters.coarse, kVoxelGroup);

@@ -104,7 +104,7 @@ TEST_CASE("a missing file, a directory and a file over the limit are errors that
 TEST_CASE("a gzip file is unpacked, also when it has several members; another name is read as it is") {
   const TemporaryDirectory directory;
   std::string text;
-  for (int i = 0; i < 200000; ++i) text += static_cast<char>('a' + i * i % 26);
+  for (int i = 0; i < 200000; ++i) text += static_cast<char>('a' + i % 1009 * i % 26);
   REQUIRE(readFileMaybeGzip(directory.write("t.obj.gz", gzip(text))) == text);
   REQUIRE(readFileMaybeGzip(directory.write("two.gz", gzip("first ") + gzip("second"))) == "first second");
   REQUIRE(readFileMaybeGzip(directory.write("plain.obj", "v 0 0 0")) == "v 0 0 0");

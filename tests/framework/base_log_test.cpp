@@ -13,8 +13,7 @@ TEST_CASE("a warning says that it is one and is counted") {
   REQUIRE(capture.text() == "warning: 3 triangles without area\nreading a.obj\n");
 }
 
-TEST_CASE("results stay alone on stdout, and quiet means quiet") {
-  // The level decides what reaches the terminal; a capture sees everything.
+TEST_CASE("a capture sees every message, whatever level reaches the terminal") {
   const LogLevel before = logLevel();
   setLogLevel(LogLevel::quiet);
   REQUIRE(logLevel() == LogLevel::quiet);

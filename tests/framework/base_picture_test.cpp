@@ -2,7 +2,10 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
 #include <ImfStringAttribute.h>
 #include <ImfTiledOutputFile.h>
 #include <half.h>
@@ -159,6 +162,59 @@ TEST_CASE("foreign channel names group sensibly") {
   CHECK(values_of("only") == std::vector<float>{14});
   CHECK(values_of("odd.first") == std::vector<float>{15});
   CHECK(values_of("odd.second") == std::vector<float>{16});
+}
+
+TEST_CASE("the parts of a multi-part EXR become layers under their names") {
+  const TemporaryDirectory directory;
+  const std::string path = (directory.path() / "parts.exr").string();
+  std::vector<float> values = {1, 2, 3, 4, 5, 6};
+  std::vector<Imf::Header> headers;
+  for (const char* name : {"left", "right"}) {
+    Imf::Header header(1, 1);
+    header.setName(name);
+    header.setType(Imf::SCANLINEIMAGE);
+    header.compression() = Imf::NO_COMPRESSION;
+    for (const char* channel : {"R", "G", "B", "depth.Z"})
+      header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+    headers.push_back(header);
+  }
+  {
+    Imf::MultiPartOutputFile file(path.c_str(), headers.data(), 2);
+    for (int part = 0; part < 2; ++part) {
+      Imf::FrameBuffer frame;
+      std::size_t next = part == 0 ? 0 : 2;
+      for (const char* channel : {"R", "G", "B", "depth.Z"}) {
+        frame.insert(channel, Imf::Slice::Make(Imf::FLOAT, &values[next++], headers[0].dataWindow()));
+      }
+      Imf::OutputPart output(file, part);
+      output.setFrameBuffer(frame);
+      output.writePixels(1);
+    }
+  }
+  const auto layers = readExr(path).layers;
+  REQUIRE(layers.size() == 4);
+  CHECK(layers.at("left").values() == std::vector<float>{1, 2, 3});
+  CHECK(layers.at("right").values() == std::vector<float>{3, 4, 5});
+  CHECK(layers.at("depth").values() == std::vector<float>{4});
+  CHECK(layers.at("right.depth").values() == std::vector<float>{6});
+}
+
+TEST_CASE("an EXR with subsampled channels is refused and named") {
+  const TemporaryDirectory directory;
+  const std::string path = (directory.path() / "chroma.exr").string();
+  Imf::Header header(2, 2);
+  header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+  header.channels().insert("RY", Imf::Channel(Imf::FLOAT, 2, 2));
+  std::vector<float> values(4);
+  {
+    Imf::OutputFile file(path.c_str(), header);
+    Imf::FrameBuffer frame;
+    frame.insert("Y", Imf::Slice::Make(Imf::FLOAT, values.data(), header.dataWindow()));
+    frame.insert("RY", Imf::Slice::Make(Imf::FLOAT, values.data(), header.dataWindow(), 0, 0, 2, 2));
+    file.setFrameBuffer(frame);
+    file.writePixels(2);
+  }
+  REQUIRE_THAT(messageOf<Error>([&] { readExr(path); }), Contains("chroma.exr") && Contains("'RY'"));
 }
 
 TEST_CASE("an EXR cut at any length is an error that names the file") {

@@ -293,7 +293,7 @@ TEST_CASE("a unit behind the last component holds for all, a unit on some is an 
 
 TEST_CASE("a checked block gives names, kinds and numbers in base units") {
   const Document document = parse(
-      "camera main { fov 180 deg  albedo 0.5  spin 0 1 0 90 deg/s  loop on  key { time 3 ms } key { } "
+      "camera main { fov 180 deg  albedo 0.5  spin 0 1 0 90 deg/s  loop on\n key { time 3 ms } key { } "
       "}\nlight spot { }",
       "a");
   const auto specifications = grammar();

@@ -1,13 +1,45 @@
 // Scenes made by code, small enough that their light is known in closed form.
 #pragma once
 
-#include <array>
+#include <cmath>
 #include <glm/glm.hpp>
+#include <numbers>
 #include <string>
+#include <utility>
 
+#include "lumivox/reference/path_tracer.h"
 #include "lumivox/scene/scene.h"
 
 namespace lumivox::test {
+
+inline constexpr double kPi = std::numbers::pi;
+
+/// Options without a progress bar and without the cache.
+inline ReferenceOptions quietly(int samples, int bounces = 32) {
+  ReferenceOptions options;
+  options.samplesPerPixel = samples;
+  options.bounces = bounces;
+  options.progress = false;
+  options.useCache = false;
+  return options;
+}
+
+struct Estimate {
+  double mean = 0.0, deviation = 0.0;  ///< of the mean over all pixels and channels, from the stated variances
+};
+
+/// Mean of a layer. Its channels share paths, so their errors are taken as one; those of pixels are independent.
+inline Estimate estimateOf(const LayeredPicture& picture, const std::string& layer) {
+  const Picture& means = picture.layers.at(layer);
+  const Picture& variances = picture.layers.at(layer + ".variance");
+  const auto pixels = static_cast<double>(means.pixelCount()), channels = static_cast<double>(means.channels());
+  Estimate result;
+  double variance = 0.0;
+  for (const float value : means.values()) result.mean += value / (pixels * channels);
+  for (const float value : variances.values()) variance += value / channels;
+  result.deviation = std::sqrt(variance) / pixels;
+  return result;
+}
 
 /// Builds a Scene piece by piece; every piece is an object of its own.
 class SceneBuilder {

@@ -32,19 +32,13 @@ const char* stageName(gpu::Stage stage) {
   return "";
 }
 
-/// "GLOSSY=1 TEXTURES=0"
+/// "GLOSSY=1 LIGHT=spot"
 std::string variantText(const shader::PackedProgram& program, const std::vector<int>& values) {
-  std::string text;
-  for (std::size_t axis = 0; axis < values.size() && axis < program.axes.size(); ++axis) {
-    const auto& names = program.axes[axis].values;
-    const auto index = static_cast<std::size_t>(values[axis]);
-    text += (text.empty() ? "" : " ") + program.axes[axis].name + "=" +
-            (index < names.size() ? names[index] : std::to_string(index));
-  }
+  const std::string text = program.text(values);
   return text.empty() ? "the only one" : text;
 }
 
-/// The values of "--variant a,b": one per axis, as its name or its number.
+/// The values of "--variant a,b": one per axis, as its declaration writes them.
 std::vector<int> parseVariant(const shader::PackedProgram& program, const std::string& text) {
   std::vector<std::string> words;
   for (std::size_t start = 0; !text.empty() && start <= text.size();) {
@@ -61,19 +55,12 @@ std::vector<int> parseVariant(const shader::PackedProgram& program, const std::s
                             axes.empty() ? "it has none" : fmt::format("{}", fmt::join(axes, ", "))));
   std::vector<int> values;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    const auto& names = program.axes[i].values;
-    const auto found = std::find(names.begin(), names.end(), words[i]);
-    if (found != names.end()) {
-      values.push_back(static_cast<int>(found - names.begin()));
-      continue;
-    }
-    int number = -1, used = 0;
-    if (words[i].size() > 8 || std::sscanf(words[i].c_str(), "%d%n", &number, &used) != 1 ||
-        static_cast<std::size_t>(used) != words[i].size() || number < 0 ||
-        static_cast<std::size_t>(number) >= names.size())
+    const shader::Axis& axis = program.axes[i];
+    const auto found = std::find(axis.values.begin(), axis.values.end(), words[i]);
+    if (found == axis.values.end())
       throw Error(fmt::format("--variant: '{}' is no value of the axis {}; expected one of {}", words[i],
-                              program.axes[i].name, fmt::join(names, ", ")));
-    values.push_back(number);
+                              axis.name, fmt::join(axis.values, ", ")));
+    values.push_back(axis.value(static_cast<std::size_t>(found - axis.values.begin())));
   }
   return values;
 }
@@ -96,13 +83,10 @@ int printProgram(const ShadersCommand& command, const GlobalOptions& global) {
   const shader::PackedVariant* chosen = program.variants.empty() ? nullptr : &program.variants.front();
   if (!command.variant.empty() || program.axes.empty()) {
     const std::vector<int> values = parseVariant(program, command.variant);
-    const auto found =
-        std::find_if(program.variants.begin(), program.variants.end(),
-                     [&](const shader::PackedVariant& variant) { return variant.values == values; });
-    if (found == program.variants.end())
+    chosen = program.find({values});
+    if (chosen == nullptr)
       throw Error(fmt::format("{}: the variant {} was not compiled: its shader's constraints exclude it",
                               command.program, variantText(program, values)));
-    chosen = &*found;
   }
   if (chosen == nullptr) throw Error(command.program + ": has no compiled variant");
   std::string text;

@@ -66,7 +66,12 @@ void lathe(ObjModel& model, const glm::dvec3& foot, int sides, std::initializer_
                     radial * slope.x + glm::dvec3(0, slope.y, 0),
                     {angle * 0.25 / model.textureSize, ring.y / model.textureSize}};
     };
-    for (int i = 0; i < sides; ++i) model.quad(at(i, r0), at(i + 1, r0), at(i + 1, r1), at(i, r1));
+    for (int i = 0; i < sides; ++i) {
+      if (r1.x > 0)
+        model.quad(at(i, r0), at(i + 1, r0), at(i + 1, r1), at(i, r1));
+      else  // the ring is a point
+        model.triangle(at(i, r0), at(i + 1, r0), at(i, r1));
+    }
   }
 }
 
@@ -162,7 +167,7 @@ void materials(ObjModel& model) {
   model.material({.name = "bricks", .diffuse = full, .diffuseMap = "textures/bricks.png"});
   model.material({.name = "stone", .diffuse = full, .diffuseMap = "textures/stone.png"});
   model.material({.name = "tiles",
-                  .diffuse = full,
+                  .diffuse = glm::dvec3(0.92),
                   .specular = glm::dvec3(0.08),
                   .exponent = 60,
                   .diffuseMap = "textures/tiles.png"});

@@ -31,17 +31,13 @@ void cornellBlock(ObjModel& model, const glm::dvec3 (&top)[4]) {
 void writeCornell(const std::filesystem::path& directory) {
   ObjModel model("cornell",
                  "The measured Cornell box in metres, Cornell University Program of Computer Graphics");
-  const glm::dvec3 white{0.725, 0.71, 0.68};
-  // The floor and the tall box have materials of their own so that a scene can change them alone.
-  model.material({.name = "white", .diffuse = white});
-  model.material({.name = "floor", .diffuse = white});
-  model.material({.name = "tall_box", .diffuse = white});
+  model.material({.name = "white", .diffuse = {0.725, 0.71, 0.68}});
   model.material({.name = "red", .diffuse = {0.63, 0.065, 0.05}});
   model.material({.name = "green", .diffuse = {0.14, 0.45, 0.091}});
   model.material({.name = "lamp", .diffuse = glm::dvec3(0.78)});
 
   const auto m = millimetres;
-  model.object("floor", "floor");
+  model.object("floor", "white");
   model.flatQuad(m(552.8, 0, 0), m(0, 0, 0), m(0, 0, 559.2), m(549.6, 0, 559.2));
   model.object("back_wall", "white");
   model.flatQuad(m(549.6, 0, 559.2), m(0, 0, 559.2), m(0, 548.8, 559.2), m(556, 548.8, 559.2));
@@ -60,7 +56,7 @@ void writeCornell(const std::filesystem::path& directory) {
 
   model.object("short_box", "white");
   cornellBlock(model, {m(130, 165, 65), m(82, 165, 225), m(240, 165, 272), m(290, 165, 114)});
-  model.object("tall_box", "tall_box");
+  model.object("tall_box", "white");
   cornellBlock(model, {m(423, 330, 247), m(265, 330, 296), m(314, 330, 456), m(472, 330, 406)});
   model.write(directory);
 }
@@ -138,6 +134,16 @@ void writeSkylight(const std::filesystem::path& directory) {
   model.write(directory);
 }
 
+void writeQuad(const std::filesystem::path& directory) {
+  ObjModel model("quad", "A square of side 1 about the origin, facing up (+Y)");
+  model.material({.name = "white", .diffuse = glm::dvec3(0.75)});
+  model.object("quad", "white");
+  const glm::dvec3 up{0, 1, 0};
+  model.quad({{-0.5, 0, 0.5}, up, {0, 0}}, {{0.5, 0, 0.5}, up, {1, 0}}, {{0.5, 0, -0.5}, up, {1, 1}},
+             {{-0.5, 0, -0.5}, up, {0, 1}});
+  model.write(directory);
+}
+
 void writeStressModels(const std::filesystem::path& directory) {
   const auto stress = [](const char* name, const char* comment) {
     ObjModel model(name, comment);
@@ -156,14 +162,6 @@ void writeStressModels(const std::filesystem::path& directory) {
   degenerate.flatTriangle({-1, 0.5, 0}, {0, 0.5, 0}, {1, 0.5, 0});
   degenerate.flatTriangle({-1, 0.5, 0}, {1, 0.5, 0}, {0, 0.5001, 0});
   degenerate.write(directory);
-
-  ObjModel far =
-      stress("far_away", "A floor and a box 10 km from the origin, where the step of a float is 1 mm");
-  const glm::dvec3 away{10000, 0, -10000};
-  far.flatQuad(away + glm::dvec3(-1, 0, 1), away + glm::dvec3(1, 0, 1), away + glm::dvec3(1, 0, -1),
-               away + glm::dvec3(-1, 0, -1));
-  far.box(away + glm::dvec3(-0.25, 0, -0.25), away + glm::dvec3(0.25, 0.5, 0.25));
-  far.write(directory);
 
   ObjModel white("white_room", "A closed room that absorbs nothing, lit by a quad under the ceiling");
   white.material({.name = "white", .diffuse = glm::dvec3(1)});

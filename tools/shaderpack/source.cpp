@@ -23,7 +23,8 @@ bool isIdentifier(const std::string& text) {
 bool isInteger(const std::string& text) {
   const std::size_t start = text[0] == '-' ? 1 : 0;
   return text.size() > start && text.size() < 10 &&
-         std::all_of(text.begin() + static_cast<std::ptrdiff_t>(start), text.end(), [](unsigned char c) { return std::isdigit(c); });
+         std::all_of(text.begin() + static_cast<std::ptrdiff_t>(start), text.end(),
+                     [](unsigned char c) { return std::isdigit(c); });
 }
 
 std::string trimmed(const std::string& text) {
@@ -32,7 +33,8 @@ std::string trimmed(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// A line without its comments, so that a directive in a comment is none. `inBlock` lives on from line to line.
+/// A line without its comments, so that a directive in a comment is none. `inBlock` lives on from line to
+/// line.
 std::string withoutComments(const std::string& line, bool& inBlock) {
   std::string kept;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -59,13 +61,15 @@ std::pair<std::string, std::string> directive(const std::string& line) {
   const std::string text = trimmed(line);
   if (text.empty() || text[0] != '#') return {};
   const std::string body = trimmed(text.substr(1));
-  const std::size_t end = std::find_if(body.begin(), body.end(), [](unsigned char c) { return !std::isalnum(c); }) - body.begin();
+  const std::size_t end =
+      std::find_if(body.begin(), body.end(), [](unsigned char c) { return !std::isalnum(c); }) - body.begin();
   return {body.substr(0, end), trimmed(body.substr(end))};
 }
 
 class Expander {
  public:
-  Expander(ExpandedSource& result, const std::vector<std::filesystem::path>& roots) : result_(result), roots_(roots) {}
+  Expander(ExpandedSource& result, const std::vector<std::filesystem::path>& roots)
+      : result_(result), roots_(roots) {}
 
   void expand(const std::filesystem::path& file, bool isEntry) {
     result_.files.insert(file);
@@ -86,8 +90,10 @@ class Expander {
       if (word == "if" || word == "ifdef" || word == "ifndef") ++conditionDepth_;
       if (word == "endif") --conditionDepth_;
       if (word == "version") {
-        if (!isEntry) fail(place, "#version belongs into the entry file, or nowhere: 450 core is set for every shader");
-        if (rest != "450" && rest != "450 core") fail(place, "expected #version 450 core, or no #version at all");
+        if (!isEntry)
+          fail(place, "#version belongs into the entry file, or nowhere: 450 core is set for every shader");
+        if (rest != "450" && rest != "450 core")
+          fail(place, "expected #version 450 core, or no #version at all");
         line.clear();
       }
       if (word == "pragma" && rest.rfind("lumivox", 0) == 0) {
@@ -103,21 +109,26 @@ class Expander {
  private:
   static constexpr std::uint64_t kLimitBytes = 16 << 20;
 
-  void emitLine(int line, const std::filesystem::path& file) { result_.text += fmt::format("#line {} \"{}\"\n", line, file.string()); }
+  void emitLine(int line, const std::filesystem::path& file) {
+    result_.text += fmt::format("#line {} \"{}\"\n", line, file.string());
+  }
 
   void include(const std::string& argument, const SourcePlace& place) {
-    if (argument.size() < 3 || argument.front() != '"' || argument.back() != '"') fail(place, "expected #include \"file\"");
+    if (argument.size() < 3 || argument.front() != '"' || argument.back() != '"')
+      fail(place, "expected #include \"file\"");
     const std::string name = argument.substr(1, argument.size() - 2);
     std::vector<std::filesystem::path> candidates{open_.back().parent_path() / name};
     for (const auto& root : roots_) candidates.push_back(root / name);
-    const auto found = std::find_if(candidates.begin(), candidates.end(), [](const auto& path) { return std::filesystem::is_regular_file(path); });
+    const auto found = std::find_if(candidates.begin(), candidates.end(),
+                                    [](const auto& path) { return std::filesystem::is_regular_file(path); });
     if (found == candidates.end()) {
       std::string sought;
       for (const auto& path : candidates) sought += "\n  " + path.string();
       fail(place, fmt::format("cannot find \"{}\"; sought{}", name, sought));
     }
     const std::filesystem::path file = found->lexically_normal();
-    // Every file counts once. The guard lets the preprocessor decide when the first mention is inside a condition.
+    // Every file counts once. The guard lets the preprocessor decide when the first mention is inside a
+    // condition.
     if (std::find(open_.begin(), open_.end(), file) != open_.end() || certain_.contains(file)) return;
     if (conditionDepth_ == 0) certain_.insert(file);
     const auto [guard, isNew] = guards_.emplace(file, fmt::format("LUMIVOX_INCLUDED_{}", guards_.size()));
@@ -145,8 +156,12 @@ class Expander {
     AxisDeclaration declaration{{}, place};
     shader::Axis& axis = declaration.axis;
     words >> axis.name;
-    if (!isIdentifier(axis.name) || axis.name.find_first_of("abcdefghijklmnopqrstuvwxyz") != std::string::npos) {
-      fail(place, fmt::format("'{}' is no name of an axis; expected capitals, as in '#pragma lumivox axis TEXTURES 0 1'", axis.name));
+    if (!isIdentifier(axis.name) ||
+        axis.name.find_first_of("abcdefghijklmnopqrstuvwxyz") != std::string::npos) {
+      fail(place,
+           fmt::format(
+               "'{}' is no name of an axis; expected capitals, as in '#pragma lumivox axis TEXTURES 0 1'",
+               axis.name));
     }
     for (std::string value; words >> value;) {
       if (std::find(axis.values.begin(), axis.values.end(), value) != axis.values.end()) {
@@ -155,7 +170,8 @@ class Expander {
       axis.values.push_back(value);
     }
     if (axis.values.size() < 2) fail(place, fmt::format("axis {} needs at least two values", axis.name));
-    if (std::all_of(axis.values.begin(), axis.values.end(), isInteger)) return addAxis(std::move(declaration));
+    if (std::all_of(axis.values.begin(), axis.values.end(), isInteger))
+      return addAxis(std::move(declaration));
     axis.named = true;
     if (!std::all_of(axis.values.begin(), axis.values.end(), isIdentifier)) {
       fail(place, fmt::format("the values of axis {} must be either all integers or all words", axis.name));
@@ -167,7 +183,8 @@ class Expander {
     for (const AxisDeclaration& known : result_.axes) {
       if (known.axis.name != declaration.axis.name) continue;
       if (known.axis.values == declaration.axis.values) return;
-      fail(declaration.place, fmt::format("axis {} has other values at {}", known.axis.name, known.place.text()));
+      fail(declaration.place,
+           fmt::format("axis {} has other values at {}", known.axis.name, known.place.text()));
     }
     result_.axes.push_back(std::move(declaration));
   }
@@ -197,8 +214,9 @@ class ConstraintParser {
   using Value = std::function<int(const std::vector<int>&)>;
 
   [[noreturn]] void unexpected(const std::string& expected) const {
-    fail(requirement_.place, fmt::format("in 'require {}': expected {} {}", text_, expected,
-                                         at_ < text_.size() ? "at '" + text_.substr(at_) + "'" : "at the end"));
+    fail(requirement_.place,
+         fmt::format("in 'require {}': expected {} {}", text_, expected,
+                     at_ < text_.size() ? "at '" + text_.substr(at_) + "'" : "at the end"));
   }
   void skipSpace() {
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
@@ -253,7 +271,8 @@ class ConstraintParser {
   Value atom(const shader::Axis* compared) {
     skipSpace();
     const std::size_t start = at_;
-    while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) || text_[at_] == '_')) ++at_;
+    while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) || text_[at_] == '_'))
+      ++at_;
     const std::string word = text_.substr(start, at_ - start);
     if (word.empty()) unexpected("an axis, a value or '('");
     if (isInteger(word)) return [number = std::stoi(word)](const auto&) { return number; };
@@ -274,7 +293,8 @@ class ConstraintParser {
     for (const shader::Axis& axis : axes_) known.push_back(axis.name);
     const std::string nearest = nearestWord(word, known);
     fail(requirement_.place, fmt::format("in 'require {}': '{}' is no axis{}; the axes are {}", text_, word,
-                                         compared != nullptr ? " and no value of " + compared->name : "", fmt::join(known, ", ")) +
+                                         compared != nullptr ? " and no value of " + compared->name : "",
+                                         fmt::join(known, ", ")) +
                                  (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
   }
 
@@ -290,7 +310,8 @@ class ConstraintParser {
 SourcePlace ExpandedSource::placeOf(const std::string& identifier) const {
   const auto mentions = [&](const std::string& line) {
     const auto part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
-    for (std::size_t at = line.find(identifier); at != std::string::npos; at = line.find(identifier, at + 1)) {
+    for (std::size_t at = line.find(identifier); at != std::string::npos;
+         at = line.find(identifier, at + 1)) {
       const std::size_t end = at + identifier.size();
       if ((at == 0 || !part(line[at - 1])) && (end == line.size() || !part(line[end]))) return true;
     }
@@ -315,7 +336,8 @@ SourcePlace ExpandedSource::placeOf(const std::string& identifier) const {
   return firstMention;
 }
 
-ExpandedSource expandSource(const std::filesystem::path& entry, const std::vector<std::filesystem::path>& includeRoots) {
+ExpandedSource expandSource(const std::filesystem::path& entry,
+                            const std::vector<std::filesystem::path>& includeRoots) {
   ExpandedSource result;
   result.entry = entry;
   Expander(result, includeRoots).expand(entry, true);

@@ -23,7 +23,8 @@ struct Requirement {
   SourcePlace place;
 };
 
-/// An entry file with everything that it includes. `#line` directives in the text lead back to the original files.
+/// An entry file with everything that it includes. `#line` directives in the text lead back to the original
+/// files.
 struct ExpandedSource {
   std::filesystem::path entry;
   std::string text;
@@ -35,14 +36,16 @@ struct ExpandedSource {
   SourcePlace placeOf(const std::string& identifier) const;
 };
 
-/// Expands `#include "name"`: found beside the including file, then in `includeRoots`. Throws Error with file and line.
-ExpandedSource expandSource(const std::filesystem::path& entry, const std::vector<std::filesystem::path>& includeRoots);
+/// Expands `#include "name"`: found beside the including file, then in `includeRoots`. Throws Error with file
+/// and line.
+ExpandedSource expandSource(const std::filesystem::path& entry,
+                            const std::vector<std::filesystem::path>& includeRoots);
 
 /// Whether a combination of axis values is allowed.
 using Constraint = std::function<bool(const std::vector<int>& values)>;
 
-/// Expressions of || && == != ! ( ) over axis names, integers, words of an axis (right of == or != with that axis) and the macros of
-/// words (LIGHT_SPOT). Throws Error with file and line.
+/// Expressions of || && == != ! ( ) over axis names, integers, words of an axis (right of == or != with that
+/// axis) and the macros of words (LIGHT_SPOT). Throws Error with file and line.
 Constraint parseConstraint(const Requirement& requirement, const std::vector<shader::Axis>& axes);
 
 /// Macro of a word: axis LIGHT, word spot: "LIGHT_SPOT".

@@ -1,9 +1,9 @@
 #include "stage.h"
 
-#include <SPIRV/GlslangToSpv.h>
 #include <fmt/format.h>
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
 
 #include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
@@ -17,17 +17,22 @@ namespace lumivox::shaderpack {
 namespace {
 
 // Counts up whenever this program makes something else of the same source.
-constexpr int kArtifactVersion = 1;
+constexpr int kArtifactVersion = 3;
 
 // Line numbers follow from "#line N "file"" directives, which need this extension.
-constexpr const char* kPreamble = "#version 450 core\n#extension GL_GOOGLE_cpp_style_line_directive : require\n";
+constexpr const char* kPreamble =
+    "#version 450 core\n#extension GL_GOOGLE_cpp_style_line_directive : require\n";
 
 EShLanguage languageOf(gpu::Stage stage) {
   switch (stage) {
-    case gpu::Stage::vertex: return EShLangVertex;
-    case gpu::Stage::geometry: return EShLangGeometry;
-    case gpu::Stage::fragment: return EShLangFragment;
-    case gpu::Stage::compute: return EShLangCompute;
+    case gpu::Stage::vertex:
+      return EShLangVertex;
+    case gpu::Stage::geometry:
+      return EShLangGeometry;
+    case gpu::Stage::fragment:
+      return EShLangFragment;
+    case gpu::Stage::compute:
+      return EShLangCompute;
   }
   return EShLangCompute;
 }
@@ -38,7 +43,9 @@ std::string readableLog(const std::string& log, const StageSource& source, bool 
   std::string text;
   for (std::string line; std::getline(lines, line);) {
     const bool isWarning = line.rfind("WARNING: ", 0) == 0;
-    if (line.empty() || isWarning != warnings || line.find("compilation errors.  No code generated") != std::string::npos) continue;
+    if (line.empty() || isWarning != warnings ||
+        line.find("compilation errors.  No code generated") != std::string::npos)
+      continue;
     const std::string_view severity = isWarning ? "warning" : "error";
     if (isWarning || line.rfind("ERROR: ", 0) == 0) line.erase(0, line.find(' ') + 1);
     // The place ends at the second colon; a message without a place is about the whole entry file.
@@ -94,23 +101,26 @@ std::string toolMessage(const char* message, const spv_position_t& position) {
 std::vector<std::uint32_t> optimise(const std::vector<std::uint32_t>& words, const StageSource& source) {
   std::string problems;
   spvtools::Optimizer optimizer(SPV_ENV_OPENGL_4_5);
-  optimizer.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t& position, const char* message) {
-    if (level <= SPV_MSG_ERROR) problems += "\n  " + toolMessage(message, position);
-  });
+  optimizer.SetMessageConsumer(
+      [&](spv_message_level_t level, const char*, const spv_position_t& position, const char* message) {
+        if (level <= SPV_MSG_ERROR) problems += "\n  " + toolMessage(message, position);
+      });
   optimizer.RegisterPerformancePasses();
   spvtools::OptimizerOptions options;
   options.set_run_validator(false);  // validated below, after optimisation
   std::vector<std::uint32_t> optimised;
-  if (!optimizer.Run(words.data(), words.size(), &optimised, options)) failStage(source, "the SPIR-V optimiser failed:" + problems);
+  if (!optimizer.Run(words.data(), words.size(), &optimised, options))
+    failStage(source, "the SPIR-V optimiser failed:" + problems);
   return optimised;
 }
 
 void validate(const std::vector<std::uint32_t>& words, const StageSource& source) {
   std::string problems;
   spvtools::SpirvTools tools(SPV_ENV_OPENGL_4_5);
-  tools.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t& position, const char* message) {
-    if (level <= SPV_MSG_ERROR) problems += "\n  " + toolMessage(message, position);
-  });
+  tools.SetMessageConsumer(
+      [&](spv_message_level_t level, const char*, const spv_position_t& position, const char* message) {
+        if (level <= SPV_MSG_ERROR) problems += "\n  " + toolMessage(message, position);
+      });
   if (!tools.Validate(words)) failStage(source, "the SPIR-V is not valid for OpenGL 4.5:" + problems);
 }
 
@@ -139,19 +149,22 @@ ContentHash StageSource::key() const {
   return hasher.finish();
 }
 
-void startCompiler() { glslang::InitializeProcess(); }
+void startCompiler() {
+  glslang::InitializeProcess();
+}
 
 Artifact compileStage(const StageSource& source) {
   Artifact artifact;
   const std::vector<std::uint32_t> declared = toSpirv(source, artifact.warnings);
-  artifact.spirv = optimise(declared, source);
+  artifact.spirv = optimise(lowerToPlainArithmetic(declared), source);
   validate(artifact.spirv, source);
   artifact.glsl = toGlsl(artifact.spirv, source);
   reflect(declared, artifact.spirv, source, artifact);
   return artifact;
 }
 
-// ---- cache --------------------------------------------------------------------------------------------------------
+// ---- cache
+// --------------------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -168,6 +181,7 @@ void exchange(Archive& archive, SomeArtifact& a) {
     archive.value(b.shadow);
     archive.value(b.minimumBytes);
   });
+  archive.value(a.layouts);
   archive.value(a.used);
   archive.each(a.structs, [&](auto& s) {
     archive.value(s.name);
@@ -202,7 +216,8 @@ void exchange(Archive& archive, SomeArtifact& a) {
 std::string serialise(const Artifact& artifact) {
   shader::ByteWriter content;
   exchange(content, artifact);
-  for (const auto& binding : artifact.bindings) content.value(binding.format ? static_cast<int>(*binding.format) : -1);
+  for (const auto& binding : artifact.bindings)
+    content.value(binding.format ? static_cast<int>(*binding.format) : -1);
   const ContentHash hash = hashOf(content.bytes());
   shader::ByteWriter whole;
   whole.value(hash.high);

@@ -81,8 +81,9 @@ class BlockChecker {
     const Header header = headerOf(block_, specification_);
     properties_ = propertiesOf(specification_, header.kind != nullptr ? header.kind->text : std::string());
     for (const Item& item : block_.items) {
+      const bool cutOff = !block_.closed && &item == &block_.items.back();
       if (item.property) {
-        checkItem(*item.property);
+        if (!cutOff) checkItem(*item.property);
       } else {
         checkItem(*item.block);
       }

@@ -119,6 +119,7 @@ void setRasterState(const RasterState& state) {
 void clearTargets(GLuint framebuffer, const RenderTargets& targets) {
   for (std::size_t i = 0; i < targets.colours.size(); ++i) {
     const GLint buffer = static_cast<GLint>(i);
+    if (targets.colours[i].texture == nullptr) continue;
     if (traitsOf(targets.colours[i].texture->description().format).integer) {
       constexpr std::array<GLuint, 4> kZero{};
       glClearNamedFramebufferuiv(framebuffer, GL_COLOR, buffer, kZero.data());
@@ -186,6 +187,10 @@ void Device::beginDrawing(const RenderTargets& targets, const RasterState& raste
   glCreateFramebuffers(1, &state.framebuffer);
   std::vector<GLenum> drawBuffers;
   for (const ColourTarget& colour : targets.colours) {
+    if (colour.texture == nullptr) {
+      drawBuffers.push_back(GL_NONE);
+      continue;
+    }
     const GLenum point = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(drawBuffers.size());
     attach(state.framebuffer, point, *colour.texture, colour.layer);
     narrow(*colour.texture);

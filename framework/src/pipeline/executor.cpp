@@ -44,7 +44,8 @@ struct PipelineExecutor::State {
   FrameContext context;
 
   std::optional<PrunePlan> plan;      ///< made when the first frame or an explanation asks for it
-  std::optional<SceneSnapshot> last;  ///< of the last frame; nothing: every pass runs
+  std::optional<SceneSnapshot> last;  ///< of the last frame
+  bool complete = false;              ///< the last frame's results are there; otherwise every pass runs
   std::optional<int> lastFrameIndex;
   std::map<int, PassRecord> lastRun;  ///< per pass, from the last time that it ran
 
@@ -97,14 +98,14 @@ const PrunePlan& PipelineExecutor::State::planned() {
     for (std::size_t port = 0; port < outputs.size(); ++port)
       outputs[port]->wanted_ = plan->passes[pass].outputs[port].wanted;
   }
-  last.reset();
+  complete = false;
   return *plan;
 }
 
 /// Per pass of the graph. A pass runs when something that it reads changed, when a source of it did, or when
 /// a value that such a pass needs was given back meanwhile.
 std::vector<bool> PipelineExecutor::State::passesToRun(Reads changed) {
-  const bool all = !last || options.keepEverything;
+  const bool all = !complete || options.keepEverything;
   std::vector<bool> runs(graph.passes.size(), false);
   for (const int position : plan->order) {
     const auto index = static_cast<std::size_t>(position);
@@ -156,14 +157,15 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
                                            Clock::time_point start) {
   planned();
   FrameResult result;
-  const bool first = !last;
-  Reads changed = first ? Reads::geometry : whatChanged(scene, *last, snapshot);
+  Reads changed = last ? whatChanged(scene, *last, snapshot) : Reads::geometry;
   if (lastFrameIndex && *lastFrameIndex != frameIndex) changed = changed | Reads::time;
   const std::vector<bool> runs = passesToRun(changed);
   context.pool().beginFrame();
   context.setFrame(snapshot, frameIndex, reads(changed, Reads::geometry));
-  // Until the frame is complete, an error leaves nothing that a later frame could take for current.
-  last.reset();
+  last = std::move(snapshot);
+  lastFrameIndex = frameIndex;
+  // Until the frame is done, an error leaves nothing that a later frame could take for current.
+  complete = false;
   for (const int index : plan->order) {
     if (!runs[static_cast<std::size_t>(index)]) continue;
     for (OutBase* output : graph.passes[static_cast<std::size_t>(index)].object->outputs()) output->reset();
@@ -200,8 +202,7 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
   result.betweenPassesMs = result.frameMs - passesMs;
   result.peakBytes = device.peakBytes();
   context.pool().endFrame();
-  last = std::move(snapshot);
-  lastFrameIndex = frameIndex;
+  complete = true;
   collectPictures(result, pictures);
   return result;
 }
@@ -250,7 +251,7 @@ FrameResult PipelineExecutor::render(const SceneSnapshot& snapshot, int frameInd
 }
 
 void PipelineExecutor::invalidate() {
-  state_->last.reset();
+  state_->complete = false;
 }
 
 Explanation PipelineExecutor::explain() const {

@@ -265,8 +265,7 @@ class Binder {
 
   void bindOutputs() {
     for (const Pipeline::Output& output : pipeline_.outputs) {
-      const int length =
-          static_cast<int>(output.pass.size() + (output.port.empty() ? 0 : output.port.size() + 1));
+      const int length = static_cast<int>(output.pass.size() + 1 + output.port.size());
       graph_.outputs.push_back(
           {output.name, connect(output.place, length, output.pass, output.port, Image::kPortKind,
                                 fmt::format("output '{}' of the pipeline", output.name))});

@@ -230,13 +230,11 @@ class TextReader {
       }
     }
     const auto parts = splitDotted(values[1]);
-    if (!parts && !values[1].isPlainWord()) {
+    if (!parts) {
       report(values[1].place, values[1].length, "this names no output of a pass", "pass.port");
       return;
     }
-    // Without a dot the pass's only output is meant; binding finds which.
-    pipeline_.outputs.push_back(
-        {values[0].text, parts ? parts->first : values[1].text, parts ? parts->second : "", values[1].place});
+    pipeline_.outputs.push_back({values[0].text, parts->first, parts->second, values[1].place});
   }
 
   void readSweep(const dsl::Block& block) {

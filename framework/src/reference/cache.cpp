@@ -136,7 +136,7 @@ std::map<std::string, std::string> provenance(const Scene& scene, const Resolved
           {"camera", options.camera},
           {"resolution", fmt::format("{} {}", options.width, options.height)},
           {"occlusion_distance", fmt::format("{}", options.occlusionDistance)},
-          {"version", std::to_string(kTracerVersion)}};
+          {"tracer_version", std::to_string(kTracerVersion)}};
 }
 
 }  // namespace reference

@@ -62,8 +62,8 @@ glm::vec3 Integrator::nextEvent(Rays& rays, RandomStream& random, const Surface&
   const Reflectance reflected = reflectanceTowards(surface, light.direction);
   if (reflected.density == 0.0f) return glm::vec3(0.0f);
   if (rays.occluded(surface.position, light.shadowDirection, light.shadowReach)) return glm::vec3(0.0f);
-  // Only emissive triangles can also be met by a reflected ray.
-  const float weight = light.density > 0.0f ? powerHeuristic(light.density, reflected.density) : 1.0f;
+  // Only emissive triangles can also be met by a reflected ray; for other lights the ratio is zero and the weight one.
+  const float weight = powerHeuristic(reflected.density * light.inverseDensity);
   return weight * (reflected.diffuse + reflected.glossy) * light.irradiance;
 }
 
@@ -132,7 +132,7 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
     if (emission != glm::vec3(0.0f)) {
       const float cosine = -glm::dot(triangle.normal, reflection.direction);
       const float density = LightSampler::density(triangle, hit.distance * hit.distance, cosine);
-      const glm::vec3 met = powerHeuristic(reflection.density, density) * emission;
+      const glm::vec3 met = powerHeuristic(density / reflection.density) * emission;
       if (depth == 0) {
         result.direct += (firstDiffuse + firstGlossy) * met;
       } else {

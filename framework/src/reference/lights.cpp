@@ -118,13 +118,15 @@ LightSample LightSampler::sampleTriangle(const RayScene& scene, const Surface& s
   const glm::vec3 end = triangle.corner + u * triangle.edge1 + v * triangle.edge2 + triangle.offset * triangle.normal;
   const glm::vec3 path = end - surface.position;
   const float squaredDistance = glm::dot(path, path);
-  if (!(squaredDistance > 0.0f)) return result;
+  // Density per area, seen from a distance of 1 and head on; where it vanishes the point lies on the light itself.
+  const float headOn = triangle.emitterDensity * squaredDistance;
+  if (!(headOn > 1e-18f)) return result;
   result.direction = (1.0f / std::sqrt(squaredDistance)) * path;
   const float cosine = -glm::dot(triangle.normal, result.direction);
   if (!(cosine > 0.0f)) return result;
   if (material.maskTexture != nullptr && scene.cutOut(choice.index, u, v)) return result;
-  result.density = density(triangle, squaredDistance, cosine);
-  result.irradiance = (1.0f / result.density) * material.emission;
+  result.inverseDensity = cosine / headOn;
+  result.irradiance = result.inverseDensity * material.emission;
   result.shadowDirection = path;
   result.shadowReach = 1.0f;
   result.shines = true;

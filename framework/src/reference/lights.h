@@ -16,7 +16,7 @@ struct LightSample {
   bool shines = false;         ///< whether the light can reach the point at all; if not, the rest is not set
   glm::vec3 direction;         ///< unit, from the point towards the light
   glm::vec3 irradiance;        ///< estimate on a plane that faces the light, divided by the probability of the choice
-  float density = 0.0f;        ///< 1/sr at which sampling of emissive triangles gives this direction; 0 for a light without extent
+  float inverseDensity = 0.0f; ///< sr; of choosing this direction among all to emissive triangles; 0 for a light without extent
   glm::vec3 shadowDirection;   ///< not unit: for the shadow ray
   float shadowReach = 0.0f;    ///< in lengths of shadowDirection
 };

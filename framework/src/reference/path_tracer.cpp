@@ -17,9 +17,9 @@ namespace lumivox {
 namespace reference {
 namespace {
 
-constexpr std::array<const char*, PixelStatistics::kColourLayers + 1> kLayerNames = {
-    "direct", "one_bounce_diffuse", "one_bounce_glossy", "indirect_diffuse", "indirect_glossy", "full", "ambient_occlusion"};
-constexpr int kOcclusionLayer = PixelStatistics::kColourLayers;
+constexpr std::array<const char*, PixelStatistics::kRadianceLayers + 1> kLayerNames = {
+    "direct", "one_bounce_diffuse", "one_bounce_glossy", "one_bounce", "indirect_diffuse", "indirect_glossy", "full", "ambient_occlusion"};
+constexpr int kOcclusionLayer = PixelStatistics::kRadianceLayers;
 
 void require(bool good, const char* option, const std::string& value, const char* expected) {
   if (!good) throw Error(fmt::format("reference: {} is {}; expected {}", option, value, expected));

@@ -33,15 +33,15 @@ struct Tracer {
 /// Mean and variance of the mean of the paths of one pixel.
 class PixelStatistics {
  public:
-  static constexpr int kColourLayers = 6;
+  static constexpr int kRadianceLayers = 7;
   void add(const PathSample& sample) {
-    const glm::vec3 full = sample.full();
-    const glm::vec3* radiances[kColourLayers] = {&sample.direct,          &sample.oneBounceDiffuse, &sample.oneBounceGlossy,
-                                                 &sample.indirectDiffuse, &sample.indirectGlossy,   &full};
-    for (int layer = 0; layer < kColourLayers; ++layer) {
+    const glm::vec3 oneBounce = sample.direct + sample.oneBounceDiffuse + sample.oneBounceGlossy, full = sample.full();
+    const glm::vec3* radiances[kRadianceLayers] = {&sample.direct, &sample.oneBounceDiffuse, &sample.oneBounceGlossy, &oneBounce,
+                                                   &sample.indirectDiffuse, &sample.indirectGlossy, &full};
+    for (int layer = 0; layer < kRadianceLayers; ++layer) {
       for (int channel = 0; channel < 3; ++channel) add(3 * layer + channel, (*radiances[layer])[channel]);
     }
-    add(3 * kColourLayers, sample.unoccluded);
+    add(3 * kRadianceLayers, sample.unoccluded);
     ++count_;
   }
   float mean(int channel) const { return static_cast<float>(sum_[at(channel)] / count_); }
@@ -58,7 +58,7 @@ class PixelStatistics {
     sum_[at(channel)] += wide;
     squares_[at(channel)] += wide * wide;
   }
-  std::array<double, 3 * kColourLayers + 1> sum_{}, squares_{};
+  std::array<double, 3 * kRadianceLayers + 1> sum_{}, squares_{};
   double count_ = 0.0;
 };
 
@@ -70,7 +70,7 @@ class Film {
   LayeredPicture take();
 
  private:
-  std::array<Picture, PixelStatistics::kColourLayers + 1> means_, variances_;
+  std::array<Picture, PixelStatistics::kRadianceLayers + 1> means_, variances_;
 };
 
 /// The picture's tiles, row by row.

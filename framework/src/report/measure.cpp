@@ -123,7 +123,9 @@ void measureErrors(const MeasureContext& context, const Pipeline& pipeline, Poin
     for (const std::string& output : executor.outputNames()) {
       const auto picture = frame.outputs.find(output);
       const auto component = frame.components.find(output);
-      if (picture != frame.outputs.end() && component != frame.components.end())
+      // An output that is the whole picture already is judged as that, once.
+      if (picture != frame.outputs.end() && component != frame.components.end() &&
+          component->second != Contributes::final)
         collect(judged, output, component->second, std::move(picture->second));
     }
     collect(judged, kWholePicture, Contributes::final, std::move(whole));

@@ -98,12 +98,13 @@ const char* const kPageScript = R"js(
       ctx.setLineDash([6, 4]);
       ctx.strokeStyle = ctx.fillStyle = "#5b6676";
       ctx.font = "11px sans-serif";
-      for (const level of chart.options.levels || []) {
-        const at = y.getPixelForValue(level.value);
-        if (at < chartArea.top || at > chartArea.bottom) continue;
+      (chart.options.levels || []).forEach((level, index) => {
+        const at = y.getPixelForValue(level.value), left = index % 2 === 0;
+        if (at < chartArea.top || at > chartArea.bottom) return;
         ctx.beginPath(); ctx.moveTo(chartArea.left, at); ctx.lineTo(chartArea.right, at); ctx.stroke();
-        ctx.fillText(level.text, chartArea.left + 6, at - 4);
-      }
+        ctx.textAlign = left ? "left" : "right";  // two levels can lie upon each other
+        ctx.fillText(level.text, left ? chartArea.left + 6 : chartArea.right - 6, at - 4);
+      });
       ctx.restore();
     }
   };

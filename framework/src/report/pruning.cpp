@@ -41,12 +41,6 @@ struct Series {
 
 }  // namespace
 
-std::uint64_t PruningRecord::prunedBytes() const {
-  return sumOf(prunedPassBytes);
-}
-std::uint64_t PruningRecord::unprunedBytes() const {
-  return sumOf(unprunedPassBytes);
-}
 double PruningRecord::savedShare() const {
   return unprunedMs.median > 0.0 ? 1.0 - prunedMs.median / unprunedMs.median : 0.0;
 }

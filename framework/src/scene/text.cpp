@@ -130,7 +130,7 @@ BlockSpecification mesh() {
                  "normals hold and only missing ones are made, with 30 deg",
                  dsl::kAngle)
                  .between(0, 180.0 * kDegree),
-             Row("scale", PropertyType::oneOrThree, "size of the file's unit in metres; done first")
+             Row("scale", PropertyType::oneOrThree, "length of the file's unit, along each axis when three; done first", dsl::kLength)
                  .between(kSmallestScale, kLargestScale)
                  .byDefault("1"),
              Row("rotate", PropertyType::axisAndNumber, "turn about an axis through the origin; done second",

@@ -149,7 +149,7 @@ std::vector<ResourceBinding> ShaderLibrary::select(const BoundProgram& program,
   for (const std::uint32_t index : program.variant->bindingsUsed) {
     const PackedBinding& expected = program.packed->bindings[index];
     const auto given = std::find_if(bindings.begin(), bindings.end(), [&](const ResourceBinding& binding) {
-return kindOf(binding) == expected.kind && expected.name == binding.name;
+      return kindOf(binding) == expected.kind && expected.name == binding.name;
     });
     const auto refuse = [&](const std::string& why) {
       throw Error(fmt::format("shader program {}: {} '{}' (binding {}): {}", programName(program),

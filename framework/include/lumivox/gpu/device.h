@@ -172,7 +172,7 @@ struct ColourTarget { const Texture* texture; int layer = -1; };
 
 /// Where drawing goes. With no target at all, width and height give the size of an empty framebuffer (voxelisation).
 struct RenderTargets {
-  std::vector<ColourTarget> colours;
+  std::vector<ColourTarget> colours{};  ///< one per output location; null texture: that output is not kept
   const Texture* depth = nullptr;
   int depthLayer = -1;
   int width = 0, height = 0;

@@ -21,23 +21,52 @@ class GpuScene;
 class Pass;
 
 /// The component of the picture that an output holds; decides which truth it is judged against.
-enum class Contributes { nothing, direct, indirectDiffuse, indirectGlossy, ambientOcclusion, scattered, final };
+enum class Contributes {
+  nothing,
+  direct,
+  indirectDiffuse,
+  indirectGlossy,
+  ambientOcclusion,
+  scattered,
+  final
+};
 const char* name(Contributes component);  ///< "direct", "indirect_diffuse", ...
 
 /// What the scene must have for an output (or a whole pass) to differ from its neutral element, black.
 enum class Needs : std::uint32_t {
-  nothing = 0, anyLight = 1u << 0, glossyMaterial = 1u << 1, environment = 1u << 2, medium = 1u << 3, emission = 1u << 4,
-  textures = 1u << 5, movingGeometry = 1u << 6, triangles = 1u << 7
+  nothing = 0,
+  anyLight = 1u << 0,
+  glossyMaterial = 1u << 1,
+  environment = 1u << 2,
+  medium = 1u << 3,
+  emission = 1u << 4,
+  textures = 1u << 5,
+  movingGeometry = 1u << 6,
+  triangles = 1u << 7
 };
-constexpr Needs operator|(Needs a, Needs b) { return static_cast<Needs>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b)); }
+constexpr Needs operator|(Needs a, Needs b) {
+  return static_cast<Needs>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
+}
 /// The first need that the scene does not meet, in words ("a glossy material"), or empty.
 std::string unmetNeed(Needs needs, const SceneTraits& traits);
 
-/// What a pass reads besides its inputs and parameters. A pass is run again only when one of these or an input changed.
-/// lights: also the motion of emissive objects. camera: also the size of the picture. time: also the frame's index.
-enum class Reads : std::uint32_t { nothing = 0, geometry = 1u << 0, materials = 1u << 1, lights = 1u << 2, camera = 1u << 3, time = 1u << 4 };
-constexpr Reads operator|(Reads a, Reads b) { return static_cast<Reads>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b)); }
-constexpr bool reads(Reads set, Reads one) { return (static_cast<std::uint32_t>(set) & static_cast<std::uint32_t>(one)) != 0; }
+/// What a pass reads besides its inputs and parameters. A pass is run again only when one of these or an
+/// input changed. lights: also the motion of emissive objects. camera: also the size of the picture. time:
+/// also the frame's index.
+enum class Reads : std::uint32_t {
+  nothing = 0,
+  geometry = 1u << 0,
+  materials = 1u << 1,
+  lights = 1u << 2,
+  camera = 1u << 3,
+  time = 1u << 4
+};
+constexpr Reads operator|(Reads a, Reads b) {
+  return static_cast<Reads>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
+}
+constexpr bool reads(Reads set, Reads one) {
+  return (static_cast<std::uint32_t>(set) & static_cast<std::uint32_t>(one)) != 0;
+}
 
 /// Members of a pass register themselves with it, in the order of declaration.
 class PortBase {
@@ -56,10 +85,12 @@ class PortBase {
 
 class OutBase : public PortBase {
  public:
-  OutBase(Pass* pass, std::string name, std::string portKind, Contributes contributes, Needs needs, std::string meaning);
+  OutBase(Pass* pass, std::string name, std::string portKind, Contributes contributes, Needs needs,
+          std::string meaning);
   Contributes contributes() const { return contributes_; }
   Needs needs() const { return needs_; }
-  /// Whether anything wants this output in this run: false when it was pruned. A pass asks before it computes the output.
+  /// Whether anything wants this output in this run: false when it was pruned. A pass asks before it computes
+  /// the output.
   bool wanted() const { return wanted_; }
   virtual bool hasValue() const = 0;
   virtual void reset() = 0;
@@ -83,12 +114,13 @@ std::vector<gpu::TextureRef> texturesOf(const RadianceGrid&);
 std::vector<gpu::TextureRef> texturesOf(const ShGrid&);
 std::vector<gpu::TextureRef> texturesOf(const ScatteringGrid&);
 
-/// An output: assigned by run() whenever it is wanted. The resources go back to the executor's pool after the last reader has run,
-/// unless a later frame may need them again.
+/// An output: assigned by run() whenever it is wanted. The resources go back to the executor's pool after the
+/// last reader has run, unless a later frame may need them again.
 template <class Port>
 class Out : public OutBase {
  public:
-  Out(Pass* pass, std::string name, Contributes contributes = Contributes::nothing, Needs needs = Needs::nothing, std::string meaning = {})
+  Out(Pass* pass, std::string name, Contributes contributes = Contributes::nothing,
+      Needs needs = Needs::nothing, std::string meaning = {})
       : OutBase(pass, std::move(name), Port::kPortKind, contributes, needs, std::move(meaning)) {}
   Out(Pass* pass, std::string name, std::string meaning)
       : Out(pass, std::move(name), Contributes::nothing, Needs::nothing, std::move(meaning)) {}
@@ -99,7 +131,9 @@ class Out : public OutBase {
   const Port& value() const { return *value_; }
   bool hasValue() const override { return value_.has_value(); }
   void reset() override { value_.reset(); }
-  std::vector<gpu::TextureRef> textures() const override { return value_ ? texturesOf(*value_) : std::vector<gpu::TextureRef>{}; }
+  std::vector<gpu::TextureRef> textures() const override {
+    return value_ ? texturesOf(*value_) : std::vector<gpu::TextureRef>{};
+  }
 
  private:
   std::optional<Port> value_;
@@ -111,7 +145,8 @@ class InBase : public PortBase {
  public:
   InBase(Pass* pass, std::string name, std::string portKind, Presence presence, std::string meaning);
   Presence presence() const { return presence_; }
-  /// False when nothing is connected or what is connected was pruned away: the pass then uses the variant without this input.
+  /// False when nothing is connected or what is connected was pruned away: the pass then uses the variant
+  /// without this input.
   bool present() const { return source_ != nullptr && source_->hasValue(); }
   explicit operator bool() const { return present(); }
   /// Connects or disconnects; the kinds must agree (checked by the graph with a message; asserted here).
@@ -127,14 +162,16 @@ class InBase : public PortBase {
 template <class Port>
 class In : public InBase {
  public:
-  In(Pass* pass, std::string name, std::string meaning = {}) : InBase(pass, std::move(name), Port::kPortKind, Presence::required, std::move(meaning)) {}
+  In(Pass* pass, std::string name, std::string meaning = {})
+      : InBase(pass, std::move(name), Port::kPortKind, Presence::required, std::move(meaning)) {}
   In(Pass* pass, std::string name, Presence presence, std::string meaning = {})
       : InBase(pass, std::move(name), Port::kPortKind, presence, std::move(meaning)) {}
   const Port& operator*() const { return static_cast<const Out<Port>*>(source_)->value(); }
   const Port* operator->() const { return &**this; }
 };
 
-/// A parameter of a pass: a number, a switch (on/off) or a word, with its range and default. Set from the pipeline text.
+/// A parameter of a pass: a number, a switch (on/off) or a word, with its range and default. Set from the
+/// pipeline text.
 class ParamBase {
  public:
   enum class Type { integer, number, flag, word };
@@ -148,11 +185,11 @@ class ParamBase {
   double low() const { return low_; }
   double high() const { return high_; }
   const std::vector<std::string>& choices() const { return choices_; }
-  const std::string& unit() const { return unit_; }        ///< "", "m", "rad", "/m"
+  const std::string& unit() const { return unit_; }  ///< "", "m", "rad", "/m"
   virtual std::string valueText() const = 0;
   virtual std::string defaultText() const = 0;
-  /// "must be a whole number in 1..32" when the value does not fit (it then stays as it was), else empty. Numbers arrive in base
-  /// units.
+  /// "must be a whole number in 1..32" when the value does not fit (it then stays as it was), else empty.
+  /// Numbers arrive in base units.
   virtual std::string set(double number) = 0;
   virtual std::string set(const std::string& word) = 0;
 
@@ -167,7 +204,9 @@ class ParamBase {
 };
 
 template <class T>
-struct ParamRange { T low, high; };
+struct ParamRange {
+  T low, high;
+};
 
 template <class T>
 class Param;
@@ -189,7 +228,8 @@ class Param<int> : public ParamBase {
 template <>
 class Param<float> : public ParamBase {
  public:
-  Param(Pass* pass, std::string name, float value, ParamRange<float> range, std::string unit, std::string meaning);
+  Param(Pass* pass, std::string name, float value, ParamRange<float> range, std::string unit,
+        std::string meaning);
   operator float() const { return value_; }
   std::string valueText() const override;
   std::string defaultText() const override;
@@ -205,7 +245,7 @@ class Param<bool> : public ParamBase {
  public:
   Param(Pass* pass, std::string name, bool value, std::string meaning);
   operator bool() const { return value_; }
-  std::string valueText() const override;   ///< "on" or "off"
+  std::string valueText() const override;  ///< "on" or "off"
   std::string defaultText() const override;
   std::string set(double number) override;
   std::string set(const std::string& word) override;
@@ -217,7 +257,8 @@ class Param<bool> : public ParamBase {
 template <>
 class Param<std::string> : public ParamBase {
  public:
-  Param(Pass* pass, std::string name, std::string value, std::vector<std::string> choices, std::string meaning);
+  Param(Pass* pass, std::string name, std::string value, std::vector<std::string> choices,
+        std::string meaning);
   operator const std::string&() const { return value_; }
   bool operator==(const char* other) const { return value_ == other; }
   std::string valueText() const override { return value_; }
@@ -238,7 +279,8 @@ class PassContext {
   virtual GpuScene& scene() = 0;
   virtual const Scene& sceneDescription() const = 0;
   virtual const SceneSnapshot& snapshot() const = 0;
-  /// What the scene has; all of it with --keep-everything. Choose variants by this, never by looking at the scene.
+  /// What the scene has; all of it with --keep-everything. Choose variants by this, never by looking at the
+  /// scene.
   virtual const SceneTraits& traits() const = 0;
   /// True with --keep-everything: every draw uses the fullest variant, with neutral textures.
   virtual bool keepsEverything() const = 0;
@@ -256,7 +298,8 @@ class PassContext {
     return shaders().program(name, variant, constants);
   }
   /// One invocation per item, in groups of `groupSize`; a barrier follows.
-  void dispatch(const shader::BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings, glm::ivec3 items, glm::ivec3 groupSize);
+  void dispatch(const shader::BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings,
+                glm::ivec3 items, glm::ivec3 groupSize);
   gpu::TextureRef image(gpu::Format format, const std::string& label);  ///< picture-sized d2 texture
 };
 

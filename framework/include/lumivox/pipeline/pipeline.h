@@ -20,19 +20,19 @@ namespace lumivox {
 
 /// One value of a pipeline parameter.
 struct ParameterValue {
-  double number = 0.0;              ///< in base units
-  std::string word;                 ///< non-empty: a word in place of a number
-  dsl::Dimension dimension;         ///< of the unit that the number was written with
-  std::string text() const;         ///< as settings() reads it: the number in base units, or the word
+  double number = 0.0;       ///< in base units
+  std::string word;          ///< non-empty: a word in place of a number
+  dsl::Dimension dimension;  ///< of the unit that the number was written with
+  std::string text() const;  ///< as settings() reads it: the number in base units, or the word
   bool operator==(const ParameterValue&) const = default;
 };
 using ParameterValues = std::map<std::string, ParameterValue>;
 
 struct PipelineParameter {
   std::string name;
-  ParameterValue value;             ///< default
-  std::optional<double> low, high;  ///< declared range
-  std::vector<std::string> choices; ///< declared words, or numbers as text
+  ParameterValue value;              ///< default
+  std::optional<double> low, high;   ///< declared range
+  std::vector<std::string> choices;  ///< declared words, or numbers as text
   /// "must be in 16..512" when the value does not fit the declaration, else empty.
   std::string misfit(const ParameterValue& candidate) const;
 };
@@ -57,18 +57,21 @@ class Pipeline {
   static Pipeline load(const std::filesystem::path& file);
   static Pipeline parse(std::string source, std::filesystem::path file);
 
-  std::string name;                 ///< the string in the text
+  std::string name;  ///< the string in the text
   std::filesystem::path file;
-  ContentHash hash;                 ///< of the text with its includes
+  ContentHash hash;  ///< of the text with its includes
   std::vector<PipelineParameter> parameters;
   std::vector<PassText> passes;
-  struct Output { std::string name, pass, port; SourcePlace place; };
+  struct Output {
+    std::string name, pass, port;
+    SourcePlace place;
+  };
   std::vector<Output> outputs;
   std::vector<Sweep> sweeps;
   std::shared_ptr<const dsl::Document> document;
 
-  /// Parses "name=value" settings, and returns those alone; Error names an unknown parameter (with the nearest) or a value out of its
-  /// range.
+  /// Parses "name=value" settings, and returns those alone; Error names an unknown parameter (with the
+  /// nearest) or a value out of its range.
   ParameterValues settings(const std::vector<std::string>& assignments) const;
   /// Names of the techniques that it needs, each once, in text order.
   std::vector<std::string> techniques() const;
@@ -78,7 +81,8 @@ class Pipeline {
 const std::vector<dsl::BlockSpecification>& pipelineSpecifications();
 /// Tables of the scene grammar are in scene/text.h.
 
-/// All findings of a pipeline against the techniques: unknown techniques, passes, ports, parameters, kinds, cycles, ranges.
+/// All findings of a pipeline against the techniques: unknown techniques, passes, ports, parameters, kinds,
+/// cycles, ranges.
 void checkPipeline(const Pipeline& pipeline, TechniqueSource& techniques);
 
 struct RenderOptions {
@@ -86,53 +90,58 @@ struct RenderOptions {
   ParameterValues parameters;       ///< over the defaults
   std::vector<std::string> wanted;  ///< output names; empty: all
   std::uint64_t seed = 1;
-  bool health = false;              ///< scan every pass output for NaN, Inf and negative values; not part of the times
-  bool interactive = false;         ///< camera, lights and objects may change in ways that the scene text does not announce
+  bool health = false;  ///< scan every pass output for NaN, Inf and negative values; not part of the times
+  bool interactive =
+      false;  ///< camera, lights and objects may change in ways that the scene text does not announce
   std::string camera;
-  int width = 0, height = 0;        ///< 0: the camera's
+  int width = 0, height = 0;  ///< 0: the camera's
 };
 
 struct PassRecord {
   std::string name, technique, pass;
-  bool ran = true;                  ///< false: its inputs had not changed
+  bool ran = true;  ///< false: its inputs had not changed
   double hostMs = 0, deviceMs = 0;
-  std::uint64_t bytes = 0;          ///< resources that it took from the pool
+  std::uint64_t bytes = 0;  ///< resources that it took from the pool
 };
 
 struct FrameResult {
-  std::map<std::string, Picture> outputs;       ///< rgb each (one channel for ambient occlusion); only when pictures were asked for
+  std::map<std::string, Picture>
+      outputs;  ///< rgb each (one channel for ambient occlusion); only when pictures were asked for
   std::map<std::string, Contributes> components;
   std::vector<PassRecord> passes;
-  double frameMs = 0;               ///< whole frame, device idle before and after
-  double betweenPassesMs = 0;       ///< frameMs minus the passes: what the framework itself costs
+  double frameMs = 0;          ///< whole frame, device idle before and after
+  double betweenPassesMs = 0;  ///< frameMs minus the passes: what the framework itself costs
   std::uint64_t peakBytes = 0;
-  std::vector<std::string> healthFindings;      ///< "pass gather, port diffuse: 3 NaN, first at pixel (12, 40)"
+  std::vector<std::string> healthFindings;  ///< "pass gather, port diffuse: 3 NaN, first at pixel (12, 40)"
 };
 
 /// One thing that a run does without.
 struct LeftOut {
   enum class Level { plugin, pass, variant, resource, time } level;
   std::string what, why;
-  std::string pass;                 ///< the pass that it belongs to; empty for plugins, variants and the pool
-  std::uint64_t savedBytes = 0;     ///< 0 when not known
-  double savedMs = 0;               ///< per frame; 0 when not measured
+  std::string pass;              ///< the pass that it belongs to; empty for plugins, variants and the pool
+  std::uint64_t savedBytes = 0;  ///< 0 when not known
+  double savedMs = 0;            ///< per frame; 0 when not measured
 };
 const char* name(LeftOut::Level level);
 
-/// What a pipeline does without on a scene. Variants, shared memory and times are known once a frame was rendered.
+/// What a pipeline does without on a scene. Variants, shared memory and times are known once a frame was
+/// rendered.
 struct Explanation {
   std::vector<LeftOut> leftOut;
   std::size_t passesKept = 0, passesTotal = 0;
   std::size_t variantsPossible = 0, variantsCompiled = 0, variantsNeeded = 0;
-  std::uint64_t poolBytes = 0;      ///< of all resources of the passes after the last frame
-  std::uint64_t sharedBytes = 0;    ///< how much more they would need, did they not share memory
+  std::uint64_t poolBytes = 0;    ///< of all resources of the passes after the last frame
+  std::uint64_t sharedBytes = 0;  ///< how much more they would need, did they not share memory
 };
 
 /// A pipeline bound to a scene and a device, ready to render frames.
 class PipelineExecutor {
  public:
-  /// Binds and prunes. Throws DiagnosticsError with all binding errors at once. Device, techniques and scene must outlive it.
-  PipelineExecutor(gpu::Device& device, TechniqueSource& techniques, const Scene& scene, const Pipeline& pipeline, const RenderOptions& options);
+  /// Binds and prunes. Throws DiagnosticsError with all binding errors at once. Device, techniques and scene
+  /// must outlive it.
+  PipelineExecutor(gpu::Device& device, TechniqueSource& techniques, const Scene& scene,
+                   const Pipeline& pipeline, const RenderOptions& options);
   ~PipelineExecutor();
 
   enum class Pictures { no, yes };
@@ -146,7 +155,8 @@ class PipelineExecutor {
   Explanation explain() const;
   const std::vector<std::string>& outputNames() const;  ///< kept and pruned; a pruned one renders as black
   shader::ShaderLibrary& shaders();
-  /// Keeps an output of a pass alive after each render, and its pass with it; for exporters and tests. Error for an unknown name.
+  /// Keeps an output of a pass alive after each render, and its pass with it; for exporters and tests. Error
+  /// for an unknown name.
   void keepOutput(const std::string& pass, const std::string& port);
   /// After the last render. Null when it was left out or given back. Error for an unknown name.
   const OutBase* output(const std::string& pass, const std::string& port) const;
@@ -159,8 +169,8 @@ class PipelineExecutor {
 /// Runs one pass alone on hand-made inputs: for the closed-form tests of techniques.
 class PassHarness {
  public:
-  PassHarness(gpu::Device& device, TechniqueSource& techniques, const std::string& technique, const std::string& pass, const Scene& scene,
-              const SceneSnapshot& snapshot);
+  PassHarness(gpu::Device& device, TechniqueSource& techniques, const std::string& technique,
+              const std::string& pass, const Scene& scene, const SceneSnapshot& snapshot);
   ~PassHarness();
   Pass& pass();
   void setParameter(const std::string& name, double value);
@@ -174,7 +184,9 @@ class PassHarness {
   }
   void run(std::uint64_t seed = 1);
   template <class Port>
-  const Port& output(const std::string& name) { return static_cast<const Out<Port>&>(outputNamed(name)).value(); }
+  const Port& output(const std::string& name) {
+    return static_cast<const Out<Port>&>(outputNamed(name)).value();
+  }
   PassContext& context();
 
  private:

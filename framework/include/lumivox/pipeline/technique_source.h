@@ -15,17 +15,17 @@ namespace lumivox {
 
 struct PassEntry {
   std::string name;
-  std::string meaning;             ///< one line, with the paper and section
+  std::string meaning;  ///< one line, with the paper and section
   std::function<std::unique_ptr<Pass>()> make;
 };
 
 struct Technique {
-  std::string name;                ///< folder and library name: lib<name>.so, <name>.shaderpack beside it
+  std::string name;  ///< folder and library name: lib<name>.so, <name>.shaderpack beside it
   std::filesystem::path library;
-  ContentHash hash;                ///< of the library file
+  ContentHash hash;  ///< of the library file
   std::string meaning, paper;
   std::vector<PassEntry> passes;
-  shader::ShaderPack shaders;      ///< empty when it has none
+  shader::ShaderPack shaders;  ///< empty when it has none
   const PassEntry* find(const std::string& pass) const;
 };
 

@@ -1,4 +1,5 @@
-// Opens technique libraries. A library that does not fit is skipped and reported with its path and the reason; the others still load.
+// Opens technique libraries. A library that does not fit is skipped and reported with its path and the
+// reason; the others still load.
 #pragma once
 
 #include <filesystem>
@@ -19,8 +20,10 @@ class TechniqueSet : public TechniqueSource {
   explicit TechniqueSet(std::vector<std::filesystem::path> directories);
   ~TechniqueSet() override;
 
-  /// The default directories: --techniques, then $LUMIVOX_TECHNIQUES, then `techniques` beside the running program's library.
-  static std::vector<std::filesystem::path> defaultDirectories(const std::vector<std::filesystem::path>& given = {});
+  /// The default directories: --techniques, then $LUMIVOX_TECHNIQUES, then `techniques` beside the running
+  /// program's library.
+  static std::vector<std::filesystem::path> defaultDirectories(
+      const std::vector<std::filesystem::path>& given = {});
 
   /// Opens it on first use. Null when absent or skipped; skipped() says why.
   const Technique* technique(const std::string& name) override;

@@ -1,5 +1,5 @@
-// The border between the framework and a technique library. One C entry point hands over a version record first; only when that
-// agrees to the byte is anything of C++ exchanged.
+// The border between the framework and a technique library. One C entry point hands over a version record
+// first; only when that agrees to the byte is anything of C++ exchanged.
 #pragma once
 
 #include <cstddef>
@@ -18,16 +18,17 @@ inline constexpr std::uint32_t kTechniqueApiVersion = 1;
 
 /// Plain data, C layout: compared member by member before anything else is called.
 struct TechniqueVersionRecord {
-  std::uint32_t recordSize;        ///< sizeof this struct
+  std::uint32_t recordSize;  ///< sizeof this struct
   std::uint32_t apiVersion;
-  char compiler[64];               ///< e.g. "gcc 12"
-  char standardLibrary[32];        ///< "libstdc++ cxx11-abi 1"
-  char buildType[32];              ///< "release", "debug", "sanitized": what changes the layout or the runtime
+  char compiler[64];         ///< e.g. "gcc 12"
+  char standardLibrary[32];  ///< "libstdc++ cxx11-abi 1"
+  char buildType[32];        ///< "release", "debug", "sanitized": what changes the layout or the runtime
   std::uint32_t passSize, passContextSize, sceneSize, snapshotSize, deviceSize, portsSize;
 };
 
-/// The record of the code that includes this header. Evaluated by the compiler: an ordinary function would be merged with the
-/// framework's own when the library is opened, and would then describe the framework in place of the technique.
+/// The record of the code that includes this header. Evaluated by the compiler: an ordinary function would be
+/// merged with the framework's own when the library is opened, and would then describe the framework in place
+/// of the technique.
 consteval TechniqueVersionRecord techniqueVersionHere() {
   TechniqueVersionRecord record{};
   record.recordSize = sizeof(TechniqueVersionRecord);
@@ -60,8 +61,8 @@ consteval TechniqueVersionRecord techniqueVersionHere() {
   record.sceneSize = sizeof(Scene);
   record.snapshotSize = sizeof(SceneSnapshot);
   record.deviceSize = sizeof(gpu::Device);
-  record.portsSize = sizeof(GBuffer) + sizeof(ShadowMap) + sizeof(VoxelFragments) + sizeof(OccupancyGrid) + sizeof(RadianceGrid) +
-                     sizeof(ShGrid) + sizeof(ScatteringGrid) + sizeof(Image);
+  record.portsSize = sizeof(GBuffer) + sizeof(ShadowMap) + sizeof(VoxelFragments) + sizeof(OccupancyGrid) +
+                     sizeof(RadianceGrid) + sizeof(ShGrid) + sizeof(ScatteringGrid) + sizeof(Image);
   return record;
 }
 
@@ -81,13 +82,15 @@ class TechniqueRegistry {
 
 /// In a technique's one source file, at namespace scope:
 ///   LUMIVOX_TECHNIQUE(registry) { registry.describe("...", "..."); registry.add<Gather>("gather", "..."); }
-#define LUMIVOX_TECHNIQUE(registry)                                                                                        \
-  static void lumivoxRegisterTechnique(::lumivox::TechniqueRegistry&(registry));                                             \
-  extern "C" __attribute__((visibility("default"))) const ::lumivox::TechniqueVersionRecord* lumivox_technique_version() {  \
-    static constexpr ::lumivox::TechniqueVersionRecord record = ::lumivox::techniqueVersionHere();                            \
-    return &record;                                                                                                         \
-  }                                                                                                                         \
-  extern "C" __attribute__((visibility("default"))) void lumivox_technique_register(::lumivox::TechniqueRegistry* target) { \
-    lumivoxRegisterTechnique(*target);                                                                                      \
-  }                                                                                                                         \
+#define LUMIVOX_TECHNIQUE(registry)                                                                \
+  static void lumivoxRegisterTechnique(::lumivox::TechniqueRegistry&(registry));                   \
+  extern "C" __attribute__((visibility("default"))) const ::lumivox::TechniqueVersionRecord*       \
+  lumivox_technique_version() {                                                                    \
+    static constexpr ::lumivox::TechniqueVersionRecord record = ::lumivox::techniqueVersionHere(); \
+    return &record;                                                                                \
+  }                                                                                                \
+  extern "C" __attribute__((visibility("default"))) void lumivox_technique_register(               \
+      ::lumivox::TechniqueRegistry* target) {                                                      \
+    lumivoxRegisterTechnique(*target);                                                             \
+  }                                                                                                \
   static void lumivoxRegisterTechnique(::lumivox::TechniqueRegistry&(registry))

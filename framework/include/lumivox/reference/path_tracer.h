@@ -32,9 +32,11 @@ struct ReferenceOptions {
   bool useCache = true;
 };
 
-/// Layers (RGB but for the occlusion): direct, one_bounce_diffuse, one_bounce_glossy, indirect_diffuse, indirect_glossy, full (= direct +
-/// both indirect), ambient_occlusion (one channel Y: unoccluded fraction, cosine-weighted); and for each of them "<layer>.variance": the
-/// variance of the pixel's mean. Attributes hold the provenance: scene, hash, samples, bounces, seed, time, camera, version.
+/// Layers (RGB but for the occlusion): direct, one_bounce_diffuse, one_bounce_glossy, one_bounce (= direct + both), indirect_diffuse,
+/// indirect_glossy, full (= direct + both indirect), ambient_occlusion (one channel Y: unoccluded fraction, cosine-weighted); and for each
+/// of them "<layer>.variance": the variance of the pixel's mean. One path gives all of them, so sums have their own, right variance.
+/// Attributes hold the provenance: scene, hash, samples, bounces, roulette, seed, time, camera, resolution, occlusion_distance,
+/// tracer_version. At least two samples per pixel, or Error.
 LayeredPicture renderReference(const Scene& scene, const ReferenceOptions& options);
 
 /// The same through the cache (base/file.h cacheDirectory), keyed by everything the picture depends on. A damaged entry is made anew.

@@ -8,6 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lumivox/base/hash.h"
@@ -66,6 +67,9 @@ struct Object {
   glm::dmat4 placement{1.0};                       ///< object to world, before motion
   std::optional<RigidMotion> motion;
   std::optional<VertexSequence> sequence;
+  /// World bounds (low, high) of the placed vertices before motion; the loader fills them in, so that no frame computes them again.
+  /// Computed whenever they are needed when absent.
+  std::optional<std::pair<glm::dvec3, glm::dvec3>> placedBounds;
   bool animated() const { return motion.has_value() || sequence.has_value(); }
 };
 

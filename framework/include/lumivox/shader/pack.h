@@ -67,7 +67,7 @@ struct PackedConstant {
 struct PackedProgram {
   std::string name;                 ///< stem of the entry files
   std::vector<Axis> axes;
-  std::vector<PackedBinding> bindings;
+  std::vector<PackedBinding> bindings;  ///< an image whose format follows an axis is there once per format
   std::vector<PackedConstant> constants;
   std::vector<PackedVariant> variants;
   std::size_t possible = 0;         ///< size of the full product of the axes, before constraints

@@ -1,0 +1,88 @@
+#include "scene/assets.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+
+#include "lumivox/base/error.h"
+
+namespace lumivox {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isFile(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+bool isDirectory(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path.empty() ? fs::path(".") : path, error);
+}
+
+/// The directory that holds `scenes/`, above the scene text.
+std::optional<fs::path> projectOf(const fs::path& sceneFile) {
+  std::error_code error;
+  for (fs::path directory = fs::absolute(sceneFile, error).parent_path(); directory.has_relative_path();
+       directory = directory.parent_path()) {
+    if (directory.filename() == "scenes") return directory.parent_path();
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+AssetSearch::AssetSearch(const fs::path& sceneFile, const SceneLoadOptions& options) {
+  const auto add = [&](const fs::path& directory) {
+    const fs::path normal = directory.lexically_normal();
+    if (std::find(directories_.begin(), directories_.end(), normal) == directories_.end())
+      directories_.push_back(normal);
+  };
+  add(sceneFile.parent_path());
+  for (const fs::path& directory : options.assetPath) add(directory);
+  if (const char* variable = std::getenv("LUMIVOX_ASSETS")) {
+    std::istringstream stream(variable);
+    for (std::string directory; std::getline(stream, directory, ':');) {
+      if (!directory.empty()) add(directory);
+    }
+  }
+  if (const auto project = projectOf(sceneFile)) add(*project / "../shared/models");
+  std::error_code error;
+  add(fs::current_path(error) / "../shared/models");
+}
+
+std::optional<fs::path> AssetSearch::find(const std::string& name) const {
+  for (const fs::path& directory : directories_) {
+    const fs::path candidate = (directory / name).lexically_normal();
+    if (isFile(candidate)) return candidate;
+  }
+  return std::nullopt;
+}
+
+std::string AssetSearch::soughtAt(const std::string& name) const {
+  std::string text;
+  for (const fs::path& directory : directories_) {
+    text += (text.empty() ? "" : ", ") + (directory / name).lexically_normal().string();
+  }
+  return text;
+}
+
+bool AssetSearch::isLocal(const std::string& name) const {
+  return isDirectory((directories_.front() / name).parent_path());
+}
+
+std::string AssetSearch::nearestLocal(const std::string& name) const {
+  const fs::path relative(name);
+  std::vector<std::string> names;
+  std::error_code error;
+  const fs::path folder = directories_.front() / relative.parent_path();
+  for (const auto& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, error)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  const std::string nearest = nearestWord(relative.filename().string(), names);
+  return nearest.empty() ? nearest : (relative.parent_path() / nearest).string();
+}
+
+}  // namespace lumivox

@@ -1,0 +1,385 @@
+#include "scene/description.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "lumivox/dsl/schema.h"
+#include "lumivox/scene/text.h"
+
+namespace lumivox {
+namespace {
+
+using dsl::Block;
+using dsl::BlockSpecification;
+using dsl::CheckedBlock;
+using dsl::Property;
+
+const BlockSpecification& specificationOf(const BlockSpecification& outer, const std::string& word) {
+  return *std::find_if(outer.blocks.begin(), outer.blocks.end(),
+                       [&](const BlockSpecification& one) { return one.word == word; });
+}
+
+std::string nameList(const std::vector<std::string>& names) {
+  return names.empty() ? "one that is defined; there is none"
+                       : fmt::format("one of {}", fmt::join(names, ", "));
+}
+
+/// Reads a text that the grammar accepts and checks what no table can say.
+class Reader {
+ public:
+  Reader(const dsl::Document& document, std::vector<Diagnostic>& findings)
+      : document_(document), findings_(findings), grammar_(sceneSpecifications().front()) {}
+
+  SceneDescription run(const Block& scene) {
+    result_.name = CheckedBlock(scene, grammar_).name();
+    collectNames(scene);
+    for (const dsl::Item& item : scene.items) {
+      if (!item.block || !known(grammar_, *item.block)) continue;
+      checkReferences(*item.block);
+      // What the grammar has already refused is not judged further.
+      std::vector<Diagnostic> refusals;
+      dsl::check(document_, *item.block, specificationOf(grammar_, item.block->word), refusals);
+      if (refusals.empty()) read(*item.block);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  static bool known(const BlockSpecification& outer, const Block& block) {
+    return std::any_of(outer.blocks.begin(), outer.blocks.end(),
+                       [&](const BlockSpecification& one) { return one.word == block.word; });
+  }
+
+  CheckedBlock checked(const Block& block) const { return {block, specificationOf(grammar_, block.word)}; }
+
+  void report(const SourcePlace& place, int length, std::string what, std::string expected,
+              std::string suggestion = {}) {
+    findings_.push_back(
+        document_.finding(place, length, std::move(what), std::move(expected), std::move(suggestion)));
+  }
+  void report(const Property& property, std::string what, std::string expected) {
+    report(property.place, static_cast<int>(property.word.size()), std::move(what), std::move(expected));
+  }
+
+  void collectNames(const Block& scene) {
+    for (const dsl::Item& item : scene.items) {
+      if (!item.block) continue;
+      if (item.block->word != "material" && item.block->word != "mesh") continue;
+      const std::string name = checked(*item.block).name();
+      if (!name.empty()) (item.block->word == "material" ? materialNames_ : meshNames_).push_back(name);
+    }
+  }
+
+  /// Names of meshes and materials that other blocks use. Judged even where the block has other errors.
+  void checkReferences(const Block& block) {
+    const auto nameIn = [](const Property* property) -> std::optional<PlacedText> {
+      if (property == nullptr || property->values.empty()) return std::nullopt;
+      const dsl::Value& value = property->values.front();
+      if (value.kind != dsl::ValueKind::word && value.kind != dsl::ValueKind::text) return std::nullopt;
+      return PlacedText{value.text, value.place, value.length};
+    };
+    const CheckedBlock outer = checked(block);
+    if (block.word == "mesh") {
+      if (const auto name = nameIn(outer.find("material"))) checkMaterialName(*name);
+      for (const Block* use : outer.blocks("use")) {
+        const CheckedBlock inner(*use, specificationOf(specificationOf(grammar_, "mesh"), "use"));
+        if (const auto name = nameIn(inner.find("material"))) checkMaterialName(*name);
+      }
+    } else if (block.word == "light") {
+      if (const auto path = nameIn(outer.find("mesh"))) checkMeshName(*path);
+    } else if (block.word == "animate" && !block.header.empty()) {
+      const dsl::Value& target = block.header.front();
+      checkMeshName({target.text, target.place, target.length});
+    }
+  }
+
+  void read(const Block& block) {
+    const CheckedBlock checkedBlock = checked(block);
+    if (block.word == "camera") readCamera(checkedBlock);
+    if (block.word == "material") readMaterial(checkedBlock);
+    if (block.word == "mesh") readMesh(checkedBlock);
+    if (block.word == "light") readLight(checkedBlock);
+    if (block.word == "environment") result_.environment = vector(checkedBlock, "radiance", glm::dvec3(0));
+    if (block.word == "medium") readMedium(checkedBlock);
+    if (block.word == "animate") readAnimation(checkedBlock);
+  }
+
+  static glm::dvec3 vector(const CheckedBlock& block, const char* word, glm::dvec3 fallback) {
+    const std::vector<double> values = block.numbers(word, {fallback.x, fallback.y, fallback.z});
+    return {values.at(0), values.at(1), values.at(2)};
+  }
+
+  static PlacedText placed(const Property& property) {
+    const dsl::Value& value = property.values.front();
+    return {value.text, value.place, value.length};
+  }
+  static std::optional<PlacedText> placed(const CheckedBlock& block, const char* word) {
+    const Property* property = block.find(word);
+    return property == nullptr ? std::nullopt : std::optional(placed(*property));
+  }
+
+  /// Unit length; a zero vector is a finding.
+  glm::dvec3 direction(const CheckedBlock& block, const char* word, glm::dvec3 fallback) {
+    const glm::dvec3 value = vector(block, word, fallback);
+    const double length = glm::length(value);
+    if (length > 0) return value / length;
+    if (const Property* property = block.find(word)) {
+      report(*property, fmt::format("'{}' has length zero", word), "a direction");
+    }
+    return {0, 1, 0};
+  }
+
+  void readCamera(const CheckedBlock& block) {
+    Camera camera;
+    camera.name = block.name();
+    camera.eye = vector(block, "eye", camera.eye);
+    camera.target = vector(block, "target", camera.target);
+    camera.up = direction(block, "up", camera.up);
+    constexpr double kDefaultFov = 0.6981317007977318;  // 40 deg
+    camera.fov = block.number("fov", kDefaultFov);
+    const std::vector<double> resolution = block.numbers("resolution", {256, 256});
+    camera.width = static_cast<int>(resolution.at(0));
+    camera.height = static_cast<int>(resolution.at(1));
+    const BlockSpecification& keyGrammar = specificationOf(specificationOf(grammar_, "camera"), "key");
+    for (const Block* keyBlock : block.blocks("key")) {
+      const CheckedBlock key(*keyBlock, keyGrammar);
+      const CameraKey next{key.number("time", 0), vector(key, "eye", camera.eye),
+                           vector(key, "target", camera.target)};
+      if (!camera.keys.empty() && next.time <= camera.keys.back().time) {
+        report(*key.find("time"), "keys run backwards in time",
+               fmt::format("a time after {} s", camera.keys.back().time));
+      }
+      checkView(*keyBlock, next.eye, next.target, camera.up);
+      camera.keys.push_back(next);
+    }
+    if (camera.keys.empty()) {
+      for (const char* word : {"eye", "target"}) {
+        if (block.has(word)) continue;
+        report(block.block().place, static_cast<int>(block.block().word.size()),
+               fmt::format("block '{}' lacks the property '{}'", block.block().title(), word),
+               fmt::format("{} X Y Z, or key blocks", word));
+      }
+      if (block.has("eye") && block.has("target"))
+        checkView(block.block(), camera.eye, camera.target, camera.up);
+    } else {
+      camera.eye = camera.keys.front().eye;
+      camera.target = camera.keys.front().target;
+    }
+    result_.cameras.push_back(std::move(camera));
+  }
+
+  void checkView(const Block& block, const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up) {
+    const glm::dvec3 forward = target - eye;
+    const int length = static_cast<int>(block.word.size());
+    if (glm::length(forward) == 0) {
+      report(block.place, length, "eye and target are the same point", "two points");
+    } else if (glm::length(glm::cross(glm::normalize(forward), up)) <
+               1e-6) {  // half a thousandth of a pixel of roll
+      report(block.place, length, "the camera looks along 'up'", "another up direction, such as 0 0 1");
+    }
+  }
+
+  void readMaterial(const CheckedBlock& block) {
+    MaterialText text;
+    text.material.name = block.name();
+    text.material.diffuse = vector(block, "diffuse", glm::dvec3(0));
+    text.material.specular = vector(block, "specular", glm::dvec3(0));
+    text.material.emission = vector(block, "emission", glm::dvec3(0));
+    text.material.exponent = static_cast<float>(block.number("exponent", 1.0));
+    text.texture = placed(block, "texture");
+    text.mask = placed(block, "mask");
+    const glm::vec3 albedo = text.material.diffuse + text.material.specular;
+    if (std::max({albedo.x, albedo.y, albedo.z}) > 1.0f + 1e-6f) {
+      report(block.block().place, static_cast<int>(block.block().word.size()),
+             fmt::format("material '{}' reflects more light than it receives", block.name()),
+             "diffuse + specular of at most 1");
+    }
+    result_.materials.push_back(std::move(text));
+  }
+
+  void checkMaterialName(const PlacedText& name) {
+    if (std::find(materialNames_.begin(), materialNames_.end(), name.text) != materialNames_.end()) return;
+    report(name.place, name.length, fmt::format("unknown material '{}'", name.text), nameList(materialNames_),
+           nearestWord(name.text, materialNames_));
+  }
+
+  void checkMeshName(const PlacedText& path) {
+    const std::string name = meshOf(path.text);
+    if (std::find(meshNames_.begin(), meshNames_.end(), name) != meshNames_.end()) return;
+    report(path.place, path.length, fmt::format("unknown mesh '{}'", name), nameList(meshNames_),
+           nearestWord(name, meshNames_));
+  }
+
+  Selection selection(const CheckedBlock& block) {
+    if (!block.has("part") && !block.has("mtl")) {
+      report(block.block().place, static_cast<int>(block.block().word.size()),
+             fmt::format("block '{}' selects nothing", block.block().word), "part NAME, mtl NAME or both");
+    }
+    return {placed(block, "part"), placed(block, "mtl"), block.block().place};
+  }
+
+  void readMesh(const CheckedBlock& block) {
+    MeshText mesh;
+    mesh.name = block.name();
+    if (mesh.name.find('/') != std::string::npos) {
+      report(block.block().header.front().place, block.block().header.front().length,
+             fmt::format("the mesh name '{}' holds a '/'", mesh.name),
+             "a name without '/', which parts mesh and object");
+    }
+    if (auto file = placed(block, "file")) mesh.file = *file;
+    if (const auto material = placed(block, "material")) mesh.material = material->text;
+    const BlockSpecification& grammar = specificationOf(grammar_, "mesh");
+    for (const Block* inner : block.blocks("use")) {
+      const CheckedBlock use(*inner, specificationOf(grammar, "use"));
+      mesh.uses.emplace_back(selection(use), placed(use, "material")->text);
+    }
+    for (const Block* inner : block.blocks("without")) {
+      mesh.without.push_back(selection(CheckedBlock(*inner, specificationOf(grammar, "without"))));
+    }
+    if (block.has("crease")) mesh.crease = block.number("crease", 0);
+    mesh.placement = placement(block);
+    readSequence(block, mesh);
+    result_.meshes.push_back(std::move(mesh));
+  }
+
+  glm::dmat4 placement(const CheckedBlock& block) {
+    glm::dmat4 result = glm::translate(glm::dmat4(1.0), vector(block, "translate", glm::dvec3(0)));
+    if (block.has("rotate")) {
+      const std::vector<double> values = block.numbers("rotate", {});
+      result = glm::rotate(result, values.at(3), direction(block, "rotate", {0, 1, 0}));
+    }
+    return glm::scale(result, vector(block, "scale", glm::dvec3(1)));
+  }
+
+  void readSequence(const CheckedBlock& block, MeshText& mesh) {
+    const bool hasPattern = mesh.file.text.find('#') != std::string::npos;
+    if (!block.has("sequence")) {
+      if (hasPattern) {
+        report(mesh.file.place, mesh.file.length, "the file name holds '#' but the mesh has no sequence",
+               "sequence FIRST..LAST");
+      }
+      for (const char* word : {"rate", "loop"}) {
+        if (const Property* property = block.find(word)) {
+          report(*property, fmt::format("'{}' without a sequence", word), "sequence FIRST..LAST");
+        }
+      }
+      return;
+    }
+    if (!hasPattern) {
+      report(mesh.file.place, mesh.file.length,
+             "the file name of a sequence has no place for the frame number",
+             "a name such as \"horse_##.obj\"");
+    }
+    const std::vector<double> range = block.numbers("sequence", {});
+    mesh.sequence = MeshText::Sequence{static_cast<int>(range.at(0)), static_cast<int>(range.at(1)),
+                                       block.number("rate", 24.0), block.flag("loop", true)};
+  }
+
+  void readLight(const CheckedBlock& block) {
+    if (block.kind() == "area") {
+      const PlacedText mesh = *placed(block, "mesh");
+      result_.areaLights.push_back({block.name(), mesh, vector(block, "radiance", glm::dvec3(0))});
+      return;
+    }
+    Light light;
+    light.name = block.name();
+    if (block.kind() == "directional") {
+      light.kind = LightKind::directional;
+      light.power = vector(block, "irradiance", glm::dvec3(0));
+    } else {
+      light.kind = block.kind() == "point" ? LightKind::point : LightKind::spot;
+      light.position = vector(block, "position", glm::dvec3(0));
+      light.power = vector(block, "intensity", glm::dvec3(0));
+    }
+    if (light.kind != LightKind::point) light.direction = direction(block, "direction", light.direction);
+    if (light.kind == LightKind::spot) {
+      light.innerAngle = static_cast<float>(block.number("inner", 0));
+      light.outerAngle = static_cast<float>(block.number("outer", 0));
+      if (light.innerAngle >= light.outerAngle) {
+        report(*block.find("inner"), "the inner angle of the spot is not below the outer one",
+               "inner < outer");
+      }
+    }
+    result_.lights.push_back(std::move(light));
+  }
+
+  void readMedium(const CheckedBlock& block) {
+    Medium medium;
+    medium.name = block.name();
+    medium.extinction = vector(block, "extinction", glm::dvec3(0));
+    medium.albedo = vector(block, "albedo", glm::dvec3(0));
+    medium.anisotropy = static_cast<float>(block.number("anisotropy", 0));
+    medium.particles = static_cast<int>(block.number("particles", 0));
+    medium.source = vector(block, "source", glm::dvec3(0));
+    medium.radius = block.number("radius", 0);
+    medium.rise = block.number("rise", 0);
+    if (medium.particles > 0 && medium.radius <= 0) {
+      report(block.block().place, static_cast<int>(block.block().word.size()), "particles without a radius",
+             "radius above 0");
+    }
+    result_.media.push_back(std::move(medium));
+  }
+
+  void readAnimation(const CheckedBlock& block) {
+    AnimationText animation;
+    const dsl::Value& target = block.block().header.front();
+    animation.target = {target.text, target.place, target.length};
+    if (!block.has("rotate") && !block.has("translate")) {
+      report(block.block().place, static_cast<int>(block.block().word.size()), "the animation moves nothing",
+             "rotate AXIS SPEED, translate VELOCITY or both");
+    }
+    if (block.has("rotate")) {
+      animation.motion.axis = direction(block, "rotate", {0, 1, 0});
+      animation.motion.angularSpeed = block.numbers("rotate", {}).at(3);
+    }
+    animation.motion.velocity = vector(block, "translate", glm::dvec3(0));
+    animation.hasPivot = block.has("about");
+    animation.motion.pivot = vector(block, "about", glm::dvec3(0));
+    result_.animations.push_back(std::move(animation));
+  }
+
+  const dsl::Document& document_;
+  std::vector<Diagnostic>& findings_;
+  const BlockSpecification& grammar_;
+  SceneDescription result_;
+  std::vector<std::string> materialNames_, meshNames_;
+};
+
+}  // namespace
+
+SceneDescription describeScene(const dsl::Document& document, std::vector<Diagnostic>& findings) {
+  dsl::check(document, sceneSpecifications(), findings);
+  for (const dsl::Item& item : document.items) {
+    if (item.block && item.block->word == "scene") return Reader(document, findings).run(*item.block);
+  }
+  return {};
+}
+
+bool matches(const std::string& pattern, const std::string& name) {
+  // Greedy with one point of return: linear for the patterns that people write.
+  std::size_t p = 0, n = 0, starAt = std::string::npos, resume = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      starAt = p++;
+      resume = n;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
+      ++p;
+      ++n;
+    } else if (starAt != std::string::npos) {
+      p = starAt + 1;
+      n = ++resume;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+std::string meshOf(const std::string& path) {
+  return path.substr(0, path.find('/'));
+}
+
+}  // namespace lumivox

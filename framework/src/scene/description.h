@@ -1,0 +1,82 @@
+// What a scene text says, before any model is read. Places stay with it, so that what only a model can tell
+// is reported at its line.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lumivox/base/error.h"
+#include "lumivox/dsl/document.h"
+#include "lumivox/scene/scene.h"
+
+namespace lumivox {
+
+/// A word in the text with its place.
+struct PlacedText {
+  std::string text;
+  SourcePlace place;
+  int length = 1;
+};
+
+/// Part or MTL material of a mesh, as a pattern; without both: everything.
+struct Selection {
+  std::optional<PlacedText> part, mtl;
+  SourcePlace place;
+};
+
+struct MeshText {
+  std::string name;
+  PlacedText file;
+  std::optional<std::string> material;
+  std::vector<std::pair<Selection, std::string>> uses;  ///< what gets which material
+  std::vector<Selection> without;
+  std::optional<double> crease;  ///< rad
+  glm::dmat4 placement{1.0};
+  struct Sequence {
+    int first = 0, last = 0;
+    double framesPerSecond = 24.0;
+    bool loop = true;
+  };
+  std::optional<Sequence> sequence;
+};
+
+struct MaterialText {
+  Material material;
+  std::optional<PlacedText> texture, mask;
+};
+
+struct AreaLightText {
+  std::string name;
+  PlacedText mesh;
+  glm::vec3 radiance{0.0f};
+};
+
+struct AnimationText {
+  PlacedText target;
+  RigidMotion motion;
+  bool hasPivot = false;
+};
+
+struct SceneDescription {
+  std::string name;
+  std::vector<Camera> cameras;
+  std::vector<MaterialText> materials;
+  std::vector<MeshText> meshes;
+  std::vector<AreaLightText> areaLights;
+  std::vector<Light> lights;
+  glm::vec3 environment{0.0f};
+  std::vector<Medium> media;
+  std::vector<AnimationText> animations;
+};
+
+/// Checks a parsed text against the grammar and its own references; appends to `findings`. The result is
+/// whole only when there are none.
+SceneDescription describeScene(const dsl::Document& document, std::vector<Diagnostic>& findings);
+
+/// Whether `name` matches a pattern, in which * stands for any letters and ? for one.
+bool matches(const std::string& pattern, const std::string& name);
+/// The mesh in "mesh" or "mesh/object".
+std::string meshOf(const std::string& path);
+
+}  // namespace lumivox

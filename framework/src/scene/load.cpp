@@ -1,0 +1,419 @@
+// From a description to a scene: models are read, materials and lights given to their parts, motion to their
+// objects.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <memory>
+#include <tuple>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/log.h"
+#include "lumivox/scene/scene.h"
+#include "scene/assets.h"
+#include "scene/description.h"
+#include "scene/obj_model.h"
+#include "scene/texture.h"
+
+namespace lumivox {
+namespace {
+
+namespace fs = std::filesystem;
+
+dsl::Document parsedScene(const fs::path& file, std::vector<Diagnostic>& findings,
+                          SceneDescription& description) {
+  dsl::Document document = dsl::parseFile(file);
+  findings = document.findings;
+  description = describeScene(document, findings);
+  return document;
+}
+
+/// `name_##.obj` for frame 7 is `name_07.obj`.
+std::string frameName(const std::string& pattern, int frame) {
+  const std::size_t first = pattern.find('#');
+  if (first == std::string::npos) return pattern;
+  const std::size_t last = pattern.find_first_not_of('#', first);
+  const std::size_t digits = (last == std::string::npos ? pattern.size() : last) - first;
+  return pattern.substr(0, first) + fmt::format("{:0{}}", frame, digits) +
+         (last == std::string::npos ? "" : pattern.substr(last));
+}
+
+std::vector<std::string> fileNames(const MeshText& mesh) {
+  if (!mesh.sequence) return {mesh.file.text};
+  std::vector<std::string> names;
+  for (int frame = mesh.sequence->first; frame <= mesh.sequence->last; ++frame)
+    names.push_back(frameName(mesh.file.text, frame));
+  return names;
+}
+
+/// Files that should stand beside the text and do not.
+void findMissingFiles(const dsl::Document& document, const SceneDescription& description,
+                      const AssetSearch& assets, std::vector<Diagnostic>& findings) {
+  const auto require = [&](const PlacedText& place, const std::string& name, const char* what) {
+    if (!assets.isLocal(name) || assets.find(name)) return;
+    findings.push_back(document.finding(place.place, place.length,
+                                        fmt::format("{} file '{}' does not exist", what, name),
+                                        "it at one of " + assets.soughtAt(name), assets.nearestLocal(name)));
+  };
+  for (const MeshText& mesh : description.meshes) require(mesh.file, fileNames(mesh).front(), "model");
+  for (const MaterialText& material : description.materials) {
+    if (material.texture) require(*material.texture, material.texture->text, "picture");
+    if (material.mask) require(*material.mask, material.mask->text, "picture");
+  }
+}
+
+void throwIfAny(std::vector<Diagnostic> findings) {
+  if (!findings.empty()) throw DiagnosticsError(std::move(findings));
+}
+
+class Loader {
+ public:
+  Loader(const dsl::Document& document, const SceneDescription& description, const AssetSearch& assets,
+         const SceneLoadOptions& options)
+      : document_(document), description_(description), assets_(assets), options_(options) {}
+
+  Scene run() {
+    hasher_.add(document_.source);
+    for (const fs::path& file : document_.includedFiles)
+      hasher_.add(document_.includedSources.at(file.string()));
+    scene_.name = description_.name;
+    scene_.file = document_.file;
+    scene_.cameras = description_.cameras;
+    scene_.lights = description_.lights;
+    scene_.environment = description_.environment;
+    scene_.media = description_.media;
+    for (const MeshText& mesh : description_.meshes) addMesh(mesh);
+    for (const AreaLightText& light : description_.areaLights) shine(light);
+    finishMaterials();
+    for (const AnimationText& animation : description_.animations) animate(animation);
+    throwIfAny(std::move(findings_));
+    scene_.hash = hasher_.finish();
+    return std::move(scene_);
+  }
+
+ private:
+  /// A material in use: of the text or of a model's MTL file; emission may come from an area light.
+  struct Use {
+    const MaterialText* text = nullptr;
+    const ModelMaterial* model = nullptr;
+    std::string name;
+    std::optional<glm::vec3> emission;
+    auto key() const {
+      return std::tuple(text, model, emission.has_value(), emission.value_or(glm::vec3(0)).x,
+                        emission.value_or(glm::vec3(0)).y, emission.value_or(glm::vec3(0)).z);
+    }
+  };
+
+  void report(const PlacedText& place, std::string what, const std::vector<std::string>& known) {
+    constexpr std::size_t kShown = 24;
+    std::vector<std::string> shown(
+        known.begin(), known.begin() + static_cast<std::ptrdiff_t>(std::min(known.size(), kShown)));
+    findings_.push_back(document_.finding(place.place, place.length, std::move(what),
+                                          known.empty() ? "one that the model has; it has none"
+                                                        : fmt::format("one of {}{}", fmt::join(shown, ", "),
+                                                                      known.size() > kShown ? ", ..." : ""),
+                                          nearestWord(place.text, known)));
+  }
+
+  fs::path found(const std::string& name, const std::string& what) const {
+    if (const auto path = assets_.find(name)) return *path;
+    throw AbsentError(fmt::format("{}: {} '{}' was not found; sought at {}", document_.file.string(), what,
+                                  name, assets_.soughtAt(name)));
+  }
+
+  int useNumber(Use use) {
+    for (std::size_t i = 0; i < uses_.size(); ++i) {
+      if (uses_[i].key() == use.key()) return static_cast<int>(i);
+    }
+    uses_.push_back(std::move(use));
+    return static_cast<int>(uses_.size() - 1);
+  }
+
+  const MaterialText* textMaterial(const std::string& name) const {
+    const auto& all = description_.materials;
+    return &*std::find_if(all.begin(), all.end(),
+                          [&](const MaterialText& one) { return one.material.name == name; });
+  }
+
+  void addMesh(const MeshText& mesh) {
+    std::vector<fs::path> files;
+    for (const std::string& name : fileNames(mesh))
+      files.push_back(found(name, "the model of mesh '" + mesh.name + "'"));
+    ModelOptions modelOptions;
+    modelOptions.crease = mesh.crease;
+    modelOptions.strict = options_.strict;
+    modelOptions.needsMaterials = !mesh.material.has_value();
+    models_.push_back(std::make_unique<Model>(loadModel(files, modelOptions, hasher_)));
+    const Model& model = *models_.back();
+    requireSelections(mesh, model);
+
+    const std::size_t firstVertex = scene_.positions.size();
+    constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
+    if (firstVertex + model.positions.size() > kMost ||
+        scene_.indices.size() + model.indices.size() > kMost) {
+      throw Error(fmt::format("{}: more than {} vertices or indices; expected fewer", document_.file.string(),
+                              kMost));
+    }
+    scene_.positions.insert(scene_.positions.end(), model.positions.begin(), model.positions.end());
+    scene_.normals.insert(scene_.normals.end(), model.normals.begin(), model.normals.end());
+    scene_.texcoords.insert(scene_.texcoords.end(), model.texcoords.begin(), model.texcoords.end());
+    for (const ModelObject& part : model.objects)
+      addObject(mesh, model, part, static_cast<std::uint32_t>(firstVertex));
+  }
+
+  void addObject(const MeshText& mesh, const Model& model, const ModelObject& part,
+                 std::uint32_t firstVertex) {
+    Object object;
+    object.name = objectName(mesh, model, part);
+    object.firstVertex = firstVertex + part.firstVertex;
+    object.vertexCount = part.vertexCount;
+    object.placement = mesh.placement;
+    for (const Part& run : part.parts) {
+      const ModelMaterial& material = model.materials[static_cast<std::size_t>(run.material)];
+      if (leftOut(mesh, part.name, material.values.name)) continue;
+      const int use = useOf(mesh, part.name, material);
+      if (uses_[static_cast<std::size_t>(use)].text == nullptr && material.dissolve < 0.5f) {
+        logInformation("{}: {} triangles of material '{}' are left out: its coverage d is {}", mesh.file.text,
+                       run.indexCount / 3, material.values.name, material.dissolve);
+        continue;
+      }
+      object.parts.push_back({use, static_cast<std::uint32_t>(scene_.indices.size()), run.indexCount});
+      for (std::uint32_t i = 0; i < run.indexCount; ++i) {
+        scene_.indices.push_back(model.indices[run.firstIndex + i] + firstVertex);
+      }
+    }
+    if (object.parts.empty()) return;
+    object.placedBounds = placedBounds(object);
+    if (mesh.sequence) object.sequence = sequenceOf(*mesh.sequence, model, part);
+    scene_.objects.push_back(std::move(object));
+  }
+
+  static std::string objectName(const MeshText& mesh, const Model& model, const ModelObject& part) {
+    if (!part.name.empty()) return mesh.name + '/' + part.name;
+    // "default" is the group of OBJ files for what stands before the first name.
+    return model.objects.size() == 1 ? mesh.name : mesh.name + "/default";
+  }
+
+  static VertexSequence sequenceOf(const MeshText::Sequence& text, const Model& model,
+                                   const ModelObject& part) {
+    VertexSequence sequence;
+    sequence.framesPerSecond = text.framesPerSecond;
+    sequence.loop = text.loop;
+    const auto cut = [&](const std::vector<glm::vec3>& all) {
+      const auto first = all.begin() + part.firstVertex;
+      return std::vector<glm::vec3>(first, first + part.vertexCount);
+    };
+    if (model.framePositions.empty()) {  // a sequence of one frame
+      sequence.positions.push_back(cut(model.positions));
+      sequence.normals.push_back(cut(model.normals));
+    }
+    for (const auto& frame : model.framePositions) sequence.positions.push_back(cut(frame));
+    for (const auto& frame : model.frameNormals) sequence.normals.push_back(cut(frame));
+    return sequence;
+  }
+
+  static bool selects(const Selection& selection, const std::string& part, const std::string& mtl) {
+    return (!selection.part || matches(selection.part->text, part)) &&
+           (!selection.mtl || matches(selection.mtl->text, mtl));
+  }
+
+  static bool leftOut(const MeshText& mesh, const std::string& part, const std::string& mtl) {
+    return std::any_of(mesh.without.begin(), mesh.without.end(),
+                       [&](const Selection& one) { return selects(one, part, mtl); });
+  }
+
+  int useOf(const MeshText& mesh, const std::string& part, const ModelMaterial& material) {
+    const std::string* name = mesh.material ? &*mesh.material : nullptr;
+    for (const auto& [selection, wanted] : mesh.uses) {
+      if (selects(selection, part, material.values.name)) name = &wanted;
+    }
+    if (name != nullptr) return useNumber({textMaterial(*name), nullptr, *name, std::nullopt});
+    return useNumber({nullptr, &material, mesh.name + '/' + material.values.name, std::nullopt});
+  }
+
+  /// Selections that select nothing are slips.
+  void requireSelections(const MeshText& mesh, const Model& model) {
+    std::vector<std::string> parts, mtls;
+    std::vector<std::pair<std::string, std::string>> pairs;
+    for (const ModelObject& object : model.objects) {
+      parts.push_back(object.name);
+      for (const Part& part : object.parts) {
+        const std::string& mtl = model.materials[static_cast<std::size_t>(part.material)].values.name;
+        if (std::find(mtls.begin(), mtls.end(), mtl) == mtls.end()) mtls.push_back(mtl);
+        pairs.emplace_back(object.name, mtl);
+      }
+    }
+    const auto requireOne = [&](const Selection& selection) {
+      const auto missing = [&](const std::optional<PlacedText>& pattern,
+                               const std::vector<std::string>& names, const char* what) {
+        if (!pattern) return false;
+        if (std::any_of(names.begin(), names.end(),
+                        [&](const std::string& name) { return matches(pattern->text, name); }))
+          return false;
+        report(*pattern, fmt::format("mesh '{}' has no {} '{}'", mesh.name, what, pattern->text), names);
+        return true;
+      };
+      const bool noPart = missing(selection.part, parts, "part"),
+                 noMtl = missing(selection.mtl, mtls, "MTL material");
+      if (noPart || noMtl || !selection.part || !selection.mtl) return;
+      if (std::any_of(pairs.begin(), pairs.end(),
+                      [&](const auto& pair) { return selects(selection, pair.first, pair.second); }))
+        return;
+      report(*selection.mtl,
+             fmt::format("part '{}' of mesh '{}' has no MTL material '{}'", selection.part->text, mesh.name,
+                         selection.mtl->text),
+             mtls);
+    };
+    for (const auto& use : mesh.uses) requireOne(use.first);
+    for (const Selection& without : mesh.without) requireOne(without);
+  }
+
+  /// The objects that a path names: a whole mesh, or its objects by name or pattern.
+  std::vector<Object*> targets(const PlacedText& path) {
+    std::vector<Object*> result;
+    std::vector<std::string> known;
+    const std::string mesh = meshOf(path.text);
+    const bool whole = mesh == path.text;
+    for (Object& object : scene_.objects) {
+      if (meshOf(object.name) != mesh) continue;
+      if (object.name != mesh) known.push_back(object.name);
+      if (whole || matches(path.text, object.name)) result.push_back(&object);
+    }
+    if (result.empty()) report(path, fmt::format("mesh '{}' has no object '{}'", mesh, path.text), known);
+    return result;
+  }
+
+  void shine(const AreaLightText& light) {
+    for (Object* object : targets(light.mesh)) {
+      for (Part& part : object->parts) {
+        Use use = uses_[static_cast<std::size_t>(part.material)];
+        use.emission = light.radiance;
+        if (!light.name.empty()) use.name += '@' + light.name;
+        part.material = useNumber(std::move(use));
+      }
+    }
+  }
+
+  /// Only what some part uses becomes a material of the scene, so that traits tell what is there.
+  void finishMaterials() {
+    std::map<int, int> numbers;
+    for (Object& object : scene_.objects) {
+      for (Part& part : object.parts) {
+        const auto [entry, isNew] = numbers.emplace(part.material, static_cast<int>(scene_.materials.size()));
+        if (isNew) scene_.materials.push_back(materialOf(uses_[static_cast<std::size_t>(part.material)]));
+        part.material = entry->second;
+      }
+    }
+  }
+
+  Material materialOf(const Use& use) {
+    Material material = use.text != nullptr ? use.text->material : use.model->values;
+    material.name = use.name;
+    if (use.emission) material.emission = *use.emission;
+    if (use.text != nullptr) {
+      if (use.text->texture) {
+        const std::string& name = use.text->texture->text;
+        material.diffuseTexture =
+            texture(found(name, "the picture of material '" + use.name + "'"), name, false);
+      }
+      if (use.text->mask) {
+        const std::string& name = use.text->mask->text;
+        material.maskTexture = texture(found(name, "the mask of material '" + use.name + "'"), name, true);
+      }
+    } else {
+      const ModelMaterial& model = *use.model;
+      if (!model.diffuseFile.empty())
+        material.diffuseTexture = texture(model.directory / model.diffuseFile, model.diffuseFile, false);
+      if (!model.maskFile.empty()) {
+        material.maskTexture =
+            texture(model.directory / model.maskFile, model.maskFile, true, model.dissolve);
+      }
+    }
+    return material;
+  }
+
+  /// Each picture is read once for each use of it.
+  int texture(const fs::path& file, const std::string& name, bool mask, float coverage = 1.0f) {
+    const auto [entry, isNew] = textures_.emplace(std::tuple(file.lexically_normal(), mask, coverage),
+                                                  static_cast<int>(scene_.textures.size()));
+    if (!isNew) return entry->second;
+    SurfaceTexture picture =
+        mask ? readMaskTexture(file, name, hasher_) : readDiffuseTexture(file, name, hasher_);
+    if (coverage != 1.0f) {
+      for (float& value : picture.values) value *= coverage;
+    }
+    scene_.textures.push_back(std::move(picture));
+    return entry->second;
+  }
+
+  void animate(const AnimationText& animation) {
+    const std::vector<Object*> objects = targets(animation.target);
+    RigidMotion motion = animation.motion;
+    if (!animation.hasPivot) motion.pivot = centreOf(objects);
+    for (Object* object : objects) {
+      if (object->motion) {
+        findings_.push_back(document_.finding(animation.target.place, animation.target.length,
+                                              fmt::format("object '{}' is animated twice", object->name),
+                                              "one motion for each object"));
+        return;
+      }
+    }
+    for (Object* object : objects) object->motion = motion;
+  }
+
+  std::pair<glm::dvec3, glm::dvec3> placedBounds(const Object& object) const {
+    glm::dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
+    for (const Part& part : object.parts) {
+      for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; ++i) {
+        const glm::dvec3 p(object.placement *
+                           glm::dvec4(glm::dvec3(scene_.positions[scene_.indices[i]]), 1.0));
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+      }
+    }
+    return {low, high};
+  }
+
+  static glm::dvec3 centreOf(const std::vector<Object*>& objects) {
+    glm::dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
+    for (const Object* object : objects) {
+      low = glm::min(low, object->placedBounds->first);
+      high = glm::max(high, object->placedBounds->second);
+    }
+    return objects.empty() ? glm::dvec3(0) : 0.5 * (low + high);
+  }
+
+  const dsl::Document& document_;
+  const SceneDescription& description_;
+  const AssetSearch& assets_;
+  const SceneLoadOptions& options_;
+  Scene scene_;
+  Hasher hasher_;
+  std::vector<std::unique_ptr<Model>> models_;  // uses_ points into them
+  std::vector<Use> uses_;
+  std::map<std::tuple<fs::path, bool, float>, int> textures_;
+  std::vector<Diagnostic> findings_;
+};
+
+}  // namespace
+
+void checkScene(const fs::path& file, const SceneLoadOptions& options) {
+  std::vector<Diagnostic> findings;
+  SceneDescription description;
+  const dsl::Document document = parsedScene(file, findings, description);
+  findMissingFiles(document, description, AssetSearch(file, options), findings);
+  throwIfAny(std::move(findings));
+}
+
+Scene loadScene(const fs::path& file, const SceneLoadOptions& options) {
+  std::vector<Diagnostic> findings;
+  SceneDescription description;
+  const dsl::Document document = parsedScene(file, findings, description);
+  const AssetSearch assets(file, options);
+  findMissingFiles(document, description, assets, findings);
+  throwIfAny(std::move(findings));
+  return Loader(document, description, assets, options).run();
+}
+
+}  // namespace lumivox

@@ -1,0 +1,375 @@
+#include "scene/obj_scan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "lumivox/base/error.h"
+
+namespace lumivox {
+namespace {
+
+// tinyobjloader cuts polygons ear by ear, in cubic time.
+constexpr std::size_t kMostCorners = 1024;
+
+bool isBlank(char c) {
+  return c == ' ' || c == '\t';
+}
+bool isLineEnd(char c) {
+  return c == '\n' || c == '\r';
+}
+
+/// Walks over a text line by line; lines that end in a backslash are joined with the next.
+class Lines {
+ public:
+  explicit Lines(std::string& text) : text_(text) {}
+
+  bool next() {
+    if (position_ >= text_.size()) return false;
+    line_ = nextLine_;
+    begin_ = position_;
+    for (;;) {
+      while (position_ < text_.size() && !isLineEnd(text_[position_])) ++position_;
+      const std::size_t end = position_;
+      if (position_ < text_.size()) {
+        position_ +=
+            text_[position_] == '\r' && position_ + 1 < text_.size() && text_[position_ + 1] == '\n' ? 2 : 1;
+        ++nextLine_;
+      }
+      end_ = end;
+      const bool continued = end > begin_ && text_[end - 1] == '\\' && position_ < text_.size();
+      if (!continued) return true;
+      std::fill(text_.begin() + static_cast<std::ptrdiff_t>(end) - 1,
+                text_.begin() + static_cast<std::ptrdiff_t>(position_), ' ');
+    }
+  }
+
+  int line() const { return line_; }
+  std::size_t begin() const { return begin_; }
+  std::string_view view() const { return std::string_view(text_).substr(begin_, end_ - begin_); }
+
+ private:
+  std::string& text_;
+  std::size_t position_ = 0, begin_ = 0, end_ = 0;
+  int line_ = 1, nextLine_ = 1;
+};
+
+/// Takes the next word from the front of a line; empty at its end.
+std::string_view takeWord(std::string_view& rest) {
+  std::size_t start = 0;
+  while (start < rest.size() && isBlank(rest[start])) ++start;
+  std::size_t end = start;
+  while (end < rest.size() && !isBlank(rest[end])) ++end;
+  const std::string_view word = rest.substr(start, end - start);
+  rest.remove_prefix(end);
+  return word;
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && isBlank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && isBlank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+/// Without a comment behind it, and trimmed.
+std::string_view nameIn(std::string_view rest) {
+  for (std::size_t i = 1; i < rest.size(); ++i) {
+    if (rest[i] == '#' && isBlank(rest[i - 1])) return trimmed(rest.substr(0, i));
+  }
+  return trimmed(rest);
+}
+
+std::string shown(std::string_view text) {
+  constexpr std::size_t kShown = 40;
+  std::string result;
+  for (const char c : text.substr(0, kShown)) result += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+  return text.size() > kShown ? result + "..." : result;
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, int line, const std::string& what,
+                         const std::string& expected) {
+  throw Error(fmt::format("{}:{}: {}; expected {}", file.string(), line, what, expected));
+}
+
+enum class Reading { finite, nonFinite, malformed };
+
+Reading readNumber(std::string_view word, double& value) {
+  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+  const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (result.ptr != word.data() + word.size()) return Reading::malformed;
+  if (result.ec == std::errc::result_out_of_range) {
+    // Too small for a double is as good as zero; too large is not finite.
+    return word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos
+               ? Reading::finite
+               : Reading::nonFinite;
+  }
+  if (result.ec != std::errc()) return Reading::malformed;
+  return std::isfinite(value) && std::abs(value) <= std::numeric_limits<float>::max() ? Reading::finite
+                                                                                      : Reading::nonFinite;
+}
+
+void replaceBlanksInside(std::string& text, std::string_view name) {
+  const auto offset = static_cast<std::size_t>(name.data() - text.data());
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    if (isBlank(text[offset + i])) text[offset + i] = '_';
+  }
+}
+
+class ObjScanner {
+ public:
+  ObjScanner(std::string& text, const std::filesystem::path& file) : text_(text), file_(file), lines_(text) {}
+
+  ObjScan run() {
+    while (lines_.next()) readLine();
+    for (const Face& face : waiting_) {
+      if (face.position > positions_ || face.texcoord > texcoords_ || face.normal > normals_) {
+        breakFace(face.begin, face.line);
+        --result_.faces;
+      }
+    }
+    return std::move(result_);
+  }
+
+ private:
+  struct Face {
+    std::size_t begin;
+    int line;
+    long position, texcoord, normal;  // the largest index of each, from 1
+  };
+
+  void comment(std::size_t at) { text_[at] = '#'; }
+
+  void breakFace(std::size_t begin, int line) {
+    result_.brokenFaces.add(line);
+    comment(begin);
+  }
+
+  void readLine() {
+    std::string_view rest = lines_.view();
+    const std::string_view word = takeWord(rest);
+    if (word.empty() || word.front() == '#') return;
+    const auto begin = static_cast<std::size_t>(word.data() - text_.data());
+    if (word == "v") {
+      if (!readNumbers(word, rest, 3))
+        result_.nonFinitePositions.push_back(static_cast<std::uint32_t>(positions_));
+      ++positions_;
+    } else if (word == "vn") {
+      readNumbers(word, rest, 3);
+      ++normals_;
+    } else if (word == "vt") {
+      readNumbers(word, rest, 1);
+      ++texcoords_;
+    } else if (word == "f") {
+      readFace(rest, begin);
+    } else if (word == "usemtl") {
+      readMaterialName(nameIn(rest));
+    } else if (word == "mtllib") {
+      result_.materialFiles.emplace_back(nameIn(rest));
+      comment(begin);
+    } else if (word != "g" && word != "o" && word != "s") {
+      readOther(word);
+      comment(begin);
+    }
+  }
+
+  bool readNumbers(std::string_view statement, std::string_view rest, int required) {
+    bool finite = true;
+    int count = 0;
+    for (std::string_view word = takeWord(rest); !word.empty() && count < 3; word = takeWord(rest), ++count) {
+      double value = 0;
+      const Reading reading = readNumber(word, value);
+      if (reading == Reading::malformed) {
+        refuse(file_, lines_.line(),
+               fmt::format("'{}' in statement '{}' is no number", shown(word), statement), "numbers");
+      }
+      finite = finite && reading == Reading::finite;
+    }
+    if (count < required) {
+      refuse(file_, lines_.line(), fmt::format("statement '{}' has {} numbers", statement, count),
+             fmt::format("at least {} (is the file truncated?)", required));
+    }
+    if (!finite) result_.nonFinite.add(lines_.line());
+    return finite;
+  }
+
+  /// An index counts from 1, or from the end when it is negative. False when it is broken for sure.
+  static bool resolve(long& index, long count) {
+    if (index < 0) index = count + index + 1;
+    return index > 0;
+  }
+
+  void readFace(std::string_view rest, std::size_t begin) {
+    Face face{begin, lines_.line(), 0, 0, 0};
+    std::size_t corners = 0;
+    bool whole = true;
+    for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest), ++corners) {
+      if (word.front() == '#') {  // the parser would take a comment for a corner
+        const auto from = static_cast<std::size_t>(word.data() - text_.data());
+        std::fill(text_.begin() + static_cast<std::ptrdiff_t>(from),
+                  text_.begin() + static_cast<std::ptrdiff_t>(from + word.size() + rest.size()), ' ');
+        break;
+      }
+      long indices[3] = {0, 0, 0};
+      bool given[3] = {false, false, false};
+      readCorner(word, indices, given);
+      const long counts[3] = {positions_, texcoords_, normals_};
+      for (int i = 0; i < 3; ++i) {
+        if (given[i]) whole = resolve(indices[i], counts[i]) && whole;
+      }
+      face.position = std::max(face.position, indices[0]);
+      face.texcoord = std::max(face.texcoord, indices[1]);
+      face.normal = std::max(face.normal, indices[2]);
+    }
+    if (corners < 3) {
+      refuse(file_, lines_.line(), fmt::format("a face with {} corners", corners),
+             "at least 3 (is the file truncated?)");
+    }
+    if (corners > kMostCorners) {
+      refuse(file_, lines_.line(), fmt::format("a face with {} corners", corners),
+             fmt::format("at most {}", kMostCorners));
+    }
+    if (!whole) return breakFace(begin, lines_.line());
+    ++result_.faces;
+    if (face.position > positions_ || face.texcoord > texcoords_ || face.normal > normals_)
+      waiting_.push_back(face);
+  }
+
+  /// i, i/j, i//k or i/j/k.
+  void readCorner(std::string_view word, long* indices, bool* given) {
+    const std::string_view whole = word;
+    for (int i = 0; i < 3; ++i) {
+      if (!word.empty() && word.front() != '/') {
+        const auto result = std::from_chars(word.data(), word.data() + word.size(), indices[i]);
+        constexpr long kLargest = std::numeric_limits<int>::max();
+        if (result.ec == std::errc::result_out_of_range || std::abs(indices[i]) > kLargest) {
+          indices[i] = 0;
+        } else if (result.ec != std::errc()) {
+          break;
+        }
+        given[i] = true;
+        word.remove_prefix(static_cast<std::size_t>(result.ptr - word.data()));
+      }
+      if (word.empty()) break;
+      if (word.front() != '/' || i == 2) break;
+      word.remove_prefix(1);
+    }
+    if (!word.empty() || !given[0]) {
+      refuse(file_, lines_.line(), fmt::format("malformed corner '{}' of a face", shown(whole)),
+             "i, i/j, i//k or i/j/k");
+    }
+  }
+
+  void readMaterialName(std::string_view name) {
+    replaceBlanksInside(text_, name);
+    if (name.empty()) refuse(file_, lines_.line(), "usemtl without a name", "the name of a material");
+    const std::string text(name);
+    if (text == lastMaterial_) return;
+    lastMaterial_ = text;
+    if (knownMaterials_.insert(text).second) result_.materialNames.push_back(text);
+  }
+
+  void readOther(std::string_view word) {
+    // Display attributes and lines: nothing that light would meet.
+    static const std::set<std::string_view> quiet = {"l",        "p",   "mg",         "bevel",     "c_interp",
+                                                     "d_interp", "lod", "shadow_obj", "trace_obj", "vp"};
+    if (quiet.count(word) > 0) return;
+    const bool isWord = std::all_of(word.begin(), word.end(), [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+    });
+    if (!isWord || (word.front() >= '0' && word.front() <= '9')) {
+      refuse(file_, lines_.line(), fmt::format("'{}' begins no statement of an OBJ file", shown(word)),
+             "v, vt, vn, f, g, o, usemtl, ...");
+    }
+    constexpr std::size_t kMostNamed = 16;
+    if (result_.unusedStatements.size() < kMostNamed) result_.unusedStatements.emplace(word);
+  }
+
+  std::string& text_;
+  const std::filesystem::path& file_;
+  Lines lines_;
+  ObjScan result_;
+  long positions_ = 0, texcoords_ = 0, normals_ = 0;
+  std::vector<Face> waiting_;  // for vertices that may come later in the file
+  std::set<std::string> knownMaterials_;
+  std::string lastMaterial_;
+};
+
+}  // namespace
+
+ObjScan scanObj(std::string& text, const std::filesystem::path& file) {
+  return ObjScanner(text, file).run();
+}
+
+int lineOfFace(const std::string& text, int a, int b, int c) {
+  std::string copy = text;
+  Lines lines(copy);
+  long positions = 0;
+  while (lines.next()) {
+    std::string_view rest = lines.view();
+    const std::string_view word = takeWord(rest);
+    if (word == "v") ++positions;
+    if (word != "f") continue;
+    bool found[3] = {false, false, false};
+    for (std::string_view corner = takeWord(rest); !corner.empty(); corner = takeWord(rest)) {
+      long index = 0;
+      std::from_chars(corner.data(), corner.data() + corner.size(), index);
+      index = index < 0 ? positions + index : index - 1;
+      found[0] = found[0] || index == a;
+      found[1] = found[1] || index == b;
+      found[2] = found[2] || index == c;
+    }
+    if (found[0] && found[1] && found[2]) return lines.line();
+  }
+  return 0;
+}
+
+std::set<std::string> scanMtl(std::string& text, const std::filesystem::path& file) {
+  if (const std::size_t at = text.find('\0'); at != std::string::npos) {
+    throw Error(fmt::format("{}: holds a zero byte at offset {}; expected an MTL text", file.string(), at));
+  }
+  Lines lines(text);
+  std::set<std::string> withDiffuse;
+  std::string current;
+  bool any = false;
+  while (lines.next()) {
+    std::string_view rest = lines.view();
+    const std::string_view word = takeWord(rest);
+    if (word.empty() || word.front() == '#') continue;
+    const int line = lines.line();
+    if (word == "newmtl") {
+      const std::string_view name = trimmed(rest);
+      if (name.empty()) refuse(file, line, "newmtl without a name", "the name of a material");
+      replaceBlanksInside(text, name);
+      current = name;
+      any = true;
+      continue;
+    }
+    const bool isSpectrum = word == "Kd" || word == "Ks" || word == "Ke";
+    const bool isScalar = word == "Ns" || word == "d" || word == "Tr";
+    if (!isSpectrum && !isScalar) continue;
+    if (!any) refuse(file, line, fmt::format("'{}' before the first newmtl", word), "newmtl NAME");
+    if (word == "Kd") withDiffuse.insert(current);
+    const int count = isSpectrum ? 3 : 1;
+    for (int i = 0; i < count; ++i) {
+      const std::string_view number = takeWord(rest);
+      double value = 0;
+      if (number.empty() || readNumber(number, value) != Reading::finite) {
+        refuse(file, line, fmt::format("'{}' of material '{}' is '{}'", word, current, shown(number)),
+               count == 3 ? "three numbers" : "a number");
+      }
+      if (value < 0)
+        refuse(file, line, fmt::format("'{}' of material '{}' is negative", word, current),
+               "numbers of at least 0");
+    }
+  }
+  if (!any)
+    throw Error(fmt::format("{}: holds no material; expected an MTL text with newmtl", file.string()));
+  return withDiffuse;
+}
+
+}  // namespace lumivox

@@ -1,0 +1,228 @@
+// A scene at one time.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+
+#include "lumivox/base/error.h"
+#include "lumivox/scene/scene.h"
+
+namespace lumivox {
+namespace {
+
+/// Bounds in double precision, in world space.
+struct WideBounds {
+  glm::dvec3 low{std::numeric_limits<double>::max()}, high{std::numeric_limits<double>::lowest()};
+  bool empty() const { return low.x > high.x; }
+  void grow(const glm::dvec3& point) {
+    low = glm::min(low, point);
+    high = glm::max(high, point);
+  }
+};
+
+template <class Positions>
+void grow(WideBounds& bounds, const glm::dmat4& toWorld, const Positions& positions, std::size_t first,
+          std::size_t count) {
+  for (std::size_t i = first; i < first + count; ++i) {
+    bounds.grow(glm::dvec3(toWorld * glm::dvec4(glm::dvec3(positions[i]), 1.0)));
+  }
+}
+
+/// The bounds of an object that neither moves nor deforms, or of one before its motion.
+WideBounds placedBounds(const Scene& scene, const Object& object) {
+  WideBounds bounds;
+  if (object.parts.empty()) return bounds;
+  if (object.placedBounds) {
+    bounds.low = object.placedBounds->first;
+    bounds.high = object.placedBounds->second;
+  } else {
+    grow(bounds, object.placement, scene.positions, object.firstVertex, object.vertexCount);
+  }
+  return bounds;
+}
+
+glm::dmat4 motionAt(const Object& object, double time) {
+  if (!object.motion) return object.placement;
+  const RigidMotion& motion = *object.motion;
+  glm::dmat4 result = glm::translate(glm::dmat4(1.0), motion.pivot + motion.velocity * time);
+  // Whole turns are left out first, so that late times lose no precision.
+  const double angle = std::remainder(motion.angularSpeed * time, 2.0 * 3.14159265358979323846);
+  result = glm::rotate(result, angle, motion.axis);
+  return glm::translate(result, -motion.pivot) * object.placement;
+}
+
+/// The vertices of a deforming object: linear between the two frames around the time.
+void deform(const VertexSequence& sequence, double time, ObjectState& state) {
+  const auto count = static_cast<double>(sequence.positions.size());
+  assert(count > 0);
+  double frame = time * sequence.framesPerSecond;
+  if (sequence.loop) {
+    frame = std::fmod(frame, count);
+    if (frame < 0) frame += count;
+  } else {
+    frame = std::clamp(frame, 0.0, count - 1.0);
+  }
+  const auto before = std::min(static_cast<std::size_t>(frame), sequence.positions.size() - 1);
+  const std::size_t after = sequence.loop ? (before + 1) % sequence.positions.size()
+                                          : std::min(before + 1, sequence.positions.size() - 1);
+  const auto weight = static_cast<float>(frame - static_cast<double>(before));
+  const std::vector<glm::vec3>&positions0 = sequence.positions[before],
+        &positions1 = sequence.positions[after];
+  const std::vector<glm::vec3>&normals0 = sequence.normals[before], &normals1 = sequence.normals[after];
+  state.positions.resize(positions0.size());
+  state.normals.resize(positions0.size());
+  for (std::size_t v = 0; v < positions0.size(); ++v) {
+    state.positions[v] = glm::mix(positions0[v], positions1[v], weight);
+    const glm::vec3 normal = glm::mix(normals0[v], normals1[v], weight);
+    const float length = glm::length(normal);
+    state.normals[v] = length > 1e-6f ? normal / length : normals0[v];  // opposite normals have no middle
+  }
+}
+
+CameraView viewOf(const Camera& camera, double time, const glm::dvec3& origin, int width, int height) {
+  glm::dvec3 eye = camera.eye, target = camera.target;
+  if (!camera.keys.empty()) {
+    const auto next = std::find_if(camera.keys.begin(), camera.keys.end(),
+                                   [&](const CameraKey& key) { return key.time > time; });
+    const CameraKey& after = next == camera.keys.end() ? camera.keys.back() : *next;
+    const CameraKey& before = next == camera.keys.begin() ? after : *(next - 1);
+    const double weight = after.time > before.time
+                              ? std::clamp((time - before.time) / (after.time - before.time), 0.0, 1.0)
+                              : 0.0;
+    eye = glm::mix(before.eye, after.eye, weight);
+    target = glm::mix(before.target, after.target, weight);
+  }
+  const glm::dvec3 forward = glm::normalize(target - eye);
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up));
+  CameraView view;
+  view.eye = glm::vec3(eye - origin);
+  view.forward = glm::vec3(forward);
+  view.right = glm::vec3(right);
+  view.up = glm::vec3(glm::cross(right, forward));
+  view.tanHalfFov = static_cast<float>(std::tan(0.5 * camera.fov));
+  view.width = width > 0 ? width : camera.width;
+  view.height = height > 0 ? height : camera.height;
+  return view;
+}
+
+}  // namespace
+
+const Camera& Scene::camera(const std::string& wanted) const {
+  if (cameras.empty()) throw Error(fmt::format("scene '{}' has no camera; expected one", name));
+  if (wanted.empty()) return cameras.front();
+  std::vector<std::string> names;
+  for (const Camera& one : cameras) {
+    if (one.name == wanted) return one;
+    names.push_back(one.name);
+  }
+  const std::string nearest = nearestWord(wanted, names);
+  throw Error(fmt::format("scene '{}' has no camera '{}'; expected one of {}{}", name, wanted,
+                          fmt::join(names, ", "),
+                          nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+}
+
+SceneTraits SceneTraits::of(const Scene& scene) {
+  SceneTraits traits;
+  for (const Object& object : scene.objects) {
+    bool emissive = false;
+    for (const Part& part : object.parts) {
+      if (part.indexCount == 0) continue;
+      const Material& material = scene.materials.at(static_cast<std::size_t>(part.material));
+      traits.triangles = true;
+      traits.textures = traits.textures || material.diffuseTexture >= 0;
+      traits.masks = traits.masks || material.maskTexture >= 0;
+      traits.glossy = traits.glossy || material.glossy();
+      emissive = emissive || material.emissive();
+    }
+    traits.movingGeometry = traits.movingGeometry || (object.animated() && !object.parts.empty());
+    traits.areaLights += emissive ? 1 : 0;
+  }
+  traits.emission = traits.areaLights > 0;
+  traits.environment = scene.environment != glm::vec3(0.0f);
+  traits.medium = !scene.media.empty();
+  traits.movingCamera = std::any_of(scene.cameras.begin(), scene.cameras.end(),
+                                    [](const Camera& camera) { return camera.keys.size() > 1; });
+  for (const Light& light : scene.lights) {
+    if (light.power == glm::vec3(0.0f)) continue;
+    traits.directionalLights += light.kind == LightKind::directional ? 1 : 0;
+    traits.pointLights += light.kind == LightKind::point ? 1 : 0;
+    traits.spotLights += light.kind == LightKind::spot ? 1 : 0;
+  }
+  return traits;
+}
+
+SceneTraits SceneTraits::everything() {
+  SceneTraits traits;
+  traits.triangles = traits.textures = traits.masks = traits.glossy = traits.emission = traits.environment =
+      traits.medium = true;
+  traits.movingGeometry = traits.movingCamera = true;
+  traits.directionalLights = traits.pointLights = traits.spotLights = traits.areaLights = 1;
+  return traits;
+}
+
+glm::vec3 CameraView::direction(float x, float y) const {
+  const auto w = static_cast<float>(width), h = static_cast<float>(height);
+  const float horizontal = (2.0f * x / w - 1.0f) * tanHalfFov * w / h;
+  const float vertical = (1.0f - 2.0f * y / h) * tanHalfFov;
+  return forward + horizontal * right + vertical * up;
+}
+
+void Bounds::grow(const glm::vec3& point) {
+  low = empty ? point : glm::min(low, point);
+  high = empty ? point : glm::max(high, point);
+  empty = false;
+}
+
+SceneSnapshot snapshotOf(const Scene& scene, double time, const std::string& camera, int width, int height) {
+  SceneSnapshot snapshot;
+  snapshot.time = time;
+  // Objects that move are part of the origin's bounds too, where they stand at the beginning: a scene may
+  // hold nothing else.
+  WideBounds still, all;
+  for (const Object& object : scene.objects) {
+    const WideBounds placed = placedBounds(scene, object);
+    if (placed.empty()) continue;
+    WideBounds& kind = object.animated() ? all : still;
+    kind.grow(placed.low);
+    kind.grow(placed.high);
+  }
+  const WideBounds& centred = still.empty() ? all : still;
+  if (!centred.empty()) snapshot.origin = 0.5 * (centred.low + centred.high);
+
+  WideBounds bounds;
+  snapshot.objects.reserve(scene.objects.size());
+  for (const Object& object : scene.objects) {
+    ObjectState& state = snapshot.objects.emplace_back();
+    const glm::dmat4 toWorld = motionAt(object, time);
+    const glm::dmat4 toLocal = glm::translate(glm::dmat4(1.0), -snapshot.origin) * toWorld;
+    state.toWorld = glm::mat4(toLocal);
+    state.normalToWorld = glm::mat3(glm::transpose(glm::inverse(glm::dmat3(toLocal))));
+    if (object.sequence) deform(*object.sequence, time, state);
+    if (object.parts.empty()) continue;
+    if (object.sequence) {
+      grow(bounds, toWorld, state.positions, 0, state.positions.size());
+    } else if (object.motion) {
+      grow(bounds, toWorld, scene.positions, object.firstVertex, object.vertexCount);
+    } else {
+      const WideBounds placed = placedBounds(scene, object);
+      bounds.grow(placed.low);
+      bounds.grow(placed.high);
+    }
+  }
+  if (!bounds.empty()) {
+    snapshot.bounds.grow(glm::vec3(bounds.low - snapshot.origin));
+    snapshot.bounds.grow(glm::vec3(bounds.high - snapshot.origin));
+  }
+  snapshot.camera = viewOf(scene.camera(camera), time, snapshot.origin, width, height);
+  for (const Light& light : scene.lights) {
+    snapshot.lights.push_back({light.kind, glm::vec3(light.position - snapshot.origin),
+                               glm::vec3(glm::normalize(light.direction)), light.power, light.innerAngle,
+                               light.outerAngle});
+  }
+  return snapshot;
+}
+
+}  // namespace lumivox

@@ -1,0 +1,59 @@
+#include "scene/texture.h"
+
+#include <array>
+
+#include "lumivox/base/file.h"
+#include "lumivox/base/picture.h"
+
+namespace lumivox {
+namespace {
+
+BytePicture read(const std::filesystem::path& file, Hasher& hasher) {
+  hasher.add(readFile(file));
+  return readBytePicture(file);
+}
+
+SurfaceTexture shapedAs(const BytePicture& picture, const std::string& name, bool mask) {
+  SurfaceTexture texture;
+  texture.name = name;
+  texture.width = picture.width;
+  texture.height = picture.height;
+  texture.mask = mask;
+  const std::size_t pixels =
+      static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+  requireMemory(pixels * (mask ? 1 : 3) * sizeof(float), name);
+  texture.values.reserve(pixels * (mask ? 1 : 3));
+  return texture;
+}
+
+}  // namespace
+
+SurfaceTexture readDiffuseTexture(const std::filesystem::path& file, const std::string& name,
+                                  Hasher& hasher) {
+  static const std::array<float, 256> linear = [] {
+    std::array<float, 256> table{};
+    for (std::size_t i = 0; i < table.size(); ++i) table[i] = srgbToLinear(static_cast<float>(i) / 255.0f);
+    return table;
+  }();
+  const BytePicture picture = read(file, hasher);
+  SurfaceTexture texture = shapedAs(picture, name, false);
+  const auto channels = static_cast<std::size_t>(picture.channels);
+  const bool grey = channels < 3;
+  for (std::size_t i = 0; i < picture.values.size(); i += channels) {
+    for (std::size_t c = 0; c < 3; ++c) texture.values.push_back(linear[picture.values[i + (grey ? 0 : c)]]);
+  }
+  return texture;
+}
+
+SurfaceTexture readMaskTexture(const std::filesystem::path& file, const std::string& name, Hasher& hasher) {
+  const BytePicture picture = read(file, hasher);
+  SurfaceTexture texture = shapedAs(picture, name, true);
+  const auto channels = static_cast<std::size_t>(picture.channels);
+  const bool hasAlpha = channels == 2 || channels == 4;
+  for (std::size_t i = 0; i < picture.values.size(); i += channels) {
+    texture.values.push_back(static_cast<float>(picture.values[i + (hasAlpha ? channels - 1 : 0)]) / 255.0f);
+  }
+  return texture;
+}
+
+}  // namespace lumivox

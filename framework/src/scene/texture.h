@@ -1,0 +1,17 @@
+// Pictures on surfaces.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "lumivox/base/hash.h"
+#include "lumivox/scene/scene.h"
+
+namespace lumivox {
+
+/// A picture file as albedo: linear RGB. A picture without colours is grey; an alpha channel is not used.
+SurfaceTexture readDiffuseTexture(const std::filesystem::path& file, const std::string& name, Hasher& hasher);
+/// A picture file as coverage: its alpha channel where it has one, its first channel otherwise.
+SurfaceTexture readMaskTexture(const std::filesystem::path& file, const std::string& name, Hasher& hasher);
+
+}  // namespace lumivox

@@ -1,0 +1,429 @@
+// FLIP against closed forms and against a direct evaluation of its definition, written here without separable
+// filters.
+#include <tbb/global_control.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/random.h"
+#include "lumivox/measure/metrics.h"
+#include "support/support.h"
+
+using namespace lumivox;
+using Vector = std::array<double, 3>;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+// ---- the definition, straight from Andersson et al. 2020, with the published rational matrix from linear
+// Rec. 709 to XYZ
+
+Vector xyzOf(const Vector& rgb) {
+  return {(10135552.0 * rgb[0] + 8788810.0 * rgb[1] + 4435075.0 * rgb[2]) / 24577794.0,
+          (2613072.0 * rgb[0] + 8788810.0 * rgb[1] + 887015.0 * rgb[2]) / 12288897.0,
+          (1425312.0 * rgb[0] + 8788810.0 * rgb[1] + 70074185.0 * rgb[2]) / 73733382.0};
+}
+
+const Vector kWhite = xyzOf({1, 1, 1});
+
+Vector rgbOf(const Vector& xyz) {
+  // Published to nine digits, as the inverse of the above.
+  constexpr double kInverse[3][3] = {{3.241003275, -1.537398934, -0.498615861},
+                                     {-0.969224334, 1.875930071, 0.041554224},
+                                     {0.055639423, -0.204011202, 1.057148933}};
+  Vector rgb{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) rgb[i] += kInverse[i][j] * xyz[j];
+  }
+  return rgb;
+}
+
+Vector opponentOf(const Vector& rgb) {
+  const Vector xyz = xyzOf(rgb);
+  const double x = xyz[0] / kWhite[0], y = xyz[1] / kWhite[1], z = xyz[2] / kWhite[2];
+  return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
+}
+
+Vector huntLabOf(const Vector& rgb) {
+  const Vector xyz = xyzOf(rgb);
+  const auto f = [](double t) {
+    return t > 216.0 / 24389.0 ? std::cbrt(t) : (24389.0 / 27.0 * t + 16) / 116;
+  };
+  const double x = f(xyz[0] / kWhite[0]), y = f(xyz[1] / kWhite[1]), z = f(xyz[2] / kWhite[2]);
+  const double lightness = 116 * y - 16;
+  return {lightness, 0.01 * lightness * 500 * (x - y), 0.01 * lightness * 200 * (y - z)};
+}
+
+double hyab(const Vector& a, const Vector& b) {
+  return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
+}
+
+/// The colour difference in [0,1] of two Hunt-adjusted colours.
+double colourDifference(const Vector& a, const Vector& b) {
+  const double largest = std::pow(hyab(huntLabOf({0, 1, 0}), huntLabOf({0, 0, 1})), 0.7);
+  const double distance = std::pow(hyab(a, b), 0.7);
+  if (distance < 0.4 * largest) return 0.95 / (0.4 * largest) * distance;
+  return 0.95 + (distance - 0.4 * largest) / (0.6 * largest) * 0.05;
+}
+
+struct Kernel {
+  int radius;
+  std::vector<double> weights;
+  double at(int x, int y) const {
+    return weights[static_cast<std::size_t>((y + radius) * (2 * radius + 1) + x + radius)];
+  }
+};
+
+template <class Function>
+Kernel kernelOf(int radius, const Function& function) {
+  Kernel kernel{radius, {}};
+  for (int y = -radius; y <= radius; ++y) {
+    for (int x = -radius; x <= radius; ++x) kernel.weights.push_back(function(x, y));
+  }
+  return kernel;
+}
+
+Kernel sensitivity(double pixelsPerDegree, double a1, double b1, double a2, double b2) {
+  const int radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * kPi * kPi)) * pixelsPerDegree));
+  Kernel kernel = kernelOf(radius, [&](int x, int y) {
+    const double squared = (x * x + y * y) / (pixelsPerDegree * pixelsPerDegree);
+    return a1 * std::sqrt(kPi / b1) * std::exp(-kPi * kPi * squared / b1) +
+           a2 * std::sqrt(kPi / b2) * std::exp(-kPi * kPi * squared / b2);
+  });
+  double sum = 0;
+  for (const double weight : kernel.weights) sum += weight;
+  for (double& weight : kernel.weights) weight /= sum;
+  return kernel;
+}
+
+Kernel feature(double pixelsPerDegree, bool edge, bool across) {
+  const double sigma = 0.5 * 0.082 * pixelsPerDegree;
+  Kernel kernel = kernelOf(static_cast<int>(std::ceil(3 * sigma)), [&](int x, int y) {
+    const int u = across ? x : y;
+    return (edge ? -u : u * u / (sigma * sigma) - 1) * std::exp(-(x * x + y * y) / (2 * sigma * sigma));
+  });
+  double positive = 0, negative = 0;
+  for (const double weight : kernel.weights) (weight > 0 ? positive : negative) += std::abs(weight);
+  for (double& weight : kernel.weights) weight /= weight > 0 ? positive : negative;
+  return kernel;
+}
+
+using Image = std::vector<Vector>;
+
+double filtered(const Image& image, int width, int height, int x, int y, std::size_t channel,
+                const Kernel& kernel) {
+  double sum = 0;
+  for (int dy = -kernel.radius; dy <= kernel.radius; ++dy) {
+    for (int dx = -kernel.radius; dx <= kernel.radius; ++dx) {
+      const int px = std::clamp(x + dx, 0, width - 1), py = std::clamp(y + dy, 0, height - 1);
+      sum += kernel.at(dx, dy) * image[static_cast<std::size_t>(py * width + px)][channel];
+    }
+  }
+  return sum;
+}
+
+std::vector<double> directFlip(const Picture& picture, const Picture& truth, double ppd) {
+  const int width = truth.width(), height = truth.height();
+  const Kernel achromatic = sensitivity(ppd, 1, 0.0047, 0, 1e-5),
+               redGreen = sensitivity(ppd, 1, 0.0053, 0, 1e-5);
+  const Kernel blueYellow = sensitivity(ppd, 34.1, 0.04, 13.5, 0.025);
+  const Kernel features[4] = {feature(ppd, true, true), feature(ppd, true, false), feature(ppd, false, true),
+                              feature(ppd, false, false)};
+  Image opponents[2];
+  for (int which = 0; which < 2; ++which) {
+    const Picture& source = which == 0 ? picture : truth;
+    for (std::size_t i = 0; i < source.pixelCount(); ++i) {
+      Vector rgb{};
+      for (std::size_t c = 0; c < 3; ++c) rgb[c] = std::clamp(double{source.values()[3 * i + c]}, 0.0, 1.0);
+      opponents[which].push_back(opponentOf(rgb));
+    }
+  }
+  std::vector<double> map;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      Vector lab[2];
+      double edges[2], points[2];
+      for (int which = 0; which < 2; ++which) {
+        const Image& image = opponents[which];
+        const Vector seen = {filtered(image, width, height, x, y, 0, achromatic),
+                             filtered(image, width, height, x, y, 1, redGreen),
+                             filtered(image, width, height, x, y, 2, blueYellow)};
+        const double luminance = (seen[0] + 16) / 116;
+        Vector rgb = rgbOf({(luminance + seen[1] / 500) * kWhite[0], luminance * kWhite[1],
+                            (luminance - seen[2] / 200) * kWhite[2]});
+        for (double& value : rgb) value = std::clamp(value, 0.0, 1.0);
+        lab[which] = huntLabOf(rgb);
+        double strength[4];  // the filters see (Y + 16) / 116; the offset has no features, so Y / 116 does as
+                             // well
+        for (int k = 0; k < 4; ++k) strength[k] = filtered(image, width, height, x, y, 0, features[k]) / 116;
+        edges[which] = std::hypot(strength[0], strength[1]);
+        points[which] = std::hypot(strength[2], strength[3]);
+      }
+      const double difference = std::max(std::abs(edges[0] - edges[1]), std::abs(points[0] - points[1]));
+      map.push_back(std::pow(colourDifference(lab[0], lab[1]), 1 - std::sqrt(difference / std::sqrt(2.0))));
+    }
+  }
+  return map;
+}
+
+// ---- pictures
+
+Picture constant(int width, int height, const Vector& rgb) {
+  Picture picture(width, height, 3);
+  for (std::size_t i = 0; i < picture.values().size(); ++i)
+    picture.values()[i] = static_cast<float>(rgb[i % 3]);
+  return picture;
+}
+
+Picture random(int width, int height, std::uint64_t seed, float scale = 1.0f) {
+  Picture picture(width, height, 3);
+  RandomStream stream(seed, 0);
+  for (float& value : picture.values()) value = scale * stream.uniform();
+  return picture;
+}
+
+double meanOf(const Picture& map) {
+  double sum = 0;
+  for (const float value : map.values()) sum += double{value};
+  return sum / static_cast<double>(map.values().size());
+}
+
+/// A white half plane right of `edge`.
+Picture halfPlane(int width, int height, int edge) {
+  Picture picture = constant(width, height, {0, 0, 0});
+  for (int y = 0; y < height; ++y) {
+    for (int x = edge; x < width; ++x) {
+      for (int c = 0; c < 3; ++c) picture.at(x, y, c) = 1.0f;
+    }
+  }
+  return picture;
+}
+
+bool allNear(const Picture& map, double expected, double tolerance) {
+  return std::all_of(map.values().begin(), map.values().end(),
+                     [&](float value) { return std::abs(double{value} - expected) <= tolerance; });
+}
+
+double aces(double x) {
+  // Narkowicz's curve x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14) at the film exposure 0.6.
+  const double v = 0.6 * x;
+  return std::clamp(v * (2.51 * v + 0.03) / (v * (2.43 * v + 0.59) + 0.14), 0.0, 1.0);
+}
+
+}  // namespace
+
+TEST_CASE("FLIP of a picture and itself is zero") {
+  const Picture picture = random(31, 23, 1, 3.0f);
+  REQUIRE(allNear(flipLdr(picture, picture), 0.0, 0.0));
+  REQUIRE(allNear(flipHdr(picture, picture), 0.0, 0.0));
+}
+
+TEST_CASE("FLIP of black against white is that of a lightness difference of 100") {
+  // Constant pictures have no features, and filters of sum 1 leave them alone. L* differs by 100, chroma by
+  // nothing: 100^0.7 = 25.119 is above the knee 0.4 * largest. The largest distance is green (87.74,
+  // -75.61, 72.98) to blue (32.30, 25.58, -34.84), after Hunt: 55.44 + sqrt(101.2^2 + 107.8^2) = 203.3;
+  // 203.3^0.7 = 41.28; knee 16.51; 0.95 + 0.05 (25.12 - 16.51) / (41.28 - 16.51) = 0.9674.
+  const Picture black = constant(40, 30, {0, 0, 0}), white = constant(40, 30, {1, 1, 1});
+  REQUIRE(allNear(flipLdr(black, white), 0.9674, 1e-4));
+  REQUIRE(allNear(flipLdr(white, black), colourDifference({100, 0, 0}, {0, 0, 0}), 1e-6));
+}
+
+TEST_CASE("FLIP of green against blue, the largest distance of the display, is one") {
+  REQUIRE(allNear(flipLdr(constant(9, 9, {0, 1, 0}), constant(9, 9, {0, 0, 1})), 1.0, 1e-6));
+}
+
+TEST_CASE("FLIP of constant colours is the remapped HyAB distance of their Hunt-adjusted colours") {
+  const Vector colours[] = {
+      {0.2, 0.4, 0.1}, {0.25, 0.35, 0.1}, {0.9, 0.1, 0.5}, {0.003, 0.002, 0.001}, {1, 1, 0.2}};
+  for (const Vector& a : colours) {
+    for (const Vector& b : colours) {
+      const double expected = colourDifference(huntLabOf(a), huntLabOf(b));
+      REQUIRE(allNear(flipLdr(constant(5, 4, a), constant(5, 4, b)), expected, 2e-4));
+    }
+  }
+}
+
+TEST_CASE("FLIP of any two pictures is its definition evaluated directly with two-dimensional kernels") {
+  for (const double pixelsPerDegree : {67.0206, 25.0}) {
+    Picture truth = random(26, 19, 2), picture = truth;
+    for (int y = 4; y < 12; ++y) {
+      for (int x = 9; x < 20; ++x) {
+        for (int c = 0; c < 3; ++c) picture.at(x, y, c) = (c + 1) * 0.3f;
+      }
+    }
+    const Picture map = flipLdr(picture, truth, pixelsPerDegree);
+    const std::vector<double> expected = directFlip(picture, truth, pixelsPerDegree);
+    double largest = 0, sum = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      largest = std::max(largest, std::abs(expected[i] - double{map.values()[i]}));
+      sum += expected[i];
+    }
+    REQUIRE(sum / static_cast<double>(expected.size()) > 0.05);  // there is something to see
+    REQUIRE(largest < 2e-4);  // the nine digits of the published inverse matrix, raised to the power 0.7
+  }
+}
+
+TEST_CASE("FLIP grows with the difference") {
+  const Picture truth = constant(20, 20, {0.3, 0.3, 0.3});
+  double before = 0.0;
+  for (const double step : {0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7}) {
+    const double error = meanOf(flipLdr(constant(20, 20, {0.3 + step, 0.3 + step, 0.3 + step}), truth));
+    REQUIRE(error > before);
+    before = error;
+  }
+}
+
+TEST_CASE("FLIP of a displaced edge grows with the displacement and stays near the edge") {
+  constexpr int kWidth = 96, kHeight = 24, kEdge = 48;
+  const Picture truth = halfPlane(kWidth, kHeight, kEdge);
+  double before = 0.0;
+  for (const int shift : {1, 2, 4, 8}) {
+    const Picture map = flipLdr(halfPlane(kWidth, kHeight, kEdge + shift), truth);
+    REQUIRE(meanOf(map) > before);
+    before = meanOf(map);
+    // Beyond the reach of the filters (10 pixels at 67 pixels per degree) nothing differs.
+    REQUIRE(map.at(kEdge - 12, 12, 0) == 0.0f);
+    REQUIRE(map.at(kEdge + shift + 12, 12, 0) == 0.0f);
+    REQUIRE(map.at(kEdge, 12, 0) > 0.5f);
+  }
+}
+
+TEST_CASE("FLIP moves with the pictures and turns with them") {
+  // The same small square on grey, at two places; then with rows and columns exchanged.
+  const auto square = [](int left, int top, float value) {
+    Picture picture = constant(64, 64, {0.2, 0.2, 0.2});
+    for (int y = top; y < top + 3; ++y) {
+      for (int x = left; x < left + 7; ++x) picture.at(x, y, 0) = value;
+    }
+    return picture;
+  };
+  const Picture one = flipLdr(square(20, 24, 0.9f), square(20, 24, 0.2f));
+  const Picture other = flipLdr(square(33, 29, 0.9f), square(33, 29, 0.2f));
+  for (int y = 14; y < 38; ++y) {
+    for (int x = 8; x < 40; ++x) REQUIRE(one.at(x, y, 0) == Approx(other.at(x + 13, y + 5, 0)).margin(1e-6));
+  }
+  const auto turned = [](const Picture& picture) {
+    Picture result(picture.height(), picture.width(), picture.channels());
+    for (int y = 0; y < picture.height(); ++y) {
+      for (int x = 0; x < picture.width(); ++x) {
+        for (int c = 0; c < picture.channels(); ++c) result.at(y, x, c) = picture.at(x, y, c);
+      }
+    }
+    return result;
+  };
+  const Picture a = random(30, 22, 5), b = random(30, 22, 6);
+  const Picture expected = turned(flipLdr(a, b)), map = flipLdr(turned(a), turned(b));
+  for (std::size_t i = 0; i < map.values().size(); ++i)
+    REQUIRE(map.values()[i] == Approx(expected.values()[i]).margin(1e-6));
+}
+
+TEST_CASE("one channel is grey") {
+  Picture greyA(12, 12, 1, 0.3f), greyB(12, 12, 1, 0.6f);
+  REQUIRE(meanOf(flipLdr(greyA, greyB)) ==
+          Approx(meanOf(flipLdr(constant(12, 12, {0.3, 0.3, 0.3}), constant(12, 12, {0.6, 0.6, 0.6})))));
+}
+
+TEST_CASE("HDR-FLIP of constant greys is LDR-FLIP at the exposure that shows the truth at 0.85") {
+  // Largest and median luminance agree, so every exposure maps the truth to 0.85. The exposed radiance x
+  // solves aces(x) = 0.85; the picture at twice the radiance is shown at aces(2 x).
+  double low = 0, high = 100;
+  for (int i = 0; i < 200; ++i) (aces((low + high) / 2) < 0.85 ? low : high) = (low + high) / 2;
+  const double brighter = aces(2 * low);
+  const double expected =
+      colourDifference(huntLabOf({brighter, brighter, brighter}), huntLabOf({0.85, 0.85, 0.85}));
+  const Picture map = flipHdr(constant(8, 8, {7, 7, 7}), constant(8, 8, {3.5, 3.5, 3.5}));
+  REQUIRE(expected > 0.02);
+  REQUIRE(allNear(map, expected, 1e-5));
+}
+
+TEST_CASE("HDR-FLIP does not depend on the unit of radiance") {
+  const Picture picture = random(24, 24, 8), truth = random(24, 24, 9);
+  Picture scaledPicture = picture, scaledTruth = truth;
+  for (float& value : scaledPicture.values()) value *= 1024.0f;
+  for (float& value : scaledTruth.values()) value *= 1024.0f;
+  const Picture map = flipHdr(picture, truth), scaledMap = flipHdr(scaledPicture, scaledTruth);
+  for (std::size_t i = 0; i < map.values().size(); ++i)
+    REQUIRE(map.values()[i] == Approx(scaledMap.values()[i]).margin(1e-5));
+}
+
+TEST_CASE("HDR-FLIP sees a difference in the dark beside a bright lamp and one within the lamp") {
+  // A lamp of 1000 in a room of 1: no single exposure shows both errors.
+  Picture truth = constant(48, 32, {1, 1, 1});
+  for (int y = 10; y < 20; ++y) {
+    for (int x = 4; x < 12; ++x) {
+      for (int c = 0; c < 3; ++c) truth.at(x, y, c) = 1000.0f;
+    }
+  }
+  Picture picture = truth;
+  for (int y = 12; y < 18; ++y) {
+    for (int c = 0; c < 3; ++c) {
+      for (int x = 6; x < 10; ++x) picture.at(x, y, c) = 500.0f;
+      for (int x = 34; x < 40; ++x) picture.at(x, y, c) = 0.5f;
+    }
+  }
+  const Picture map = flipHdr(picture, truth);
+  REQUIRE(map.at(8, 15, 0) > 0.1f);
+  REQUIRE(map.at(37, 15, 0) > 0.1f);
+  REQUIRE(map.at(24, 28, 0) < 1e-3f);
+}
+
+TEST_CASE("HDR-FLIP stays between 0 and 1 for black, mostly black, negative and enormous radiance") {
+  const auto inRange = [](const Picture& map) {
+    return std::all_of(map.values().begin(), map.values().end(),
+                       [](float value) { return value >= 0.0f && value <= 1.0f; });
+  };
+  const Picture black = constant(16, 16, {0, 0, 0});
+  Picture mostlyBlack = black;
+  mostlyBlack.at(3, 3, 1) = 2.0f;
+  Picture enormous = random(16, 16, 3, std::numeric_limits<float>::max());
+  Picture tiny = random(16, 16, 3, 1e-38f);
+  Picture negative = random(16, 16, 4);
+  for (float& value : negative.values()) value = 0.5f - value;
+  const Picture* pictures[] = {&black, &mostlyBlack, &enormous, &tiny, &negative};
+  for (const Picture* a : pictures) {
+    for (const Picture* b : pictures) {
+      REQUIRE(inRange(flipHdr(*a, *b)));
+      REQUIRE(inRange(flipLdr(*a, *b)));
+    }
+  }
+  REQUIRE(meanOf(flipHdr(black, black)) == 0.0);
+  REQUIRE(flipHdr(black, mostlyBlack).at(3, 3, 0) > 0.1f);
+}
+
+TEST_CASE("a NaN pixel is marked in the FLIP map and does not spread") {
+  const Picture truth = random(40, 40, 11);
+  Picture picture = truth;
+  picture.at(20, 20, 1) = std::numeric_limits<float>::quiet_NaN();
+  picture.at(5, 6, 0) = std::numeric_limits<float>::infinity();
+  for (const Picture& map : {flipLdr(picture, truth), flipHdr(picture, truth), flipHdr(truth, picture)}) {
+    for (int y = 0; y < 40; ++y) {
+      for (int x = 0; x < 40; ++x) {
+        if ((x == 20 && y == 20) || (x == 5 && y == 6)) {
+          REQUIRE(std::isnan(map.at(x, y, 0)));
+        } else {
+          REQUIRE(map.at(x, y, 0) == 0.0f);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("FLIP gives the same bits on one thread and on many") {
+  const Picture picture = random(70, 50, 12, 5.0f), truth = random(70, 50, 13, 5.0f);
+  const Picture many = flipHdr(picture, truth);
+  const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
+  const Picture one = flipHdr(picture, truth);
+  REQUIRE(std::memcmp(many.values().data(), one.values().data(), many.values().size() * sizeof(float)) == 0);
+}
+
+TEST_CASE("FLIP refuses shapes that differ and impossible viewing distances") {
+  REQUIRE_THROWS_AS(flipLdr(Picture(4, 4, 3), Picture(4, 5, 3)), Error);
+  REQUIRE_THROWS_AS(flipLdr(Picture(4, 4, 2), Picture(4, 4, 2)), Error);
+  REQUIRE_THROWS_AS(flipHdr(Picture(), Picture()), Error);
+  REQUIRE_THROWS_AS(flipLdr(Picture(4, 4, 3), Picture(4, 4, 3), 0.0), Error);
+  REQUIRE_THROWS_AS(flipLdr(Picture(4, 4, 3), Picture(4, 4, 3), std::nan("")), Error);
+}

@@ -1,0 +1,108 @@
+// Closed rooms whose walls all emit E and reflect a: radiance is the same everywhere and in every direction, L = E + a L.
+// Cut off after B indirect bounces it is the geometric series E (1 + a + ... + a^(B+1)) = E (1 - a^(B+2)) / (1 - a): emission, direct
+// light and B bounces.
+#include <algorithm>
+
+#include "framework/reference_scenes.h"
+#include "lumivox/reference/path_tracer.h"
+#include "support/support.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+Scene furnace(float albedo, float emission, int size) {
+  SceneBuilder builder;
+  builder.box({0, 0, 0}, {1, 1.5f, 2}, builder.lambert(albedo, emission), true);
+  builder.look({0.5, 0.7, 1.6}, {0.3, 0.4, 0}, {0, 1, 0}, 1.2, size, size);
+  return builder.scene;
+}
+
+double geometricSeries(double albedo, int terms) { return (1.0 - std::pow(albedo, terms)) / (1.0 - albedo); }
+
+}  // namespace
+
+TEST_CASE("a closed furnace of albedo a returns E / (1 - a) within 0.2 %") {
+  for (const float albedo : {0.2f, 0.5f, 0.8f, 0.95f}) {
+    CAPTURE(albedo);
+    // What is cut off is a^(B+2) of the whole: below 1e-5 here.
+    ReferenceOptions options = quietly(albedo < 0.9f ? 64 : 16, static_cast<int>(std::ceil(std::log(1e-5) / std::log(albedo))));
+    options.roulette = false;
+    const LayeredPicture picture = renderReference(furnace(albedo, 2.0f, 32), options);
+    const Estimate full = estimateOf(picture, "full");
+    const double expected = 2.0 / (1.0 - albedo);
+    CHECK(full.deviation < 0.0007 * expected);
+    CHECK(full.mean == Approx(expected).epsilon(0.002));
+    // No pixel stands out.
+    const auto [lowest, highest] = std::minmax_element(picture.layers.at("full").values().begin(), picture.layers.at("full").values().end());
+    CHECK(*lowest == Approx(expected).epsilon(0.2));
+    CHECK(*highest == Approx(expected).epsilon(0.2));
+  }
+}
+
+TEST_CASE("a furnace of albedo 0.999 converges when enough bounces are allowed") {
+  ReferenceOptions options = quietly(2, 10000);
+  options.roulette = false;
+  const double full = estimateOf(renderReference(furnace(0.999f, 1.0f, 4), options), "full").mean;
+  CHECK(full == Approx(geometricSeries(0.999f, 10002)).epsilon(0.002));
+  CHECK(full == Approx(1000.0).epsilon(0.002));
+}
+
+TEST_CASE("Russian roulette leaves the furnace's radiance as it is") {
+  ReferenceOptions options = quietly(64, 4000);
+  options.roulette = true;
+  const Estimate full = estimateOf(renderReference(furnace(0.95f, 1.0f, 32), options), "full");
+  CHECK(full.deviation < 0.005 * full.mean);
+  CHECK(std::abs(full.mean - 20.0) < 4.0 * full.deviation);
+}
+
+TEST_CASE("the furnace's layers are the terms of the geometric series") {
+  const double albedo = 0.6;
+  ReferenceOptions options = quietly(64, 3);
+  options.roulette = false;
+  const LayeredPicture picture = renderReference(furnace(0.6f, 1.0f, 16), options);
+  CHECK(estimateOf(picture, "direct").mean == Approx(1.0 + albedo).epsilon(0.002));
+  CHECK(estimateOf(picture, "one_bounce_diffuse").mean == Approx(albedo * albedo).epsilon(0.004));
+  CHECK(estimateOf(picture, "indirect_diffuse").mean ==
+        Approx(albedo * albedo * geometricSeries(albedo, 3)).epsilon(0.003));
+  CHECK(estimateOf(picture, "full").mean == Approx(geometricSeries(albedo, 5)).epsilon(0.002));
+  CHECK(estimateOf(picture, "one_bounce_glossy").mean == 0.0);
+  CHECK(estimateOf(picture, "indirect_glossy").mean == 0.0);
+}
+
+TEST_CASE("with one bounce the indirect layers are the one-bounce layers; with none they are black") {
+  const Scene scene = litRoom(16, 16);
+  const LayeredPicture one = renderReference(scene, quietly(4, 1));
+  CHECK(one.layers.at("indirect_diffuse").values() == one.layers.at("one_bounce_diffuse").values());
+  CHECK(one.layers.at("indirect_glossy").values() == one.layers.at("one_bounce_glossy").values());
+  CHECK(estimateOf(one, "one_bounce_glossy").mean > 0.0);
+  const LayeredPicture none = renderReference(scene, quietly(4, 0));
+  CHECK(estimateOf(none, "indirect_diffuse").mean == 0.0);
+  CHECK(none.layers.at("full").values() == none.layers.at("direct").values());
+}
+
+TEST_CASE("no light enters a closed room through its edges or its surfaces") {
+  // Turned by an odd angle, so that no wall lies along an axis, and moved far from the world's origin.
+  const double angle = 0.7345;
+  const glm::dmat4 placement(std::cos(angle), 0.3 * std::sin(angle), -std::sin(angle), 0, 0.1, 1.1, 0.2, 0, std::sin(angle),
+                             -0.2, std::cos(angle), 0, 1.0e5, -3.0e5, 2.0e5, 1);
+  for (const bool smooth : {false, true}) {
+    CAPTURE(smooth);
+    SceneBuilder builder;
+    builder.box({-1, -1, -1}, {1, 1, 1}, builder.phong(0.5f, 0.4f, 5.0f), true);
+    if (smooth) {  // normals of a ball: far from the geometric ones
+      for (std::size_t i = 0; i < builder.scene.positions.size(); ++i) {
+        builder.scene.normals[i] = -glm::normalize(builder.scene.positions[i]);
+      }
+    }
+    for (Object& object : builder.scene.objects) object.placement = placement;
+    builder.scene.environment = glm::vec3(1.0e6f);
+    builder.light(LightKind::directional, glm::vec3(1.0e6f), {}, {0.3, -1, 0.2});
+    builder.light(LightKind::point, glm::vec3(1.0e6f), glm::dvec3(placement * glm::dvec4(0, 1.5, 0, 1)));
+    builder.look(glm::dvec3(placement * glm::dvec4(0.9, 0.8, 0.7, 1)), glm::dvec3(placement[3]), {0, 1, 0}, 2.0, 32, 32);
+    ReferenceOptions options = quietly(32, 8);
+    options.roulette = false;
+    CHECK(estimateOf(renderReference(builder.scene, options), "full").mean == 0.0);
+  }
+}

@@ -1,0 +1,581 @@
+// Models: OBJ, MTL and pictures, good and bad.
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <map>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/base/log.h"
+#include "lumivox/base/picture.h"
+#include "lumivox/scene/scene.h"
+#include "support/support.h"
+
+using namespace lumivox;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+/// A cube of side 2 about the origin, without normals, out of six quads.
+const char* kCube =
+    "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+    "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n";
+
+/// A scene with one mesh `m` of `m.obj`.
+struct OneMesh {
+  test::TemporaryDirectory directory;
+  std::filesystem::path file;
+
+  explicit OneMesh(const std::string& obj, const std::string& mesh = "", const std::string& more = "") {
+    directory.write("m.obj", obj);
+    file = directory.write(
+        "a.scene", "scene \"x\" {\ncamera main { eye 0 0 9  target 0 0 0 }\nmesh m {\nfile \"m.obj\"\n" +
+                       mesh + "\n}\n" + more + "\n}\n");
+  }
+  Scene load(bool strict = false) const {
+    SceneLoadOptions options;
+    options.strict = strict;
+    return loadScene(file, options);
+  }
+  std::string error() const {
+    return test::messageOf<Error>([&] { load(); });
+  }
+};
+
+/// The scene, with everything that was logged while it was loaded.
+std::pair<Scene, std::string> loadLogged(const OneMesh& mesh) {
+  const LogCapture log;
+  Scene scene = mesh.load();
+  return {std::move(scene), log.text()};
+}
+
+/// An uncompressed TGA file, top row first; `channels` of 3 (RGB) or 4 (RGBA) or 1.
+std::string tga(int width, int height, int channels, const std::vector<unsigned char>& values) {
+  std::string file(18, '\0');
+  file[2] = channels == 1 ? 3 : 2;
+  file[12] = static_cast<char>(width);
+  file[14] = static_cast<char>(height);
+  file[16] = static_cast<char>(8 * channels);
+  file[17] = static_cast<char>(0x20 | (channels == 4 ? 8 : 0));
+  for (std::size_t i = 0; i < values.size(); i += static_cast<std::size_t>(channels)) {
+    if (channels >= 3) {  // stored as BGR(A)
+      file += static_cast<char>(values[i + 2]);
+      file += static_cast<char>(values[i + 1]);
+      file += static_cast<char>(values[i]);
+      if (channels == 4) file += static_cast<char>(values[i + 3]);
+    } else {
+      file += static_cast<char>(values[i]);
+    }
+  }
+  return file;
+}
+
+std::string gzip(const std::string& text) {
+  z_stream stream{};
+  REQUIRE(deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) == Z_OK);
+  std::string packed(text.size() + 1000, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+  stream.avail_in = static_cast<uInt>(text.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  REQUIRE(deflate(&stream, Z_FINISH) == Z_STREAM_END);
+  packed.resize(packed.size() - stream.avail_out);
+  deflateEnd(&stream);
+  return packed;
+}
+
+glm::vec3 faceNormal(const Scene& scene, std::size_t triangle) {
+  const glm::vec3 a = scene.positions[scene.indices[3 * triangle]],
+                  b = scene.positions[scene.indices[3 * triangle + 1]],
+                  c = scene.positions[scene.indices[3 * triangle + 2]];
+  return glm::normalize(glm::cross(b - a, c - a));
+}
+
+}  // namespace
+
+TEST_CASE("polygons are cut into triangles that keep their area and their side") {
+  const Scene scene = OneMesh("v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4 5 6\n").load();
+  REQUIRE(scene.triangleCount() == 4);
+  double area = 0;
+  for (std::size_t t = 0; t < 4; ++t) {
+    const glm::vec3 a = scene.positions[scene.indices[3 * t]], b = scene.positions[scene.indices[3 * t + 1]],
+                    c = scene.positions[scene.indices[3 * t + 2]];
+    area += 0.5 * glm::length(glm::cross(b - a, c - a));
+    CHECK(faceNormal(scene, t).z == Approx(1.0f));
+  }
+  CHECK(area == Approx(3.0));  // an L of three unit squares
+}
+
+TEST_CASE("indices may be relative and may name texture coordinates and normals") {
+  const Scene scene = OneMesh(
+                          "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.25 0.75\nvt 1 0\nvt 0 1\nvn 0 0 -2\nf -3/-3/-1 "
+                          "-2/-2/-1 -1/-1/-1\n")
+                          .load();
+  REQUIRE(scene.positions.size() == 3);
+  CHECK(scene.texcoords[0] == glm::vec2(0.25f, 0.75f));
+  for (const glm::vec3& normal : scene.normals) CHECK(normal == glm::vec3(0, 0, -1));
+}
+
+TEST_CASE("a cube without normals gets flat faces, since they meet at 90 degrees") {
+  const Scene scene = OneMesh(kCube).load();
+  CHECK(scene.triangleCount() == 12);
+  CHECK(scene.positions.size() == 24);
+  for (std::size_t t = 0; t < 12; ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      CHECK(glm::dot(scene.normals[scene.indices[3 * t + k]], faceNormal(scene, t)) == Approx(1.0f));
+    }
+  }
+}
+
+TEST_CASE("a crease of 180 degrees smooths a cube's corners to its diagonals") {
+  const Scene scene = OneMesh(kCube, "crease 180 deg").load();
+  CHECK(scene.positions.size() == 8);
+  // Three right angles meet at each corner, so that angle weighting gives the diagonal whatever way the quads
+  // are cut.
+  for (std::size_t v = 0; v < 8; ++v) {
+    CHECK(glm::dot(scene.normals[v], glm::normalize(scene.positions[v])) == Approx(1.0f));
+  }
+}
+
+TEST_CASE("a finely cut cylinder is smooth at the default crease and flat at zero") {
+  constexpr int kSides = 24;  // neighbours meet at 15 deg
+  std::string obj;
+  for (int i = 0; i < kSides; ++i) {
+    const double angle = 2 * glm::pi<double>() * i / kSides;
+    obj += fmt::format("v {0} 0 {1}\nv {0} 1 {1}\n", std::cos(angle), std::sin(angle));
+  }
+  for (int i = 0; i < kSides; ++i) {
+    const int j = (i + 1) % kSides;
+    obj += fmt::format("f {} {} {} {}\n", 2 * i + 1, 2 * i + 2, 2 * j + 2, 2 * j + 1);
+  }
+  const Scene smooth = OneMesh(obj).load();
+  CHECK(smooth.positions.size() == 2 * kSides);
+  for (std::size_t v = 0; v < smooth.positions.size(); ++v) {
+    const glm::vec3 radial = glm::normalize(glm::vec3(smooth.positions[v].x, 0, smooth.positions[v].z));
+    CHECK(glm::dot(smooth.normals[v], radial) > 0.999f);
+  }
+  const Scene flat = OneMesh(obj, "crease 0 deg").load();
+  CHECK(flat.positions.size() == 4 * kSides);
+}
+
+TEST_CASE("faces that do not share vertices are smoothed where their positions are equal") {
+  // Two triangles that meet at 20 deg along a doubled edge.
+  const double angle = 20.0 / 180.0 * glm::pi<double>();
+  const Scene scene =
+      OneMesh(fmt::format("v 0 0 0\nv 0 0 1\nv -1 0 0\nv 0 0 0\nv 0 0 1\nv {} {} 0\nf 1 3 2\nf 4 5 6\n",
+                          std::cos(angle), std::sin(angle)))
+          .load();
+  std::map<std::pair<float, float>, glm::vec3> normals;
+  for (std::size_t v = 0; v < scene.positions.size(); ++v) {
+    if (scene.positions[v].x != 0) continue;
+    const auto [entry, isNew] = normals.emplace(std::pair(scene.positions[v].z, 0.0f), scene.normals[v]);
+    if (!isNew) CHECK(glm::length(entry->second - scene.normals[v]) < 1e-6f);
+  }
+  CHECK(normals.size() == 2);
+}
+
+TEST_CASE("normals of the file hold unless a crease is asked for") {
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nf 1//1 2//1 3//1\n";
+  CHECK(OneMesh(obj).load().normals[0] == glm::vec3(1, 0, 0));
+  CHECK(OneMesh(obj, "crease 30 deg").load().normals[0] == glm::vec3(0, 0, 1));
+}
+
+TEST_CASE(
+    "objects and groups are named by their mesh; equal names are one object; a file without names is its "
+    "mesh") {
+  const Scene named =
+      OneMesh("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no box\nf 1 2 3\ng lamp on\nf 1 3 4\no box\nf 1 4 2\n")
+          .load();
+  REQUIRE(named.objects.size() == 2);
+  CHECK(named.objects[0].name == "m/box");
+  CHECK(named.objects[1].name == "m/lamp on");
+  REQUIRE(named.objects[0].parts.size() == 1);
+  CHECK(named.objects[0].parts[0].indexCount == 6);
+  CHECK(OneMesh(kTriangle).load().objects.at(0).name == "m");
+  CHECK(OneMesh("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\ng a\nf 3 2 1\n").load().objects.at(0).name ==
+        "m/default");
+}
+
+TEST_CASE("every part indexes the vertices of its own object") {
+  const Scene scene = OneMesh(
+                          "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no a\nusemtl x\nf 1 2 3\nusemtl y\nf 1 3 4\no "
+                          "b\nusemtl x\nf 1 4 2\n")
+                          .load();
+  for (const Object& object : scene.objects) {
+    for (const Part& part : object.parts) {
+      for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; ++i) {
+        CHECK(scene.indices[i] >= object.firstVertex);
+        CHECK(scene.indices[i] < object.firstVertex + object.vertexCount);
+      }
+    }
+  }
+}
+
+TEST_CASE("materials of the MTL file are used as given") {
+  OneMesh mesh("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl shiny\nf 1 2 3\nusemtl lamp\nf 3 2 1\n");
+  mesh.directory.write("m.mtl",
+                       "newmtl shiny\r\nKd 0.1 0.2 0.3\r\nKs 0.4 0.5 0.6\r\nNs 32\r\nillum 2\r\n\r\nnewmtl "
+                       "lamp\r\nKd 0.5 0.5 0.5\r\nKe 17 12 4\r\n");
+  const Scene scene = mesh.load();
+  REQUIRE(scene.materials.size() == 2);
+  CHECK(scene.materials[0].name == "m/shiny");
+  CHECK(scene.materials[0].diffuse == glm::vec3(0.1f, 0.2f, 0.3f));
+  CHECK(scene.materials[0].specular == glm::vec3(0.4f, 0.5f, 0.6f));
+  CHECK(scene.materials[0].exponent == 32.0f);
+  CHECK(scene.materials[1].emission == glm::vec3(17, 12, 4));
+  CHECK_FALSE(scene.materials[1].glossy());
+  CHECK(SceneTraits::of(scene).areaLights == 1);
+}
+
+TEST_CASE("materials are overridden for a mesh, a part and an MTL material, the last one winning") {
+  const std::string obj =
+      "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no box_1\nusemtl a\nf 1 2 3\no box_2\nusemtl b\nf 1 "
+      "3 4\no lamp\nusemtl a\nf 1 4 2\n";
+  const std::string materials = "material red { diffuse 1 0 0 }\nmaterial green { diffuse 0 1 0 }";
+  const auto diffuseOf = [&](const std::string& mesh) {
+    OneMesh one(obj, mesh, materials);
+    one.directory.write("m.mtl", "newmtl a\nKd 0.1 0.1 0.1\nnewmtl b\nKd 0.2 0.2 0.2\n");
+    const Scene scene = one.load();
+    std::string text;
+    for (const Object& object : scene.objects) {
+      const Material& material = scene.materials[static_cast<std::size_t>(object.parts.at(0).material)];
+      text += fmt::format("{} {:.1f} {:.1f}; ", object.name, material.diffuse.x, material.diffuse.y);
+    }
+    return text;
+  };
+  CHECK(diffuseOf("") == "m/box_1 0.1 0.1; m/box_2 0.2 0.2; m/lamp 0.1 0.1; ");
+  CHECK(diffuseOf("material red") == "m/box_1 1.0 0.0; m/box_2 1.0 0.0; m/lamp 1.0 0.0; ");
+  CHECK(diffuseOf("use { part box_*  material green }") ==
+        "m/box_1 0.0 1.0; m/box_2 0.0 1.0; m/lamp 0.1 0.1; ");
+  CHECK(diffuseOf("use { mtl a  material red }\nuse { part lamp  material green }") ==
+        "m/box_1 1.0 0.0; m/box_2 0.2 0.2; m/lamp 0.0 1.0; ");
+  CHECK(diffuseOf("use { part box_*  mtl b  material red }") ==
+        "m/box_1 0.1 0.1; m/box_2 1.0 0.0; m/lamp 0.1 0.1; ");
+  CHECK(diffuseOf("without { part box_? }") == "m/lamp 0.1 0.1; ");
+}
+
+TEST_CASE("a selection that selects nothing is a finding with the names that the model has") {
+  const std::string obj = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no tall_box\nusemtl white\nf 1 2 3\n";
+  const auto errorOf = [&](const std::string& mesh, const std::string& more = "") {
+    OneMesh one(obj, mesh, "material red { }\n" + more);
+    one.directory.write("m.mtl", "newmtl white\nKd 1 1 1\n");
+    return one.error();
+  };
+  CHECK_THAT(
+      errorOf("use { part tal_box  material red }"),
+      Contains("a.scene:5:12: mesh 'm' has no part 'tal_box'") && Contains("did you mean 'tall_box'?"));
+  CHECK_THAT(errorOf("without { mtl whit }"),
+             Contains("mesh 'm' has no MTL material 'whit'") && Contains("did you mean 'white'?"));
+  CHECK_THAT(errorOf("", "light l area { mesh m/lamp  radiance 1 }"),
+             Contains("mesh 'm' has no object 'm/lamp'"));
+  CHECK_THAT(errorOf("", "animate m/tall_bix { translate 1 0 0 }"), Contains("did you mean 'm/tall_box'?"));
+  CHECK_THAT(errorOf("", "animate m { translate 1 0 0 }\nanimate m/tall_box { translate 1 0 0 }"),
+             Contains("is animated twice"));
+}
+
+TEST_CASE("a mesh is scaled, then turned, then shifted") {
+  const Scene scene = OneMesh(kTriangle, "scale 2\nrotate 0 0 1 90 deg\ntranslate 10 0 0").load();
+  // (1, 0, 0) -> (2, 0, 0) -> (0, 2, 0) -> (10, 2, 0)
+  const glm::dvec4 moved = scene.objects[0].placement * glm::dvec4(1, 0, 0, 1);
+  CHECK(moved.x == Approx(10.0));
+  CHECK(moved.y == Approx(2.0));
+}
+
+TEST_CASE("without a point an animation turns about the centre of what moves") {
+  const Scene scene =
+      OneMesh("v 4 0 0\nv 6 0 0\nv 4 2 0\nf 1 2 3\n", "", "animate m { rotate 0 0 1 90 deg/s }").load();
+  CHECK(scene.objects[0].motion->pivot == glm::dvec3(5, 1, 0));
+  const Scene other = OneMesh(kTriangle, "", "animate m { rotate 0 0 1 90 deg/s  about 1 2 3 }").load();
+  CHECK(other.objects[0].motion->pivot == glm::dvec3(1, 2, 3));
+}
+
+TEST_CASE("a diffuse picture is decoded from sRGB to linear values with row 0 on top") {
+  OneMesh mesh("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+  mesh.directory.write("m.mtl", "newmtl a\nmap_Kd pictures\\p.tga\n");
+  mesh.directory.write("pictures/p.tga", tga(1, 2, 3, {255, 188, 0, 10, 20, 30}));
+  const Scene scene = mesh.load();
+  REQUIRE(scene.textures.size() == 1);
+  const SurfaceTexture& texture = scene.textures[0];
+  CHECK(texture.width == 1);
+  CHECK(texture.height == 2);
+  REQUIRE(texture.values.size() == 6);
+  CHECK(texture.values[0] == Approx(1.0f));
+  // IEC 61966-2-1: ((188/255 + 0.055) / 1.055)^2.4 = 0.502886
+  CHECK(texture.values[1] == Approx(0.502886f).epsilon(1e-5));
+  CHECK(texture.values[2] == 0.0f);
+  // A picture without Kd is the albedo itself.
+  CHECK(scene.materials[0].diffuse == glm::vec3(1.0f));
+}
+
+TEST_CASE("a mask is taken from alpha where there is one and from the first channel otherwise") {
+  const auto maskOf = [](const std::string& picture, const std::string& dissolve) {
+    OneMesh mesh("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+    mesh.directory.write("m.mtl", "newmtl a\nKd 1 1 1\nmap_d p.tga\n" + dissolve);
+    mesh.directory.write("p.tga", picture);
+    const Scene scene = mesh.load();
+    CHECK(SceneTraits::of(scene).masks);
+    return scene.textures.at(0).values;
+  };
+  CHECK(maskOf(tga(2, 1, 4, {1, 2, 3, 255, 200, 200, 200, 0}), "") == std::vector<float>{1.0f, 0.0f});
+  CHECK(maskOf(tga(2, 1, 1, {51, 255}), "") == std::vector<float>{0.2f, 1.0f});
+  CHECK(maskOf(tga(2, 1, 1, {255, 0}), "d 0.75\n") == std::vector<float>{0.75f, 0.0f});
+}
+
+TEST_CASE("a picture that several materials use is read once, and unused ones are not read at all") {
+  OneMesh mesh("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\n");
+  mesh.directory.write("m.mtl",
+                       "newmtl a\nmap_Kd p.tga\nnewmtl b\nmap_Kd ./p.tga\nnewmtl c\nmap_Kd none.png\n");
+  mesh.directory.write("p.tga", tga(1, 1, 3, {1, 2, 3}));
+  const Scene scene = mesh.load();
+  CHECK(scene.textures.size() == 1);
+  CHECK(scene.materials.size() == 2);
+}
+
+TEST_CASE("materials of the text may have pictures") {
+  OneMesh mesh(kTriangle, "material cloth",
+               "material cloth { diffuse 0.5  texture \"p.tga\"  mask \"p.tga\" }");
+  mesh.directory.write("p.tga", tga(1, 1, 4, {255, 255, 255, 128}));
+  const Scene scene = mesh.load();
+  CHECK(scene.textures.size() == 2);
+  CHECK(scene.materials.at(0).diffuseTexture >= 0);
+  CHECK(scene.textures.at(static_cast<std::size_t>(scene.materials.at(0).maskTexture)).mask);
+}
+
+TEST_CASE("a surface with a coverage d below a half is left out") {
+  OneMesh mesh("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl glass\nf 1 2 3\nusemtl wall\nf 3 2 1\n");
+  mesh.directory.write("m.mtl", "newmtl glass\nKd 1 1 1\nd 0.1\nnewmtl wall\nKd 1 1 1\nd 0.9\n");
+  const Scene scene = mesh.load();
+  CHECK(scene.triangleCount() == 1);
+  CHECK(scene.materials.at(0).name == "m/wall");
+}
+
+TEST_CASE("a missing material file is warned of and grey stands in; strict refuses it") {
+  const OneMesh mesh("mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+  const auto [scene, log] = loadLogged(mesh);
+  CHECK_THAT(log, Contains("none.mtl' does not exist"));
+  CHECK_THAT(log, Contains("material 'a' is in none of its material files"));
+  CHECK(scene.materials.at(0).diffuse == glm::vec3(0.8f));
+  CHECK_THAT(test::messageOf<Error>([&] { mesh.load(true); }), Contains("none.mtl") && Contains("--strict"));
+  const OneMesh replaced("mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n", "material red",
+                         "material red { diffuse 1 0 0 }");
+  CHECK(loadLogged(replaced).second.empty());
+}
+
+TEST_CASE("names with blanks work for material files and materials") {
+  OneMesh mesh("mtllib my materials.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl deep red\nf 1 2 3 # a comment\n");
+  mesh.directory.write("my materials.mtl", "newmtl  deep red \nKd 0.5 0 0\n");
+  const auto [scene, log] = loadLogged(mesh);
+  CHECK(log.empty());
+  CHECK(scene.materials.at(0).diffuse == glm::vec3(0.5f, 0, 0));
+}
+
+TEST_CASE(
+    "triangles with broken indices, without area or with coordinates that are not finite are dropped, "
+    "counted and named") {
+  const OneMesh mesh(
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nv 2 0 0\nv 1e39 0 0\n"  // lines 1 to 6
+      "f 1 2 3\nf 1 2 9\nf 0 1 2\nf 1 2 5\nf 1 2 2\nf 1 2 4\nf 3 2 6\n");
+  const auto [scene, log] = loadLogged(mesh);
+  CHECK(scene.triangleCount() == 1);
+  CHECK_THAT(log, Contains("m.obj: 6 of 7 triangles are bad"));
+  CHECK_THAT(log, Contains("2 with an index that no vertex has (first in line 8)"));
+  CHECK_THAT(log, Contains("2 with coordinates that are not finite (2 such statements, first in line 4)"));
+  CHECK_THAT(log, Contains("2 of zero area (first in line 10, object '')"));
+  for (const glm::vec3& position : scene.positions) CHECK(std::isfinite(position.x));
+  CHECK_THAT(test::messageOf<Error>([&] { mesh.load(true); }),
+             Contains("6 of 7 triangles are bad") && Contains("refused under --strict"));
+}
+
+TEST_CASE("a vertex may be defined behind the face that uses it") {
+  CHECK(OneMesh("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").load().triangleCount() == 1);
+}
+
+TEST_CASE("normals and texture coordinates that are not finite are replaced and warned of") {
+  const OneMesh mesh("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn nan 0 1\nvt inf 1\nf 1/1/1 2/1/1 3/1/1\n");
+  const auto [scene, log] = loadLogged(mesh);
+  CHECK_THAT(log, Contains("not finite"));
+  for (const glm::vec3& normal : scene.normals) CHECK(glm::length(normal) == Approx(1.0f));
+  for (const glm::vec2& texcoord : scene.texcoords) CHECK(std::isfinite(texcoord.x));
+}
+
+TEST_CASE("each way in which an OBJ file can be no OBJ file gives one error with its line") {
+  CHECK_THAT(OneMesh("").error(), Contains("m.obj: holds no faces"));
+  CHECK_THAT(OneMesh("# nothing\nv 0 0 0\n").error(), Contains("m.obj: holds no faces"));
+  CHECK_THAT(OneMesh("v 0 0 0\nv 1 0\n").error(),
+             Contains("m.obj:2: statement 'v' has 2 numbers") && Contains("truncated"));
+  CHECK_THAT(OneMesh("v 0 0 0\nv 1 x 0\nf 1 1 1\n").error(),
+             Contains("m.obj:2: 'x' in statement 'v' is no number"));
+  CHECK_THAT(OneMesh("v 0 0 0\nf 1 2\n").error(), Contains("m.obj:2: a face with 2 corners"));
+  CHECK_THAT(OneMesh("v 0 0 0\nf 1 2 x\n").error(), Contains("m.obj:2: malformed corner 'x'"));
+  CHECK_THAT(OneMesh("v 0 0 0\nf 1/2/3/4 1 1\n").error(), Contains("malformed corner '1/2/3/4'"));
+  CHECK_THAT(OneMesh(std::string("\x7F"
+                                 "ELF\0\0\1",
+                                 7))
+                 .error(),
+             Contains("m.obj:1:") && Contains("begins no statement of an OBJ file"));
+  CHECK_THAT(OneMesh("{\"asset\": 1}\n").error(), Contains("begins no statement of an OBJ file"));
+  CHECK_THAT(OneMesh("v 0 0 0\nf 1 1 1\n").error(), Contains("no triangle is left"));
+  std::string huge = "v 0 0 0\nf";
+  for (int i = 0; i < 2000; ++i) huge += " 1";
+  CHECK_THAT(OneMesh(huge + "\n").error(), Contains("a face with 2000 corners; expected at most 1024"));
+}
+
+TEST_CASE("index numbers beyond every integer are broken indices, not crashes") {
+  const auto [scene, log] = loadLogged(OneMesh(
+      std::string(kTriangle) + "f 1 2 99999999999999999999999\nf -99999999999 1 2\nf 1 2 2147483647\n"));
+  CHECK(scene.triangleCount() == 1);
+  CHECK_THAT(log, Contains("3 with an index that no vertex has (first in line 5)"));
+}
+
+TEST_CASE("statements that carry no triangles are named once") {
+  const auto [scene, log] =
+      loadLogged(OneMesh(std::string("p 1\nl 1 2\ncurv 0 1 1 2\nsurf x\n") + kTriangle));
+  CHECK(scene.triangleCount() == 1);
+  CHECK_THAT(log, Contains("statements without triangles are not used: curv, surf"));
+}
+
+TEST_CASE("line ends of all systems and continued lines are read") {
+  CHECK(OneMesh("v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n").load().triangleCount() == 1);
+  CHECK(OneMesh("v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r").load().triangleCount() == 1);
+  CHECK(OneMesh("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 \\\n3").load().triangleCount() == 1);
+}
+
+TEST_CASE("a gzip-compressed model is the model, and a broken one is an error that names it") {
+  const auto load = [](const std::string& packed) {
+    const test::TemporaryDirectory directory;
+    directory.write("m.obj.gz", packed);
+    return loadScene(directory.write(
+        "a.scene", "scene \"x\" { camera c { eye 0 0 1  target 0 0 0 }\nmesh m { file \"m.obj.gz\" }\n}"));
+  };
+  const std::string packed = gzip(kCube);
+  CHECK(load(packed).triangleCount() == 12);
+  CHECK_THAT(test::messageOf<Error>([&] { load(packed.substr(0, packed.size() / 2)); }),
+             Contains("m.obj.gz: is not a whole gzip file"));
+  CHECK_THAT(test::messageOf<Error>([&] { load(""); }), Contains("m.obj.gz: is not a whole gzip file"));
+  CHECK_THAT(test::messageOf<Error>([&] { load(kCube); }), Contains("m.obj.gz: is not a whole gzip file"));
+}
+
+TEST_CASE("each way in which an MTL file can be wrong gives one error with its line") {
+  const auto errorOf = [](const std::string& mtl) {
+    OneMesh mesh("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+    mesh.directory.write("m.mtl", mtl);
+    return mesh.error();
+  };
+  CHECK_THAT(errorOf(""), Contains("m.mtl: holds no material"));
+  CHECK_THAT(errorOf("newmtl a\nKd 0.5 0.5\n"),
+             Contains("m.mtl:2: 'Kd' of material 'a' is ''; expected three numbers"));
+  CHECK_THAT(errorOf("newmtl a\nKd 0.5 red 0\n"), Contains("m.mtl:2: 'Kd' of material 'a' is 'red'"));
+  CHECK_THAT(errorOf("newmtl a\nKe nan 0 0\n"), Contains("'Ke' of material 'a' is 'nan'"));
+  CHECK_THAT(errorOf("newmtl a\nKs 1 1 -1\n"), Contains("'Ks' of material 'a' is negative"));
+  CHECK_THAT(errorOf("Kd 1 1 1\n"), Contains("m.mtl:1: 'Kd' before the first newmtl"));
+  CHECK_THAT(errorOf("newmtl\n"), Contains("m.mtl:1: newmtl without a name"));
+  CHECK_THAT(errorOf(std::string("newmtl a\n\0\0", 11)), Contains("m.mtl: holds a zero byte"));
+}
+
+TEST_CASE("maps that the house does not know are named, once for a model") {
+  OneMesh mesh("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+  mesh.directory.write("m.mtl", "newmtl a\nKd 1 1 1\nmap_Ks s.png\nmap_bump b.png\n");
+  CHECK_THAT(loadLogged(mesh).second, Contains("m.obj: not used: map_Ks, map_bump"));
+}
+
+TEST_CASE("missing, empty, truncated and malformed pictures are errors that name them") {
+  const auto errorOf = [](const std::optional<std::string>& picture) {
+    OneMesh mesh("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+    mesh.directory.write("m.mtl", "newmtl a\nmap_Kd p.png\n");
+    if (picture) mesh.directory.write("p.png", *picture);
+    return mesh.error();
+  };
+  CHECK_THAT(errorOf(std::nullopt), Contains("p.png"));
+  CHECK_THAT(errorOf(""), Contains("p.png"));
+  CHECK_THAT(errorOf("this is no picture"), Contains("p.png"));
+  const std::string png = encodePng(Picture(8, 8, 3, 0.5f));
+  CHECK_THAT(errorOf(png.substr(0, png.size() / 2)), Contains("p.png"));
+}
+
+TEST_CASE("a sequence is read frame by frame with one set of faces") {
+  const test::TemporaryDirectory directory;
+  for (int i = 0; i < 3; ++i)
+    directory.write(fmt::format("m_0{}.obj", i),
+                    fmt::format("v 0 0 {0}\nv 1 0 {0}\nv 0 1 {0}\nf 1 2 3\n", i));
+  const auto file = directory.write("a.scene",
+                                    "scene \"x\" { camera c { eye 0 0 9  target 0 0 0 }\nmesh m { file "
+                                    "\"m_##.obj\"  sequence 0..2  rate 10  loop off }\n}");
+  const Scene scene = loadScene(file);
+  REQUIRE(scene.objects.at(0).sequence.has_value());
+  const VertexSequence& sequence = *scene.objects[0].sequence;
+  CHECK(sequence.framesPerSecond == 10.0);
+  CHECK_FALSE(sequence.loop);
+  REQUIRE(sequence.positions.size() == 3);
+  CHECK(sequence.positions[2].at(0).z == 2.0f);
+  CHECK(sequence.normals[2].at(0) == glm::vec3(0, 0, 1));
+  CHECK(SceneTraits::of(scene).movingGeometry);
+
+  SECTION("a frame with other vertices is refused") {
+    directory.write("m_01.obj", "v 0 0 1\nv 1 0 1\nv 0 1 1\nv 0 0 0\nf 1 2 3\n");
+    CHECK_THAT(test::messageOf<Error>([&] { loadScene(file); }),
+               Contains("m_01.obj: has 4 positions, not 3"));
+  }
+  SECTION("a frame with other faces is refused") {
+    directory.write("m_02.obj", "v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 3 2\n");
+    CHECK_THAT(test::messageOf<Error>([&] { loadScene(file); }), Contains("m_02.obj: has other faces"));
+  }
+  SECTION("a frame with a coordinate that is not finite is refused") {
+    directory.write("m_02.obj", "v 0 0 1\nv 1 nan 1\nv 0 1 1\nf 1 2 3\n");
+    CHECK_THAT(test::messageOf<Error>([&] { loadScene(file); }),
+               Contains("m_02.obj:2: a coordinate is not finite"));
+  }
+  SECTION("a missing frame is named") {
+    std::filesystem::remove(directory.path() / "m_02.obj");
+    CHECK_THAT(test::messageOf<Error>([&] { loadScene(file); }), Contains("m_02.obj"));
+  }
+}
+
+TEST_CASE("normals of a deforming mesh follow each frame") {
+  const test::TemporaryDirectory directory;
+  directory.write("m_0.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  directory.write("m_1.obj", "v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n");
+  const Scene scene = loadScene(directory.write(
+      "a.scene",
+      "scene \"x\" { camera c { eye 0 0 9  target 0 0 0 }\nmesh m { file \"m_#.obj\"  sequence 0..1 }\n}"));
+  CHECK(scene.objects.at(0).sequence->normals.at(0).at(0) == glm::vec3(0, 0, 1));
+  CHECK(scene.objects.at(0).sequence->normals.at(1).at(0) == glm::vec3(1, 0, 0));
+}
+
+TEST_CASE(
+    "the hash changes with the text, an include, the model, its materials and its pictures, and with nothing "
+    "else") {
+  const auto hashOf = [](const std::string& changed) {
+    const test::TemporaryDirectory directory;
+    const auto content = [&](const std::string& name, const std::string& text) {
+      directory.write(name, text + (changed == name ? "\n# changed\n" : ""));
+    };
+    content("m.obj", std::string("mtllib m.mtl\nusemtl a\n") + kTriangle);
+    content("m.mtl", "newmtl a\nmap_Kd p.tga\n");
+    directory.write("p.tga", tga(1, 1, 3, {1, 2, static_cast<unsigned char>(changed == "p.tga" ? 4 : 3)}));
+    content("light.part", "environment { radiance 1 }\n");
+    directory.write("unused.obj", changed == "unused.obj" ? "x" : "y");
+    content("a.scene",
+            "scene \"x\" { camera c { eye 0 0 9  target 0 0 0 }\nmesh m { file \"m.obj\" }\ninclude "
+            "\"light.part\"\n}");
+    return loadScene(directory.path() / "a.scene").hash;
+  };
+  const ContentHash plain = hashOf("");
+  CHECK(hashOf("") == plain);  // in another directory
+  CHECK(hashOf("unused.obj") == plain);
+  for (const char* name : {"m.obj", "m.mtl", "p.tga", "light.part", "a.scene"}) {
+    INFO(name);
+    CHECK_FALSE(hashOf(name) == plain);
+  }
+}
+
+TEST_CASE("loading the same scene twice gives the same vertices in the same order") {
+  const OneMesh mesh(kCube, "crease 100 deg");
+  const Scene a = mesh.load(), b = mesh.load();
+  CHECK(a.positions == b.positions);
+  CHECK(a.normals == b.normals);
+  CHECK(a.indices == b.indices);
+}

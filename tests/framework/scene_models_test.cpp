@@ -1,0 +1,139 @@
+// The well-known models. They are not part of this project: where they are absent, these tests say that they
+// did not run.
+#include <algorithm>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/log.h"
+#include "lumivox/scene/scene.h"
+#include "support/support.h"
+
+using namespace lumivox;
+
+namespace {
+
+std::optional<Scene> load(const std::string& name) {
+  const LogCapture quiet;
+  try {
+    return loadScene(test::sourceDirectory() / "scenes" / (name + ".scene"));
+  } catch (const AbsentError& absent) {
+    test::skip(absent.what());
+    return std::nullopt;
+  }
+}
+
+/// Nothing that a renderer could stumble over.
+void requireSound(const Scene& scene) {
+  REQUIRE(scene.normals.size() == scene.positions.size());
+  REQUIRE(scene.texcoords.size() == scene.positions.size());
+  std::size_t badNormals = 0, badPositions = 0, badIndices = 0;
+  for (const glm::vec3& normal : scene.normals)
+    badNormals += std::abs(glm::dot(normal, normal) - 1.0f) > 1e-4f ? 1u : 0u;
+  for (const glm::vec3& position : scene.positions)
+    badPositions += std::isfinite(position.x + position.y + position.z) ? 0u : 1u;
+  for (const std::uint32_t index : scene.indices) badIndices += index < scene.positions.size() ? 0u : 1u;
+  CHECK(badNormals == 0);
+  CHECK(badPositions == 0);
+  CHECK(badIndices == 0);
+  CHECK_FALSE((scene.lights.empty() && !SceneTraits::of(scene).emission));
+}
+
+/// The part of the picture that the bounds of what is there cover, in each direction, is not small.
+void requireSeen(const Scene& scene) {
+  for (const Camera& camera : scene.cameras) {
+    const SceneSnapshot snapshot = snapshotOf(scene, 0.0, camera.name);
+    std::size_t inside = 0, vertices = 0;
+    for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+      const Object& object = scene.objects[o];
+      for (std::uint32_t v = 0; v < object.vertexCount; ++v) {
+        const glm::vec3 p =
+            glm::vec3(snapshot.objects[o].toWorld * glm::vec4(scene.positions[object.firstVertex + v], 1)) -
+            snapshot.camera.eye;
+        const float depth = glm::dot(p, snapshot.camera.forward);
+        ++vertices;
+        if (depth <= 0) continue;
+        const float aspect =
+            static_cast<float>(snapshot.camera.width) / static_cast<float>(snapshot.camera.height);
+        const float x = glm::dot(p, snapshot.camera.right) / (depth * snapshot.camera.tanHalfFov * aspect);
+        const float y = glm::dot(p, snapshot.camera.up) / (depth * snapshot.camera.tanHalfFov);
+        inside += std::abs(x) < 1 && std::abs(y) < 1 ? 1u : 0u;
+      }
+    }
+    INFO(camera.name);
+    CHECK(inside > vertices / 10);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Crytek's Sponza has its 262266 triangles with area, 25 materials, pictures and masks") {
+  const auto scene = load("sponza_crytek");
+  if (!scene) return;
+  CHECK(scene->triangleCount() == 262266);  // 262267 in the file, one of zero area
+  CHECK(scene->materials.size() == 25);
+  CHECK(scene->textures.size() == 27);  // 24 diffuse pictures in use and 3 masks
+  const SceneTraits traits = SceneTraits::of(*scene);
+  CHECK((traits.textures && traits.masks && traits.environment && traits.movingCamera));
+  CHECK_FALSE((traits.glossy || traits.emission || traits.movingGeometry));
+  requireSound(*scene);
+  requireSeen(*scene);
+}
+
+TEST_CASE("Dabrovic's Sponza has its 66453 triangles with area and 12 pictures") {
+  const auto scene = load("sponza_dabrovic");
+  if (!scene) return;
+  CHECK(scene->triangleCount() == 66453);
+  CHECK(scene->textures.size() == 12);
+  requireSound(*scene);
+  requireSeen(*scene);
+}
+
+TEST_CASE("Sibenik lets light in through its panes of coverage 0.1") {
+  const auto scene = load("sibenik");
+  if (!scene) return;
+  CHECK(scene->triangleCount() == 75284 - 2760 - 10);  // panes; triangles of zero area
+  CHECK(std::none_of(scene->materials.begin(), scene->materials.end(),
+                     [](const Material& m) { return m.name == "sibenik/staklo"; }));
+  requireSound(*scene);
+  requireSeen(*scene);
+}
+
+TEST_CASE("the Cornell boxes of the archive have their triangles and a lamp") {
+  for (const auto& [name, triangles] : {std::pair("cornell_original", 36), std::pair("cornell_sphere", 2188),
+                                        std::pair("cornell_glossy_mcguire", 1112)}) {
+    const auto scene = load(name);
+    if (!scene) return;
+    INFO(name);
+    CHECK(scene->triangleCount() == static_cast<std::size_t>(triangles));
+    CHECK(SceneTraits::of(*scene).areaLights == 1);
+    requireSound(*scene);
+    requireSeen(*scene);
+  }
+}
+
+TEST_CASE("bunny, dragon and teapot load smooth and stand in the picture") {
+  for (const auto& [name, triangles] :
+       {std::pair("bunny", 69451 + 4), std::pair("dragon", 100000 + 4), std::pair("teapot", 6320 + 2)}) {
+    const auto scene = load(name);
+    if (!scene) return;
+    INFO(name);
+    CHECK(scene->triangleCount() == static_cast<std::size_t>(triangles));
+    // Smooth surfaces share their vertices: fewer than one for each triangle.
+    CHECK(scene->positions.size() < scene->triangleCount());
+    requireSound(*scene);
+    requireSeen(*scene);
+  }
+}
+
+TEST_CASE("the horse gallops in a loop of one second") {
+  const auto scene = load("horse_gallop");
+  if (!scene) return;
+  REQUIRE(scene->objects.at(0).sequence.has_value());
+  CHECK(scene->objects[0].sequence->positions.size() == 24);
+  CHECK(SceneTraits::of(*scene).movingGeometry);
+  requireSound(*scene);
+  requireSeen(*scene);
+  const SceneSnapshot start = snapshotOf(*scene, 0.0), half = snapshotOf(*scene, 0.5),
+                      again = snapshotOf(*scene, 1.0);
+  CHECK_FALSE(start.objects[0].positions == half.objects[0].positions);
+  CHECK(start.objects[0].positions == again.objects[0].positions);
+}

@@ -1,0 +1,212 @@
+// A scene at one time: cameras, motion, deformation, precision.
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+
+#include "lumivox/base/error.h"
+#include "lumivox/scene/scene.h"
+#include "support/support.h"
+
+using namespace lumivox;
+using Catch::Matchers::Contains;
+
+namespace {
+
+void near(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-6f) {
+  INFO(a.x << ' ' << a.y << ' ' << a.z << " against " << b.x << ' ' << b.y << ' ' << b.z);
+  CHECK(glm::length(a - b) <= tolerance);
+}
+
+/// One triangle named "t" and a camera four metres in front of it.
+Scene triangle() {
+  Scene scene;
+  scene.name = "test";
+  scene.positions = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
+  scene.normals.assign(3, {0, 0, 1});
+  scene.texcoords.assign(3, {0, 0});
+  scene.indices = {0, 1, 2};
+  scene.materials.push_back({});
+  Object object;
+  object.name = "t";
+  object.vertexCount = 3;
+  object.parts = {{0, 0, 3}};
+  scene.objects.push_back(object);
+  Camera camera;
+  camera.name = "main";
+  camera.eye = {1, 1, 4};
+  camera.target = {1, 1, 0};
+  camera.fov = std::numbers::pi / 2;
+  camera.width = 200;
+  camera.height = 100;
+  scene.cameras.push_back(camera);
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("directions of the picture's corners follow the vertical angle and square pixels") {
+  const SceneSnapshot snapshot = snapshotOf(triangle(), 0.0);
+  const CameraView& view = snapshot.camera;
+  // tan(90 deg / 2) = 1 up and down, twice that to the sides of a picture of 200 x 100.
+  near(view.direction(100, 50), {0, 0, -1});
+  near(view.direction(0, 0), {-2, 1, -1});
+  near(view.direction(200, 100), {2, -1, -1});
+}
+
+TEST_CASE("another resolution replaces the camera's own") {
+  const SceneSnapshot snapshot = snapshotOf(triangle(), 0.0, {}, 64, 32);
+  CHECK(snapshot.camera.width == 64);
+  CHECK(snapshot.camera.height == 32);
+}
+
+TEST_CASE("the origin is the centre of what stands still, and positions are relative to it") {
+  Scene scene = triangle();
+  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
+  CHECK(snapshot.origin == glm::dvec3(1, 1, 0));
+  near(snapshot.camera.eye, {0, 0, 4});
+  near(snapshot.bounds.low, {-1, -1, 0});
+  near(snapshot.bounds.high, {1, 1, 0});
+}
+
+TEST_CASE("a scene ten thousand kilometres away has the same snapshot as at the origin, bit for bit") {
+  Scene near = triangle(), far = triangle();
+  const glm::dvec3 shift(1e7, 0, -1e7);
+  far.objects[0].placement = glm::translate(glm::dmat4(1.0), shift);
+  far.cameras[0].eye += shift;
+  far.cameras[0].target += shift;
+  const SceneSnapshot a = snapshotOf(near, 0.0), b = snapshotOf(far, 0.0);
+  CHECK(a.objects[0].toWorld == b.objects[0].toWorld);
+  CHECK(a.camera == b.camera);
+  CHECK(a.bounds.low == b.bounds.low);
+  CHECK(a.bounds.high == b.bounds.high);
+}
+
+TEST_CASE("rigid motion turns about its pivot and moves along its velocity") {
+  Scene scene = triangle();
+  // A quarter turn about Z through (1, 1): (2, 0) goes to (2, 2); then 3 s at 2 m/s along X.
+  scene.objects[0].motion = RigidMotion{{0, 0, 1}, std::numbers::pi / 6, {1, 1, 0}, {2, 0, 0}};
+  const SceneSnapshot snapshot = snapshotOf(scene, 3.0);
+  const glm::vec3 moved(snapshot.objects[0].toWorld * glm::vec4(2, 0, 0, 1));
+  near(moved + glm::vec3(snapshot.origin), {8, 2, 0}, 1e-5f);
+  near(snapshot.objects[0].normalToWorld * glm::vec3(1, 0, 0), {0, 1, 0}, 1e-6f);
+  // The bounds follow: corners (0,0), (2,0), (0,2) turn to (2,0), (2,2), (0,0), shifted by 6.
+  near(snapshot.bounds.low + glm::vec3(snapshot.origin), {6, 0, 0}, 1e-5f);
+  near(snapshot.bounds.high + glm::vec3(snapshot.origin), {8, 2, 0}, 1e-5f);
+}
+
+TEST_CASE("the origin does not depend on the time") {
+  Scene scene = triangle();
+  scene.objects.push_back(scene.objects[0]);
+  scene.objects[1].motion = RigidMotion{{0, 0, 1}, 1.0, {0, 0, 0}, {1, 2, 3}};
+  CHECK(snapshotOf(scene, 0.0).origin == snapshotOf(scene, 17.3).origin);
+}
+
+TEST_CASE("normals of a stretched object stay perpendicular to its surface") {
+  Scene scene = triangle();
+  scene.objects[0].placement = glm::scale(glm::dmat4(1.0), {4, 1, 1});
+  // The plane x + y = const, stretched by 4 along X, has the normal (1/4, 1): the inverse transpose.
+  const glm::vec3 normal = glm::normalize(snapshotOf(scene, 0).objects[0].normalToWorld * glm::vec3(1, 1, 0));
+  near(normal, glm::normalize(glm::vec3(0.25f, 1, 0)));
+}
+
+TEST_CASE("deforming vertices are interpolated linearly and a loop returns to its first frame") {
+  Scene scene = triangle();
+  VertexSequence sequence;
+  sequence.framesPerSecond = 2.0;
+  for (const float height : {0.0f, 1.0f, 4.0f}) {
+    sequence.positions.push_back({{0, 0, height}, {2, 0, height}, {0, 2, height}});
+    sequence.normals.push_back({{0, 0, 1}, {0, 0, 1}, {0, 0, 1}});
+  }
+  scene.objects[0].sequence = sequence;
+  const auto height = [&](double time) { return snapshotOf(scene, time).objects[0].positions.at(0).z; };
+  CHECK(height(0.0) == 0.0f);
+  CHECK(height(0.25) == Approx(0.5));
+  CHECK(height(0.75) == Approx(2.5));
+  CHECK(height(1.25) == Approx(2.0));  // between the last frame and the first
+  CHECK(height(1.5) == Approx(0.0).margin(1e-6));
+  CHECK(height(-0.25) == Approx(2.0));
+  scene.objects[0].sequence->loop = false;
+  CHECK(height(1.25) == 4.0f);
+  CHECK(height(100.0) == 4.0f);
+  CHECK(height(-1.0) == 0.0f);
+  CHECK(snapshotOf(scene, 1.0).bounds.high.z + snapshotOf(scene, 1.0).origin.z == Approx(4.0));
+}
+
+TEST_CASE("interpolated normals have unit length") {
+  Scene scene = triangle();
+  VertexSequence sequence;
+  sequence.framesPerSecond = 1.0;
+  sequence.positions.assign(2, scene.positions);
+  sequence.normals = {{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}}};
+  scene.objects[0].sequence = sequence;
+  const SceneSnapshot snapshot = snapshotOf(scene, 0.5);
+  for (const glm::vec3& normal : snapshot.objects[0].normals) CHECK(glm::length(normal) == Approx(1.0f));
+}
+
+TEST_CASE("a camera path is linear between its keys and rests outside") {
+  Scene scene = triangle();
+  scene.cameras[0].keys = {{1.0, {1, 1, 4}, {1, 1, 0}}, {3.0, {3, 1, 4}, {3, 1, 0}}};
+  const auto eye = [&](double time) { return snapshotOf(scene, time).camera.eye.x + 1.0f; };
+  CHECK(eye(0.0) == Approx(1.0));
+  CHECK(eye(1.0) == Approx(1.0));
+  CHECK(eye(1.5) == Approx(1.5));
+  CHECK(eye(3.0) == Approx(3.0));
+  CHECK(eye(9.0) == Approx(3.0));
+}
+
+TEST_CASE("lights are given relative to the origin with unit directions") {
+  Scene scene = triangle();
+  Light light;
+  light.kind = LightKind::spot;
+  light.position = {1, 5, 0};
+  light.direction = {0, -3, 0};
+  light.power = {1, 2, 3};
+  scene.lights.push_back(light);
+  const LightState state = snapshotOf(scene, 0).lights.at(0);
+  near(state.position, {0, 4, 0});
+  near(state.direction, {0, -1, 0});
+}
+
+TEST_CASE("an unknown camera is refused with the names that there are") {
+  const Scene scene = triangle();
+  CHECK(scene.camera().name == "main");
+  CHECK_THAT(
+      test::messageOf<Error>([&] { snapshotOf(scene, 0, "mian"); }),
+      Contains("no camera 'mian'") && Contains("expected one of main") && Contains("did you mean 'main'?"));
+}
+
+TEST_CASE("traits tell what is there, not what is named") {
+  Scene scene = triangle();
+  SceneTraits traits = SceneTraits::of(scene);
+  CHECK(traits.triangles);
+  CHECK_FALSE(traits.glossy);
+  CHECK_FALSE(traits.emission);
+  CHECK_FALSE(traits.movingGeometry);
+  CHECK(traits.areaLights == 0);
+  Material gold;
+  gold.specular = glm::vec3(0.5f);
+  gold.emission = glm::vec3(1.0f);
+  scene.materials.push_back(gold);  // used by no part
+  CHECK_FALSE(SceneTraits::of(scene).glossy);
+  scene.objects[0].parts[0].material = 1;
+  scene.objects[0].motion = RigidMotion{};
+  scene.environment = glm::vec3(0.1f);
+  scene.lights.resize(2);
+  scene.lights[0].power = glm::vec3(1);  // the other one is dark
+  traits = SceneTraits::of(scene);
+  CHECK(traits.glossy);
+  CHECK(traits.emission);
+  CHECK(traits.areaLights == 1);
+  CHECK(traits.movingGeometry);
+  CHECK(traits.environment);
+  CHECK(traits.directionalLights == 1);
+  const SceneTraits everything = SceneTraits::everything();
+  CHECK((everything.textures && everything.masks && everything.medium && everything.movingCamera));
+}
+
+TEST_CASE("a scene without triangles has empty bounds and can still be seen") {
+  Scene scene = triangle();
+  scene.objects.clear();
+  const SceneSnapshot snapshot = snapshotOf(scene, 0);
+  CHECK(snapshot.bounds.empty);
+  CHECK(snapshot.origin == glm::dvec3(0));
+}

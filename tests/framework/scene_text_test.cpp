@@ -1,0 +1,274 @@
+// Scene texts: what the grammar accepts, and one message for each way to get it wrong.
+#include <functional>
+#include <numbers>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/scene/scene.h"
+#include "lumivox/scene/text.h"
+#include "support/support.h"
+
+using namespace lumivox;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+/// The findings of a whole text; `m.obj` lies beside it.
+std::string findings(const std::string& text) {
+  const test::TemporaryDirectory directory;
+  directory.write("m.obj", kTriangle);
+  const auto file = directory.write("a.scene", text);
+  return test::messageOf<DiagnosticsError>([&] { checkScene(file); });
+}
+
+/// The findings of a scene with a good camera, a good mesh `room` and `inside`.
+std::string sceneWith(const std::string& inside) {
+  return findings("scene \"x\" {\ncamera main { eye 0 0 1  target 0 0 0 }\nmesh room { file \"m.obj\" }\n" +
+                  inside + "\n}\n");
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t result = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++result;
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("the scene of the design is read with its units, names and kinds") {
+  const test::TemporaryDirectory directory;
+  directory.write("models/cornell.obj",
+                  "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no tall_box\nf 1 2 3\no ceiling_lamp\nf 1 3 4\n");
+  const auto file = directory.write("a.scene", R"(scene "Cornell box" {
+  camera main   { eye 0.278 0.273 -0.8   target 0.278 0.273 0   fov 39.3 deg   resolution 256 128 }
+  material red  { diffuse 0.63 0.06 0.05 }
+  material gold { diffuse 0.4 0.3 0.1   specular 0.5 0.4 0.2   exponent 40 }
+  mesh room     { file "models/cornell.obj"  material red }
+  light lamp area        { mesh room/ceiling_lamp   radiance 17 12 4 }
+  light sun directional  { direction -0.3 -1 0.2    irradiance 10 10 9 }
+  environment            { radiance 0.2 0.25 0.3 }
+  medium smoke  { particles 10000  source 0.28 0 0.28  radius 4 cm  rise 0.2 m/s   albedo 0.9   extinction 40 /m   anisotropy 0.6 }
+  animate room/tall_box  { rotate 0 1 0  30 deg/s }
+})");
+  const Scene scene = loadScene(file);
+  CHECK(scene.name == "Cornell box");
+  REQUIRE(scene.cameras.size() == 1);
+  CHECK(scene.cameras[0].eye == glm::dvec3(0.278, 0.273, -0.8));
+  CHECK(scene.cameras[0].fov == Approx(39.3 * std::numbers::pi / 180));
+  CHECK(scene.cameras[0].width == 256);
+  CHECK(scene.cameras[0].height == 128);
+  REQUIRE(scene.lights.size() == 1);
+  CHECK(scene.lights[0].name == "sun");
+  CHECK(glm::length(scene.lights[0].direction) == Approx(1.0));
+  CHECK(scene.lights[0].power == glm::vec3(10, 10, 9));
+  CHECK(scene.environment == glm::vec3(0.2f, 0.25f, 0.3f));
+  REQUIRE(scene.media.size() == 1);
+  CHECK(scene.media[0].extinction == glm::vec3(40));
+  CHECK(scene.media[0].albedo == glm::vec3(0.9f));
+  CHECK(scene.media[0].particles == 10000);
+  CHECK(scene.media[0].radius == Approx(0.04));
+  CHECK(scene.media[0].rise == Approx(0.2));
+  REQUIRE(scene.objects.size() == 2);
+  CHECK(scene.objects[0].name == "room/tall_box");
+  REQUIRE(scene.objects[0].motion.has_value());
+  CHECK(scene.objects[0].motion->angularSpeed == Approx(std::numbers::pi / 6));
+  CHECK_FALSE(scene.objects[1].motion.has_value());
+  const Material& lamp = scene.materials.at(static_cast<std::size_t>(scene.objects[1].parts.at(0).material));
+  CHECK(lamp.emission == glm::vec3(17, 12, 4));
+  CHECK(lamp.diffuse == glm::vec3(0.63f, 0.06f, 0.05f));
+  // The same material without a lamp does not shine; gold, which nothing uses, is no material of the scene.
+  CHECK_FALSE(scene.materials.at(static_cast<std::size_t>(scene.objects[0].parts.at(0).material)).emissive());
+  CHECK(scene.materials.size() == 2);
+  CHECK_FALSE(SceneTraits::of(scene).glossy);
+}
+
+TEST_CASE("all errors of a scene text are reported at once") {
+  const std::string text = sceneWith(
+      "camera other { eye 0 0 1  target 0 0 0  fow 3 deg }\nmesh b { file \"m.obj\"  material goold }\n"
+      "light l area { mesh rom  radiance 1 }\nenvironment { radiance -1 }\n");
+  CHECK_THAT(text, Contains("a.scene:4:") && Contains("did you mean 'fov'?"));
+  CHECK_THAT(text, Contains("a.scene:5:") && Contains("unknown material 'goold'"));
+  CHECK_THAT(text, Contains("a.scene:6:") && Contains("unknown mesh 'rom'"));
+  CHECK_THAT(text, Contains("a.scene:7:") && Contains("out of range"));
+}
+
+TEST_CASE("a scene without a camera is refused") {
+  CHECK_THAT(findings("scene \"x\" { mesh room { file \"m.obj\" } }"), Contains("lacks a block 'camera'"));
+}
+
+TEST_CASE("a text that is no scene is refused") {
+  CHECK_THAT(findings("pipeline \"x\" { }"),
+             Contains("unknown block 'pipeline'") && Contains("lacks a block 'scene'"));
+}
+
+TEST_CASE("a camera without eye or target is refused unless it has keys") {
+  CHECK_THAT(
+      findings("scene \"x\" { camera main { fov 40 deg } }"),
+      Contains("block 'camera main' lacks the property 'eye'") && Contains("lacks the property 'target'"));
+  const test::TemporaryDirectory directory;
+  checkScene(directory.write("a.scene",
+                             "scene \"x\" { camera main {\n key { time 0  eye 0 0 1  target 0 0 0 }\n } }"));
+}
+
+TEST_CASE("a camera that looks nowhere or along its up direction is refused") {
+  CHECK_THAT(sceneWith("camera b { eye 1 2 3  target 1 2 3 }"),
+             Contains("eye and target are the same point"));
+  CHECK_THAT(sceneWith("camera b { eye 0 1 0  target 0 0 0 }"), Contains("the camera looks along 'up'"));
+  CHECK_THAT(sceneWith("camera b { eye 0 1 0  target 0 0 1  up 0 0 0 }"), Contains("'up' has length zero"));
+}
+
+TEST_CASE("camera keys must rise in time") {
+  CHECK_THAT(sceneWith("camera b {\nkey { time 1 s  eye 0 0 1  target 0 0 0 }\nkey { time 1000 ms  eye 0 0 2 "
+                       " target 0 0 0 }\n}"),
+             Contains("keys run backwards in time"));
+}
+
+TEST_CASE("unknown materials, meshes and kinds of light are named with the nearest known one") {
+  CHECK_THAT(sceneWith("material gold { }\nmesh b { file \"m.obj\"  material golt }"),
+             Contains("unknown material 'golt'") && Contains("did you mean 'gold'?"));
+  CHECK_THAT(sceneWith("material gold { }\nmesh b {\nfile \"m.obj\"\nuse { part x  material glod }\n}"),
+             Contains("did you mean 'gold'?"));
+  CHECK_THAT(sceneWith("light l area { mesh rooom/lamp  radiance 1 }"),
+             Contains("unknown mesh 'rooom'") && Contains("did you mean 'room'?"));
+  CHECK_THAT(sceneWith("animate roof/box { translate 1 0 0 }"),
+             Contains("unknown mesh 'roof'") && Contains("did you mean 'room'?"));
+  CHECK_THAT(sceneWith("light l aera { }"),
+             Contains("unknown kind 'aera'") && Contains("did you mean 'area'?"));
+}
+
+TEST_CASE("two blocks of one name are refused") {
+  CHECK_THAT(sceneWith("mesh room { file \"m.obj\" }"), Contains("block 'mesh' named 'room' is given twice"));
+  CHECK_THAT(sceneWith("environment { radiance 1 }\nenvironment { radiance 1 }"),
+             Contains("block 'environment' is given twice"));
+}
+
+TEST_CASE("a material that reflects more than it receives is refused") {
+  CHECK_THAT(sceneWith("material b { diffuse 0.7 0.2 0.2  specular 0.4 }"),
+             Contains("material 'b' reflects more light than it receives"));
+}
+
+TEST_CASE("directions and axes need a length, spots an opening") {
+  CHECK_THAT(sceneWith("light l directional { direction 0 0 0  irradiance 1 }"),
+             Contains("'direction' has length zero"));
+  CHECK_THAT(sceneWith("animate room { rotate 0 0 0 30 deg/s }"), Contains("'rotate' has length zero"));
+  CHECK_THAT(
+      sceneWith("light l spot { position 0 0 0  direction 0 -1 0  intensity 1  inner 30 deg  outer 20 deg }"),
+      Contains("the inner angle of the spot is not below the outer one"));
+}
+
+TEST_CASE("an animation that moves nothing and a selection of nothing are refused") {
+  CHECK_THAT(sceneWith("animate room { }"), Contains("the animation moves nothing"));
+  CHECK_THAT(sceneWith("material b { }\nmesh c {\nfile \"m.obj\"\nuse { material b }\n}"),
+             Contains("selects nothing"));
+}
+
+TEST_CASE("sequences and frame numbers in file names belong together") {
+  CHECK_THAT(sceneWith("mesh b { file \"m_##.obj\" }"), Contains("holds '#' but the mesh has no sequence"));
+  CHECK_THAT(sceneWith("mesh b { file \"m.obj\"  sequence 0..3 }"),
+             Contains("has no place for the frame number"));
+  CHECK_THAT(sceneWith("mesh b { file \"m.obj\"  rate 24 }"), Contains("'rate' without a sequence"));
+}
+
+TEST_CASE("a mesh name with a slash is refused") {
+  CHECK_THAT(sceneWith("mesh a/b { file \"m.obj\" }"), Contains("the mesh name 'a/b' holds a '/'"));
+}
+
+TEST_CASE("particles need a radius") {
+  CHECK_THAT(sceneWith("medium s { extinction 1 /m  particles 10 }"), Contains("particles without a radius"));
+}
+
+TEST_CASE("a missing model beside the text is a finding with the nearest file name") {
+  const std::string text = sceneWith("mesh b { file \"n.obj\" }");
+  CHECK_THAT(
+      text, Contains("a.scene:4:15: model file 'n.obj' does not exist") && Contains("did you mean 'm.obj'?"));
+  CHECK_THAT(sceneWith("material b { texture \"none.png\" }"),
+             Contains("picture file 'none.png' does not exist"));
+}
+
+TEST_CASE("a model in a folder that is not beside the text may be absent when the text is checked") {
+  const test::TemporaryDirectory directory;
+  const auto file = directory.write(
+      "a.scene",
+      "scene \"x\" { camera main { eye 0 0 1  target 0 0 0 }\nmesh b { file \"no_such_model/b.obj\" } }");
+  checkScene(file);
+  SceneLoadOptions options;
+  options.assetPath = {directory.path() / "assets"};
+  const std::string text = test::messageOf<AbsentError>([&] { loadScene(file, options); });
+  CHECK_THAT(text, Contains("the model of mesh 'b' 'no_such_model/b.obj' was not found; sought at"));
+  CHECK_THAT(text, Contains((directory.path() / "assets/no_such_model/b.obj").string()));
+  CHECK_THAT(text, Contains("shared/models/no_such_model/b.obj"));
+}
+
+TEST_CASE("models are found on the asset path and in LUMIVOX_ASSETS") {
+  const test::TemporaryDirectory directory;
+  directory.write("one/deep/a.obj", kTriangle);
+  directory.write("two/deep/b.obj", kTriangle);
+  const auto file = directory.write("texts/a.scene",
+                                    "scene \"x\" { camera main { eye 0 0 1  target 0 0 0 }\n"
+                                    "mesh a { file \"deep/a.obj\" }\nmesh b { file \"deep/b.obj\" }\n}");
+  SceneLoadOptions options;
+  options.assetPath = {directory.path() / "one"};
+  CHECK_THROWS_AS(loadScene(file, options), AbsentError);
+  setenv("LUMIVOX_ASSETS", ("/nowhere:" + (directory.path() / "two").string()).c_str(), 1);
+  const Scene scene = loadScene(file, options);
+  unsetenv("LUMIVOX_ASSETS");
+  CHECK(scene.objects.size() == 2);
+}
+
+TEST_CASE("errors in an included file name that file") {
+  const test::TemporaryDirectory directory;
+  directory.write("materials.part", "material red { difuse 1 0 0 }\n");
+  const auto file = directory.write(
+      "a.scene", "scene \"x\" {\n camera main { eye 0 0 1  target 0 0 0 }\n include \"materials.part\"\n}\n");
+  CHECK_THAT(test::messageOf<DiagnosticsError>([&] { checkScene(file); }),
+             Contains("materials.part:1:16: unknown property 'difuse'") &&
+                 Contains("did you mean 'diffuse'?") && Contains("material red { difuse 1 0 0 }"));
+}
+
+TEST_CASE("a truncated, an empty and a binary scene give one error each") {
+  CHECK(count(findings("scene \"x\" {\n camera main { eye 0 0 1  target 0"), "a.scene:") == 1);
+  CHECK(count(findings(""), "a.scene") == 1);
+  CHECK(count(findings(std::string("\0\1\2\3", 4)), "a.scene") == 1);
+}
+
+TEST_CASE("every committed scene passes the check") {
+  int checked = 0;
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(test::sourceDirectory() / "scenes")) {
+    if (entry.path().extension() != ".scene") continue;
+    INFO(entry.path());
+    CHECK_NOTHROW(checkScene(entry.path()));
+    ++checked;
+  }
+  CHECK(checked >= 10);
+}
+
+TEST_CASE("every property of the scene grammar is described with its meaning") {
+  for (const std::string& word : dsl::words(sceneSpecifications())) {
+    INFO(word);
+    CHECK(dsl::describe(sceneSpecifications(), word).size() > word.size() + 10);
+  }
+  CHECK_THAT(dsl::describe(sceneSpecifications(), "fov"),
+             Contains("full vertical angle") && Contains("default 40 deg"));
+}
+
+TEST_CASE("every default in the scene tables is a value that its own table accepts") {
+  const std::function<void(const dsl::BlockSpecification&)> visit =
+      [&](const dsl::BlockSpecification& block) {
+        std::vector<dsl::PropertySpecification> all = block.properties;
+        for (const auto& kind : block.kindProperties)
+          all.insert(all.end(), kind.second.begin(), kind.second.end());
+        for (const dsl::PropertySpecification& property : all) {
+          if (property.defaultText.empty()) continue;
+          const dsl::Document document =
+              dsl::parse("b { " + property.word + " " + property.defaultText + " }", "defaults");
+          std::vector<Diagnostic> found = document.findings;
+          dsl::checkProperty(document, *document.items.at(0).block->items.at(0).property, property, found);
+          for (const Diagnostic& finding : found) FAIL_CHECK(finding.text());
+        }
+        for (const dsl::BlockSpecification& inner : block.blocks) visit(inner);
+      };
+  visit(sceneSpecifications().front());
+}

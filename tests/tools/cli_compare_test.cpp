@@ -1,0 +1,116 @@
+// compare on real EXR files, good and bad.
+#include <cmath>
+#include <limits>
+
+#include "lumivox/base/picture.h"
+#include "tools/cli_support.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+/// Two layers of 8 x 8 pixels with one value each.
+void writeConstant(const std::filesystem::path& file, float direct, float indirect) {
+  LayeredPicture picture;
+  picture.layers["direct"] = Picture(8, 8, 3, direct);
+  picture.layers["indirect_diffuse"] = Picture(8, 8, 3, indirect);
+  writeExr(file, picture);
+}
+
+nlohmann::json compareAsJson(const Workplace& place, const std::string& options) {
+  const CommandResult result = runCommand("lumivox compare '" + place.file("a.exr") + "' '" +
+                                          place.file("b.exr") + "' --json " + options);
+  INFO(result.errors);
+  REQUIRE(result.exitCode == 0);
+  return nlohmann::json::parse(result.output).at("layers");
+}
+
+}  // namespace
+
+TEST_CASE("compare gives each common layer its own error") {
+  const Workplace place;
+  writeConstant(place.path() / "a.exr", 1.0f, 0.5f);
+  writeConstant(place.path() / "b.exr", 0.75f, 0.5f);
+  const auto layers = compareAsJson(place, "");
+  REQUIRE(layers.size() == 2);
+  // Constant pictures: the RMSE is the difference, the mean ratio the quotient.
+  CHECK(layers[0]["layer"] == "direct");
+  CHECK(layers[0]["rmse"]["value"].get<double>() == Approx(0.25));
+  CHECK(layers[0]["mean_ratio"]["value"].get<double>() == Approx(1.0 / 0.75));
+  CHECK(layers[1]["rmse"]["value"].get<double>() == 0.0);
+  const CommandResult table =
+      runCommand("lumivox compare '" + place.file("a.exr") + "' '" + place.file("b.exr") + "'");
+  CHECK(contains(table.output, "indirect_diffuse"));
+}
+
+TEST_CASE("compare takes a chosen layer, or two layers of different names, and can be a gate") {
+  const Workplace place;
+  writeConstant(place.path() / "a.exr", 1.0f, 0.5f);
+  writeConstant(place.path() / "b.exr", 0.75f, 0.5f);
+  CHECK(compareAsJson(place, "--layer indirect_diffuse").size() == 1);
+  const auto crossed = compareAsJson(place, "--layer direct=indirect_diffuse");
+  CHECK(crossed[0]["rmse"]["value"].get<double>() == Approx(0.5));
+  const std::string both = "'" + place.file("a.exr") + "' '" + place.file("b.exr") + "'";
+  CHECK(runCommand("lumivox compare " + both + " --rmse-at-most 0.3").exitCode == 0);
+  CHECK(runCommand("lumivox compare " + both + " --rmse-at-most 0.2").exitCode == 1);
+  checkRefused(runCommand("lumivox compare " + both + " --layer indirekt_diffuse"),
+               "did you mean 'indirect_diffuse'");
+}
+
+TEST_CASE("NaN and infinite pixels are counted and do not spread into the numbers") {
+  const Workplace place;
+  writeConstant(place.path() / "b.exr", 0.75f, 0.5f);
+  LayeredPicture picture;
+  picture.layers["direct"] = Picture(8, 8, 3, 1.0f);
+  picture.layers["direct"].at(3, 4, 1) = std::numeric_limits<float>::quiet_NaN();
+  picture.layers["direct"].at(5, 6, 0) = std::numeric_limits<float>::infinity();
+  writeExr(place.path() / "a.exr", picture);
+  const auto layers = compareAsJson(place, "");
+  CHECK(layers[0]["non_finite_picture"] == 2);
+  CHECK(layers[0]["rmse"]["value"].get<double>() == Approx(0.25));
+}
+
+TEST_CASE("the variance layers of the truth become the uncertainties") {
+  const Workplace place;
+  writeConstant(place.path() / "a.exr", 1.0f, 0.5f);
+  LayeredPicture truth;
+  truth.layers["direct"] = Picture(8, 8, 3, 0.75f);
+  truth.layers["direct.variance"] = Picture(8, 8, 3, 0.01f);
+  writeExr(place.path() / "b.exr", truth);
+  const auto layers = compareAsJson(place, "");
+  REQUIRE(layers.size() == 1);  // the variance itself is not compared
+  CHECK(layers[0]["truth_noise"].get<double>() == Approx(0.1).epsilon(1e-5));
+  CHECK(layers[0]["rmse"]["uncertainty"].get<double>() > 0.0);
+}
+
+TEST_CASE("compare refuses pictures of other sizes and files without a layer in common") {
+  const Workplace place;
+  LayeredPicture small, other;
+  small.layers["direct"] = Picture(4, 4, 3, 1.0f);
+  other.layers["grid"] = Picture(8, 8, 3, 1.0f);
+  writeExr(place.path() / "small.exr", small);
+  writeExr(place.path() / "other.exr", other);
+  writeConstant(place.path() / "a.exr", 1.0f, 0.5f);
+  checkRefused(runCommand("lumivox compare '" + place.file("a.exr") + "' '" + place.file("small.exr") + "'"),
+               "4 x 4");
+  checkRefused(runCommand("lumivox compare '" + place.file("a.exr") + "' '" + place.file("other.exr") + "'"),
+               "no layer in common");
+}
+
+TEST_CASE("an EXR that is missing, empty, cut short or something else gives one clear error") {
+  const Workplace place;
+  writeConstant(place.path() / "a.exr", 1.0f, 0.5f);
+  const std::string whole = place.read("a.exr");
+  place.write("empty.exr", "");
+  place.write("cut.exr", whole.substr(0, whole.size() / 2));
+  place.write("head.exr", whole.substr(0, 20));
+  place.write("text.exr", "scene \"no picture\" {}\n");
+  for (const char* name : {"missing.exr", "empty.exr", "cut.exr", "head.exr", "text.exr"}) {
+    INFO(name);
+    checkRefused(runCommand("lumivox compare '" + place.file(name) + "' '" + place.file("a.exr") + "'"),
+                 name);
+    checkRefused(runCommand("lumivox compare '" + place.file("a.exr") + "' '" + place.file(name) + "'"),
+                 name);
+  }
+}

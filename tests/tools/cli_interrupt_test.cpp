@@ -1,0 +1,102 @@
+// An interrupted command leaves the earlier result readable and no half file.
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "lumivox/base/picture.h"
+#include "tools/cli_support.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+/// A command in a process of its own that can be sent a signal.
+class Started {
+ public:
+  explicit Started(std::vector<std::string> arguments) {
+    const std::string program = (binaryDirectory() / "bin/lumivox").string();
+    pid_ = fork();
+    if (pid_ != 0) return;
+    const int nowhere = open("/dev/null", O_RDWR);
+    for (const int descriptor : {0, 1, 2}) dup2(nowhere, descriptor);
+    std::vector<char*> pointers{const_cast<char*>(program.c_str())};
+    for (std::string& argument : arguments) pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    execv(program.c_str(), pointers.data());
+    _exit(127);
+  }
+  ~Started() {
+    if (!ended_) {
+      kill(pid_, SIGKILL);
+      wait();
+    }
+  }
+  void signalAfter(std::chrono::milliseconds delay, int signal) {
+    std::this_thread::sleep_for(delay);
+    kill(pid_, signal);
+  }
+  /// The status as waitpid gives it.
+  int wait() {
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    ended_ = true;
+    return status;
+  }
+
+ private:
+  pid_t pid_ = -1;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+TEST_CASE(
+    "a reference that is killed or interrupted leaves the earlier picture readable and nothing "
+    "half-written") {
+  using namespace std::chrono_literals;
+  const Workplace place;
+  const std::string output = place.file("truth.exr");
+  LayeredPicture earlier;
+  earlier.layers["full"] = Picture(4, 4, 3, 0.25f);
+  writeExr(output, earlier);
+  const std::size_t files = place.fileCount();
+
+  for (const int signal : {SIGINT, SIGKILL}) {
+    INFO("signal " << signal);
+    // Many samples, so that it cannot be done before the signal comes.
+    Started command({"reference", place.scene(), "--resolution", "256x256", "--spp", "1000000", "--no-cache",
+                     "-o", output});
+    command.signalAfter(700ms, signal);
+    const int status = command.wait();
+    CHECK_FALSE((WIFEXITED(status) && WEXITSTATUS(status) == 0));
+    CHECK(readExr(output).layers.at("full").at(1, 2, 0) == 0.25f);
+    CHECK(place.fileCount() == files);
+  }
+}
+
+TEST_CASE("an animation that is killed leaves only whole pictures") {
+  using namespace std::chrono_literals;
+  const Workplace place;
+  Started command({"render", place.scene(), committedPipeline("direct_lighting"), "--resolution", "16x16",
+                   "--frames", "0..99999", "-o", place.file("frame.exr")});
+  // Not before the first picture is there; a minute is far more than the device needs to start.
+  for (int i = 0; i < 600 && !place.has("frame_0000.exr"); ++i) std::this_thread::sleep_for(100ms);
+  REQUIRE(place.has("frame_0000.exr"));
+  command.signalAfter(150ms, SIGKILL);
+  command.wait();
+  std::size_t pictures = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(place.path())) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() != ".exr") continue;
+    INFO(name);
+    CHECK(name[0] != '.');
+    CHECK(readExr(entry.path()).layers.at("direct").width() == 16);
+    ++pictures;
+  }
+  CHECK(pictures >= 1);
+}

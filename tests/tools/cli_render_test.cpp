@@ -1,0 +1,275 @@
+// render, reference, explain and shaders on real input, good and bad.
+#include "lumivox/base/picture.h"
+#include "tools/cli_support.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+std::string quoted(const std::string& text) {
+  return "'" + text + "'";
+}
+
+/// "SCENE PIPELINE" with the little room.
+std::string roomWith(const Workplace& place, const std::string& pipeline) {
+  return quoted(place.scene()) + " " + quoted(committedPipeline(pipeline));
+}
+
+}  // namespace
+
+TEST_CASE(
+    "render writes every output as a layer, their sum as the main layer, and where the picture comes from") {
+  const Workplace place;
+  const CommandResult result = runCommand("lumivox render " + roomWith(place, "voxel_cone_tracing") +
+                                          " --set resolution=16 --seed 3 -o " + quoted(place.file("a.exr")));
+  INFO(result.errors);
+  REQUIRE(result.exitCode == 0);
+  const LayeredPicture picture = readExr(place.path() / "a.exr");
+  for (const char* layer : {"", "direct", "indirect_diffuse", "indirect_glossy"}) {
+    INFO(layer);
+    REQUIRE(picture.layers.count(layer) == 1);
+    CHECK(picture.layers.at(layer).width() == 24);
+    CHECK(picture.layers.at(layer).height() == 16);
+  }
+  const auto& main = picture.layers.at("").values();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < main.size(); ++i) {
+    const double parts = picture.layers.at("direct").values()[i] +
+                         picture.layers.at("indirect_diffuse").values()[i] +
+                         picture.layers.at("indirect_glossy").values()[i];
+    CHECK(main[i] ==
+          Approx(parts).epsilon(2e-3).margin(1e-4));  // outputs may be stored as half floats: 11 bits
+    sum += main[i];
+  }
+  CHECK(sum > 0.0);
+  CHECK(contains(picture.attributes.at("lumivox.parameters"), "resolution=16"));
+  CHECK(picture.attributes.at("lumivox.seed") == "3");
+  CHECK(picture.attributes.at("lumivox.scene_hash").size() == 32);
+  for (const char* name : {"lumivox.pipeline_hash", "lumivox.device", "lumivox.driver", "lumivox.command"})
+    CHECK(picture.attributes.count(name) == 1);
+}
+
+TEST_CASE("the same seed and device give the same bits twice") {
+  const Workplace place;
+  for (const char* name : {"a.exr", "b.exr"})
+    REQUIRE(runCommand("lumivox render " + roomWith(place, "direct_lighting") + " -q -o " +
+                       quoted(place.file(name)))
+                .exitCode == 0);
+  const LayeredPicture a = readExr(place.path() / "a.exr"), b = readExr(place.path() / "b.exr");
+  for (const auto& [name, picture] : a.layers) CHECK(picture.values() == b.layers.at(name).values());
+}
+
+TEST_CASE("render numbers the pictures of an animation, with a run of # or before the extension") {
+  const Workplace place;
+  const std::string command =
+      "lumivox render " + roomWith(place, "direct_lighting") + " -q --resolution 8x8 --frames 9..11 -o ";
+  REQUIRE(runCommand(command + quoted(place.file("out.png"))).exitCode == 0);
+  REQUIRE(runCommand(command + quoted(place.file("f##.png"))).exitCode == 0);
+  for (const char* name : {"out_0009.png", "out_0010.png", "out_0011.png", "f09.png", "f10.png", "f11.png"}) {
+    INFO(name);
+    CHECK(place.has(name));
+  }
+  CHECK_FALSE(place.has("out.png"));
+  const BytePicture picture = readBytePicture(place.path() / "f10.png");
+  CHECK(picture.width == 8);
+}
+
+TEST_CASE("render of one output alone has it as the main layer, and a wrong name names the nearest") {
+  const Workplace place;
+  const std::string command =
+      "lumivox render " + roomWith(place, "direct_lighting") + " -q -o " + quoted(place.file("a.exr"));
+  REQUIRE(runCommand(command + " --output direct").exitCode == 0);
+  CHECK(readExr(place.path() / "a.exr").layers.size() == 1);
+  checkRefused(runCommand(command + " --output dirext"), "did you mean 'direct'");
+}
+
+TEST_CASE(
+    "bad options are told before any work: parameter, range, resolution, frames, kind of picture, place") {
+  const Workplace place;
+  place.write("old.exr", "an earlier result");
+  const std::string command =
+      "lumivox render " + roomWith(place, "voxel_cone_tracing") + " -o " + quoted(place.file("old.exr"));
+  checkRefused(runCommand(command + " --set resolutoin=64"), "did you mean 'resolution'");
+  checkRefused(runCommand(command + " --set resolution=0"), "resolution");
+  checkRefused(runCommand(command + " --set resolution=many"), "resolution");
+  checkRefused(runCommand(command + " --set resolution"), "resolution");
+  checkRefused(runCommand(command + " --resolution 0x5"), "--resolution");
+  checkRefused(runCommand(command + " --resolution 99999x99999"), "--resolution");
+  checkRefused(runCommand(command + " --frames 5..2"), "--frames");
+  checkRefused(runCommand(command + " --camera mane"), "main");
+  CHECK(place.read("old.exr") == "an earlier result");
+  const std::string elsewhere = "lumivox render " + roomWith(place, "voxel_cone_tracing") + " -o ";
+  checkRefused(runCommand(elsewhere + quoted(place.file("a.jpg"))), "a.jpg");
+  checkRefused(runCommand(elsewhere + quoted(place.file("old.exr/a.exr"))), "old.exr");
+  checkRefused(runCommand(elsewhere + quoted(place.path().string() + "/cache.exr/")), "cache.exr");
+}
+
+TEST_CASE("every kind of bad input file gives one clear error and leaves the earlier picture alone") {
+  const Workplace place;
+  place.write("old.exr", "an earlier result");
+  const auto scene = [&](const std::string& name, const std::string& mesh) {
+    place.write(name, "scene \"Bad\" {\n  camera main { eye 0 0 0.9  target 0 0 -1 }\n  mesh room { file \"" +
+                          mesh + "\" }\n  light bulb point { position 0 0 0  intensity 1 1 1 }\n}\n");
+    return place.file(name);
+  };
+  place.write("empty.obj", "");
+  place.write("binary.obj", std::string("\0\1\2\3\xff\xfe", 6));
+  place.write("cut.obj.gz", std::string("\x1f\x8b\x08\x00\x00\x00\x00\x00\x00\x03\x4b", 11));
+  place.write("no_mtl.obj", std::string("mtllib nowhere.mtl\n") + kRoomObj);
+  place.write("picture.mtl", "newmtl grey\nKd 0.5 0.5 0.5\nmap_Kd broken.png\n");
+  place.write(
+      "picture.obj",
+      std::string("mtllib picture.mtl\nusemtl grey\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n"));
+  place.write("broken.png", "\x89PNG\r\n\x1a\n and no more");
+  const struct {
+    std::string scene, named;
+  } cases[] = {{scene("missing.scene", "nowhere.obj"), "nowhere.obj"},
+               {scene("empty_model.scene", "empty.obj"), "empty.obj"},
+               {scene("binary_model.scene", "binary.obj"), "binary.obj"},
+               {scene("cut_model.scene", "cut.obj.gz"), "cut.obj.gz"},
+               {scene("picture.scene", "picture.obj"), "broken.png"},
+               {place.file("nowhere.scene"), "nowhere.scene"}};
+  for (const auto& bad : cases) {
+    INFO(bad.scene);
+    checkRefused(
+        runCommand("lumivox render -q " + quoted(bad.scene) + " " +
+                   quoted(committedPipeline("direct_lighting")) + " -o " + quoted(place.file("old.exr"))),
+        bad.named);
+  }
+  place.write("cut.pipeline", "pipeline \"Cut\" {\n  pass gbuffer direct_lighting.gbuffer {\n");
+  place.write("unknown.pipeline",
+              "pipeline \"Unknown\" {\n  pass a astrology.horoscope { }\n  output direct a.future\n}\n");
+  for (const char* pipeline : {"cut.pipeline", "unknown.pipeline", "nowhere.pipeline"}) {
+    INFO(pipeline);
+    checkRefused(runCommand("lumivox render -q " + quoted(place.scene()) + " " +
+                            quoted(place.file(pipeline)) + " -o " + quoted(place.file("old.exr"))),
+                 pipeline);
+  }
+  CHECK(place.read("old.exr") == "an earlier result");
+}
+
+TEST_CASE("a broken technique library or shader pack is named with its path") {
+  const Workplace place;
+  const auto source = binaryDirectory() / "lib/techniques";
+  const auto plugins = place.path() / "plugins";
+  std::filesystem::create_directories(plugins);
+  std::filesystem::copy_file(source / "libdirect_lighting.so", plugins / "libdirect_lighting.so");
+  const std::string pack = readFile(source / "direct_lighting.shaderpack");
+  const std::string command = "lumivox render -q " + roomWith(place, "direct_lighting") + " --techniques " +
+                              quoted(plugins.string()) + " -o " + quoted(place.file("a.exr"));
+  for (const std::string& bytes :
+       {std::string(), pack.substr(0, pack.size() / 2), std::string("no pack at all")}) {
+    place.write("plugins/direct_lighting.shaderpack", bytes);
+    checkRefused(runCommand(command), "direct_lighting.shaderpack");
+  }
+  place.write("plugins/libdirect_lighting.so", readFile(source / "libdirect_lighting.so").substr(0, 1000));
+  checkRefused(runCommand(command), "libdirect_lighting.so");
+  CHECK_FALSE(place.has("a.exr"));
+}
+
+TEST_CASE("a grid that cannot fit in memory is refused with its size") {
+  const Workplace place;
+  place.write("huge.pipeline",
+              "pipeline \"Huge\" {\n  pass voxels voxelization.conservative { resolution 512 }\n  pass "
+              "gbuffer direct_lighting.gbuffer { }\n"
+              "  pass shadow direct_lighting.shadow_map { size 16384 }\n"
+              "  pass direct direct_lighting.shade { gbuffer gbuffer  shadow shadow.depth }\n  output direct "
+              "direct.radiance\n}\n");
+  std::string lights;
+  for (int i = 0; i < 64; ++i)
+    lights += "  light bulb" + std::to_string(i) + " point { position 0.2 0.5 0  intensity 1 1 1 }\n";
+  place.write("many.scene",
+              std::string("scene \"Many\" {\n  camera main { eye 0 0 0.9  target 0 0 -1  resolution 8 8 }\n"
+                          "  mesh room { file \"room.obj\" }\n") +
+                  lights + "}\n");
+  // 64 point lights, 6 faces of 16384 x 16384 texels of 4 bytes each: 384 GiB.
+  const CommandResult result =
+      runCommand("lumivox render -q " + quoted(place.file("many.scene")) + " " +
+                 quoted(place.file("huge.pipeline")) + " -o " + quoted(place.file("a.exr")));
+  INFO(result.errors);
+  CHECK(result.exitCode == 2);
+  CHECK(contains(result.errors, "iB"));
+  CHECK_FALSE(place.has("a.exr"));
+}
+
+TEST_CASE("strict refuses a model with a bad triangle that is otherwise dropped with a warning") {
+  const Workplace place;
+  place.write("room.obj", std::string(kRoomObj) + "v nan 0 0\nf 1 2 9\nf 1 1 2\n");
+  const std::string command = "lumivox render " + roomWith(place, "direct_lighting") +
+                              " --resolution 8x8 -o " + quoted(place.file("a.exr"));
+  const CommandResult strict = runCommand(command + " --strict");
+  checkRefused(strict, "room.obj");
+  CHECK_FALSE(place.has("a.exr"));
+  const CommandResult lenient = runCommand(command);
+  CHECK(lenient.exitCode == 0);
+  CHECK(contains(lenient.errors, "room.obj"));
+}
+
+TEST_CASE("reference writes the truth with its variances, and compare judges a picture by it") {
+  const Workplace place;
+  const CommandResult result = runCommand("lumivox reference " + quoted(place.scene()) +
+                                          " -q --spp 16 --bounces 4 -o " + quoted(place.file("truth.exr")));
+  INFO(result.errors);
+  REQUIRE(result.exitCode == 0);
+  const LayeredPicture truth = readExr(place.path() / "truth.exr");
+  for (const char* layer :
+       {"", "direct", "one_bounce_diffuse", "indirect_diffuse", "full", "direct.variance", "full.variance"}) {
+    INFO(layer);
+    CHECK(truth.layers.count(layer) == 1);
+  }
+  CHECK(truth.layers.at("").values() == truth.layers.at("full").values());
+  REQUIRE(runCommand("lumivox render -q " + roomWith(place, "direct_lighting") + " -o " +
+                     quoted(place.file("a.exr")))
+              .exitCode == 0);
+  const CommandResult compared = runCommand("lumivox compare '" + place.file("a.exr") + "' '" +
+                                            place.file("truth.exr") + "' --layer direct --json");
+  INFO(compared.errors);
+  const auto layer = nlohmann::json::parse(compared.output).at("layers").at(0);
+  // A point light on Lambert surfaces: direct lighting is exact but for the picture's edges and the shadow
+  // map.
+  CHECK(layer["mean_ratio"]["value"].get<double>() == Approx(1.0).epsilon(0.1));
+  CHECK(runCommand("lumivox reference " + quoted(place.scene()) + " --spp 0 -o a.exr").exitCode == 2);
+}
+
+TEST_CASE("explain says what was left out, what it saved, and that the picture is the same") {
+  const Workplace place;
+  const CommandResult result = runCommand("lumivox explain " + roomWith(place, "voxel_cone_tracing") +
+                                          " -q --set resolution=16 --repeats 1 --json");
+  INFO(result.errors);
+  REQUIRE(result.exitCode == 0);
+  const auto json = nlohmann::json::parse(result.output);
+  CHECK(json.at("same_picture").get<bool>());
+  CHECK(json.at("frame_ms").at("median").get<double>() > 0.0);
+  CHECK(json.at("frame_ms_keep_everything").at("median").get<double>() > 0.0);
+  bool glossy = false;  // the room has nothing glossy
+  for (const auto& one : json.at("left_out"))
+    glossy = glossy || contains(one.at("why").get<std::string>(), "glossy");
+  CHECK(glossy);
+  CHECK(
+      contains(runCommand("lumivox explain " + roomWith(place, "direct_lighting") + " -q --repeats 1").output,
+               "passes kept"));
+}
+
+TEST_CASE(
+    "shaders lists the variants that are possible, compiled and needed, and prints any of them as GLSL") {
+  const Workplace place;
+  const CommandResult result = runCommand("lumivox shaders -q " + roomWith(place, "voxel_cone_tracing") +
+                                          " --set resolution=16 --json");
+  INFO(result.errors);
+  REQUIRE(result.exitCode == 0);
+  const auto json = nlohmann::json::parse(result.output);
+  REQUIRE_FALSE(json.at("programs").empty());
+  for (const auto& program : json.at("programs")) {
+    CHECK(program.at("possible").get<std::size_t>() >= program.at("compiled").get<std::size_t>());
+    CHECK(program.at("compiled").get<std::size_t>() >= program.at("needed").size());
+  }
+  const CommandResult glsl = runCommand("lumivox shaders --print voxel_cone_tracing/gather");
+  INFO(glsl.errors);
+  CHECK(glsl.exitCode == 0);
+  CHECK(contains(glsl.output, "#version 450"));
+  CHECK(contains(glsl.output, "void main()"));
+  checkRefused(runCommand("lumivox shaders --print voxel_cone_tracing/gahter"), "gather");
+  checkRefused(runCommand("lumivox shaders --print voxel_cone_tracing/gather --variant purple"), "--variant");
+  checkRefused(runCommand("lumivox shaders"), "SCENE");
+}

@@ -1,0 +1,165 @@
+// The report on a tiny scene: one page that needs nothing else, and the same numbers in CSV and JSON.
+#include <map>
+#include <regex>
+#include <sstream>
+
+#include "tools/cli_support.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+/// RFC 4180, as far as these files need it.
+std::vector<std::map<std::string, std::string>> parseCsv(const std::string& text) {
+  std::vector<std::vector<std::string>> rows{{""}};
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      if (c == '"' && i + 1 < text.size() && text[i + 1] == '"') {
+        rows.back().back() += text[++i];
+      } else if (c == '"') {
+        quoted = false;
+      } else {
+        rows.back().back() += c;
+      }
+    } else if (c == '"') {
+      quoted = true;
+    } else if (c == ',') {
+      rows.back().emplace_back();
+    } else if (c == '\n') {
+      rows.push_back({""});
+    } else if (c != '\r') {
+      rows.back().back() += c;
+    }
+  }
+  rows.pop_back();
+  std::vector<std::map<std::string, std::string>> records;
+  for (std::size_t row = 1; row < rows.size(); ++row) {
+    REQUIRE(rows[row].size() == rows[0].size());
+    std::map<std::string, std::string> record;
+    for (std::size_t column = 0; column < rows[0].size(); ++column)
+      record[rows[0][column]] = rows[row][column];
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+/// A pipeline with two points, quick enough for a test.
+constexpr const char* kQuickPipeline =
+    "pipeline \"Quick\" {\n  param samples 4 in 1..16\n  pass gbuffer direct_lighting.gbuffer { }\n"
+    "  pass shadow direct_lighting.shadow_map { size 64  area_samples $samples }\n"
+    "  pass direct direct_lighting.shade { gbuffer gbuffer  shadow shadow.depth }\n  output direct "
+    "direct.radiance\n}\n"
+    "sweep samples { samples [1 4] }\n";
+
+CommandResult makeReport(const Workplace& place, const std::string& more = {}) {
+  place.write("quick.pipeline", kQuickPipeline);
+  return runCommand("lumivox report '" + place.scene() + "' --pipeline '" + place.file("quick.pipeline") +
+                    "' -q --spp 16 --repeats 2 -o '" + place.file("out/page.html") + "' " + more);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a report is one page that loads nothing from elsewhere, with CSV and JSON of the same numbers beside "
+    "it") {
+  const Workplace place;
+  const CommandResult result = makeReport(place);
+  INFO(result.errors);
+  REQUIRE(result.exitCode == 0);
+
+  // The terminal: a table, and the page's path as the last line.
+  const std::string lastLine = result.output.substr(result.output.rfind('\n', result.output.size() - 2) + 1);
+  CHECK(lastLine == place.file("out/page.html") + "\n");
+  CHECK(contains(result.output, "Frame ms"));
+
+  const std::string page = place.read("out/page.html");
+  CHECK(contains(page, "Chart.js v3"));
+  CHECK(contains(page, "Little room"));
+  CHECK(contains(page, "data:image/png;base64,"));
+  const std::regex loads(
+      "(src|href|action|data)\\s*=\\s*[\"']?(https?:|//|file:)|url\\(\\s*[\"']?(https?:|//|file:)|@import",
+      std::regex::icase);
+  std::smatch match;
+  const bool external = std::regex_search(page, match, loads);
+  INFO((external ? match.str() : std::string()));
+  CHECK_FALSE(external);
+  CHECK_FALSE(contains(page, "<link"));
+
+  const auto json = nlohmann::json::parse(place.read("out/page.json"));
+  const auto rows = parseCsv(place.read("out/page.csv"));
+  const auto& points = json.at("scenes").at(0).at("points");
+  CHECK(points.size() == 2);
+  std::size_t row = 0;
+  for (const auto& point : points) {
+    for (const auto& error : point.at("errors")) {
+      REQUIRE(row < rows.size());
+      const auto& record = rows[row++];
+      CHECK(record.at("output") == error.at("output").get<std::string>());
+      CHECK(record.at("truth") == error.at("truth").get<std::string>());
+      CHECK(std::stod(record.at("rmse")) == error.at("rmse").at("value").get<double>());
+      CHECK(std::stod(record.at("rmse_uncertainty")) == error.at("rmse").at("uncertainty").get<double>());
+      CHECK(std::stod(record.at("frame_ms")) == point.at("frame_ms").at("median").get<double>());
+      CHECK(record.at("command") == point.at("command").get<std::string>());
+      CHECK(error.at("rmse").at("uncertainty").get<double>() > 0.0);  // the truth has noise, and says so
+      CHECK(error.at("rmse_of_nothing").get<double>() > 0.0);
+    }
+    CHECK(point.at("frame_ms").at("repeats") == 2);
+    CHECK(point.at("passes").size() == 3);
+  }
+  CHECK(row == rows.size());
+  CHECK(json.at("scenes").at(0).at("pruning").at(0).at("same_picture").get<bool>());
+  CHECK_FALSE(json.at("device").at("renderer").get<std::string>().empty());
+  CHECK(json.at("device").contains("timer_note"));
+
+  // The page holds the same records.
+  const std::string start = "<script type=\"application/json\" id=\"data\">";
+  const std::size_t from = page.find(start) + start.size();
+  CHECK(nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from)) == json);
+}
+
+TEST_CASE("the command of a point repeats it with the same error") {
+  const Workplace place;
+  REQUIRE(makeReport(place).exitCode == 0);
+  const auto first = nlohmann::json::parse(place.read("out/page.json")).at("scenes").at(0).at("points").at(0);
+  const std::string command = first.at("command");
+  REQUIRE(command.rfind("lumivox report ", 0) == 0);
+  const CommandResult again = runCommand(command + " -q --json -o '" + place.file("again.html") + "'");
+  INFO(again.errors);
+  REQUIRE(again.exitCode == 0);
+  const auto points = nlohmann::json::parse(again.output).at("scenes").at(0).at("points");
+  REQUIRE(points.size() == 1);
+  CHECK(points[0].at("parameters") == first.at("parameters"));
+  CHECK(points[0].at("errors").at(0).at("rmse") == first.at("errors").at(0).at("rmse"));
+}
+
+TEST_CASE("a setting pins its axis of the sweep, and one that no pipeline knows is refused") {
+  const Workplace place;
+  REQUIRE(makeReport(place, "--set samples=2").exitCode == 0);
+  const auto points = nlohmann::json::parse(place.read("out/page.json")).at("scenes").at(0).at("points");
+  REQUIRE(points.size() == 1);
+  CHECK(points[0].at("parameters").at("samples") == 2);
+  checkRefused(makeReport(place, "--set sampels=2"), "did you mean 'samples'");
+}
+
+TEST_CASE("a report that cannot be made says so before the work and leaves the earlier page alone") {
+  const Workplace place;
+  place.write("out/page.html", "an earlier page");
+  checkRefused(runCommand("lumivox report '" + place.file("nowhere.scene") + "' -o '" +
+                          place.file("out/page.html") + "'"),
+               "nowhere.scene");
+  place.write("wrong.pipeline", "pipeline \"Wrong\" {\n  output direct nothing.radiance\n}\n");
+  checkRefused(runCommand("lumivox report '" + place.scene() + "' --pipeline '" +
+                          place.file("wrong.pipeline") + "' -o '" + place.file("out/page.html") + "'"),
+               "wrong.pipeline");
+  CHECK(place.read("out/page.html") == "an earlier page");
+  checkRefused(makeReport(place, "-o '" + place.path().string() + "'"), place.path().string());
+  checkRefused(makeReport(place, "-o '" + place.file("room.obj/page.html") + "'"), "room.obj");
+  checkRefused(
+      runCommand("LUMIVOX_CHART_JS=/nowhere/chart.js '" + (binaryDirectory() / "bin/lumivox").string() +
+                 "' report '" + place.scene() + "' --pipeline '" + place.file("quick.pipeline") + "' -o '" +
+                 place.file("page.html") + "'"),
+      "libjs-chart.js");
+}

@@ -1,0 +1,172 @@
+// check, fmt, describe and list on real files.
+#include <algorithm>
+
+#include "tools/cli_support.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+TEST_CASE("check reports all findings of all files at once, each with its place, and exits with 2") {
+  const Workplace place;
+  place.write("wrong.scene",
+              "scene \"Wrong\" {\n"
+              "  camera main { eye 0 0 1  target 0 0 0  fow 30 deg }\n"
+              "  mesh room { file \"room.obj\"  colour 1 }\n"
+              "}\n");
+  place.write("wrong.pipeline",
+              "pipeline \"Wrong\" {\n  param size 64 in 1..32\n  output direct nothing.radiance\n}\n");
+  const CommandResult result = runCommand("lumivox check '" + place.file("wrong.scene") + "' '" +
+                                          place.scene() + "' '" + place.file("wrong.pipeline") + "'");
+  INFO(result.errors);
+  CHECK(result.exitCode == 2);
+  CHECK(contains(result.errors, "wrong.scene:2:43: "));
+  CHECK(contains(result.errors, "did you mean 'fov'"));
+  CHECK(contains(result.errors, "wrong.scene:3:32: "));
+  CHECK(contains(result.errors, "wrong.pipeline:2:"));
+  CHECK(contains(result.errors, "wrong.pipeline:3:"));
+  CHECK(contains(result.output, "room.scene: good"));
+}
+
+TEST_CASE("check --json holds the same findings as the text") {
+  const Workplace place;
+  place.write("wrong.scene", "scene \"Wrong\" {\n  camera main { eye 0 0 1  target 0 0 0  fow 30 deg }\n}\n");
+  const CommandResult result =
+      runCommand("lumivox check --json '" + place.file("wrong.scene") + "' '" + place.scene() + "'");
+  CHECK(result.exitCode == 2);
+  const auto json = nlohmann::json::parse(result.output);
+  REQUIRE(json.size() == 2);
+  CHECK_FALSE(json[0]["good"].get<bool>());
+  REQUIRE_FALSE(json[0]["findings"].empty());
+  CHECK(json[0]["findings"][0]["line"] == 2);
+  CHECK(json[0]["findings"][0]["suggestion"] == "fov");
+  CHECK(json[1]["good"].get<bool>());
+  CHECK(json[1]["findings"].empty());
+}
+
+TEST_CASE(
+    "check refuses what is no text of ours: missing, empty, binary, a folder, neither scene nor pipeline") {
+  const Workplace place;
+  place.write("empty.scene", "");
+  place.write("binary.scene", std::string("\x7f"
+                                          "ELF\0\0\x01\xff\xfe",
+                                          9));
+  place.write("open.scene", "scene \"Open\" {\n  camera main { eye 0 0 1\n");
+  place.write("notes.txt", "remember the milk\n");
+  for (const char* name :
+       {"missing.scene", "missing.pipeline", "empty.scene", "binary.scene", "open.scene", "notes.txt"}) {
+    const CommandResult result = runCommand("lumivox check '" + place.file(name) + "'");
+    INFO(name);
+    checkRefused(result, name);
+  }
+  checkRefused(runCommand("lumivox check '" + place.path().string() + "'"), place.path().string());
+}
+
+TEST_CASE("every committed scene and pipeline passes check") {
+  const std::string scenes = (sourceDirectory() / "scenes").string();
+  const CommandResult result = runCommand("lumivox check '" + scenes + "'/*.scene '" + scenes +
+                                          "'/stress/*.scene '" + scenes + "'/pipelines/*.pipeline");
+  INFO(result.errors);
+  CHECK(result.exitCode == 0);
+  CHECK(result.errors.empty());
+}
+
+TEST_CASE("fmt lays out in place, keeps comments, and a second run changes nothing") {
+  const Workplace place;
+  place.write("ugly.scene",
+              "# a room\nscene   \"Ugly\"{ camera main{eye 0 0 1 target 0 0 0} # the eye\n mesh room {file "
+              "\"room.obj\"}}");
+  const std::string quoted = "'" + place.file("ugly.scene") + "'";
+  CHECK(runCommand("lumivox fmt --check " + quoted).exitCode == 1);
+  const CommandResult first = runCommand("lumivox fmt " + quoted);
+  INFO(first.errors);
+  REQUIRE(first.exitCode == 0);
+  const std::string once = place.read("ugly.scene");
+  CHECK(contains(once, "# a room"));
+  CHECK(contains(once, "# the eye"));
+  CHECK(runCommand("lumivox fmt --check " + quoted).exitCode == 0);
+  CHECK(runCommand("lumivox fmt " + quoted).exitCode == 0);
+  CHECK(place.read("ugly.scene") == once);
+}
+
+TEST_CASE("fmt touches no file when one of them is wrong") {
+  const Workplace place;
+  const std::string ugly = "scene   \"Ugly\"{ camera main{eye 0 0 1 target 0 0 0} }";
+  place.write("ugly.scene", ugly);
+  place.write("wrong.scene", "scene \"Wrong\" { camera main { eye 0 0 1 }\n");
+  checkRefused(
+      runCommand("lumivox fmt '" + place.file("ugly.scene") + "' '" + place.file("wrong.scene") + "'"),
+      "wrong.scene");
+  CHECK(place.read("ugly.scene") == ugly);
+}
+
+TEST_CASE("describe knows the words of both texts and names the nearest for one that it does not know") {
+  for (const char* word : {"camera", "fov", "material", "pass", "sweep"}) {
+    INFO(word);
+    const CommandResult result = runCommand(std::string("lumivox describe ") + word);
+    CHECK(result.exitCode == 0);
+    CHECK(contains(result.output, word));
+  }
+  CHECK(contains(runCommand("lumivox describe fov").output, "deg"));
+  const CommandResult unknown = runCommand("lumivox describe fow");
+  checkRefused(unknown, "did you mean 'fov'");
+  checkRefused(runCommand("lumivox describe"), "expected a word");
+}
+
+TEST_CASE("describe knows techniques, passes, ports and parameters from the libraries") {
+  CHECK(contains(runCommand("lumivox describe direct_lighting").output, "technique direct_lighting"));
+  const CommandResult pass = runCommand("lumivox describe voxel_cone_tracing.gather");
+  INFO(pass.errors);
+  CHECK(contains(pass.output, "inputs"));
+  CHECK(contains(pass.output, "cones"));
+  CHECK(
+      contains(runCommand("lumivox describe cones").output, "parameter cones of voxel_cone_tracing.gather"));
+  CHECK(contains(runCommand("lumivox describe gbuffer").output, "direct_lighting.gbuffer"));
+}
+
+TEST_CASE("describe --markdown is the whole reference") {
+  const CommandResult result = runCommand("lumivox describe --markdown");
+  CHECK(result.exitCode == 0);
+  for (const char* part :
+       {"## Scene texts", "## Pipeline texts", "## Techniques", "### direct_lighting", "`cones`", "`fov`"})
+    CHECK(contains(result.output, part));
+}
+
+TEST_CASE("list names the committed texts and the built techniques, and its JSON parses") {
+  const auto names = [](const std::string& what) {
+    const CommandResult result = runCommand("lumivox list " + what + " --json");
+    INFO(result.errors);
+    REQUIRE(result.exitCode == 0);
+    std::vector<std::string> list;
+    for (const auto& entry : nlohmann::json::parse(result.output)) list.push_back(entry.at("name"));
+    return list;
+  };
+  const auto has = [](const std::vector<std::string>& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  CHECK(has(names("scenes"), "cornell"));
+  CHECK(has(names("pipelines"), "voxel_cone_tracing"));
+  CHECK(has(names("techniques"), "voxelization"));
+  CHECK(has(names("passes"), "direct_lighting.gbuffer"));
+  CHECK(contains(runCommand("lumivox list scenes").output, "Cornell box"));
+  CHECK(runCommand("lumivox list gardens").exitCode == 2);
+}
+
+TEST_CASE("a technique library that is broken is reported with its path, and the others are still listed") {
+  const Workplace place;
+  place.write("plugins/libbroken.so", "this is no library");
+  const CommandResult result =
+      runCommand("lumivox list techniques --techniques '" + place.file("plugins") + "' --techniques '" +
+                 (binaryDirectory() / "lib/techniques").string() + "'");
+  CHECK(result.exitCode == 0);
+  CHECK(contains(result.errors, "libbroken.so"));
+  CHECK(contains(result.output, "direct_lighting"));
+}
+
+TEST_CASE("unknown commands and options are bad input, help and version are not") {
+  CHECK(runCommand("lumivox").exitCode == 2);
+  CHECK(runCommand("lumivox paint").exitCode == 2);
+  CHECK(runCommand("lumivox render --colour red").exitCode == 2);
+  CHECK(runCommand("lumivox --help").exitCode == 0);
+  CHECK(runCommand("lumivox report --help").exitCode == 0);
+  CHECK(contains(runCommand("lumivox --version").output, "lumivox "));
+}

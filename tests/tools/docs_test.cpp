@@ -1,0 +1,154 @@
+// The guides: what they quote stands in files that are built or tested, their links lead somewhere, and their
+// commands exist.
+#include <algorithm>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "lumivox/base/file.h"
+#include "support/support.h"
+
+namespace fs = std::filesystem;
+using namespace lumivox;
+
+namespace {
+
+struct Quote {
+  std::string language, text;
+  int line = 0;
+};
+
+/// The fenced blocks of a Markdown text.
+std::vector<Quote> quotesOf(const std::string& markdown) {
+  std::vector<Quote> quotes;
+  std::istringstream stream(markdown);
+  bool inside = false;
+  int number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    if (line.rfind("```", 0) == 0) {
+      inside = !inside;
+      if (inside) quotes.push_back({line.substr(3), "", number});
+    } else if (inside) {
+      quotes.back().text += line + '\n';
+    }
+  }
+  return quotes;
+}
+
+/// Layout may differ: runs of white space count as one blank.
+std::string withoutLayout(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (std::isspace(static_cast<unsigned char>(c)) == 0)
+      result += c;
+    else if (!result.empty() && result.back() != ' ')
+      result += ' ';
+  }
+  if (!result.empty() && result.back() == ' ') result.pop_back();
+  return result;
+}
+
+std::vector<std::string> linksOf(const std::string& markdown) {
+  std::vector<std::string> links;
+  static const std::regex pattern("\\]\\(([^)#\\s]+)[^)]*\\)");
+  for (std::sregex_iterator match(markdown.begin(), markdown.end(), pattern), end; match != end; ++match)
+    if ((*match)[1].str().find("://") == std::string::npos) links.push_back((*match)[1]);
+  return links;
+}
+
+/// `./run WORD ...` and `lumivox WORD ...` at the start of a line.
+std::set<std::string> commandsOf(const std::string& shell) {
+  std::set<std::string> commands;
+  std::istringstream stream(shell);
+  static const std::regex pattern("^(?:\\./run|lumivox) ([a-z]+)\\b.*");
+  for (std::string line; std::getline(stream, line);) {
+    std::smatch match;
+    if (std::regex_match(line, match, pattern)) commands.insert(match[1]);
+  }
+  return commands;
+}
+
+std::vector<fs::path> guides() {
+  std::vector<fs::path> files = {test::sourceDirectory() / "README.md"};
+  for (const auto& entry : fs::directory_iterator(test::sourceDirectory() / "docs"))
+    if (entry.path().extension() == ".md") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// Where quotes of a language may come from.
+std::string sourcesOf(const std::string& language) {
+  static const std::vector<
+      std::pair<std::set<std::string>, std::pair<std::set<std::string>, std::vector<std::string>>>>
+      homes = {{{"scene"}, {{".scene"}, {"scenes", "docs/examples"}}},
+               {{"pipeline"}, {{".pipeline"}, {"scenes", "docs/examples"}}},
+               {{"cpp"}, {{".cpp", ".h"}, {"techniques", "framework/include", "tests"}}},
+               {{"glsl"}, {{".glsl", ".vert", ".geom", ".frag", ".comp"}, {"shaders"}}},
+               {{"cmake"}, {{".txt", ".cmake"}, {"techniques", "cmake"}}}};
+  std::string all;
+  for (const auto& [languages, where] : homes) {
+    if (languages.count(language) == 0) continue;
+    for (const std::string& folder : where.second)
+      for (const auto& entry : fs::recursive_directory_iterator(test::sourceDirectory() / folder))
+        if (entry.is_regular_file() && where.first.count(entry.path().extension().string()) != 0)
+          all += withoutLayout(readFile(entry.path())) + '\n';
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("the reader of guides sees quotes, links and commands") {
+  const auto quotes = quotesOf("a\n```cpp\nint  x;\n```\nb\n```sh\n./run render a\nls\n```\n");
+  REQUIRE(quotes.size() == 2);
+  CHECK(quotes[0].language == "cpp");
+  CHECK(withoutLayout(quotes[0].text) == "int x;");
+  CHECK(quotes[1].line == 6);
+  CHECK(commandsOf(quotes[1].text) == std::set<std::string>{"render"});
+  CHECK(linksOf("[a](b.md) [c](https://d.e) [f](g/h.md#i)") == std::vector<std::string>{"b.md", "g/h.md"});
+}
+
+TEST_CASE("what the guides quote stands word for word in files that are built or tested") {
+  const std::set<std::string> quoted = {"scene", "pipeline", "cpp", "glsl", "cmake"};
+  for (const std::string& language : quoted) {
+    const std::string sources = sourcesOf(language);
+    for (const fs::path& guide : guides())
+      for (const Quote& quote : quotesOf(readFile(guide))) {
+        INFO(guide << ":" << quote.line << "\n" << quote.text);
+        CHECK((quoted.count(quote.language) != 0 || quote.language == "sh" || quote.language == "text"));
+        if (quote.language == language) CHECK(sources.find(withoutLayout(quote.text)) != std::string::npos);
+      }
+  }
+}
+
+TEST_CASE("the links of the guides lead to files") {
+  for (const fs::path& guide : guides())
+    for (const std::string& link : linksOf(readFile(guide))) {
+      INFO(guide << " -> " << link);
+      CHECK(fs::exists(guide.parent_path() / link));
+    }
+}
+
+TEST_CASE("the commands that the guides show exist, and the files that they name are there") {
+  std::set<std::string> commands;
+  for (const fs::path& guide : guides())
+    for (const Quote& quote : quotesOf(readFile(guide))) {
+      if (quote.language != "sh") continue;
+      commands.merge(commandsOf(quote.text));
+      static const std::regex file("[\\w./]+\\.(scene|pipeline)\\b");
+      for (std::sregex_iterator match(quote.text.begin(), quote.text.end(), file), end; match != end;
+           ++match) {
+        INFO(guide << ": " << match->str());
+        CHECK(fs::exists(test::sourceDirectory() / match->str()));
+      }
+    }
+  REQUIRE(commands.size() >= 5);
+  for (const std::string& command : commands) {
+    INFO(command);
+    CHECK(test::runCommand("lumivox " + command + " --help").exitCode == 0);
+  }
+}

@@ -1,0 +1,250 @@
+// The committed scenes: they are right by their own grammar, hold what their descriptions say, and their
+// models are what make_models writes.
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "lumivox/base/file.h"
+#include "lumivox/base/log.h"
+#include "lumivox/base/picture.h"
+#include "lumivox/dsl/document.h"
+#include "lumivox/scene/scene.h"
+#include "support/support.h"
+
+using namespace lumivox;
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path scenesDirectory() {
+  return test::sourceDirectory() / "scenes";
+}
+
+std::vector<fs::path> filesBelow(const fs::path& directory, const std::string& extension) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(directory))
+    if (entry.is_regular_file() && (extension.empty() || entry.path().extension() == extension))
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// Scenes, and the examples of the guides, which promise as much.
+std::vector<fs::path> committedScenes() {
+  std::vector<fs::path> files = filesBelow(scenesDirectory(), ".scene");
+  for (const fs::path& example : filesBelow(test::sourceDirectory() / "docs/examples", ".scene"))
+    files.push_back(example);
+  return files;
+}
+
+/// Scenes whose models are committed; all others need the asset path.
+const std::set<std::string> kOwnScenes = {"cornell",  "cornell_glossy", "arcade",
+                                          "corridor", "furnace",        "spinning_box"};
+bool isOwn(const fs::path& scene) {
+  return kOwnScenes.count(scene.stem().string()) != 0 || scene.parent_path().filename() == "stress" ||
+         scene.parent_path().filename() == "examples";
+}
+
+Scene load(const std::string& name) {
+  return loadScene(scenesDirectory() / (name + ".scene"));
+}
+
+const Object& objectNamed(const Scene& scene, const std::string& name) {
+  for (const Object& object : scene.objects)
+    if (object.name == name) return object;
+  FAIL("there is no object " + name);
+  return scene.objects.front();
+}
+
+/// All vertices of a scene at a time, in metres relative to the camera's eye.
+std::vector<glm::vec3> verticesSeenFromEye(const Scene& scene, double time) {
+  const SceneSnapshot snapshot = snapshotOf(scene, time);
+  std::vector<glm::vec3> vertices;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    for (std::uint32_t v = 0; v < scene.objects[i].vertexCount; ++v)
+      vertices.push_back(glm::vec3(snapshot.objects[i].toWorld *
+                                   glm::vec4(scene.positions[scene.objects[i].firstVertex + v], 1.0f)) -
+                         snapshot.camera.eye);
+  return vertices;
+}
+
+glm::vec3 extent(const Scene& scene) {
+  const Bounds bounds = snapshotOf(scene, 0).bounds;
+  return bounds.high - bounds.low;
+}
+
+}  // namespace
+
+TEST_CASE("make_models writes the committed models anew") {
+  const test::TemporaryDirectory directory;
+  const auto result = test::runCommand("'" + (test::binaryDirectory() / "bin/make_models").string() + "' '" +
+                                       directory.path().string() + "'");
+  INFO(result.errors);
+  REQUIRE(result.exitCode == 0);
+  const fs::path committed = scenesDirectory() / "models";
+  std::uintmax_t total = 0;
+  for (const fs::path& made : filesBelow(directory.path(), "")) {
+    const fs::path other = committed / fs::relative(made, directory.path());
+    INFO(other);
+    REQUIRE(fs::exists(other));
+    total += fs::file_size(other);
+    if (made.extension() == ".png")  // zlib chooses the bytes, the pixels are ours
+      CHECK(readBytePicture(made).values == readBytePicture(other).values);
+    else
+      CHECK(readFile(made) == readFile(other));
+  }
+  CHECK(filesBelow(directory.path(), "").size() == filesBelow(committed, "").size());
+  CHECK(total < (1u << 20));
+}
+
+TEST_CASE("every committed scene passes its check and stands in the canonical layout") {
+  const auto scenes = committedScenes();
+  REQUIRE(scenes.size() >= kOwnScenes.size());
+  for (const fs::path& file : scenes) {
+    INFO(file);
+    CHECK_NOTHROW(checkScene(file));
+    const std::string text = readFile(file);
+    const dsl::Document document = dsl::parse(text, file);
+    REQUIRE(document.findings.empty());
+    CHECK(dsl::format(document) == text);
+  }
+}
+
+TEST_CASE("every scene with a committed model loads, and only the degenerate one warns") {
+  for (const std::string& name : kOwnScenes) REQUIRE(fs::exists(scenesDirectory() / (name + ".scene")));
+  for (const fs::path& file : committedScenes()) {
+    if (!isOwn(file)) continue;
+    INFO(file);
+    const LogCapture log;
+    const std::uint64_t before = warningCount();
+    const Scene scene = loadScene(file);
+    CHECK((scene.triangleCount() > 0) == (file.stem() != "no_triangles"));
+    CHECK((warningCount() > before) == (file.stem() == "degenerate"));
+    SceneLoadOptions strict;
+    strict.strict = true;
+    if (file.stem() == "degenerate") CHECK_THROWS_AS(loadScene(file, strict), Error);
+  }
+}
+
+TEST_CASE("the scenes of well-known models load where the models are") {
+  std::string absent;
+  for (const fs::path& file : committedScenes()) {
+    if (isOwn(file)) continue;
+    INFO(file);
+    try {
+      CHECK(loadScene(file).triangleCount() > 0);
+    } catch (const AbsentError&) {
+      absent += ' ' + file.stem().string();
+    }
+  }
+  if (!absent.empty()) test::skip("models that are not on the asset path:" + absent);
+}
+
+TEST_CASE(
+    "the Cornell box is the measured one: 38 triangles, one lamp, and nothing that a pipeline could need "
+    "besides") {
+  const Scene scene = load("cornell");
+  CHECK(scene.triangleCount() == 38);
+  std::set<std::string> names;
+  for (const Object& object : scene.objects) names.insert(object.name);
+  CHECK(names == std::set<std::string>{"room/floor", "room/ceiling", "room/back_wall", "room/left_wall",
+                                       "room/right_wall", "room/short_box", "room/tall_box",
+                                       "room/ceiling_lamp"});
+  const SceneTraits traits = SceneTraits::of(scene);
+  CHECK(traits.areaLights == 1);
+  CHECK(traits.emission);
+  CHECK_FALSE((traits.textures || traits.masks || traits.glossy || traits.environment || traits.medium ||
+               traits.movingGeometry));
+  CHECK(traits.directionalLights + traits.pointLights + traits.spotLights == 0);
+  // The published widths: 556 mm at the ceiling, 548.8 mm high, 559.2 mm deep.
+  CHECK(extent(scene).x == Approx(0.556).epsilon(1e-5));
+  CHECK(extent(scene).y == Approx(0.5488).epsilon(1e-5));
+  CHECK(extent(scene).z == Approx(0.5592).epsilon(1e-5));
+}
+
+TEST_CASE("in the picture of the Cornell box the red wall is on the left, and the lamp shines downwards") {
+  const Scene scene = load("cornell");
+  const SceneSnapshot snapshot = snapshotOf(scene, 0);
+  const auto mean = [&](const std::string& name) {
+    const Object& object = objectNamed(scene, name);
+    glm::vec3 sum(0.0f);
+    for (std::uint32_t v = 0; v < object.vertexCount; ++v) sum += scene.positions[object.firstVertex + v];
+    return sum / static_cast<float>(object.vertexCount);
+  };
+  CHECK(glm::dot(mean("room/left_wall") - mean("room/right_wall"), snapshot.camera.right) < 0);
+  const Material& red =
+      scene.materials[static_cast<std::size_t>(objectNamed(scene, "room/left_wall").parts.at(0).material)];
+  CHECK(red.diffuse.r > 5 * red.diffuse.g);
+  const Part& lamp = objectNamed(scene, "room/ceiling_lamp").parts.at(0);
+  CHECK(scene.materials[static_cast<std::size_t>(lamp.material)].emission == glm::vec3(17, 12, 4));
+  for (std::uint32_t i = lamp.firstIndex; i < lamp.firstIndex + lamp.indexCount; i += 3) {
+    const glm::vec3 a = scene.positions[scene.indices[i]], b = scene.positions[scene.indices[i + 1]],
+                    c = scene.positions[scene.indices[i + 2]];
+    CHECK(glm::normalize(glm::cross(b - a, c - a)).y == Approx(-1.0));
+  }
+}
+
+TEST_CASE("each scene has what it is there for") {
+  const SceneTraits glossy = SceneTraits::of(load("cornell_glossy"));
+  CHECK(glossy.glossy);
+  CHECK_FALSE(glossy.textures);
+
+  const Scene arcade = load("arcade");
+  const SceneTraits traits = SceneTraits::of(arcade);
+  CHECK((traits.textures && traits.masks && traits.glossy && traits.environment && !traits.emission));
+  CHECK(traits.directionalLights == 1);
+  CHECK(arcade.triangleCount() >= 3000);
+  CHECK(arcade.triangleCount() <= 10000);
+  CHECK(extent(arcade).x == Approx(12.0).margin(1.0));
+
+  const SceneTraits corridor = SceneTraits::of(load("corridor"));
+  CHECK(corridor.spotLights == 1);
+  CHECK(corridor.areaLights + corridor.directionalLights + corridor.pointLights == 0);
+  CHECK_FALSE((corridor.environment || corridor.emission));
+
+  const Scene furnace = load("furnace");
+  for (const Material& material : furnace.materials) {
+    CHECK(material.diffuse == glm::vec3(0.5f));
+    CHECK(material.emission == glm::vec3(1.0f));
+  }
+  const SceneTraits spinning = SceneTraits::of(load("spinning_box"));
+  CHECK((spinning.movingGeometry && !spinning.movingCamera));
+}
+
+TEST_CASE("the spinning box turns by 45 degrees a second about its own centre and everything else rests") {
+  const Scene scene = load("spinning_box");
+  const auto start = verticesSeenFromEye(scene, 0), eighth = verticesSeenFromEye(scene, 1),
+             whole = verticesSeenFromEye(scene, 8);
+  std::size_t vertex = 0, moved = 0;
+  for (const Object& object : scene.objects) {
+    for (std::uint32_t v = 0; v < object.vertexCount; ++v, ++vertex) {
+      INFO(object.name);
+      CHECK(glm::distance(start[vertex], whole[vertex]) < 1e-5f);  // 8 s * 45 deg/s = 360 deg
+      // A corner of the box is 0.3 sqrt 2 m from the axis and moves by the chord 2 r sin(45 deg / 2).
+      const float chord =
+          object.name == "room/box" ? 2.0f * 0.3f * std::sqrt(2.0f) * std::sin(0.3926991f) : 0.0f;
+      CHECK(glm::distance(start[vertex], eighth[vertex]) == Approx(chord).margin(1e-5));
+      if (chord > 0) ++moved;
+    }
+  }
+  CHECK(moved >= 8);
+}
+
+TEST_CASE(
+    "the Cornell box looks the same a thousand kilometres away, half a millimetre wide and five kilometres "
+    "wide") {
+  const auto reference = verticesSeenFromEye(load("cornell"), 0);
+  for (const auto& [name, scale] :
+       std::map<std::string, float>{{"far_away", 1.0f}, {"tiny", 1e-3f}, {"huge", 1e4f}}) {
+    INFO(name);
+    const auto vertices = verticesSeenFromEye(load("stress/" + name), 0);
+    REQUIRE(vertices.size() == reference.size());
+    float largest = 0.0f;
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      largest = std::max(largest, glm::distance(vertices[i] / scale, reference[i]));
+    CHECK(largest < 1e-6f);  // m; a few steps of a float at 1 m
+  }
+}

@@ -1,0 +1,43 @@
+// One technique: its entry files to programs, variants, checks and a pack.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "lumivox/shader/pack.h"
+#include "stage.h"
+
+namespace lumivox::shaderpack {
+
+struct BuildOptions {
+  std::string technique;
+  std::filesystem::path source;  ///< folder of the entry files
+  std::vector<std::filesystem::path> includes;
+  std::filesystem::path cache;
+  unsigned threads = 0;  ///< 0: one per core
+};
+
+/// What the generated header needs of a program beyond the pack.
+struct ProgramInterface {
+  std::vector<StructLayout> structs;     ///< nested ones first
+  std::vector<std::uint32_t> groupSize;  ///< empty: no compute shader, or not the same in every variant
+};
+
+struct BuildResult {
+  shader::ShaderPack pack;
+  std::map<std::string, ProgramInterface> interfaces;
+  std::set<std::filesystem::path> files;  ///< all sources read
+  std::size_t compiled = 0, reused = 0;   ///< stages
+  std::string warnings;
+};
+
+/// Throws Error with every finding, "file:line: error: ..." each.
+BuildResult buildPack(const BuildOptions& options);
+
+/// The C++ side of the interfaces.
+std::string generateHeader(const BuildResult& result);
+
+}  // namespace lumivox::shaderpack
