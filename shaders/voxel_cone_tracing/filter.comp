@@ -1,11 +1,12 @@
 #version 450
 // Pre-filtering of one level from the next finer one (Crassin et al. 2011, Sec. 5; thesis 004 Sec. 4.2.1 Mipmapping).
 //
-// The isotropic value of a coarse voxel is the mean, over the three axes and both ways along each, of what looking through it along that
-// axis would see: the children are composited front to back in each column, and the columns are averaged. So a uniform medium of opacity a
-// per voxel gets 1 - (1-a)^2 one level up: its transmittance does not depend on the level that a cone reads.
-// Deviates from the thesis, which averages the eight children; `average` does that.
-
+// Along each of the three axes the children are composited front to back in each column, both ways, and the columns are averaged: what
+// looking through the coarse voxel along that axis would see. Its isotropic value is the mean of the three, weighted by the square of
+// their opacities, so that the axis which a surface faces counts most. So
+// - a uniform medium of opacity a per voxel gets 1 - (1-a)^2: its transmittance does not depend on the level that a cone reads;
+// - a wall stays nearly opaque, while the plain mean of the thesis halves its opacity at every level and lets light escape.
+// Radiance over opacity is a mean of what is blended, whatever the weights. `average` is the published mean of the eight children.
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 layout(std140, binding = 0) uniform Parameters {
@@ -33,9 +34,55 @@ vec4 slab(vec4 value, float length) {
 
 vec4 over(vec4 front, vec4 back) { return front + (1.0 - front.a) * back; }
 
+// The usual case, two whole children along each axis, without loops: the mean over four columns, each seen from both its ends.
+vec4 pair(vec4 a, vec4 b) { return over(a, b) + over(b, a); }
+
+vec4 eightChildren(ivec3 cell) {
+  vec4 child[8];
+  float most = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    child[i] = texelFetch(radianceGrid, 2 * cell + ivec3(i & 1, i >> 1 & 1, i >> 2), fineLevel);
+    most = max(most, child[i].a);
+  }
+  if (most == 0.0) return vec4(0.0);
+  vec4 x = pair(child[0], child[1]) + pair(child[2], child[3]) + pair(child[4], child[5]) + pair(child[6], child[7]);
+  vec4 y = pair(child[0], child[2]) + pair(child[1], child[3]) + pair(child[4], child[6]) + pair(child[5], child[7]);
+  vec4 z = pair(child[0], child[4]) + pair(child[1], child[5]) + pair(child[2], child[6]) + pair(child[3], child[7]);
+  vec3 facing = vec3(x.a * x.a, y.a * y.a, z.a * z.a);
+  return (facing.x * x + facing.y * y + facing.z * z) / (8.0 * (facing.x + facing.y + facing.z));
+}
+
+// Mean over the columns along one axis, and over both ways along it.
+vec4 lookThrough(ivec3 cell, int axis, ivec3 first, ivec3 last, vec3 ratio) {
+  int side = (axis + 1) % 3, up = (axis + 2) % 3;
+  vec4 sum = vec4(0.0);
+  float weight = 0.0;
+  for (int v = first[up]; v <= last[up]; ++v)
+    for (int u = first[side]; u <= last[side]; ++u) {
+      float part = share(cell[up], v, ratio[up]) * share(cell[side], u, ratio[side]);
+      vec4 ahead = vec4(0.0), back = vec4(0.0);
+      for (int w = first[axis]; w <= last[axis]; ++w) {
+        ivec3 child;
+        child[axis] = w;
+        child[side] = u;
+        child[up] = v;
+        vec4 value = slab(texelFetch(radianceGrid, child, fineLevel), share(cell[axis], w, ratio[axis]));
+        ahead = over(ahead, value);
+        back = over(value, back);
+      }
+      sum += part * (ahead + back);
+      weight += 2.0 * part;
+    }
+  return sum / weight;
+}
+
 void main() {
   ivec3 cell = ivec3(gl_GlobalInvocationID);
   if (any(greaterThanEqual(cell, coarse))) return;
+  if (average == 0 && fine == 2 * coarse) {
+    imageStore(radianceImage, cell, eightChildren(cell));
+    return;
+  }
   vec3 ratio = vec3(fine) / vec3(coarse);
   ivec3 first = ivec3(floor(vec3(cell) * ratio)), last = min(ivec3(ceil(vec3(cell + 1) * ratio)) - 1, fine - 1);
 
@@ -51,24 +98,11 @@ void main() {
         }
   } else {
     for (int axis = 0; axis < 3; ++axis) {
-      int side = (axis + 1) % 3, up = (axis + 2) % 3;
-      for (int v = first[up]; v <= last[up]; ++v)
-        for (int u = first[side]; u <= last[side]; ++u) {
-          float part = share(cell[up], v, ratio[up]) * share(cell[side], u, ratio[side]);
-          vec4 ahead = vec4(0.0), back = vec4(0.0);
-          for (int w = first[axis]; w <= last[axis]; ++w) {
-            ivec3 child;
-            child[axis] = w;
-            child[side] = u;
-            child[up] = v;
-            vec4 value = slab(texelFetch(radianceGrid, child, fineLevel), share(cell[axis], w, ratio[axis]));
-            ahead = over(ahead, value);
-            back = over(value, back);
-          }
-          sum += part * (ahead + back);
-          weight += 2.0 * part;
-        }
+      vec4 seen = lookThrough(cell, axis, first, last, ratio);
+      float facing = seen.a * seen.a;
+      sum += facing * seen;
+      weight += facing;
     }
   }
-  imageStore(radianceImage, cell, sum / weight);
+  imageStore(radianceImage, cell, weight > 0.0 ? sum / weight : vec4(0.0));
 }

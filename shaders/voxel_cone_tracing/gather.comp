@@ -23,6 +23,7 @@ layout(std140, binding = 0) uniform Parameters {
   float offset;       // start of a cone along the normal, in voxels
   float startShare;   // start of a cone along its axis, in voxels
   float coarsest;     // coarsest level
+  float clearance;    // largest diameter of a sample as a share of its height over the tangent plane
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
@@ -40,13 +41,15 @@ layout(binding = 1, rgba32f) uniform writeonly image2D glossyImage;
 const float kOpaque = 0.999;  // what lies behind this opacity adds less than a thousandth
 
 // Radiance along a cone. The sample at distance t has the diameter of the cone there and is read from the level whose voxels have that
-// size: between the levels l and l+1 the linear blend stands for voxels of (1 + f) 2^l, so that f = size / 2^l - 1.
-vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle) {
+// size; between the levels l and l+1 the blend is f = size / 2^l - 1. cosTheta is the cosine between the axis and the normal.
+vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta) {
   vec3 radiance = vec3(0.0);
   float opacity = 0.0;
   float distance = startShare * voxelSize;
   while (distance < maxDistance && opacity < kOpaque) {
-    float diameter = max(voxelSize, 2.0 * tanHalfAngle * distance);
+    // Deviates from Listing 4.13: a wide cone at a slant would reach below the tangent plane and read the surface that it starts from.
+    float height = offset * voxelSize + cosTheta * distance;
+    float diameter = max(voxelSize, min(2.0 * tanHalfAngle * distance, clearance * height));
     float stride = min(stepShare * diameter, maxDistance - distance);
     vec3 texcoord = (apex + direction * (distance + 0.5 * stride) - gridLow) / gridExtent;
     if (any(lessThan(texcoord, vec3(0.0))) || any(greaterThan(texcoord, vec3(1.0)))) {
@@ -55,13 +58,16 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle) {
       if (dot(outward, direction) >= 0.0) break;
     }
     float size = diameter / voxelSize;
-    float level = floor(log2(size));
-    level = min(level + (size * exp2(-level) - 1.0), coarsest);
-    vec4 value = textureLod(radianceGrid, texcoord, level);
+    float level = min(floor(log2(size)), coarsest);
+    float blend = level < coarsest ? size * exp2(-level) - 1.0 : 0.0;
+    vec4 value = textureLod(radianceGrid, texcoord, level + blend);
     if (value.a > 0.0) {
-      // Thesis Sec. 4.2.1: opacity for a step that is not a voxel wide. Pre-multiplied radiance scales with it; listing 4.13 mixes
-      // pre-multiplied and plain radiance, which this does not.
-      float stepOpacity = 1.0 - pow(max(1.0 - value.a, 0.0), stride / diameter);
+      // The blend of two levels of a medium with transmittance T per voxel of the finer one is (1-f) T + f T^2: solved for T, and raised
+      // to the step in such voxels (thesis Sec. 4.2.1, opacity correction). Pre-multiplied radiance scales with the opacity; listing 4.13
+      // mixes pre-multiplied and plain radiance, which this does not.
+      float through = max(1.0 - value.a, 0.0);
+      float perVoxel = 2.0 * through / (1.0 - blend + sqrt((1.0 - blend) * (1.0 - blend) + 4.0 * blend * through));
+      float stepOpacity = 1.0 - pow(perVoxel, stride / (exp2(level) * voxelSize));
       radiance += (1.0 - opacity) * stepOpacity / value.a * value.rgb;
       opacity += (1.0 - opacity) * stepOpacity;
     }
@@ -83,10 +89,10 @@ vec3 gatherDiffuse(vec3 apex, vec3 normal) {
     // weights, 1 + 4 / sqrt 2, so that a constant environment keeps its radiance.
     const float kTilted = 0.70710678118654752440;
     float tanHalfAngle = tan(kPi / 6.0);
-    vec3 sum = traceCone(apex, normal, tanHalfAngle);
+    vec3 sum = traceCone(apex, normal, tanHalfAngle, 1.0);
     for (int i = 0; i < 4; ++i) {
       vec3 side = (i & 1) == 0 ? tangent : bitangent;
-      sum += kTilted * traceCone(apex, normalize(normal + (i < 2 ? side : -side)), tanHalfAngle);
+      sum += kTilted * traceCone(apex, normalize(normal + (i < 2 ? side : -side)), tanHalfAngle, kTilted);
     }
     return sum / (1.0 + 4.0 * kTilted);
   }
@@ -99,7 +105,7 @@ vec3 gatherDiffuse(vec3 apex, vec3 normal) {
     float cosTheta = sqrt(1.0 - radiusSquared);
     vec3 direction = tangent * (radius * cos(angle)) + bitangent * (radius * sin(angle)) + normal * cosTheta;
     float cosHalfAngle = max(1.0 - 0.5 / (float(coneCount) * cosTheta), 0.5);
-    sum += traceCone(apex, direction, sqrt(1.0 - cosHalfAngle * cosHalfAngle) / cosHalfAngle);
+    sum += traceCone(apex, direction, sqrt(1.0 - cosHalfAngle * cosHalfAngle) / cosHalfAngle, cosTheta);
   }
   return sum / float(coneCount);
 }
@@ -125,7 +131,7 @@ void main() {
       // Its integral with the cosine of the surface is specular times the cosine of the mirror direction.
       float cosHalfAngle = max(1.0 - 1.0 / (specular.w + 1.0), 0.5);
       float tanHalfAngle = sqrt(1.0 - cosHalfAngle * cosHalfAngle) / cosHalfAngle;
-      glossy = specular.rgb * max(dot(mirror, normal), 0.0) * traceCone(apex, mirror, tanHalfAngle);
+      glossy = specular.rgb * max(dot(mirror, normal), 0.0) * traceCone(apex, mirror, tanHalfAngle, max(dot(mirror, normal), 0.0));
     }
 #endif
   }

@@ -20,15 +20,18 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Grid {
   vec3 gridLow;     // m
   float voxelSize;  // m
-  ivec3 resolution;
   int lightCount;
   float radianceRange;  // W/(sr m^2): the largest radiance that can be stored
   int twoSided;         // 1: light on the back side counts as well
 };
 layout(std430, binding = 0) readonly buffer FragmentCount { uint fragmentCount; };
 layout(std430, binding = 1) readonly buffer Fragments { VoxelFragment fragments[]; };
-layout(std430, binding = 2) readonly buffer Counts { uint counts[]; };
-layout(std430, binding = 3) buffer Sums { uint sums[]; };  // per voxel: r, g, b, coverage
+layout(binding = 0, r32ui) uniform readonly uimage3D counts;
+// Volumes and not buffers: drivers limit how much of a buffer a shader can address.
+layout(binding = 1, r32ui) uniform uimage3D sumRed;
+layout(binding = 2, r32ui) uniform uimage3D sumGreen;
+layout(binding = 3, r32ui) uniform uimage3D sumBlue;
+layout(binding = 4, r32ui) uniform uimage3D sumCoverage;
 
 const float kFixedPoint = 2147483648.0;  // 2^31
 
@@ -60,10 +63,10 @@ void main() {
   }
 #endif
   vec3 radiance = min(albedo / kPi * irradiance, radianceRange);
-  uint cell = uint((voxel.z * resolution.y + voxel.y) * resolution.x + voxel.x);
-  float share = kFixedPoint / float(max(counts[cell], 1u));
+  float share = kFixedPoint / float(max(imageLoad(counts, voxel).r, 1u));
   uvec4 addend = uvec4(vec4(radiance / radianceRange, 1.0) * (coverage * share) + 0.5);
-  for (int c = 0; c < 4; ++c) {
-    if (addend[c] != 0u) atomicAdd(sums[4u * cell + uint(c)], addend[c]);
-  }
+  if (addend.r != 0u) imageAtomicAdd(sumRed, voxel, addend.r);
+  if (addend.g != 0u) imageAtomicAdd(sumGreen, voxel, addend.g);
+  if (addend.b != 0u) imageAtomicAdd(sumBlue, voxel, addend.b);
+  imageAtomicAdd(sumCoverage, voxel, addend.a);
 }

@@ -8,7 +8,10 @@ layout(std140, binding = 0) uniform Parameters {
   ivec3 resolution;
   float radianceRange;
 };
-layout(std430, binding = 3) readonly buffer Sums { uint sums[]; };
+layout(binding = 1, r32ui) uniform readonly uimage3D sumRed;
+layout(binding = 2, r32ui) uniform readonly uimage3D sumGreen;
+layout(binding = 3, r32ui) uniform readonly uimage3D sumBlue;
+layout(binding = 4, r32ui) uniform readonly uimage3D sumCoverage;
 layout(binding = 0) uniform writeonly image3D radianceImage;  // of whatever float format the grid has
 
 const float kFixedPoint = 2147483648.0;  // 2^31, as in inject.comp
@@ -16,8 +19,7 @@ const float kFixedPoint = 2147483648.0;  // 2^31, as in inject.comp
 void main() {
   ivec3 voxel = ivec3(gl_GlobalInvocationID);
   if (any(greaterThanEqual(voxel, resolution))) return;
-  uint cell = uint((voxel.z * resolution.y + voxel.y) * resolution.x + voxel.x);
-  uvec4 sum = uvec4(sums[4u * cell], sums[4u * cell + 1u], sums[4u * cell + 2u], sums[4u * cell + 3u]);
+  uvec4 sum = uvec4(imageLoad(sumRed, voxel).r, imageLoad(sumGreen, voxel).r, imageLoad(sumBlue, voxel).r, imageLoad(sumCoverage, voxel).r);
   vec4 value = vec4(sum) / kFixedPoint;
   imageStore(radianceImage, voxel, vec4(value.rgb * radianceRange, min(value.a, 1.0)));
 }

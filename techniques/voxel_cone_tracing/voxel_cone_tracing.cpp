@@ -63,16 +63,23 @@ class InjectPass : public Pass {
     description.levels = gpu::fullLevelCount(size.x, size.y, size.z);
     result.radiance = frame.texture(description, "radiance grid");
 
-    const std::uint64_t voxels = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) * static_cast<std::uint64_t>(size.z);
-    const gpu::BufferRef counts = frame.buffer(voxels * sizeof(std::uint32_t), "fragments per voxel");
-    const gpu::BufferRef sums = frame.buffer(4 * voxels * sizeof(std::uint32_t), "radiance sums");
-    counts->clear(0);
-    sums->clear(0);
+    // Counts and sums: one 32-bit integer a voxel each.
+    gpu::TextureDescription words = description;
+    words.format = gpu::Format::r32ui;
+    words.levels = 1;
+    const auto zeroed = [&](const char* label) {
+      gpu::TextureRef texture = frame.texture(words, label);
+      texture->clear(glm::vec4(0.0f));
+      return texture;
+    };
+    const gpu::TextureRef counts = zeroed("fragments per voxel");
+    const gpu::TextureRef red = zeroed("sum of red"), green = zeroed("sum of green"), blue = zeroed("sum of blue");
+    const gpu::TextureRef coverage = zeroed("sum of coverage");
     const float range = largestRadiance(frame.sceneDescription(), frame.snapshot(), result.grid.voxelSize);
 
     frame.shaders().dispatchIndirect(
         frame.program(countShader::kProgram),
-        {countShader::grid({size}), countShader::fragmentCount(*fragments->count), countShader::fragments(*fragments->fragments),
+        {countShader::fragmentCount(*fragments->count), countShader::fragments(*fragments->fragments),
          countShader::counts(*counts)},
         *fragments->count, sizeof(std::uint32_t));
     frame.device().barrier();
@@ -82,13 +89,13 @@ class InjectPass : public Pass {
     injectShader::Grid grid{};
     grid.gridLow = result.grid.low;
     grid.voxelSize = result.grid.voxelSize;
-    grid.resolution = size;
     grid.lightCount = shadow.present() ? shadow->lightCount : 0;
     grid.radianceRange = range;
     grid.twoSided = twoSided ? 1 : 0;
     std::vector<gpu::ResourceBinding> bindings{injectShader::grid(grid), injectShader::fragmentCount(*fragments->count),
                                                injectShader::fragments(*fragments->fragments), injectShader::counts(*counts),
-                                               injectShader::sums(*sums)};
+                                               injectShader::sumRed(*red), injectShader::sumGreen(*green), injectShader::sumBlue(*blue),
+                                               injectShader::sumCoverage(*coverage)};
     if (shadow.present()) {
       bindings.push_back(injectShader::lights(*shadow->lights));
       bindings.push_back(injectShader::views(*shadow->views));
@@ -99,7 +106,8 @@ class InjectPass : public Pass {
     frame.device().barrier();
 
     frame.dispatch(frame.program(resolveShader::kProgram),
-                   {resolveShader::parameters({size, range}), resolveShader::sums(*sums), resolveShader::radianceImage(*result.radiance)},
+                   {resolveShader::parameters({size, range}), resolveShader::sumRed(*red), resolveShader::sumGreen(*green),
+                    resolveShader::sumBlue(*blue), resolveShader::sumCoverage(*coverage), resolveShader::radianceImage(*result.radiance)},
                    size, kVoxelGroup);
     radiance = result;
   }
@@ -107,8 +115,8 @@ class InjectPass : public Pass {
 
 class FilterPass : public Pass {
   In<RadianceGrid> radiance{this, "radiance", "the finest level"};
-  Param<std::string> opacity{this, "opacity", "composite", {"composite", "average"},
-                             "how children make a parent: seen through along the axes, or, as published, their plain mean"};
+  Param<std::string> opacity{this, "opacity", "facing", {"facing", "average"},
+                             "how children make a parent: seen through along the axis that they face, or, as published, their plain mean"};
   Out<RadianceGrid> mips{this, "mips", "the same grid with one level per halving"};
 
   void run(PassContext& frame) override {
@@ -141,6 +149,8 @@ class GatherPass : public Pass {
   Param<float> step{this, "step", 0.5f, {0.05f, 2.0f}, "", "step along a cone as a share of its diameter"};
   Param<float> offset{this, "offset", 1.0f, {0.0f, 8.0f}, "", "start of a cone along the normal, in voxels"};
   Param<float> start{this, "start", 1.0f, {0.0f, 8.0f}, "", "start of a cone along its axis, in voxels"};
+  Param<float> clearance{this, "clearance", 0.5f, {0.0f, 1e3f}, "",
+                         "largest diameter of a sample as a share of its height over the surface; as published: no limit, 1000"};
   Param<float> reach{this, "reach", 0.0f, {0.0f, 1e9f}, "m", "length of a cone; 0: to the end of the grid"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing, "indirect light reflected by the diffuse lobe"};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::glossyMaterial, "indirect light reflected by the Phong lobe"};
@@ -166,6 +176,7 @@ class GatherPass : public Pass {
     parameters.environment = frame.sceneDescription().environment;
     parameters.offset = offset;
     parameters.startShare = start;
+    parameters.clearance = clearance;
     parameters.coarsest = static_cast<float>(input.radiance->description().levels - 1);
 
     using gpu::Sampling;

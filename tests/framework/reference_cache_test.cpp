@@ -19,7 +19,8 @@ struct OwnCache {
   ~OwnCache() { unsetenv("LUMIVOX_CACHE"); }
   std::vector<std::filesystem::path> entries() const {
     std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(directory.path())) files.push_back(entry.path());
+    for (const auto& entry : std::filesystem::directory_iterator(directory.path()))
+      files.push_back(entry.path());
     return files;
   }
   TemporaryDirectory directory;
@@ -35,7 +36,9 @@ bool sameBits(const LayeredPicture& a, const LayeredPicture& b) {
   if (a.layers.size() != b.layers.size()) return false;
   for (const auto& [name, layer] : a.layers) {
     const auto other = b.layers.find(name);
-    if (other == b.layers.end() || !layer.sameShape(other->second) || layer.values() != other->second.values()) return false;
+    if (other == b.layers.end() || !layer.sameShape(other->second) ||
+        layer.values() != other->second.values())
+      return false;
   }
   return true;
 }
@@ -53,7 +56,8 @@ TEST_CASE("a kept truth has the bits and the provenance of the rendered one") {
   CHECK(std::filesystem::last_write_time(cache.entries()[0]) == written);
   CHECK(sameBits(rendered, first));
   CHECK(sameBits(rendered, second));
-  for (const char* name : {"scene", "hash", "samples", "bounces", "seed", "time", "camera", "tracer_version"}) {
+  for (const char* name :
+       {"scene", "hash", "samples", "bounces", "seed", "time", "camera", "tracer_version"}) {
     CAPTURE(name);
     REQUIRE(second.attributes.count(name) == 1);
     CHECK(second.attributes.at(name) == rendered.attributes.at(name));
@@ -122,7 +126,8 @@ TEST_CASE("a damaged truth in the cache is made anew and said so") {
   const std::string altered = readFile(cache.directory.path() / "other.exr");
   std::filesystem::remove(cache.directory.path() / "other.exr");
 
-  for (const std::string& damaged : {std::string(), std::string("no picture"), bytes.substr(0, bytes.size() / 2), flipped, altered}) {
+  for (const std::string& damaged :
+       {std::string(), std::string("no picture"), bytes.substr(0, bytes.size() / 2), flipped, altered}) {
     CAPTURE(damaged.size());
     std::ofstream(entry, std::ios::binary) << damaged;
     const LogCapture log;

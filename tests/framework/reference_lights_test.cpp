@@ -1,4 +1,5 @@
-// Direct light against closed forms: a Lambert surface of albedo a that receives the irradiance E sends out the radiance a E / pi.
+// Direct light against closed forms: a Lambert surface of albedo a that receives the irradiance E sends out
+// the radiance a E / pi.
 #include <array>
 
 #include "framework/reference_scenes.h"
@@ -21,16 +22,20 @@ SceneBuilder floorOnly(float albedo = kAlbedo) {
 
 /// Radiance of the floor at (x, 0, z), seen steeply from above.
 double floorRadiance(const Scene& scene, double x, double z, int samples, int bounces = 0) {
-  return referenceRadiance(scene, 0.0, {x + 0.02, 0.1, z - 0.01}, {-0.02f, -0.1f, 0.01f}, quietly(samples, bounces)).y;
+  return referenceRadiance(scene, 0.0, {x + 0.02, 0.1, z - 0.01}, {-0.02f, -0.1f, 0.01f},
+                           quietly(samples, bounces))
+      .y;
 }
 
-/// Irradiance on a plane with unit `normal` at `point` by a polygon of uniform radiance 1 that lies wholly above the plane.
-/// Lambert 1760: E = 1/2 sum over the edges of the angle that the edge subtends, times the cosine between the plane's normal and the
-/// normal of the triangle that point and edge span.
-double polygonIrradiance(const std::vector<glm::dvec3>& corners, const glm::dvec3& point, const glm::dvec3& normal) {
+/// Irradiance on a plane with unit `normal` at `point` by a polygon of uniform radiance 1 that lies wholly
+/// above the plane. Lambert 1760: E = 1/2 sum over the edges of the angle that the edge subtends, times the
+/// cosine between the plane's normal and the normal of the triangle that point and edge span.
+double polygonIrradiance(const std::vector<glm::dvec3>& corners, const glm::dvec3& point,
+                         const glm::dvec3& normal) {
   double sum = 0.0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const glm::dvec3 a = glm::normalize(corners[i] - point), b = glm::normalize(corners[(i + 1) % corners.size()] - point);
+    const glm::dvec3 a = glm::normalize(corners[i] - point),
+                     b = glm::normalize(corners[(i + 1) % corners.size()] - point);
     sum += std::acos(glm::dot(a, b)) * glm::dot(glm::normalize(glm::cross(a, b)), normal);
   }
   return 0.5 * std::abs(sum);
@@ -43,7 +48,8 @@ TEST_CASE("a Lambert plane under a directional light returns a E cos / pi within
     CAPTURE(angle);
     SceneBuilder builder = floorOnly();
     builder.light(LightKind::directional, glm::vec3(3.0f), {}, {std::sin(angle), -std::cos(angle), 0.0});
-    CHECK(floorRadiance(builder.scene, 1.0, 2.0, 1) == Approx(kAlbedo * 3.0 * std::cos(angle) / kPi).epsilon(0.001));
+    CHECK(floorRadiance(builder.scene, 1.0, 2.0, 1) ==
+          Approx(kAlbedo * 3.0 * std::cos(angle) / kPi).epsilon(0.001));
   }
 }
 
@@ -53,7 +59,8 @@ TEST_CASE("a Lambert plane under a point light returns a I cos / (pi d^2) within
   for (const double x : {0.0, 0.5, 3.0, 20.0}) {
     CAPTURE(x);
     const double squaredDistance = x * x + 4.0, cosine = 2.0 / std::sqrt(squaredDistance);
-    CHECK(floorRadiance(builder.scene, x, 0.0, 1) == Approx(kAlbedo * 7.0 * cosine / (kPi * squaredDistance)).epsilon(0.001));
+    CHECK(floorRadiance(builder.scene, x, 0.0, 1) ==
+          Approx(kAlbedo * 7.0 * cosine / (kPi * squaredDistance)).epsilon(0.001));
   }
 }
 
@@ -72,10 +79,12 @@ TEST_CASE("a spot light falls off by smoothstep of the cosine between its two an
   spot.outerAngle = 0.5f;
   for (const double angle : {0.0, 0.15, 0.25, 0.35, 0.45, 0.55}) {
     CAPTURE(angle);
-    const double t = std::clamp((std::cos(angle) - std::cos(0.5)) / (std::cos(0.2) - std::cos(0.5)), 0.0, 1.0);
+    const double t =
+        std::clamp((std::cos(angle) - std::cos(0.5)) / (std::cos(0.2) - std::cos(0.5)), 0.0, 1.0);
     const double intensity = 5.0 * t * t * (3.0 - 2.0 * t), distance = 3.0 / std::cos(angle);
     const double expected = kAlbedo * intensity * std::cos(angle) / (kPi * distance * distance);
-    CHECK(floorRadiance(builder.scene, 3.0 * std::tan(angle), 0.0, 1) == Approx(expected).epsilon(0.001).margin(1e-6));
+    CHECK(floorRadiance(builder.scene, 3.0 * std::tan(angle), 0.0, 1) ==
+          Approx(expected).epsilon(0.001).margin(1e-6));
   }
 }
 
@@ -97,15 +106,19 @@ TEST_CASE("a quad light over a point gives Lambert's polygon formula within 0.5 
   for (const glm::dvec2 place : {glm::dvec2(0.0, 0.1), glm::dvec2(1.5, 0.4), glm::dvec2(-3.0, 2.0)}) {
     CAPTURE(place.x, place.y);
     const double irradiance = 2.5 * polygonIrradiance(polygon, {place.x, 0, place.y}, {0, 1, 0});
-    CHECK(floorRadiance(builder.scene, place.x, place.y, 200000) == Approx(kAlbedo * irradiance / kPi).epsilon(0.005));
+    CHECK(floorRadiance(builder.scene, place.x, place.y, 200000) ==
+          Approx(kAlbedo * irradiance / kPi).epsilon(0.005));
   }
 }
 
-TEST_CASE("a point a millimetre under a large lamp, where sampling the lamp alone would fail, is right within 0.5 %") {
+TEST_CASE(
+    "a point a millimetre under a large lamp, where sampling the lamp alone would fail, is right within 0.5 "
+    "%") {
   const glm::vec3 corner(-1.0f, 0.001f, -1.0f), edge1(2.0f, 0, 0), edge2(0, 0, 2.0f);
   SceneBuilder builder = floorOnly();
   builder.quad(corner, edge1, edge2, builder.lambert(0.0f, 1.0f));
-  const double irradiance = polygonIrradiance({corner, corner + edge1, corner + edge1 + edge2, corner + edge2}, {0.3, 0, 0.2}, {0, 1, 0});
+  const double irradiance = polygonIrradiance(
+      {corner, corner + edge1, corner + edge1 + edge2, corner + edge2}, {0.3, 0, 0.2}, {0, 1, 0});
   const double radiance =
       referenceRadiance(builder.scene, 0.0, {0.3, 0.0005, 0.2}, {0, -1, 0}, quietly(100000, 0)).x;
   CHECK(radiance == Approx(kAlbedo * irradiance / kPi).epsilon(0.005));
@@ -126,9 +139,10 @@ TEST_CASE("an emissive surface shines from its front side only") {
 }
 
 TEST_CASE("the form factors of unit squares are right within 0.5 %") {
-  // A white receiver under an emitter of radiance 1 sends out E / pi, whose mean over the receiver is the form factor from receiver to
-  // emitter. The camera stands half a metre over the receiver with a right angle of view: the square fills the picture, and the
-  // projection of a parallel plane is uniform, so the mean over the pixels is the mean over the square.
+  // A white receiver under an emitter of radiance 1 sends out E / pi, whose mean over the receiver is the
+  // form factor from receiver to emitter. The camera stands half a metre over the receiver with a right angle
+  // of view: the square fills the picture, and the projection of a parallel plane is uniform, so the mean
+  // over the pixels is the mean over the square.
   SceneBuilder builder;
   builder.quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, builder.lambert(1.0f));
   const int emitter = builder.lambert(0.0f, 1.0f);
@@ -138,7 +152,8 @@ TEST_CASE("the form factors of unit squares are right within 0.5 %") {
     // Howell, "A catalog of radiation heat transfer configuration factors", C-11 with X = Y = 1:
     // F = 2/pi (ln sqrt(4/3) + 2 sqrt(2) atan(1/sqrt(2)) - 2 atan(1)) = 0.19982.
     const double expected =
-        2.0 / kPi * (0.5 * std::log(4.0 / 3.0) + 2.0 * std::sqrt(2.0) * std::atan(1.0 / std::sqrt(2.0)) - 0.5 * kPi);
+        2.0 / kPi *
+        (0.5 * std::log(4.0 / 3.0) + 2.0 * std::sqrt(2.0) * std::atan(1.0 / std::sqrt(2.0)) - 0.5 * kPi);
     CHECK(expected == Approx(0.19982).epsilon(1e-4));
     builder.quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, emitter);
     const Estimate direct = estimateOf(renderReference(builder.scene, quietly(512, 0)), "direct");
@@ -146,7 +161,8 @@ TEST_CASE("the form factors of unit squares are right within 0.5 %") {
     CHECK(direct.mean == Approx(expected).epsilon(0.005));
   }
   SECTION("perpendicular with a common edge") {
-    // Howell C-14 with H = W = 1: F = 1/pi (2 atan(1) - sqrt(2) atan(1/sqrt(2)) + 1/4 ln(4/3 (3/4)^2)) = 0.20004.
+    // Howell C-14 with H = W = 1: F = 1/pi (2 atan(1) - sqrt(2) atan(1/sqrt(2)) + 1/4 ln(4/3 (3/4)^2)) =
+    // 0.20004.
     const double expected =
         1.0 / kPi * (0.5 * kPi - std::sqrt(2.0) * std::atan(1.0 / std::sqrt(2.0)) + 0.25 * std::log(0.75));
     CHECK(expected == Approx(0.20004).epsilon(1e-4));
@@ -186,8 +202,10 @@ TEST_CASE("masks let light and sight through their holes, and cut lamps") {
     cut.emission = glm::vec3(3.0f);
     builder.quad({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}, builder.material(cut));
     const double irradiance =
-        3.0 * polygonIrradiance({{-0.5, 1, -0.5}, {0, 1, -0.5}, {0, 1, 0.5}, {-0.5, 1, 0.5}}, {0.2, 0, 0}, {0, 1, 0});
-    CHECK(floorRadiance(builder.scene, 0.2, 0.0, 200000) == Approx(kAlbedo * irradiance / kPi).epsilon(0.005));
+        3.0 * polygonIrradiance({{-0.5, 1, -0.5}, {0, 1, -0.5}, {0, 1, 0.5}, {-0.5, 1, 0.5}}, {0.2, 0, 0},
+                                {0, 1, 0});
+    CHECK(floorRadiance(builder.scene, 0.2, 0.0, 200000) ==
+          Approx(kAlbedo * irradiance / kPi).epsilon(0.005));
   }
 }
 

@@ -25,14 +25,17 @@ inline ReferenceOptions quietly(int samples, int bounces = 32) {
 }
 
 struct Estimate {
-  double mean = 0.0, deviation = 0.0;  ///< of the mean over all pixels and channels, from the stated variances
+  double mean = 0.0,
+         deviation = 0.0;  ///< of the mean over all pixels and channels, from the stated variances
 };
 
-/// Mean of a layer. Its channels share paths, so their errors are taken as one; those of pixels are independent.
+/// Mean of a layer. Its channels share paths, so their errors are taken as one; those of pixels are
+/// independent.
 inline Estimate estimateOf(const LayeredPicture& picture, const std::string& layer) {
   const Picture& means = picture.layers.at(layer);
   const Picture& variances = picture.layers.at(layer + ".variance");
-  const auto pixels = static_cast<double>(means.pixelCount()), channels = static_cast<double>(means.channels());
+  const auto pixels = static_cast<double>(means.pixelCount()),
+             channels = static_cast<double>(means.channels());
   Estimate result;
   double variance = 0.0;
   for (const float value : means.values()) result.mean += value / (pixels * channels);
@@ -67,7 +70,8 @@ class SceneBuilder {
     return material(made);
   }
 
-  /// A parallelogram whose front side is that of cross(edge1, edge2); texture coordinates run along the edges.
+  /// A parallelogram whose front side is that of cross(edge1, edge2); texture coordinates run along the
+  /// edges.
   Object& quad(const glm::vec3& corner, const glm::vec3& edge1, const glm::vec3& edge2, int materialIndex) {
     const glm::vec3 normal = glm::normalize(glm::cross(edge1, edge2));
     const auto first = static_cast<std::uint32_t>(scene.positions.size());
@@ -102,7 +106,8 @@ class SceneBuilder {
     }
   }
 
-  Camera& look(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up, double fov, int width, int height) {
+  Camera& look(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up, double fov, int width,
+               int height) {
     Camera& camera = scene.cameras.front();
     camera.name = "main";
     camera.eye = eye, camera.target = target, camera.up = up;
@@ -110,7 +115,8 @@ class SceneBuilder {
     return camera;
   }
 
-  Light& light(LightKind kind, const glm::vec3& power, const glm::dvec3& position, const glm::dvec3& direction = {0, -1, 0}) {
+  Light& light(LightKind kind, const glm::vec3& power, const glm::dvec3& position,
+               const glm::dvec3& direction = {0, -1, 0}) {
     Light made;
     made.name = "light " + std::to_string(scene.lights.size());
     made.kind = kind;
@@ -124,13 +130,15 @@ class SceneBuilder {
   Scene scene;
 };
 
-/// A room with an emissive lamp under its ceiling, coloured side walls, a diffuse and a glossy box; the front is open.
+/// A room with an emissive lamp under its ceiling, coloured side walls, a diffuse and a glossy box; the front
+/// is open.
 inline Scene litRoom(int width, int height) {
   SceneBuilder builder;
   Material red, green;
   red.diffuse = {0.63f, 0.06f, 0.05f};
   green.diffuse = {0.15f, 0.48f, 0.09f};
-  const int white = builder.lambert(0.73f), redWall = builder.material(red), greenWall = builder.material(green);
+  const int white = builder.lambert(0.73f), redWall = builder.material(red),
+            greenWall = builder.material(green);
   const int lamp = builder.lambert(0.78f, 15.0f), shiny = builder.phong(0.3f, 0.6f, 30.0f);
   builder.quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, white);
   builder.quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, white);

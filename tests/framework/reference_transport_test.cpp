@@ -11,7 +11,8 @@ using namespace lumivox::test;
 
 namespace {
 
-/// A plane through the origin facing up, in an environment of radiance 1, seen at one point under an angle from its normal.
+/// A plane through the origin facing up, in an environment of radiance 1, seen at one point under an angle
+/// from its normal.
 Scene planeInEnvironment(float diffuse, float specular, float exponent, double angle) {
   SceneBuilder builder;
   builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.phong(diffuse, specular, exponent));
@@ -24,12 +25,14 @@ Scene planeInEnvironment(float diffuse, float specular, float exponent, double a
 /// Reflectance of the unit Phong lobe under a constant environment: the integral over the upper hemisphere of
 /// (n+2)/(2 pi) max(0, cos a)^n cos(theta), by the midpoint rule over directions about the mirror direction.
 double lobeReflectance(double exponent, double angle) {
-  const glm::dvec3 mirror(-std::sin(angle), std::cos(angle), 0), side(std::cos(angle), std::sin(angle), 0), across(0, 0, 1);
+  const glm::dvec3 mirror(-std::sin(angle), std::cos(angle), 0), side(std::cos(angle), std::sin(angle), 0),
+      across(0, 0, 1);
   constexpr int kSteps = 1000;
   double sum = 0.0;
   for (int i = 0; i < kSteps; ++i) {
     // Uniform steps of c = cos^(n+1) a make the lobe's weight uniform: cos^n a sin a da = dc / (n+1).
-    const double cosine = std::pow((i + 0.5) / kSteps, 1.0 / (exponent + 1.0)), sine = std::sqrt(1.0 - cosine * cosine);
+    const double cosine = std::pow((i + 0.5) / kSteps, 1.0 / (exponent + 1.0)),
+                 sine = std::sqrt(1.0 - cosine * cosine);
     for (int k = 0; k < kSteps; ++k) {
       const double turn = 2.0 * kPi * (k + 0.5) / kSteps;
       const glm::dvec3 direction = cosine * mirror + sine * (std::cos(turn) * side + std::sin(turn) * across);
@@ -45,7 +48,8 @@ TEST_CASE("a Phong lobe at normal incidence in a constant environment reflects i
   // Its integral is (n+2) times that of cos^(n+1) a sin a over a quarter turn, which is 1/(n+2).
   for (const float exponent : {0.0f, 1.0f, 20.0f, 1000.0f}) {
     CAPTURE(exponent);
-    const LayeredPicture picture = renderReference(planeInEnvironment(0.0f, 0.8f, exponent, 0.0), quietly(256, 1));
+    const LayeredPicture picture =
+        renderReference(planeInEnvironment(0.0f, 0.8f, exponent, 0.0), quietly(256, 1));
     const Estimate glossy = estimateOf(picture, "one_bounce_glossy");
     CHECK(glossy.deviation < 0.002);
     CHECK(glossy.mean == Approx(0.8).epsilon(0.005));
@@ -58,8 +62,10 @@ TEST_CASE("at oblique incidence the part of the Phong lobe below the horizon is 
   for (const float exponent : {1.0f, 8.0f, 60.0f}) {
     for (const double angle : {0.6, 1.2}) {
       CAPTURE(exponent, angle);
-      const LayeredPicture picture = renderReference(planeInEnvironment(0.3f, 0.7f, exponent, angle), quietly(512, 1));
-      const Estimate glossy = estimateOf(picture, "one_bounce_glossy"), diffuse = estimateOf(picture, "one_bounce_diffuse");
+      const LayeredPicture picture =
+          renderReference(planeInEnvironment(0.3f, 0.7f, exponent, angle), quietly(512, 1));
+      const Estimate glossy = estimateOf(picture, "one_bounce_glossy"),
+                     diffuse = estimateOf(picture, "one_bounce_diffuse");
       CHECK(std::abs(glossy.mean - 0.7 * lobeReflectance(exponent, angle)) < 4.0 * glossy.deviation + 1e-4);
       CHECK(glossy.deviation < 0.004);
       CHECK(std::abs(diffuse.mean - 0.3) < 4.0 * diffuse.deviation + 1e-4);
@@ -71,7 +77,8 @@ TEST_CASE("a surface whose albedos add up to one returns no more than it receive
   for (const float exponent : {0.0f, 2.0f, 50.0f}) {
     for (const double angle : {0.0, 0.5, 1.0, 1.5}) {
       CAPTURE(exponent, angle);
-      const Estimate full = estimateOf(renderReference(planeInEnvironment(0.4f, 0.6f, exponent, angle), quietly(64, 4)), "full");
+      const Estimate full = estimateOf(
+          renderReference(planeInEnvironment(0.4f, 0.6f, exponent, angle), quietly(64, 4)), "full");
       CHECK(full.mean < 1.0 + 4.0 * full.deviation + 1e-4);
       CHECK(full.mean > 0.4);
     }
@@ -84,10 +91,31 @@ TEST_CASE("a Phong surface under a point light returns ks (n+2)/(2 pi) cos^n a I
   builder.light(LightKind::point, glm::vec3(4.0f), {1.0, 2.0, 0.5});
   const glm::dvec3 toLight = glm::dvec3(1.0, 2.0, 0.5), toEye = glm::normalize(glm::dvec3(-1.5, 2.0, 0.3));
   const glm::dvec3 mirror(-toEye.x, toEye.y, -toEye.z), direction = glm::normalize(toLight);
-  const double expected = 0.5 * 14.0 / (2.0 * kPi) * std::pow(glm::dot(mirror, direction), 12.0) * 4.0 * direction.y /
-                          glm::dot(toLight, toLight);
+  const double expected = 0.5 * 14.0 / (2.0 * kPi) * std::pow(glm::dot(mirror, direction), 12.0) * 4.0 *
+                          direction.y / glm::dot(toLight, toLight);
   const double radiance = referenceRadiance(builder.scene, 0.0, toEye, glm::vec3(-toEye), quietly(1)).x;
   CHECK(radiance == Approx(expected).epsilon(0.001));
+}
+
+TEST_CASE("interpolated normals tilt the cosine, and directions below the true surface reflect nothing") {
+  // Of the cosine-weighted hemisphere about a normal that is tilted by t, the part above the true plane is (1
+  // + cos t) / 2.
+  const double tilt = 0.8;
+  for (const float turned : {1.0f, -1.0f}) {  // normals that point into the ground count as their opposites
+    CAPTURE(turned);
+    Scene scene = planeInEnvironment(0.6f, 0.0f, 1.0f, 0.3);
+    for (glm::vec3& normal : scene.normals) normal = turned * glm::vec3(std::sin(tilt), std::cos(tilt), 0);
+    const Estimate full = estimateOf(renderReference(scene, quietly(256, 8)), "full");
+    CHECK(std::abs(full.mean - 0.6 * 0.5 * (1.0 + std::cos(tilt))) < 4.0 * full.deviation);
+    CHECK(full.deviation < 0.002);
+    scene.environment = glm::vec3(0.0f);
+    Light sun;
+    sun.power = glm::vec3(1.0f);
+    sun.direction = -glm::normalize(glm::dvec3(1, 1, 0));
+    scene.lights.push_back(sun);
+    CHECK(estimateOf(renderReference(scene, quietly(4)), "direct").mean ==
+          Approx(0.6 / kPi * std::cos(0.25 * kPi - tilt)).epsilon(0.001));
+  }
 }
 
 TEST_CASE("rays that miss see the environment, in the direct layer and unoccluded") {
@@ -116,8 +144,8 @@ TEST_CASE("a scene without triangles is all environment") {
 }
 
 TEST_CASE("ambient occlusion under a ceiling at height h within distance d leaves (h/d)^2 open") {
-  // Directions nearer to the normal than acos(h/d) meet the ceiling in time; weighted by the cosine they make up
-  // sin^2(acos(h/d)) = 1 - (h/d)^2 of the hemisphere.
+  // Directions nearer to the normal than acos(h/d) meet the ceiling in time; weighted by the cosine they make
+  // up sin^2(acos(h/d)) = 1 - (h/d)^2 of the hemisphere.
   SceneBuilder builder;
   const int grey = builder.lambert(0.5f);
   builder.quad({-200, 0, -200}, {0, 0, 400}, {400, 0, 0}, grey);
@@ -135,7 +163,8 @@ TEST_CASE("ambient occlusion under a ceiling at height h within distance d leave
 
 TEST_CASE("a moving object stands where its motion puts it at the time of the picture") {
   SceneBuilder builder;
-  Object& lamp = builder.quad({-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}, builder.lambert(0.0f, 3.0f));  // faces +z
+  Object& lamp =
+      builder.quad({-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}, builder.lambert(0.0f, 3.0f));  // faces +z
   lamp.motion = RigidMotion{{0, 1, 0}, 0.5 * kPi, {0, 0, 0}, {0, 2, 0}};
   const auto seenFrom = [&](double time, glm::dvec3 eye, glm::vec3 direction) {
     return referenceRadiance(builder.scene, time, eye, direction, quietly(1, 0)).x;
@@ -154,7 +183,8 @@ TEST_CASE("the same scene far from the world's origin gives the same light") {
   const glm::dvec3 away(5.0e6, -2.0e6, 7.0e6);
   builder.scene.objects[0].placement[3] = glm::dvec4(away, 1.0);
   builder.scene.lights[0].position += away;
-  const double far = referenceRadiance(builder.scene, 0.0, away + glm::dvec3(0.3, 0.5, 0), {0, -1, 0}, quietly(1)).x;
+  const double far =
+      referenceRadiance(builder.scene, 0.0, away + glm::dvec3(0.3, 0.5, 0), {0, -1, 0}, quietly(1)).x;
   CHECK(far == Approx(near).epsilon(1e-5));
 }
 
@@ -164,12 +194,15 @@ TEST_CASE("two seeds agree within their own stated noise") {
   const LayeredPicture first = renderReference(scene, options);
   options.seed = 2;
   const LayeredPicture second = renderReference(scene, options);
-  for (const std::string layer : {"direct", "one_bounce_diffuse", "indirect_diffuse", "full", "ambient_occlusion"}) {
+  for (const std::string layer :
+       {"direct", "one_bounce_diffuse", "indirect_diffuse", "full", "ambient_occlusion"}) {
     CAPTURE(layer);
     const Picture &a = first.layers.at(layer), &b = second.layers.at(layer);
-    const Picture &varianceA = first.layers.at(layer + ".variance"), &varianceB = second.layers.at(layer + ".variance");
+    const Picture &varianceA = first.layers.at(layer + ".variance"),
+                  &varianceB = second.layers.at(layer + ".variance");
     CHECK(a.values() != b.values());
-    // If the noise is stated honestly, the squared difference in units of its own variance has the expectation 1.
+    // If the noise is stated honestly, the squared difference in units of its own variance has the
+    // expectation 1.
     double squares = 0.0;
     int counted = 0;
     for (std::size_t i = 0; i < a.values().size(); ++i) {
@@ -198,7 +231,8 @@ TEST_CASE("the stated noise halves with four times the samples, and the layers a
     const double sum = many.layers.at("direct").values()[i] + many.layers.at("indirect_diffuse").values()[i] +
                        many.layers.at("indirect_glossy").values()[i];
     CHECK(many.layers.at("full").values()[i] == Approx(sum).epsilon(1e-5));
-    const double once = many.layers.at("direct").values()[i] + many.layers.at("one_bounce_diffuse").values()[i] +
+    const double once = many.layers.at("direct").values()[i] +
+                        many.layers.at("one_bounce_diffuse").values()[i] +
                         many.layers.at("one_bounce_glossy").values()[i];
     CHECK(many.layers.at("one_bounce").values()[i] == Approx(once).epsilon(1e-5));
   }
@@ -215,7 +249,8 @@ TEST_CASE("the picture does not depend on the number of threads") {
   for (const auto& [name, layer] : one.layers) {
     CAPTURE(name);
     CHECK(layer.values() == two.layers.at(name).values());
-    CHECK(std::all_of(layer.values().begin(), layer.values().end(), [](float value) { return std::isfinite(value) && value >= 0.0f; }));
+    CHECK(std::all_of(layer.values().begin(), layer.values().end(),
+                      [](float value) { return std::isfinite(value) && value >= 0.0f; }));
   }
 }
 

@@ -175,6 +175,13 @@ TEST_CASE("a mesh name with a slash is refused") {
   CHECK_THAT(sceneWith("mesh a/b { file \"m.obj\" }"), Contains("the mesh name 'a/b' holds a '/'"));
 }
 
+TEST_CASE("a parameter in a scene is refused: only pipelines have them") {
+  CHECK_THAT(sceneWith("camera b { eye 0 0 1  target 0 0 0  resolution 640 $height }"),
+             Contains("a.scene:4:52: parameter '$height' in a scene"));
+  CHECK_THAT(sceneWith("mesh b { file \"m_#.obj\"  sequence 0..$last }"),
+             Contains("parameter '$last' in a scene"));
+}
+
 TEST_CASE("particles need a radius") {
   CHECK_THAT(sceneWith("medium s { extinction 1 /m  particles 10 }"), Contains("particles without a radius"));
 }

@@ -149,22 +149,30 @@ TEST_CASE("every kind of bad input file gives one clear error and leaves the ear
   CHECK(place.read("old.exr") == "an earlier result");
 }
 
-TEST_CASE("a broken technique library or shader pack is named with its path") {
+TEST_CASE("a broken technique library or shader pack is named with its path and the reason") {
   const Workplace place;
   const auto source = binaryDirectory() / "lib/techniques";
-  const auto plugins = place.path() / "plugins";
-  std::filesystem::create_directories(plugins);
-  std::filesystem::copy_file(source / "libdirect_lighting.so", plugins / "libdirect_lighting.so");
-  const std::string pack = readFile(source / "direct_lighting.shaderpack");
-  const std::string command = "lumivox render -q " + roomWith(place, "direct_lighting") + " --techniques " +
-                              quoted(plugins.string()) + " -o " + quoted(place.file("a.exr"));
+  const std::string library = readFile(source / "libdirect_lighting.so"),
+                    pack = readFile(source / "direct_lighting.shaderpack");
+  // A technique of a name that nothing else has.
+  place.write("plugins/libmy_paper.so", library);
+  place.write(
+      "own.pipeline",
+      "pipeline \"Own\" {\n  pass gbuffer my_paper.gbuffer { }\n  pass shadow my_paper.shadow_map { }\n"
+      "  pass direct my_paper.shade { gbuffer gbuffer  shadow shadow.depth }\n  output direct "
+      "direct.radiance\n}\n");
+  const std::string command = "lumivox render -q " + quoted(place.scene()) + " " +
+                              quoted(place.file("own.pipeline")) + " --techniques " +
+                              quoted(place.file("plugins")) + " -o " + quoted(place.file("a.exr"));
   for (const std::string& bytes :
-       {std::string(), pack.substr(0, pack.size() / 2), std::string("no pack at all")}) {
-    place.write("plugins/direct_lighting.shaderpack", bytes);
-    checkRefused(runCommand(command), "direct_lighting.shaderpack");
+       {std::string(), pack.substr(0, pack.size() / 2), std::string("no pack at all"), pack}) {
+    place.write("plugins/my_paper.shaderpack", bytes);  // the last one is whole, but another technique's
+    checkRefused(runCommand(command), "my_paper.shaderpack");
   }
-  place.write("plugins/libdirect_lighting.so", readFile(source / "libdirect_lighting.so").substr(0, 1000));
-  checkRefused(runCommand(command), "libdirect_lighting.so");
+  place.write("plugins/libmy_paper.so", library.substr(0, 1000));
+  checkRefused(runCommand(command), "libmy_paper.so");
+  place.write("plugins/libmy_paper.so", "");
+  checkRefused(runCommand(command), "libmy_paper.so");
   CHECK_FALSE(place.has("a.exr"));
 }
 
@@ -173,7 +181,7 @@ TEST_CASE("a grid that cannot fit in memory is refused with its size") {
   place.write("huge.pipeline",
               "pipeline \"Huge\" {\n  pass voxels voxelization.conservative { resolution 512 }\n  pass "
               "gbuffer direct_lighting.gbuffer { }\n"
-              "  pass shadow direct_lighting.shadow_map { size 16384 }\n"
+              "  pass shadow direct_lighting.shadow_map { size 8192 }\n"
               "  pass direct direct_lighting.shade { gbuffer gbuffer  shadow shadow.depth }\n  output direct "
               "direct.radiance\n}\n");
   std::string lights;
@@ -183,7 +191,7 @@ TEST_CASE("a grid that cannot fit in memory is refused with its size") {
               std::string("scene \"Many\" {\n  camera main { eye 0 0 0.9  target 0 0 -1  resolution 8 8 }\n"
                           "  mesh room { file \"room.obj\" }\n") +
                   lights + "}\n");
-  // 64 point lights, 6 faces of 16384 x 16384 texels of 4 bytes each: 384 GiB.
+  // 64 point lights, 6 faces of 8192 x 8192 texels of 4 bytes each: 96 GiB.
   const CommandResult result =
       runCommand("lumivox render -q " + quoted(place.file("many.scene")) + " " +
                  quoted(place.file("huge.pipeline")) + " -o " + quoted(place.file("a.exr")));

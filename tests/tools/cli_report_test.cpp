@@ -54,10 +54,11 @@ constexpr const char* kQuickPipeline =
     "direct.radiance\n}\n"
     "sweep samples { samples [1 4] }\n";
 
-CommandResult makeReport(const Workplace& place, const std::string& more = {}) {
+CommandResult makeReport(const Workplace& place, const std::string& more = {},
+                         const std::string& page = "out/page.html") {
   place.write("quick.pipeline", kQuickPipeline);
   return runCommand("lumivox report '" + place.scene() + "' --pipeline '" + place.file("quick.pipeline") +
-                    "' -q --spp 16 --repeats 2 -o '" + place.file("out/page.html") + "' " + more);
+                    "' -q --spp 16 --repeats 2 -o '" + place.file(page) + "' " + more);
 }
 
 }  // namespace
@@ -155,8 +156,9 @@ TEST_CASE("a report that cannot be made says so before the work and leaves the e
                           place.file("wrong.pipeline") + "' -o '" + place.file("out/page.html") + "'"),
                "wrong.pipeline");
   CHECK(place.read("out/page.html") == "an earlier page");
-  checkRefused(makeReport(place, "-o '" + place.path().string() + "'"), place.path().string());
-  checkRefused(makeReport(place, "-o '" + place.file("room.obj/page.html") + "'"), "room.obj");
+  std::filesystem::create_directories(place.path() / "cache");
+  checkRefused(makeReport(place, "", "cache"), place.file("cache"));
+  checkRefused(makeReport(place, "", "room.obj/page.html"), "room.obj");
   checkRefused(
       runCommand("LUMIVOX_CHART_JS=/nowhere/chart.js '" + (binaryDirectory() / "bin/lumivox").string() +
                  "' report '" + place.scene() + "' --pipeline '" + place.file("quick.pipeline") + "' -o '" +

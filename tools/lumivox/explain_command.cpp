@@ -35,6 +35,9 @@ Json asJson(const PruningRecord& record) {
                {"frame_ms", timeAsJson(record.prunedMs)},
                {"frame_ms_keep_everything", timeAsJson(record.unprunedMs)},
                {"saved_share", record.savedShare()},
+               {"next_frame_ms", timeAsJson(record.nextPrunedMs)},
+               {"next_frame_ms_keep_everything", timeAsJson(record.nextUnprunedMs)},
+               {"saved_share_next", record.savedShareNext()},
                {"bytes", record.prunedBytes},
                {"bytes_keep_everything", record.unprunedBytes},
                {"same_picture", record.samePicture}};
@@ -63,24 +66,27 @@ std::string asText(const PruningRecord& record) {
   std::vector<std::vector<std::string>> leftOut{{"Level", "Left out", "Memory", "ms", "Why"}};
   for (const LeftOut& one : explanation.leftOut)
     leftOut.push_back({name(one.level), one.what, one.savedBytes == 0 ? "" : formatBytes(one.savedBytes),
-                       one.savedMs == 0.0 ? "" : threeDigits(one.savedMs), one.why});
+                       one.savedMs == 0.0 ? "" : formatMilliseconds(one.savedMs), one.why});
   std::vector<std::vector<std::string>> passes{{"Pass", "ms", "ms, everything kept"}};
   for (const std::string& pass : record.passOrder) {
     const auto pruned = record.prunedPassMs.find(pass), unpruned = record.unprunedPassMs.find(pass);
-    passes.push_back({pass,
-                      pruned == record.prunedPassMs.end() ? "left out" : threeDigits(pruned->second.median),
-                      unpruned == record.unprunedPassMs.end() ? "-" : threeDigits(unpruned->second.median)});
+    passes.push_back(
+        {pass, pruned == record.prunedPassMs.end() ? "left out" : formatMilliseconds(pruned->second.median),
+         unpruned == record.unprunedPassMs.end() ? "-" : formatMilliseconds(unpruned->second.median)});
   }
-  passes.push_back(
-      {"whole frame", threeDigits(record.prunedMs.median), threeDigits(record.unprunedMs.median)});
+  passes.push_back({"whole frame", formatMilliseconds(record.prunedMs.median),
+                    formatMilliseconds(record.unprunedMs.median)});
+  passes.push_back({"next frame", formatMilliseconds(record.nextPrunedMs.median),
+                    formatMilliseconds(record.nextUnprunedMs.median)});
   return textTable(leftOut) + "\n" + textTable(passes) +
          fmt::format("\n{} of {} passes kept; variants: {} possible, {} compiled, {} needed\n",
                      explanation.passesKept, explanation.passesTotal, explanation.variantsPossible,
                      explanation.variantsCompiled, explanation.variantsNeeded) +
          fmt::format(
-             "{:.0f} % of the frame time saved; memory of the passes {} in place of {}; same picture: {}\n",
-             100.0 * record.savedShare(), formatBytes(record.prunedBytes), formatBytes(record.unprunedBytes),
-             record.samePicture ? "yes" : "NO");
+             "{:.0f} % of the time of a first frame saved, {:.0f} % of the next ones; memory of the passes "
+             "{} in place of {}; same picture: {}\n",
+             100.0 * record.savedShare(), 100.0 * record.savedShareNext(), formatBytes(record.prunedBytes),
+             formatBytes(record.unprunedBytes), record.samePicture ? "yes" : "NO");
 }
 
 int explain(const ExplainCommand& command, const GlobalOptions& global) {

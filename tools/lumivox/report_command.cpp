@@ -21,7 +21,8 @@ struct ReportCommand {
 std::string quartiles(const TimingStatistics& time) {
   return time.repeats == 0
              ? "-"
-             : fmt::format("{:.3g} [{:.3g}, {:.3g}]", time.median, time.lowerQuartile, time.upperQuartile);
+             : fmt::format("{} [{}, {}]", formatMilliseconds(time.median),
+                           formatMilliseconds(time.lowerQuartile), formatMilliseconds(time.upperQuartile));
 }
 
 const ComponentError* find(const ReportPoint& point, const std::string& output, bool bias) {
@@ -78,13 +79,15 @@ void printSummary(const ReportSummary& summary) {
       "own model; misses: against full transport.\n";
   for (const PruningRecord& pruning : summary.pruning)
     text += fmt::format(
-        "{}, {}: leaving out what the scene does not need saves {:.0f} % of the frame time ({:.3g} ms of "
-        "{:.3g} ms); same "
-        "picture: {}\n",
+        "{}, {}: leaving out what the scene does not need saves {:.0f} % of a first frame ({} of {} ms) and "
+        "{:.0f} % of "
+        "the next ones ({} of {} ms); same picture: {}\n",
         std::filesystem::path(pruning.scene).stem().string(),
         std::filesystem::path(pruning.pipeline).stem().string(), 100.0 * pruning.savedShare(),
-        pruning.unprunedMs.median - pruning.prunedMs.median, pruning.unprunedMs.median,
-        pruning.samePicture ? "yes" : "NO");
+        formatMilliseconds(pruning.unprunedMs.median - pruning.prunedMs.median),
+        formatMilliseconds(pruning.unprunedMs.median), 100.0 * pruning.savedShareNext(),
+        formatMilliseconds(pruning.nextUnprunedMs.median - pruning.nextPrunedMs.median),
+        formatMilliseconds(pruning.nextUnprunedMs.median), pruning.samePicture ? "yes" : "NO");
   for (const std::string& unsuited : summary.unsuited) text += "not run: " + unsuited + "\n";
   print(text);
 }

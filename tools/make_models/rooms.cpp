@@ -127,8 +127,9 @@ void writeSkylight(const std::filesystem::path& directory) {
   model.box(low, high, Facing::inward, "x");
   model.object("right_wall", "teal");
   model.box(low, high, Facing::inward, "X");
-  model.object("ceiling", "white");  // a slab, closed against the sun, with the hole in its middle
-  model.ring({0.4, 0.4}, {1, 1}, 2, 2.1);
+  model.object("ceiling",
+               "white");  // a slab with the hole in its middle; its edge keeps the sun off the walls
+  model.ring({0.4, 0.4}, {1.5, 1.5}, 2, 2.1);
   model.object("box", "box");
   model.box({-0.3, 0.25, -0.3}, {0.3, 0.85, 0.3});
   model.write(directory);

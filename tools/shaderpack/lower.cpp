@@ -43,7 +43,7 @@ class Lowering {
       if (firstFunction == module_.size() && instruction.operation == spv::OpFunction) firstFunction = i;
       if (firstFunction == module_.size()) continue;
       code_ = &body;
-      if (!lower(instruction)) append(body, instruction);
+      if (!lower(instruction)) emit(instruction);
     }
     Words result = header_;
     result[3] = bound();
@@ -59,6 +59,24 @@ class Lowering {
  private:
   static bool isType(spv::Op operation) {
     return operation >= spv::OpTypeVoid && operation <= spv::OpTypeForwardPointer;
+  }
+  static bool isArithmetic(spv::Op operation) {
+    switch (operation) {
+      case spv::OpFNegate:
+      case spv::OpFAdd:
+      case spv::OpFSub:
+      case spv::OpFMul:
+      case spv::OpFDiv:
+      case spv::OpFRem:
+      case spv::OpFMod:
+      case spv::OpVectorTimesScalar:
+      case spv::OpMatrixTimesScalar:
+      case spv::OpOuterProduct:
+      case spv::OpDot:
+        return true;
+      default:
+        return false;
+    }
   }
   static void append(Words& words, const Instruction& instruction) {
     words.push_back(
@@ -78,7 +96,7 @@ class Lowering {
         library_ = w[0];
         break;
       case spv::OpDecorate:
-        if (w[1] == spv::DecorationNoContraction) precise_.insert(w[0]);
+        if (w[1] == spv::DecorationNoContraction) marked_.insert(w[0]);
         break;
       case spv::OpName:
       case spv::OpMemberName:
@@ -98,12 +116,16 @@ class Lowering {
   Id emit(spv::Op operation, Id type, Words operands) {
     const Id result = bound()++;
     emitAs(operation, type, result, std::move(operands));
-    if (preciseNow_) append(decorations_, {spv::OpDecorate, {result, spv::DecorationNoContraction}});
     return result;
   }
   void emitAs(spv::Op operation, Id type, Id result, Words operands) {
     operands.insert(operands.begin(), {type, result});
-    append(*code_, {operation, std::move(operands)});
+    emit({operation, std::move(operands)});
+  }
+  void emit(const Instruction& instruction) {
+    append(*code_, instruction);
+    if (!isArithmetic(instruction.operation) || !marked_.insert(instruction.operands[1]).second) return;
+    append(decorations_, {spv::OpDecorate, {instruction.operands[1], spv::DecorationNoContraction}});
   }
   Id element(Id composite, Id elementType, std::uint32_t index) {
     return emit(spv::OpCompositeExtract, elementType, {composite, index});
@@ -134,7 +156,6 @@ class Lowering {
 
   bool lower(const Instruction& instruction) {
     const Words& w = instruction.operands;
-    preciseNow_ = w.size() >= 2 && precise_.contains(w[1]);
     switch (instruction.operation) {
       case spv::OpMatrixTimesVector:
         matrixTimesVector(w[2], w[3], w[0], composites_.at(typeOf_.at(w[2])).count, w[1]);
@@ -212,10 +233,9 @@ class Lowering {
   Words header_;
   std::vector<Instruction> module_;
   std::map<Id, Composite> composites_;  // vector and matrix types
-  std::set<Id> types_, precise_;
+  std::set<Id> types_, marked_;
   std::map<Id, Id> typeOf_, ones_;
   Id library_ = 0;
-  bool preciseNow_ = false;
   Words decorations_, constants_;
   Words* code_ = nullptr;
 };

@@ -116,12 +116,6 @@ class Reflection {
     }
   }
 
-  std::uint32_t bindingOf(spirv_cross::ID id, const std::string& name) {
-    if (!declared_.has_decoration(id, spv::DecorationBinding))
-      fail(source_, name, fmt::format("'{}' has no layout(binding = n)", name));
-    return declared_.get_decoration(id, spv::DecorationBinding);
-  }
-
   PackedBinding texture(const spirv_cross::Resource& resource, BindingKind kind) {
     const std::string& name = resource.name;
     const SPIRType& type = declared_.get_type(resource.type_id);
@@ -134,7 +128,7 @@ class Reflection {
     PackedBinding binding;
     binding.name = name;
     binding.kind = kind;
-    binding.binding = bindingOf(resource.id, name);
+    binding.binding = declared_.get_decoration(resource.id, spv::DecorationBinding);
     const bool isVolume = type.image.dim == spv::Dim3D;
     if ((type.image.dim != spv::Dim2D && !isVolume) || type.image.ms) {
       fail(source_, name,
@@ -163,7 +157,7 @@ class Reflection {
     PackedBinding binding;
     binding.name = declared_.get_name(resource.base_type_id);
     binding.kind = kind;
-    binding.binding = bindingOf(resource.id, binding.name);
+    binding.binding = declared_.get_decoration(resource.id, spv::DecorationBinding);
     binding.type = binding.name;
     const SPIRType& type = declared_.get_type(resource.base_type_id);
     if (!declared_.get_type(resource.type_id).array.empty()) {

@@ -1,6 +1,7 @@
 #include "stage.h"
 
 #include <fmt/format.h>
+#include <glslang/MachineIndependent/localintermediate.h>
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
@@ -17,7 +18,7 @@ namespace lumivox::shaderpack {
 namespace {
 
 // Counts up whenever this program makes something else of the same source.
-constexpr int kArtifactVersion = 3;
+constexpr int kArtifactVersion = 4;
 
 // Line numbers follow from "#line N "file"" directives, which need this extension.
 constexpr const char* kPreamble =
@@ -64,6 +65,26 @@ std::string readableLog(const std::string& log, const StageSource& source, bool 
   throw Error(fmt::format("{}: error: {}", source.source->entry.string(), what));
 }
 
+/// glslang puts what has no binding at 0, where it would share with something else; the SPIR-V does not tell
+/// the difference.
+void requireBindings(const glslang::TIntermediate& tree, const StageSource& source) {
+  const auto* root = tree.getTreeRoot()->getAsAggregate();
+  if (root == nullptr || root->getSequence().empty()) return;
+  const auto* globals = root->getSequence().back()->getAsAggregate();
+  if (globals == nullptr || globals->getOp() != glslang::EOpLinkerObjects) return;
+  for (TIntermNode* node : globals->getSequence()) {
+    const glslang::TIntermSymbol* symbol = node->getAsSymbolNode();
+    if (symbol == nullptr) continue;
+    const glslang::TType& type = symbol->getType();
+    const bool isBlock = type.getBasicType() == glslang::EbtBlock && type.getQualifier().isUniformOrBuffer();
+    if ((!isBlock && type.getBasicType() != glslang::EbtSampler) || type.getQualifier().hasBinding())
+      continue;
+    const std::string name(isBlock ? type.getTypeName().c_str() : symbol->getName().c_str());
+    throw Error(
+        fmt::format("{}: error: '{}' has no layout(binding = n)", source.source->placeOf(name).text(), name));
+  }
+}
+
 std::vector<std::uint32_t> toSpirv(const StageSource& source, std::string& warnings) {
   const EShLanguage language = languageOf(source.stage);
   const std::string text = kPreamble + source.definitions + source.source->text;
@@ -85,6 +106,7 @@ std::vector<std::uint32_t> toSpirv(const StageSource& source, std::string& warni
   glslang::TProgram program;
   program.addShader(&shader);
   if (!program.link(kMessages)) throw Error(readableLog(program.getInfoLog(), source, false));
+  requireBindings(*program.getIntermediate(language), source);
   std::vector<std::uint32_t> words;
   spv::SpvBuildLogger logger;
   glslang::SpvOptions options;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 
@@ -153,6 +154,7 @@ Comparison worstComparison(const std::array<GLuint, 2>& queries) {
 
 void DeviceState::checkTimers() {
   if (timersChecked) return;
+  assert(!drawing && "the first look at the device info or times must not be inside of drawing");
   timersChecked = true;
   use();
   info.timerQueriesTrusted = false;

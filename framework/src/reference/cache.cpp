@@ -13,8 +13,12 @@ namespace lumivox {
 namespace reference {
 namespace {
 
-void add(Hasher& hasher, const glm::vec3& value) { hasher.add(value.x).add(value.y).add(value.z); }
-void add(Hasher& hasher, const glm::dvec3& value) { hasher.add(value.x).add(value.y).add(value.z); }
+void add(Hasher& hasher, const glm::vec3& value) {
+  hasher.add(value.x).add(value.y).add(value.z);
+}
+void add(Hasher& hasher, const glm::dvec3& value) {
+  hasher.add(value.x).add(value.y).add(value.z);
+}
 
 void add(Hasher& hasher, const Object& object) {
   hasher.add(object.firstVertex).add(object.vertexCount).add(std::uint64_t{object.parts.size()});
@@ -32,7 +36,8 @@ void add(Hasher& hasher, const Object& object) {
   hasher.add(object.sequence.has_value());
   if (object.sequence) {
     hasher.add(object.sequence->framesPerSecond).add(object.sequence->loop);
-    hasher.add(std::uint64_t{object.sequence->positions.size()}).add(std::uint64_t{object.sequence->normals.size()});
+    hasher.add(std::uint64_t{object.sequence->positions.size()})
+        .add(std::uint64_t{object.sequence->normals.size()});
     for (const auto& frame : object.sequence->positions) hasher.add(frame);
     for (const auto& frame : object.sequence->normals) hasher.add(frame);
   }
@@ -84,7 +89,9 @@ std::optional<LayeredPicture> readEntry(const std::filesystem::path& file) {
     LayeredPicture picture = readExr(file);
     const auto stated = picture.attributes.find(kPixelHash);
     if (stated != picture.attributes.end() && stated->second == contentOf(picture).text()) return picture;
-    logWarning("{}: this cached reference is damaged (its pixels are not those that were written); it is made anew", file.string());
+    logWarning(
+        "{}: this cached reference is damaged (its pixels are not those that were written); it is made anew",
+        file.string());
   } catch (const Error& error) {
     logWarning("this cached reference is damaged and is made anew: {}", error.what());
   }
@@ -119,7 +126,11 @@ ContentHash cacheKey(const Scene& scene, const ResolvedOptions& resolved) {
   hasher.add("lumivox reference").add(kTracerVersion);
   const ContentHash content = contentOf(scene);
   hasher.add(content.high).add(content.low);
-  hasher.add(options.samplesPerPixel).add(options.bounces).add(options.roulette).add(options.seed).add(options.time);
+  hasher.add(options.samplesPerPixel)
+      .add(options.bounces)
+      .add(options.roulette)
+      .add(options.seed)
+      .add(options.time);
   hasher.add(options.camera).add(options.width).add(options.height).add(options.occlusionDistance);
   return hasher.finish();
 }

@@ -37,7 +37,8 @@ struct CountingRays {
 };
 
 struct Integrator {
-  static constexpr float kRouletteBelow = 0.5f;  ///< throughput behind the first surface below which paths are shortened
+  static constexpr float kRouletteBelow =
+      0.5f;  ///< throughput behind the first surface below which paths are shortened
 
   const RayScene& scene;
   const LightSampler& lights;
@@ -47,7 +48,8 @@ struct Integrator {
   float occlusionDistance;  ///< m; not positive: no occlusion ray
 
   template <class Rays>
-  PathSample trace(Rays& rays, RandomStream& random, const glm::vec3& origin, const glm::vec3& direction) const;
+  PathSample trace(Rays& rays, RandomStream& random, const glm::vec3& origin,
+                   const glm::vec3& direction) const;
 
  private:
   /// Radiance that the surface reflects of one chosen light.
@@ -62,13 +64,15 @@ glm::vec3 Integrator::nextEvent(Rays& rays, RandomStream& random, const Surface&
   const Reflectance reflected = reflectanceTowards(surface, light.direction);
   if (reflected.density == 0.0f) return glm::vec3(0.0f);
   if (rays.occluded(surface.position, light.shadowDirection, light.shadowReach)) return glm::vec3(0.0f);
-  // Only emissive triangles can also be met by a reflected ray; for other lights the ratio is zero and the weight one.
+  // Only emissive triangles can also be met by a reflected ray; for other lights the ratio is zero and the
+  // weight one.
   const float weight = powerHeuristic(reflected.density * light.inverseDensity);
   return weight * (reflected.diffuse + reflected.glossy) * light.irradiance;
 }
 
 template <class Rays>
-PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& origin, const glm::vec3& direction) const {
+PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& origin,
+                             const glm::vec3& direction) const {
   PathSample result;
   Hit hit;
   if (!rays.closestHit(origin, direction, hit)) {
@@ -86,8 +90,8 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
     result.unoccluded = open ? 1.0f : 0.0f;
   }
 
-  // Throughput of the first surface's lobes, and of the path behind it; radiance that arrives at the first surface over exactly one
-  // and over any number of bounces.
+  // Throughput of the first surface's lobes, and of the path behind it; radiance that arrives at the first
+  // surface over exactly one and over any number of bounces.
   glm::vec3 firstDiffuse(0.0f), firstGlossy(0.0f), throughput(1.0f);
   glm::vec3 arrivingOnce(0.0f), arriving(0.0f);
   const auto arrive = [&](const glm::vec3& radiance, int bounce) {
@@ -103,7 +107,8 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
         arrive(reflected, depth);
       }
     }
-    // Behind the last surface a ray is of use only to meet emissive triangles, the other half of next-event estimation.
+    // Behind the last surface a ray is of use only to meet emissive triangles, the other half of next-event
+    // estimation.
     const bool last = depth == bounces;
     if (last && !lights.hasEmitters()) break;
 

@@ -14,9 +14,12 @@ double meanOf(const glm::vec3& rgb) {
 double fluxOf(const LightState& light, double sceneRadius) {
   constexpr double pi = std::numbers::pi;
   switch (light.kind) {
-    case LightKind::directional: return meanOf(light.power) * pi * sceneRadius * sceneRadius;
-    case LightKind::point: return meanOf(light.power) * 4.0 * pi;
-    case LightKind::spot: return meanOf(light.power) * 2.0 * pi * (1.0 - std::cos(0.5 * (light.innerAngle + light.outerAngle)));
+    case LightKind::directional:
+      return meanOf(light.power) * pi * sceneRadius * sceneRadius;
+    case LightKind::point:
+      return meanOf(light.power) * 4.0 * pi;
+    case LightKind::spot:
+      return meanOf(light.power) * 2.0 * pi * (1.0 - std::cos(0.5 * (light.innerAngle + light.outerAngle)));
   }
   return 0.0;
 }
@@ -79,8 +82,8 @@ LightSampler::LightSampler(RayScene& scene, const SceneSnapshot& snapshot) : lig
   emitters_ = choices_.size() - firstTriangle;
   if (choices_.empty()) return;
 
-  // Half of the choices by flux, half evenly among the lights (all emissive triangles together being one): a lamp indoors is not
-  // starved by a sun that does not reach it.
+  // Half of the choices by flux, half evenly among the lights (all emissive triangles together being one): a
+  // lamp indoors is not starved by a sun that does not reach it.
   double totalFlux = 0.0;
   for (const double value : flux) totalFlux += value;
   const double share = 0.5 / static_cast<double>(firstTriangle + (emitters_ > 0 ? 1 : 0));
@@ -91,7 +94,8 @@ LightSampler::LightSampler(RayScene& scene, const SceneSnapshot& snapshot) : lig
     choices_[i].inverseProbability = static_cast<float>(1.0 / probability);
     if (choices_[i].triangle) {
       TriangleRecord& triangle = scene.triangles[choices_[i].index];
-      const double area = 0.5 * glm::length(glm::cross(glm::dvec3(triangle.edge1), glm::dvec3(triangle.edge2)));
+      const double area =
+          0.5 * glm::length(glm::cross(glm::dvec3(triangle.edge1), glm::dvec3(triangle.edge2)));
       triangle.emitterDensity = static_cast<float>(probability / area);
     }
   }
@@ -109,16 +113,19 @@ LightSample LightSampler::sampleTriangle(const RayScene& scene, const Surface& s
   LightSample result;
   const TriangleRecord& triangle = scene.triangles[choice.index];
   const SurfaceMaterial& material = scene.materials[triangle.material];
-  // Uniform over the parallelogram, its far half folded back. Turk 1990, "Generating random points in triangles", method 2.
+  // Uniform over the parallelogram, its far half folded back. Turk 1990, "Generating random points in
+  // triangles", method 2.
   float u = random.uniform(), v = random.uniform();
   const bool beyond = u + v > 1.0f;
   u = beyond ? 1.0f - u : u;
   v = beyond ? 1.0f - v : v;
   // The shadow ray ends in front of the light, at the height where rays leave it.
-  const glm::vec3 end = triangle.corner + u * triangle.edge1 + v * triangle.edge2 + triangle.offset * triangle.normal;
+  const glm::vec3 end =
+      triangle.corner + u * triangle.edge1 + v * triangle.edge2 + triangle.offset * triangle.normal;
   const glm::vec3 path = end - surface.position;
   const float squaredDistance = glm::dot(path, path);
-  // Density per area, seen from a distance of 1 and head on; where it vanishes the point lies on the light itself.
+  // Density per area, seen from a distance of 1 and head on; where it vanishes the point lies on the light
+  // itself.
   const float headOn = triangle.emitterDensity * squaredDistance;
   if (!(headOn > 1e-18f)) return result;
   result.direction = (1.0f / std::sqrt(squaredDistance)) * path;
@@ -133,7 +140,8 @@ LightSample LightSampler::sampleTriangle(const RayScene& scene, const Surface& s
   return result;
 }
 
-LightSample LightSampler::sampleLight(const LightState& light, float inverseProbability, const Surface& surface) const {
+LightSample LightSampler::sampleLight(const LightState& light, float inverseProbability,
+                                      const Surface& surface) const {
   LightSample result;
   if (light.kind == LightKind::directional) {
     result.direction = result.shadowDirection = -light.direction;
@@ -148,7 +156,8 @@ LightSample LightSampler::sampleLight(const LightState& light, float inverseProb
   result.direction = (1.0f / std::sqrt(squaredDistance)) * path;
   result.shadowDirection = path;
   result.shadowReach = 1.0f;
-  const float falloff = light.kind == LightKind::spot ? spotFalloff(light, -glm::dot(result.direction, light.direction)) : 1.0f;
+  const float falloff =
+      light.kind == LightKind::spot ? spotFalloff(light, -glm::dot(result.direction, light.direction)) : 1.0f;
   result.irradiance = (inverseProbability * falloff / squaredDistance) * light.power;
   result.shines = falloff > 0.0f;
   return result;

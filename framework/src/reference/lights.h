@@ -13,12 +13,14 @@ namespace lumivox::reference {
 
 /// One light seen from a point.
 struct LightSample {
-  bool shines = false;         ///< whether the light can reach the point at all; if not, the rest is not set
-  glm::vec3 direction;         ///< unit, from the point towards the light
-  glm::vec3 irradiance;        ///< estimate on a plane that faces the light, divided by the probability of the choice
-  float inverseDensity = 0.0f; ///< sr; of choosing this direction among all to emissive triangles; 0 for a light without extent
-  glm::vec3 shadowDirection;   ///< not unit: for the shadow ray
-  float shadowReach = 0.0f;    ///< in lengths of shadowDirection
+  bool shines = false;  ///< whether the light can reach the point at all; if not, the rest is not set
+  glm::vec3 direction;  ///< unit, from the point towards the light
+  glm::vec3
+      irradiance;  ///< estimate on a plane that faces the light, divided by the probability of the choice
+  float inverseDensity =
+      0.0f;  ///< sr; of choosing this direction among all to emissive triangles; 0 for a light without extent
+  glm::vec3 shadowDirection;  ///< not unit: for the shadow ray
+  float shadowReach = 0.0f;   ///< in lengths of shadowDirection
 };
 
 class LightSampler {
@@ -43,7 +45,8 @@ class LightSampler {
     std::uint32_t index;
     float inverseProbability;
   };
-  LightSample sampleTriangle(const RayScene& scene, const Surface& surface, const Choice& choice, RandomStream& random) const;
+  LightSample sampleTriangle(const RayScene& scene, const Surface& surface, const Choice& choice,
+                             RandomStream& random) const;
   LightSample sampleLight(const LightState& light, float inverseProbability, const Surface& surface) const;
 
   std::vector<LightState> lights_;

@@ -18,7 +18,8 @@ namespace reference {
 namespace {
 
 constexpr std::array<const char*, PixelStatistics::kRadianceLayers + 1> kLayerNames = {
-    "direct", "one_bounce_diffuse", "one_bounce_glossy", "one_bounce", "indirect_diffuse", "indirect_glossy", "full", "ambient_occlusion"};
+    "direct", "one_bounce_diffuse", "one_bounce_glossy", "one_bounce", "indirect_diffuse", "indirect_glossy",
+    "full",   "ambient_occlusion"};
 constexpr int kOcclusionLayer = PixelStatistics::kRadianceLayers;
 
 void require(bool good, const char* option, const std::string& value, const char* expected) {
@@ -28,14 +29,18 @@ void require(bool good, const char* option, const std::string& value, const char
 }  // namespace
 
 ResolvedOptions resolve(const Scene& scene, const ReferenceOptions& given) {
-  require(given.samplesPerPixel >= 1, "the number of samples per pixel", std::to_string(given.samplesPerPixel), "at least 1");
+  require(given.samplesPerPixel >= 1, "the number of samples per pixel",
+          std::to_string(given.samplesPerPixel), "at least 1");
   require(given.bounces >= 0, "the number of bounces", std::to_string(given.bounces), "at least 0");
-  require(given.threads >= 0, "the number of threads", std::to_string(given.threads), "at least 0 (0 for all)");
-  require(given.width >= 0 && given.height >= 0, "the resolution", fmt::format("{} x {}", given.width, given.height),
+  require(given.threads >= 0, "the number of threads", std::to_string(given.threads),
+          "at least 0 (0 for all)");
+  require(given.width >= 0 && given.height >= 0, "the resolution",
+          fmt::format("{} x {}", given.width, given.height),
           "positive numbers of pixels (0 for the camera's)");
   require(std::isfinite(given.time), "the time", std::to_string(given.time), "a finite number of seconds");
-  require(given.occlusionDistance >= 0.0 && !std::isnan(given.occlusionDistance), "the distance of ambient occlusion",
-          std::to_string(given.occlusionDistance), "a positive number of metres (0 for a tenth of the scene's diagonal)");
+  require(given.occlusionDistance >= 0.0 && !std::isnan(given.occlusionDistance),
+          "the distance of ambient occlusion", std::to_string(given.occlusionDistance),
+          "a positive number of metres (0 for a tenth of the scene's diagonal)");
   if (!scene.media.empty()) {
     logWarning("reference: '{}' has participating media; the path tracer leaves them out", scene.name);
   }
@@ -44,7 +49,8 @@ ResolvedOptions resolve(const Scene& scene, const ReferenceOptions& given) {
   resolved.options.width = resolved.snapshot.camera.width;
   resolved.options.height = resolved.snapshot.camera.height;
   if (given.occlusionDistance == 0.0 && !resolved.snapshot.bounds.empty) {
-    resolved.options.occlusionDistance = 0.1 * glm::length(resolved.snapshot.bounds.high - resolved.snapshot.bounds.low);
+    resolved.options.occlusionDistance =
+        0.1 * glm::length(resolved.snapshot.bounds.high - resolved.snapshot.bounds.low);
   }
   return resolved;
 }
@@ -52,7 +58,11 @@ ResolvedOptions resolve(const Scene& scene, const ReferenceOptions& given) {
 Tracer::Tracer(const Scene& scene, const ResolvedOptions& resolved)
     : rays(scene, resolved.snapshot),
       lights(rays, resolved.snapshot),
-      integrator{rays, lights, scene.environment, resolved.options.bounces, resolved.options.roulette,
+      integrator{rays,
+                 lights,
+                 scene.environment,
+                 resolved.options.bounces,
+                 resolved.options.roulette,
                  static_cast<float>(resolved.options.occlusionDistance)} {}
 
 Film::Film(int width, int height) {
@@ -94,15 +104,16 @@ LayeredPicture renderReference(const Scene& scene, const ReferenceOptions& given
   const ResolvedOptions resolved = resolve(scene, given);
   const ReferenceOptions& options = resolved.options;
   if (options.samplesPerPixel < 2) {
-    throw Error("reference: one sample per pixel; expected at least 2, because the noise is told from their spread");
+    throw Error(
+        "reference: one sample per pixel; expected at least 2, because the noise is told from their spread");
   }
   Film film(options.width, options.height);
   const Tracer tracer(scene, resolved);
   const Tiles tiles(options.width, options.height);
   std::optional<Progress> progress;
   if (options.progress) {
-    progress.emplace(fmt::format("reference of {}: {} x {} pixels, {} samples", scene.name, options.width, options.height,
-                                 options.samplesPerPixel),
+    progress.emplace(fmt::format("reference of {}: {} x {} pixels, {} samples", scene.name, options.width,
+                                 options.height, options.samplesPerPixel),
                      static_cast<std::uint64_t>(tiles.count()));
   }
   forEachTile(tiles, options.threads, [&](int tile) {
@@ -130,7 +141,8 @@ glm::vec3 referenceRadiance(const Scene& scene, double time, glm::dvec3 originWo
   glm::dvec3 sum(0.0);
   for (int sample = 0; sample < resolved.options.samplesPerPixel; ++sample) {
     // A stream of its own, apart from those of pixels.
-    RandomStream random(resolved.options.seed, std::numeric_limits<std::uint32_t>::max(), static_cast<std::uint32_t>(sample));
+    RandomStream random(resolved.options.seed, std::numeric_limits<std::uint32_t>::max(),
+                        static_cast<std::uint32_t>(sample));
     sum += glm::dvec3(tracer.integrator.trace(rays, random, origin, direction / length).full());
   }
   return glm::vec3(sum / static_cast<double>(resolved.options.samplesPerPixel));

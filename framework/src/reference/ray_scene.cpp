@@ -12,9 +12,10 @@
 namespace lumivox::reference {
 namespace {
 
-/// How far above a triangle rays start, so that rounding never puts the start below it. The vertices, the interpolated point and
-/// Embree's differences each carry an error of about one unit in the last place (2^-23) of the largest coordinate or of the triangle's
-/// extent; the factor of 16 covers their sum with room to spare and stays below 2e-6 of the scene.
+/// How far above a triangle rays start, so that rounding never puts the start below it. The vertices, the
+/// interpolated point and Embree's differences each carry an error of about one unit in the last place
+/// (2^-23) of the largest coordinate or of the triangle's extent; the factor of 16 covers their sum with room
+/// to spare and stays below 2e-6 of the scene.
 float selfIntersectionOffset(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   constexpr float kUnitsInLastPlace = 16.0f * 0x1.0p-23f;
   float largest = std::numeric_limits<float>::min();
@@ -39,42 +40,20 @@ struct CollectedTriangle {
 
 }  // namespace
 
-glm::vec3 sampleRepeated(const SurfaceTexture& texture, const glm::vec2& texcoord) {
-  const int width = texture.width, height = texture.height;
-  const glm::vec2 wrapped = texcoord - glm::floor(texcoord);
-  const float x = wrapped.x * static_cast<float>(width) - 0.5f;
-  const float y = (1.0f - wrapped.y) * static_cast<float>(height) - 0.5f;
-  const float floorX = std::floor(x), floorY = std::floor(y);
-  const float weightX = x - floorX, weightY = y - floorY;
-  const auto repeat = [](int value, int size) { return value < 0 ? value + size : value >= size ? value - size : value; };
-  const int left = repeat(static_cast<int>(floorX), width), right = repeat(static_cast<int>(floorX) + 1, width);
-  const int top = repeat(static_cast<int>(floorY), height), bottom = repeat(static_cast<int>(floorY) + 1, height);
-  const auto texel = [&](int column, int row) {
-    const std::size_t index = static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
-    if (texture.mask) return glm::vec3(texture.values[index]);
-    return glm::vec3(texture.values[3 * index], texture.values[3 * index + 1], texture.values[3 * index + 2]);
-  };
-  return glm::mix(glm::mix(texel(left, top), texel(right, top), weightX),
-                  glm::mix(texel(left, bottom), texel(right, bottom), weightX), weightY);
-}
-
 RayScene::RayScene(const Scene& scene, const SceneSnapshot& snapshot) {
+  textures_.reserve(scene.textures.size());
+  for (const SurfaceTexture& texture : scene.textures) textures_.emplace_back(texture);
   materials.reserve(scene.materials.size());
   for (const Material& material : scene.materials) {
     const auto textureAt = [&](int index) {
-      return index < 0 ? nullptr : &scene.textures.at(static_cast<std::size_t>(index));
+      return index < 0 ? nullptr : &textures_.at(static_cast<std::size_t>(index));
     };
     materials.push_back({material.diffuse, material.specular, material.emission, material.exponent,
-                         textureAt(material.diffuseTexture), textureAt(material.maskTexture), material.glossy(),
-                         material.emissive()});
+                         textureAt(material.diffuseTexture), textureAt(material.maskTexture),
+                         material.glossy(), material.emissive()});
   }
   collect(scene, snapshot);
   build();
-}
-
-RayScene::~RayScene() {
-  if (scene_ != nullptr) rtcReleaseScene(scene_);
-  if (device_ != nullptr) rtcReleaseDevice(device_);
 }
 
 void RayScene::collect(const Scene& scene, const SceneSnapshot& snapshot) {
@@ -84,6 +63,8 @@ void RayScene::collect(const Scene& scene, const SceneSnapshot& snapshot) {
   requireMemory(scene.triangleCount() * kBytesPerTriangle, "the reference path tracer's triangles");
 
   std::vector<CollectedTriangle> plain, masked;
+  std::vector<glm::vec3> normals;
+  std::vector<glm::vec2> texcoords;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
     const ObjectState& state = snapshot.objects[i];
@@ -96,8 +77,8 @@ void RayScene::collect(const Scene& scene, const SceneSnapshot& snapshot) {
       vertices_.push_back(glm::vec3(state.toWorld * glm::vec4(position, 1.0f)));
       const glm::vec3 turned = state.normalToWorld * normal;
       const float length = glm::length(turned);
-      normals_.push_back(length > 0.0f ? turned / length : glm::vec3(0.0f));
-      texcoords_.push_back(scene.texcoords[source]);
+      normals.push_back(length > 0.0f ? turned / length : glm::vec3(0.0f));
+      texcoords.push_back(scene.texcoords[source]);
     }
     // A mirroring placement turns the winding around; the front side stays with the surface.
     const bool mirrored = glm::determinant(glm::mat3(state.toWorld)) < 0.0f;
@@ -126,11 +107,18 @@ void RayScene::collect(const Scene& scene, const SceneSnapshot& snapshot) {
     const glm::vec3 normal(cross / length);
     // Vertex normals within 0.08 degrees of the geometric one (cosine 1 - 1e-6) are rounding, not curvature.
     const auto bent = [&](std::uint32_t vertex) {
-      return normals_[vertex] != glm::vec3(0.0f) && glm::dot(normals_[vertex], normal) < 1.0f - 1e-6f;
+      return normals[vertex] != glm::vec3(0.0f) && glm::dot(normals[vertex], normal) < 1.0f - 1e-6f;
     };
-    triangles.push_back({vertices_[a], edge1, edge2, normal,
-                         selfIntersectionOffset(vertices_[a], vertices_[b], vertices_[c]), triangle.material, 0.0f,
-                         bent(a) || bent(b) || bent(c) ? 1u : 0u});
+    triangles.push_back({vertices_[a],
+                         edge1,
+                         edge2,
+                         normal,
+                         selfIntersectionOffset(vertices_[a], vertices_[b], vertices_[c]),
+                         triangle.material,
+                         0.0f,
+                         bent(a) || bent(b) || bent(c) ? 1u : 0u,
+                         {normals[a], normals[b], normals[c]},
+                         {texcoords[a], texcoords[b], texcoords[c]}});
     corners_.insert(corners_.end(), {a, b, c});
   };
   std::for_each(plain.begin(), plain.end(), append);
@@ -140,35 +128,37 @@ void RayScene::collect(const Scene& scene, const SceneSnapshot& snapshot) {
 }
 
 void RayScene::build() {
-  device_ = rtcNewDevice(nullptr);
+  device_.reset(rtcNewDevice(nullptr));
   if (device_ == nullptr) throw Error("reference: Embree cannot be started on this processor");
-  scene_ = rtcNewScene(device_);
-  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);  // watertight: no light between adjoining triangles
-  rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
+  scene_.reset(rtcNewScene(device_.get()));
+  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);  // watertight: no light between adjoining triangles
+  rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
   attach(kPlainGeometry, 0, maskedBegin_);
   attach(kMaskedGeometry, maskedBegin_, static_cast<std::uint32_t>(triangles.size()));
-  // One thread builds, so that the tree, and with it the choice among hits at equal distance, does not depend on the number of threads.
-  // (Embree's own setting "threads=1" would hold for all of TBB as long as the device lives.)
-  tbb::task_arena(1).execute([&] { rtcJoinCommitScene(scene_); });
-  throwOnEmbreeError(device_, "build the tree over the triangles");
+  // One thread builds, so that the tree, and with it the choice among hits at equal distance, does not depend
+  // on the number of threads. (Embree's own setting "threads=1" would hold for all of TBB as long as the
+  // device lives.)
+  tbb::task_arena(1).execute([&] { rtcJoinCommitScene(scene_.get()); });
+  throwOnEmbreeError(device_.get(), "build the tree over the triangles");
 }
 
 void RayScene::attach(unsigned geometryId, std::uint32_t begin, std::uint32_t end) {
   if (begin == end) return;
-  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices_.data(), 0, sizeof(glm::vec3),
-                             vertices_.size() - 1);
+  RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices_.data(), 0,
+                             sizeof(glm::vec3), vertices_.size() - 1);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, corners_.data(),
-                             std::size_t{begin} * 3 * sizeof(std::uint32_t), 3 * sizeof(std::uint32_t), end - begin);
+                             std::size_t{begin} * 3 * sizeof(std::uint32_t), 3 * sizeof(std::uint32_t),
+                             end - begin);
   if (geometryId == kMaskedGeometry) {
     rtcSetGeometryUserData(geometry, this);
     rtcSetGeometryIntersectFilterFunction(geometry, filter);
     rtcSetGeometryOccludedFilterFunction(geometry, filter);
   }
   rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(scene_, geometry, geometryId);
+  rtcAttachGeometryByID(scene_.get(), geometry, geometryId);
   rtcReleaseGeometry(geometry);
-  throwOnEmbreeError(device_, "take over the triangles");
+  throwOnEmbreeError(device_.get(), "take over the triangles");
 }
 
 void RayScene::filter(const RTCFilterFunctionNArguments* arguments) {
@@ -176,21 +166,17 @@ void RayScene::filter(const RTCFilterFunctionNArguments* arguments) {
   for (unsigned i = 0; i < arguments->N; ++i) {
     if (arguments->valid[i] == 0) continue;
     const std::uint32_t triangle = RTCHitN_primID(arguments->hit, arguments->N, i) + self.maskedBegin_;
-    if (self.cutOut(triangle, RTCHitN_u(arguments->hit, arguments->N, i), RTCHitN_v(arguments->hit, arguments->N, i))) {
+    if (self.cutOut(triangle, RTCHitN_u(arguments->hit, arguments->N, i),
+                    RTCHitN_v(arguments->hit, arguments->N, i))) {
       arguments->valid[i] = 0;
     }
   }
 }
 
-glm::vec2 RayScene::texcoordAt(std::uint32_t triangle, float u, float v) const {
-  const std::uint32_t* corner = &corners_[std::size_t{3} * triangle];
-  return (1.0f - u - v) * texcoords_[corner[0]] + u * texcoords_[corner[1]] + v * texcoords_[corner[2]];
-}
-
 bool RayScene::cutOut(std::uint32_t triangle, float u, float v) const {
-  const SurfaceTexture* mask = materials[triangles[triangle].material].maskTexture;
+  const Texture* mask = materials[triangles[triangle].material].maskTexture;
   if (mask == nullptr) return false;
-  return sampleRepeated(*mask, texcoordAt(triangle, u, v)).x < 0.5f;  // scene.h: coverage below 0.5 is a hole
+  return mask->at(triangles[triangle].texcoordAt(u, v)).x < 0.5f;  // scene.h: coverage below 0.5 is a hole
 }
 
 Surface RayScene::surfaceAt(const Hit& hit, const glm::vec3& direction) const {
@@ -200,8 +186,8 @@ Surface RayScene::surfaceAt(const Hit& hit, const glm::vec3& direction) const {
   const float side = glm::dot(triangle.normal, direction) < 0.0f ? 1.0f : -1.0f;
   surface.geometricNormal = side * triangle.normal;
 
-  // Points stay a hair inside their triangle, so that rounding never puts a point of an edge behind the adjoining surface: 2^-18 of the
-  // triangle's extent outweighs the rounding of its coordinates.
+  // Points stay a hair inside their triangle, so that rounding never puts a point of an edge behind the
+  // adjoining surface: 2^-18 of the triangle's extent outweighs the rounding of its coordinates.
   constexpr float kInset = 0x1.0p-18f;
   float u = std::max(hit.u, kInset), v = std::max(hit.v, kInset);
   if (u + v > 1.0f - kInset) {
@@ -213,8 +199,8 @@ Surface RayScene::surfaceAt(const Hit& hit, const glm::vec3& direction) const {
 
   surface.normal = surface.geometricNormal;
   if (triangle.interpolate != 0) {
-    const std::uint32_t* corner = &corners_[std::size_t{3} * hit.triangle];
-    const glm::vec3 sum = (1.0f - u - v) * normals_[corner[0]] + u * normals_[corner[1]] + v * normals_[corner[2]];
+    const glm::vec3 sum =
+        (1.0f - u - v) * triangle.normals[0] + u * triangle.normals[1] + v * triangle.normals[2];
     const float squared = glm::dot(sum, sum);
     if (squared > 0.0f) {
       const float facing = glm::dot(sum, surface.geometricNormal) < 0.0f ? -1.0f : 1.0f;
@@ -224,7 +210,7 @@ Surface RayScene::surfaceAt(const Hit& hit, const glm::vec3& direction) const {
 
   surface.diffuse = material.diffuse;
   if (material.diffuseTexture != nullptr) {
-    surface.diffuse *= sampleRepeated(*material.diffuseTexture, texcoordAt(hit.triangle, u, v));
+    surface.diffuse *= material.diffuseTexture->at(triangle.texcoordAt(u, v));
   }
   if (material.glossy) {
     surface.glossy = true;

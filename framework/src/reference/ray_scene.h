@@ -1,4 +1,5 @@
-// A scene at one time as rays meet it: all triangles in world space in one Embree scene, and what shading needs to know of each.
+// A scene at one time as rays meet it: all triangles in world space in one Embree scene, and what shading
+// needs to know of each.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -7,30 +8,40 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "lumivox/scene/scene.h"
+#include "reference/texture.h"
 
 namespace lumivox::reference {
 
-/// What shading reads of a triangle; one cache line.
+/// What shading reads of a triangle: two cache lines side by side, the second only for curved or textured
+/// ones.
 struct alignas(64) TriangleRecord {
-  glm::vec3 corner;         ///< first vertex, metres relative to the snapshot's origin
-  glm::vec3 edge1, edge2;   ///< from the first to the second and third vertex
-  glm::vec3 normal;         ///< geometric, unit length, on the front (counter-clockwise) side
-  float offset;             ///< m; rays leave the surface from this far above it (see selfIntersectionOffset)
-  std::uint32_t material;   ///< index into RayScene::materials
-  float emitterDensity;     ///< 1/m^2: density at which light sampling picks points of this triangle; 0 when it emits nothing
+  glm::vec3 corner;        ///< first vertex, metres relative to the snapshot's origin
+  glm::vec3 edge1, edge2;  ///< from the first to the second and third vertex
+  glm::vec3 normal;        ///< geometric, unit length, on the front (counter-clockwise) side
+  float offset;            ///< m; rays leave the surface from this far above it (see selfIntersectionOffset)
+  std::uint32_t material;  ///< index into RayScene::materials
+  float emitterDensity;  ///< 1/m^2: density at which light sampling picks points of this triangle; 0 when it
+                         ///< emits nothing
   std::uint32_t interpolate;  ///< nonzero: the vertices' normals differ from the geometric normal
+  glm::vec3 normals[3];       ///< of the vertices, unit length or zero
+  glm::vec2 texcoords[3];
+
+  glm::vec2 texcoordAt(float u, float v) const {
+    return (1.0f - u - v) * texcoords[0] + u * texcoords[1] + v * texcoords[2];
+  }
 };
-static_assert(sizeof(TriangleRecord) == 64);
+static_assert(sizeof(TriangleRecord) == 128);
 
 /// A material as the path tracer reads it.
 struct SurfaceMaterial {
   glm::vec3 diffuse, specular, emission;
   float exponent;
-  const SurfaceTexture* diffuseTexture;
-  const SurfaceTexture* maskTexture;
+  const Texture* diffuseTexture;
+  const Texture* maskTexture;
   bool glossy, emissive;
 };
 
@@ -40,14 +51,15 @@ struct Hit {
   float distance;  ///< in lengths of the ray's direction
 };
 
-/// A point of a surface seen from one side. Both normals lie on the side of the viewer, so no light passes through a surface.
+/// A point of a surface seen from one side. Both normals lie on the side of the viewer, so no light passes
+/// through a surface.
 struct Surface {
   glm::vec3 position;         ///< a little above the surface on the viewer's side: where rays leave from
   glm::vec3 geometricNormal;  ///< unit, on the viewer's side
   glm::vec3 normal;           ///< interpolated, unit, turned to the side of geometricNormal
   glm::vec3 diffuse;          ///< albedo
   glm::vec3 specular;
-  glm::vec3 mirror;           ///< mirror direction of the viewing direction; set where glossy
+  glm::vec3 mirror;  ///< mirror direction of the viewing direction; set where glossy
   float exponent = 0.0f;
   float glossyProbability = 0.0f;  ///< of choosing the Phong lobe when sampling; 0 where not glossy
   bool glossy = false;
@@ -56,7 +68,6 @@ struct Surface {
 class RayScene {
  public:
   RayScene(const Scene& scene, const SceneSnapshot& snapshot);
-  ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
@@ -67,9 +78,10 @@ class RayScene {
     RTCRayHit ray;
     setRay(ray.ray, origin, direction, std::numeric_limits<float>::infinity());
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_, &context, &ray);
+    rtcIntersect1(scene_.get(), &context, &ray);
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    hit = {ray.hit.primID + (ray.hit.geomID == kMaskedGeometry ? maskedBegin_ : 0u), ray.hit.u, ray.hit.v, ray.ray.tfar};
+    hit = {ray.hit.primID + (ray.hit.geomID == kMaskedGeometry ? maskedBegin_ : 0u), ray.hit.u, ray.hit.v,
+           ray.ray.tfar};
     return true;
   }
 
@@ -79,7 +91,7 @@ class RayScene {
     rtcInitIntersectContext(&context);
     RTCRay ray;
     setRay(ray, origin, direction, reach);
-    rtcOccluded1(scene_, &context, &ray);
+    rtcOccluded1(scene_.get(), &context, &ray);
     return ray.tfar < 0.0f;
   }
 
@@ -89,7 +101,8 @@ class RayScene {
   /// Emitted radiance towards a ray with this direction: from the front side only.
   glm::vec3 emissionTowards(const TriangleRecord& triangle, const glm::vec3& direction) const {
     const SurfaceMaterial& material = materials[triangle.material];
-    return material.emissive && glm::dot(triangle.normal, direction) < 0.0f ? material.emission : glm::vec3(0.0f);
+    return material.emissive && glm::dot(triangle.normal, direction) < 0.0f ? material.emission
+                                                                            : glm::vec3(0.0f);
   }
 
   /// Whether a mask cuts the surface out at this point of a triangle.
@@ -97,7 +110,7 @@ class RayScene {
 
   std::vector<TriangleRecord> triangles;  ///< those without a mask first
   std::vector<SurfaceMaterial> materials;
-  RTCScene embree() const { return scene_; }
+  RTCScene embree() const { return scene_.get(); }
 
   static void setRay(RTCRay& ray, const glm::vec3& origin, const glm::vec3& direction, float reach) {
     ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
@@ -114,19 +127,18 @@ class RayScene {
   void collect(const Scene& scene, const SceneSnapshot& snapshot);
   void build();
   void attach(unsigned geometryId, std::uint32_t begin, std::uint32_t end);
-  glm::vec2 texcoordAt(std::uint32_t triangle, float u, float v) const;
   static void filter(const RTCFilterFunctionNArguments* arguments);
 
-  std::vector<glm::vec3> vertices_;  ///< with one more at the end: Embree reads 16 bytes at each
-  std::vector<glm::vec3> normals_;
-  std::vector<glm::vec2> texcoords_;
+  struct Release {
+    void operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
+    void operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
+  };
+  std::vector<Texture> textures_;
+  std::vector<glm::vec3> vertices_;     ///< with one more at the end: Embree reads 16 bytes at each
   std::vector<std::uint32_t> corners_;  ///< three vertices per triangle
   std::uint32_t maskedBegin_ = 0;
-  RTCDevice device_ = nullptr;
-  RTCScene scene_ = nullptr;
+  std::unique_ptr<RTCDeviceTy, Release> device_;
+  std::unique_ptr<RTCSceneTy, Release> scene_;
 };
-
-/// Bilinear lookup with the texture repeated; texel centres at half integers, v = 1 at the top row.
-glm::vec3 sampleRepeated(const SurfaceTexture& texture, const glm::vec2& texcoord);
 
 }  // namespace lumivox::reference

@@ -13,7 +13,8 @@
 
 namespace lumivox::reference {
 
-/// What the picture depends on, in the one form that the tracer and the cache's key share: nothing left at "the default".
+/// What the picture depends on, in the one form that the tracer and the cache's key share: nothing left at
+/// "the default".
 struct ResolvedOptions {
   ReferenceOptions options;
   SceneSnapshot snapshot;  ///< at options.time, from options.camera, at the resolution of the picture
@@ -35,9 +36,12 @@ class PixelStatistics {
  public:
   static constexpr int kRadianceLayers = 7;
   void add(const PathSample& sample) {
-    const glm::vec3 oneBounce = sample.direct + sample.oneBounceDiffuse + sample.oneBounceGlossy, full = sample.full();
-    const glm::vec3* radiances[kRadianceLayers] = {&sample.direct, &sample.oneBounceDiffuse, &sample.oneBounceGlossy, &oneBounce,
-                                                   &sample.indirectDiffuse, &sample.indirectGlossy, &full};
+    const glm::vec3 oneBounce = sample.direct + sample.oneBounceDiffuse + sample.oneBounceGlossy,
+                    full = sample.full();
+    const glm::vec3* radiances[kRadianceLayers] = {
+        &sample.direct, &sample.oneBounceDiffuse, &sample.oneBounceGlossy,
+        &oneBounce,     &sample.indirectDiffuse,  &sample.indirectGlossy,
+        &full};
     for (int layer = 0; layer < kRadianceLayers; ++layer) {
       for (int channel = 0; channel < 3; ++channel) add(3 * layer + channel, (*radiances[layer])[channel]);
     }
@@ -78,7 +82,10 @@ class Tiles {
  public:
   static constexpr int kSize = 16;
   Tiles(int width, int height)
-      : width_(width), height_(height), columns_((width + kSize - 1) / kSize), rows_((height + kSize - 1) / kSize) {}
+      : width_(width),
+        height_(height),
+        columns_((width + kSize - 1) / kSize),
+        rows_((height + kSize - 1) / kSize) {}
   int count() const { return columns_ * rows_; }
   template <class Visit>
   void forEachPixel(int tile, Visit&& visit) const {
@@ -94,7 +101,8 @@ class Tiles {
 
 /// Paths through the pixels of one tile. The numbers of a path depend on seed, pixel and sample only.
 template <class Rays>
-void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Tiles& tiles, int tile, Rays& rays, Film& film) {
+void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Tiles& tiles, int tile,
+                Rays& rays, Film& film) {
   const CameraView& camera = resolved.snapshot.camera;
   // The direction is affine in the picture's coordinates.
   const glm::vec3 corner = camera.direction(0.0f, 0.0f);
@@ -103,10 +111,12 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
   const glm::vec3 perRow = (camera.direction(0.0f, height) - corner) / height;
   tiles.forEachPixel(tile, [&](int x, int y) {
     PixelStatistics pixel;
-    const auto stream = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(camera.width) + static_cast<std::uint32_t>(x);
+    const auto stream = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(camera.width) +
+                        static_cast<std::uint32_t>(x);
     for (int sample = 0; sample < resolved.options.samplesPerPixel; ++sample) {
       RandomStream random(resolved.options.seed, stream, static_cast<std::uint32_t>(sample));
-      const float column = static_cast<float>(x) + random.uniform(), row = static_cast<float>(y) + random.uniform();
+      const float column = static_cast<float>(x) + random.uniform(),
+                  row = static_cast<float>(y) + random.uniform();
       const glm::vec3 direction = glm::normalize(corner + column * perColumn + row * perRow);
       pixel.add(tracer.integrator.trace(rays, random, camera.eye, direction));
     }

@@ -13,28 +13,34 @@ namespace lumivox::reference {
 
 inline constexpr float kPi = std::numbers::pi_v<float>;
 
-/// Veach 1997, "Robust Monte Carlo methods for light transport simulation", Sec. 9.2.4: the power heuristic with exponent 2, for the
-/// ratio of the other technique's density to that of the technique which made the sample. An infinite ratio gives 0, never NaN.
-inline float powerHeuristic(float otherOverChosen) { return 1.0f / (1.0f + otherOverChosen * otherOverChosen); }
+/// Veach 1997, "Robust Monte Carlo methods for light transport simulation", Sec. 9.2.4: the power heuristic
+/// with exponent 2, for the ratio of the other technique's density to that of the technique which made the
+/// sample. An infinite ratio gives 0, never NaN.
+inline float powerHeuristic(float otherOverChosen) {
+  return 1.0f / (1.0f + otherOverChosen * otherOverChosen);
+}
 
-/// Cosine and sine of 2 pi u for u in [0, 1], to the last bits of a float: Taylor series about the nearest quarter turn, whose remainder
-/// at an eighth of a turn is 2e-9 for the sine and 3e-8 for the cosine. (Half of the time of the library's pair, which first has to
-/// bring any angle into this range.)
+/// Cosine and sine of 2 pi u for u in [0, 1], to the last bits of a float: Taylor series about the nearest
+/// quarter turn, whose remainder at an eighth of a turn is 2e-9 for the sine and 3e-8 for the cosine. (Half
+/// of the time of the library's pair, which first has to bring any angle into this range.)
 inline glm::vec2 pointOfCircle(float u) {
   const float quarters = 4.0f * u;
   const int nearest = static_cast<int>(quarters + 0.5f);
   const float x = (quarters - static_cast<float>(nearest)) * (0.5f * kPi);
   const float squared = x * x;
   const float sine =
-      x * (1.0f + squared * (-1.0f / 6.0f + squared * (1.0f / 120.0f + squared * (-1.0f / 5040.0f + squared / 362880.0f))));
+      x * (1.0f + squared * (-1.0f / 6.0f +
+                             squared * (1.0f / 120.0f + squared * (-1.0f / 5040.0f + squared / 362880.0f))));
   const float cosine =
-      1.0f + squared * (-1.0f / 2.0f + squared * (1.0f / 24.0f + squared * (-1.0f / 720.0f + squared / 40320.0f)));
+      1.0f +
+      squared * (-1.0f / 2.0f + squared * (1.0f / 24.0f + squared * (-1.0f / 720.0f + squared / 40320.0f)));
   const bool odd = (nearest & 1) != 0, negative = (nearest & 2) != 0;
   const glm::vec2 turned(odd ? -sine : cosine, odd ? cosine : sine);
   return negative ? -turned : turned;
 }
 
-/// The vector with these coordinates about an axis. Duff et al. 2017, "Building an orthonormal basis, revisited", Listing 3.
+/// The vector with these coordinates about an axis. Duff et al. 2017, "Building an orthonormal basis,
+/// revisited", Listing 3.
 inline glm::vec3 aboutAxis(const glm::vec3& axis, float x, float y, float z) {
   const float sign = std::copysign(1.0f, axis.z);
   const float a = -1.0f / (sign + axis.z);
@@ -57,8 +63,8 @@ inline glm::vec3 samplePowerCosine(const glm::vec3& axis, float exponent, float 
   return aboutAxis(axis, inDisc.x, inDisc.y, cosine);
 }
 
-/// Picks an index with given probabilities in constant time. Vose 1991, "A linear algorithm for generating random numbers with a given
-/// distribution".
+/// Picks an index with given probabilities in constant time. Vose 1991, "A linear algorithm for generating
+/// random numbers with a given distribution".
 class AliasTable {
  public:
   AliasTable() = default;

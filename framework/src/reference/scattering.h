@@ -1,5 +1,6 @@
-// Reflection at a surface: Lambert diffuse/pi plus Phong specular (n+2)/(2 pi) max(0, cos a)^n, a from the mirror direction of the viewing
-// direction (scene.h, Material). Directions below the interpolated or the geometric horizon reflect nothing.
+// Reflection at a surface: Lambert diffuse/pi plus Phong specular (n+2)/(2 pi) max(0, cos a)^n, a from the
+// mirror direction of the viewing direction (scene.h, Material). Directions below the interpolated or the
+// geometric horizon reflect nothing.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace lumivox::reference {
 /// Both lobes towards one direction.
 struct Reflectance {
   glm::vec3 diffuse{0.0f}, glossy{0.0f};  ///< 1/sr, times the cosine at the surface
-  float density = 0.0f;                   ///< 1/sr, at which sampleReflection gives this direction; 0 below the horizon
+  float density = 0.0f;  ///< 1/sr, at which sampleReflection gives this direction; 0 below the horizon
 };
 
 inline Reflectance reflectanceTowards(const Surface& surface, const glm::vec3& direction) {
@@ -26,10 +27,10 @@ inline Reflectance reflectanceTowards(const Surface& surface, const glm::vec3& d
   result.diffuse = lambert * surface.diffuse;
   result.density = lambert;
   if (surface.glossy) {
-    const float lobe = std::pow(std::max(0.0f, glm::dot(surface.mirror, direction)), surface.exponent) * (0.5f / kPi);
+    const float lobe =
+        std::pow(std::max(0.0f, glm::dot(surface.mirror, direction)), surface.exponent) * (0.5f / kPi);
     result.glossy = ((surface.exponent + 2.0f) * lobe * cosine) * surface.specular;
-    result.density =
-        glm::mix(result.density, (surface.exponent + 1.0f) * lobe, surface.glossyProbability);
+    result.density = glm::mix(result.density, (surface.exponent + 1.0f) * lobe, surface.glossyProbability);
   }
   return result;
 }

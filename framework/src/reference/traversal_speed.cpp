@@ -1,4 +1,5 @@
-// How much of the path tracer's time is traversal: its rays per second beside those of a bare loop over the very same rays.
+// How much of the path tracer's time is traversal: its rays per second beside those of a bare loop over the
+// very same rays.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -98,7 +99,8 @@ TraversalSpeed measureTraversalSpeed(const Scene& scene, const ReferenceOptions&
       });
     });
   }
-  if (std::accumulate(met.begin(), met.end(), std::uint64_t{0}) > speed.rays) throw Error("reference: more hits than rays");
+  if (std::accumulate(met.begin(), met.end(), std::uint64_t{0}) > speed.rays)
+    throw Error("reference: more hits than rays");
   std::nth_element(tracerSeconds.begin(), tracerSeconds.begin() + kRepeats / 2, tracerSeconds.end());
   std::nth_element(bareSeconds.begin(), bareSeconds.begin() + kRepeats / 2, bareSeconds.end());
   speed.tracerRaysPerSecond = static_cast<double>(speed.rays) / tracerSeconds[kRepeats / 2];

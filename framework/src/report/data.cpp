@@ -103,6 +103,9 @@ Json toJson(const PruningRecord& record) {
                {"pruned_frame_ms", toJson(record.prunedMs)},
                {"unpruned_frame_ms", toJson(record.unprunedMs)},
                {"saved_share", number(record.savedShare())},
+               {"pruned_next_frame_ms", toJson(record.nextPrunedMs)},
+               {"unpruned_next_frame_ms", toJson(record.nextUnprunedMs)},
+               {"saved_share_next", number(record.savedShareNext())},
                {"pruned_bytes", record.prunedBytes},
                {"unpruned_bytes", record.unprunedBytes},
                {"same_picture", record.samePicture}};

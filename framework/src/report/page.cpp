@@ -56,8 +56,8 @@ std::string withUncertainty(const Measured& measured) {
 
 std::string withQuartiles(const TimingStatistics& time) {
   if (time.repeats == 0) return "-";
-  return fmt::format("{:.3g} <span class=\"uncertainty\">[{:.3g}, {:.3g}]</span>", time.median,
-                     time.lowerQuartile, time.upperQuartile);
+  return fmt::format("{} <span class=\"uncertainty\">[{}, {}]</span>", formatMilliseconds(time.median),
+                     formatMilliseconds(time.lowerQuartile), formatMilliseconds(time.upperQuartile));
 }
 
 std::string percent(double share) {
@@ -143,7 +143,7 @@ std::string summaryTable(const ReportData& data) {
       std::string saved = "-";
       for (const PruningRecord& pruning : scene.pruning)
         if (record.isDefault && pruning.pipeline == record.point.pipeline)
-          saved = percent(pruning.savedShare());
+          saved = percent(pruning.savedShare()) + "; " + percent(pruning.savedShareNext());
       table.row(
           {escaped(scene.name.empty() ? scene.file : scene.name), escaped(shortName(record.point.pipeline)),
            escaped(parametersText(record.point.parameters)), withQuartiles(record.point.frameMs),
@@ -167,6 +167,13 @@ std::string errorCharts(std::size_t sceneIndex, const std::vector<std::string>& 
       "truth's noise and the spread over "
       "seeds together. The dashed grey line is the error of leaving the component out. Down and to the left "
       "is better.</p>\n"
+      "<p><label>Measure: <select class=\"metric\" data-scene=\"" +
+      std::to_string(sceneIndex) +
+      "\"><option value=\"rmse\">RMSE</option><option value=\"relative_mse\">relative MSE</option>"
+      "<option value=\"percentile_95\">95th percentile</option><option value=\"flip_hdr\">FLIP</option>"
+      "</select></label> <span class=\"caption\">A few very bright pixels, such as the edges of a lamp, can "
+      "rule "
+      "the RMSE; the 95th percentile and FLIP are less moved by them.</span></p>\n"
       "<div class=\"charts\">\n";
   for (const std::string& component : components) {
     const bool drawable =
@@ -409,13 +416,16 @@ std::string leftOutSection(const SceneRecord& scene) {
     const Explanation& explanation = record.explanation;
     html += "<h4>" + escaped(shortName(record.pipeline)) + "</h4>\n";
     html += fmt::format(
-        "<p>{} ms instead of {} ms: <b>{}</b> of the frame time saved. {} of {} passes kept; shader "
-        "variants: {} possible, {} compiled, {} "
-        "needed. Memory taken by the passes: {} instead of {}. Same picture, bit for bit: {}.</p>\n",
+        "<p>{} ms instead of {} ms: <b>{}</b> of the time of a first frame saved; {} ms instead of {} ms: "
+        "<b>{}</b> "
+        "of that of a frame that follows another. {} of {} passes kept; shader variants: {} possible, {} "
+        "compiled, {} needed. Memory taken by the passes: {} instead of {}. Same picture, bit for bit: "
+        "{}.</p>\n",
         withQuartiles(record.prunedMs), withQuartiles(record.unprunedMs), percent(record.savedShare()),
-        explanation.passesKept, explanation.passesTotal, explanation.variantsPossible,
-        explanation.variantsCompiled, explanation.variantsNeeded, formatBytes(record.prunedBytes),
-        formatBytes(record.unprunedBytes),
+        withQuartiles(record.nextPrunedMs), withQuartiles(record.nextUnprunedMs),
+        percent(record.savedShareNext()), explanation.passesKept, explanation.passesTotal,
+        explanation.variantsPossible, explanation.variantsCompiled, explanation.variantsNeeded,
+        formatBytes(record.prunedBytes), formatBytes(record.unprunedBytes),
         record.samePicture ? "<span class=\"good\">yes</span>" : "<span class=\"bad\">NO</span>");
     if (!explanation.leftOut.empty()) {
       Table table(
@@ -573,8 +583,9 @@ std::string toHtml(const ReportData& data, const std::string& chartLibrary) {
   html +=
       "<h2 id=\"summary\">Summary</h2>\n<p class=\"caption\">RMSE, FLIP and mean ratio of the whole picture "
       "against full transport. "
-      "&ldquo;Saved&rdquo;: share of the frame time that leaving out unneeded work saves. Bold rows are the "
-      "default parameters.</p>\n" +
+      "&ldquo;Saved&rdquo;: share of the time of a first frame, and of one that follows another, that "
+      "leaving "
+      "out unneeded work saves. Bold rows are the default parameters.</p>\n" +
       summaryTable(data);
   html += scenes + provenance(data) + "</main>\n";
   const std::string records = toJson(data).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);

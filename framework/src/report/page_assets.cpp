@@ -109,20 +109,28 @@ const char* const kPageScript = R"js(
     }
   };
 
-  function errorChart(canvas) {
+  const metrics = {
+    rmse: { title: "RMSE, W/(sr m²)", of: error => error.rmse },
+    relative_mse: { title: "relative MSE", of: error => error.relative_mse },
+    percentile_95: { title: "95th percentile of the error, W/(sr m²)", of: error => ({ value: error.percentile_95 }) },
+    flip_hdr: { title: "mean FLIP", of: error => ({ value: error.flip_hdr }) }
+  };
+
+  function errorChart(canvas, metric) {
     const scene = data.scenes[canvas.dataset.scene], component = canvas.dataset.component;
     const series = new Map(), nothing = new Map();
     for (const point of scene.points) {
       if (point.failure || !(point.frame_ms.median > 0)) continue;
       for (const error of point.errors) {
         if (error.component !== component || (component === "final" && error.output !== "whole_picture")) continue;
-        if (error.rmse_of_nothing > 0) nothing.set(error.truth, error.rmse_of_nothing);
-        if (!(error.rmse.value > 0)) continue;
+        if (metric === "rmse" && error.rmse_of_nothing > 0) nothing.set(error.truth, error.rmse_of_nothing);
+        const measured = metrics[metric].of(error);
+        if (!(measured.value > 0)) continue;
         const key = point.pipeline + "|" + error.output + "|" + error.truth;
         if (!series.has(key)) series.set(key, { pipeline: point.pipeline, output: error.output, truth: error.truth, kind: error.kind, data: [] });
         series.get(key).data.push({
-          x: point.frame_ms.median, y: error.rmse.value, low: point.frame_ms.lower_quartile, high: point.frame_ms.upper_quartile,
-          uncertainty: error.rmse.uncertainty || 0, text: parameters(point) });
+          x: point.frame_ms.median, y: measured.value, low: point.frame_ms.lower_quartile, high: point.frame_ms.upper_quartile,
+          uncertainty: measured.uncertainty || 0, text: parameters(point) });
       }
     }
     const datasets = [...series.values()].map(one => ({
@@ -141,11 +149,11 @@ const char* const kPageScript = R"js(
         scales: {
           x: { type: "logarithmic", title: { display: true, text: "frame time, ms" },
                min: Math.min(...times) / 1.3, max: Math.max(...times) * 1.3 },
-          y: { type: "logarithmic", title: { display: true, text: "RMSE, W/(sr m²)" },
+          y: { type: "logarithmic", title: { display: true, text: metrics[metric].title },
                min: Math.min(...errors) / 1.5, max: Math.max(...errors) * 1.5 } },
         plugins: {
           legend: { position: "bottom", labels: { boxWidth: 14, font: { size: 11 } } },
-          tooltip: { callbacks: { label: item => item.dataset.label + "; " + item.raw.text + ": " + digits(item.raw.x) + " ms, RMSE "
+          tooltip: { callbacks: { label: item => item.dataset.label + "; " + item.raw.text + ": " + digits(item.raw.x) + " ms, "
             + digits(item.raw.y) + " ± " + digits(item.raw.uncertainty) } } } } });
   }
 
@@ -171,10 +179,17 @@ const char* const kPageScript = R"js(
   }
 
   for (const canvas of document.querySelectorAll("canvas")) {
-    if (canvas.dataset.chart === "error") errorChart(canvas);
+    if (canvas.dataset.chart === "error") errorChart(canvas, "rmse");
     if (canvas.dataset.chart === "time") passChart(canvas, pass => pass.device_ms.median, "ms", "time per pass, ms");
     if (canvas.dataset.chart === "bytes") passChart(canvas, pass => pass.bytes / 1048576, "MiB", "memory taken per pass, MiB");
   }
+  for (const choice of document.querySelectorAll("select.metric"))
+    choice.addEventListener("change", () => {
+      for (const canvas of document.querySelectorAll("canvas[data-chart=error][data-scene='" + choice.dataset.scene + "']")) {
+        Chart.getChart(canvas).destroy();
+        errorChart(canvas, choice.value);
+      }
+    });
 })();
 )js";
 

@@ -143,6 +143,12 @@ int truthSamplesFor(int width, int height) {
   return std::clamp(static_cast<int>(std::lround(kPaths / pixels)), kFewest, kMost);
 }
 
+std::string formatMilliseconds(double milliseconds) {
+  constexpr double kWholeFrom = 99.95;  // what would round to 100 at three digits
+  return std::abs(milliseconds) >= kWholeFrom ? fmt::format("{:.0f}", milliseconds)
+                                              : fmt::format("{:.3g}", milliseconds);
+}
+
 void requireWritable(const fs::path& file) {
   if (file.empty() || file.filename().empty())
     throw Error(fmt::format("{}: not the name of a file to write", file.empty() ? "''" : file.string()));

@@ -39,10 +39,17 @@ struct Series {
   }
 };
 
+double saved(const TimingStatistics& pruned, const TimingStatistics& unpruned) {
+  return unpruned.median > 0.0 ? 1.0 - pruned.median / unpruned.median : 0.0;
+}
+
 }  // namespace
 
 double PruningRecord::savedShare() const {
-  return unprunedMs.median > 0.0 ? 1.0 - prunedMs.median / unprunedMs.median : 0.0;
+  return saved(prunedMs, unprunedMs);
+}
+double PruningRecord::savedShareNext() const {
+  return saved(nextPrunedMs, nextUnprunedMs);
 }
 
 PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, const Scene& scene,
@@ -75,6 +82,15 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
     unpruned.invalidate();
     unprunedSeries.add(unpruned.render(time, 0, PipelineExecutor::Pictures::no));
   }
+  std::vector<double> nextPruned, nextUnpruned;
+  for (int repeat = 1; repeat <= std::max(1, repeats); ++repeat) {
+    constexpr double kNextFrame = 1.0 / 60.0;  // s
+    const double next = time + repeat * kNextFrame;
+    nextPruned.push_back(pruned.render(next, repeat, PipelineExecutor::Pictures::no).frameMs);
+    nextUnpruned.push_back(unpruned.render(next, repeat, PipelineExecutor::Pictures::no).frameMs);
+  }
+  record.nextPrunedMs = statisticsOf(std::move(nextPruned));
+  record.nextUnprunedMs = statisticsOf(std::move(nextUnpruned));
   record.prunedMs = statisticsOf(prunedSeries.frameMs);
   record.unprunedMs = statisticsOf(unprunedSeries.frameMs);
   record.prunedPassMs = prunedSeries.passStatistics();

@@ -41,7 +41,7 @@ std::optional<TruthLayer> truthLayer(const LayeredPicture& truth, const std::str
     const auto variance = truth.layers.find(layer + ".variance");
     return TruthLayer{mean->second, variance == truth.layers.end() ? Picture{} : variance->second};
   };
-  if (name != "one_bounce") return find(name);
+  if (name != "one_bounce" || truth.layers.count(name) != 0) return find(name);
   std::optional<TruthLayer> sum = find("direct");
   for (const char* part : {"one_bounce_diffuse", "one_bounce_glossy"}) {
     const std::optional<TruthLayer> layer = find(part);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "lumivox/dsl/schema.h"
@@ -41,7 +42,7 @@ class Reader {
       // What the grammar has already refused is not judged further.
       std::vector<Diagnostic> refusals;
       dsl::check(document_, *item.block, specificationOf(grammar_, item.block->word), refusals);
-      if (refusals.empty()) read(*item.block);
+      if (refusals.empty() && !holdsParameters(*item.block) && item.block->closed) read(*item.block);
     }
     return std::move(result_);
   }
@@ -50,6 +51,27 @@ class Reader {
   static bool known(const BlockSpecification& outer, const Block& block) {
     return std::any_of(outer.blocks.begin(), outer.blocks.end(),
                        [&](const BlockSpecification& one) { return one.word == block.word; });
+  }
+
+  /// A scene says what is there: parameters belong to pipelines.
+  bool holdsParameters(const Block& block) {
+    bool found = false;
+    const std::function<void(const std::vector<dsl::Value>&)> look =
+        [&](const std::vector<dsl::Value>& values) {
+          for (const dsl::Value& value : values) {
+            if (value.kind == dsl::ValueKind::parameter) {
+              found = true;
+              report(value.place, value.length, fmt::format("parameter '${}' in a scene", value.text),
+                     "a value; only pipelines have parameters");
+            }
+            look(value.items);
+          }
+        };
+    for (const dsl::Item& item : block.items) {
+      if (item.property) look(item.property->values);
+      if (item.block && holdsParameters(*item.block)) found = true;
+    }
+    return found;
   }
 
   CheckedBlock checked(const Block& block) const { return {block, specificationOf(grammar_, block.word)}; }

@@ -15,7 +15,7 @@ struct LineCount {
   std::size_t count = 0;
   int firstLine = 0;
   void add(int line) {
-    if (count++ == 0) firstLine = line;
+    if (count++ == 0 || line < firstLine) firstLine = line;
   }
 };
 

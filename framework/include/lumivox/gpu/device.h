@@ -1,10 +1,12 @@
-// The only door to OpenGL. An OpenGL 4.5 core context without a display, the resources in it and the commands on them.
-// No OpenGL name appears in this header; a Device is used on the thread that made it.
+// The only door to OpenGL. An OpenGL 4.5 core context without a display, the resources in it and the commands
+// on them. No OpenGL name appears in this header; a Device is used on the thread that made it.
 //
 // What a shader author must know:
-// - Clip space: x to the right, y UP, z from 0 (near) to 1 (far), as glm::perspectiveRH_ZO gives. Row 0 of what is drawn is the TOP of
-//   the picture (clip y = +1), so texel (x, y) means the same in raster passes (gl_FragCoord), compute passes and sampled textures:
-//   texture coordinates of a clip position are u = 0.5 + 0.5 x, v = 0.5 - 0.5 y. Front faces stay counter-clockwise with y up.
+// - Clip space: x to the right, y UP, z from 0 (near) to 1 (far), as glm::perspectiveRH_ZO gives. Row 0 of
+// what is drawn is the TOP of
+//   the picture (clip y = +1), so texel (x, y) means the same in raster passes (gl_FragCoord), compute passes
+//   and sampled textures: texture coordinates of a clip position are u = 0.5 + 0.5 x, v = 0.5 - 0.5 y. Front
+//   faces stay counter-clockwise with y up.
 // - Nothing is culled. The depth test passes where depth <= stored. Depth buffers clear to 1, colours to 0.
 // - Bindings of sampled textures, images, storage buffers and uniform blocks are four separate number spaces.
 #pragma once
@@ -23,7 +25,20 @@
 
 namespace lumivox::gpu {
 
-enum class Format { r8, rgba8, r16f, rg16f, rgba16f, r32f, rg32f, rgba32f, r32ui, rg32ui, rgba32ui, depth32f };
+enum class Format {
+  r8,
+  rgba8,
+  r16f,
+  rg16f,
+  rgba16f,
+  r32f,
+  rg32f,
+  rgba32f,
+  r32ui,
+  rg32ui,
+  rgba32ui,
+  depth32f
+};
 std::size_t bytesPerTexel(Format format);
 int componentCount(Format format);
 const char* name(Format format);  ///< as in GLSL: "rgba16f"
@@ -45,7 +60,8 @@ int fullLevelCount(int width, int height, int depth = 1);
 class Device;
 struct DeviceState;
 
-/// A texture with immutable storage. Allocation is refused with an Error that names the size when it cannot fit.
+/// A texture with immutable storage. Allocation is refused with an Error that names the size when it cannot
+/// fit.
 class Texture {
  public:
   Texture(Device& device, const TextureDescription& description, std::string label = {});
@@ -60,7 +76,8 @@ class Texture {
   /// All texels of one level, tightly packed in the texture's own format, row 0 first.
   void upload(int level, std::span<const std::byte> texels);
   std::vector<std::byte> download(int level = 0) const;
-  /// Every format but the integer ones, as floats: texel-major, `components` of the format (half floats widened, bytes divided by 255).
+  /// Every format but the integer ones, as floats: texel-major, `components` of the format (half floats
+  /// widened, bytes divided by 255).
   std::vector<float> downloadFloats(int level = 0) const;
   void uploadFloats(int level, std::span<const float> values);
   /// Fills every texel of a level (all levels when -1). Integer formats take the value rounded.
@@ -87,11 +104,14 @@ class Buffer {
   std::uint64_t sizeBytes() const { return sizeBytes_; }
   const std::string& label() const { return label_; }
   void upload(std::span<const std::byte> bytes, std::uint64_t offsetBytes = 0);
-  std::vector<std::byte> download(std::uint64_t offsetBytes = 0, std::uint64_t sizeBytes = ~std::uint64_t{0}) const;
+  std::vector<std::byte> download(std::uint64_t offsetBytes = 0,
+                                  std::uint64_t sizeBytes = ~std::uint64_t{0}) const;
   void clear(std::uint32_t word = 0);  ///< fills with one 32-bit word
 
   template <class T>
-  void uploadValues(std::span<const T> values) { upload(std::as_bytes(values)); }
+  void uploadValues(std::span<const T> values) {
+    upload(std::as_bytes(values));
+  }
   template <class T>
   std::vector<T> downloadValues() const {
     const std::vector<std::byte> bytes = download();
@@ -112,11 +132,13 @@ class Buffer {
 using TextureRef = std::shared_ptr<Texture>;
 using BufferRef = std::shared_ptr<Buffer>;
 
-/// How a texture is read. Without `repeat` or `border` the edge texel continues outside; `border` means zero outside; `shadow` compares
-/// depth (1 where reference <= stored) and filters the four results. Integer formats are read with `nearest` only.
+/// How a texture is read. Without `repeat` or `border` the edge texel continues outside; `border` means zero
+/// outside; `shadow` compares depth (1 where reference <= stored) and filters the four results. Integer
+/// formats are read with `nearest` only.
 enum class Sampling { nearest, linear, linearMips, linearMipsRepeat, linearBorder, linearMipsBorder, shadow };
 
-// ---- programs -------------------------------------------------------------------------------------------------------------------
+// ---- programs
+// -------------------------------------------------------------------------------------------------------------------
 
 enum class Stage { vertex, geometry, fragment, compute };
 
@@ -137,7 +159,8 @@ enum class ShaderInput { automatic, spirv, glsl };
 /// A linked program. Errors carry the driver's log and the name.
 class Program {
  public:
-  Program(Device& device, std::string name, std::span<const StageCode> stages, std::span<const SpecialisationValue> constants);
+  Program(Device& device, std::string name, std::span<const StageCode> stages,
+          std::span<const SpecialisationValue> constants);
   ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
@@ -150,14 +173,26 @@ class Program {
   std::uint32_t handle_ = 0;
 };
 
-// ---- commands -------------------------------------------------------------------------------------------------------------------
+// ---- commands
+// -------------------------------------------------------------------------------------------------------------------
 
-/// One resource at one binding point of a program. Made by the slots in shader/slots.h, so that names and kinds are checked.
+/// One resource at one binding point of a program. Made by the slots in shader/slots.h, so that names and
+/// kinds are checked.
 struct ResourceBinding {
-  struct Sampled { const Texture* texture; Sampling sampling; };
-  struct StorageImage { const Texture* texture; int level; };
-  struct Storage { const Buffer* buffer; };
-  struct Uniform { std::vector<std::byte> bytes; };
+  struct Sampled {
+    const Texture* texture;
+    Sampling sampling;
+  };
+  struct StorageImage {
+    const Texture* texture;
+    int level;
+  };
+  struct Storage {
+    const Buffer* buffer;
+  };
+  struct Uniform {
+    std::vector<std::byte> bytes;
+  };
   const char* name = "";
   std::uint32_t binding = 0;
   std::variant<Sampled, StorageImage, Storage, Uniform> resource;
@@ -168,9 +203,13 @@ struct RasterState {
   float depthBiasSlope = 0.0f, depthBiasConstant = 0.0f;  ///< polygon offset
 };
 
-struct ColourTarget { const Texture* texture; int layer = -1; };
+struct ColourTarget {
+  const Texture* texture;
+  int layer = -1;
+};
 
-/// Where drawing goes. With no target at all, width and height give the size of an empty framebuffer (voxelisation).
+/// Where drawing goes. With no target at all, width and height give the size of an empty framebuffer
+/// (voxelisation).
 struct RenderTargets {
   std::vector<ColourTarget> colours{};  ///< one per output location; null texture: that output is not kept
   const Texture* depth = nullptr;
@@ -191,7 +230,7 @@ struct DeviceInfo {
 };
 
 struct DeviceOptions {
-  std::string device = "auto";            ///< "auto", "software", "surfaceless", or the index of an EGL device
+  std::string device = "auto";  ///< "auto", "software", "surfaceless", or the index of an EGL device
   ShaderInput shaderInput = ShaderInput::automatic;
 };
 
@@ -204,32 +243,35 @@ class Device {
   Device& operator=(const Device&) = delete;
 
   const DeviceInfo& info() const;
-  ShaderInput shaderInput() const;        ///< spirv or glsl, never automatic
+  ShaderInput shaderInput() const;  ///< spirv or glsl, never automatic
 
   /// Every command between enter and leave belongs to this pass: driver errors are reported under its name.
   void enterPass(const std::string& name);
-  void leavePass();                       ///< throws Error for a driver error since enterPass
+  void leavePass();  ///< throws Error for a driver error since enterPass
 
   void dispatch(const Program& program, std::span<const ResourceBinding> bindings, glm::uvec3 groups);
   /// Group counts read from three words of `arguments` at `offsetBytes`.
-  void dispatchIndirect(const Program& program, std::span<const ResourceBinding> bindings, const Buffer& arguments,
-                        std::uint64_t offsetBytes = 0);
+  void dispatchIndirect(const Program& program, std::span<const ResourceBinding> bindings,
+                        const Buffer& arguments, std::uint64_t offsetBytes = 0);
 
   /// Binds targets and state for the draws until endDrawing. Viewport = the whole target.
   void beginDrawing(const RenderTargets& targets, const RasterState& state);
   /// Indexed triangles (32-bit indices); attributes are pulled from storage buffers by gl_VertexID.
-  void drawIndexed(const Program& program, std::span<const ResourceBinding> bindings, const Buffer& indices, std::uint32_t firstIndex,
-                   std::uint32_t indexCount);
+  void drawIndexed(const Program& program, std::span<const ResourceBinding> bindings, const Buffer& indices,
+                   std::uint32_t firstIndex, std::uint32_t indexCount);
   void draw(const Program& program, std::span<const ResourceBinding> bindings, std::uint32_t vertexCount);
   void endDrawing();
 
-  /// Makes all earlier writes visible to all later reads (also to download, indirect arguments and texture fetches).
+  /// Makes all earlier writes visible to all later reads (also to download, indirect arguments and texture
+  /// fetches).
   void barrier();
-  void finish();                          ///< waits until the device is idle
+  void finish();  ///< waits until the device is idle
 
-  /// Milliseconds that `work` took: {host, device}. The device time comes from a timer query where those are trusted, else from the
-  /// fenced clock (finish before and after).
-  struct Elapsed { double hostMs, deviceMs; };
+  /// Milliseconds that `work` took: {host, device}. The device time comes from a timer query where those are
+  /// trusted, else from the fenced clock (finish before and after).
+  struct Elapsed {
+    double hostMs, deviceMs;
+  };
   Elapsed time(const std::function<void()>& work);
 
   /// Bytes in textures and buffers that are alive now, and the most so far.
@@ -240,7 +282,7 @@ class Device {
   const std::shared_ptr<DeviceState>& state() { return state_; }  ///< for framework/src/gpu alone
 
  private:
-  std::shared_ptr<DeviceState> state_;    ///< shared with the resources, which may outlive the Device
+  std::shared_ptr<DeviceState> state_;  ///< shared with the resources, which may outlive the Device
 };
 
 }  // namespace lumivox::gpu

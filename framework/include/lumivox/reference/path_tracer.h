@@ -1,10 +1,14 @@
-// The truth: unidirectional path tracing on Embree with next-event estimation and multiple importance sampling.
+// The truth: unidirectional path tracing on Embree with next-event estimation and multiple importance
+// sampling.
 //
 // Components at the first surface that a camera ray hits (box pixel filter of one pixel):
-//   direct            emission seen by the camera, the environment seen by camera rays that miss, and the light of point, spot,
+//   direct            emission seen by the camera, the environment seen by camera rays that miss, and the
+//   light of point, spot,
 //                     directional and area lights reflected once, by both lobes
-//   indirect_diffuse  what arrives after one or more further bounces and is reflected at the first surface by its diffuse lobe; a
-//                     bounced ray that misses brings the environment (so the sky's light belongs here and not to direct)
+//   indirect_diffuse  what arrives after one or more further bounces and is reflected at the first surface by
+//   its diffuse lobe; a
+//                     bounced ray that misses brings the environment (so the sky's light belongs here and not
+//                     to direct)
 //   indirect_glossy   the same for the Phong lobe
 // One bounce: exactly one further surface (or a miss). Full: up to `bounces` further surfaces.
 #pragma once
@@ -20,33 +24,42 @@ namespace lumivox {
 
 struct ReferenceOptions {
   int samplesPerPixel = 256;
-  int bounces = 32;                     ///< indirect bounces of the full transport: what lies beyond is cut off
-  bool roulette = true;                 ///< Russian roulette: ends dim paths early, without bias
+  int bounces = 32;      ///< indirect bounces of the full transport: what lies beyond is cut off
+  bool roulette = true;  ///< Russian roulette: ends dim paths early, without bias
   std::uint64_t seed = 1;
-  double time = 0.0;                    ///< s
+  double time = 0.0;  ///< s
   std::string camera;
-  int width = 0, height = 0;            ///< 0: the camera's
-  double occlusionDistance = 0.0;       ///< m, for ambient occlusion; 0: a tenth of the diagonal of the scene's bounds
-  int threads = 0;                      ///< 0: all
+  int width = 0, height = 0;  ///< 0: the camera's
+  double occlusionDistance =
+      0.0;          ///< m, for ambient occlusion; 0: a tenth of the diagonal of the scene's bounds
+  int threads = 0;  ///< 0: all
   bool progress = true;
   bool useCache = true;
 };
 
-/// Layers (RGB but for the occlusion): direct, one_bounce_diffuse, one_bounce_glossy, one_bounce (= direct + both), indirect_diffuse,
-/// indirect_glossy, full (= direct + both indirect), ambient_occlusion (one channel Y: unoccluded fraction, cosine-weighted); and for each
-/// of them "<layer>.variance": the variance of the pixel's mean. One path gives all of them, so sums have their own, right variance.
-/// Attributes hold the provenance: scene, hash, samples, bounces, roulette, seed, time, camera, resolution, occlusion_distance,
+/// Layers (RGB but for the occlusion): direct, one_bounce_diffuse, one_bounce_glossy, one_bounce (= direct +
+/// both), indirect_diffuse, indirect_glossy, full (= direct + both indirect), ambient_occlusion (one channel
+/// Y: unoccluded fraction, cosine-weighted); and for each of them "<layer>.variance": the variance of the
+/// pixel's mean. One path gives all of them, so sums have their own, right variance. Attributes hold the
+/// provenance: scene, hash, samples, bounces, roulette, seed, time, camera, resolution, occlusion_distance,
 /// tracer_version. At least two samples per pixel, or Error.
 LayeredPicture renderReference(const Scene& scene, const ReferenceOptions& options);
 
-/// The same through the cache (base/file.h cacheDirectory), keyed by everything the picture depends on. A damaged entry is made anew.
+/// The same through the cache (base/file.h cacheDirectory), keyed by everything the picture depends on. A
+/// damaged entry is made anew.
 LayeredPicture cachedReference(const Scene& scene, const ReferenceOptions& options);
 
-/// The closed form that a layer is judged by and tools that need single rays use this: radiance along one ray with n samples.
-glm::vec3 referenceRadiance(const Scene& scene, double time, glm::dvec3 originWorld, glm::vec3 direction, const ReferenceOptions& options);
+/// The closed form that a layer is judged by and tools that need single rays use this: radiance along one ray
+/// with n samples.
+glm::vec3 referenceRadiance(const Scene& scene, double time, glm::dvec3 originWorld, glm::vec3 direction,
+                            const ReferenceOptions& options);
 
-/// Rays per second of the path tracer's own traversal mix and of a bare Embree loop over the same rays, for bench/.
-struct TraversalSpeed { double tracerRaysPerSecond = 0, bareRaysPerSecond = 0; std::uint64_t rays = 0; };
+/// Rays per second of the path tracer's own traversal mix and of a bare Embree loop over the same rays, for
+/// bench/.
+struct TraversalSpeed {
+  double tracerRaysPerSecond = 0, bareRaysPerSecond = 0;
+  std::uint64_t rays = 0;
+};
 TraversalSpeed measureTraversalSpeed(const Scene& scene, const ReferenceOptions& options);
 
 }  // namespace lumivox

@@ -59,8 +59,9 @@ struct ReportPoint {
 /// What leaving out saves, measured: the pruned and the unpruned pipeline timed alternately in one run.
 struct PruningRecord {
   std::string scene, pipeline;
-  Explanation explanation;  ///< savedMs is filled in for passes
-  TimingStatistics prunedMs, unprunedMs;
+  Explanation explanation;                        ///< savedMs is filled in for passes
+  TimingStatistics prunedMs, unprunedMs;          ///< frames in which nothing is known from before
+  TimingStatistics nextPrunedMs, nextUnprunedMs;  ///< frames that follow 1/60 s after another
   std::map<std::string, TimingStatistics> prunedPassMs,
       unprunedPassMs;                  ///< device; a missing pass did not run
   std::vector<std::string> passOrder;  ///< of the unpruned pipeline
@@ -68,7 +69,8 @@ struct PruningRecord {
   std::uint64_t prunedBytes = 0, unprunedBytes = 0;  ///< all resources of the passes
   bool samePicture = false;                          ///< bit for bit: the law of leaving out
 
-  double savedShare() const;  ///< of the unpruned frame time, 0..1
+  double savedShare() const;      ///< of the unpruned frame time, 0..1
+  double savedShareNext() const;  ///< of that of a frame that follows another
 };
 
 struct ReportOptions {
@@ -104,8 +106,8 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
 /// Empty names: a component without a truth.
 std::pair<std::string, std::string> truthLayers(Contributes component);
 
-/// One layer of a truth and its variance. "one_bounce" (direct + both one-bounce layers) is added up here;
-/// nullopt when it is not there.
+/// One layer of a truth and its variance. Where the truth has no layer "one_bounce", direct and both
+/// one-bounce layers are added up; nullopt when it is not there.
 struct TruthLayer {
   Picture mean, variance;
 };
@@ -136,6 +138,9 @@ std::pair<int, int> reducedResolution(int width, int height, int limit);
 /// Samples per pixel at which the truth's noise is well below the techniques' errors and a small picture
 /// takes less than a minute or two.
 int truthSamplesFor(int width, int height);
+
+/// Three digits, whole from 100 on: "0.0123", "4.56", "1548".
+std::string formatMilliseconds(double milliseconds);
 
 /// Throws Error when a file could not be written there (folder missing and not creatable, not writable, or
 /// the path is a folder), so that this is told before the work and not after it. Creates the folders.

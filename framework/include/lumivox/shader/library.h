@@ -28,22 +28,30 @@ class ShaderLibrary {
   /// Adds the pack of a technique. The same technique twice is an Error.
   void addPack(ShaderPack pack);
 
-  /// Error for an unknown technique or program, for a combination that the constraints of the shader exclude, or from the driver.
+  /// Error for an unknown technique or program, for a combination that the constraints of the shader exclude,
+  /// or from the driver.
   const BoundProgram& program(const ProgramName& name, const VariantKey& variant,
                               const std::vector<gpu::SpecialisationValue>& constants = {});
 
-  void dispatch(const BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings, glm::uvec3 groups);
-  void dispatchIndirect(const BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings, const gpu::Buffer& arguments,
-                        std::uint64_t offsetBytes = 0);
-  void drawIndexed(const BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings, const gpu::Buffer& indices,
-                   std::uint32_t firstIndex, std::uint32_t indexCount);
-  void draw(const BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings, std::uint32_t vertexCount);
+  void dispatch(const BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings,
+                glm::uvec3 groups);
+  void dispatchIndirect(const BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings,
+                        const gpu::Buffer& arguments, std::uint64_t offsetBytes = 0);
+  void drawIndexed(const BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings,
+                   const gpu::Buffer& indices, std::uint32_t firstIndex, std::uint32_t indexCount);
+  void draw(const BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings,
+            std::uint32_t vertexCount);
 
-  /// Checks that every binding which the variant uses is given, and drops those that this variant does not have.
-  static std::vector<gpu::ResourceBinding> select(const BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings);
+  /// Checks that every binding which the variant uses is given, and drops those that this variant does not
+  /// have.
+  static std::vector<gpu::ResourceBinding> select(const BoundProgram& program,
+                                                  const std::vector<gpu::ResourceBinding>& bindings);
 
   /// For `lumivox shaders` and `explain`: variants that were asked for so far, per "technique/program".
-  struct Usage { std::size_t possible = 0, compiled = 0; std::set<std::vector<int>> needed; };
+  struct Usage {
+    std::size_t possible = 0, compiled = 0;
+    std::set<std::vector<int>> needed;
+  };
   std::map<std::string, Usage> usage() const;
   const std::map<std::string, ShaderPack>& packs() const;
   gpu::Device& device();

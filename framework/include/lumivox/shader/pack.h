@@ -1,5 +1,5 @@
-// A pack: all compiled variants of one technique's shaders in one file, `<technique>.shaderpack`, beside its library.
-// Written by tools/shaderpack, read here; no OpenGL.
+// A pack: all compiled variants of one technique's shaders in one file, `<technique>.shaderpack`, beside its
+// library. Written by tools/shaderpack, read here; no OpenGL.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,9 @@
 
 namespace lumivox::shader {
 
-/// What a variant is chosen by. The macro of the axis holds the number itself where the values are numbers, and 0, 1, 2... where they
-/// are words; then every word has a macro of its own too: axis LIGHT with value spot gives LIGHT_SPOT.
+/// What a variant is chosen by. The macro of the axis holds the number itself where the values are numbers,
+/// and 0, 1, 2... where they are words; then every word has a macro of its own too: axis LIGHT with value
+/// spot gives LIGHT_SPOT.
 struct Axis {
   std::string name;                 ///< as in the shader, e.g. "GLOSSY"
   std::vector<std::string> values;  ///< in the order of declaration; the first is the default
@@ -30,14 +31,15 @@ struct Axis {
 
 struct PackedStage {
   gpu::Stage stage;
-  std::size_t code = 0;             ///< index into ShaderPack::codes
+  std::size_t code = 0;  ///< index into ShaderPack::codes
 };
 
 /// One reachable combination of axis values.
 struct PackedVariant {
-  std::vector<int> values;          ///< per axis, what its macro is
+  std::vector<int> values;  ///< per axis, what its macro is
   std::vector<PackedStage> stages;
-  std::vector<std::uint32_t> bindingsUsed;  ///< see PackedProgram::bindings: indices of those that this variant reads or writes
+  std::vector<std::uint32_t>
+      bindingsUsed;  ///< see PackedProgram::bindings: indices of those that this variant reads or writes
 };
 
 enum class BindingKind { sampled, image, storage, uniform };
@@ -48,11 +50,11 @@ struct PackedBinding {
   std::string name;
   BindingKind kind = BindingKind::sampled;
   std::uint32_t binding = 0;
-  std::string type;                 ///< as in GLSL: "sampler2DArrayShadow", "image3D r32ui", or the block's name
+  std::string type;  ///< as in GLSL: "sampler2DArrayShadow", "image3D r32ui", or the block's name
   gpu::TextureKind textureKind = gpu::TextureKind::d2;  ///< of sampled textures and images
-  bool shadow = false;              ///< a sampled texture that compares depth
-  std::optional<gpu::Format> format;  ///< of images
-  std::uint64_t minimumBytes = 0;   ///< of blocks: without the array of open length at their end
+  bool shadow = false;                                  ///< a sampled texture that compares depth
+  std::optional<gpu::Format> format;                    ///< of images
+  std::uint64_t minimumBytes = 0;  ///< of blocks: without the array of open length at their end
 };
 
 enum class ConstantType { boolean, integer, unsignedInteger, real };
@@ -65,12 +67,12 @@ struct PackedConstant {
 };
 
 struct PackedProgram {
-  std::string name;                 ///< stem of the entry files
+  std::string name;  ///< stem of the entry files
   std::vector<Axis> axes;
   std::vector<PackedBinding> bindings;  ///< an image whose format follows an axis is there once per format
   std::vector<PackedConstant> constants;
   std::vector<PackedVariant> variants;
-  std::size_t possible = 0;         ///< size of the full product of the axes, before constraints
+  std::size_t possible = 0;  ///< size of the full product of the axes, before constraints
 
   /// Null when the constraints of the shader exclude this combination.
   const PackedVariant* find(const VariantKey& key) const;
@@ -82,12 +84,13 @@ struct PackedProgram {
 struct PackedCode {
   ContentHash hash;
   std::vector<std::uint32_t> spirv;
-  std::string glsl;                 ///< GLSL 4.50 by SPIRV-Cross from `spirv`; specialisation constants as SPIRV_CROSS_CONSTANT_ID_n macros
+  std::string glsl;  ///< GLSL 4.50 by SPIRV-Cross from `spirv`; specialisation constants as
+                     ///< SPIRV_CROSS_CONSTANT_ID_n macros
 };
 
 struct ShaderPack {
   std::string technique;
-  ContentHash hash;                 ///< of everything in it
+  ContentHash hash;  ///< of everything in it
   std::vector<PackedProgram> programs;
   std::vector<PackedCode> codes;
 

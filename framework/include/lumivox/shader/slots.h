@@ -1,5 +1,5 @@
-// The C++ side of a shader's interface. `shaderpack` generates one header per technique from reflection, made of these types, so that
-// a binding with a wrong name, kind or block layout does not compile.
+// The C++ side of a shader's interface. `shaderpack` generates one header per technique from reflection, made
+// of these types, so that a binding with a wrong name, kind or block layout does not compile.
 #pragma once
 
 #include <span>
@@ -35,7 +35,8 @@ struct StorageSlot {
   }
 };
 
-/// `Block` is the generated mirror of a std140 block; its offsets are static_asserted in the generated header.
+/// `Block` is the generated mirror of a std140 block; its offsets are static_asserted in the generated
+/// header.
 template <class Block>
 struct UniformSlot {
   const char* name;
