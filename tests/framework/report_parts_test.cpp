@@ -127,6 +127,15 @@ TEST_CASE("a picture is reduced to its limit with its aspect kept, and never enl
   CHECK(reducedResolution(10000, 1, 100) == std::pair(100, 1));
 }
 
+TEST_CASE(
+    "numbers are written with three digits, times of 100 ms and more whole, and no share is minus zero") {
+  CHECK(formatMilliseconds(1548.3) == "1548");
+  CHECK(formatMilliseconds(4.5612) == "4.56");
+  CHECK(formatMilliseconds(0.01234) == "0.0123");
+  CHECK(formatPercent(-0.001) == "0 %");
+  CHECK(formatPercent(0.416) == "42 %");
+}
+
 TEST_CASE("the truth takes fewer samples per pixel the larger the picture, within bounds") {
   CHECK(truthSamplesFor(64, 64) > truthSamplesFor(128, 128));
   CHECK(truthSamplesFor(1, 1) <= 4096);

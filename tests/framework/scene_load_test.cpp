@@ -178,6 +178,14 @@ TEST_CASE("faces that do not share vertices are smoothed where their positions a
   CHECK(normals.size() == 2);
 }
 
+TEST_CASE("normals of the file get unit length, however long or short they are") {
+  for (const char* length : {"1e-5", "3", "1e30"}) {
+    const Scene scene =
+        OneMesh(fmt::format("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 {} 0\nf 1//1 2//1 3//1\n", length)).load();
+    CHECK(scene.normals[0] == glm::vec3(0, 1, 0));
+  }
+}
+
 TEST_CASE("normals of the file hold unless a crease is asked for") {
   const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nf 1//1 2//1 3//1\n";
   CHECK(OneMesh(obj).load().normals[0] == glm::vec3(1, 0, 0));
@@ -412,6 +420,10 @@ TEST_CASE("each way in which an OBJ file can be no OBJ file gives one error with
   CHECK_THAT(OneMesh("v 0 0 0\nf 1 2\n").error(), Contains("m.obj:2: a face with 2 corners"));
   CHECK_THAT(OneMesh("v 0 0 0\nf 1 2 x\n").error(), Contains("m.obj:2: malformed corner 'x'"));
   CHECK_THAT(OneMesh("v 0 0 0\nf 1/2/3/4 1 1\n").error(), Contains("malformed corner '1/2/3/4'"));
+  for (const char* corner : {"1/", "1//", "1/1/", "/1", "//1", "1.5", "1/x"}) {
+    CHECK_THAT(OneMesh(fmt::format("v 0 0 0\nvt 0 0\nvn 0 0 1\nf 1 {} 1\n", corner)).error(),
+               Contains(fmt::format("malformed corner '{}'", corner)));
+  }
   CHECK_THAT(OneMesh(std::string("\x7F"
                                  "ELF\0\0\1",
                                  7))

@@ -83,10 +83,11 @@ std::string asText(const PruningRecord& record) {
                      explanation.passesKept, explanation.passesTotal, explanation.variantsPossible,
                      explanation.variantsCompiled, explanation.variantsNeeded) +
          fmt::format(
-             "{:.0f} % of the time of a first frame saved, {:.0f} % of the next ones; memory of the passes "
+             "{} of the time of a first frame saved, {} of the next ones; memory of the passes "
              "{} in place of {}; same picture: {}\n",
-             100.0 * record.savedShare(), 100.0 * record.savedShareNext(), formatBytes(record.prunedBytes),
-             formatBytes(record.unprunedBytes), record.samePicture ? "yes" : "NO");
+             formatPercent(record.savedShare()), formatPercent(record.savedShareNext()),
+             formatBytes(record.prunedBytes), formatBytes(record.unprunedBytes),
+             record.samePicture ? "yes" : "NO");
 }
 
 int explain(const ExplainCommand& command, const GlobalOptions& global) {

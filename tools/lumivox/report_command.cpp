@@ -79,13 +79,13 @@ void printSummary(const ReportSummary& summary) {
       "own model; misses: against full transport.\n";
   for (const PruningRecord& pruning : summary.pruning)
     text += fmt::format(
-        "{}, {}: leaving out what the scene does not need saves {:.0f} % of a first frame ({} of {} ms) and "
-        "{:.0f} % of "
+        "{}, {}: leaving out what the scene does not need saves {} of a first frame ({} of {} ms) and "
+        "{} of "
         "the next ones ({} of {} ms); same picture: {}\n",
         std::filesystem::path(pruning.scene).stem().string(),
-        std::filesystem::path(pruning.pipeline).stem().string(), 100.0 * pruning.savedShare(),
+        std::filesystem::path(pruning.pipeline).stem().string(), formatPercent(pruning.savedShare()),
         formatMilliseconds(pruning.unprunedMs.median - pruning.prunedMs.median),
-        formatMilliseconds(pruning.unprunedMs.median), 100.0 * pruning.savedShareNext(),
+        formatMilliseconds(pruning.unprunedMs.median), formatPercent(pruning.savedShareNext()),
         formatMilliseconds(pruning.nextUnprunedMs.median - pruning.nextPrunedMs.median),
         formatMilliseconds(pruning.nextUnprunedMs.median), pruning.samePicture ? "yes" : "NO");
   for (const std::string& unsuited : summary.unsuited) text += "not run: " + unsuited + "\n";

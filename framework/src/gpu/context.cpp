@@ -5,33 +5,12 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <map>
-#include <mutex>
 
 #include "gpu/state.h"
 #include "lumivox/base/error.h"
 
 namespace lumivox::gpu {
 namespace {
-
-// EGL hands out one display per platform and process: it is terminated when its last context has gone.
-std::mutex displayMutex;
-std::map<EGLDisplay, int>& displayUsers() {
-  static std::map<EGLDisplay, int> users;
-  return users;
-}
-
-bool acquireDisplay(EGLDisplay display) {
-  const std::lock_guard lock(displayMutex);
-  if (!eglInitialize(display, nullptr, nullptr)) return false;
-  ++displayUsers()[display];
-  return true;
-}
-
-void releaseDisplay(EGLDisplay display) {
-  const std::lock_guard lock(displayMutex);
-  if (--displayUsers()[display] == 0) eglTerminate(display);
-}
 
 std::string eglErrorName() {
   switch (eglGetError()) {
@@ -112,16 +91,13 @@ bool Context::tryDisplay(void* display, const std::string& platform, std::string
     return false;
   };
   if (display == EGL_NO_DISPLAY) return fail("not offered by EGL");
-  if (!acquireDisplay(display)) return fail("eglInitialize failed, " + eglErrorName());
-  const auto failInitialised = [&](const std::string& why) {
-    fail(why);
-    releaseDisplay(display);
-    return false;
-  };
+  // EGL hands out one display per platform and process. It is never terminated: other contexts may use it,
+  // and unloading a driver only to load it again for the next context is slow and, in Mesa, leaks.
+  if (!eglInitialize(display, nullptr, nullptr)) return fail("eglInitialize failed, " + eglErrorName());
   if (!epoxy_has_egl_extension(display, "EGL_KHR_surfaceless_context")) {
-    return failInitialised("lacks EGL_KHR_surfaceless_context");
+    return fail("lacks EGL_KHR_surfaceless_context");
   }
-  if (!eglBindAPI(EGL_OPENGL_API)) return failInitialised("has no OpenGL, only OpenGL ES");
+  if (!eglBindAPI(EGL_OPENGL_API)) return fail("has no OpenGL, only OpenGL ES");
   const EGLint configAttributes[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_PBUFFER_BIT,
                                      EGL_NONE};
   EGLConfig config = nullptr;
@@ -138,11 +114,11 @@ bool Context::tryDisplay(void* display, const std::string& platform, std::string
                                       EGL_TRUE,
                                       EGL_NONE};
   EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, contextAttributes);
-  if (context == EGL_NO_CONTEXT) return failInitialised("no OpenGL 4.5 core context, " + eglErrorName());
+  if (context == EGL_NO_CONTEXT) return fail("no OpenGL 4.5 core context, " + eglErrorName());
   if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
     const std::string why = "eglMakeCurrent failed, " + eglErrorName();
     eglDestroyContext(display, context);
-    return failInitialised(why);
+    return fail(why);
   }
   display_ = display;
   context_ = context;
@@ -164,7 +140,6 @@ Context::Context(const std::string& request) {
     failures += fmt::format("\n  {}: {}", platform_, why);
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display_, context_);
-    releaseDisplay(display_);
     context_ = nullptr;
   };
 
@@ -209,7 +184,6 @@ Context::Context(const std::string& request) {
 Context::~Context() {
   eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   eglDestroyContext(display_, context_);
-  releaseDisplay(display_);
 }
 
 void Context::makeCurrent() const {

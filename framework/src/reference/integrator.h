@@ -52,22 +52,26 @@ struct Integrator {
                    const glm::vec3& direction) const;
 
  private:
-  /// Radiance that the surface reflects of one chosen light.
+  /// Light of one chosen emitter that reaches a surface.
+  struct NextEvent {
+    glm::vec3 diffuse{0.0f};  ///< W/(sr m^2), to be multiplied by the albedo
+    glm::vec3 glossy{0.0f};   ///< reflected radiance
+  };
   template <class Rays>
-  glm::vec3 nextEvent(Rays& rays, RandomStream& random, const Surface& surface) const;
+  NextEvent nextEvent(Rays& rays, RandomStream& random, const Surface& surface) const;
 };
 
 template <class Rays>
-glm::vec3 Integrator::nextEvent(Rays& rays, RandomStream& random, const Surface& surface) const {
+Integrator::NextEvent Integrator::nextEvent(Rays& rays, RandomStream& random, const Surface& surface) const {
   const LightSample light = lights.sample(scene, surface, random);
-  if (!light.shines) return glm::vec3(0.0f);
-  const Reflectance reflected = reflectanceTowards(surface, light.direction);
-  if (reflected.density == 0.0f) return glm::vec3(0.0f);
-  if (rays.occluded(surface.position, light.shadowDirection, light.shadowReach)) return glm::vec3(0.0f);
+  if (!light.shines) return {};
+  const Reflectance reflectance = reflectanceTowards(surface, light.direction);
+  if (reflectance.density == 0.0f) return {};
+  if (rays.occluded(surface.position, light.shadowDirection, light.shadowReach)) return {};
   // Only emissive triangles can also be met by a reflected ray; for other lights the ratio is zero and the
   // weight one.
-  const float weight = powerHeuristic(reflected.density * light.inverseDensity);
-  return weight * (reflected.diffuse + reflected.glossy) * light.irradiance;
+  const float weight = powerHeuristic(reflectance.density * light.inverseDensity);
+  return {weight * reflectance.lambert * light.irradiance, weight * reflectance.glossy * light.irradiance};
 }
 
 template <class Rays>
@@ -99,13 +103,13 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
     if (bounce == 1) arrivingOnce += throughput * radiance;
   };
   for (int depth = 0;; ++depth) {
-    if (!lights.empty()) {
-      const glm::vec3 reflected = nextEvent(rays, random, surface);
-      if (depth == 0) {
-        result.direct += reflected;
-      } else {
-        arrive(reflected, depth);
-      }
+    const NextEvent event = lights.empty() ? NextEvent{} : nextEvent(rays, random, surface);
+    surface.readTexture();
+    const glm::vec3 reflected = event.diffuse * surface.diffuse + event.glossy;
+    if (depth == 0) {
+      result.direct += reflected;
+    } else {
+      arrive(reflected, depth);
     }
     // Behind the last surface a ray is of use only to meet emissive triangles, the other half of next-event
     // estimation.

@@ -176,7 +176,8 @@ void RayScene::filter(const RTCFilterFunctionNArguments* arguments) {
 bool RayScene::cutOut(std::uint32_t triangle, float u, float v) const {
   const Texture* mask = materials[triangles[triangle].material].maskTexture;
   if (mask == nullptr) return false;
-  return mask->at(triangles[triangle].texcoordAt(u, v)).x < 0.5f;  // scene.h: coverage below 0.5 is a hole
+  return mask->read(mask->find(triangles[triangle].texcoordAt(u, v))).x <
+         0.5f;  // scene.h: coverage below 0.5 is a hole
 }
 
 Surface RayScene::surfaceAt(const Hit& hit, const glm::vec3& direction) const {
@@ -210,7 +211,8 @@ Surface RayScene::surfaceAt(const Hit& hit, const glm::vec3& direction) const {
 
   surface.diffuse = material.diffuse;
   if (material.diffuseTexture != nullptr) {
-    surface.diffuse *= material.diffuseTexture->at(triangle.texcoordAt(u, v));
+    surface.texture = material.diffuseTexture;
+    surface.place = surface.texture->find(triangle.texcoordAt(u, v));
   }
   if (material.glossy) {
     surface.glossy = true;

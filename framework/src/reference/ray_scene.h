@@ -57,12 +57,20 @@ struct Surface {
   glm::vec3 position;         ///< a little above the surface on the viewer's side: where rays leave from
   glm::vec3 geometricNormal;  ///< unit, on the viewer's side
   glm::vec3 normal;           ///< interpolated, unit, turned to the side of geometricNormal
-  glm::vec3 diffuse;          ///< albedo
+  glm::vec3 diffuse;          ///< albedo; without the texture until readTexture() has been called
   glm::vec3 specular;
   glm::vec3 mirror;  ///< mirror direction of the viewing direction; set where glossy
   float exponent = 0.0f;
   float glossyProbability = 0.0f;  ///< of choosing the Phong lobe when sampling; 0 where not glossy
   bool glossy = false;
+  const Texture* texture = nullptr;
+  Texture::Place place;  ///< in the texture, where there is one
+
+  /// Multiplies the albedo by the texture. Apart from the rest, because texels come from far away in memory:
+  /// they travel while a shadow ray is traced.
+  void readTexture() {
+    if (texture != nullptr) diffuse *= texture->read(place);
+  }
 };
 
 class RayScene {

@@ -15,17 +15,17 @@ namespace lumivox::reference {
 
 /// Both lobes towards one direction.
 struct Reflectance {
-  glm::vec3 diffuse{0.0f}, glossy{0.0f};  ///< 1/sr, times the cosine at the surface
-  float density = 0.0f;  ///< 1/sr, at which sampleReflection gives this direction; 0 below the horizon
+  float lambert = 0.0f;    ///< 1/sr, cosine at the surface over pi: to be multiplied by the albedo
+  glm::vec3 glossy{0.0f};  ///< 1/sr, times the cosine at the surface
+  float density = 0.0f;    ///< 1/sr, at which sampleReflection gives this direction; 0 below the horizon
 };
 
 inline Reflectance reflectanceTowards(const Surface& surface, const glm::vec3& direction) {
   Reflectance result;
   const float cosine = glm::dot(surface.normal, direction);
   if (!(cosine > 0.0f) || !(glm::dot(surface.geometricNormal, direction) > 0.0f)) return result;
-  const float lambert = cosine * (1.0f / kPi);
-  result.diffuse = lambert * surface.diffuse;
-  result.density = lambert;
+  result.lambert = cosine * (1.0f / kPi);
+  result.density = result.lambert;
   if (surface.glossy) {
     const float lobe =
         std::pow(std::max(0.0f, glm::dot(surface.mirror, direction)), surface.exponent) * (0.5f / kPi);
@@ -41,7 +41,8 @@ struct ReflectionSample {
   float density = 0.0f;                   ///< 1/sr; 0: the path ends
 };
 
-/// A direction by the sum of both lobes' shapes, with the throughput of each.
+/// Needs the texture to have been read. A direction by the sum of both lobes' shapes, with the throughput of
+/// each.
 inline ReflectionSample sampleReflection(const Surface& surface, RandomStream& random) {
   ReflectionSample result;
   if (!surface.glossy) {
@@ -61,7 +62,7 @@ inline ReflectionSample sampleReflection(const Surface& surface, RandomStream& r
   if (!(reflectance.density > 0.0f)) return result;
   result.density = reflectance.density;
   const float inverseDensity = 1.0f / reflectance.density;
-  result.diffuse = inverseDensity * reflectance.diffuse;
+  result.diffuse = inverseDensity * reflectance.lambert * surface.diffuse;
   result.glossy = inverseDensity * reflectance.glossy;
   return result;
 }

@@ -15,17 +15,31 @@ class Texture {
  public:
   explicit Texture(const SurfaceTexture& source);
 
-  /// Bilinear lookup with the texture repeated; texel centres at half integers, v = 1 at the top row. A mask
-  /// gives its coverage in every channel.
-  glm::vec3 at(const glm::vec2& texcoord) const {
+  /// Four texels and their weights.
+  struct Place {
+    std::size_t upperLeft, upperRight, lowerLeft, lowerRight;
+    float right, lower;
+  };
+  /// Where a bilinear lookup reads, with the texture repeated: texel centres at half integers, v = 1 at the
+  /// top row. Asks for the texels, so that they are near when read() needs them.
+  Place find(const glm::vec2& texcoord) const {
     const Axis column = axisOf(texcoord.x, width_), row = axisOf(-texcoord.y, height_);
     const std::size_t top = row.first * static_cast<std::size_t>(width_);
     const std::size_t bottom = row.second * static_cast<std::size_t>(width_);
+    if (!packed_.empty()) {
+      __builtin_prefetch(&packed_[top + column.first]);
+      __builtin_prefetch(&packed_[bottom + column.first]);
+    }
+    return {top + column.first,     top + column.second, bottom + column.first,
+            bottom + column.second, column.weight,       row.weight};
+  }
+  /// The bilinear value. A mask gives its coverage in every channel.
+  glm::vec3 read(const Place& place) const {
     const glm::vec3 upper =
-        (1.0f - column.weight) * texel(top + column.first) + column.weight * texel(top + column.second);
+        (1.0f - place.right) * texel(place.upperLeft) + place.right * texel(place.upperRight);
     const glm::vec3 lower =
-        (1.0f - column.weight) * texel(bottom + column.first) + column.weight * texel(bottom + column.second);
-    return (1.0f - row.weight) * upper + row.weight * lower;
+        (1.0f - place.right) * texel(place.lowerLeft) + place.right * texel(place.lowerRight);
+    return (1.0f - place.lower) * upper + place.lower * lower;
   }
 
  private:

@@ -149,6 +149,10 @@ std::string formatMilliseconds(double milliseconds) {
                                               : fmt::format("{:.3g}", milliseconds);
 }
 
+std::string formatPercent(double share) {
+  return fmt::format("{:.0f} %", std::round(100.0 * share) + 0.0);  // adding a positive zero drops its sign
+}
+
 void requireWritable(const fs::path& file) {
   if (file.empty() || file.filename().empty())
     throw Error(fmt::format("{}: not the name of a file to write", file.empty() ? "''" : file.string()));

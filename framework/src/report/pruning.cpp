@@ -82,6 +82,10 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
     unpruned.invalidate();
     unprunedSeries.add(unpruned.render(time, 0, PipelineExecutor::Pictures::no));
   }
+  record.explanation = pruned.explain();  // here: the memory is that of a whole frame
+  record.prunedBytes = record.explanation.poolBytes;
+  record.unprunedBytes = unpruned.explain().poolBytes;
+
   std::vector<double> nextPruned, nextUnpruned;
   for (int repeat = 1; repeat <= std::max(1, repeats); ++repeat) {
     constexpr double kNextFrame = 1.0 / 60.0;  // s
@@ -96,9 +100,6 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
   record.prunedPassMs = prunedSeries.passStatistics();
   record.unprunedPassMs = unprunedSeries.passStatistics();
 
-  record.explanation = pruned.explain();
-  record.prunedBytes = record.explanation.poolBytes;
-  record.unprunedBytes = unpruned.explain().poolBytes;
   for (LeftOut& leftOut : record.explanation.leftOut) {
     const auto unprunedTime = record.unprunedPassMs.find(leftOut.pass);
     if (leftOut.level != LeftOut::Level::pass || unprunedTime == record.unprunedPassMs.end()) continue;

@@ -191,6 +191,21 @@ std::string trimmedName(const std::string& name) {
   return first == std::string::npos ? std::string() : name.substr(first, last - first + 1);
 }
 
+/// The scan has refused every index that is out of range; were the parser to read one differently, nothing
+/// may follow it.
+void requireIndices(const ObjFile& file) {
+  const auto within = [](int index, std::size_t count) { return index < static_cast<int>(count); };
+  for (const tinyobj::index_t& corner : file.corners) {
+    if (corner.vertex_index >= 0 && within(corner.vertex_index, file.positions.size()) &&
+        within(corner.normal_index, file.normals.size()) &&
+        within(corner.texcoord_index, file.texcoords.size())) {
+      continue;
+    }
+    throw Error(
+        fmt::format("{}: a face index cannot be read; expected plain whole numbers", file.path.string()));
+  }
+}
+
 void copyShapes(const std::vector<tinyobj::shape_t>& shapes, std::uint32_t fallbackMaterial, ObjFile& file) {
   std::map<std::string, std::uint32_t> objectNumbers;
   std::size_t triangles = 0;
@@ -269,6 +284,7 @@ ObjFile readObjFile(const fs::path& path, const ModelOptions& options, Hasher& h
   copy(attributes.normals, file.normals, 3);
   copy(attributes.texcoords, file.texcoords, 2);
   copyShapes(shapes, materials.fallback(), file);
+  requireIndices(file);
   file.materialTable = std::move(materials).table();
   return file;
 }

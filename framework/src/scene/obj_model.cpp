@@ -22,6 +22,11 @@ bool hasArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   return glm::length(glm::cross(b - a, c - a)) > kLeastHeight * longest;
 }
 
+/// In double precision, where no float's square overflows.
+glm::vec3 unit(const glm::vec3& v) {
+  return glm::vec3(glm::normalize(glm::dvec3(v)));
+}
+
 /// Decides which triangles stay, and says what goes.
 class Cleaner {
  public:
@@ -171,8 +176,7 @@ class Builder {
     for (std::size_t v = 0; v < positions.size(); ++v) {
       positions[v] = frame.positions[positionOfVertex_[v]];
       const std::uint32_t normal = normalOfVertex_[v];
-      normals[v] =
-          isGenerated(normal) ? generated[normal & ~kGenerated] : glm::normalize(frame.normals[normal]);
+      normals[v] = isGenerated(normal) ? generated[normal & ~kGenerated] : unit(frame.normals[normal]);
       if (!std::isfinite(normals[v].x)) normals[v] = model.normals[v];
     }
     model.framePositions.push_back(std::move(positions));
@@ -195,7 +199,7 @@ class Builder {
   bool hasOwnNormal(const tinyobj::index_t& corner) const {
     if (options_.crease || corner.normal_index < 0) return false;
     const glm::vec3& normal = file_.normals[static_cast<std::size_t>(corner.normal_index)];
-    return glm::dot(normal, normal) > 1e-12f;
+    return glm::length(glm::dvec3(normal)) > 1e-6;
   }
 
   void makeNormals() {
@@ -225,7 +229,7 @@ class Builder {
     if (isNew) {
       model_.positions.push_back(file_.positions[key.position]);
       model_.normals.push_back(isGenerated(normal) ? generated_[normal & ~kGenerated]
-                                                   : glm::normalize(file_.normals[normal]));
+                                                   : unit(file_.normals[normal]));
       model_.texcoords.push_back(key.texcoord == kNone ? glm::vec2(0.0f) : file_.texcoords[key.texcoord]);
       positionOfVertex_.push_back(key.position);
       normalOfVertex_.push_back(normal);

@@ -242,26 +242,34 @@ class ObjScanner {
   /// i, i/j, i//k or i/j/k.
   void readCorner(std::string_view word, long* indices, bool* given) {
     const std::string_view whole = word;
-    for (int i = 0; i < 3; ++i) {
-      if (!word.empty() && word.front() != '/') {
-        const auto result = std::from_chars(word.data(), word.data() + word.size(), indices[i]);
-        constexpr long kLargest = std::numeric_limits<int>::max();
-        if (result.ec == std::errc::result_out_of_range || std::abs(indices[i]) > kLargest) {
-          indices[i] = 0;
-        } else if (result.ec != std::errc()) {
-          break;
-        }
-        given[i] = true;
-        word.remove_prefix(static_cast<std::size_t>(result.ptr - word.data()));
+    bool good = true;
+    for (int i = 0; i < 3 && good; ++i) {
+      if (i > 0) {
+        if (word.empty()) break;
+        good = word.front() == '/';
+        word.remove_prefix(1);
+        if (good && i == 1 && !word.empty() && word.front() == '/') continue;  // i//k
       }
-      if (word.empty()) break;
-      if (word.front() != '/' || i == 2) break;
-      word.remove_prefix(1);
+      good = good && readIndex(word, indices[i]);
+      given[i] = good;
     }
-    if (!word.empty() || !given[0]) {
+    if (!good || !word.empty()) {
       refuse(file_, lines_.line(), fmt::format("malformed corner '{}' of a face", shown(whole)),
              "i, i/j, i//k or i/j/k");
     }
+  }
+
+  /// Takes a whole number from the front; one that no file can hold becomes 0, which is no index.
+  static bool readIndex(std::string_view& word, long& index) {
+    const auto result = std::from_chars(word.data(), word.data() + word.size(), index);
+    constexpr long kLargest = std::numeric_limits<int>::max();
+    if (result.ec == std::errc::result_out_of_range || std::abs(index) > kLargest) {
+      index = 0;
+    } else if (result.ec != std::errc()) {
+      return false;
+    }
+    word.remove_prefix(static_cast<std::size_t>(result.ptr - word.data()));
+    return true;
   }
 
   void readMaterialName(std::string_view name) {

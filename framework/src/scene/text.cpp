@@ -130,7 +130,8 @@ BlockSpecification mesh() {
                  "normals hold and only missing ones are made, with 30 deg",
                  dsl::kAngle)
                  .between(0, 180.0 * kDegree),
-             Row("scale", PropertyType::oneOrThree, "length of the file's unit, along each axis when three; done first", dsl::kLength)
+             Row("scale", PropertyType::oneOrThree,
+                 "length of the file's unit, along each axis when three; done first", dsl::kLength)
                  .between(kSmallestScale, kLargestScale)
                  .byDefault("1"),
              Row("rotate", PropertyType::axisAndNumber, "turn about an axis through the origin; done second",

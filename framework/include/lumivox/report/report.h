@@ -142,6 +142,9 @@ int truthSamplesFor(int width, int height);
 /// Three digits, whole from 100 on: "0.0123", "4.56", "1548".
 std::string formatMilliseconds(double milliseconds);
 
+/// A share as "12 %", never "-0 %".
+std::string formatPercent(double share);
+
 /// Throws Error when a file could not be written there (folder missing and not creatable, not writable, or
 /// the path is a folder), so that this is told before the work and not after it. Creates the folders.
 void requireWritable(const std::filesystem::path& file);
