@@ -233,3 +233,26 @@ TEST_CASE("a diffuse texture is read bilinearly, repeats, and has its first row 
   CHECK(texel(0.4, 0.75) == Approx(0.16).epsilon(0.001));
   CHECK(texel(1.75, -0.25) == Approx(0.3).epsilon(0.001));
 }
+
+TEST_CASE("a texture of more than 256 different values keeps every one of them") {
+  SurfaceTexture texture;
+  texture.width = 30, texture.height = 20;
+  for (int i = 0; i < 3 * 30 * 20; ++i) texture.values.push_back(static_cast<float>(i) / 1800.0f);
+  SceneBuilder builder;
+  builder.scene.textures.push_back(texture);
+  Material material;
+  material.diffuse = glm::vec3(1.0f);
+  material.diffuseTexture = 0;
+  builder.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, builder.material(material));
+  builder.light(LightKind::directional, glm::vec3(1.0f), {}, {0, 0, -1});
+  for (const glm::ivec2 texel : {glm::ivec2(0, 0), glm::ivec2(29, 19), glm::ivec2(17, 11)}) {
+    CAPTURE(texel.x, texel.y);
+    const glm::dvec3 origin((texel.x + 0.5) / 30.0, 1.0 - (texel.y + 0.5) / 20.0, 1.0);
+    const glm::vec3 radiance = referenceRadiance(builder.scene, 0.0, origin, {0, 0, -1}, quietly(1));
+    for (int channel = 0; channel < 3; ++channel) {
+      CHECK(radiance[channel] * kPi ==
+            Approx(texture.values[static_cast<std::size_t>(3 * (30 * texel.y + texel.x) + channel)])
+                .margin(1e-4));
+    }
+  }
+}

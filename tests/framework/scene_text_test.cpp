@@ -261,6 +261,18 @@ TEST_CASE("every property of the scene grammar is described with its meaning") {
              Contains("full vertical angle") && Contains("default 40 deg"));
 }
 
+TEST_CASE("what a text leaves out has the default that its table names") {
+  const test::TemporaryDirectory directory;
+  const Scene scene =
+      loadScene(directory.write("a.scene", "scene \"x\" { camera main { eye 0 0 1  target 0 0 0 } }"));
+  CHECK(scene.camera().fov == Approx(40 * std::numbers::pi / 180));
+  CHECK(scene.camera().width == 256);
+  CHECK(scene.camera().height == 256);
+  CHECK(scene.camera().up == glm::dvec3(0, 1, 0));
+  CHECK_THAT(dsl::describe(sceneSpecifications(), "fov"), Contains("default 40 deg"));
+  CHECK_THAT(dsl::describe(sceneSpecifications(), "resolution"), Contains("default 256 256"));
+}
+
 TEST_CASE("every default in the scene tables is a value that its own table accepts") {
   const std::function<void(const dsl::BlockSpecification&)> visit =
       [&](const dsl::BlockSpecification& block) {

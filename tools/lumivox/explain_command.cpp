@@ -76,14 +76,14 @@ std::string asText(const PruningRecord& record) {
   }
   passes.push_back({"whole frame", formatMilliseconds(record.prunedMs.median),
                     formatMilliseconds(record.unprunedMs.median)});
-  passes.push_back({"next frame", formatMilliseconds(record.nextPrunedMs.median),
+  passes.push_back({"next frame, camera moving", formatMilliseconds(record.nextPrunedMs.median),
                     formatMilliseconds(record.nextUnprunedMs.median)});
   return textTable(leftOut) + "\n" + textTable(passes) +
          fmt::format("\n{} of {} passes kept; variants: {} possible, {} compiled, {} needed\n",
                      explanation.passesKept, explanation.passesTotal, explanation.variantsPossible,
                      explanation.variantsCompiled, explanation.variantsNeeded) +
          fmt::format(
-             "{} of the time of a first frame saved, {} of the next ones; memory of the passes "
+             "{} of the time of a first frame saved, {} of the next ones with a moving camera; memory of the passes "
              "{} in place of {}; same picture: {}\n",
              formatPercent(record.savedShare()), formatPercent(record.savedShareNext()),
              formatBytes(record.prunedBytes), formatBytes(record.unprunedBytes),

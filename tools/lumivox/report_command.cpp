@@ -81,7 +81,7 @@ void printSummary(const ReportSummary& summary) {
     text += fmt::format(
         "{}, {}: leaving out what the scene does not need saves {} of a first frame ({} of {} ms) and "
         "{} of "
-        "the next ones ({} of {} ms); same picture: {}\n",
+        "the next ones with a moving camera ({} of {} ms); same picture: {}\n",
         std::filesystem::path(pruning.scene).stem().string(),
         std::filesystem::path(pruning.pipeline).stem().string(), formatPercent(pruning.savedShare()),
         formatMilliseconds(pruning.unprunedMs.median - pruning.prunedMs.median),

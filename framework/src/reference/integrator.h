@@ -84,7 +84,8 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
     return result;
   }
   result.direct = scene.emissionTowards(scene.triangles[hit.triangle], direction);
-  Surface surface = scene.surfaceAt(hit, direction);
+  Surface surface;
+  scene.surfaceAt(hit, direction, surface);
 
   if (occlusionDistance > 0.0f) {
     const float u1 = random.uniform(), u2 = random.uniform();
@@ -149,7 +150,7 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
       }
     }
     if (last) break;
-    surface = scene.surfaceAt(hit, reflection.direction);
+    scene.surfaceAt(hit, reflection.direction, surface);
   }
   result.oneBounceDiffuse = firstDiffuse * arrivingOnce;
   result.oneBounceGlossy = firstGlossy * arrivingOnce;

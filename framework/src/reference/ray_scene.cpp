@@ -180,10 +180,9 @@ bool RayScene::cutOut(std::uint32_t triangle, float u, float v) const {
          0.5f;  // scene.h: coverage below 0.5 is a hole
 }
 
-Surface RayScene::surfaceAt(const Hit& hit, const glm::vec3& direction) const {
+void RayScene::surfaceAt(const Hit& hit, const glm::vec3& direction, Surface& surface) const {
   const TriangleRecord& triangle = triangles[hit.triangle];
   const SurfaceMaterial& material = materials[triangle.material];
-  Surface surface;
   const float side = glm::dot(triangle.normal, direction) < 0.0f ? 1.0f : -1.0f;
   surface.geometricNormal = side * triangle.normal;
 
@@ -210,12 +209,12 @@ Surface RayScene::surfaceAt(const Hit& hit, const glm::vec3& direction) const {
   }
 
   surface.diffuse = material.diffuse;
-  if (material.diffuseTexture != nullptr) {
-    surface.texture = material.diffuseTexture;
+  surface.texture = material.diffuseTexture;
+  if (surface.texture != nullptr) {
     surface.place = surface.texture->find(triangle.texcoordAt(u, v));
   }
-  if (material.glossy) {
-    surface.glossy = true;
+  surface.glossy = material.glossy;
+  if (surface.glossy) {
     surface.specular = material.specular;
     surface.exponent = material.exponent;
     surface.mirror = direction - 2.0f * glm::dot(direction, surface.normal) * surface.normal;
@@ -223,7 +222,6 @@ Surface RayScene::surfaceAt(const Hit& hit, const glm::vec3& direction) const {
     const float specular = surface.specular.x + surface.specular.y + surface.specular.z;
     surface.glossyProbability = specular / (diffuse + specular);
   }
-  return surface;
 }
 
 }  // namespace lumivox::reference

@@ -60,10 +60,10 @@ struct Surface {
   glm::vec3 diffuse;          ///< albedo; without the texture until readTexture() has been called
   glm::vec3 specular;
   glm::vec3 mirror;  ///< mirror direction of the viewing direction; set where glossy
-  float exponent = 0.0f;
-  float glossyProbability = 0.0f;  ///< of choosing the Phong lobe when sampling; 0 where not glossy
-  bool glossy = false;
-  const Texture* texture = nullptr;
+  float exponent;
+  float glossyProbability;  ///< of choosing the Phong lobe when sampling; set where glossy
+  bool glossy;
+  const Texture* texture;
   Texture::Place place;  ///< in the texture, where there is one
 
   /// Multiplies the albedo by the texture. Apart from the rest, because texels come from far away in memory:
@@ -103,8 +103,9 @@ class RayScene {
     return ray.tfar < 0.0f;
   }
 
-  /// The surface at a hit, seen from a ray with this unit direction.
-  Surface surfaceAt(const Hit& hit, const glm::vec3& direction) const;
+  /// The surface at a hit, seen from a ray with this unit direction. Filled in place: a copy of so many
+  /// single numbers costs a tenth of a ray.
+  void surfaceAt(const Hit& hit, const glm::vec3& direction, Surface& surface) const;
 
   /// Emitted radiance towards a ray with this direction: from the front side only.
   glm::vec3 emissionTowards(const TriangleRecord& triangle, const glm::vec3& direction) const {

@@ -86,11 +86,20 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
   record.prunedBytes = record.explanation.poolBytes;
   record.unprunedBytes = unpruned.explain().poolBytes;
 
+  // Frames that follow: time goes on and the camera moves by a thousandth of the scene, as in an interactive walk. A camera that stands
+  // still would leave nothing to do at all in a static scene, which says little.
+  options.keepEverything = false;
+  options.interactive = true;
+  PipelineExecutor walking(device, techniques, scene, pipeline, options);
+  walking.render(time, 0, PipelineExecutor::Pictures::no);
   std::vector<double> nextPruned, nextUnpruned;
   for (int repeat = 1; repeat <= std::max(1, repeats); ++repeat) {
     constexpr double kNextFrame = 1.0 / 60.0;  // s
-    const double next = time + repeat * kNextFrame;
-    nextPruned.push_back(pruned.render(next, repeat, PipelineExecutor::Pictures::no).frameMs);
+    constexpr float kStride = 1e-3f;
+    SceneSnapshot next = snapshotOf(scene, time + repeat * kNextFrame, options.camera, options.width, options.height);
+    const float diagonal = next.bounds.empty ? 1.0f : glm::length(next.bounds.high - next.bounds.low);
+    next.camera.eye += next.camera.right * (static_cast<float>(repeat) * kStride * diagonal);
+    nextPruned.push_back(walking.render(next, repeat, PipelineExecutor::Pictures::no).frameMs);
     nextUnpruned.push_back(unpruned.render(next, repeat, PipelineExecutor::Pictures::no).frameMs);
   }
   record.nextPrunedMs = statisticsOf(std::move(nextPruned));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <numbers>
 
 #include "lumivox/base/error.h"
 #include "lumivox/scene/scene.h"
@@ -49,7 +50,7 @@ glm::dmat4 motionAt(const Object& object, double time) {
   const RigidMotion& motion = *object.motion;
   glm::dmat4 result = glm::translate(glm::dmat4(1.0), motion.pivot + motion.velocity * time);
   // Whole turns are left out first, so that late times lose no precision.
-  const double angle = std::remainder(motion.angularSpeed * time, 2.0 * 3.14159265358979323846);
+  const double angle = std::remainder(motion.angularSpeed * time, 2.0 * std::numbers::pi);
   result = glm::rotate(result, angle, motion.axis);
   return glm::translate(result, -motion.pivot) * object.placement;
 }

@@ -2,15 +2,13 @@
 // sampling.
 //
 // Components at the first surface that a camera ray hits (box pixel filter of one pixel):
-//   direct            emission seen by the camera, the environment seen by camera rays that miss, and the
-//   light of point, spot,
-//                     directional and area lights reflected once, by both lobes
-//   indirect_diffuse  what arrives after one or more further bounces and is reflected at the first surface by
-//   its diffuse lobe; a
-//                     bounced ray that misses brings the environment (so the sky's light belongs here and not
-//                     to direct)
-//   indirect_glossy   the same for the Phong lobe
-// One bounce: exactly one further surface (or a miss). Full: up to `bounces` further surfaces.
+// - direct: emission seen by the camera, the environment seen by camera rays that miss, and the light of
+//   point, spot, directional and area lights reflected once, by both lobes
+// - indirect_diffuse: what arrives after one or more further bounces and is reflected at the first surface by
+//   its diffuse lobe; a bounced ray that misses brings the environment (the sky's light belongs here)
+// - indirect_glossy: the same for the Phong lobe
+// One bounce: exactly one further surface, or a miss in its place. Full: up to `bounces` of them.
+// The choices that this leaves open are stated in docs/reference_path_tracer.md.
 #pragma once
 
 #include <cstdint>

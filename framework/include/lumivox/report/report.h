@@ -70,7 +70,7 @@ struct PruningRecord {
   bool samePicture = false;                          ///< bit for bit: the law of leaving out
 
   double savedShare() const;      ///< of the unpruned frame time, 0..1
-  double savedShareNext() const;  ///< of that of a frame that follows another
+  double savedShareNext() const;  ///< of that of a frame that follows another, with a moving camera
 };
 
 struct ReportOptions {

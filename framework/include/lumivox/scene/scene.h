@@ -182,16 +182,21 @@ struct SceneSnapshot {
   Bounds bounds;                 ///< of all triangles
 };
 
-/// Evaluates motion. `origin` is the centre of the static scene's bounds, the same for all times.
+/// Evaluates motion. `origin` is the centre of the static scene's bounds (of everything at rest, before motion, where nothing is static),
+/// the same for all times.
 /// `width`/`height` of 0 keep the camera's resolution.
 SceneSnapshot snapshotOf(const Scene& scene, double time, const std::string& camera = {}, int width = 0, int height = 0);
 
 struct SceneLoadOptions {
   std::vector<std::filesystem::path> assetPath;  ///< --assets; then $LUMIVOX_ASSETS, then ../shared/models beside the project
-  bool strict = false;                           ///< refuse bad triangles in place of dropping them with a warning
+  /// Refuse bad triangles in place of dropping them with a warning; refuse missing material files and unknown materials in place of
+  /// a warning and grey 0.8; refuse maps and statements that are not used.
+  bool strict = false;
 };
 
-/// Reads a scene text and everything that it names. Throws DiagnosticsError with all findings of the text, Error for a bad model or
+/// Reads a scene text and everything that it names. Of MTL materials Kd, Ks, Ns, Ke, map_Kd, d and map_d are used as given: map_d is
+/// taken from the picture's alpha, or its first channel where it has none, times d; a surface without map_d and with d below a half is
+/// a hole, so its triangles are left out. Normals that are missing are smooth where faces meet at up to 30 degrees (`crease`). Throws DiagnosticsError with all findings of the text, Error for a bad model or
 /// picture file, AbsentError for a model that is on no search path (the message lists where it was sought).
 Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
