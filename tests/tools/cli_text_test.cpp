@@ -1,6 +1,7 @@
 // check, fmt, describe and list on real files.
 #include <algorithm>
 
+#include "lumivox/base/file.h"
 #include "tools/cli_support.h"
 
 using namespace lumivox;
@@ -167,4 +168,12 @@ TEST_CASE("unknown commands and options are bad input, help and version are not"
   CHECK(runCommand("lumivox --help").exitCode == 0);
   CHECK(runCommand("lumivox report --help").exitCode == 0);
   CHECK(contains(runCommand("lumivox --version").output, "lumivox "));
+}
+
+TEST_CASE("the reference in docs is what describe --markdown writes today") {
+  const CommandResult result = runCommand("lumivox describe --markdown");
+  REQUIRE(result.exitCode == 0);
+  const bool same = result.output == readFile(sourceDirectory() / "docs/reference.md");
+  INFO("bring it up to date: ./run describe --markdown > docs/reference.md");
+  CHECK(same);
 }

@@ -135,7 +135,8 @@ TEST_CASE("the scenes of well-known models load where the models are") {
     if (isOwn(file)) continue;
     INFO(file);
     try {
-      CHECK(loadScene(file).triangleCount() > 0);
+      const Scene scene = loadScene(file);
+      CHECK(scene.triangleCount() > 0);
     } catch (const AbsentError&) {
       absent += ' ' + file.stem().string();
     }

@@ -24,14 +24,6 @@ double fluxOf(const LightState& light, double sceneRadius) {
   return 0.0;
 }
 
-/// scene.h: smoothstep(cos outer, cos inner, cos theta); a step where both angles are equal.
-float spotFalloff(const LightState& light, float cosine) {
-  const float outer = std::cos(light.outerAngle), inner = std::cos(light.innerAngle);
-  if (inner <= outer) return cosine >= inner ? 1.0f : 0.0f;
-  const float t = std::clamp((cosine - outer) / (inner - outer), 0.0f, 1.0f);
-  return t * t * (3.0f - 2.0f * t);
-}
-
 }  // namespace
 
 AliasTable::AliasTable(const std::vector<double>& weights) {
@@ -58,11 +50,21 @@ AliasTable::AliasTable(const std::vector<double>& weights) {
   }
 }
 
-LightSampler::LightSampler(RayScene& scene, const SceneSnapshot& snapshot) : lights_(snapshot.lights) {
+/// scene.h: smoothstep(cos outer, cos inner, cos theta); a step where both angles are equal.
+float LightSampler::PreparedLight::falloffTowards(float cosine) const {
+  if (cosineInner <= cosineOuter) return cosine >= cosineInner ? 1.0f : 0.0f;
+  const float t = std::clamp((cosine - cosineOuter) / (cosineInner - cosineOuter), 0.0f, 1.0f);
+  return t * t * (3.0f - 2.0f * t);
+}
+
+LightSampler::LightSampler(RayScene& scene, const SceneSnapshot& snapshot) {
+  for (const LightState& light : snapshot.lights) {
+    lights_.push_back({light, std::cos(light.innerAngle), std::cos(light.outerAngle)});
+  }
   const double radius = 0.5 * glm::length(glm::dvec3(snapshot.bounds.high) - glm::dvec3(snapshot.bounds.low));
   std::vector<double> flux;
   for (std::size_t i = 0; i < lights_.size(); ++i) {
-    const double value = fluxOf(lights_[i], std::max(radius, 1e-30));
+    const double value = fluxOf(lights_[i].state, std::max(radius, 1e-30));
     if (value <= 0.0) continue;
     choices_.push_back({false, static_cast<std::uint32_t>(i), 0.0f});
     flux.push_back(value);
@@ -104,8 +106,7 @@ LightSampler::LightSampler(RayScene& scene, const SceneSnapshot& snapshot) : lig
 
 LightSample LightSampler::sample(const RayScene& scene, const Surface& surface, RandomStream& random) const {
   const Choice& choice = choices_[choices_.size() == 1 ? 0 : choice_.pick(random.bits())];
-  return choice.triangle ? sampleTriangle(scene, surface, choice, random)
-                         : sampleLight(lights_[choice.index], choice.inverseProbability, surface);
+  return choice.triangle ? sampleTriangle(scene, surface, choice, random) : sampleLight(choice, surface);
 }
 
 LightSample LightSampler::sampleTriangle(const RayScene& scene, const Surface& surface, const Choice& choice,
@@ -116,9 +117,9 @@ LightSample LightSampler::sampleTriangle(const RayScene& scene, const Surface& s
   // Uniform over the parallelogram, its far half folded back. Turk 1990, "Generating random points in
   // triangles", method 2.
   float u = random.uniform(), v = random.uniform();
-  const bool beyond = u + v > 1.0f;
-  u = beyond ? 1.0f - u : u;
-  v = beyond ? 1.0f - v : v;
+  const auto beyond = static_cast<float>(u + v > 1.0f);  // not a branch: half of them would be mispredicted
+  u += beyond * (1.0f - 2.0f * u);
+  v += beyond * (1.0f - 2.0f * v);
   // The shadow ray ends in front of the light, at the height where rays leave it.
   const glm::vec3 end =
       triangle.corner + u * triangle.edge1 + v * triangle.edge2 + triangle.offset * triangle.normal;
@@ -140,14 +141,15 @@ LightSample LightSampler::sampleTriangle(const RayScene& scene, const Surface& s
   return result;
 }
 
-LightSample LightSampler::sampleLight(const LightState& light, float inverseProbability,
-                                      const Surface& surface) const {
+LightSample LightSampler::sampleLight(const Choice& choice, const Surface& surface) const {
+  const PreparedLight& prepared = lights_[choice.index];
+  const LightState& light = prepared.state;
   LightSample result;
   if (light.kind == LightKind::directional) {
     result.direction = result.shadowDirection = -light.direction;
     result.shadowReach = std::numeric_limits<float>::infinity();
     result.shines = true;
-    result.irradiance = inverseProbability * light.power;
+    result.irradiance = choice.inverseProbability * light.power;
     return result;
   }
   const glm::vec3 path = light.position - surface.position;
@@ -156,9 +158,10 @@ LightSample LightSampler::sampleLight(const LightState& light, float inverseProb
   result.direction = (1.0f / std::sqrt(squaredDistance)) * path;
   result.shadowDirection = path;
   result.shadowReach = 1.0f;
-  const float falloff =
-      light.kind == LightKind::spot ? spotFalloff(light, -glm::dot(result.direction, light.direction)) : 1.0f;
-  result.irradiance = (inverseProbability * falloff / squaredDistance) * light.power;
+  const float falloff = light.kind == LightKind::spot
+                            ? prepared.falloffTowards(-glm::dot(result.direction, light.direction))
+                            : 1.0f;
+  result.irradiance = (choice.inverseProbability * falloff / squaredDistance) * light.power;
   result.shines = falloff > 0.0f;
   return result;
 }

@@ -47,9 +47,15 @@ class LightSampler {
   };
   LightSample sampleTriangle(const RayScene& scene, const Surface& surface, const Choice& choice,
                              RandomStream& random) const;
-  LightSample sampleLight(const LightState& light, float inverseProbability, const Surface& surface) const;
+  LightSample sampleLight(const Choice& choice, const Surface& surface) const;
 
-  std::vector<LightState> lights_;
+  /// A light without extent, with the cosines of a spot's angles.
+  struct PreparedLight {
+    LightState state;
+    float cosineInner, cosineOuter;
+    float falloffTowards(float cosine) const;
+  };
+  std::vector<PreparedLight> lights_;
   std::vector<Choice> choices_;
   AliasTable choice_;
   std::size_t emitters_ = 0;

@@ -183,7 +183,7 @@ bool RayScene::cutOut(std::uint32_t triangle, float u, float v) const {
 void RayScene::surfaceAt(const Hit& hit, const glm::vec3& direction, Surface& surface) const {
   const TriangleRecord& triangle = triangles[hit.triangle];
   const SurfaceMaterial& material = materials[triangle.material];
-  const float side = glm::dot(triangle.normal, direction) < 0.0f ? 1.0f : -1.0f;
+  const float side = -std::copysign(1.0f, glm::dot(triangle.normal, direction));
   surface.geometricNormal = side * triangle.normal;
 
   // Points stay a hair inside their triangle, so that rounding never puts a point of an edge behind the

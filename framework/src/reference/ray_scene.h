@@ -103,8 +103,8 @@ class RayScene {
     return ray.tfar < 0.0f;
   }
 
-  /// The surface at a hit, seen from a ray with this unit direction. Filled in place: a copy of so many
-  /// single numbers costs a tenth of a ray.
+  /// The surface at a hit, seen from a ray with this unit direction. Filled in place,
+  /// because a copy would have to wait for its many single numbers.
   void surfaceAt(const Hit& hit, const glm::vec3& direction, Surface& surface) const;
 
   /// Emitted radiance towards a ray with this direction: from the front side only.

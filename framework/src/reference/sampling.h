@@ -34,9 +34,10 @@ inline glm::vec2 pointOfCircle(float u) {
   const float cosine =
       1.0f +
       squared * (-1.0f / 2.0f + squared * (1.0f / 24.0f + squared * (-1.0f / 720.0f + squared / 40320.0f)));
-  const bool odd = (nearest & 1) != 0, negative = (nearest & 2) != 0;
-  const glm::vec2 turned(odd ? -sine : cosine, odd ? cosine : sine);
-  return negative ? -turned : turned;
+  // Which quarter it is no processor can predict: products in place of branches.
+  const auto odd = static_cast<float>(nearest & 1), even = 1.0f - odd;
+  const auto sign = static_cast<float>(1 - (nearest & 2));
+  return {sign * (even * cosine - odd * sine), sign * (even * sine + odd * cosine)};
 }
 
 /// The vector with these coordinates about an axis. Duff et al. 2017, "Building an orthonormal basis,
