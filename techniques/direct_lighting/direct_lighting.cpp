@@ -1,5 +1,5 @@
-// Direct light by rasterisation, the common ground of all techniques and the template for new ones: what the camera sees, shadow maps
-// for every kind of light, shading, and the sum of the components.
+// Direct light by rasterisation, the common ground of all techniques and the template for new ones: what the
+// camera sees, shadow maps for every kind of light, shading, and the sum of the components.
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -18,24 +18,32 @@ namespace composeShader = shaders::direct_lighting::compose;
 
 constexpr glm::ivec3 kImageGroup{8, 8, 1};  // local size of the picture-sized compute shaders
 
-glm::ivec3 pixelsOf(const SceneSnapshot& snapshot) { return {snapshot.camera.width, snapshot.camera.height, 1}; }
+glm::ivec3 pixelsOf(const SceneSnapshot& snapshot) {
+  return {snapshot.camera.width, snapshot.camera.height, 1};
+}
 
-/// World to clip space of a camera, z in [0,1]. Depth is clamped when drawing, so that near only sets the precision.
+/// World to clip space of a camera, z in [0,1]. Depth is clamped when drawing, so that near only sets the
+/// precision.
 glm::mat4 worldToClip(const SceneSnapshot& snapshot) {
   const CameraView& camera = snapshot.camera;
-  const glm::vec3 farCorner = glm::max(glm::abs(snapshot.bounds.low - camera.eye), glm::abs(snapshot.bounds.high - camera.eye));
+  const glm::vec3 farCorner =
+      glm::max(glm::abs(snapshot.bounds.low - camera.eye), glm::abs(snapshot.bounds.high - camera.eye));
   const float far = std::max(glm::length(farCorner), 1e-6f) * 1.01f;
   const float near = far * 1e-4f;
   const float aspect = static_cast<float>(camera.width) / static_cast<float>(camera.height);
   const float fov = 2.0f * std::atan(camera.tanHalfFov);
-  return glm::perspectiveRH_ZO(fov, aspect, near, far) * glm::lookAtRH(camera.eye, camera.eye + camera.forward, camera.up);
+  return glm::perspectiveRH_ZO(fov, aspect, near, far) *
+         glm::lookAtRH(camera.eye, camera.eye + camera.forward, camera.up);
 }
 
 /// The picture-sized textures are kept in 32-bit floats: positions and radiances of any scale.
-gpu::TextureRef floatImage(PassContext& frame, const char* label) { return frame.image(gpu::Format::rgba32f, label); }
+gpu::TextureRef floatImage(PassContext& frame, const char* label) {
+  return frame.image(gpu::Format::rgba32f, label);
+}
 
 class GBufferPass : public Pass {
-  Out<GBuffer> gbuffer{this, "gbuffer", "position, normals and material of the nearest surface in each pixel"};
+  Out<GBuffer> gbuffer{this, "gbuffer",
+                       "position, normals and material of the nearest surface in each pixel"};
 
   Reads readsFrom() const override { return Reads::geometry | Reads::materials | Reads::camera; }
 
@@ -55,8 +63,8 @@ class GBufferPass : public Pass {
     const gpu::TextureRef depthTexture = frame.texture(depth, "g-buffer depth");
 
     gpu::RenderTargets targets;
-    for (const gpu::TextureRef& texture :
-         {result.position, result.normal, result.geometricNormal, result.diffuse, result.specular, result.emission}) {
+    for (const gpu::TextureRef& texture : {result.position, result.normal, result.geometricNormal,
+                                           result.diffuse, result.specular, result.emission}) {
       targets.colours.push_back({texture.get(), -1});
     }
     while (targets.colours.back().texture == nullptr) targets.colours.pop_back();
@@ -67,27 +75,31 @@ class GBufferPass : public Pass {
     gbuffer = result;
   }
 
-  static void drawScene(PassContext& frame, const gpu::RenderTargets& targets, const gpu::RasterState& state) {
+  static void drawScene(PassContext& frame, const gpu::RenderTargets& targets,
+                        const gpu::RasterState& state) {
     const SceneTraits& traits = frame.traits();
     const gbufferShader::View view{worldToClip(frame.snapshot())};
     const gbufferShader::Eye eye{frame.snapshot().camera.eye};
     GpuScene& scene = frame.scene();
     frame.device().beginDrawing(targets, state);
     for (const SceneDraw& draw : scene.draws()) {
-      // A draw uses the variant that its own material needs; with --keep-everything all do everything, with neutral textures.
+      // A draw uses the variant that its own material needs; with --keep-everything all do everything, with
+      // neutral textures.
       const bool keep = frame.keepsEverything();
       gbufferShader::Variant variant;
       variant.textures = keep || draw.diffuseTexture != nullptr;
       variant.masks = keep || draw.maskTexture != nullptr;
       variant.glossy = traits.glossy;
       variant.emission = traits.emission;
-      const gpu::Texture& diffuse = draw.diffuseTexture != nullptr ? *draw.diffuseTexture : scene.whiteTexture();
+      const gpu::Texture& diffuse =
+          draw.diffuseTexture != nullptr ? *draw.diffuseTexture : scene.whiteTexture();
       const gpu::Texture& mask = draw.maskTexture != nullptr ? *draw.maskTexture : scene.whiteTexture();
       frame.shaders().drawIndexed(
           frame.program(gbufferShader::kProgram, variant.key()),
-          {gbufferShader::positions(scene.positions()), gbufferShader::normals(scene.normals()), gbufferShader::texcoords(scene.texcoords()),
-           gbufferShader::objects(scene.objects()), gbufferShader::materials(scene.materials()), gbufferShader::view(view),
-           gbufferShader::eye(eye), gbufferShader::draw({draw.object, draw.material}),
+          {gbufferShader::positions(scene.positions()), gbufferShader::normals(scene.normals()),
+           gbufferShader::texcoords(scene.texcoords()), gbufferShader::objects(scene.objects()),
+           gbufferShader::materials(scene.materials()), gbufferShader::view(view), gbufferShader::eye(eye),
+           gbufferShader::draw({draw.object, draw.material}),
            gbufferShader::diffuseTexture(diffuse, gpu::Sampling::linearMipsRepeat),
            gbufferShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)},
           scene.indices(), draw.firstIndex, draw.indexCount);
@@ -98,8 +110,10 @@ class GBufferPass : public Pass {
 
 class ShadowMapPass : public Pass {
   Param<int> size{this, "size", 512, {16, 8192}, "texels along a side of the view of a light without extent"};
-  Param<int> areaSamples{this, "area_samples", 16, {1, 1024}, "point samples that stand for all emissive triangles together"};
-  Param<int> areaSize{this, "area_size", 128, {16, 4096}, "texels along a side of each cube face of an area sample"};
+  Param<int> areaSamples{
+      this, "area_samples", 16, {1, 1024}, "point samples that stand for all emissive triangles together"};
+  Param<int> areaSize{
+      this, "area_size", 128, {16, 4096}, "texels along a side of each cube face of an area sample"};
   Out<ShadowMap> depth{this, "depth", "every light as point samples, with depth seen from each"};
 
   Reads readsFrom() const override { return Reads::geometry | Reads::materials | Reads::lights; }
@@ -107,7 +121,8 @@ class ShadowMapPass : public Pass {
 
   void run(PassContext& frame) override {
     const Scene& description = frame.sceneDescription();
-    // One array holds all layers, so that they share one size: the larger one when both kinds of light are there.
+    // One array holds all layers, so that they share one size: the larger one when both kinds of light are
+    // there.
     const bool onlyArea = frame.snapshot().lights.empty();
     const int side = onlyArea ? static_cast<int>(areaSize) : static_cast<int>(size);
     const LightSet set = sampleLights(description, frame.snapshot(), areaSamples, side);
@@ -115,8 +130,10 @@ class ShadowMapPass : public Pass {
     ShadowMap result;
     result.lightCount = static_cast<int>(set.samples.size());
     result.layerCount = static_cast<int>(set.views.size());
-    result.lights = frame.buffer(std::max<std::size_t>(set.samples.size(), 1) * sizeof(LightSample), "light samples");
-    result.views = frame.buffer(std::max<std::size_t>(set.views.size(), 1) * sizeof(glm::mat4), "shadow views");
+    result.lights =
+        frame.buffer(std::max<std::size_t>(set.samples.size(), 1) * sizeof(LightSample), "light samples");
+    result.views =
+        frame.buffer(std::max<std::size_t>(set.views.size(), 1) * sizeof(glm::mat4), "shadow views");
     std::vector<glm::mat4> matrices;
     for (const ShadowView& view : set.views) matrices.push_back(view.worldToClip);
     if (!set.samples.empty()) result.lights->upload(std::as_bytes(std::span(set.samples)));
@@ -128,7 +145,8 @@ class ShadowMapPass : public Pass {
     layers.width = layers.height = side;
     layers.depth = std::max(result.layerCount, 1);
     result.depth = frame.texture(layers, "shadow depth");
-    for (int layer = 0; layer < result.layerCount; ++layer) drawLayer(frame, result, set.views[static_cast<std::size_t>(layer)], layer);
+    for (int layer = 0; layer < result.layerCount; ++layer)
+      drawLayer(frame, result, set.views[static_cast<std::size_t>(layer)], layer);
     depth = result;
   }
 
@@ -148,12 +166,13 @@ class ShadowMapPass : public Pass {
       shadowShader::Variant variant;
       variant.masks = frame.keepsEverything() || draw.maskTexture != nullptr;
       const gpu::Texture& mask = draw.maskTexture != nullptr ? *draw.maskTexture : scene.whiteTexture();
-      frame.shaders().drawIndexed(frame.program(shadowShader::kProgram, variant.key()),
-                                  {shadowShader::positions(scene.positions()), shadowShader::texcoords(scene.texcoords()),
-                                   shadowShader::objects(scene.objects()), shadowShader::view({view.worldToClip}),
-                                   shadowShader::draw({draw.object, draw.material}),
-                                   shadowShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)},
-                                  scene.indices(), draw.firstIndex, draw.indexCount);
+      frame.shaders().drawIndexed(
+          frame.program(shadowShader::kProgram, variant.key()),
+          {shadowShader::positions(scene.positions()), shadowShader::texcoords(scene.texcoords()),
+           shadowShader::objects(scene.objects()), shadowShader::view({view.worldToClip}),
+           shadowShader::draw({draw.object, draw.material}),
+           shadowShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)},
+          scene.indices(), draw.firstIndex, draw.indexCount);
     }
     frame.device().endDrawing();
   }
@@ -161,9 +180,11 @@ class ShadowMapPass : public Pass {
 
 class ShadePass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
-  In<ShadowMap> shadow{this, "shadow", Presence::optional, "lights and their visibility; without it only emission is seen"};
+  In<ShadowMap> shadow{this, "shadow", Presence::optional,
+                       "lights and their visibility; without it only emission is seen"};
   Param<bool> shadows{this, "shadows", true, "test visibility; off: lights shine through everything"};
-  Out<Image> radiance{this, "radiance", Contributes::direct, Needs::nothing, "emission and light that is reflected once, W/(sr m^2)"};
+  Out<Image> radiance{this, "radiance", Contributes::direct, Needs::nothing,
+                      "emission and light that is reflected once, W/(sr m^2)"};
 
   Reads readsFrom() const override { return Reads::camera | Reads::lights; }
 
@@ -181,10 +202,12 @@ class ShadePass : public Pass {
     Image result{floatImage(frame, "direct radiance")};
     using gpu::Sampling;
     std::vector<gpu::ResourceBinding> bindings{
-        shadeShader::parameters(parameters), shadeShader::gPosition(*gbuffer->position, Sampling::nearest),
+        shadeShader::parameters(parameters),
+        shadeShader::gPosition(*gbuffer->position, Sampling::nearest),
         shadeShader::gNormal(*gbuffer->normal, Sampling::nearest),
         shadeShader::gGeometricNormal(*gbuffer->geometricNormal, Sampling::nearest),
-        shadeShader::gDiffuse(*gbuffer->diffuse, Sampling::nearest), shadeShader::radianceImage(*result.texture)};
+        shadeShader::gDiffuse(*gbuffer->diffuse, Sampling::nearest),
+        shadeShader::radianceImage(*result.texture)};
     if (variant.glossy) bindings.push_back(shadeShader::gSpecular(*gbuffer->specular, Sampling::nearest));
     if (variant.emission) bindings.push_back(shadeShader::gEmission(*gbuffer->emission, Sampling::nearest));
     if (variant.lights) bindings.push_back(shadeShader::lights(*shadow->lights));
@@ -192,7 +215,8 @@ class ShadePass : public Pass {
       bindings.push_back(shadeShader::views(*shadow->views));
       bindings.push_back(shadeShader::shadowDepth(*shadow->depth, Sampling::shadow));
     }
-    frame.dispatch(frame.program(shadeShader::kProgram, variant.key()), bindings, pixelsOf(frame.snapshot()), kImageGroup);
+    frame.dispatch(frame.program(shadeShader::kProgram, variant.key()), bindings, pixelsOf(frame.snapshot()),
+                   kImageGroup);
     radiance = result;
   }
 };
@@ -201,7 +225,8 @@ class ComposePass : public Pass {
   In<Image> direct{this, "direct", "direct light"};
   In<Image> diffuse{this, "diffuse", Presence::optional, "indirect light reflected by the diffuse lobe"};
   In<Image> glossy{this, "glossy", Presence::optional, "indirect light reflected by the Phong lobe"};
-  Out<Image> radiance{this, "radiance", Contributes::final, Needs::nothing, "sum of the components, W/(sr m^2)"};
+  Out<Image> radiance{this, "radiance", Contributes::final, Needs::nothing,
+                      "sum of the components, W/(sr m^2)"};
 
   void run(PassContext& frame) override {
     composeShader::Variant variant;
@@ -209,11 +234,15 @@ class ComposePass : public Pass {
     variant.glossy = glossy.present();
     Image result{floatImage(frame, "final radiance")};
     using gpu::Sampling;
-    std::vector<gpu::ResourceBinding> bindings{composeShader::directRadiance(*direct->texture, Sampling::nearest),
-                                               composeShader::radianceImage(*result.texture)};
-    if (variant.diffuse) bindings.push_back(composeShader::diffuseRadiance(*diffuse->texture, Sampling::nearest));
-    if (variant.glossy) bindings.push_back(composeShader::glossyRadiance(*glossy->texture, Sampling::nearest));
-    frame.dispatch(frame.program(composeShader::kProgram, variant.key()), bindings, pixelsOf(frame.snapshot()), kImageGroup);
+    std::vector<gpu::ResourceBinding> bindings{
+        composeShader::directRadiance(*direct->texture, Sampling::nearest),
+        composeShader::radianceImage(*result.texture)};
+    if (variant.diffuse)
+      bindings.push_back(composeShader::diffuseRadiance(*diffuse->texture, Sampling::nearest));
+    if (variant.glossy)
+      bindings.push_back(composeShader::glossyRadiance(*glossy->texture, Sampling::nearest));
+    frame.dispatch(frame.program(composeShader::kProgram, variant.key()), bindings,
+                   pixelsOf(frame.snapshot()), kImageGroup);
     radiance = result;
   }
 };
@@ -223,9 +252,11 @@ class ComposePass : public Pass {
 
 LUMIVOX_TECHNIQUE(registry) {
   using namespace lumivox::direct_lighting;
-  registry.describe("Direct light by rasterisation: g-buffer, shadow maps, shading, composition", "Williams 1978; Saito & Takahashi 1990");
+  registry.describe("Direct light by rasterisation: g-buffer, shadow maps, shading, composition",
+                    "Williams 1978; Saito & Takahashi 1990");
   registry.add<GBufferPass>("gbuffer", "Attributes of the visible surfaces (Saito & Takahashi 1990)");
-  registry.add<ShadowMapPass>("shadow_map", "Depth from every light (Williams 1978); area lights as point samples");
+  registry.add<ShadowMapPass>("shadow_map",
+                              "Depth from every light (Williams 1978); area lights as point samples");
   registry.add<ShadePass>("shade", "Emission and direct light through the diffuse and the Phong lobe");
   registry.add<ComposePass>("compose", "Sum of direct and indirect components");
 }

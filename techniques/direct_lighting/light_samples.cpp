@@ -9,7 +9,8 @@ namespace lumivox::direct_lighting {
 namespace {
 
 /// Perspective with z in [0,1], looking along `forward`.
-glm::mat4 perspectiveView(const glm::vec3& eye, const glm::vec3& forward, float halfAngle, float near, float far) {
+glm::mat4 perspectiveView(const glm::vec3& eye, const glm::vec3& forward, float halfAngle, float near,
+                          float far) {
   const glm::vec3 helper = std::abs(forward.y) > 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
   return glm::perspectiveRH_ZO(2.0f * halfAngle, 1.0f, near, far) * glm::lookAtRH(eye, eye + forward, helper);
 }
@@ -27,15 +28,17 @@ float reachFrom(const Bounds& bounds, const glm::vec3& point) {
 constexpr float kCubeViews = 6.0f;
 constexpr float kNearShare = 1e-3f;  // near plane of a perspective shadow view, as a share of its far plane
 
-float texelPerMetre(float halfAngle, int size) { return 2.0f * std::tan(halfAngle) / static_cast<float>(size); }
+float texelPerMetre(float halfAngle, int size) {
+  return 2.0f * std::tan(halfAngle) / static_cast<float>(size);
+}
 
 void addCube(LightSet& set, const glm::vec3& eye, const Bounds& bounds, const glm::vec3* front) {
   const float far = reachFrom(bounds, eye);
   for (const glm::vec3& face : kFaces) {
     ShadowView view;
     view.worldToClip = perspectiveView(eye, face, glm::radians(45.0f), far * kNearShare, far);
-    // A face opposite to the normal of an area light sees nothing that the light shines on: all of it is more than 90 degrees away
-    // only when the normal is the axis itself.
+    // A face opposite to the normal of an area light sees nothing that the light shines on: all of it is more
+    // than 90 degrees away only when the normal is the axis itself.
     view.used = front == nullptr || glm::dot(*front, face) > -0.999f;
     set.views.push_back(view);
   }
@@ -58,21 +61,26 @@ std::vector<Emitter> emittersOf(const Scene& scene, const SceneSnapshot& snapsho
         std::array<glm::vec3, 3> corner;
         for (std::uint32_t k = 0; k < 3; ++k) {
           const std::uint32_t index = scene.indices[part.firstIndex + i + k];
-          const glm::vec3 local = state.positions.empty() ? scene.positions[index] : state.positions[index - scene.objects[o].firstVertex];
+          const glm::vec3 local = state.positions.empty()
+                                      ? scene.positions[index]
+                                      : state.positions[index - scene.objects[o].firstVertex];
           corner[k] = glm::vec3(state.toWorld * glm::vec4(local, 1.0f));
         }
         const glm::vec3 cross = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
         const float area = 0.5f * glm::length(cross);
         if (!(area > 0.0f)) continue;
-        const float weight = area * glm::dot(material.emission, glm::vec3(0.2126f, 0.7152f, 0.0722f));  // Rec. 709 luminance
-        emitters.push_back({corner[0], corner[1], corner[2], cross / (2.0f * area), material.emission, area, weight});
+        const float weight =
+            area * glm::dot(material.emission, glm::vec3(0.2126f, 0.7152f, 0.0722f));  // Rec. 709 luminance
+        emitters.push_back(
+            {corner[0], corner[1], corner[2], cross / (2.0f * area), material.emission, area, weight});
       }
     }
   }
   return emitters;
 }
 
-void addAreaLights(LightSet& set, const Scene& scene, const SceneSnapshot& snapshot, int count, int shadowSize) {
+void addAreaLights(LightSet& set, const Scene& scene, const SceneSnapshot& snapshot, int count,
+                   int shadowSize) {
   const std::vector<Emitter> emitters = emittersOf(scene, snapshot);
   double total = 0.0;
   for (const Emitter& emitter : emitters) total += emitter.weight;
@@ -84,7 +92,8 @@ void addAreaLights(LightSet& set, const Scene& scene, const SceneSnapshot& snaps
   for (int i = 0; i < count; ++i) {
     const double stratum = (i + 0.5) / count;
     const auto found = std::lower_bound(cumulative.begin(), cumulative.end(), stratum);
-    const Emitter& emitter = emitters[std::min<std::size_t>(static_cast<std::size_t>(found - cumulative.begin()), emitters.size() - 1)];
+    const Emitter& emitter = emitters[std::min<std::size_t>(
+        static_cast<std::size_t>(found - cumulative.begin()), emitters.size() - 1)];
     // Roberts 2018, R2: powers of the reciprocal plastic number, the two-dimensional golden ratio.
     constexpr double kPlastic1 = 0.7548776662466927, kPlastic2 = 0.5698402909980532;
     double u = std::fmod(0.5 + kPlastic1 * (i + 1), 1.0), v = std::fmod(0.5 + kPlastic2 * (i + 1), 1.0);
@@ -93,14 +102,19 @@ void addAreaLights(LightSet& set, const Scene& scene, const SceneSnapshot& snaps
       u = 1.0 - u;
       v = 1.0 - v;
     }
-    const glm::vec3 onSurface = emitter.a + static_cast<float>(u) * (emitter.b - emitter.a) + static_cast<float>(v) * (emitter.c - emitter.a);
+    const glm::vec3 onSurface = emitter.a + static_cast<float>(u) * (emitter.b - emitter.a) +
+                                static_cast<float>(v) * (emitter.c - emitter.a);
     const glm::vec3 position = onSurface + emitter.normal * (1e-5f * diagonal);
     const double probability = emitter.weight / total;
     const glm::vec3 power = emitter.radiance * static_cast<float>(emitter.area / (probability * count));
-    // A point sample stands for a patch of area A/N: nearer than its radius the inverse square law of a point does not hold for it.
-    const float patchRadius = std::sqrt(static_cast<float>(emitter.area / (probability * count)) / glm::pi<float>());
-    set.samples.push_back({glm::vec4(position, static_cast<float>(Kind::area)), glm::vec4(emitter.normal, static_cast<float>(set.views.size())),
-                           glm::vec4(power, kCubeViews), glm::vec4(0.0f, 0.0f, texelPerMetre(glm::radians(45.0f), shadowSize), patchRadius * patchRadius)});
+    // A point sample stands for a patch of area A/N: nearer than its radius the inverse square law of a point
+    // does not hold for it.
+    const float patchRadius =
+        std::sqrt(static_cast<float>(emitter.area / (probability * count)) / glm::pi<float>());
+    set.samples.push_back(
+        {glm::vec4(position, static_cast<float>(Kind::area)),
+         glm::vec4(emitter.normal, static_cast<float>(set.views.size())), glm::vec4(power, kCubeViews),
+         glm::vec4(0.0f, 0.0f, texelPerMetre(glm::radians(45.0f), shadowSize), patchRadius * patchRadius)});
     addCube(set, position, snapshot.bounds, &emitter.normal);
   }
 }
@@ -114,7 +128,8 @@ void addDirectional(LightSet& set, const LightState& light, const Bounds& bounds
   view.worldToClip = glm::orthoRH_ZO(-radius, radius, -radius, radius, 0.0f, 2.0f * radius) *
                      glm::lookAtRH(centre - light.direction * radius, centre, helper);
   set.samples.push_back({glm::vec4(0.0f, 0.0f, 0.0f, static_cast<float>(Kind::directional)),
-                         glm::vec4(light.direction, static_cast<float>(set.views.size())), glm::vec4(light.power, 1.0f),
+                         glm::vec4(light.direction, static_cast<float>(set.views.size())),
+                         glm::vec4(light.power, 1.0f),
                          glm::vec4(0.0f, 0.0f, 2.0f * radius / static_cast<float>(shadowSize), 0.0f)});
   set.views.push_back(view);
 }
@@ -130,17 +145,22 @@ LightSet sampleLights(const Scene& scene, const SceneSnapshot& snapshot, int are
         addDirectional(set, light, snapshot.bounds, shadowSize);
         break;
       case LightKind::point:
-        set.samples.push_back({glm::vec4(light.position, static_cast<float>(Kind::point)), glm::vec4(0, 0, 0, static_cast<float>(set.views.size())),
-                               glm::vec4(light.power, kCubeViews), glm::vec4(0.0f, 0.0f, texelPerMetre(glm::radians(45.0f), shadowSize), 0.0f)});
+        set.samples.push_back({glm::vec4(light.position, static_cast<float>(Kind::point)),
+                               glm::vec4(0, 0, 0, static_cast<float>(set.views.size())),
+                               glm::vec4(light.power, kCubeViews),
+                               glm::vec4(0.0f, 0.0f, texelPerMetre(glm::radians(45.0f), shadowSize), 0.0f)});
         addCube(set, light.position, snapshot.bounds, nullptr);
         break;
       case LightKind::spot: {
-        // A spot wider than one perspective view can hold has the six views of a point light; its cone is shaped in the shader.
+        // A spot wider than one perspective view can hold has the six views of a point light; its cone is
+        // shaped in the shader.
         constexpr float kWidestView = glm::radians(80.0f);
         const bool wide = light.outerAngle > kWidestView;
-        const float halfAngle = wide ? glm::radians(45.0f) : std::clamp(light.outerAngle * 1.02f, glm::radians(0.5f), kWidestView);
+        const float halfAngle = wide ? glm::radians(45.0f)
+                                     : std::clamp(light.outerAngle * 1.02f, glm::radians(0.5f), kWidestView);
         // smoothstep needs distinct edges: a hard edge gets a width of one millionth.
-        const float cosInner = std::cos(light.innerAngle), cosOuter = std::min(std::cos(light.outerAngle), cosInner - 1e-6f);
+        const float cosInner = std::cos(light.innerAngle),
+                    cosOuter = std::min(std::cos(light.outerAngle), cosInner - 1e-6f);
         set.samples.push_back({glm::vec4(light.position, static_cast<float>(Kind::spot)),
                                glm::vec4(light.direction, static_cast<float>(set.views.size())),
                                glm::vec4(light.power, wide ? kCubeViews : 1.0f),
@@ -148,7 +168,8 @@ LightSet sampleLights(const Scene& scene, const SceneSnapshot& snapshot, int are
         if (wide) {
           addCube(set, light.position, snapshot.bounds, nullptr);
         } else {
-          set.views.push_back({perspectiveView(light.position, light.direction, halfAngle, far * kNearShare, far), true});
+          set.views.push_back(
+              {perspectiveView(light.position, light.direction, halfAngle, far * kNearShare, far), true});
         }
         break;
       }

@@ -30,8 +30,9 @@ struct LightSet {
   std::vector<ShadowView> views;
 };
 
-/// Lights without extent become one sample each. Emissive triangles together become `areaSamples` samples, chosen by emitted power with
-/// stratified numbers and placed by the R2 sequence, so that the same scene always gives the same samples.
+/// Lights without extent become one sample each. Emissive triangles together become `areaSamples` samples,
+/// chosen by emitted power with stratified numbers and placed by the R2 sequence, so that the same scene
+/// always gives the same samples.
 LightSet sampleLights(const Scene& scene, const SceneSnapshot& snapshot, int areaSamples, int shadowSize);
 
 }  // namespace lumivox::direct_lighting

@@ -1,8 +1,10 @@
-// Voxel cone tracing on a dense isotropic grid: Crassin et al. 2011, "Interactive indirect illumination using voxel cone tracing"; thesis
-// Gomes 2015, Sec. 4.2.1. Injection of direct light, pre-filtering, final gathering.
+// Voxel cone tracing on a dense isotropic grid: Crassin et al. 2011, "Interactive indirect illumination using
+// voxel cone tracing"; thesis Gomes 2015, Sec. 4.2.1. Injection of direct light, pre-filtering, final
+// gathering.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 #include "lumivox/base/error.h"
 #include "lumivox/plugin/technique.h"
@@ -20,21 +22,25 @@ namespace gatherShader = shaders::voxel_cone_tracing::gather;
 constexpr glm::ivec3 kVoxelGroup{4, 4, 4};  // local size of the passes over voxels
 constexpr glm::ivec3 kImageGroup{8, 8, 1};
 
-/// The largest radiance that a fragment can reflect: what the fixed-point sums must hold. The albedo is at most 1.
+/// The largest radiance that a fragment can reflect: what the fixed-point sums must hold. The albedo is at
+/// most 1.
 float largestRadiance(const Scene& scene, const SceneSnapshot& snapshot, float voxelSize) {
   const auto largest = [](const glm::vec3& v) { return std::max({v.x, v.y, v.z}); };
   float sum = 0.0f;
   for (const LightState& light : snapshot.lights) {
     // Nearer to a point light than half a voxel the grid cannot say anything.
     const float distance = 0.5f * voxelSize;
-    const float irradiance = light.kind == LightKind::directional ? largest(light.power) : largest(light.power) / (distance * distance);
+    const float irradiance = light.kind == LightKind::directional
+                                 ? largest(light.power)
+                                 : largest(light.power) / (distance * distance);
     sum += irradiance / glm::pi<float>();
   }
   // Area lights fill at most the hemisphere: the irradiance is at most pi times their radiance.
   float brightest = 0.0f;
   for (const Object& object : scene.objects) {
     for (const Part& part : object.parts) {
-      brightest = std::max(brightest, largest(scene.materials[static_cast<std::size_t>(part.material)].emission));
+      brightest =
+          std::max(brightest, largest(scene.materials[static_cast<std::size_t>(part.material)].emission));
     }
   }
   sum += brightest;
@@ -43,9 +49,12 @@ float largestRadiance(const Scene& scene, const SceneSnapshot& snapshot, float v
 
 class InjectPass : public Pass {
   In<VoxelFragments> fragments{this, "fragments", "surface samples"};
-  In<ShadowMap> shadow{this, "shadow", Presence::optional, "lights and their visibility; without it the grid is dark but opaque"};
-  Param<bool> twoSided{this, "two_sided", true, "light on the back of a triangle counts; off, as published: only on the front"};
-  Param<std::string> precision{this, "precision", "float", {"float", "half"}, "of the grid: 16 or 8 bytes a voxel"};
+  In<ShadowMap> shadow{this, "shadow", Presence::optional,
+                       "lights and their visibility; without it the grid is dark but opaque"};
+  Param<bool> twoSided{this, "two_sided", true,
+                       "light on the back of a triangle counts; off, as published: only on the front"};
+  Param<std::string> precision{
+      this, "precision", "float", {"float", "half"}, "of the grid: 16 or 8 bytes a voxel"};
   Out<RadianceGrid> radiance{this, "radiance", "reflected radiance and opacity; the finest level only"};
 
   Reads readsFrom() const override { return Reads::lights | Reads::materials; }
@@ -73,7 +82,8 @@ class InjectPass : public Pass {
       return texture;
     };
     const gpu::TextureRef counts = zeroed("fragments per voxel");
-    const gpu::TextureRef red = zeroed("sum of red"), green = zeroed("sum of green"), blue = zeroed("sum of blue");
+    const gpu::TextureRef red = zeroed("sum of red"), green = zeroed("sum of green"),
+                          blue = zeroed("sum of blue");
     const gpu::TextureRef coverage = zeroed("sum of coverage");
     const float range = largestRadiance(frame.sceneDescription(), frame.snapshot(), result.grid.voxelSize);
 
@@ -92,22 +102,27 @@ class InjectPass : public Pass {
     grid.lightCount = shadow.present() ? shadow->lightCount : 0;
     grid.radianceRange = range;
     grid.twoSided = twoSided ? 1 : 0;
-    std::vector<gpu::ResourceBinding> bindings{injectShader::grid(grid), injectShader::fragmentCount(*fragments->count),
-                                               injectShader::fragments(*fragments->fragments), injectShader::counts(*counts),
-                                               injectShader::sumRed(*red), injectShader::sumGreen(*green), injectShader::sumBlue(*blue),
+    std::vector<gpu::ResourceBinding> bindings{injectShader::grid(grid),
+                                               injectShader::fragmentCount(*fragments->count),
+                                               injectShader::fragments(*fragments->fragments),
+                                               injectShader::counts(*counts),
+                                               injectShader::sumRed(*red),
+                                               injectShader::sumGreen(*green),
+                                               injectShader::sumBlue(*blue),
                                                injectShader::sumCoverage(*coverage)};
     if (shadow.present()) {
       bindings.push_back(injectShader::lights(*shadow->lights));
       bindings.push_back(injectShader::views(*shadow->views));
       bindings.push_back(injectShader::shadowDepth(*shadow->depth, gpu::Sampling::shadow));
     }
-    frame.shaders().dispatchIndirect(frame.program(injectShader::kProgram, variant.key()), bindings, *fragments->count,
-                                     sizeof(std::uint32_t));
+    frame.shaders().dispatchIndirect(frame.program(injectShader::kProgram, variant.key()), bindings,
+                                     *fragments->count, sizeof(std::uint32_t));
     frame.device().barrier();
 
     frame.dispatch(frame.program(resolveShader::kProgram),
-                   {resolveShader::parameters({size, range}), resolveShader::sumRed(*red), resolveShader::sumGreen(*green),
-                    resolveShader::sumBlue(*blue), resolveShader::sumCoverage(*coverage), resolveShader::radianceImage(*result.radiance)},
+                   {resolveShader::parameters({size, range}), resolveShader::sumRed(*red),
+                    resolveShader::sumGreen(*green), resolveShader::sumBlue(*blue),
+                    resolveShader::sumCoverage(*coverage), resolveShader::radianceImage(*result.radiance)},
                    size, kVoxelGroup);
     radiance = result;
   }
@@ -115,15 +130,21 @@ class InjectPass : public Pass {
 
 class FilterPass : public Pass {
   In<RadianceGrid> radiance{this, "radiance", "the finest level"};
-  Param<std::string> opacity{this, "opacity", "facing", {"facing", "average"},
-                             "how children make a parent: seen through along the axis that they face, or, as published, their plain mean"};
+  Param<std::string> opacity{this,
+                             "opacity",
+                             "facing",
+                             {"facing", "average"},
+                             "how children make a parent: seen through along the axis that they face, or, as "
+                             "published, their plain mean"};
   Out<RadianceGrid> mips{this, "mips", "the same grid with one level per halving"};
 
   void run(PassContext& frame) override {
     const gpu::Texture& texture = *radiance->radiance;
     const gpu::TextureDescription& description = texture.description();
     const auto levelSize = [&](int level) {
-      return glm::max(glm::ivec3(description.width >> level, description.height >> level, description.depth >> level), glm::ivec3(1));
+      return glm::max(
+          glm::ivec3(description.width >> level, description.height >> level, description.depth >> level),
+          glm::ivec3(1));
     };
     for (int level = 1; level < description.levels; ++level) {
       filterShader::Parameters parameters{};
@@ -131,10 +152,11 @@ class FilterPass : public Pass {
       parameters.fineLevel = level - 1;
       parameters.fine = levelSize(level - 1);
       parameters.average = opacity == "average" ? 1 : 0;
-      frame.dispatch(frame.program(filterShader::kProgram),
-                     {filterShader::parameters(parameters), filterShader::radianceGrid(texture, gpu::Sampling::nearest),
-                      filterShader::radianceImage(texture, level)},
-                     parameters.coarse, kVoxelGroup);
+      frame.dispatch(
+          frame.program(filterShader::kProgram),
+          {filterShader::parameters(parameters), filterShader::radianceGrid(texture, gpu::Sampling::nearest),
+           filterShader::radianceImage(texture, level)},
+          parameters.coarse, kVoxelGroup);
     }
     mips = *radiance;
   }
@@ -144,16 +166,27 @@ class GatherPass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<RadianceGrid> grid{this, "grid", "pre-filtered radiance, one mip per halving"};
   Param<int> cones{this, "cones", 6, {1, 256}, "diffuse cones per pixel"};
-  Param<std::string> distribution{this, "distribution", "cosine", {"cosine", "published"},
-                                  "cones of equal weight distributed as the cosine, or one upright and four at 45 degrees"};
+  Param<std::string> distribution{
+      this,
+      "distribution",
+      "cosine",
+      {"cosine", "published"},
+      "cones of equal weight distributed as the cosine, or one upright and four at 45 degrees"};
   Param<float> step{this, "step", 0.5f, {0.05f, 2.0f}, "", "step along a cone as a share of its diameter"};
   Param<float> offset{this, "offset", 1.0f, {0.0f, 8.0f}, "", "start of a cone along the normal, in voxels"};
   Param<float> start{this, "start", 1.0f, {0.0f, 8.0f}, "", "start of a cone along its axis, in voxels"};
-  Param<float> clearance{this, "clearance", 0.5f, {0.0f, 1e3f}, "",
-                         "largest diameter of a sample as a share of its height over the surface; as published: no limit, 1000"};
+  Param<float> clearance{
+      this,
+      "clearance",
+      0.5f,
+      {0.0f, 1e3f},
+      "",
+      "largest diameter of a sample as a share of its height over the surface; as published: no limit, 1000"};
   Param<float> reach{this, "reach", 0.0f, {0.0f, 1e9f}, "m", "length of a cone; 0: to the end of the grid"};
-  Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing, "indirect light reflected by the diffuse lobe"};
-  Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::glossyMaterial, "indirect light reflected by the Phong lobe"};
+  Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
+                     "indirect light reflected by the diffuse lobe"};
+  Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::glossyMaterial,
+                    "indirect light reflected by the Phong lobe"};
 
   Reads readsFrom() const override { return Reads::camera; }
 
@@ -172,7 +205,8 @@ class GatherPass : public Pass {
     parameters.gridExtent = glm::vec3(input.grid.resolution) * input.grid.voxelSize;
     parameters.stepShare = step;
     parameters.eyeWorld = frame.snapshot().camera.eye;
-    parameters.maxDistance = reach > 0.0f ? static_cast<float>(reach) : 2.0f * glm::length(parameters.gridExtent);
+    parameters.maxDistance =
+        reach > 0.0f ? static_cast<float>(reach) : 2.0f * glm::length(parameters.gridExtent);
     parameters.environment = frame.sceneDescription().environment;
     parameters.offset = offset;
     parameters.startShare = start;
@@ -208,7 +242,8 @@ class GatherPass : public Pass {
 
 LUMIVOX_TECHNIQUE(registry) {
   using namespace lumivox::voxel_cone_tracing;
-  registry.describe("Voxel cone tracing on a dense isotropic grid", "Crassin et al. 2011; thesis Gomes 2015, Sec. 4.2.1");
+  registry.describe("Voxel cone tracing on a dense isotropic grid",
+                    "Crassin et al. 2011; thesis Gomes 2015, Sec. 4.2.1");
   registry.add<InjectPass>("inject", "Direct light into the finest level (Crassin et al. 2011, Sec. 6)");
   registry.add<FilterPass>("filter", "Pre-filtered coarser levels (Crassin et al. 2011, Sec. 5)");
   registry.add<GatherPass>("gather", "Final gathering with cones (Crassin et al. 2011, Sec. 7)");

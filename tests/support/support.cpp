@@ -37,8 +37,10 @@ std::filesystem::path TemporaryDirectory::write(const std::string& name, const s
 CommandResult runCommand(const std::string& command) {
   const TemporaryDirectory directory;
   std::string line = command;
-  if (line.rfind("lumivox", 0) == 0) line = "'" + (binaryDirectory() / "bin/lumivox").string() + "'" + line.substr(7);
-  line = "( " + line + " ) >'" + (directory.path() / "out").string() + "' 2>'" + (directory.path() / "err").string() + "' </dev/null";
+  if (line.rfind("lumivox", 0) == 0)
+    line = "'" + (binaryDirectory() / "bin/lumivox").string() + "'" + line.substr(7);
+  line = "( " + line + " ) >'" + (directory.path() / "out").string() + "' 2>'" +
+         (directory.path() / "err").string() + "' </dev/null";
   const int status = std::system(line.c_str());
   const auto read = [&](const char* name) {
     std::ifstream stream(directory.path() / name, std::ios::binary);

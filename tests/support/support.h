@@ -22,10 +22,17 @@ class TemporaryDirectory {
   std::filesystem::path path_;
 };
 
-inline std::filesystem::path sourceDirectory() { return LUMIVOX_SOURCE_DIRECTORY; }
-inline std::filesystem::path binaryDirectory() { return LUMIVOX_BINARY_DIRECTORY; }
+inline std::filesystem::path sourceDirectory() {
+  return LUMIVOX_SOURCE_DIRECTORY;
+}
+inline std::filesystem::path binaryDirectory() {
+  return LUMIVOX_BINARY_DIRECTORY;
+}
 
-struct CommandResult { int exitCode = 0; std::string output, errors; };
+struct CommandResult {
+  int exitCode = 0;
+  std::string output, errors;
+};
 /// Runs a shell command; stdout and stderr apart. "lumivox" at its start is replaced by the built program.
 CommandResult runCommand(const std::string& command);
 

@@ -19,7 +19,9 @@ inline TechniqueSet& techniques() {
 }
 
 /// A committed pipeline.
-inline Pipeline pipeline(const std::string& name) { return Pipeline::load(sourceDirectory() / "scenes/pipelines" / (name + ".pipeline")); }
+inline Pipeline pipeline(const std::string& name) {
+  return Pipeline::load(sourceDirectory() / "scenes/pipelines" / (name + ".pipeline"));
+}
 
 /// One frame of a scene through a pipeline.
 inline FrameResult renderOnce(const Scene& scene, const Pipeline& pipeline, RenderOptions options = {}) {

@@ -27,20 +27,24 @@ glm::vec3 floorPoint(int x, int y, int pixels) {
           2.0f * (static_cast<float>(y) + 0.5f) / static_cast<float>(pixels) - 1.0f};
 }
 
-/// Irradiance of a polygon of unit radiance (Lambert 1760): 1/2 sum over edges of angle times the projection of the edge's normal.
-/// Precondition: the polygon lies above the horizon.
-double polygonIrradiance(const std::vector<glm::dvec3>& polygon, const glm::dvec3& point, const glm::dvec3& normal) {
+/// Irradiance of a polygon of unit radiance (Lambert 1760): 1/2 sum over edges of angle times the projection
+/// of the edge's normal. Precondition: the polygon lies above the horizon.
+double polygonIrradiance(const std::vector<glm::dvec3>& polygon, const glm::dvec3& point,
+                         const glm::dvec3& normal) {
   double sum = 0.0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const glm::dvec3 a = glm::normalize(polygon[i] - point), b = glm::normalize(polygon[(i + 1) % polygon.size()] - point);
-    sum += std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)) * glm::dot(glm::normalize(glm::cross(a, b)), normal);
+    const glm::dvec3 a = glm::normalize(polygon[i] - point),
+                     b = glm::normalize(polygon[(i + 1) % polygon.size()] - point);
+    sum +=
+        std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)) * glm::dot(glm::normalize(glm::cross(a, b)), normal);
   }
   return std::abs(0.5 * sum);
 }
 
 }  // namespace
 
-TEST_CASE("a Lambert plane under a directional light reflects albedo / pi times irradiance times the cosine") {
+TEST_CASE(
+    "a Lambert plane under a directional light reflects albedo / pi times irradiance times the cosine") {
   SceneBuilder builder = floorFromAbove(0.5f, 16);
   const glm::dvec3 direction = glm::normalize(glm::dvec3(0.3, -1.0, 0.2));
   builder.light(LightKind::directional, {3, 2, 1}, {}, direction);
@@ -75,8 +79,11 @@ TEST_CASE("a spot light keeps its intensity inside the inner angle and is dark o
   for (int x = 0; x < 32; ++x) {
     const glm::vec3 path = glm::vec3(0, 1, 0) - floorPoint(x, 16, 32);
     const float distance = glm::length(path), cosine = path.y / distance;
-    const float t = glm::clamp((cosine - std::cos(spot.outerAngle)) / (std::cos(spot.innerAngle) - std::cos(spot.outerAngle)), 0.0f, 1.0f);
-    const float expected = 5.0f / glm::pi<float>() * cosine / (distance * distance) * t * t * (3.0f - 2.0f * t);
+    const float t = glm::clamp(
+        (cosine - std::cos(spot.outerAngle)) / (std::cos(spot.innerAngle) - std::cos(spot.outerAngle)), 0.0f,
+        1.0f);
+    const float expected =
+        5.0f / glm::pi<float>() * cosine / (distance * distance) * t * t * (3.0f - 2.0f * t);
     CHECK(picture.at(x, 16, 0) == Approx(expected).epsilon(2e-3).margin(2e-4));
   }
 }
@@ -96,13 +103,15 @@ TEST_CASE("point samples of a quad light reach Lambert's polygon irradiance with
   SceneBuilder builder = floorFromAbove(1.0f, 16);
   // Facing down: cross(x, z) = -y.
   builder.quad({-0.25f, 1.0f, -0.25f}, {0.5f, 0, 0}, {0, 0, 0.5f}, builder.lambert(0.0f, 2.0f));
-  builder.look({0, 0.5, 0}, {0, 0, 0}, {0, 0, -1}, 2.0 * std::atan(1.0 / 0.5), 16, 16);  // from below the lamp
+  builder.look({0, 0.5, 0}, {0, 0, 0}, {0, 0, -1}, 2.0 * std::atan(1.0 / 0.5), 16,
+               16);  // from below the lamp
   RenderOptions options;
   options.parameters = pipeline("direct_lighting").settings({"area_samples=256"});
   const Picture picture = direct(builder.scene, options);
   const std::vector<glm::dvec3> lamp{{-0.25, 1, -0.25}, {0.25, 1, -0.25}, {0.25, 1, 0.25}, {-0.25, 1, 0.25}};
   for (const glm::ivec2 pixel : {glm::ivec2(8, 8), glm::ivec2(2, 3), glm::ivec2(13, 8)}) {
-    const double expected = 2.0 / glm::pi<double>() * polygonIrradiance(lamp, floorPoint(pixel.x, pixel.y, 16), {0, 1, 0});
+    const double expected =
+        2.0 / glm::pi<double>() * polygonIrradiance(lamp, floorPoint(pixel.x, pixel.y, 16), {0, 1, 0});
     CHECK_THAT(picture.at(pixel.x, pixel.y, 0), WithinRel(static_cast<float>(expected), 0.02f));
   }
 }
@@ -146,7 +155,8 @@ TEST_CASE("the Phong lobe has (n + 2) / (2 pi) times its albedo in the mirror di
   builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.material(shiny));
   builder.look({0, 3, 0}, {0, 0, 0}, {0, 0, -1}, 0.01, 9, 9);
   builder.light(LightKind::directional, {2, 2, 2}, {}, {0, -1, 0});
-  // Eye and light both straight above the middle pixel: the mirror direction is the direction to the light, the cosine is 1.
+  // Eye and light both straight above the middle pixel: the mirror direction is the direction to the light,
+  // the cosine is 1.
   const float expected = 0.5f * 22.0f / (2.0f * glm::pi<float>()) * 2.0f;
   CHECK_THAT(direct(builder.scene).at(4, 4, 0), WithinRel(expected, 1e-3f));
 }
@@ -177,5 +187,6 @@ TEST_CASE("a scene moved a million metres with its camera gives the same picture
     return direct(builder.scene);
   };
   const Picture here = render(0.0), there = render(1e6);
-  for (std::size_t i = 0; i < here.values().size(); ++i) CHECK(there.values()[i] == Approx(here.values()[i]).epsilon(1e-3));
+  for (std::size_t i = 0; i < here.values().size(); ++i)
+    CHECK(there.values()[i] == Approx(here.values()[i]).epsilon(1e-3));
 }

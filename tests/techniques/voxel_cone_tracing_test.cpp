@@ -75,7 +75,8 @@ struct GatherSettings {
 };
 
 /// Indirect diffuse radiance at one surface point of albedo 1.
-glm::vec3 gather(const Scene& scene, const RadianceGrid& grid, const glm::vec3& position, const glm::vec3& normal, const GatherSettings& settings) {
+glm::vec3 gather(const Scene& scene, const RadianceGrid& grid, const glm::vec3& position,
+                 const glm::vec3& normal, const GatherSettings& settings) {
   PassHarness harness(device(), techniques(), "voxel_cone_tracing", "gather", scene, snapshotOf(scene, 0.0));
   harness.setParameter("cones", settings.cones);
   harness.setParameter("distribution", std::string(settings.distribution));
@@ -114,25 +115,31 @@ TEST_CASE("a constant environment passes the weights of the cones unchanged") {
   const RadianceGrid empty = makeGrid(16, [](int, int, int) { return glm::vec4(0.0f); });
   const Scene scene = emptyScene(environment);
   for (const int cones : {1, 2, 5, 6, 16, 32}) {
-    const glm::vec3 radiance = gather(scene, empty, glm::vec3(0.1f), glm::normalize(glm::vec3(1, 2, 3)), {cones});
+    const glm::vec3 radiance =
+        gather(scene, empty, glm::vec3(0.1f), glm::normalize(glm::vec3(1, 2, 3)), {cones});
     for (int c = 0; c < 3; ++c) CHECK(radiance[c] == Approx(environment[c]).epsilon(1e-5));
   }
   const glm::vec3 published = gather(scene, empty, glm::vec3(0.1f), glm::vec3(0, 1, 0), {5, "published"});
   for (int c = 0; c < 3; ++c) CHECK(published[c] == Approx(environment[c]).epsilon(1e-5));
 }
 
-TEST_CASE("a uniform grid of opacity and radiance returns L (1 - (1-a)^(d / voxel)) whatever the width of the cone") {
-  // In a medium of opacity a per voxel the transmittance over a distance d is (1-a)^(d / voxel size), and the radiance that a ray
-  // collects is L times what is absorbed. The composite filter keeps this on every level, so that wide cones see the same.
+TEST_CASE(
+    "a uniform grid of opacity and radiance returns L (1 - (1-a)^(d / voxel)) whatever the width of the "
+    "cone") {
+  // In a medium of opacity a per voxel the transmittance over a distance d is (1-a)^(d / voxel size), and the
+  // radiance that a ray collects is L times what is absorbed. The composite filter keeps this on every level,
+  // so that wide cones see the same.
   constexpr int kResolution = 64;
   const double voxel = 2.0 / kResolution;
   for (const float opacity : {0.02f, 0.1f}) {
     const glm::vec3 radiance(1.0f, 2.0f, 0.5f);
-    const RadianceGrid grid = filtered(makeGrid(kResolution, [&](int, int, int) { return glm::vec4(radiance * opacity, opacity); }));
+    const RadianceGrid grid = filtered(
+        makeGrid(kResolution, [&](int, int, int) { return glm::vec4(radiance * opacity, opacity); }));
     for (const int cones : {6, 64}) {  // wide and narrow
       for (const double distance : {0.1, 0.25, 0.5}) {
         const double expected = 1.0 - std::pow(1.0 - opacity, distance / voxel);
-        const glm::vec3 gathered = gather(emptyScene(), grid, glm::vec3(0.0f), {0, 1, 0}, {cones, "cosine", 0, 0, distance, 0.25});
+        const glm::vec3 gathered =
+            gather(emptyScene(), grid, glm::vec3(0.0f), {0, 1, 0}, {cones, "cosine", 0, 0, distance, 0.25});
         INFO("opacity " << opacity << ", cones " << cones << ", distance " << distance);
         for (int c = 0; c < 3; ++c) CHECK(gathered[c] == Approx(radiance[c] * expected).epsilon(0.01));
       }
@@ -142,18 +149,23 @@ TEST_CASE("a uniform grid of opacity and radiance returns L (1 - (1-a)^(d / voxe
 
 TEST_CASE("an opaque wall fills the cones that face it with its radiance and hides what lies far behind") {
   // Everything beyond y = 0 is a wall of radiance 3; 24 voxels inside it is brighter, which must not be seen.
-  const RadianceGrid grid = filtered(makeGrid(
-      64, [](int, int y, int) { return y < 32 ? glm::vec4(0.0f) : y < 56 ? glm::vec4(3, 3, 3, 1) : glm::vec4(50, 50, 50, 1); }));
+  const RadianceGrid grid = filtered(makeGrid(64, [](int, int y, int) {
+    return y < 32 ? glm::vec4(0.0f) : y < 56 ? glm::vec4(3, 3, 3, 1) : glm::vec4(50, 50, 50, 1);
+  }));
   const glm::vec3 radiance = gather(emptyScene(), grid, {0, -0.05f, 0}, {0, 1, 0}, {64});
   CHECK(radiance.x == Approx(3.0f).epsilon(0.03));
 }
 
 TEST_CASE("one level up a uniform medium of opacity a has 1 - (1-a)^2 and a with the plain mean") {
-  const auto uniform = [](int, int, int) { return glm::vec4(0.6f, 0.3f, 0.15f, 0.3f); };  // radiance (2, 1, 0.5) times 0.3
+  const auto uniform = [](int, int, int) {
+    return glm::vec4(0.6f, 0.3f, 0.15f, 0.3f);
+  };                                          // radiance (2, 1, 0.5) times 0.3
   for (const int resolution : {16, 17, 6}) {  // even, odd, even then odd
     const std::vector<float> composite = filtered(makeGrid(resolution, uniform)).radiance->downloadFloats(1);
-    const std::vector<float> mean = filtered(makeGrid(resolution, uniform), "average").radiance->downloadFloats(1);
-    const double children = static_cast<double>(resolution) / (resolution / 2);  // along each axis: 2 or a little more
+    const std::vector<float> mean =
+        filtered(makeGrid(resolution, uniform), "average").radiance->downloadFloats(1);
+    const double children =
+        static_cast<double>(resolution) / (resolution / 2);  // along each axis: 2 or a little more
     const double expected = 1.0 - std::pow(0.7, children);
     REQUIRE(!composite.empty());
     for (std::size_t i = 0; i < composite.size(); i += 4) {
@@ -165,8 +177,11 @@ TEST_CASE("one level up a uniform medium of opacity a has 1 - (1-a)^2 and a with
 }
 
 TEST_CASE("filtering keeps radiance divided by opacity of what it blends") {
-  // One voxel of radiance 5 in empty space: however diluted, every parent that sees it has radiance / opacity = 5.
-  const RadianceGrid grid = filtered(makeGrid(16, [](int x, int y, int z) { return x == 3 && y == 5 && z == 9 ? glm::vec4(5, 5, 5, 1) : glm::vec4(0.0f); }));
+  // One voxel of radiance 5 in empty space: however diluted, every parent that sees it has radiance / opacity
+  // = 5.
+  const RadianceGrid grid = filtered(makeGrid(16, [](int x, int y, int z) {
+    return x == 3 && y == 5 && z == 9 ? glm::vec4(5, 5, 5, 1) : glm::vec4(0.0f);
+  }));
   for (int level = 1; level < 5; ++level) {
     const std::vector<float> texels = grid.radiance->downloadFloats(level);
     int seen = 0;
@@ -179,7 +194,8 @@ TEST_CASE("filtering keeps radiance divided by opacity of what it blends") {
   }
 }
 
-TEST_CASE("injection averages what the fragments of a voxel reflect, and a thousand equal ones count as one") {
+TEST_CASE(
+    "injection averages what the fragments of a voxel reflect, and a thousand equal ones count as one") {
   const auto scene = [](int copies) {
     SceneBuilder builder;
     const int grey = builder.lambert(0.5f);
@@ -221,7 +237,9 @@ TEST_CASE("injecting twice gives the same bits, however the fragments were order
   CHECK(injected(scene, 32) == injected(scene, 32));
 }
 
-TEST_CASE("indirect light on the Cornell box is at least twice as good as none, and its energy is right within a quarter") {
+TEST_CASE(
+    "indirect light on the Cornell box is at least twice as good as none, and its energy is right within a "
+    "quarter") {
   const Scene scene = loadScene(sourceDirectory() / "scenes/cornell.scene");
   ReferenceOptions truthOptions;
   truthOptions.width = truthOptions.height = 64;
@@ -237,7 +255,8 @@ TEST_CASE("indirect light on the Cornell box is at least twice as good as none, 
     const Picture picture = renderOnce(scene, text, options).outputs.at("indirect_diffuse");
     const PictureError error = compare(picture, oneBounce, truth.layers.at("one_bounce_diffuse.variance"));
     const PictureError nothing = compare(Picture(64, 64, 3), oneBounce);
-    INFO(resolution << ": RMSE " << error.rmse.value << " against " << nothing.rmse.value << ", ratio " << error.meanRatio.value);
+    INFO(resolution << ": RMSE " << error.rmse.value << " against " << nothing.rmse.value << ", ratio "
+                    << error.meanRatio.value);
     CHECK(error.rmse.value <= 0.5 * nothing.rmse.value);
     CHECK(error.meanRatio.value >= 0.75);
     CHECK(error.meanRatio.value <= 1.25);
@@ -246,7 +265,9 @@ TEST_CASE("indirect light on the Cornell box is at least twice as good as none, 
 
 TEST_CASE("the same seed and device give the same bits twice") {
   const Scene scene = litRoom(32, 32);
-  const FrameResult first = renderOnce(scene, pipeline("voxel_cone_tracing")), second = renderOnce(scene, pipeline("voxel_cone_tracing"));
+  const FrameResult first = renderOnce(scene, pipeline("voxel_cone_tracing")),
+                    second = renderOnce(scene, pipeline("voxel_cone_tracing"));
   REQUIRE(first.outputs.size() == 4);
-  for (const auto& [name, picture] : first.outputs) CHECK(picture.values() == second.outputs.at(name).values());
+  for (const auto& [name, picture] : first.outputs)
+    CHECK(picture.values() == second.outputs.at(name).values());
 }

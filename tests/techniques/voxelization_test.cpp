@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <random>
 #include <glm/gtc/packing.hpp>
+#include <random>
 #include <set>
 
 #include "framework/reference_scenes.h"
@@ -35,15 +35,18 @@ Voxels voxelise(const Scene& scene, int resolution, const char* depth = "conserv
   REQUIRE(count <= result.fragments.size());
   result.fragments.resize(count);
   for (const Fragment& fragment : result.fragments) {
-    result.occupied.insert({static_cast<int>(fragment.voxel & 1023), static_cast<int>(fragment.voxel >> 10 & 1023),
+    result.occupied.insert({static_cast<int>(fragment.voxel & 1023),
+                            static_cast<int>(fragment.voxel >> 10 & 1023),
                             static_cast<int>(fragment.voxel >> 20 & 1023)});
   }
   return result;
 }
 
-/// Exact overlap of a triangle with an axis-aligned box by the separating axis theorem in double precision (Akenine-Moller 2001):
-/// 3 box normals, the triangle's normal, 9 cross products of edges. `slack` widens (positive) or shrinks the box.
-bool overlaps(const std::array<glm::dvec3, 3>& triangle, const glm::dvec3& centre, double half, double slack) {
+/// Exact overlap of a triangle with an axis-aligned box by the separating axis theorem in double precision
+/// (Akenine-Moller 2001): 3 box normals, the triangle's normal, 9 cross products of edges. `slack` widens
+/// (positive) or shrinks the box.
+bool overlaps(const std::array<glm::dvec3, 3>& triangle, const glm::dvec3& centre, double half,
+              double slack) {
   std::array<glm::dvec3, 3> v;
   for (int i = 0; i < 3; ++i) v[i] = triangle[i] - centre;
   const double h = half + slack;
@@ -83,7 +86,9 @@ std::set<Cell> truth(const Scene& scene, const GridPlacement& grid, double slack
         for (int x = static_cast<int>(low.x - 1); x <= high.x + 1; ++x)
           for (int y = static_cast<int>(low.y - 1); y <= high.y + 1; ++y)
             for (int z = static_cast<int>(low.z - 1); z <= high.z + 1; ++z) {
-              if (x < 0 || y < 0 || z < 0 || x >= grid.resolution.x || y >= grid.resolution.y || z >= grid.resolution.z) continue;
+              if (x < 0 || y < 0 || z < 0 || x >= grid.resolution.x || y >= grid.resolution.y ||
+                  z >= grid.resolution.z)
+                continue;
               if (overlaps(triangle, glm::dvec3(x, y, z) + 0.5, 0.5, slack)) cells.insert({x, y, z});
             }
       }
@@ -114,7 +119,8 @@ TEST_CASE("conservative depth marks every voxel that an exact overlap test marks
   for (const float size : {0.02f, 0.2f, 1.5f}) {
     const Scene scene = randomTriangles(200, size, 7);
     const Voxels voxels = voxelise(scene, 48);
-    const std::set<Cell> inner = truth(scene, voxels.grid, -kSlack), outer = truth(scene, voxels.grid, kSlack);
+    const std::set<Cell> inner = truth(scene, voxels.grid, -kSlack),
+                         outer = truth(scene, voxels.grid, kSlack);
     std::size_t missed = 0, wrong = 0;
     for (const Cell& cell : inner) missed += voxels.occupied.count(cell) == 0;
     for (const Cell& cell : voxels.occupied) wrong += outer.count(cell) == 0;
@@ -129,7 +135,8 @@ TEST_CASE("with depth at the pixel's centre only, steep triangles lose voxels bu
   const Scene scene = randomTriangles(200, 1.0f, 11);
   const Voxels all = voxelise(scene, 48), centre = voxelise(scene, 48, "centre");
   CHECK(centre.occupied.size() < all.occupied.size());
-  CHECK(std::includes(all.occupied.begin(), all.occupied.end(), centre.occupied.begin(), centre.occupied.end()));
+  CHECK(std::includes(all.occupied.begin(), all.occupied.end(), centre.occupied.begin(),
+                      centre.occupied.end()));
 }
 
 TEST_CASE("a needle of one to a million still marks every voxel along it") {
@@ -158,7 +165,8 @@ TEST_CASE("every fragment keeps the albedo of its material and a normal of unit 
   const Voxels voxels = voxelise(builder.scene, 16);
   REQUIRE(!voxels.fragments.empty());
   for (const Fragment& fragment : voxels.fragments) {
-    const glm::vec2 redGreen = glm::unpackHalf2x16(fragment.albedoRg), blueCoverage = glm::unpackHalf2x16(fragment.albedoBCoverage);
+    const glm::vec2 redGreen = glm::unpackHalf2x16(fragment.albedoRg),
+                    blueCoverage = glm::unpackHalf2x16(fragment.albedoBCoverage);
     CHECK(redGreen.x == 0.25f);
     CHECK(redGreen.y == 0.5f);
     CHECK(blueCoverage.x == 0.75f);
@@ -177,8 +185,9 @@ TEST_CASE("many triangles in one voxel make as many fragments, beyond what fits 
   const Voxels voxels = voxelise(builder.scene, 8);
   std::size_t most = 0;
   for (const Fragment& fragment : voxels.fragments) {
-    most = std::max<std::size_t>(most, static_cast<std::size_t>(std::count_if(voxels.fragments.begin(), voxels.fragments.end(),
-                                                                               [&](const Fragment& f) { return f.voxel == fragment.voxel; })));
+    most = std::max<std::size_t>(most, static_cast<std::size_t>(std::count_if(
+                                           voxels.fragments.begin(), voxels.fragments.end(),
+                                           [&](const Fragment& f) { return f.voxel == fragment.voxel; })));
     if (most >= 800) break;
   }
   CHECK(most == 800);  // two triangles each
@@ -200,7 +209,8 @@ TEST_CASE("the grid holds the whole scene whatever the resolution") {
     const GridPlacement grid = voxelise(scene, resolution).grid;
     for (int axis = 0; axis < 3; ++axis) {
       CHECK(grid.low[axis] <= snapshot.bounds.low[axis]);
-      CHECK(grid.low[axis] + grid.voxelSize * static_cast<float>(grid.resolution[axis]) >= snapshot.bounds.high[axis]);
+      CHECK(grid.low[axis] + grid.voxelSize * static_cast<float>(grid.resolution[axis]) >=
+            snapshot.bounds.high[axis]);
       CHECK(grid.resolution[axis] <= resolution);
     }
   }

@@ -1,5 +1,6 @@
 // The law of leaving out: it changes the cost, never the picture. Over every committed scene and pipeline.
 #include <algorithm>
+#include <regex>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -51,19 +52,23 @@ void checkSamePicture(const std::filesystem::path& sceneFile) {
       const std::vector<float>& other = whole.outputs.at(name).values();
       std::size_t different = 0;
       for (std::size_t i = 0; i < other.size(); ++i) different += picture.values()[i] != other[i];
-      INFO(sceneFile.filename() << " through " << pipelineFile.filename() << ", output " << name << ": " << different << " values differ");
+      INFO(sceneFile.filename() << " through " << pipelineFile.filename() << ", output " << name << ": "
+                                << different << " values differ");
       CHECK(different == 0);
     }
   }
 }
 
-/// Scenes whose models are committed, and those that need models from elsewhere.
+/// Scenes whose models lie beside them in the tree, or those that need models from elsewhere.
 std::vector<std::filesystem::path> scenes(bool ownModels) {
+  static const std::regex modelFile("file\\s+\"([^\"]+)\"");
   std::vector<std::filesystem::path> files;
   for (const auto& file : filesIn("scenes", ".scene")) {
     const std::string text = readFile(file);
-    // A committed model is named relative to its scene, in the folder models.
-    const bool own = text.find(" file ") == std::string::npos || text.find("models/") != std::string::npos;
+    bool own = true;
+    for (std::sregex_iterator match(text.begin(), text.end(), modelFile), end; match != end; ++match) {
+      own = own && std::filesystem::exists(file.parent_path() / (*match)[1].str());
+    }
     if (own == ownModels) files.push_back(file);
   }
   return files;

@@ -7,7 +7,8 @@
 namespace lumivox {
 namespace {
 
-/// A surface texture with all mips; diffuse maps as rgba16f, since their linear values would lose the darks in 8 bits.
+/// A surface texture with all mips; diffuse maps as rgba16f, since their linear values would lose the darks
+/// in 8 bits.
 std::unique_ptr<gpu::Texture> upload(gpu::Device& device, const SurfaceTexture& source) {
   gpu::TextureDescription description;
   description.format = source.mask ? gpu::Format::r16f : gpu::Format::rgba16f;
@@ -49,7 +50,8 @@ struct GpuScene::State {
   std::vector<SceneDraw> draws;
 };
 
-GpuScene::GpuScene(gpu::Device& device, const Scene& scene) : state_(new State{device, scene, {}, {}, {}, {}, {}, {}, {}, {}, {}}) {
+GpuScene::GpuScene(gpu::Device& device, const Scene& scene)
+    : state_(new State{device, scene, {}, {}, {}, {}, {}, {}, {}, {}, {}}) {
   State& s = *state_;
   static_assert(sizeof(glm::vec3) == 12 && sizeof(glm::vec2) == 8);
   s.positions = bufferOf(device, scene.positions, "scene positions");
@@ -73,9 +75,12 @@ GpuScene::GpuScene(gpu::Device& device, const Scene& scene) : state_(new State{d
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     for (const Part& part : scene.objects[o].parts) {
       const Material& material = scene.materials[static_cast<std::size_t>(part.material)];
-      const auto textureOf = [&](int index) { return index < 0 ? nullptr : s.textures[static_cast<std::size_t>(index)].get(); };
-      s.draws.push_back({static_cast<int>(o), part.material, part.firstIndex, part.indexCount, textureOf(material.diffuseTexture),
-                         textureOf(material.maskTexture), scene.objects[o].animated()});
+      const auto textureOf = [&](int index) {
+        return index < 0 ? nullptr : s.textures[static_cast<std::size_t>(index)].get();
+      };
+      s.draws.push_back({static_cast<int>(o), part.material, part.firstIndex, part.indexCount,
+                         textureOf(material.diffuseTexture), textureOf(material.maskTexture),
+                         scene.objects[o].animated()});
     }
   }
 }
@@ -97,19 +102,36 @@ void GpuScene::update(const SceneSnapshot& snapshot) {
   if (!objects.empty()) s.objects->upload(std::as_bytes(std::span(objects)));
 }
 
-const gpu::Buffer& GpuScene::positions() const { return *state_->positions; }
-const gpu::Buffer& GpuScene::normals() const { return *state_->normals; }
-const gpu::Buffer& GpuScene::texcoords() const { return *state_->texcoords; }
-const gpu::Buffer& GpuScene::indices() const { return *state_->indices; }
-const gpu::Buffer& GpuScene::materials() const { return *state_->materials; }
-const gpu::Buffer& GpuScene::objects() const { return *state_->objects; }
-const gpu::Texture& GpuScene::whiteTexture() const { return *state_->white; }
-const std::vector<SceneDraw>& GpuScene::draws() const { return state_->draws; }
+const gpu::Buffer& GpuScene::positions() const {
+  return *state_->positions;
+}
+const gpu::Buffer& GpuScene::normals() const {
+  return *state_->normals;
+}
+const gpu::Buffer& GpuScene::texcoords() const {
+  return *state_->texcoords;
+}
+const gpu::Buffer& GpuScene::indices() const {
+  return *state_->indices;
+}
+const gpu::Buffer& GpuScene::materials() const {
+  return *state_->materials;
+}
+const gpu::Buffer& GpuScene::objects() const {
+  return *state_->objects;
+}
+const gpu::Texture& GpuScene::whiteTexture() const {
+  return *state_->white;
+}
+const std::vector<SceneDraw>& GpuScene::draws() const {
+  return state_->draws;
+}
 
 std::uint64_t GpuScene::sizeBytes() const {
   const State& s = *state_;
   std::uint64_t total = s.white->sizeBytes();
-  for (const auto* buffer : {&s.positions, &s.normals, &s.texcoords, &s.indices, &s.materials, &s.objects}) total += (*buffer)->sizeBytes();
+  for (const auto* buffer : {&s.positions, &s.normals, &s.texcoords, &s.indices, &s.materials, &s.objects})
+    total += (*buffer)->sizeBytes();
   for (const auto& texture : s.textures) total += texture->sizeBytes();
   return total;
 }

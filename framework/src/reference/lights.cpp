@@ -52,8 +52,9 @@ AliasTable::AliasTable(const std::vector<double>& weights) {
 
 /// scene.h: smoothstep(cos outer, cos inner, cos theta); a step where both angles are equal.
 float LightSampler::PreparedLight::falloffTowards(float cosine) const {
-  if (cosineInner <= cosineOuter) return cosine >= cosineInner ? 1.0f : 0.0f;
-  const float t = std::clamp((cosine - cosineOuter) / (cosineInner - cosineOuter), 0.0f, 1.0f);
+  if (cosine >= cosineInner) return 1.0f;
+  if (cosine <= cosineOuter) return 0.0f;
+  const float t = (cosine - cosineOuter) / (cosineInner - cosineOuter);
   return t * t * (3.0f - 2.0f * t);
 }
 

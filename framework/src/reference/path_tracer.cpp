@@ -92,8 +92,12 @@ LayeredPicture Film::take() {
   return result;
 }
 
+int threadsOf(int threads) {
+  return threads == 0 ? tbb::this_task_arena::max_concurrency() : threads;
+}
+
 void forEachTile(const Tiles& tiles, int threads, const std::function<void(int)>& work) {
-  tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : threads);
+  tbb::task_arena arena(threadsOf(threads));
   arena.execute([&] { tbb::parallel_for(0, tiles.count(), work); });
 }
 

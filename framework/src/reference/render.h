@@ -36,16 +36,21 @@ class PixelStatistics {
  public:
   static constexpr int kRadianceLayers = 7;
   void add(const PathSample& sample) {
-    const glm::vec3 oneBounce = sample.direct + sample.oneBounceDiffuse + sample.oneBounceGlossy,
-                    full = sample.full();
-    const glm::vec3* radiances[kRadianceLayers] = {
-        &sample.direct, &sample.oneBounceDiffuse, &sample.oneBounceGlossy,
-        &oneBounce,     &sample.indirectDiffuse,  &sample.indirectGlossy,
-        &full};
-    for (int layer = 0; layer < kRadianceLayers; ++layer) {
-      for (int channel = 0; channel < 3; ++channel) add(3 * layer + channel, (*radiances[layer])[channel]);
+    const glm::vec3 oneBounce = sample.direct + sample.oneBounceDiffuse + sample.oneBounceGlossy;
+    const glm::vec3 radiances[kRadianceLayers] = {
+        sample.direct,          sample.oneBounceDiffuse, sample.oneBounceGlossy, oneBounce,
+        sample.indirectDiffuse, sample.indirectGlossy,   sample.full()};
+    std::array<float, kChannels> values;
+    for (std::size_t layer = 0; layer < kRadianceLayers; ++layer) {
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        values[3 * layer + channel] = radiances[layer][static_cast<int>(channel)];
+      }
     }
-    add(3 * kRadianceLayers, sample.unoccluded);
+    values[kChannels - 1] = sample.unoccluded;
+    for (std::size_t i = 0; i < kChannels; ++i) sum_[i] += static_cast<double>(values[i]);
+    for (std::size_t i = 0; i < kChannels; ++i) {
+      squares_[i] += static_cast<double>(values[i]) * static_cast<double>(values[i]);
+    }
     ++count_;
   }
   float mean(int channel) const { return static_cast<float>(sum_[at(channel)] / count_); }
@@ -56,13 +61,9 @@ class PixelStatistics {
   }
 
  private:
+  static constexpr std::size_t kChannels = 3 * kRadianceLayers + 1;  ///< the last is the occlusion
   static std::size_t at(int channel) { return static_cast<std::size_t>(channel); }
-  void add(int channel, float value) {
-    const double wide = value;
-    sum_[at(channel)] += wide;
-    squares_[at(channel)] += wide * wide;
-  }
-  std::array<double, 3 * kRadianceLayers + 1> sum_{}, squares_{};
+  std::array<double, kChannels> sum_{}, squares_{};
   double count_ = 0.0;
 };
 
@@ -123,6 +124,9 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
     film.write(x, y, pixel);
   });
 }
+
+/// Threads that a request of `threads` (0: all) gets.
+int threadsOf(int threads);
 
 /// Runs work(tile) for all tiles on `threads` threads (0: all).
 void forEachTile(const Tiles& tiles, int threads, const std::function<void(int)>& work);

@@ -29,11 +29,12 @@ inline glm::vec2 pointOfCircle(float u) {
   const float x = (quarters - static_cast<float>(nearest)) * (0.5f * kPi);
   const float squared = x * x;
   const float sine =
-      x * (1.0f + squared * (-1.0f / 6.0f +
-                             squared * (1.0f / 120.0f + squared * (-1.0f / 5040.0f + squared / 362880.0f))));
+      x * (1.0f +
+           squared * (-1.0f / 6.0f + squared * (1.0f / 120.0f +
+                                                squared * (-1.0f / 5040.0f + squared * (1.0f / 362880.0f)))));
   const float cosine =
-      1.0f +
-      squared * (-1.0f / 2.0f + squared * (1.0f / 24.0f + squared * (-1.0f / 720.0f + squared / 40320.0f)));
+      1.0f + squared * (-1.0f / 2.0f +
+                        squared * (1.0f / 24.0f + squared * (-1.0f / 720.0f + squared * (1.0f / 40320.0f))));
   // Which quarter it is no processor can predict: products in place of branches.
   const auto odd = static_cast<float>(nearest & 1), even = 1.0f - odd;
   const auto sign = static_cast<float>(1 - (nearest & 2));

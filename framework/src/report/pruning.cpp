@@ -86,8 +86,8 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
   record.prunedBytes = record.explanation.poolBytes;
   record.unprunedBytes = unpruned.explain().poolBytes;
 
-  // Frames that follow: time goes on and the camera moves by a thousandth of the scene, as in an interactive walk. A camera that stands
-  // still would leave nothing to do at all in a static scene, which says little.
+  // Frames that follow: time goes on and the camera moves by a thousandth of the scene, as in an interactive
+  // walk. A camera that stands still would leave nothing to do at all in a static scene, which says little.
   options.keepEverything = false;
   options.interactive = true;
   PipelineExecutor walking(device, techniques, scene, pipeline, options);
@@ -96,7 +96,8 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
   for (int repeat = 1; repeat <= std::max(1, repeats); ++repeat) {
     constexpr double kNextFrame = 1.0 / 60.0;  // s
     constexpr float kStride = 1e-3f;
-    SceneSnapshot next = snapshotOf(scene, time + repeat * kNextFrame, options.camera, options.width, options.height);
+    SceneSnapshot next =
+        snapshotOf(scene, time + repeat * kNextFrame, options.camera, options.width, options.height);
     const float diagonal = next.bounds.empty ? 1.0f : glm::length(next.bounds.high - next.bounds.low);
     next.camera.eye += next.camera.right * (static_cast<float>(repeat) * kStride * diagonal);
     nextPruned.push_back(walking.render(next, repeat, PipelineExecutor::Pictures::no).frameMs);

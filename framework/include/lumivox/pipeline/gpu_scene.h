@@ -1,5 +1,5 @@
-// A scene on the device: vertex, index and material buffers, textures, and drawing. Shared by all passes; uploaded on first use.
-// GLSL side: shaders/common/scene.glsl.
+// A scene on the device: vertex, index and material buffers, textures, and drawing. Shared by all passes;
+// uploaded on first use. GLSL side: shaders/common/scene.glsl.
 #pragma once
 
 #include <memory>
@@ -13,15 +13,15 @@ namespace lumivox {
 
 /// Mirror of MaterialData in shaders/common/scene.glsl (std430).
 struct MaterialData {
-  glm::vec4 diffuse;       ///< rgb albedo, w unused
-  glm::vec4 specular;      ///< rgb Phong albedo, w exponent
-  glm::vec4 emission;      ///< rgb radiance, w unused
+  glm::vec4 diffuse;   ///< rgb albedo, w unused
+  glm::vec4 specular;  ///< rgb Phong albedo, w exponent
+  glm::vec4 emission;  ///< rgb radiance, w unused
 };
 
 /// Mirror of ObjectData in shaders/common/scene.glsl (std430).
 struct ObjectData {
-  glm::mat4 toWorld;       ///< relative to the snapshot's origin
-  glm::mat4 normalToWorld; ///< upper 3x3 used
+  glm::mat4 toWorld;        ///< relative to the snapshot's origin
+  glm::mat4 normalToWorld;  ///< upper 3x3 used
 };
 
 /// One draw: triangles of one part of one object.
@@ -41,12 +41,12 @@ class GpuScene {
   /// Brings transforms and deforming vertices to this snapshot.
   void update(const SceneSnapshot& snapshot);
 
-  const gpu::Buffer& positions() const;   ///< 3 floats per vertex, object space
-  const gpu::Buffer& normals() const;     ///< 3 floats per vertex
-  const gpu::Buffer& texcoords() const;   ///< 2 floats per vertex
+  const gpu::Buffer& positions() const;  ///< 3 floats per vertex, object space
+  const gpu::Buffer& normals() const;    ///< 3 floats per vertex
+  const gpu::Buffer& texcoords() const;  ///< 2 floats per vertex
   const gpu::Buffer& indices() const;
-  const gpu::Buffer& materials() const;   ///< MaterialData each
-  const gpu::Buffer& objects() const;     ///< ObjectData each
+  const gpu::Buffer& materials() const;      ///< MaterialData each
+  const gpu::Buffer& objects() const;        ///< ObjectData each
   const gpu::Texture& whiteTexture() const;  ///< 1x1 white: the neutral diffuse texture and mask
   const std::vector<SceneDraw>& draws() const;
   std::uint64_t sizeBytes() const;

@@ -52,8 +52,8 @@ LayeredPicture cachedReference(const Scene& scene, const ReferenceOptions& optio
 glm::vec3 referenceRadiance(const Scene& scene, double time, glm::dvec3 originWorld, glm::vec3 direction,
                             const ReferenceOptions& options);
 
-/// Rays per second of the path tracer's own traversal mix and of a bare Embree loop over the same rays, for
-/// bench/.
+/// Rays per second of the path tracer and of a bare Embree loop over the same rays on the same threads (best
+/// of several runs, time of the threads' own work), for bench/.
 struct TraversalSpeed {
   double tracerRaysPerSecond = 0, bareRaysPerSecond = 0;
   std::uint64_t rays = 0;
