@@ -21,9 +21,10 @@ int main(int argc, char** argv) {
       const lumivox::Scene scene = lumivox::loadScene(file);
       for (const int threads : {1, 0}) {
         lumivox::ReferenceOptions options;
-        // Small, because every ray is kept in memory for the bare loop.
-        options.width = options.height = 192;
-        options.samplesPerPixel = 8;
+        // Small, because every ray is kept in memory for the bare loop; with many samples, as truths have
+        // them.
+        options.width = options.height = 64;
+        options.samplesPerPixel = 64;
         options.threads = threads;
         options.progress = false;
         const lumivox::TraversalSpeed speed = lumivox::measureTraversalSpeed(scene, options);

@@ -57,7 +57,7 @@ void addReferenceCommand(Commands& commands) {
   command->add_option("-o,--out", all->output, ".exr (every layer and its variance) or .png (full transport)")
       ->required();
   command->add_option("--spp", options.samplesPerPixel, "samples per pixel (default 256)")
-      ->check(CLI::Range(1, 1 << 24));
+      ->check(CLI::Range(2, 1 << 24));
   command->add_option("--bounces", options.bounces, "indirect bounces of the full transport (default 32)")
       ->check(CLI::Range(0, 1 << 16));
   command->add_option("--seed", options.seed, "of the random numbers");

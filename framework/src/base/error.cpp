@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <tuple>
 
 namespace lumivox {
 
@@ -39,10 +41,21 @@ std::string joined(const std::vector<Diagnostic>& diagnostics) {
   }
   return text;
 }
+
+/// Checks run one after the other over the whole text; a reader goes from top to bottom. Files keep the order in which they came up.
+std::vector<Diagnostic> inTextOrder(std::vector<Diagnostic> diagnostics) {
+  std::map<std::string, std::size_t> fileOrder;
+  for (const Diagnostic& diagnostic : diagnostics) fileOrder.emplace(diagnostic.place.file, fileOrder.size());
+  std::stable_sort(diagnostics.begin(), diagnostics.end(), [&](const Diagnostic& a, const Diagnostic& b) {
+    return std::tuple(fileOrder[a.place.file], a.place.line, a.place.column) <
+           std::tuple(fileOrder[b.place.file], b.place.line, b.place.column);
+  });
+  return diagnostics;
+}
 }  // namespace
 
 DiagnosticsError::DiagnosticsError(std::vector<Diagnostic> diagnostics)
-    : Error(joined(diagnostics)), diagnostics_(std::move(diagnostics)) {}
+    : Error(joined(inTextOrder(diagnostics))), diagnostics_(inTextOrder(std::move(diagnostics))) {}
 
 std::string nearestWord(const std::string& word, const std::vector<std::string>& candidates) {
   // Edit distance with neighbouring letters swapped counted as one slip (optimal string alignment).

@@ -11,7 +11,7 @@ namespace lumivox::reference {
 
 /// The version of the path tracer; raise it with every change that changes pictures, so that older cached
 /// truths are not taken.
-inline constexpr int kTracerVersion = 1;
+inline constexpr int kTracerVersion = 2;
 
 /// Scene::hash, or for a scene made by code the hash of all that the path tracer reads.
 ContentHash contentOf(const Scene& scene);

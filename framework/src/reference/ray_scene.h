@@ -109,9 +109,8 @@ class RayScene {
 
   /// Emitted radiance towards a ray with this direction: from the front side only.
   glm::vec3 emissionTowards(const TriangleRecord& triangle, const glm::vec3& direction) const {
-    const SurfaceMaterial& material = materials[triangle.material];
-    return material.emissive && glm::dot(triangle.normal, direction) < 0.0f ? material.emission
-                                                                            : glm::vec3(0.0f);
+    const bool shines = triangle.emitterDensity > 0.0f && glm::dot(triangle.normal, direction) < 0.0f;
+    return shines ? materials[triangle.material].emission : glm::vec3(0.0f);
   }
 
   /// Whether a mask cuts the surface out at this point of a triangle.
