@@ -130,12 +130,12 @@ class InjectPass : public Pass {
 
 class FilterPass : public Pass {
   In<RadianceGrid> radiance{this, "radiance", "the finest level"};
-  Param<std::string> opacity{this,
-                             "opacity",
-                             "facing",
-                             {"facing", "average"},
-                             "how children make a parent: seen through along the axis that they face, or, as "
-                             "published, their plain mean"};
+  Param<std::string> opacity{
+      this,
+      "opacity",
+      "facing",
+      {"facing", "average"},
+      "how children make a parent: seen through along the axis that they face, or, as published, their plain mean"};
   Out<RadianceGrid> mips{this, "mips", "the same grid with one level per halving"};
 
   void run(PassContext& frame) override {

@@ -83,7 +83,8 @@ std::string asText(const PruningRecord& record) {
                      explanation.passesKept, explanation.passesTotal, explanation.variantsPossible,
                      explanation.variantsCompiled, explanation.variantsNeeded) +
          fmt::format(
-             "{} of the time of a first frame saved, {} of the next ones with a moving camera; memory of the passes "
+             "{} of the time of a first frame saved, {} of the next ones with a moving camera; memory of the "
+             "passes "
              "{} in place of {}; same picture: {}\n",
              formatPercent(record.savedShare()), formatPercent(record.savedShareNext()),
              formatBytes(record.prunedBytes), formatBytes(record.unprunedBytes),

@@ -42,7 +42,8 @@ std::string joined(const std::vector<Diagnostic>& diagnostics) {
   return text;
 }
 
-/// Checks run one after the other over the whole text; a reader goes from top to bottom. Files keep the order in which they came up.
+/// Checks run one after the other over the whole text; a reader goes from top to bottom. Files keep the order
+/// in which they came up.
 std::vector<Diagnostic> inTextOrder(std::vector<Diagnostic> diagnostics) {
   std::map<std::string, std::size_t> fileOrder;
   for (const Diagnostic& diagnostic : diagnostics) fileOrder.emplace(diagnostic.place.file, fileOrder.size());

@@ -418,7 +418,8 @@ std::string leftOutSection(const SceneRecord& scene) {
     html += fmt::format(
         "<p>{} ms instead of {} ms: <b>{}</b> of the time of a first frame saved; {} ms instead of {} ms: "
         "<b>{}</b> "
-        "of that of a frame that follows another while the camera moves. {} of {} passes kept; shader variants: {} possible, {} "
+        "of that of a frame that follows another while the camera moves. {} of {} passes kept; shader "
+        "variants: {} possible, {} "
         "compiled, {} needed. Memory taken by the passes: {} instead of {}. Same picture, bit for bit: "
         "{}.</p>\n",
         withQuartiles(record.prunedMs), withQuartiles(record.unprunedMs), percent(record.savedShare()),

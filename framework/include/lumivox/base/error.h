@@ -1,4 +1,5 @@
-// Errors of input. A bug is an assertion; an expected absence is an optional; everything a user can cause is one of these.
+// Errors of input. A bug is an assertion; an expected absence is an optional; everything a user can cause is
+// one of these.
 #pragma once
 
 #include <stdexcept>
@@ -29,11 +30,13 @@ struct Diagnostic {
   std::string sourceLine;  ///< the line that holds the place, without its end; may be empty
   int length = 1;          ///< how many columns the caret line marks
 
-  /// `file:line:column: what; expected ...; did you mean '...'?` followed by the source line and a caret line.
+  /// `file:line:column: what; expected ...; did you mean '...'?` followed by the source line and a caret
+  /// line.
   std::string text() const;
 };
 
-/// Bad input. The message names the file or object, what is wrong and what was expected. The command line turns it into exit code 2.
+/// Bad input. The message names the file or object, what is wrong and what was expected. The command line
+/// turns it into exit code 2.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -55,7 +58,8 @@ class AbsentError : public Error {
   using Error::Error;
 };
 
-/// The candidate nearest to `word` by edit distance, or an empty string when none is near enough to be a slip of the pen.
+/// The candidate nearest to `word` by edit distance, or an empty string when none is near enough to be a slip
+/// of the pen.
 std::string nearestWord(const std::string& word, const std::vector<std::string>& candidates);
 
 }  // namespace lumivox

@@ -20,7 +20,8 @@ struct ContentHash {
   std::string text() const;  ///< 32 hexadecimal digits
 };
 
-/// Accumulates values into one hash. Sizes are hashed with strings and vectors, so that neighbours cannot run together.
+/// Accumulates values into one hash. Sizes are hashed with strings and vectors, so that neighbours cannot run
+/// together.
 class Hasher {
  public:
   Hasher();
@@ -31,13 +32,11 @@ class Hasher {
   Hasher& bytes(const void* data, std::size_t size);
   Hasher& add(std::string_view text);
   template <class T>
-    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-  Hasher& add(T value) {
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T> Hasher& add(T value) {
     return bytes(&value, sizeof(value));
   }
   template <class T>
-    requires std::is_trivially_copyable_v<T>
-  Hasher& add(const std::vector<T>& values) {
+  requires std::is_trivially_copyable_v<T> Hasher& add(const std::vector<T>& values) {
     add(std::uint64_t{values.size()});
     return bytes(values.data(), values.size() * sizeof(T));
   }

@@ -46,8 +46,8 @@ class LogCapture {
   std::string text_;
 };
 
-/// A progress bar with the remaining time on stderr; silent when stderr is no terminal (then one line at the end) or when quiet.
-/// Thread-safe.
+/// A progress bar with the remaining time on stderr; silent when stderr is no terminal (then one line at the
+/// end) or when quiet. Thread-safe.
 class Progress {
  public:
   Progress(std::string what, std::uint64_t total);

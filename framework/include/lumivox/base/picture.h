@@ -13,13 +13,16 @@ namespace lumivox {
 class Picture {
  public:
   Picture() = default;
-  Picture(int width, int height, int channels, float value = 0.0f);  // Error (before allocation) when it does not fit in memory
+  Picture(int width, int height, int channels,
+          float value = 0.0f);  // Error (before allocation) when it does not fit in memory
 
   int width() const { return width_; }
   int height() const { return height_; }
   int channels() const { return channels_; }
   bool empty() const { return values_.empty(); }
-  std::size_t pixelCount() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
+  std::size_t pixelCount() const {
+    return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  }
 
   float& at(int x, int y, int channel) { return values_[index(x, y, channel)]; }
   float at(int x, int y, int channel) const { return values_[index(x, y, channel)]; }
@@ -34,25 +37,29 @@ class Picture {
   std::size_t index(int x, int y, int channel) const {
     assert(x >= 0 && x < width_ && y >= 0 && y < height_ && channel >= 0 && channel < channels_);
     return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)) *
-               static_cast<std::size_t>(channels_) + static_cast<std::size_t>(channel);
+               static_cast<std::size_t>(channels_) +
+           static_cast<std::size_t>(channel);
   }
   int width_ = 0, height_ = 0, channels_ = 0;
   std::vector<float> values_;
 };
 
-/// Several pictures of one size under names, and text attributes: what one EXR file holds. The layer "" is the file's main layer
-/// (channels R, G, B without prefix); three channels are named R G B, four R G B A, one Y, two X Y.
+/// Several pictures of one size under names, and text attributes: what one EXR file holds. The layer "" is
+/// the file's main layer (channels R, G, B without prefix); three channels are named R G B, four R G B A, one
+/// Y, two X Y.
 struct LayeredPicture {
   std::map<std::string, Picture> layers;
   std::map<std::string, std::string> attributes;
 };
 
-/// Reads a scanline or tiled EXR (half, float or uint channels, data window as the picture). Error names the file on anything malformed.
+/// Reads a scanline or tiled EXR (half, float or uint channels, data window as the picture). Error names the
+/// file on anything malformed.
 LayeredPicture readExr(const std::filesystem::path& path);
 /// Writes 32-bit float ZIP-compressed scanlines, atomically.
 void writeExr(const std::filesystem::path& path, const LayeredPicture& picture);
 
-/// Writes a three- or one-channel linear picture as an 8-bit sRGB PNG, atomically. `exposure` multiplies; values clip at 1; NaN is magenta.
+/// Writes a three- or one-channel linear picture as an 8-bit sRGB PNG, atomically. `exposure` multiplies;
+/// values clip at 1; NaN is magenta.
 void writePng(const std::filesystem::path& path, const Picture& linear, float exposure = 1.0f);
 /// The bytes of that PNG, for embedding into pages.
 std::string encodePng(const Picture& linear, float exposure = 1.0f);

@@ -1,5 +1,5 @@
-// A scene: geometry, materials, lights, cameras and their motion. Everything is physical and linear: metres, seconds, radians, W,
-// Rec. 709 primaries with independent channels; Y up, right-handed.
+// A scene: geometry, materials, lights, cameras and their motion. Everything is physical and linear: metres,
+// seconds, radians, W, Rec. 709 primaries with independent channels; Y up, right-handed.
 #pragma once
 
 #include <cstdint>
@@ -17,21 +17,23 @@ namespace lumivox {
 
 /// A picture that modulates a material, decoded to linear values (diffuse maps) or as stored (masks).
 struct SurfaceTexture {
-  std::string name;             ///< path as written in the material file
+  std::string name;  ///< path as written in the material file
   int width = 0, height = 0;
-  bool mask = false;            ///< one channel, a coverage mask; otherwise linear RGB
-  std::vector<float> values;    ///< width*height*(mask ? 1 : 3); row 0 is the top of the picture (texture coordinate v = 1)
+  bool mask = false;  ///< one channel, a coverage mask; otherwise linear RGB
+  std::vector<float>
+      values;  ///< width*height*(mask ? 1 : 3); row 0 is the top of the picture (texture coordinate v = 1)
 };
 
-/// Lambert `diffuse/pi` plus Phong `specular (n+2)/(2 pi) max(0, cos a)^n`, a from the mirror direction. Two-sided.
+/// Lambert `diffuse/pi` plus Phong `specular (n+2)/(2 pi) max(0, cos a)^n`, a from the mirror direction.
+/// Two-sided.
 struct Material {
   std::string name;
-  glm::vec3 diffuse{0.0f};      ///< albedo; multiplied by the diffuse texture
-  glm::vec3 specular{0.0f};     ///< Phong albedo at normal incidence
-  float exponent = 1.0f;        ///< Phong n >= 0
-  glm::vec3 emission{0.0f};     ///< emitted radiance, W/(sr m^2), front side only
-  int diffuseTexture = -1;      ///< index into Scene::textures, -1 for none
-  int maskTexture = -1;         ///< coverage below 0.5 is a hole
+  glm::vec3 diffuse{0.0f};   ///< albedo; multiplied by the diffuse texture
+  glm::vec3 specular{0.0f};  ///< Phong albedo at normal incidence
+  float exponent = 1.0f;     ///< Phong n >= 0
+  glm::vec3 emission{0.0f};  ///< emitted radiance, W/(sr m^2), front side only
+  int diffuseTexture = -1;   ///< index into Scene::textures, -1 for none
+  int maskTexture = -1;      ///< coverage below 0.5 is a hole
   bool glossy() const { return specular != glm::vec3(0.0f); }
   bool emissive() const { return emission != glm::vec3(0.0f); }
 };
@@ -43,15 +45,17 @@ struct Part {
   std::uint32_t indexCount = 0;  ///< three per triangle
 };
 
-/// Rigid motion about a point, as functions of the time in seconds; parts add up in the order translate after rotate.
+/// Rigid motion about a point, as functions of the time in seconds; parts add up in the order translate after
+/// rotate.
 struct RigidMotion {
   glm::dvec3 axis{0, 1, 0};
-  double angularSpeed = 0.0;     ///< rad/s
-  glm::dvec3 pivot{0};           ///< of the rotation, in metres, world space before motion
-  glm::dvec3 velocity{0};        ///< m/s
+  double angularSpeed = 0.0;  ///< rad/s
+  glm::dvec3 pivot{0};        ///< of the rotation, in metres, world space before motion
+  glm::dvec3 velocity{0};     ///< m/s
 };
 
-/// Whole vertex sets of a deforming object at equal steps of time; between them positions are interpolated linearly.
+/// Whole vertex sets of a deforming object at equal steps of time; between them positions are interpolated
+/// linearly.
 struct VertexSequence {
   double framesPerSecond = 24.0;
   bool loop = true;
@@ -59,61 +63,66 @@ struct VertexSequence {
   std::vector<std::vector<glm::vec3>> normals;
 };
 
-/// A named piece of geometry that moves as one: "room/tall_box" is the object or group tall_box of the mesh block room.
+/// A named piece of geometry that moves as one: "room/tall_box" is the object or group tall_box of the mesh
+/// block room.
 struct Object {
   std::string name;
   std::uint32_t firstVertex = 0, vertexCount = 0;  ///< into Scene::positions
   std::vector<Part> parts;
-  glm::dmat4 placement{1.0};                       ///< object to world, before motion
+  glm::dmat4 placement{1.0};  ///< object to world, before motion
   std::optional<RigidMotion> motion;
   std::optional<VertexSequence> sequence;
-  /// World bounds (low, high) of the placed vertices before motion; the loader fills them in, so that no frame computes them again.
-  /// Computed whenever they are needed when absent.
+  /// World bounds (low, high) of the placed vertices before motion; the loader fills them in, so that no
+  /// frame computes them again. Computed whenever they are needed when absent.
   std::optional<std::pair<glm::dvec3, glm::dvec3>> placedBounds;
   bool animated() const { return motion.has_value() || sequence.has_value(); }
 };
 
 enum class LightKind { directional, point, spot };
 
-/// A light without extent. Lights with extent are emissive triangles (Material::emission); the sky is Environment.
+/// A light without extent. Lights with extent are emissive triangles (Material::emission); the sky is
+/// Environment.
 struct Light {
   std::string name;
   LightKind kind = LightKind::directional;
-  glm::dvec3 position{0};        ///< point, spot; metres
-  glm::dvec3 direction{0, -1, 0};///< the way the light travels, unit length; directional, spot
-  glm::vec3 power{0.0f};         ///< directional: irradiance on a perpendicular plane, W/m^2; point, spot: intensity, W/sr
-  float innerAngle = 0.0f;       ///< spot, half angle of full intensity, rad
-  float outerAngle = 0.0f;       ///< spot, half angle where it ends, rad; intensity * smoothstep(cos outer, cos inner, cos theta)
+  glm::dvec3 position{0};          ///< point, spot; metres
+  glm::dvec3 direction{0, -1, 0};  ///< the way the light travels, unit length; directional, spot
+  glm::vec3 power{
+      0.0f};  ///< directional: irradiance on a perpendicular plane, W/m^2; point, spot: intensity, W/sr
+  float innerAngle = 0.0f;  ///< spot, half angle of full intensity, rad
+  float outerAngle =
+      0.0f;  ///< spot, half angle where it ends, rad; intensity * smoothstep(cos outer, cos inner, cos theta)
 };
 
 struct CameraKey {
-  double time = 0.0;             ///< s
+  double time = 0.0;  ///< s
   glm::dvec3 eye{0}, target{0};
 };
 
-/// Pinhole with square pixels. With keys, eye and target are interpolated linearly in time and clamp at the ends.
+/// Pinhole with square pixels. With keys, eye and target are interpolated linearly in time and clamp at the
+/// ends.
 struct Camera {
   std::string name;
   glm::dvec3 eye{0, 0, 1}, target{0}, up{0, 1, 0};
-  double fov = 0.7;              ///< full vertical angle, rad
+  double fov = 0.7;  ///< full vertical angle, rad
   int width = 256, height = 256;
   std::vector<CameraKey> keys;
 };
 
 struct Medium {
   std::string name;
-  glm::vec3 extinction{0.0f};    ///< sigma_t, 1/m
-  glm::vec3 albedo{0.0f};        ///< sigma_s / sigma_t
-  float anisotropy = 0.0f;       ///< Henyey-Greenstein mean cosine g
-  int particles = 0;             ///< 0: homogeneous
+  glm::vec3 extinction{0.0f};  ///< sigma_t, 1/m
+  glm::vec3 albedo{0.0f};      ///< sigma_s / sigma_t
+  float anisotropy = 0.0f;     ///< Henyey-Greenstein mean cosine g
+  int particles = 0;           ///< 0: homogeneous
   glm::dvec3 source{0};
   double radius = 0.0, rise = 0.0;
 };
 
 struct Scene {
-  std::string name;              ///< the string in the text
-  std::filesystem::path file;    ///< the scene text it came from; empty when made by code
-  ContentHash hash;              ///< of the text, every file that it includes and every model, material and picture file
+  std::string name;            ///< the string in the text
+  std::filesystem::path file;  ///< the scene text it came from; empty when made by code
+  ContentHash hash;  ///< of the text, every file that it includes and every model, material and picture file
 
   std::vector<glm::vec3> positions, normals;  ///< object space; same length; normals unit length
   std::vector<glm::vec2> texcoords;           ///< same length; (0,0) is the lower left of a texture
@@ -122,19 +131,22 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<SurfaceTexture> textures;
   std::vector<Light> lights;
-  std::vector<Camera> cameras;                ///< at least one
-  glm::vec3 environment{0.0f};                ///< constant radiance over the sphere, W/(sr m^2)
+  std::vector<Camera> cameras;  ///< at least one
+  glm::vec3 environment{0.0f};  ///< constant radiance over the sphere, W/(sr m^2)
   std::vector<Medium> media;
 
   std::size_t triangleCount() const { return indices.size() / 3; }
-  const Camera& camera(const std::string& wanted = {}) const;  ///< first when empty; Error listing the names otherwise
+  const Camera& camera(
+      const std::string& wanted = {}) const;  ///< first when empty; Error listing the names otherwise
 };
 
 /// What a scene has, and so what a pipeline can leave out. Computed from the content, never declared.
 struct SceneTraits {
-  bool triangles = false, textures = false, masks = false, glossy = false, emission = false, environment = false, medium = false;
+  bool triangles = false, textures = false, masks = false, glossy = false, emission = false,
+       environment = false, medium = false;
   bool movingGeometry = false, movingCamera = false;
-  int directionalLights = 0, pointLights = 0, spotLights = 0, areaLights = 0;  ///< area: objects with emissive parts
+  int directionalLights = 0, pointLights = 0, spotLights = 0,
+      areaLights = 0;  ///< area: objects with emissive parts
 
   static SceneTraits of(const Scene& scene);
   static SceneTraits everything();  ///< all present, for --keep-everything
@@ -143,19 +155,20 @@ struct SceneTraits {
 /// One camera as the renderers need it: relative to SceneSnapshot::origin, orthonormal basis.
 struct CameraView {
   glm::vec3 eye{0.0f}, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
-  float tanHalfFov = 0.5f;       ///< of the vertical angle
+  float tanHalfFov = 0.5f;  ///< of the vertical angle
   int width = 0, height = 0;
   bool operator==(const CameraView&) const = default;
 
-  /// Direction (not normalised, forward component 1) through a point of the picture; (0,0) is the upper left corner, (width,height) the
-  /// lower right.
+  /// Direction (not normalised, forward component 1) through a point of the picture; (0,0) is the upper left
+  /// corner, (width,height) the lower right.
   glm::vec3 direction(float x, float y) const;
 };
 
 struct ObjectState {
-  glm::mat4 toWorld{1.0f};       ///< object space to metres relative to the snapshot's origin
-  glm::mat3 normalToWorld{1.0f}; ///< inverse transpose of its upper part
-  std::vector<glm::vec3> positions, normals;  ///< only for deforming objects: object space at this time; else empty
+  glm::mat4 toWorld{1.0f};        ///< object space to metres relative to the snapshot's origin
+  glm::mat3 normalToWorld{1.0f};  ///< inverse transpose of its upper part
+  std::vector<glm::vec3> positions,
+      normals;  ///< only for deforming objects: object space at this time; else empty
 };
 
 struct LightState {
@@ -171,37 +184,41 @@ struct Bounds {
   void grow(const glm::vec3& point);
 };
 
-/// A scene at one time. All positions are in metres relative to `origin`, so that a scene far from the world's origin loses no
-/// precision: the subtraction happens in double precision, here and only here.
+/// A scene at one time. All positions are in metres relative to `origin`, so that a scene far from the
+/// world's origin loses no precision: the subtraction happens in double precision, here and only here.
 struct SceneSnapshot {
-  double time = 0.0;             ///< s
+  double time = 0.0;  ///< s
   glm::dvec3 origin{0};
   CameraView camera;
   std::vector<LightState> lights;
   std::vector<ObjectState> objects;  ///< parallel to Scene::objects
-  Bounds bounds;                 ///< of all triangles
+  Bounds bounds;                     ///< of all triangles
 };
 
-/// Evaluates motion. `origin` is the centre of the static scene's bounds (of everything at rest, before motion, where nothing is static),
-/// the same for all times.
-/// `width`/`height` of 0 keep the camera's resolution.
-SceneSnapshot snapshotOf(const Scene& scene, double time, const std::string& camera = {}, int width = 0, int height = 0);
+/// Evaluates motion. `origin` is the centre of the static scene's bounds (of everything at rest, before
+/// motion, where nothing is static), the same for all times. `width`/`height` of 0 keep the camera's
+/// resolution.
+SceneSnapshot snapshotOf(const Scene& scene, double time, const std::string& camera = {}, int width = 0,
+                         int height = 0);
 
 struct SceneLoadOptions {
-  std::vector<std::filesystem::path> assetPath;  ///< --assets; then $LUMIVOX_ASSETS, then ../shared/models beside the project
-  /// Refuse bad triangles in place of dropping them with a warning; refuse missing material files and unknown materials in place of
-  /// a warning and grey 0.8; refuse maps and statements that are not used.
+  std::vector<std::filesystem::path>
+      assetPath;  ///< --assets; then $LUMIVOX_ASSETS, then ../shared/models beside the project
+  /// Refuse bad triangles in place of dropping them with a warning; refuse missing material files and unknown
+  /// materials in place of a warning and grey 0.8; refuse maps and statements that are not used.
   bool strict = false;
 };
 
-/// Reads a scene text and everything that it names. Of MTL materials Kd, Ks, Ns, Ke, map_Kd, d and map_d are used as given: map_d is
-/// taken from the picture's alpha, or its first channel where it has none, times d; a surface without map_d and with d below a half is
-/// a hole, so its triangles are left out. Normals that are missing are smooth where faces meet at up to 30 degrees (`crease`). Throws DiagnosticsError with all findings of the text, Error for a bad model or
-/// picture file, AbsentError for a model that is on no search path (the message lists where it was sought).
+/// Reads a scene text and everything that it names. Of MTL materials Kd, Ks, Ns, Ke, map_Kd, d and map_d are
+/// used as given: map_d is taken from the picture's alpha, or its first channel where it has none, times d; a
+/// surface without map_d and with d below a half is a hole, so its triangles are left out. Normals that are
+/// missing are smooth where faces meet at up to 30 degrees (`crease`). Throws DiagnosticsError with all
+/// findings of the text, Error for a bad model or picture file, AbsentError for a model that is on no search
+/// path (the message lists where it was sought).
 Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
-/// The findings of a text without loading any model: what `lumivox check` prints. Missing files are findings too, unless the model
-/// is sought on the asset path only.
+/// The findings of a text without loading any model: what `lumivox check` prints. Missing files are findings
+/// too, unless the model is sought on the asset path only.
 void checkScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
 }  // namespace lumivox
