@@ -2,10 +2,10 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "framework/reference_scenes.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
 #include "lumivox/reference/path_tracer.h"
+#include "support/scene_builder.h"
 #include "support/support.h"
 
 using namespace lumivox;

@@ -3,8 +3,8 @@
 // a^(B+2)) / (1 - a): emission, direct light and B bounces.
 #include <algorithm>
 
-#include "framework/reference_scenes.h"
 #include "lumivox/reference/path_tracer.h"
+#include "support/scene_builder.h"
 #include "support/support.h"
 
 using namespace lumivox;

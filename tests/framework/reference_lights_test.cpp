@@ -2,8 +2,8 @@
 // the radiance a E / pi.
 #include <array>
 
-#include "framework/reference_scenes.h"
 #include "lumivox/reference/path_tracer.h"
+#include "support/scene_builder.h"
 #include "support/support.h"
 
 using namespace lumivox;

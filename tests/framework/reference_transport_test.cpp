@@ -1,9 +1,9 @@
 // The Phong lobe, the environment, occlusion, motion, noise and independence of the threads.
 #include <algorithm>
 
-#include "framework/reference_scenes.h"
 #include "lumivox/base/error.h"
 #include "lumivox/reference/path_tracer.h"
+#include "support/scene_builder.h"
 #include "support/support.h"
 
 using namespace lumivox;

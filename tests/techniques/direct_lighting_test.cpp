@@ -1,6 +1,6 @@
 #include <glm/gtc/constants.hpp>
 
-#include "framework/reference_scenes.h"
+#include "support/scene_builder.h"
 #include "support/techniques.h"
 
 using namespace lumivox;

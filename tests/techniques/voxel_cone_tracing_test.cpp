@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "framework/reference_scenes.h"
 #include "lumivox/measure/metrics.h"
 #include "lumivox/reference/path_tracer.h"
+#include "support/scene_builder.h"
 #include "support/techniques.h"
 
 using namespace lumivox;

@@ -3,7 +3,7 @@
 #include <random>
 #include <set>
 
-#include "framework/reference_scenes.h"
+#include "support/scene_builder.h"
 #include "support/techniques.h"
 
 using namespace lumivox;
