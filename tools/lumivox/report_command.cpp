@@ -143,6 +143,10 @@ void addReportCommand(Commands& commands) {
       ->add_option("--spp", options.truthSamples,
                    "the truth's samples per pixel (default: by the size of the picture)")
       ->check(CLI::Range(1, 1 << 24));
+  command
+      ->add_option("--subpixels", options.subpixels,
+                   "judged pictures are means over N positions in the pixel (default 16; 1: its centre)")
+      ->check(CLI::Range(1, 4096));
   command->add_option("--repeats", options.repeats, "timed frames per point (default 5)")
       ->check(CLI::Range(1, 10000));
   command->add_option("--seeds", options.seeds, "seeds per point (default 2)")->check(CLI::Range(1, 10000));

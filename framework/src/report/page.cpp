@@ -378,7 +378,7 @@ std::string pictureSection(std::size_t sceneIndex, const SceneRecord& scene,
       "at one exposure, which puts the "
       "99th percentile of its full truth at 0.8 before the sRGB curve. A FLIP map is dark where a viewer "
       "sees no difference and bright where "
-      "the difference is plain. NaN pixels are magenta.</p>\n";
+      "the difference is plain. NaN pixels are magenta. Pictures are means over positions in the pixel, as the truth is.</p>\n";
   // The whole picture is what a reader looks for first.
   std::vector<std::string> order(components);
   std::stable_partition(order.begin(), order.end(),

@@ -238,8 +238,9 @@ std::string repeatingCommand(const ReportOptions& options, const std::string& sc
   std::string command =
       fmt::format("lumivox report {} --pipeline {}", shellQuoted(scene), shellQuoted(pipeline));
   for (const auto& [name, value] : parameters) command += " --set " + shellQuoted(name + "=" + value.text());
-  command += fmt::format(" --no-sweep --resolution {}x{} --spp {} --repeats {} --seeds {} --seed {}", width,
-                         height, samples, options.repeats, options.seeds, options.seed);
+  command +=
+      fmt::format(" --no-sweep --resolution {}x{} --spp {} --subpixels {} --repeats {} --seeds {} --seed {}",
+                  width, height, samples, options.subpixels, options.repeats, options.seeds, options.seed);
   if (!options.camera.empty()) command += " --camera " + shellQuoted(options.camera);
   if (options.time != 0.0) command += fmt::format(" --time {}", options.time);
   for (const std::string& argument : options.repeatArguments) command += " " + shellQuoted(argument);

@@ -83,6 +83,7 @@ struct ReportOptions {
   std::string camera;
   double time = 0.0;       ///< s
   std::uint64_t seed = 1;  ///< the first one
+  int subpixels = 16;      ///< pictures that are judged are means over this many positions in the pixel
   int repeats = 5, seeds = 2;
   bool openSweeps = true;   ///< false: only the default point
   std::string commandLine;  ///< as typed, for the page
