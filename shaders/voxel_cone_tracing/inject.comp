@@ -33,8 +33,6 @@ layout(binding = 2, r32ui) uniform uimage3D sumGreen;
 layout(binding = 3, r32ui) uniform uimage3D sumBlue;
 layout(binding = 4, r32ui) uniform uimage3D sumCoverage;
 
-const float kFixedPoint = 2147483648.0;  // 2^31
-
 void main() {
   uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
   if (index >= fragmentCount) return;

@@ -2,6 +2,8 @@
 // Integer sums to the finest level of the grid: radiance pre-multiplied by opacity, and opacity.
 // An occupied voxel is opaque as far as its fragments cover (thesis 004 Listing 4.10: fully).
 
+#include "common/voxel.glsl"
+
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 layout(std140, binding = 0) uniform Parameters {
@@ -13,8 +15,6 @@ layout(binding = 2, r32ui) uniform readonly uimage3D sumGreen;
 layout(binding = 3, r32ui) uniform readonly uimage3D sumBlue;
 layout(binding = 4, r32ui) uniform readonly uimage3D sumCoverage;
 layout(binding = 0) uniform writeonly image3D radianceImage;  // of whatever float format the grid has
-
-const float kFixedPoint = 2147483648.0;  // 2^31, as in inject.comp
 
 void main() {
   ivec3 voxel = ivec3(gl_GlobalInvocationID);

@@ -36,9 +36,6 @@ layout(location = 8) flat in vec2 cornerTexcoords[3];
 vec3 unpermute(vec3 v, int axis) { return axis == 0 ? v.zxy : axis == 1 ? v.yzx : v; }
 
 // Rounding of float arithmetic, relative: what lies closer than this to touching counts as touching, so that no voxel is lost.
-// Sharper corners than this, in radians, make a needle.
-const float kNeedle = 1e-3;
-
 const float kRounding = 3e-7;
 
 // Separating axis test of the projections of the triangle and of the box around `centre` on one coordinate plane: the axes are the normals

@@ -4,6 +4,7 @@
 // of its triangle, since drivers run that faster than amplification, and the result is the same triangle.
 #define SCENE_VERTICES
 #include "common/scene.glsl"
+#include "common/voxel.glsl"
 
 layout(std430, binding = 6) readonly buffer Indices { uint indices[]; };
 
@@ -32,8 +33,8 @@ vec2 enlargedCorner(vec2 a, vec2 b, vec2 c, int k) {
   vec2 e0 = b - a, e1 = c - b, e2 = a - c;
   float doubleArea = e0.x * e1.y - e0.y * e1.x;
   float longest = max(dot(e0, e0), max(dot(e1, e1), dot(e2, e2)));
-  // A needle would throw its corners far away: twice its bounding box, as a triangle, covers it just as well. 1e-3 rad of a corner.
-  if (abs(doubleArea) <= 1e-3 * longest) {
+  // A needle would throw its corners far away: twice its bounding box, as a triangle, covers it just as well.
+  if (abs(doubleArea) <= kNeedle * longest) {
     vec2 low = min(a, min(b, c)) - 0.5, high = max(a, max(b, c)) + 0.5;
     vec2 size = 2.0 * (high - low);
     return low + (k == 0 ? vec2(0.0) : k == 1 ? vec2(size.x, 0.0) : vec2(0.0, size.y));

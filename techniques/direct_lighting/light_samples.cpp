@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "lumivox/base/low_discrepancy.h"
+
 namespace lumivox::direct_lighting {
 namespace {
 
@@ -94,9 +96,7 @@ void addAreaLights(LightSet& set, const Scene& scene, const SceneSnapshot& snaps
     const auto found = std::lower_bound(cumulative.begin(), cumulative.end(), stratum);
     const Emitter& emitter = emitters[std::min<std::size_t>(
         static_cast<std::size_t>(found - cumulative.begin()), emitters.size() - 1)];
-    // Roberts 2018, R2: powers of the reciprocal plastic number, the two-dimensional golden ratio.
-    constexpr double kPlastic1 = 0.7548776662466927, kPlastic2 = 0.5698402909980532;
-    double u = std::fmod(0.5 + kPlastic1 * (i + 1), 1.0), v = std::fmod(0.5 + kPlastic2 * (i + 1), 1.0);
+    auto [u, v] = r2Point(i + 1);
     // Area-uniform on a triangle: fold the unit square along its diagonal.
     if (u + v > 1.0) {
       u = 1.0 - u;

@@ -8,6 +8,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
+#include "lumivox/base/low_discrepancy.h"
 
 namespace lumivox {
 
@@ -118,15 +119,13 @@ FrameResult renderFiltered(PipelineExecutor& executor, const MeasureContext& con
   const SceneSnapshot centre =
       snapshotOf(context.scene, context.options.time, options.camera, options.width, options.height);
   const float pixel = 2.0f * centre.camera.tanHalfFov / static_cast<float>(centre.camera.height);
-  // Roberts 2018, R2: the reciprocal powers of the plastic number. Unlike a regular grid it has as many
-  // different rows and columns as positions, which matters where edges run along the rows. A single position
-  // is the centre.
-  constexpr double kPlastic1 = 0.7548776662466927, kPlastic2 = 0.5698402909980532;
+  // Unlike a regular grid, the sequence has as many different rows and columns as positions, which matters
+  // where edges run along the rows. A single position is the centre.
   FrameResult sum;
   for (int position = 0; position < count; ++position) {
     SceneSnapshot shifted = centre;
-    const glm::vec2 offset(std::fmod(0.5 + position * kPlastic1, 1.0) - 0.5,
-                           std::fmod(0.5 + position * kPlastic2, 1.0) - 0.5);
+    const auto [u, v] = r2Point(position);
+    const glm::vec2 offset(u - 0.5, v - 0.5);
     CameraView& camera = shifted.camera;
     camera.forward =
         glm::normalize(camera.forward + pixel * (offset.x * camera.right + offset.y * camera.up));
