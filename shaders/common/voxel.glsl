@@ -10,6 +10,7 @@ struct VoxelFragment {
   uint normal;    // octahedral, two 16-bit signed normalised numbers; front side
   uint albedoRg;  // two halves
   uint albedoBCoverage;  // halves: blue albedo; covered fraction (alpha mask)
+  uint emission;  // radiance, W/(sr m^2), three mantissas with a shared exponent
 };
 
 // A triangle with sharper corners than this, in radians, is a needle: its plane and its enlarged corners are mostly rounding.
@@ -38,6 +39,23 @@ vec3 unpackNormal(uint packed) {
   vec3 normal = vec3(p, 1.0 - abs(p.x) - abs(p.y));
   if (normal.z < 0.0) normal.xy = (1.0 - abs(normal.yx)) * vec2(normal.x >= 0.0 ? 1.0 : -1.0, normal.y >= 0.0 ? 1.0 : -1.0);
   return normalize(normal);
+}
+
+// Non-negative values of any magnitude, 8 bits each beside a shared exponent (Ward 1991, "Real pixels"): the largest is right to 1/256,
+// the others to 1/256 of the largest.
+uint packShared(vec3 value) {
+  float largest = max(value.x, max(value.y, value.z));
+  if (!(largest > 0.0)) return 0u;
+  int exponent = clamp(int(floor(log2(largest))) + 1, -100, 127);
+  // The logarithm of a power of two may be off by one.
+  if (largest >= exp2(float(exponent))) ++exponent;
+  uvec3 mantissa = uvec3(clamp(value * exp2(float(8 - exponent)) + 0.5, 0.0, 255.0));
+  return mantissa.x | mantissa.y << 8 | mantissa.z << 16 | uint(exponent + 128) << 24;
+}
+vec3 unpackShared(uint packed) {
+  if (packed == 0u) return vec3(0.0);
+  float unit = exp2(float(int(packed >> 24) - 128 - 8));
+  return vec3(packed & 255u, packed >> 8 & 255u, packed >> 16 & 255u) * unit;
 }
 
 #endif

@@ -136,6 +136,7 @@ void main() {
     fragment.normal = packNormal(normalize(normalWorld));
     fragment.albedoRg = packHalf2x16(albedo.rg);
     fragment.albedoBCoverage = packHalf2x16(vec2(albedo.b, coverage));
+    fragment.emission = packShared(material.emission.rgb);
     fragments[index] = fragment;
   }
 }

@@ -4,8 +4,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "direct_lighting_shaders.h"
-#include "light_samples.h"
 #include "lumivox/pipeline/gpu_scene.h"
+#include "lumivox/pipeline/light_samples.h"
 #include "lumivox/plugin/technique.h"
 
 namespace lumivox::direct_lighting {
@@ -131,11 +131,11 @@ class ShadowMapPass : public Pass {
     result.lightCount = static_cast<int>(set.samples.size());
     result.layerCount = static_cast<int>(set.views.size());
     result.lights =
-        frame.buffer(std::max<std::size_t>(set.samples.size(), 1) * sizeof(LightSample), "light samples");
+        frame.buffer(std::max<std::size_t>(set.samples.size(), 1) * sizeof(LightSampleData), "light samples");
     result.views =
         frame.buffer(std::max<std::size_t>(set.views.size(), 1) * sizeof(glm::mat4), "shadow views");
     std::vector<glm::mat4> matrices;
-    for (const ShadowView& view : set.views) matrices.push_back(view.worldToClip);
+    for (const LightView& view : set.views) matrices.push_back(view.worldToClip);
     if (!set.samples.empty()) result.lights->upload(std::as_bytes(std::span(set.samples)));
     if (!matrices.empty()) result.views->upload(std::as_bytes(std::span(matrices)));
 
@@ -150,7 +150,7 @@ class ShadowMapPass : public Pass {
     depth = result;
   }
 
-  static void drawLayer(PassContext& frame, const ShadowMap& result, const ShadowView& view, int layer) {
+  static void drawLayer(PassContext& frame, const ShadowMap& result, const LightView& view, int layer) {
     GpuScene& scene = frame.scene();
     gpu::RenderTargets targets;
     targets.depth = result.depth.get();

@@ -12,7 +12,7 @@ using namespace lumivox::test;
 namespace {
 
 struct Fragment {  // mirror of VoxelFragment in shaders/common/voxel.glsl
-  std::uint32_t voxel, offset, normal, albedoRg, albedoBCoverage;
+  std::uint32_t voxel, offset, normal, albedoRg, albedoBCoverage, emission;
 };
 using Cell = std::array<int, 3>;
 

@@ -115,7 +115,7 @@ const std::map<std::string, std::set<std::string>>& houseOrder() {
       {"pipeline", {"base", "dsl", "scene", "gpu", "shader"}},
       {"plugin", {"base", "dsl", "scene", "gpu", "shader", "pipeline"}},
       {"reference", {"base", "dsl", "scene"}},
-      {"measure", {"base"}},
+      {"measure", {"base", "dsl", "scene"}},
       {"report", {"base", "dsl", "scene", "gpu", "shader", "pipeline", "plugin", "reference", "measure"}}};
   return order;
 }

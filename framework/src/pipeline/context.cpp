@@ -32,6 +32,10 @@ void FrameContext::warn(const std::string& text) {
   if (warnings_.insert(message).second) logWarning("{}", message);
 }
 
+void FrameContext::reused(const std::string& what, const std::string& why) {
+  reusedParts_.insert({passName_, what, why});
+}
+
 void FrameContext::setFrame(SceneSnapshot snapshot, int frameIndex, bool geometryChanged) {
   snapshot_ = std::move(snapshot);
   frameIndex_ = frameIndex;

@@ -34,11 +34,20 @@ class FrameContext : public PassContext {
   gpu::TextureRef texture(const gpu::TextureDescription& description, const std::string& label) override;
   gpu::BufferRef buffer(std::uint64_t sizeBytes, const std::string& label) override;
   void warn(const std::string& text) override;
+  bool startsAfresh() const override { return keepsEverything_ || afresh_; }
+  void reused(const std::string& what, const std::string& why) override;
 
   ResourcePool& pool() { return pool_; }
   void setSeed(std::uint64_t seed) { seed_ = seed; }
   /// The device's copy of the scene follows when `geometryChanged`.
   void setFrame(SceneSnapshot snapshot, int frameIndex, bool geometryChanged);
+  void setAfresh(bool afresh) { afresh_ = afresh; }
+  /// Parts of passes that were taken over from earlier frames, by pass, and why.
+  struct Reused {
+    std::string pass, what, why;
+    auto operator<=>(const Reused&) const = default;
+  };
+  const std::set<Reused>& reusedParts() const { return reusedParts_; }
 
   /// Runs one pass under its name: driver errors and errors of the pass carry it. `pass` is how people know
   /// it.
@@ -58,7 +67,9 @@ class FrameContext : public PassContext {
   int frameIndex_ = 0;
   std::uint64_t seed_ = 1, bytesOfRun_ = 0;
   std::string passName_;
+  bool afresh_ = true;
   std::set<std::string> warnings_;
+  std::set<Reused> reusedParts_;
 };
 
 }  // namespace lumivox

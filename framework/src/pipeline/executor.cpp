@@ -162,6 +162,7 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
   const std::vector<bool> runs = passesToRun(changed);
   context.pool().beginFrame();
   context.setFrame(snapshot, frameIndex, reads(changed, Reads::geometry));
+  context.setAfresh(!complete);
   last = std::move(snapshot);
   lastFrameIndex = frameIndex;
   // Until the frame is done, an error leaves nothing that a later frame could take for current.
@@ -262,6 +263,7 @@ Explanation PipelineExecutor::explain() const {
                    s.techniques,
                    s.context.shaders().usage(),
                    s.context.shaders().packs(),
+                   s.context.reusedParts(),
                    {}};
   for (const auto& [index, record] : s.lastRun) run.passMs[index] = record.deviceMs;
   run.keepEverything = s.options.keepEverything;

@@ -120,6 +120,11 @@ void explainTime(const ExplainedRun& run, Explanation& explanation) {
     if (const auto ms = run.passMs.find(index); ms != run.passMs.end()) leftOut.savedMs = ms->second;
     explanation.leftOut.push_back(std::move(leftOut));
   }
+  for (const FrameContext::Reused& part : run.reusedParts) {
+    explanation.leftOut.push_back({LeftOut::Level::time,
+                                   fmt::format("{}: {} in later frames", part.pass, part.what), part.why,
+                                   part.pass});
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "lumivox/pipeline/pipeline.h"
+#include "pipeline/context.h"
 #include "pipeline/graph.h"
 #include "pipeline/prune.h"
 
@@ -17,6 +18,7 @@ struct ExplainedRun {
   const TechniqueSource& techniques;
   std::map<std::string, shader::ShaderLibrary::Usage> usage;
   const std::map<std::string, shader::ShaderPack>& packs;
+  const std::set<FrameContext::Reused>& reusedParts;
   std::map<int, double> passMs;  ///< per pass that ran so far, its last device time
   bool keepEverything = false;
   std::uint64_t poolBytes = 0, sharedBytes = 0;

@@ -99,8 +99,17 @@ std::vector<gpu::TextureRef> texturesOf(const GBuffer& buffer) {
 std::vector<gpu::TextureRef> texturesOf(const ShadowMap& map) {
   return existing({map.depth});
 }
+std::vector<gpu::TextureRef> texturesOf(const ReflectiveShadowMap& map) {
+  return existing({map.position, map.normal, map.flux});
+}
 std::vector<gpu::TextureRef> texturesOf(const VoxelFragments&) {
   return {};
+}
+std::vector<gpu::TextureRef> texturesOf(const BinaryGrid&) {
+  return {};  // bits are never unhealthy
+}
+std::vector<gpu::TextureRef> texturesOf(const AttributeGrid& grid) {
+  return existing({grid.albedo, grid.normal, grid.emission});
 }
 std::vector<gpu::TextureRef> texturesOf(const OccupancyGrid& grid) {
   return existing({grid.opacity});
@@ -109,10 +118,18 @@ std::vector<gpu::TextureRef> texturesOf(const RadianceGrid& grid) {
   return existing({grid.radiance});
 }
 std::vector<gpu::TextureRef> texturesOf(const ShGrid& grid) {
-  return existing({grid.coefficients[0], grid.coefficients[1], grid.coefficients[2]});
+  std::vector<gpu::TextureRef> result;
+  for (const ShGrid::Level& level : grid.levels) {
+    for (const gpu::TextureRef& channel : level.coefficients) result.push_back(channel);
+  }
+  return result;
 }
 std::vector<gpu::TextureRef> texturesOf(const ScatteringGrid& grid) {
-  return existing({grid.extinction});
+  std::vector<gpu::TextureRef> result;
+  for (const ScatteringGrid::Medium& medium : grid.media) {
+    if (medium.density) result.push_back(medium.density);
+  }
+  return result;
 }
 
 // ---- context -------------------------------------------------------------------------------------------

@@ -87,6 +87,7 @@ class Loader {
     for (const AreaLightText& light : description_.areaLights) shine(light);
     finishMaterials();
     for (const AnimationText& animation : description_.animations) animate(animation);
+    for (Object& object : scene_.objects) object.sweptBounds = sweptBoundsOf(scene_, object);
     throwIfAny(std::move(findings_));
     scene_.hash = hasher_.finish();
     return std::move(scene_);

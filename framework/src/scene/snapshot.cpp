@@ -45,6 +45,46 @@ WideBounds placedBounds(const Scene& scene, const Object& object) {
   return bounds;
 }
 
+/// Where a vertex goes in a whole turn about a line: its circle's bounds.
+void growByTurn(WideBounds& bounds, const RigidMotion& motion, const glm::dvec3& point) {
+  const glm::dvec3 axis = glm::normalize(motion.axis);
+  const glm::dvec3 arm = point - motion.pivot;
+  const glm::dvec3 centre = motion.pivot + axis * glm::dot(axis, arm);
+  const double radius = glm::length(point - centre);
+  const glm::dvec3 reach = radius * glm::sqrt(glm::max(1.0 - axis * axis, glm::dvec3(0.0)));
+  bounds.grow(centre - reach);
+  bounds.grow(centre + reach);
+}
+
+/// The grid's bounds follow travelling objects in steps of an eighth of the scene's longest side at rest, so
+/// that a grid is placed anew only now and then.
+constexpr double kTravelStep = 1.0 / 8.0;
+
+Bounds gridBounds(const Scene& scene, double time, const glm::dvec3& origin) {
+  WideBounds rest, now;
+  for (const Object& object : scene.objects) {
+    if (object.parts.empty()) continue;
+    const auto [low, high] = object.sweptBounds ? *object.sweptBounds : sweptBoundsOf(scene, object);
+    rest.grow(low);
+    rest.grow(high);
+    const glm::dvec3 travelled = object.motion ? object.motion->velocity * time : glm::dvec3(0.0);
+    now.grow(low + travelled);
+    now.grow(high + travelled);
+  }
+  Bounds bounds;
+  if (rest.empty()) return bounds;
+  const glm::dvec3 extent = rest.high - rest.low;
+  const double step = kTravelStep * std::max({extent.x, extent.y, extent.z});
+  glm::dvec3 low = rest.low, high = rest.high;
+  for (int axis = 0; axis < 3 && step > 0.0; ++axis) {
+    low[axis] -= step * std::ceil(std::max(rest.low[axis] - now.low[axis], 0.0) / step);
+    high[axis] += step * std::ceil(std::max(now.high[axis] - rest.high[axis], 0.0) / step);
+  }
+  bounds.grow(glm::vec3(low - origin));
+  bounds.grow(glm::vec3(high - origin));
+  return bounds;
+}
+
 glm::dmat4 motionAt(const Object& object, double time) {
   if (!object.motion) return object.placement;
   const RigidMotion& motion = *object.motion;
@@ -110,6 +150,31 @@ CameraView viewOf(const Camera& camera, double time, const glm::dvec3& origin, i
 }
 
 }  // namespace
+
+std::pair<glm::dvec3, glm::dvec3> sweptBoundsOf(const Scene& scene, const Object& object) {
+  if (!object.animated()) {
+    const WideBounds placed = placedBounds(scene, object);
+    return {placed.low, placed.high};
+  }
+  WideBounds bounds;
+  const auto add = [&](const glm::vec3& position) {
+    const glm::dvec3 placed(object.placement * glm::dvec4(glm::dvec3(position), 1.0));
+    if (object.motion && object.motion->angularSpeed != 0.0) {
+      growByTurn(bounds, *object.motion, placed);
+    } else {
+      bounds.grow(placed);
+    }
+  };
+  if (object.sequence) {
+    for (const std::vector<glm::vec3>& frame : object.sequence->positions) {
+      for (const glm::vec3& position : frame) add(position);
+    }
+  } else {
+    for (std::uint32_t v = 0; v < object.vertexCount; ++v) add(scene.positions[object.firstVertex + v]);
+  }
+  assert(!bounds.empty());
+  return {bounds.low, bounds.high};
+}
 
 const Camera& Scene::camera(const std::string& wanted) const {
   if (cameras.empty()) throw Error(fmt::format("scene '{}' has no camera; expected one", name));
@@ -217,6 +282,7 @@ SceneSnapshot snapshotOf(const Scene& scene, double time, const std::string& cam
     snapshot.bounds.grow(glm::vec3(bounds.low - snapshot.origin));
     snapshot.bounds.grow(glm::vec3(bounds.high - snapshot.origin));
   }
+  snapshot.gridBounds = gridBounds(scene, time, snapshot.origin);
   snapshot.camera = viewOf(scene.camera(camera), time, snapshot.origin, width, height);
   for (const Light& light : scene.lights) {
     snapshot.lights.push_back({light.kind, glm::vec3(light.position - snapshot.origin),

@@ -108,8 +108,11 @@ class OutBase : public PortBase {
 std::vector<gpu::TextureRef> texturesOf(const Image&);
 std::vector<gpu::TextureRef> texturesOf(const GBuffer&);
 std::vector<gpu::TextureRef> texturesOf(const ShadowMap&);
+std::vector<gpu::TextureRef> texturesOf(const ReflectiveShadowMap&);
 std::vector<gpu::TextureRef> texturesOf(const VoxelFragments&);
 std::vector<gpu::TextureRef> texturesOf(const OccupancyGrid&);
+std::vector<gpu::TextureRef> texturesOf(const BinaryGrid&);
+std::vector<gpu::TextureRef> texturesOf(const AttributeGrid&);
 std::vector<gpu::TextureRef> texturesOf(const RadianceGrid&);
 std::vector<gpu::TextureRef> texturesOf(const ShGrid&);
 std::vector<gpu::TextureRef> texturesOf(const ScatteringGrid&);
@@ -292,6 +295,11 @@ class PassContext {
   virtual gpu::BufferRef buffer(std::uint64_t sizeBytes, const std::string& label) = 0;
   /// Told to the user once per run, with the pass's name.
   virtual void warn(const std::string& text) = 0;
+  /// True when a pass may use nothing that it kept from an earlier frame: in the first one, after
+  /// PipelineExecutor::invalidate() and with --keep-everything.
+  virtual bool startsAfresh() const = 0;
+  /// Tells explain() of a part of the pass's work that this frame took over from an earlier one.
+  virtual void reused(const std::string& what, const std::string& why) = 0;
 
   const shader::BoundProgram& program(const shader::ProgramName& name, const shader::VariantKey& variant = {},
                                       const std::vector<gpu::SpecialisationValue>& constants = {}) {

@@ -44,29 +44,70 @@ struct ShadowMap {
   int layerCount = 0;
 };
 
+/// What each light sees, as a source of one-bounce light (Dachsbacher & Stamminger 2005): every texel is a
+/// small light. Lights and layers are those of a ShadowMap with the same settings; all layers have one size.
+struct ReflectiveShadowMap {
+  static constexpr const char* kPortKind = "ReflectiveShadowMap";
+  gpu::BufferRef lights;     ///< array of LightSample in shaders/common/lights.glsl
+  gpu::BufferRef views;      ///< mat4 per layer: world to light clip space
+  gpu::TextureRef position;  ///< d2Array rgba32f: posWorld; w = 1 where something was hit, else 0
+  gpu::TextureRef normal;    ///< d2Array rgba32f: unit normal towards the light; w = the area of surface that
+                             ///< the texel stands for, m^2
+  gpu::TextureRef flux;      ///< d2Array rgba32f: diffusely reflected flux of the texel, W; w = the layer's
+                             ///< light as a number
+  int lightCount = 0;
+  int layerCount = 0;
+};
+
 /// Where a cubic voxel grid lies. Voxel (i,j,k) covers low + [i,i+1] x [j,j+1] x [k,k+1] times voxelSize; its
 /// centre is the half-way point.
 struct GridPlacement {
   glm::vec3 low{0.0f};       ///< corner of voxel (0,0,0), metres relative to the snapshot's origin
   float voxelSize = 1.0f;    ///< m
   glm::ivec3 resolution{0};  ///< voxels per axis
+  bool operator==(const GridPlacement&) const = default;
 };
 
 /// An unordered list of surface samples, one per triangle and voxel that it touches (Crassin & Green 2012).
 struct VoxelFragments {
   static constexpr const char* kPortKind = "VoxelFragments";
+  static constexpr std::uint64_t kFragmentBytes = 6 * sizeof(std::uint32_t);
   GridPlacement grid;
   gpu::BufferRef fragments;  ///< array of VoxelFragment in shaders/common/voxel.glsl
   gpu::BufferRef count;      ///< words: fragments written; then x, y, z of an indirect dispatch over them
   std::uint64_t capacity = 0;
   int workGroupSize = 64;  ///< that the indirect dispatch assumes
+  /// How the coverages of the fragments in one voxel make its opacity: their mean (each triangle is judged by
+  /// itself, less than 1 only where a mask has holes), or their sum up to 1 (each covers a part of the
+  /// voxel).
+  enum class Coverage { mean, sum } coverage = Coverage::mean;
 };
 
-/// One bit or one opacity per voxel.
+/// One opacity per voxel.
 struct OccupancyGrid {
   static constexpr const char* kPortKind = "OccupancyGrid";
   GridPlacement grid;
   gpu::TextureRef opacity;  ///< d3 r8, 0..1
+};
+
+/// One bit per voxel in stacks along z (Thiedemann et al. 2011): bit b of component c of texel (i, j) of
+/// layer l is voxel (i, j, 128 l + 32 c + b). Mip levels halve x and y alone; a texel is the union of those
+/// below.
+struct BinaryGrid {
+  static constexpr const char* kPortKind = "BinaryGrid";
+  static constexpr int kStack = 128;  ///< voxels in one texel
+  GridPlacement grid;
+  gpu::TextureRef stacks;  ///< d2Array rgba32ui
+};
+
+/// Averages over the surface in each voxel.
+struct AttributeGrid {
+  static constexpr const char* kPortKind = "AttributeGrid";
+  GridPlacement grid;
+  gpu::TextureRef albedo;    ///< d3 rgba16f: rgb mean diffuse albedo, a covered fraction (0: no surface)
+  gpu::TextureRef normal;    ///< d3 rgba16f: xyz mean of the unit normals, not normalised: short where they
+                             ///< disagree
+  gpu::TextureRef emission;  ///< d3 rgba32f: rgb mean emitted radiance; null when nothing emits
 };
 
 /// Pre-filtered outgoing radiance, pre-multiplied by opacity, one mip per halving (Crassin et al. 2011).
@@ -76,18 +117,28 @@ struct RadianceGrid {
   gpu::TextureRef radiance;  ///< d3 rgba16f or rgba32f with mips: rgb radiance * opacity, a opacity
 };
 
-/// Spherical-harmonic coefficients per voxel, one volume per colour channel.
+/// Spherical-harmonic coefficients per voxel, one volume per colour channel, in one or more nested grids.
 struct ShGrid {
   static constexpr const char* kPortKind = "ShGrid";
-  GridPlacement grid;
-  std::array<gpu::TextureRef, 3> coefficients;
+  struct Level {
+    GridPlacement grid;
+    std::array<gpu::TextureRef, 3> coefficients;  ///< d3 rgba16f or rgba32f: Y00, Y1-1, Y10, Y11
+  };
+  std::vector<Level> levels;  ///< finest and smallest first
 };
 
-/// Scattering medium per voxel.
+/// Scattering media. Extinction and scattering of one medium are its density times its constants.
 struct ScatteringGrid {
   static constexpr const char* kPortKind = "ScatteringGrid";
-  GridPlacement grid;
-  gpu::TextureRef extinction;  ///< d3 r16f or r32f, 1/m
+  struct Medium {
+    std::string name;
+    GridPlacement grid;          ///< where the density is stored; zero resolution when homogeneous
+    gpu::TextureRef density;     ///< d3 r32f, 1; null when homogeneous: the density is 1 everywhere
+    glm::vec3 extinction{0.0f};  ///< sigma_t at density 1, 1/m
+    glm::vec3 albedo{0.0f};      ///< sigma_s / sigma_t
+    float anisotropy = 0.0f;     ///< Henyey-Greenstein mean cosine g
+  };
+  std::vector<Medium> media;
 };
 
 }  // namespace lumivox

@@ -75,6 +75,9 @@ struct Object {
   /// World bounds (low, high) of the placed vertices before motion; the loader fills them in, so that no
   /// frame computes them again. Computed whenever they are needed when absent.
   std::optional<std::pair<glm::dvec3, glm::dvec3>> placedBounds;
+  /// World bounds (low, high) of everything that it covers while it turns and deforms, before it travels.
+  /// Filled in by the loader like placedBounds.
+  std::optional<std::pair<glm::dvec3, glm::dvec3>> sweptBounds;
   bool animated() const { return motion.has_value() || sequence.has_value(); }
 };
 
@@ -193,7 +196,15 @@ struct SceneSnapshot {
   std::vector<LightState> lights;
   std::vector<ObjectState> objects;  ///< parallel to Scene::objects
   Bounds bounds;                     ///< of all triangles
+  /// Bounds for grids around the scene, so that a grid stays where it is while things move: of everything
+  /// that the objects cover while they turn and deform; where they travel, grown in steps. A function of the
+  /// time alone.
+  Bounds gridBounds;
 };
+
+/// The bounds of an object over a whole turn and its whole sequence of deformations, without its travel: what
+/// the loader keeps as Object::sweptBounds. The object must have vertices.
+std::pair<glm::dvec3, glm::dvec3> sweptBoundsOf(const Scene& scene, const Object& object);
 
 /// Evaluates motion. `origin` is the centre of the static scene's bounds (of everything at rest, before
 /// motion, where nothing is static), the same for all times. `width`/`height` of 0 keep the camera's

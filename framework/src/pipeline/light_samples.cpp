@@ -1,4 +1,4 @@
-#include "light_samples.h"
+#include "lumivox/pipeline/light_samples.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 #include "lumivox/base/low_discrepancy.h"
 
-namespace lumivox::direct_lighting {
+namespace lumivox {
 namespace {
 
 /// Perspective with z in [0,1], looking along `forward`.
@@ -37,7 +37,7 @@ float texelPerMetre(float halfAngle, int size) {
 void addCube(LightSet& set, const glm::vec3& eye, const Bounds& bounds, const glm::vec3* front) {
   const float far = reachFrom(bounds, eye);
   for (const glm::vec3& face : kFaces) {
-    ShadowView view;
+    LightView view;
     view.worldToClip = perspectiveView(eye, face, glm::radians(45.0f), far * kNearShare, far);
     // A face opposite to the normal of an area light sees nothing that the light shines on: all of it is more
     // than 90 degrees away only when the normal is the axis itself.
@@ -112,7 +112,7 @@ void addAreaLights(LightSet& set, const Scene& scene, const SceneSnapshot& snaps
     const float patchRadius =
         std::sqrt(static_cast<float>(emitter.area / (probability * count)) / glm::pi<float>());
     set.samples.push_back(
-        {glm::vec4(position, static_cast<float>(Kind::area)),
+        {glm::vec4(position, static_cast<float>(LightSampleKind::area)),
          glm::vec4(emitter.normal, static_cast<float>(set.views.size())), glm::vec4(power, kCubeViews),
          glm::vec4(0.0f, 0.0f, texelPerMetre(glm::radians(45.0f), shadowSize), patchRadius * patchRadius)});
     addCube(set, position, snapshot.bounds, &emitter.normal);
@@ -124,10 +124,10 @@ void addDirectional(LightSet& set, const LightState& light, const Bounds& bounds
   const glm::vec3 centre = 0.5f * (bounds.low + bounds.high);
   const float radius = std::max(0.5f * glm::length(bounds.high - bounds.low), 1e-6f) * 1.01f;
   const glm::vec3 helper = std::abs(light.direction.y) > 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
-  ShadowView view;
+  LightView view;
   view.worldToClip = glm::orthoRH_ZO(-radius, radius, -radius, radius, 0.0f, 2.0f * radius) *
                      glm::lookAtRH(centre - light.direction * radius, centre, helper);
-  set.samples.push_back({glm::vec4(0.0f, 0.0f, 0.0f, static_cast<float>(Kind::directional)),
+  set.samples.push_back({glm::vec4(0.0f, 0.0f, 0.0f, static_cast<float>(LightSampleKind::directional)),
                          glm::vec4(light.direction, static_cast<float>(set.views.size())),
                          glm::vec4(light.power, 1.0f),
                          glm::vec4(0.0f, 0.0f, 2.0f * radius / static_cast<float>(shadowSize), 0.0f)});
@@ -145,7 +145,7 @@ LightSet sampleLights(const Scene& scene, const SceneSnapshot& snapshot, int are
         addDirectional(set, light, snapshot.bounds, shadowSize);
         break;
       case LightKind::point:
-        set.samples.push_back({glm::vec4(light.position, static_cast<float>(Kind::point)),
+        set.samples.push_back({glm::vec4(light.position, static_cast<float>(LightSampleKind::point)),
                                glm::vec4(0, 0, 0, static_cast<float>(set.views.size())),
                                glm::vec4(light.power, kCubeViews),
                                glm::vec4(0.0f, 0.0f, texelPerMetre(glm::radians(45.0f), shadowSize), 0.0f)});
@@ -161,7 +161,7 @@ LightSet sampleLights(const Scene& scene, const SceneSnapshot& snapshot, int are
         // smoothstep needs distinct edges: a hard edge gets a width of one millionth.
         const float cosInner = std::cos(light.innerAngle),
                     cosOuter = std::min(std::cos(light.outerAngle), cosInner - 1e-6f);
-        set.samples.push_back({glm::vec4(light.position, static_cast<float>(Kind::spot)),
+        set.samples.push_back({glm::vec4(light.position, static_cast<float>(LightSampleKind::spot)),
                                glm::vec4(light.direction, static_cast<float>(set.views.size())),
                                glm::vec4(light.power, wide ? kCubeViews : 1.0f),
                                glm::vec4(cosInner, cosOuter, texelPerMetre(halfAngle, shadowSize), 0.0f)});
@@ -179,4 +179,4 @@ LightSet sampleLights(const Scene& scene, const SceneSnapshot& snapshot, int are
   return set;
 }
 
-}  // namespace lumivox::direct_lighting
+}  // namespace lumivox

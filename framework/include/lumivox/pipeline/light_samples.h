@@ -7,27 +7,28 @@
 
 #include "lumivox/scene/scene.h"
 
-namespace lumivox::direct_lighting {
+namespace lumivox {
 
 /// Mirror of LightSample in shaders/common/lights.glsl (std430).
-struct LightSample {
+struct LightSampleData {
   glm::vec4 positionKind;
   glm::vec4 directionLayer;
   glm::vec4 power;
   glm::vec4 shape;
 };
 
-enum class Kind { directional = 0, point = 1, spot = 2, area = 3 };
+enum class LightSampleKind { directional = 0, point = 1, spot = 2, area = 3 };
 
-/// One layer of the shadow array; an unused one (behind an area light) is left empty.
-struct ShadowView {
+/// What one light sample sees through one layer of a shadow array or of a reflective shadow map; an unused
+/// one (behind an area light) is left empty.
+struct LightView {
   glm::mat4 worldToClip{1.0f};  ///< x, y in [-1,1] with y up, z in [0,1]
   bool used = true;
 };
 
 struct LightSet {
-  std::vector<LightSample> samples;
-  std::vector<ShadowView> views;
+  std::vector<LightSampleData> samples;
+  std::vector<LightView> views;
 };
 
 /// Lights without extent become one sample each. Emissive triangles together become `areaSamples` samples,
@@ -35,4 +36,4 @@ struct LightSet {
 /// always gives the same samples.
 LightSet sampleLights(const Scene& scene, const SceneSnapshot& snapshot, int areaSamples, int shadowSize);
 
-}  // namespace lumivox::direct_lighting
+}  // namespace lumivox

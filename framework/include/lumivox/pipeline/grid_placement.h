@@ -1,0 +1,28 @@
+// Where voxel grids go: around the scene, or around the camera.
+#pragma once
+
+#include "lumivox/pipeline/ports.h"
+
+namespace lumivox {
+
+/// Most voxels along a side: 10 bits per axis in VoxelFragment::voxel.
+inline constexpr int kLargestGrid = 1024;
+
+/// A cubic-voxel grid around `bounds`, `resolution` voxels along its longest side and as many as needed along
+/// the others. One empty voxel lies on every side, so that filtering at the border reads empty space and a
+/// surface on the bounds lies inside; a resolution below 8 is used without that margin. Empty bounds give a
+/// grid of one metre around the origin.
+GridPlacement placeGrid(const Bounds& bounds, int resolution);
+
+/// A cube of `resolution` voxels and `extent` metres a side around `centre`, placed on whole multiples of the
+/// voxel size, so that it moves by whole voxels and what is stored in it does not flicker. Multiples count
+/// from the world's origin, not the snapshot's. A function of its arguments alone.
+GridPlacement placeGridAround(const glm::vec3& centre, float extent, int resolution,
+                              const glm::dvec3& snapshotOrigin);
+
+/// The same for nested grids: level 0 is the finest, each next one has voxels of twice the size and lies on
+/// whole multiples of its own.
+GridPlacement placeNestedGrid(const glm::vec3& centre, float finestExtent, int resolution, int level,
+                              const glm::dvec3& snapshotOrigin);
+
+}  // namespace lumivox

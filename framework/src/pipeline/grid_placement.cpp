@@ -1,0 +1,51 @@
+#include "lumivox/pipeline/grid_placement.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace lumivox {
+namespace {
+
+constexpr int kSmallestWithMargin =
+    8;  // voxels along a side below which the empty margin would cost too much
+
+}  // namespace
+
+GridPlacement placeGrid(const Bounds& bounds, int resolution) {
+  assert(resolution >= 1 && resolution <= kLargestGrid);
+  GridPlacement grid;
+  const glm::vec3 low = bounds.empty ? glm::vec3(-0.5f) : bounds.low;
+  const glm::vec3 extent = bounds.empty ? glm::vec3(1.0f) : bounds.high - bounds.low;
+  const float longest = std::max({extent.x, extent.y, extent.z, 1e-6f});
+  const int margin = resolution >= kSmallestWithMargin ? 1 : 0;
+  grid.voxelSize = longest / static_cast<float>(resolution - 2 * margin);
+  // Half of a thousandth of a voxel keeps a wall on the bounds from falling between two voxels by rounding.
+  grid.voxelSize *= 1.0005f;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int cells = static_cast<int>(std::ceil(extent[axis] / grid.voxelSize)) + 2 * margin;
+    grid.resolution[axis] = std::clamp(cells, 1, resolution);
+    const float slack = static_cast<float>(grid.resolution[axis]) * grid.voxelSize - extent[axis];
+    grid.low[axis] = low[axis] - 0.5f * slack;
+  }
+  return grid;
+}
+
+GridPlacement placeGridAround(const glm::vec3& centre, float extent, int resolution,
+                              const glm::dvec3& snapshotOrigin) {
+  assert(extent > 0.0f && resolution >= 1 && resolution <= kLargestGrid);
+  GridPlacement grid;
+  grid.resolution = glm::ivec3(resolution);
+  grid.voxelSize = extent / static_cast<float>(resolution);
+  const double voxel = grid.voxelSize;
+  const glm::dvec3 low = glm::dvec3(centre) + snapshotOrigin - 0.5 * static_cast<double>(extent);
+  grid.low = glm::vec3(glm::round(low / voxel) * voxel - snapshotOrigin);
+  return grid;
+}
+
+GridPlacement placeNestedGrid(const glm::vec3& centre, float finestExtent, int resolution, int level,
+                              const glm::dvec3& snapshotOrigin) {
+  return placeGridAround(centre, std::ldexp(finestExtent, level), resolution, snapshotOrigin);
+}
+
+}  // namespace lumivox

@@ -1,0 +1,65 @@
+// What all voxelisers of triangles share: where the grid lies, the list of fragments, and that geometry which
+// stands still is voxelised once.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lumivox/pipeline/gpu_scene.h"
+#include "lumivox/pipeline/grid_placement.h"
+#include "lumivox/plugin/technique.h"
+
+namespace lumivox::voxelization {
+
+inline constexpr int kWorkGroupSize = 64;  // of the passes that read a list of fragments
+
+/// A list of fragments begins with those of what stands still, and what moves is written behind them in every
+/// frame anew: nothing has to be merged, and nothing old can stay.
+class Voxeliser : public Pass {
+ public:
+  Reads readsFrom() const override;
+  std::string checkParameters() const override;
+  void run(PassContext& frame) override;
+
+ protected:
+  using Draws = std::vector<const SceneDraw*>;
+  /// Appends the fragments of these draws: the shader takes an index by adding to list.count, and writes
+  /// where the index is below list.capacity. The device's barrier follows.
+  virtual void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) = 0;
+  /// How the coverages of one voxel's fragments are combined.
+  virtual VoxelFragments::Coverage coverage() const { return VoxelFragments::Coverage::mean; }
+  /// A first guess at the number of fragments; a list that was too small is made anew.
+  virtual std::uint64_t expectedFragments(const Scene& scene) const;
+
+  Param<int> resolution{
+      this, "resolution", 64, {1, kLargestGrid}, "voxels along the longest side of the grid"};
+  Param<std::string> around{this,
+                            "around",
+                            "scene",
+                            {"scene", "camera"},
+                            "the grid holds the whole scene, or moves with the camera by whole voxels"};
+  Param<float> extent{this,         "extent", 0.0f,
+                      {0.0f, 1e9f}, "m",      "side of a grid around the camera; needed there, unused else"};
+  Out<VoxelFragments> fragments{this, "fragments", "surface samples"};
+
+ private:
+  /// What the fragments of still geometry depend on.
+  struct StillKey {
+    GridPlacement grid;
+    std::vector<std::string> parameters;
+    std::vector<glm::mat4> placements;
+    bool operator==(const StillKey&) const = default;
+  };
+  StillKey stillKey(const PassContext& frame, const GridPlacement& grid, const Draws& still);
+  GridPlacement placement(PassContext& frame) const;
+  std::uint32_t appendFrom(PassContext& frame, const Draws& draws, std::uint32_t first);
+
+  VoxelFragments list_;           ///< kept between frames, so that the fragments of still geometry stay
+  std::uint32_t stillCount_ = 0;  ///< fragments of still geometry, at the beginning of the list
+  StillKey stillKey_;
+};
+
+/// Each registers the pass of its file.
+void addConservative(TechniqueRegistry& registry);
+
+}  // namespace lumivox::voxelization
