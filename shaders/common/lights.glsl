@@ -41,7 +41,6 @@ vec3 arrivingIrradiance(LightSample light, vec3 posWorld, out vec3 toLight) {
   return light.power.rgb * (shape / distanceSquared);
 }
 
-#ifdef SHADOW_VIEWS
 // Face of a cube map that holds a direction: +x -x +y -y +z -z.
 int cubeFace(vec3 direction) {
   vec3 size = abs(direction);
@@ -50,6 +49,7 @@ int cubeFace(vec3 direction) {
   return direction.z >= 0.0 ? 4 : 5;
 }
 
+#ifdef SHADOW_VIEWS
 // Visible fraction in [0,1]. The point is moved along its normal by a texel of the shadow view, so that a surface does not shadow
 // itself (normal offset); geometricNormal faces the side that is lit.
 float visibility(LightSample light, vec3 posWorld, vec3 geometricNormal, vec3 toLight) {

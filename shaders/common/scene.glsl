@@ -20,12 +20,15 @@ layout(std140, binding = 0) uniform Draw {
   int materialIndex;
 };
 
-#ifdef SCENE_VERTICES
+#if defined(SCENE_VERTICES) || defined(SCENE_GEOMETRY)
 layout(std430, binding = 0) readonly buffer Positions { float positions[]; };
 layout(std430, binding = 1) readonly buffer Normals { float normals[]; };
 layout(std430, binding = 2) readonly buffer Texcoords { float texcoords[]; };
 layout(std430, binding = 3) readonly buffer Objects { ObjectData objects[]; };
+#endif
 
+// Of vertex shaders alone.
+#ifdef SCENE_VERTICES
 vec3 vertexPosWorld() {
   int i = 3 * gl_VertexID;
   return (objects[objectIndex].toWorld * vec4(positions[i], positions[i + 1], positions[i + 2], 1.0)).xyz;

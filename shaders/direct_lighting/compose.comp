@@ -1,7 +1,9 @@
 #version 450
-// The picture is the sum of its components. The input that is absent adds nothing.
+// The picture is the sum of its components. The input that is absent adds nothing, and takes nothing away.
 #pragma lumivox axis DIFFUSE 0 1
 #pragma lumivox axis GLOSSY 0 1
+#pragma lumivox axis TRANSMITTANCE 0 1
+#pragma lumivox axis SCATTERED 0 1
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -11,6 +13,12 @@ layout(binding = 1) uniform sampler2D diffuseRadiance;
 #endif
 #if GLOSSY
 layout(binding = 2) uniform sampler2D glossyRadiance;
+#endif
+#if TRANSMITTANCE
+layout(binding = 3) uniform sampler2D mediaTransmittance;
+#endif
+#if SCATTERED
+layout(binding = 4) uniform sampler2D scatteredRadiance;
 #endif
 layout(binding = 0, rgba32f) uniform writeonly image2D radianceImage;
 
@@ -23,6 +31,12 @@ void main() {
 #endif
 #if GLOSSY
   radiance += texelFetch(glossyRadiance, pixel, 0).rgb;
+#endif
+#if TRANSMITTANCE
+  radiance *= texelFetch(mediaTransmittance, pixel, 0).rgb;
+#endif
+#if SCATTERED
+  radiance += texelFetch(scatteredRadiance, pixel, 0).rgb;
 #endif
   imageStore(radianceImage, pixel, vec4(radiance, 1.0));
 }

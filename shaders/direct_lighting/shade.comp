@@ -4,13 +4,18 @@
 #pragma lumivox axis SHADOWS 0 1
 #pragma lumivox axis GLOSSY 0 1
 #pragma lumivox axis EMISSION 0 1
+#pragma lumivox axis MEDIUM none even varying
 #pragma lumivox require !SHADOWS || LIGHTS
+#pragma lumivox require MEDIUM == none || LIGHTS
 #include "common/brdf.glsl"
 #if SHADOWS
 #define SHADOW_VIEWS
 #endif
 #if LIGHTS
 #include "common/lights.glsl"
+#endif
+#if MEDIUM != MEDIUM_NONE
+#include "common/media.glsl"
 #endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -19,6 +24,7 @@ layout(std140, binding = 0) uniform Parameters {
   vec3 eyeWorld;
   int lightCount;
   vec3 environment;  // radiance that a camera ray sees when it hits nothing
+  int mediumSteps;   // most steps through a medium that varies, towards a light
 };
 
 layout(binding = 0) uniform sampler2D gPosition;
@@ -61,6 +67,9 @@ void main() {
     vec3 irradiance = perpendicular * cosSurface;
 #if SHADOWS
     irradiance *= visibility(light, position.xyz, geometricNormal, toLight);
+#endif
+#if MEDIUM != MEDIUM_NONE
+    if (any(greaterThan(irradiance, vec3(0.0)))) irradiance *= transmittanceToLight(light, position.xyz, mediumSteps);
 #endif
     vec3 lobes = diffuse / kPi;
 #if GLOSSY

@@ -4,8 +4,12 @@
 #pragma lumivox axis DIFFUSE 0 1
 #pragma lumivox axis GLOSSY 0 1
 #pragma lumivox axis ENVIRONMENT 0 1
+#pragma lumivox axis MEDIUM none even varying
 #pragma lumivox require DIFFUSE || GLOSSY
 #include "common/constants.glsl"
+#if MEDIUM != MEDIUM_NONE
+#include "common/media.glsl"
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -38,6 +42,7 @@ layout(binding = 5) uniform sampler2D gSpecular;
 layout(binding = 1, rgba32f) uniform writeonly image2D glossyImage;
 #endif
 
+const int kMediumSteps = 8;   // most steps through a medium that varies, within one step of a cone
 const float kOpaque = 0.999;  // what lies behind this opacity adds less than a thousandth
 
 // Radiance along a cone. The sample at distance t has the diameter of the cone there and is read from the level whose voxels have that
@@ -46,6 +51,11 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta) {
   vec3 radiance = vec3(0.0);
   float opacity = 0.0;
   float distance = startShare * voxelSize;
+#if MEDIUM != MEDIUM_NONE
+  vec3 passed = exp(-opticalDepth(apex, direction, distance, 1));  // transmittance of the media up to the sample
+#else
+  const float passed = 1.0;
+#endif
   while (distance < maxDistance && opacity < kOpaque) {
     // Deviates from Listing 4.13: a wide cone at a slant would reach below the tangent plane and read the surface that it starts from.
     float height = offset * voxelSize + cosTheta * distance;
@@ -57,6 +67,11 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta) {
       vec3 outward = max(texcoord - 1.0, 0.0) - max(-texcoord, 0.0);
       if (dot(outward, direction) >= 0.0) break;
     }
+#if MEDIUM != MEDIUM_NONE
+    vec3 sampled = apex + direction * distance;
+    vec3 thickness = opticalDepth(sampled, direction, stride, kMediumSteps);
+    passed *= exp(-0.5 * thickness);
+#endif
     float size = diameter / voxelSize;
     float level = min(floor(log2(size)), coarsest);
     float blend = level < coarsest ? size * exp2(-level) - 1.0 : 0.0;
@@ -68,13 +83,19 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta) {
       float through = max(1.0 - value.a, 0.0);
       float perVoxel = 2.0 * through / (1.0 - blend + sqrt((1.0 - blend) * (1.0 - blend) + 4.0 * blend * through));
       float stepOpacity = 1.0 - pow(perVoxel, stride / (exp2(level) * voxelSize));
-      radiance += (1.0 - opacity) * stepOpacity / value.a * value.rgb;
+      radiance += passed * ((1.0 - opacity) * stepOpacity / value.a * value.rgb);
       opacity += (1.0 - opacity) * stepOpacity;
     }
+#if MEDIUM != MEDIUM_NONE
+    passed *= exp(-0.5 * thickness);
+#endif
     distance += stride;
   }
 #if ENVIRONMENT
-  radiance += max(1.0 - opacity, 0.0) * environment;
+#if MEDIUM != MEDIUM_NONE
+  if (opacity < kOpaque) passed *= exp(-opticalDepth(apex + direction * distance, direction, kNoReach, kMediumSteps));
+#endif
+  radiance += passed * (max(1.0 - opacity, 0.0) * environment);
 #endif
   return radiance;
 }

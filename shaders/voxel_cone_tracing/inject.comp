@@ -5,7 +5,9 @@
 //   sum over fragments of round(value / range * 2^31 / n),  0 <= value <= range,  so that the sum fits into 32 bits for any n.
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis SHADOWS 0 1
+#pragma lumivox axis MEDIUM none even varying
 #pragma lumivox require !SHADOWS || LIGHTS
+#pragma lumivox require MEDIUM == none || LIGHTS
 #include "common/constants.glsl"
 #include "common/voxel.glsl"
 #if SHADOWS
@@ -13,6 +15,9 @@
 #endif
 #if LIGHTS
 #include "common/lights.glsl"
+#endif
+#if MEDIUM != MEDIUM_NONE
+#include "common/media.glsl"
 #endif
 
 layout(local_size_x = 64) in;
@@ -23,6 +28,7 @@ layout(std140, binding = 0) uniform Grid {
   int lightCount;
   float radianceRange;  // W/(sr m^2): the largest radiance that can be stored
   int twoSided;         // 1: light on the back side counts as well
+  int mediumSteps;      // most steps through a medium that varies, towards a light
 };
 layout(std430, binding = 0) readonly buffer FragmentCount { uint fragmentCount; };
 layout(std430, binding = 1) readonly buffer Fragments { VoxelFragment fragments[]; };
@@ -56,6 +62,9 @@ void main() {
     vec3 arriving = perpendicular * cosSurface;
 #if SHADOWS
     arriving *= visibility(light, posWorld, dot(normal, toLight) < 0.0 ? -normal : normal, toLight);
+#endif
+#if MEDIUM != MEDIUM_NONE
+    if (any(greaterThan(arriving, vec3(0.0)))) arriving *= transmittanceToLight(light, posWorld, mediumSteps);
 #endif
     irradiance += arriving;
   }

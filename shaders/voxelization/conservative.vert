@@ -5,7 +5,6 @@
 #define SCENE_VERTICES
 #include "common/scene.glsl"
 #include "common/voxel.glsl"
-
 layout(std430, binding = 6) readonly buffer Indices { uint indices[]; };
 
 layout(std140, binding = 1) uniform Grid {
@@ -14,19 +13,19 @@ layout(std140, binding = 1) uniform Grid {
   ivec3 resolution;
   int firstIndex;   // of this draw
   int capacity;     // fragments that fit into the list
-  int depthRange;   // 1: every voxel that the triangle crosses in depth; 0: only the one at the pixel's centre
 };
+#include "corners.glsl"
 
 // Corners, normals and texture coordinates of the triangle, permuted so that z is the dominant axis; in voxels.
-layout(location = 0) noperspective out vec2 plane;
-layout(location = 1) flat out mat3 corners;
-layout(location = 4) flat out mat3 cornerNormals;
-layout(location = 7) flat out int dominantAxis;
+layout(location = 0) flat out mat3 corners;
+layout(location = 3) flat out mat3 cornerNormals;
+layout(location = 6) flat out int dominantAxis;
 #if TEXTURES || MASKS
-layout(location = 8) flat out vec2 cornerTexcoords[3];
+layout(location = 7) flat out vec2 cornerTexcoords[3];
 #endif
 
-vec3 permute(vec3 v, int axis) { return axis == 0 ? v.yzx : axis == 1 ? v.zxy : v; }
+// What decides is the exact test of each voxel: the rasteriser must only miss none. It places corners on a grid of 1/256 pixel or finer.
+const float kEnlarged = 0.5 + 1.0 / 64.0;
 
 // Corner `k` of the triangle enlarged by half a pixel (Hasselgren et al. 2005, Sec. 42.2): the crossing of its two shifted edges.
 vec2 enlargedCorner(vec2 a, vec2 b, vec2 c, int k) {
@@ -34,8 +33,8 @@ vec2 enlargedCorner(vec2 a, vec2 b, vec2 c, int k) {
   float doubleArea = e0.x * e1.y - e0.y * e1.x;
   float longest = max(dot(e0, e0), max(dot(e1, e1), dot(e2, e2)));
   // A needle would throw its corners far away: twice its bounding box, as a triangle, covers it just as well.
-  if (abs(doubleArea) <= kNeedle * longest) {
-    vec2 low = min(a, min(b, c)) - 0.5, high = max(a, max(b, c)) + 0.5;
+  if (!(abs(doubleArea) > kNeedle * longest)) {
+    vec2 low = min(a, min(b, c)) - kEnlarged, high = max(a, max(b, c)) + kEnlarged;
     vec2 size = 2.0 * (high - low);
     return low + (k == 0 ? vec2(0.0) : k == 1 ? vec2(size.x, 0.0) : vec2(0.0, size.y));
   }
@@ -45,7 +44,7 @@ vec2 enlargedCorner(vec2 a, vec2 b, vec2 c, int k) {
   float turn = doubleArea > 0.0 ? 1.0 : -1.0;
   // Outward normals of the two edges; each edge moves by the half extent of a pixel along its normal.
   vec2 n0 = turn * vec2(before.y, -before.x), n1 = turn * vec2(after.y, -after.x);
-  float d0 = 0.5 * (abs(n0.x) + abs(n0.y)), d1 = 0.5 * (abs(n1.x) + abs(n1.y));
+  float d0 = kEnlarged * (abs(n0.x) + abs(n0.y)), d1 = kEnlarged * (abs(n1.x) + abs(n1.y));
   // Solve n0 . x = d0, n1 . x = d1 relative to the corner.
   float determinant = n0.x * n1.y - n0.y * n1.x;
   return corner + vec2(d0 * n1.y - d1 * n0.y, n0.x * d1 - n1.x * d0) / determinant;
@@ -53,22 +52,15 @@ vec2 enlargedCorner(vec2 a, vec2 b, vec2 c, int k) {
 
 void main() {
   int triangle = gl_VertexID / 3;
-  int k = gl_VertexID - 3 * triangle;
-  vec3 corner[3];
-  for (int i = 0; i < 3; ++i) {
-    int vertex = int(indices[firstIndex + 3 * triangle + i]);
-    vec3 local = vec3(positions[3 * vertex], positions[3 * vertex + 1], positions[3 * vertex + 2]);
-    corner[i] = ((objects[objectIndex].toWorld * vec4(local, 1.0)).xyz - gridLow) / voxelSize;
-    vec3 normal = vec3(normals[3 * vertex], normals[3 * vertex + 1], normals[3 * vertex + 2]);
-    cornerNormals[i] = mat3(objects[objectIndex].normalToWorld) * normal;
+  TriangleCorners loaded = loadCorners(uint(firstIndex) + 3u * uint(triangle), objectIndex);
+  corners = loaded.corners;
+  cornerNormals = loaded.normals;
+  dominantAxis = loaded.axis;
 #if TEXTURES || MASKS
-    cornerTexcoords[i] = vec2(texcoords[2 * vertex], 1.0 - texcoords[2 * vertex + 1]);
+  cornerTexcoords = loaded.texcoords;
 #endif
-  }
-  vec3 normal = abs(cross(corner[1] - corner[0], corner[2] - corner[0]));
-  dominantAxis = normal.x > normal.y && normal.x > normal.z ? 0 : normal.y > normal.z ? 1 : 2;
-  for (int i = 0; i < 3; ++i) corners[i] = permute(corner[i], dominantAxis);
-  plane = enlargedCorner(corners[0].xy, corners[1].xy, corners[2].xy, k);
+  vec2 plane = enlargedCorner(corners[0].xy, corners[1].xy, corners[2].xy, gl_VertexID - 3 * triangle);
+  // Row 0 is the top of a target: y turns over, so that pixel (x, y) is column (x, y).
   float side = float(max(resolution.x, max(resolution.y, resolution.z)));
-  gl_Position = vec4(2.0 * plane / side - 1.0, 0.5, 1.0);
+  gl_Position = vec4(2.0 * plane.x / side - 1.0, 1.0 - 2.0 * plane.y / side, 0.5, 1.0);
 }

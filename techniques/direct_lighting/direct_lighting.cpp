@@ -6,6 +6,7 @@
 #include "direct_lighting_shaders.h"
 #include "lumivox/pipeline/gpu_scene.h"
 #include "lumivox/pipeline/light_samples.h"
+#include "lumivox/pipeline/media.h"
 #include "lumivox/plugin/technique.h"
 
 namespace lumivox::direct_lighting {
@@ -182,6 +183,10 @@ class ShadePass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
                        "lights and their visibility; without it only emission is seen"};
+  In<ScatteringGrid> media{this, "media", Presence::optional,
+                           "media between lights and surfaces, which dim the light on its way"};
+  Param<int> mediumSteps{
+      this, "medium_steps", 32, {1, 1024}, "most steps through a medium that varies, towards a light"};
   Param<bool> shadows{this, "shadows", true, "test visibility; off: lights shine through everything"};
   Out<Image> radiance{this, "radiance", Contributes::direct, Needs::nothing,
                       "emission and light that is reflected once, W/(sr m^2)"};
@@ -199,6 +204,13 @@ class ShadePass : public Pass {
     parameters.eyeWorld = frame.snapshot().camera.eye;
     parameters.lightCount = shadow.present() ? shadow->lightCount : 0;
     parameters.environment = frame.sceneDescription().environment;
+    parameters.mediumSteps = mediumSteps;
+    MediaBinding bound;
+    if (variant.lights != 0 && media.present()) {
+      bound = MediaBinding(frame, *media);
+      variant.medium =
+          bound.varying() ? shadeShader::Variant::mediumVarying : shadeShader::Variant::mediumEven;
+    }
     Image result{floatImage(frame, "direct radiance")};
     using gpu::Sampling;
     std::vector<gpu::ResourceBinding> bindings{
@@ -215,6 +227,7 @@ class ShadePass : public Pass {
       bindings.push_back(shadeShader::views(*shadow->views));
       bindings.push_back(shadeShader::shadowDepth(*shadow->depth, Sampling::shadow));
     }
+    bound.addTo(bindings);
     frame.dispatch(frame.program(shadeShader::kProgram, variant.key()), bindings, pixelsOf(frame.snapshot()),
                    kImageGroup);
     radiance = result;
@@ -225,6 +238,9 @@ class ComposePass : public Pass {
   In<Image> direct{this, "direct", "direct light"};
   In<Image> diffuse{this, "diffuse", Presence::optional, "indirect light reflected by the diffuse lobe"};
   In<Image> glossy{this, "glossy", Presence::optional, "indirect light reflected by the Phong lobe"};
+  In<Image> transmittance{this, "transmittance", Presence::optional,
+                          "what media leave of the light of surfaces on its way to the camera"};
+  In<Image> scattered{this, "scattered", Presence::optional, "light that media scatter to the camera"};
   Out<Image> radiance{this, "radiance", Contributes::final, Needs::nothing,
                       "sum of the components, W/(sr m^2)"};
 
@@ -232,6 +248,8 @@ class ComposePass : public Pass {
     composeShader::Variant variant;
     variant.diffuse = diffuse.present();
     variant.glossy = glossy.present();
+    variant.transmittance = transmittance.present();
+    variant.scattered = scattered.present();
     Image result{floatImage(frame, "final radiance")};
     using gpu::Sampling;
     std::vector<gpu::ResourceBinding> bindings{
@@ -241,6 +259,10 @@ class ComposePass : public Pass {
       bindings.push_back(composeShader::diffuseRadiance(*diffuse->texture, Sampling::nearest));
     if (variant.glossy)
       bindings.push_back(composeShader::glossyRadiance(*glossy->texture, Sampling::nearest));
+    if (variant.transmittance)
+      bindings.push_back(composeShader::mediaTransmittance(*transmittance->texture, Sampling::nearest));
+    if (variant.scattered)
+      bindings.push_back(composeShader::scatteredRadiance(*scattered->texture, Sampling::nearest));
     frame.dispatch(frame.program(composeShader::kProgram, variant.key()), bindings,
                    pixelsOf(frame.snapshot()), kImageGroup);
     radiance = result;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lumivox/base/error.h"
+#include "lumivox/pipeline/media.h"
 #include "lumivox/plugin/technique.h"
 #include "voxel_cone_tracing_shaders.h"
 
@@ -51,6 +52,10 @@ class InjectPass : public Pass {
   In<VoxelFragments> fragments{this, "fragments", "surface samples"};
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
                        "lights and their visibility; without it the grid is dark but opaque"};
+  In<ScatteringGrid> media{this, "media", Presence::optional,
+                           "media between lights and surfaces, which dim the light on its way"};
+  Param<int> mediumSteps{
+      this, "medium_steps", 16, {1, 1024}, "most steps through a medium that varies, towards a light"};
   Param<bool> twoSided{this, "two_sided", true,
                        "light on the back of a triangle counts; off, as published: only on the front"};
   Param<std::string> precision{
@@ -71,6 +76,7 @@ class InjectPass : public Pass {
     description.depth = size.z;
     description.levels = gpu::fullLevelCount(size.x, size.y, size.z);
     result.radiance = frame.texture(description, "radiance grid");
+    result.filledLevels = 1;
 
     // Counts and sums: one 32-bit integer a voxel each.
     gpu::TextureDescription words = description;
@@ -102,6 +108,13 @@ class InjectPass : public Pass {
     grid.lightCount = shadow.present() ? shadow->lightCount : 0;
     grid.radianceRange = range;
     grid.twoSided = twoSided ? 1 : 0;
+    grid.mediumSteps = mediumSteps;
+    MediaBinding bound;
+    if (variant.lights != 0 && media.present()) {
+      bound = MediaBinding(frame, *media);
+      variant.medium =
+          bound.varying() ? injectShader::Variant::mediumVarying : injectShader::Variant::mediumEven;
+    }
     std::vector<gpu::ResourceBinding> bindings{injectShader::grid(grid),
                                                injectShader::fragmentCount(*fragments->count),
                                                injectShader::fragments(*fragments->fragments),
@@ -115,12 +128,15 @@ class InjectPass : public Pass {
       bindings.push_back(injectShader::views(*shadow->views));
       bindings.push_back(injectShader::shadowDepth(*shadow->depth, gpu::Sampling::shadow));
     }
+    bound.addTo(bindings);
     frame.shaders().dispatchIndirect(frame.program(injectShader::kProgram, variant.key()), bindings,
                                      *fragments->count, sizeof(std::uint32_t));
     frame.device().barrier();
 
     frame.dispatch(frame.program(resolveShader::kProgram),
-                   {resolveShader::parameters({size, range}), resolveShader::sumRed(*red),
+                   {resolveShader::parameters(
+                        {size, range, fragments->coverage == VoxelFragments::Coverage::sum ? 1 : 0}),
+                    resolveShader::counts(*counts), resolveShader::sumRed(*red),
                     resolveShader::sumGreen(*green), resolveShader::sumBlue(*blue),
                     resolveShader::sumCoverage(*coverage), resolveShader::radianceImage(*result.radiance)},
                    size, kVoxelGroup);
@@ -158,13 +174,17 @@ class FilterPass : public Pass {
            filterShader::radianceImage(texture, level)},
           parameters.coarse, kVoxelGroup);
     }
-    mips = *radiance;
+    RadianceGrid filtered = *radiance;
+    filtered.filledLevels = description.levels;
+    mips = filtered;
   }
 };
 
 class GatherPass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<RadianceGrid> grid{this, "grid", "pre-filtered radiance, one mip per halving"};
+  In<ScatteringGrid> media{this, "media", Presence::optional,
+                           "media that dim what the cones see; light that they scatter is left out"};
   Param<int> cones{this, "cones", 6, {1, 256}, "diffuse cones per pixel"};
   Param<std::string> distribution{
       this,
@@ -196,6 +216,12 @@ class GatherPass : public Pass {
     variant.diffuse = diffuse.wanted();
     variant.glossy = glossy.wanted() && gbuffer->specular != nullptr;
     variant.environment = frame.traits().environment;
+    MediaBinding bound;
+    if (media.present()) {
+      bound = MediaBinding(frame, *media);
+      variant.medium =
+          bound.varying() ? gatherShader::Variant::mediumVarying : gatherShader::Variant::mediumEven;
+    }
     gatherShader::Constants constants;
     constants.coneCount = cones;
     constants.publishedCones = distribution == "published" ? 1 : 0;
@@ -219,6 +245,7 @@ class GatherPass : public Pass {
         gatherShader::gNormal(*gbuffer->normal, Sampling::nearest),
         gatherShader::gGeometricNormal(*gbuffer->geometricNormal, Sampling::nearest),
         gatherShader::radianceGrid(*input.radiance, Sampling::linearMipsBorder)};
+    bound.addTo(bindings);
     Image diffuseImage, glossyImage;
     if (variant.diffuse) {
       diffuseImage.texture = frame.image(gpu::Format::rgba32f, "indirect diffuse radiance");

@@ -1,11 +1,37 @@
-// Single-pass conservative rasterisation through the dominant axis (Crassin & Green 2012, Sec. 22.3).
+// Every voxel that a triangle touches: by the rasteriser, through the dominant axis in a single pass
+// (Crassin & Green 2012, Sec. 22.3), or by a compute shader over triangles (Schwarz & Seidel 2010). Both find
+// the same voxels.
+#include <algorithm>
+#include <map>
+
+#include "fragment_list.h"
 #include "voxeliser.h"
 #include "voxelization_shaders.h"
 
 namespace lumivox::voxelization {
 namespace {
 
-namespace conservativeShader = shaders::voxelization::conservative;
+namespace rasterShader = shaders::voxelization::conservative;
+namespace computeShader = shaders::voxelization::conservative_compute;
+
+/// Triangles of one draw, for one work group: first index, number of triangles, object, material.
+using Batch = glm::uvec4;
+/// Draws that can share dispatches: those with the same textures.
+using BatchesByTextures = std::map<std::pair<const gpu::Texture*, const gpu::Texture*>, std::vector<Batch>>;
+
+BatchesByTextures batchesOf(const std::vector<const SceneDraw*>& draws) {
+  BatchesByTextures result;
+  for (const SceneDraw* draw : draws) {
+    std::vector<Batch>& batches = result[{draw->diffuseTexture, draw->maskTexture}];
+    const std::uint32_t triangles = draw->indexCount / 3;
+    constexpr auto kGroup = static_cast<std::uint32_t>(kWorkGroupSize);
+    for (std::uint32_t first = 0; first < triangles; first += kGroup) {
+      batches.emplace_back(draw->firstIndex + 3 * first, std::min(triangles - first, kGroup), draw->object,
+                           draw->material);
+    }
+  }
+  return result;
+}
 
 class ConservativePass : public Voxeliser {
   Param<std::string> depth{
@@ -14,48 +40,135 @@ class ConservativePass : public Voxeliser {
       "conservative",
       {"conservative", "centre"},
       "voxels along the projection: all that the triangle crosses, or only the one at the pixel's centre"};
+  Param<std::string> method{
+      this,
+      "method",
+      "automatic",
+      {"automatic", "raster", "compute"},
+      "who finds the voxels, which are the same: the rasteriser, a compute shader, or what is faster"};
+
+  /// Rows of tiles that fit into the list of large triangles; what does not is done without it.
+  static constexpr std::uint32_t kRowCapacity = 1u << 17;
+  static constexpr std::size_t kBatchesAtOnce = std::tuple_size_v<decltype(computeShader::Batches::batches)>;
+  static constexpr std::uint64_t kRowBytes = 3 * sizeof(std::uint32_t),
+                                 kRowHeadBytes = 4 * sizeof(std::uint32_t);
 
   void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) override {
+    if (method == "raster" || (method == "automatic" && !prefersCompute(frame, draws))) {
+      rasterise(frame, list, draws);
+    } else {
+      compute(frame, list, draws);
+    }
+  }
+
+  /// A software rasteriser gains nothing from fixed functions. Elsewhere a triangle of less than a quad of
+  /// pixels wastes most of them (Schwarz & Seidel 2010, Sec. 6); surfaces fill about six sides of the grid.
+  bool prefersCompute(PassContext& frame, const Draws& draws) const {
+    if (frame.device().info().software) return true;
+    constexpr double kSmallestForRaster = 4.0;  // pixels of a quad
+    double triangles = 0.0;
+    for (const SceneDraw* draw : draws) triangles += draw->indexCount / 3;
+    return 6.0 * resolution * resolution < kSmallestForRaster * triangles;
+  }
+
+  void rasterise(PassContext& frame, const VoxelFragments& list, const Draws& draws) {
     GpuScene& scene = frame.scene();
     gpu::RenderTargets targets;
     targets.width = targets.height =
         std::max({list.grid.resolution.x, list.grid.resolution.y, list.grid.resolution.z});
     frame.device().beginDrawing(targets, {});
-    conservativeShader::Grid grid{};
+    rasterShader::Grid grid{};
     grid.gridLow = list.grid.low;
     grid.voxelSize = list.grid.voxelSize;
     grid.resolution = list.grid.resolution;
     grid.capacity = static_cast<int>(list.capacity);
-    grid.depthRange = depth == "conservative" ? 1 : 0;
+    rasterShader::Constants constants;
+    constants.depthRange = depth == "conservative" ? 1 : 0;
     for (const SceneDraw* draw : draws) {
       grid.firstIndex = static_cast<int>(draw->firstIndex);
-      conservativeShader::Variant variant;
+      rasterShader::Variant variant;
       variant.textures = frame.keepsEverything() || draw->diffuseTexture != nullptr;
       variant.masks = frame.keepsEverything() || draw->maskTexture != nullptr;
       const gpu::Texture& diffuse =
           draw->diffuseTexture != nullptr ? *draw->diffuseTexture : scene.whiteTexture();
       const gpu::Texture& mask = draw->maskTexture != nullptr ? *draw->maskTexture : scene.whiteTexture();
       frame.shaders().draw(
-          frame.program(conservativeShader::kProgram, variant.key()),
-          {conservativeShader::positions(scene.positions()), conservativeShader::normals(scene.normals()),
-           conservativeShader::texcoords(scene.texcoords()), conservativeShader::objects(scene.objects()),
-           conservativeShader::materials(scene.materials()), conservativeShader::indices(scene.indices()),
-           conservativeShader::grid(grid), conservativeShader::draw({draw->object, draw->material}),
-           conservativeShader::count(*list.count), conservativeShader::fragments(*list.fragments),
-           conservativeShader::diffuseTexture(diffuse, gpu::Sampling::linearMipsRepeat),
-           conservativeShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)},
+          frame.program(rasterShader::kProgram, variant.key(), constants.values()),
+          {rasterShader::positions(scene.positions()), rasterShader::normals(scene.normals()),
+           rasterShader::texcoords(scene.texcoords()), rasterShader::objects(scene.objects()),
+           rasterShader::materials(scene.materials()), rasterShader::indices(scene.indices()),
+           rasterShader::grid(grid), rasterShader::draw({draw->object, draw->material}),
+           rasterShader::count(*list.count), rasterShader::fragments(*list.fragments),
+           rasterShader::diffuseTexture(diffuse, gpu::Sampling::linearMipsRepeat),
+           rasterShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)},
           draw->indexCount);
     }
     frame.device().endDrawing();
+  }
+
+  void compute(PassContext& frame, const VoxelFragments& list, const Draws& draws) {
+    const gpu::BufferRef rows =
+        frame.buffer(kRowHeadBytes + kRowCapacity * kRowBytes, "rows of large triangles");
+    for (const auto& [textures, batches] : batchesOf(draws)) {
+      const std::span<const Batch> all(batches);
+      for (std::size_t first = 0; first < all.size(); first += kBatchesAtOnce) {
+        computeBatches(frame, list, textures.first, textures.second,
+                       all.subspan(first, std::min(all.size() - first, kBatchesAtOnce)), *rows);
+      }
+    }
+  }
+
+  void computeBatches(PassContext& frame, const VoxelFragments& list, const gpu::Texture* diffuse,
+                      const gpu::Texture* mask, std::span<const Batch> batches, gpu::Buffer& rows) {
+    GpuScene& scene = frame.scene();
+    const std::array<std::uint32_t, 4> noRows{0, 0, 1, 1};
+    rows.uploadValues(std::span<const std::uint32_t>(noRows));
+    computeShader::Grid grid{};
+    grid.gridLow = list.grid.low;
+    grid.voxelSize = list.grid.voxelSize;
+    grid.resolution = list.grid.resolution;
+    grid.capacity = static_cast<int>(list.capacity);
+    grid.rowCapacity = static_cast<int>(kRowCapacity);
+    computeShader::Batches table{};
+    std::copy(batches.begin(), batches.end(), std::begin(table.batches));
+    computeShader::Variant variant;
+    variant.textures = frame.keepsEverything() || diffuse != nullptr;
+    variant.masks = frame.keepsEverything() || mask != nullptr;
+    computeShader::Constants constants;
+    constants.depthRange = depth == "conservative" ? 1 : 0;
+    const std::vector<gpu::ResourceBinding> bindings{
+        computeShader::positions(scene.positions()),
+        computeShader::normals(scene.normals()),
+        computeShader::texcoords(scene.texcoords()),
+        computeShader::objects(scene.objects()),
+        computeShader::materials(scene.materials()),
+        computeShader::indices(scene.indices()),
+        computeShader::grid(grid),
+        computeShader::batches(table),
+        computeShader::count(*list.count),
+        computeShader::fragments(*list.fragments),
+        computeShader::rows(rows),
+        computeShader::diffuseTexture(diffuse != nullptr ? *diffuse : scene.whiteTexture(),
+                                      gpu::Sampling::linearMipsRepeat),
+        computeShader::maskTexture(mask != nullptr ? *mask : scene.whiteTexture(),
+                                   gpu::Sampling::linearMipsRepeat)};
+    frame.shaders().dispatch(frame.program(computeShader::kProgram, variant.key(), constants.values()),
+                             bindings, {static_cast<std::uint32_t>(batches.size()), 1, 1});
+    frame.device().barrier();
+    variant.large = 1;
+    frame.shaders().dispatchIndirect(
+        frame.program(computeShader::kProgram, variant.key(), constants.values()), bindings, rows,
+        sizeof(std::uint32_t));
+    frame.device().barrier();
   }
 };
 
 }  // namespace
 
 void addConservative(TechniqueRegistry& registry) {
-  registry.add<ConservativePass>(
-      "conservative",
-      "Single-pass conservative rasterisation through the dominant axis (Crassin & Green 2012)");
+  registry.add<ConservativePass>("conservative",
+                                 "Every voxel that a triangle touches, by rasterisation through the dominant "
+                                 "axis (Crassin & Green 2012) or by compute (Schwarz & Seidel 2010)");
 }
 
 }  // namespace lumivox::voxelization

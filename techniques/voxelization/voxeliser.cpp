@@ -4,21 +4,35 @@
 
 #include <algorithm>
 
+#include "fragment_list.h"
 #include "lumivox/base/error.h"
-#include "voxelization_shaders.h"
 
 namespace lumivox::voxelization {
 
-namespace finishShader = shaders::voxelization::finish;
+gpu::TextureDescription volumeOf(const GridPlacement& grid, gpu::Format format) {
+  gpu::TextureDescription description;
+  description.kind = gpu::TextureKind::d3;
+  description.format = format;
+  description.width = grid.resolution.x;
+  description.height = grid.resolution.y;
+  description.depth = grid.resolution.z;
+  return description;
+}
 
-Reads Voxeliser::readsFrom() const {
+Reads GridPass::readsSurface() const {
   const Reads surface = Reads::geometry | Reads::materials;
   return around == "camera" ? surface | Reads::camera : surface;
 }
 
-std::string Voxeliser::checkParameters() const {
+std::string GridPass::checkParameters() const {
   if (around == "camera" && !(extent > 0.0f)) return "around camera needs an extent above 0 m";
   return {};
+}
+
+GridPlacement GridPass::placement(PassContext& frame) const {
+  const SceneSnapshot& snapshot = frame.snapshot();
+  if (around == "camera") return placeGridAround(snapshot.camera.eye, extent, resolution, snapshot.origin);
+  return placeGrid(snapshot.gridBounds, resolution);
 }
 
 std::uint64_t Voxeliser::expectedFragments(const Scene& scene) const {
@@ -28,14 +42,8 @@ std::uint64_t Voxeliser::expectedFragments(const Scene& scene) const {
   return 12 * side * side + 4 * scene.triangleCount();
 }
 
-GridPlacement Voxeliser::placement(PassContext& frame) const {
-  const SceneSnapshot& snapshot = frame.snapshot();
-  if (around == "camera") return placeGridAround(snapshot.camera.eye, extent, resolution, snapshot.origin);
-  return placeGrid(snapshot.gridBounds, resolution);
-}
-
-Voxeliser::StillKey Voxeliser::stillKey(const PassContext& frame, const GridPlacement& grid,
-                                        const Draws& still) {
+GridPass::StillKey GridPass::stillKey(const PassContext& frame, const GridPlacement& grid,
+                                      const Draws& still) {
   StillKey key{grid, {}, {}};
   for (const ParamBase* parameter : parameters()) key.parameters.push_back(parameter->valueText());
   for (const SceneDraw* draw : still)
@@ -66,20 +74,26 @@ void Voxeliser::run(PassContext& frame) {
   list_.coverage = coverage();
   // A reader of an earlier frame may still hold the old count.
   list_.count = frame.buffer(4 * sizeof(std::uint32_t), "voxel fragment count");
-  if (!stillKept) list_.capacity = std::max(list_.capacity, expectedFragments(frame.sceneDescription()));
   // A list that was too small is made anew with the size that it turned out to need; a frame like the last
-  // one fits at once.
+  // one fits at once. A first guess is no reason to ask for more than one buffer can have.
+  std::uint64_t capacity = list_.capacity;
+  if (!stillKept) {
+    const std::uint64_t most = frame.device().info().maxStorageBytes / VoxelFragments::kFragmentBytes;
+    capacity = std::max(capacity, std::min(expectedFragments(frame.sceneDescription()), most));
+  }
   std::uint32_t count = 0;
   for (;;) {
     if (!stillKept) {
-      list_.fragments = frame.buffer(list_.capacity * VoxelFragments::kFragmentBytes, "voxel fragments");
+      list_.fragments.reset();  // before the next one is taken: the pool may give back the same
+      list_.fragments = frame.buffer(capacity * VoxelFragments::kFragmentBytes, "voxel fragments");
+      list_.capacity = capacity;
       stillCount_ = appendFrom(frame, still, 0);
     }
     // Of a list that is too small already, the size of the rest is still wanted.
     count = appendFrom(frame, moving, stillCount_);
     if (count <= list_.capacity) break;
     if (count > 0x7fffffffu) throw Error(fmt::format("{} fragments do not fit into one list", count));
-    list_.capacity = count;
+    capacity = count;
     stillKept = false;
   }
   stillKey_ = key;
@@ -87,10 +101,7 @@ void Voxeliser::run(PassContext& frame) {
     frame.reused("fragments of what stands still", "static geometry is voxelised once");
 
   list_.count->uploadValues(std::span<const std::uint32_t>(&count, 1));
-  frame.dispatch(frame.program(finishShader::kProgram),
-                 {finishShader::count(*list_.count),
-                  finishShader::parameters({static_cast<int>(list_.capacity), kWorkGroupSize})},
-                 {1, 1, 1}, {1, 1, 1});
+  finishList(frame, list_);
   fragments = list_;
 }
 

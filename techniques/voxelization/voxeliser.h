@@ -13,23 +13,28 @@ namespace lumivox::voxelization {
 
 inline constexpr int kWorkGroupSize = 64;  // of the passes that read a list of fragments
 
-/// A list of fragments begins with those of what stands still, and what moves is written behind them in every
-/// frame anew: nothing has to be merged, and nothing old can stay.
-class Voxeliser : public Pass {
+/// One texel a voxel.
+gpu::TextureDescription volumeOf(const GridPlacement& grid, gpu::Format format);
+
+/// What all passes have that make a grid of their own.
+class GridPass : public Pass {
  public:
-  Reads readsFrom() const override;
   std::string checkParameters() const override;
-  void run(PassContext& frame) override;
 
  protected:
+  GridPlacement placement(PassContext& frame) const;
+  /// What voxels of the scene's surface in this grid depend on.
+  Reads readsSurface() const;
+
   using Draws = std::vector<const SceneDraw*>;
-  /// Appends the fragments of these draws: the shader takes an index by adding to list.count, and writes
-  /// where the index is below list.capacity. The device's barrier follows.
-  virtual void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) = 0;
-  /// How the coverages of one voxel's fragments are combined.
-  virtual VoxelFragments::Coverage coverage() const { return VoxelFragments::Coverage::mean; }
-  /// A first guess at the number of fragments; a list that was too small is made anew.
-  virtual std::uint64_t expectedFragments(const Scene& scene) const;
+  /// What the voxels of still geometry depend on.
+  struct StillKey {
+    GridPlacement grid;
+    std::vector<std::string> parameters;
+    std::vector<glm::mat4> placements;
+    bool operator==(const StillKey&) const = default;
+  };
+  StillKey stillKey(const PassContext& frame, const GridPlacement& grid, const Draws& still);
 
   Param<int> resolution{
       this, "resolution", 64, {1, kLargestGrid}, "voxels along the longest side of the grid"};
@@ -40,18 +45,27 @@ class Voxeliser : public Pass {
                             "the grid holds the whole scene, or moves with the camera by whole voxels"};
   Param<float> extent{this,         "extent", 0.0f,
                       {0.0f, 1e9f}, "m",      "side of a grid around the camera; needed there, unused else"};
+};
+
+/// A list of fragments begins with those of what stands still, and what moves is written behind them in every
+/// frame anew: nothing has to be merged, and nothing old can stay.
+class Voxeliser : public GridPass {
+ public:
+  Reads readsFrom() const override { return readsSurface(); }
+  void run(PassContext& frame) override;
+
+ protected:
+  /// Appends the fragments of these draws: the shader takes an index by adding to list.count, and writes
+  /// where the index is below list.capacity. The device's barrier follows.
+  virtual void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) = 0;
+  /// How the coverages of one voxel's fragments are combined.
+  virtual VoxelFragments::Coverage coverage() const { return VoxelFragments::Coverage::mean; }
+  /// A first guess at the number of fragments; a list that was too small is made anew.
+  virtual std::uint64_t expectedFragments(const Scene& scene) const;
+
   Out<VoxelFragments> fragments{this, "fragments", "surface samples"};
 
  private:
-  /// What the fragments of still geometry depend on.
-  struct StillKey {
-    GridPlacement grid;
-    std::vector<std::string> parameters;
-    std::vector<glm::mat4> placements;
-    bool operator==(const StillKey&) const = default;
-  };
-  StillKey stillKey(const PassContext& frame, const GridPlacement& grid, const Draws& still);
-  GridPlacement placement(PassContext& frame) const;
   std::uint32_t appendFrom(PassContext& frame, const Draws& draws, std::uint32_t first);
 
   VoxelFragments list_;           ///< kept between frames, so that the fragments of still geometry stay
@@ -61,5 +75,15 @@ class Voxeliser : public Pass {
 
 /// Each registers the pass of its file.
 void addConservative(TechniqueRegistry& registry);
+void addMsaaOpacity(TechniqueRegistry& registry);
+void addSlicing(TechniqueRegistry& registry);
+void addDepthPeeling(TechniqueRegistry& registry);
+void addAverage(TechniqueRegistry& registry);
+void addPoints(TechniqueRegistry& registry);
+void addReproject(TechniqueRegistry& registry);
+void addAtlasBinary(TechniqueRegistry& registry);
+void addAtlasAttributes(TechniqueRegistry& registry);
+void addSolid(TechniqueRegistry& registry);
+void addView(TechniqueRegistry& registry);
 
 }  // namespace lumivox::voxelization

@@ -7,4 +7,14 @@ LUMIVOX_TECHNIQUE(registry) {
   registry.describe("Voxelisers: triangles to voxel fragments",
                     "Crassin & Green 2012; Schwarz & Seidel 2010; thesis Gomes 2015, Sec. 2.1.2, 4.2.1");
   addConservative(registry);
+  addMsaaOpacity(registry);
+  addSlicing(registry);
+  addDepthPeeling(registry);
+  addAverage(registry);
+  addPoints(registry);
+  addReproject(registry);
+  addAtlasBinary(registry);
+  addAtlasAttributes(registry);
+  addSolid(registry);
+  addView(registry);
 }

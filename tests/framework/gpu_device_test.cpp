@@ -559,3 +559,45 @@ TEST_CASE("two devices work in turn, and resources may outlive their device") {
   theirs.reset();
   CHECK(ours.downloadValues<std::uint32_t>()[1] == 1);
 }
+
+TEST_CASE("an empty framebuffer of several samples tells which of them a triangle covers") {
+  const int samples = device().info().maxSamples;
+  if (samples < 2) return test::skip("the device has one sample per pixel");
+  // The half of a target of 8 x 8 pixels on the upper left of its diagonal.
+  const std::string corner = R"(
+    void main() { gl_Position = vec4(gl_VertexID == 1 ? 1.0 : -1.0, gl_VertexID == 2 ? -1.0 : 1.0, 0.5, 1.0); })";
+  const Program counting = program("samples", {{Stage::vertex, corner}, {Stage::fragment, R"(
+    layout(std430, binding = 0) buffer Pixels { uint masks[]; };
+    void main() { masks[int(gl_FragCoord.y) * 8 + int(gl_FragCoord.x)] = uint(gl_SampleMaskIn[0]); })"}});
+  Buffer masks(device(), 64 * 4, "masks");
+  masks.clear();
+  RenderTargets targets;
+  targets.width = targets.height = 8;
+  targets.samples = samples;
+  device().beginDrawing(targets, {});
+  device().draw(counting, Bindings{storage(0, masks)}, 3);
+  device().endDrawing();
+  device().barrier();
+  const auto values = masks.downloadValues<std::uint32_t>();
+  const std::vector<glm::vec2> positions = device().samplePositions(samples);
+  REQUIRE(positions.size() == static_cast<std::size_t>(samples));
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      for (int i = 0; i < samples; ++i) {
+        const glm::vec2 place = glm::vec2(x, y) + positions[static_cast<std::size_t>(i)];
+        if (std::abs(place.x + place.y - 8.0f) < 0.01f) continue;  // on the edge: either is right
+        INFO("pixel " << x << ", " << y << ", sample " << i);
+        const bool covered = (values[static_cast<std::size_t>(8 * y + x)] >> i & 1) != 0;
+        REQUIRE(covered == (place.x + place.y < 8.0f));
+      }
+    }
+  }
+}
+
+TEST_CASE("more samples than the device has are refused with the number that it has") {
+  RenderTargets targets;
+  targets.width = targets.height = 4;
+  targets.samples = device().info().maxSamples + 1;
+  const std::string message = test::messageOf<Error>([&] { device().beginDrawing(targets, {}); });
+  CHECK_THAT(message, Catch::Matchers::Contains(std::to_string(device().info().maxSamples)));
+}

@@ -1,4 +1,4 @@
-// Voxels, health and repeated timings on vectors computed by hand.
+// Health and repeated timings on vectors computed by hand.
 #include <tbb/global_control.h>
 
 #include <cmath>
@@ -10,19 +10,6 @@
 #include "support/support.h"
 
 using namespace lumivox;
-
-TEST_CASE(
-    "precision is the share of occupied voxels that are right, recall that of right ones that are occupied") {
-  const std::vector<bool> truth = {true, true, true, true, false, false},
-                          occupied = {true, true, false, false, true, false};
-  const VoxelError error = compareVoxels(occupied, truth);
-  CHECK((error.truePositive == 2 && error.falsePositive == 1 && error.falseNegative == 2));
-  CHECK(error.precision() == Approx(2.0 / 3.0));
-  CHECK(error.recall() == Approx(0.5));
-  const VoxelError nothing = compareVoxels({false, false}, {false, false});
-  CHECK((nothing.precision() == 1.0 && nothing.recall() == 1.0));
-  CHECK_THROWS_AS(compareVoxels({true}, {true, false}), Error);
-}
 
 TEST_CASE("a health scan counts NaN, infinite and negative values and names the first") {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),

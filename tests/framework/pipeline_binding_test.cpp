@@ -222,3 +222,10 @@ TEST_CASE("a setting given to a pipeline must exist and fit") {
   CHECK_THAT(messageOf<Error>([&] { PipelineExecutor(*device, techniques, scene, pipeline, options); }),
              Contains("has no output 'p'; expected o"));
 }
+
+TEST_CASE("a pipeline that makes no part of a picture needs no output, and one that makes some does") {
+  accept("pass voxels toy.voxels { }");
+  CHECK_THAT(findings("pass voxels toy.voxels { }\npass gather toy.gather { grid voxels }"),
+             Contains("test.pipeline:3:6: the pipeline has no output, so that nobody sees what "
+                      "'gather.diffuse' makes; expected output NAME gather.diffuse"));
+}

@@ -100,6 +100,92 @@ TEST_CASE("the origin does not depend on the time") {
   CHECK(snapshotOf(scene, 0.0).origin == snapshotOf(scene, 17.3).origin);
 }
 
+TEST_CASE("the bounds for grids hold a turning object at every angle and stay where they are") {
+  Scene scene = triangle();
+  scene.objects.push_back(scene.objects[0]);
+  scene.objects[1].motion = RigidMotion{{1, 2, 0.5}, 0.9, {0.5, 0.2, 0.1}, {0, 0, 0}};
+  const SceneSnapshot first = snapshotOf(scene, 0.0);
+  float slack = 1e9f;
+  for (int i = 0; i < 200; ++i) {
+    const SceneSnapshot now = snapshotOf(scene, 0.035 * i);
+    CHECK(now.gridBounds.low == first.gridBounds.low);
+    CHECK(now.gridBounds.high == first.gridBounds.high);
+    for (int axis = 0; axis < 3; ++axis) {
+      CHECK(now.bounds.low[axis] >= first.gridBounds.low[axis] - 1e-5f);
+      CHECK(now.bounds.high[axis] <= first.gridBounds.high[axis] + 1e-5f);
+      slack = std::min(slack, first.gridBounds.high[axis] - now.bounds.high[axis]);
+    }
+  }
+  CHECK(slack < 0.01f);  // and no wider than the object reaches
+}
+
+TEST_CASE("the bounds of a whole turn about an axis are those of the circle") {
+  Scene scene = triangle();
+  scene.objects[0].motion = RigidMotion{{0, 0, 1}, 1.0, {0, 0, 0}, {0, 0, 0}};
+  // The farthest corners are 2 m from the axis, in the plane z = 0.
+  const auto [low, high] = sweptBoundsOf(scene, scene.objects[0]);
+  near(glm::vec3(low), {-2, -2, 0});
+  near(glm::vec3(high), {2, 2, 0});
+}
+
+TEST_CASE("a tilted axis narrows the circle's bounds along it") {
+  Scene scene = triangle();
+  scene.positions = {{0, 0, 0}, {1, 0, -1}, {0, 0, 0}};
+  // Perpendicular to the axis (1, 0, 1) / sqrt 2, sqrt 2 m away: reach sqrt 2 sqrt(1 - a_i^2) per axis.
+  scene.objects[0].motion = RigidMotion{{1, 0, 1}, 1.0, {0, 0, 0}, {0, 0, 0}};
+  const auto [low, high] = sweptBoundsOf(scene, scene.objects[0]);
+  near(glm::vec3(low), {-1, -std::sqrt(2.0f), -1});
+  near(glm::vec3(high), {1, std::sqrt(2.0f), 1});
+}
+
+TEST_CASE("the bounds for grids hold every frame of a deforming object") {
+  Scene scene = triangle();
+  VertexSequence sequence;
+  sequence.framesPerSecond = 1.0;
+  for (const float height : {0.0f, 5.0f, -3.0f}) {
+    sequence.positions.push_back({{0, 0, height}, {2, 0, height}, {0, 2, height}});
+    sequence.normals.push_back({{0, 0, 1}, {0, 0, 1}, {0, 0, 1}});
+  }
+  scene.objects[0].sequence = sequence;
+  const auto [low, high] = sweptBoundsOf(scene, scene.objects[0]);
+  near(glm::vec3(low), {0, 0, -3});
+  near(glm::vec3(high), {2, 2, 5});
+  for (const double time : {0.0, 0.4, 1.0, 1.7, 2.5, 100.25}) {
+    const SceneSnapshot now = snapshotOf(scene, time);
+    near(now.gridBounds.low + glm::vec3(now.origin), {0, 0, -3});
+    near(now.gridBounds.high + glm::vec3(now.origin), {2, 2, 5});
+  }
+}
+
+TEST_CASE("the bounds for grids follow a travelling object in steps of an eighth of the scene") {
+  Scene scene = triangle();
+  scene.objects.push_back(scene.objects[0]);
+  scene.objects[1].motion = RigidMotion{{0, 0, 1}, 0.0, {0, 0, 0}, {1, 0, 0}};
+  // The scene is 2 m long: steps of 0.25 m, upwards along X alone.
+  const auto high = [&](double time) {
+    const SceneSnapshot now = snapshotOf(scene, time);
+    CHECK(now.gridBounds.low.x + now.origin.x == Approx(0.0).margin(1e-6));
+    CHECK(now.gridBounds.high.y + now.origin.y == Approx(2.0));
+    CHECK(now.bounds.high.x <= now.gridBounds.high.x + 1e-6f);
+    return static_cast<double>(now.gridBounds.high.x) + now.origin.x;
+  };
+  CHECK(high(0.0) == Approx(2.0));
+  CHECK(high(0.1) == Approx(2.25));
+  CHECK(high(0.2) == Approx(2.25));
+  CHECK(high(0.3) == Approx(2.5));
+  CHECK(high(100.0) == Approx(102.0));
+  CHECK(high(0.1) == Approx(2.25));  // a function of the time alone
+}
+
+TEST_CASE("without motion the bounds for grids are the bounds, and without triangles they are empty") {
+  Scene scene = triangle();
+  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
+  near(snapshot.gridBounds.low, snapshot.bounds.low);
+  near(snapshot.gridBounds.high, snapshot.bounds.high);
+  scene.objects.clear();
+  CHECK(snapshotOf(scene, 0.0).gridBounds.empty);
+}
+
 TEST_CASE("normals of a stretched object stay perpendicular to its surface") {
   Scene scene = triangle();
   scene.objects[0].placement = glm::scale(glm::dmat4(1.0), {4, 1, 1});

@@ -1,100 +1,37 @@
 #include <algorithm>
-#include <glm/gtc/packing.hpp>
+#include <map>
 #include <random>
 #include <set>
 
+#include "lumivox/measure/voxels.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
+#include "support/voxel_fragments.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
 
 namespace {
 
-struct Fragment {  // mirror of VoxelFragment in shaders/common/voxel.glsl
-  std::uint32_t voxel, offset, normal, albedoRg, albedoBCoverage, emission;
-};
-using Cell = std::array<int, 3>;
-
-struct Voxels {
-  GridPlacement grid;
-  std::vector<Fragment> fragments;
-  std::set<Cell> occupied;
-};
-
-Voxels voxelise(const Scene& scene, int resolution, const char* depth = "conservative") {
+Voxels voxelise(const Scene& scene, int resolution, const char* depth = "conservative",
+                const char* method = "automatic") {
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   PassHarness harness(device(), techniques(), "voxelization", "conservative", scene, snapshot);
   harness.setParameter("resolution", resolution);
   harness.setParameter("depth", std::string(depth));
+  harness.setParameter("method", std::string(method));
   harness.run();
-  const auto& output = harness.output<VoxelFragments>("fragments");
-  Voxels result{output.grid, {}, {}};
-  const std::uint32_t count = output.count->downloadValues<std::uint32_t>()[0];
-  result.fragments = output.fragments->downloadValues<Fragment>();
-  REQUIRE(count <= result.fragments.size());
-  result.fragments.resize(count);
-  for (const Fragment& fragment : result.fragments) {
-    result.occupied.insert({static_cast<int>(fragment.voxel & 1023),
-                            static_cast<int>(fragment.voxel >> 10 & 1023),
-                            static_cast<int>(fragment.voxel >> 20 & 1023)});
-  }
-  return result;
+  return voxelsOf(harness.output<VoxelFragments>("fragments"));
 }
 
-/// Exact overlap of a triangle with an axis-aligned box by the separating axis theorem in double precision
-/// (Akenine-Moller 2001): 3 box normals, the triangle's normal, 9 cross products of edges. `slack` widens
-/// (positive) or shrinks the box.
-bool overlaps(const std::array<glm::dvec3, 3>& triangle, const glm::dvec3& centre, double half,
-              double slack) {
-  std::array<glm::dvec3, 3> v;
-  for (int i = 0; i < 3; ++i) v[i] = triangle[i] - centre;
-  const double h = half + slack;
-  const auto separated = [&](const glm::dvec3& axis) {
-    const double a = glm::dot(axis, v[0]), b = glm::dot(axis, v[1]), c = glm::dot(axis, v[2]);
-    const double reach = h * (std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z));
-    return std::min({a, b, c}) > reach || std::max({a, b, c}) < -reach;
-  };
-  const std::array<glm::dvec3, 3> unit{glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)};
-  for (const glm::dvec3& axis : unit) {
-    if (separated(axis)) return false;
-  }
-  if (separated(glm::cross(v[1] - v[0], v[2] - v[0]))) return false;
-  for (int e = 0; e < 3; ++e) {
-    for (const glm::dvec3& axis : unit) {
-      if (separated(glm::cross(v[(e + 1) % 3] - v[e], axis))) return false;
-    }
-  }
-  return true;
+VoxelTruth truthOf(const Scene& scene, const GridPlacement& grid) {
+  return trueVoxels(scene, snapshotOf(scene, 0.0), grid);
 }
 
-std::set<Cell> truth(const Scene& scene, const GridPlacement& grid, double slack) {
-  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  std::set<Cell> cells;
-  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
-    for (const Part& part : scene.objects[o].parts) {
-      for (std::uint32_t i = 0; i < part.indexCount; i += 3) {
-        std::array<glm::dvec3, 3> triangle;
-        glm::dvec3 low(1e300), high(-1e300);
-        for (std::uint32_t k = 0; k < 3; ++k) {
-          const glm::vec3 local = scene.positions[scene.indices[part.firstIndex + i + k]];
-          const glm::vec3 world(snapshot.objects[o].toWorld * glm::vec4(local, 1.0f));
-          triangle[k] = glm::dvec3(world - grid.low) / static_cast<double>(grid.voxelSize);
-          low = glm::min(low, triangle[k]);
-          high = glm::max(high, triangle[k]);
-        }
-        for (int x = static_cast<int>(low.x - 1); x <= high.x + 1; ++x)
-          for (int y = static_cast<int>(low.y - 1); y <= high.y + 1; ++y)
-            for (int z = static_cast<int>(low.z - 1); z <= high.z + 1; ++z) {
-              if (x < 0 || y < 0 || z < 0 || x >= grid.resolution.x || y >= grid.resolution.y ||
-                  z >= grid.resolution.z)
-                continue;
-              if (overlaps(triangle, glm::dvec3(x, y, z) + 0.5, 0.5, slack)) cells.insert({x, y, z});
-            }
-      }
-    }
-  }
-  return cells;
+VoxelSet setOf(const Voxels& voxels) {
+  VoxelSet set(voxels.grid.resolution);
+  for (const Cell& cell : voxels.occupied) set.insert({cell[0], cell[1], cell[2]});
+  return set;
 }
 
 Scene randomTriangles(int count, float size, unsigned seed) {
@@ -113,21 +50,17 @@ Scene randomTriangles(int count, float size, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("conservative depth marks every voxel that an exact overlap test marks and hardly any other") {
-  // Float rounding decides contacts closer than a ten-thousandth of a voxel; both sides of that are accepted.
-  constexpr double kSlack = 1e-3;
-  for (const float size : {0.02f, 0.2f, 1.5f}) {
-    const Scene scene = randomTriangles(200, size, 7);
-    const Voxels voxels = voxelise(scene, 48);
-    const std::set<Cell> inner = truth(scene, voxels.grid, -kSlack),
-                         outer = truth(scene, voxels.grid, kSlack);
-    std::size_t missed = 0, wrong = 0;
-    for (const Cell& cell : inner) missed += voxels.occupied.count(cell) == 0;
-    for (const Cell& cell : voxels.occupied) wrong += outer.count(cell) == 0;
-    INFO("size " << size << ", truth " << inner.size() << ", occupied " << voxels.occupied.size());
-    CHECK(inner.size() > 100);
-    CHECK(missed == 0);
-    CHECK(wrong == 0);
+TEST_CASE("conservative depth marks every voxel that an exact overlap test marks and no other") {
+  for (const char* method : {"raster", "compute"}) {
+    for (const float size : {0.02f, 0.2f, 1.5f}) {
+      const Scene scene = randomTriangles(200, size, 7);
+      const Voxels voxels = voxelise(scene, 48, "conservative", method);
+      const VoxelError error = compareVoxels(setOf(voxels), truthOf(scene, voxels.grid));
+      INFO(method << ", size " << size << ", occupied " << voxels.occupied.size());
+      CHECK(error.truePositive > 100);
+      CHECK(error.falseNegative == 0);
+      CHECK(error.falsePositive == 0);
+    }
   }
 }
 
@@ -144,9 +77,9 @@ TEST_CASE("a needle of one to a million still marks every voxel along it") {
   Object& object = builder.quad({-1, -1, -1}, {2, 1.9f, 1.8f}, {1e-6f, -1e-6f, 0}, builder.lambert(0.5f));
   object.parts.front().indexCount = 3;
   const Voxels voxels = voxelise(builder.scene, 32);
-  const std::set<Cell> exact = truth(builder.scene, voxels.grid, -1e-3);
-  CHECK(exact.size() > 30);
-  for (const Cell& cell : exact) CHECK(voxels.occupied.count(cell) == 1);
+  const VoxelError error = compareVoxels(setOf(voxels), truthOf(builder.scene, voxels.grid));
+  CHECK(error.truePositive > 30);
+  CHECK(error.falseNegative == 0);
 }
 
 TEST_CASE("an axis-aligned box occupies exactly the shell of its voxels") {
@@ -164,16 +97,10 @@ TEST_CASE("every fragment keeps the albedo of its material and a normal of unit 
   builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.material(material));
   const Voxels voxels = voxelise(builder.scene, 16);
   REQUIRE(!voxels.fragments.empty());
-  for (const Fragment& fragment : voxels.fragments) {
-    const glm::vec2 redGreen = glm::unpackHalf2x16(fragment.albedoRg),
-                    blueCoverage = glm::unpackHalf2x16(fragment.albedoBCoverage);
-    CHECK(redGreen.x == 0.25f);
-    CHECK(redGreen.y == 0.5f);
-    CHECK(blueCoverage.x == 0.75f);
-    CHECK(blueCoverage.y == 1.0f);
-    const glm::vec2 octahedral = glm::unpackSnorm2x16(fragment.normal);
-    CHECK(octahedral.x == Approx(0.0f).margin(1e-4));  // +y lies at (0, 1)
-    CHECK(octahedral.y == Approx(1.0f).margin(1e-4));
+  for (const FragmentData& fragment : voxels.fragments) {
+    CHECK(fragment.albedo() == glm::vec3(0.25f, 0.5f, 0.75f));
+    CHECK(fragment.coverage() == 1.0f);
+    CHECK(glm::length(fragment.unitNormal() - glm::vec3(0, 1, 0)) < 1e-4f);
   }
 }
 
@@ -183,14 +110,68 @@ TEST_CASE("many triangles in one voxel make as many fragments, beyond what fits 
   builder.box({-1, -1, -1}, {1, 1, 1}, grey, false);
   for (int i = 0; i < 400; ++i) builder.quad({0.05f, 0.05f, 0.05f}, {0.01f, 0, 0}, {0, 0.01f, 0}, grey);
   const Voxels voxels = voxelise(builder.scene, 8);
+  std::map<std::uint32_t, std::size_t> perVoxel;
+  for (const FragmentData& fragment : voxels.fragments) ++perVoxel[fragment.voxel];
   std::size_t most = 0;
-  for (const Fragment& fragment : voxels.fragments) {
-    most = std::max<std::size_t>(most, static_cast<std::size_t>(std::count_if(
-                                           voxels.fragments.begin(), voxels.fragments.end(),
-                                           [&](const Fragment& f) { return f.voxel == fragment.voxel; })));
-    if (most >= 800) break;
-  }
+  for (const auto& [voxel, count] : perVoxel) most = std::max(most, count);
   CHECK(most == 800);  // two triangles each
+}
+
+TEST_CASE("the rasteriser and the compute shader find the same voxels with the same attributes to the bit") {
+  for (const float size : {0.02f, 0.1f, 0.3f, 1.5f}) {
+    const Scene scene = randomTriangles(300, size, 21);
+    for (const int resolution : {1, 5, 48, 200}) {
+      for (const char* depth : {"conservative", "centre"}) {
+        INFO("size " << size << ", resolution " << resolution << ", depth " << depth);
+        const Voxels raster = voxelise(scene, resolution, depth, "raster"),
+                     compute = voxelise(scene, resolution, depth, "compute");
+        CHECK(raster.occupied == compute.occupied);
+        CHECK(raster.fragments == compute.fragments);
+        CHECK(raster.fragments.size() >= 100);
+      }
+    }
+  }
+}
+
+TEST_CASE("more rows of large triangles than their list has room for are found all the same", "[slow]") {
+  SceneBuilder builder;
+  const int grey = builder.lambert(0.5f);
+  // 1200 triangles half a voxel wide and 1022 tall: 128 rows of tiles each, and room for 131072 rows.
+  for (int i = 0; i < 600; ++i) {
+    const float place = static_cast<float>(i) / 300.0f - 1.0f;
+    builder.quad({place, -1, 0.3f * place}, {1e-3f, 0, 0}, {0, 2, 0.01f}, grey);
+  }
+  const Voxels raster = voxelise(builder.scene, 1024, "conservative", "raster"),
+               compute = voxelise(builder.scene, 1024, "conservative", "compute");
+  CHECK(raster.fragments.size() > 1000000);
+  CHECK((raster.fragments == compute.fragments));
+}
+
+TEST_CASE("triangles on the faces of voxels, needles and points are the same for both ways") {
+  SceneBuilder builder;
+  const int grey = builder.lambert(0.5f);
+  // Corners on multiples of a quarter in a grid of 16 voxels per unit: faces and edges of voxels.
+  builder.box({-0.5f, -0.25f, -1}, {0.5f, 0.25f, 1}, grey, false);
+  builder.quad({-1, -1, -1}, {2, 1.9f, 1.8f}, {1e-6f, -1e-6f, 0}, grey);
+  builder.quad({0.3f, 0.2f, 0.1f}, {0, 0, 0}, {0, 0, 0}, grey);
+  builder.quad({-0.7f, 0.3f, 0}, {1.4f, 0, 0}, {0.7f, 0, 0}, grey);
+  for (Object& object : builder.scene.objects) {
+    for (std::uint32_t v = 0; v < object.vertexCount; ++v)
+      builder.scene.normals[object.firstVertex + v] = {0, 1, 0};
+  }
+  const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
+  const auto around = [&](const char* method) {
+    PassHarness harness(device(), techniques(), "voxelization", "conservative", builder.scene, snapshot);
+    harness.setParameter("resolution", 64);
+    harness.setParameter("around", "camera");
+    harness.setParameter("extent", 4.0);
+    harness.setParameter("method", std::string(method));
+    harness.run();
+    return voxelsOf(harness.output<VoxelFragments>("fragments"));
+  };
+  const Voxels raster = around("raster"), compute = around("compute");
+  CHECK(raster.fragments == compute.fragments);
+  CHECK(raster.occupied.size() > 1000);
 }
 
 TEST_CASE("an empty scene and a resolution of one voxel are no special cases") {

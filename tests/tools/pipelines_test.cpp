@@ -18,7 +18,8 @@ TEST_CASE(
   TechniqueSet techniques({test::binaryDirectory() / "lib/techniques"});
   std::size_t seen = 0;
   for (const fs::path& folder :
-       {test::sourceDirectory() / "scenes/pipelines", test::sourceDirectory() / "docs/examples"})
+       {test::sourceDirectory() / "scenes/pipelines", test::sourceDirectory() / "scenes/pipelines/voxelisers",
+        test::sourceDirectory() / "docs/examples"})
     for (const auto& entry : fs::directory_iterator(folder)) {
       if (entry.path().extension() != ".pipeline") continue;
       INFO(entry.path());

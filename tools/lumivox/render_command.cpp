@@ -23,57 +23,6 @@ struct RenderCommand {
   bool keepEverything = false, health = false;
 };
 
-/// "3..9" or "3"; both ends belong to it.
-std::pair<int, int> parseFrames(const std::string& text) {
-  int first = 0, last = 0, used = 0;
-  const auto whole = [&] { return text.size() <= 24 && static_cast<std::size_t>(used) == text.size(); };
-  if (std::sscanf(text.c_str(), "%d..%d%n", &first, &last, &used) == 2 && whole() && first >= 0 &&
-      last >= first)
-    return {first, last};
-  used = 0;
-  if (std::sscanf(text.c_str(), "%d%n", &first, &used) == 1 && whole() && first >= 0) return {first, first};
-  throw Error(fmt::format("--frames '{}': expected FIRST..LAST, whole numbers from 0, as 0..47", text));
-}
-
-/// The numbered name of a frame: a run of # in the file's name is the number, else it goes before the
-/// extension as _0007.
-fs::path numberedName(const fs::path& output, int frame) {
-  std::string stem = output.filename().string();
-  const std::size_t first = stem.find('#');
-  if (first != std::string::npos) {
-    const std::size_t end = stem.find_first_not_of('#', first);
-    const std::size_t digits = (end == std::string::npos ? stem.size() : end) - first;
-    return output.parent_path() / stem.replace(first, digits, fmt::format("{:0{}}", frame, digits));
-  }
-  return output.parent_path() /
-         fmt::format("{}_{:04}{}", output.stem().string(), frame, output.extension().string());
-}
-
-std::map<std::string, std::string> provenance(const GlobalOptions& global, const Scene& scene,
-                                              const Pipeline& pipeline, const RenderOptions& options,
-                                              const gpu::Device& device, double time) {
-  std::string parameters;
-  for (const PipelineParameter& parameter : pipeline.parameters) {
-    const auto set = options.parameters.find(parameter.name);
-    parameters += (parameters.empty() ? "" : " ") + parameter.name + "=" +
-                  (set == options.parameters.end() ? parameter.value : set->second).text();
-  }
-  return {{"lumivox.version", LUMIVOX_VERSION},
-          {"lumivox.command", global.commandLine},
-          {"lumivox.scene", scene.name},
-          {"lumivox.scene_hash", scene.hash.text()},
-          {"lumivox.pipeline", pipeline.name},
-          {"lumivox.pipeline_hash", pipeline.hash.text()},
-          {"lumivox.parameters", parameters},
-          {"lumivox.keep_everything", options.keepEverything ? "yes" : "no"},
-          {"lumivox.seed", fmt::format("{}", options.seed)},
-          {"lumivox.time", fmt::format("{}", time)},
-          {"lumivox.camera", scene.camera(options.camera).name},
-          {"lumivox.device", device.info().renderer},
-          {"lumivox.driver", device.info().version},
-          {"lumivox.shaders", device.shaderInput() == gpu::ShaderInput::spirv ? "spirv" : "glsl"}};
-}
-
 Picture mainPicture(const RenderCommand& command, const FrameResult& frame) {
   if (command.onlyOutput.empty()) return compositePicture(frame);
   const auto found = frame.outputs.find(command.onlyOutput);
@@ -105,7 +54,7 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
   if (!(command.framesPerSecond > 0.0) || !std::isfinite(command.framesPerSecond))
     throw Error("--fps: expected a number above 0");
   const bool animation = !command.frames.empty();
-  const auto [first, last] = animation ? parseFrames(command.frames) : std::pair(0, 0);
+  const auto [first, last] = animation ? parseFrames("--frames", command.frames) : std::pair(0, 0);
   for (const int frame : {first, last})
     requireWritable(animation ? numberedName(command.output, frame) : command.output);
 

@@ -4,45 +4,17 @@
 #include <algorithm>
 #include <set>
 
-#include "command.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
-#include "lumivox/report/report.h"
+#include "measure_options.h"
 
 namespace lumivox::command {
 namespace {
 
 struct ReportCommand {
-  ReportOptions options;
-  RunOptions run;
-  bool noSweep = false, json = false;
+  MeasureOptions measure;
+  bool json = false;
 };
-
-std::string quartiles(const TimingStatistics& time) {
-  return time.repeats == 0
-             ? "-"
-             : fmt::format("{} [{}, {}]", formatMilliseconds(time.median),
-                           formatMilliseconds(time.lowerQuartile), formatMilliseconds(time.upperQuartile));
-}
-
-const ComponentError* find(const ReportPoint& point, const std::string& output, bool bias) {
-  const ComponentError* only = nullptr;
-  for (const ComponentError& error : point.errors) {
-    if (error.output != output) continue;
-    if (error.bias == bias) return &error;
-    if (only == nullptr) only = &error;
-  }
-  return only;
-}
-
-/// "0.0123 ± 0.0004 (0.31)": RMSE, and in brackets its ratio to leaving the component out.
-std::string rmseText(const ComponentError* error) {
-  if (error == nullptr) return "";
-  const Measured rmse = error->rmse();
-  const double ratio = error->ratioToNothing();
-  return fmt::format("{:.3g} ± {:.1g}", rmse.value, rmse.uncertainty) +
-         (ratio == ratio ? fmt::format(" ({:.2f})", ratio) : std::string());
-}
 
 void printSummary(const ReportSummary& summary) {
   // One column of errors per output that any pipeline has; the whole picture first.
@@ -58,14 +30,13 @@ void printSummary(const ReportSummary& summary) {
   rows[0].push_back("Memory");
   rows[0].push_back("Health");
   for (const ReportPoint& point : summary.points) {
-    std::string parameters;
-    for (const auto& [name, value] : point.parameters)
-      parameters += (parameters.empty() ? "" : " ") + name + "=" + value.text();
+    std::map<std::string, std::string> parameters;
+    for (const auto& [name, value] : point.parameters) parameters[name] = value.text();
     std::vector<std::string> row{std::filesystem::path(point.scene).stem().string(),
-                                 std::filesystem::path(point.pipeline).stem().string(), parameters,
-                                 quartiles(point.frameMs)};
+                                 std::filesystem::path(point.pipeline).stem().string(),
+                                 parametersText(parameters), quartilesText(point.frameMs)};
     for (const std::string& output : outputs)
-      row.push_back(rmseText(find(point, output, output != kWholePicture)));
+      row.push_back(rmseText(errorOf(point, output, output != kWholePicture)));
     row.push_back(formatBytes(point.peakBytes));
     row.push_back(!point.failure.empty()         ? "failed"
                   : point.healthFindings.empty() ? "good"
@@ -92,22 +63,8 @@ void printSummary(const ReportSummary& summary) {
   print(text);
 }
 
-int report(ReportCommand command, const GlobalOptions& global) {
-  ReportOptions& options = command.options;
-  options.settings = command.run.settings;
-  options.camera = command.run.camera;
-  options.time = command.run.time;
-  options.seed = command.run.seed;
-  std::tie(options.width, options.height) = command.run.size();
-  options.openSweeps = !command.noSweep;
-  options.commandLine = global.commandLine;
-  if (global.device != "auto")
-    options.repeatArguments.insert(options.repeatArguments.end(), {"--device", global.device});
-  if (global.shaders != "auto")
-    options.repeatArguments.insert(options.repeatArguments.end(), {"--shaders", global.shaders});
-  for (const auto& folder : global.assets)
-    options.repeatArguments.insert(options.repeatArguments.end(), {"--assets", folder.string()});
-
+int report(const ReportCommand& command, const GlobalOptions& global) {
+  const ReportOptions options = command.measure.asked(global);
   requireWritable(options.output);
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();
@@ -132,26 +89,13 @@ void addReportCommand(Commands& commands) {
   auto* command = commands.app.add_subcommand(
       "report", "measures pipelines on scenes: error, time and what was left out, as one page");
   auto all = std::make_shared<ReportCommand>();
-  ReportOptions& options = all->options;
-  command->add_option("SCENE", options.scenes, "the scenes' texts")->required();
-  command->add_option("--pipeline", options.pipelines,
-                      "pipelines' texts (default: every committed one that suits the scene)");
-  command->add_option("-o,--out", options.output,
+  command->add_option("-o,--out", all->measure.options.output,
                       "the page; .csv and .json go beside it (default out/report/index.html)");
-  all->run.addTo(*command);
+  all->measure.addTo(*command, "a results store that the measured points are added to (default: none)");
   command
-      ->add_option("--spp", options.truthSamples,
-                   "the truth's samples per pixel (default: by the size of the picture)")
-      ->check(CLI::Range(1, 1 << 24));
-  command
-      ->add_option("--subpixels", options.subpixels,
-                   "judged pictures are means over N positions in the pixel (default 16; 1: its centre)")
-      ->check(CLI::Range(1, 4096));
-  command->add_option("--repeats", options.repeats, "timed frames per point (default 5)")
-      ->check(CLI::Range(1, 10000));
-  command->add_option("--seeds", options.seeds, "seeds per point (default 2)")->check(CLI::Range(1, 10000));
-  command->add_flag("--no-sweep", all->noSweep,
-                    "only the default parameters, not the points of the pipelines' sweeps");
+      ->add_option("--voxels", all->measure.options.voxelResolution,
+                   "adds a section on the voxelisers at this resolution (default: none)")
+      ->check(CLI::Range(1, 1024));
   command->add_flag("--json", all->json, "print the JSON in place of the table");
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] { return report(*all, global); });

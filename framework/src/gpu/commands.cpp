@@ -105,6 +105,11 @@ void attach(GLuint framebuffer, GLenum point, const Texture& texture, int layer)
   }
 }
 
+[[noreturn]] void refuseSamples(const DeviceState& state, int samples) {
+  throw Error(fmt::format("{} samples per pixel asked for, but {} has 1 to {}", samples, state.info.renderer,
+                          state.info.maxSamples));
+}
+
 void setRasterState(const RasterState& state) {
   const auto enable = [](GLenum what, bool on) { on ? glEnable(what) : glDisable(what); };
   // Depth is written only while the test is on: without reading, it passes always.
@@ -176,6 +181,8 @@ void Device::beginDrawing(const RenderTargets& targets, const RasterState& raste
   DeviceState& state = *state_;
   state.use();
   assert(!state.drawing && "beginDrawing without endDrawing");
+  assert(targets.samples == 1 || (targets.colours.empty() && targets.depth == nullptr));
+  if (targets.samples < 1 || targets.samples > state.info.maxSamples) refuseSamples(state, targets.samples);
   glm::ivec2 size(targets.width, targets.height);
   const auto narrow = [&](const Texture& texture) {
     const TextureDescription& d = texture.description();
@@ -209,6 +216,10 @@ void Device::beginDrawing(const RenderTargets& targets, const RasterState& raste
   if (drawBuffers.empty() && targets.depth == nullptr) {
     glNamedFramebufferParameteri(state.framebuffer, GL_FRAMEBUFFER_DEFAULT_WIDTH, size.x);
     glNamedFramebufferParameteri(state.framebuffer, GL_FRAMEBUFFER_DEFAULT_HEIGHT, size.y);
+    if (targets.samples > 1) {
+      glNamedFramebufferParameteri(state.framebuffer, GL_FRAMEBUFFER_DEFAULT_SAMPLES, targets.samples);
+      glNamedFramebufferParameteri(state.framebuffer, GL_FRAMEBUFFER_DEFAULT_FIXED_SAMPLE_LOCATIONS, GL_TRUE);
+    }
   }
   state.drawing = true;
   const GLenum status = glCheckNamedFramebufferStatus(state.framebuffer, GL_DRAW_FRAMEBUFFER);
@@ -259,6 +270,29 @@ void Device::endDrawing() {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glDeleteFramebuffers(1, &state.framebuffer);
   state.framebuffer = 0;
+}
+
+std::vector<glm::vec2> Device::samplePositions(int samples) {
+  DeviceState& state = *state_;
+  state.use();
+  assert(!state.drawing);
+  if (samples < 1 || samples > state.info.maxSamples) refuseSamples(state, samples);
+  std::vector<glm::vec2> positions(static_cast<std::size_t>(samples), glm::vec2(0.5f));
+  if (samples == 1) return positions;
+  // Drivers tell them of a framebuffer with something to draw to; they are the same without.
+  GLuint framebuffer = 0, target = 0;
+  glCreateRenderbuffers(1, &target);
+  glNamedRenderbufferStorageMultisample(target, samples, GL_RGBA8, 1, 1);
+  glCreateFramebuffers(1, &framebuffer);
+  glNamedFramebufferRenderbuffer(framebuffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  for (int i = 0; i < samples; ++i)
+    glGetMultisamplefv(GL_SAMPLE_POSITION, static_cast<GLuint>(i), &positions[static_cast<std::size_t>(i)].x);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glDeleteFramebuffers(1, &framebuffer);
+  glDeleteRenderbuffers(1, &target);
+  state.check("asking for the positions of samples");
+  return positions;
 }
 
 void Device::barrier() {

@@ -1,5 +1,4 @@
-// Voxels, health and repeated timings.
-#include <fmt/format.h>
+// Health and repeated timings.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -7,35 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "lumivox/base/error.h"
 #include "lumivox/measure/metrics.h"
 #include "measure/quantile.h"
 
 namespace lumivox {
-
-double VoxelError::precision() const {
-  const std::uint64_t claimed = truePositive + falsePositive;
-  return claimed == 0 ? 1.0 : static_cast<double>(truePositive) / static_cast<double>(claimed);
-}
-
-double VoxelError::recall() const {
-  const std::uint64_t present = truePositive + falseNegative;
-  return present == 0 ? 1.0 : static_cast<double>(truePositive) / static_cast<double>(present);
-}
-
-VoxelError compareVoxels(const std::vector<bool>& occupied, const std::vector<bool>& truth) {
-  if (occupied.size() != truth.size()) {
-    throw Error(fmt::format("a grid of {} voxels cannot be compared with a truth of {}", occupied.size(),
-                            truth.size()));
-  }
-  VoxelError result;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    if (occupied[i] && truth[i]) ++result.truePositive;
-    if (occupied[i] && !truth[i]) ++result.falsePositive;
-    if (!occupied[i] && truth[i]) ++result.falseNegative;
-  }
-  return result;
-}
 
 Health scanHealth(const float* values, std::size_t count, int components, bool alphaToo) {
   assert(components >= 1);

@@ -80,8 +80,9 @@ PipelineExecutor::State::State(gpu::Device& gpuDevice, TechniqueSource& source, 
   request.keepEverything = options.keepEverything;
   request.interactive = options.interactive;
   for (const std::string& output : outputNames) {
-    request.wanted.push_back(options.wanted.empty() || std::find(options.wanted.begin(), options.wanted.end(),
-                                                                 output) != options.wanted.end());
+    const bool named =
+        std::find(options.wanted.begin(), options.wanted.end(), output) != options.wanted.end();
+    request.wanted.push_back(options.wantsOutputs && (options.wanted.empty() || named));
   }
   for (const std::string& name : pipeline.techniques()) {
     const Technique* technique = techniques.technique(name);
@@ -209,6 +210,9 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
 }
 
 void PipelineExecutor::State::collectPictures(FrameResult& result, Pictures pictures) {
+  if (pictures == Pictures::yes && graph.outputs.empty() && request.forced.empty())
+    throw Error(
+        fmt::format("pipeline \"{}\" makes no picture; expected output NAME pass.port", pipeline.name));
   for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
     if (!request.wanted[i]) continue;
     const BoundOutput& bound = graph.outputs[i];
@@ -283,6 +287,10 @@ shader::ShaderLibrary& PipelineExecutor::shaders() {
 void PipelineExecutor::keepOutput(const std::string& pass, const std::string& port) {
   state_->request.forced.push_back(state_->graph.find(pass, port));
   state_->plan.reset();
+}
+
+const Pass& PipelineExecutor::pass(const std::string& name) const {
+  return *state_->graph.passes[state_->graph.findPass(name)].object;
 }
 
 const OutBase* PipelineExecutor::output(const std::string& pass, const std::string& port) const {

@@ -270,6 +270,22 @@ class Binder {
           {output.name, connect(output.place, length, output.pass, output.port, Image::kPortKind,
                                 fmt::format("output '{}' of the pipeline", output.name))});
     }
+    if (pipeline_.outputs.empty()) requireNoPicture();
+  }
+
+  /// Only a pipeline that makes no part of a picture has nothing to deliver.
+  void requireNoPicture() {
+    for (std::size_t i = 0; i < graph_.passes.size(); ++i) {
+      if (!graph_.passes[i].object) continue;
+      for (const OutBase* output : graph_.passes[i].object->outputs()) {
+        if (output->contributes() == Contributes::nothing) continue;
+        const std::string port = graph_.passes[i].name + "." + output->name();
+        report(pipeline_.passes[i],
+               fmt::format("the pipeline has no output, so that nobody sees what '{}' makes", port),
+               "output NAME " + port);
+        return;
+      }
+    }
   }
 
   // ---- parameters ----------------------------------------------------------------------------------------
@@ -412,17 +428,21 @@ std::string BoundGraph::outputText(OutputIndex index) const {
   return passes[static_cast<std::size_t>(index.pass)].name + "." + output(index).name();
 }
 
-OutputIndex BoundGraph::find(const std::string& pass, const std::string& port) const {
+std::size_t BoundGraph::findPass(const std::string& pass) const {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < passes.size(); ++i) {
+    if (passes[i].name == pass) return i;
     names.push_back(passes[i].name);
-    if (passes[i].name != pass) continue;
-    const int index = indexOf(passes[i].object->outputs(), port);
-    if (index >= 0) return {static_cast<int>(i), index};
-    throw Error(
-        fmt::format("pass '{}' has no output '{}'; expected {}", pass, port, portsText(*passes[i].object)));
   }
   throw Error(fmt::format("the pipeline has no pass '{}'; expected {}", pass, oneOf(names, "none")));
+}
+
+OutputIndex BoundGraph::find(const std::string& pass, const std::string& port) const {
+  const std::size_t position = findPass(pass);
+  const int index = indexOf(passes[position].object->outputs(), port);
+  if (index >= 0) return {static_cast<int>(position), index};
+  throw Error(fmt::format("pass '{}' has no output '{}'; expected {}", pass, port,
+                          portsText(*passes[position].object)));
 }
 
 MissingTechnique explainMissing(const TechniqueSource& techniques, const std::string& name) {

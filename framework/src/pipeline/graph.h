@@ -42,6 +42,8 @@ struct BoundGraph {
   }
   /// "gather.diffuse"
   std::string outputText(OutputIndex index) const;
+  /// Index of a pass; Error that lists what there is, when there is no such pass.
+  std::size_t findPass(const std::string& pass) const;
   /// Error that lists what there is, when there is no such pass or port.
   OutputIndex find(const std::string& pass, const std::string& port) const;
 };

@@ -26,7 +26,8 @@ bool isFloat(gpu::Format format) {
 
 /// Positions, normals and spherical-harmonic coefficients have signs; radiance, opacity and depth have none.
 bool mayBeNegative(const std::string& portKind) {
-  return portKind == GBuffer::kPortKind || portKind == ShGrid::kPortKind;
+  return portKind == GBuffer::kPortKind || portKind == ShGrid::kPortKind ||
+         portKind == ReflectiveShadowMap::kPortKind || portKind == AttributeGrid::kPortKind;
 }
 
 struct Bad {

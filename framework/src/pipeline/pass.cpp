@@ -46,7 +46,8 @@ std::string unmetNeed(Needs needs, const SceneTraits& traits) {
                       {Needs::emission, traits.emission, "an emissive material"},
                       {Needs::textures, traits.textures, "a texture"},
                       {Needs::movingGeometry, traits.movingGeometry, "moving geometry"},
-                      {Needs::triangles, traits.triangles, "triangles"}};
+                      {Needs::triangles, traits.triangles, "triangles"},
+                      {Needs::particles, traits.particles, "particles"}};
   for (const Need& need : all) {
     const bool asked = (static_cast<std::uint32_t>(needs) & static_cast<std::uint32_t>(need.flag)) != 0;
     if (asked && !need.met) return need.words;
@@ -123,6 +124,9 @@ std::vector<gpu::TextureRef> texturesOf(const ShGrid& grid) {
     for (const gpu::TextureRef& channel : level.coefficients) result.push_back(channel);
   }
   return result;
+}
+std::vector<gpu::TextureRef> texturesOf(const Particles&) {
+  return {};
 }
 std::vector<gpu::TextureRef> texturesOf(const ScatteringGrid& grid) {
   std::vector<gpu::TextureRef> result;

@@ -46,8 +46,10 @@ std::vector<dsl::BlockSpecification> makeSpecifications() {
           "param", dsl::PropertyType::name,
           "`param NAME DEFAULT in LOW..HIGH` or `param NAME DEFAULT in [a b c]`: a value that passes read as "
           "`$NAME`, that --set NAME=VALUE changes and that a sweep varies."),
-      property("output", dsl::PropertyType::output,
-               "`output NAME pass.port`: a picture that the pipeline delivers under this name.")};
+      property(
+          "output", dsl::PropertyType::output,
+          "`output NAME pass.port`: a picture that the pipeline delivers under this name. A pipeline whose "
+          "passes make no part of a picture, a voxeliser for instance, needs none.")};
   pipeline.blocks = {pass};
 
   dsl::BlockSpecification sweep;
@@ -140,8 +142,6 @@ class TextReader {
     }
     if (pipeline_.passes.empty() && findings_.empty())
       report(block.place, block.word, "the pipeline has no pass", "pass NAME TECHNIQUE.PASS { ... }");
-    if (pipeline_.outputs.empty() && findings_.empty())
-      report(block.place, block.word, "the pipeline has no output", "output NAME pass.port");
   }
 
   void readPass(const dsl::Block& block) {

@@ -71,6 +71,24 @@ void add(Hasher& hasher, const Camera& camera) {
   }
 }
 
+void add(Hasher& hasher, const Medium& medium) {
+  add(hasher, medium.extinction);
+  add(hasher, medium.albedo);
+  hasher.add(medium.anisotropy).add(medium.box.has_value());
+  if (medium.box) {
+    add(hasher, medium.box->first);
+    add(hasher, medium.box->second);
+  }
+  hasher.add(medium.particles).add(medium.spread).add(medium.radius).add(medium.rise).add(medium.drift);
+  hasher.add(medium.life).add(medium.seed).add(medium.volume != nullptr);
+  add(hasher, medium.source);
+  if (medium.volume) {
+    add(hasher, medium.volume->low);
+    hasher.add(medium.volume->voxelSize).add(medium.volume->resolution.x).add(medium.volume->resolution.y);
+    hasher.add(medium.volume->resolution.z).add(medium.volume->values);
+  }
+}
+
 /// Of all pixels, so that damage inside an entry that still reads as a picture is noticed.
 ContentHash contentOf(const LayeredPicture& picture) {
   Hasher hasher;
@@ -117,6 +135,7 @@ ContentHash contentOf(const Scene& scene) {
   hasher.add(std::uint64_t{scene.cameras.size()});
   for (const Camera& camera : scene.cameras) add(hasher, camera);
   add(hasher, scene.environment);
+  for (const Medium& medium : scene.media) add(hasher, medium);
   return hasher.finish();
 }
 
@@ -124,6 +143,7 @@ ContentHash cacheKey(const Scene& scene, const ResolvedOptions& resolved) {
   const ReferenceOptions& options = resolved.options;
   Hasher hasher;
   hasher.add("lumivox reference").add(kTracerVersion);
+  if (!scene.media.empty()) hasher.add(kMediaVersion);
   const ContentHash content = contentOf(scene);
   hasher.add(content.high).add(content.low);
   hasher.add(options.samplesPerPixel)

@@ -12,6 +12,8 @@ namespace lumivox::reference {
 /// The version of the path tracer; raise it with every change that changes pictures, so that older cached
 /// truths are not taken.
 inline constexpr int kTracerVersion = 2;
+/// The same for what changes pictures of scenes with media alone.
+inline constexpr int kMediaVersion = 2;
 
 /// Scene::hash, or for a scene made by code the hash of all that the path tracer reads.
 ContentHash contentOf(const Scene& scene);

@@ -6,6 +6,7 @@
 #include "lumivox/base/random.h"
 #include "lumivox/reference/path_tracer.h"
 #include "reference/lights.h"
+#include "reference/media.h"
 #include "reference/ray_scene.h"
 #include "reference/scattering.h"
 
@@ -19,6 +20,18 @@ struct PathSample {
   float unoccluded = 1.0f;
 
   glm::vec3 full() const { return direct + indirectDiffuse + indirectGlossy; }
+};
+
+/// The same in a scene with media. What lies between the camera and the first surface is left out of the
+/// surfaces' light, and stands beside it.
+struct MediaPathSample {
+  PathSample surfaces;
+  glm::vec3 transmittance{1.0f};      ///< between the camera and the first surface, or the end of all media
+  glm::vec3 scatteredSingle{0.0f};    ///< light of the lights that the media scatter to the camera once
+  glm::vec3 scatteredMultiple{0.0f};  ///< all other light that comes to the camera out of the media
+
+  glm::vec3 scattered() const { return scatteredSingle + scatteredMultiple; }
+  glm::vec3 full() const { return transmittance * surfaces.full() + scattered(); }
 };
 
 /// The way of the path tracer to the triangles; counts its rays.
@@ -42,6 +55,7 @@ struct Integrator {
 
   const RayScene& scene;
   const LightSampler& lights;
+  const Media& media;
   glm::vec3 environment;
   int bounces;
   bool roulette;
@@ -51,19 +65,70 @@ struct Integrator {
   PathSample trace(Rays& rays, RandomStream& random, const glm::vec3& origin,
                    const glm::vec3& direction) const;
 
+  /// For scenes with media.
+  template <class Rays>
+  MediaPathSample traceThroughMedia(Rays& rays, RandomStream& random, const glm::vec3& origin,
+                                    const glm::vec3& direction) const;
+
  private:
   /// Light of one chosen emitter that reaches a surface.
   struct NextEvent {
     glm::vec3 diffuse{0.0f};  ///< W/(sr m^2), to be multiplied by the albedo
     glm::vec3 glossy{0.0f};   ///< reflected radiance
   };
-  template <class Rays>
+  template <bool ThroughMedia, class Rays>
   NextEvent nextEvent(Rays& rays, RandomStream& random, const Surface& surface) const;
+
+  /// 1 where a cosine-weighted direction is open as far as the occlusion distance, else 0.
+  template <class Rays>
+  float unoccludedAt(Rays& rays, RandomStream& random, const Surface& surface) const {
+    if (!(occlusionDistance > 0.0f)) return 1.0f;
+    const float u1 = random.uniform(), u2 = random.uniform();
+    const glm::vec3 probe = sampleCosine(surface.normal, u1, u2);
+    const bool open = glm::dot(probe, surface.geometricNormal) > 0.0f &&
+                      !rays.occluded(surface.position, probe, occlusionDistance);
+    return open ? 1.0f : 0.0f;
+  }
+
+  /// Light that arrives where a walk began. `bounces`: how often the light was reflected or scattered on its
+  /// way there, a miss counting as a bounce; `scattered`: whether a medium did one of them.
+  struct Arrival {
+    glm::vec3 radiance;
+    int bounces;
+    bool scattered;
+  };
+  /// What light meets behind a point in a direction that was chosen with a density, through media. Calls
+  /// arrive(Arrival) for all of it.
+  template <class Rays, class Arrive>
+  void walk(Rays& rays, RandomStream& random, glm::vec3 origin, glm::vec3 direction, float density,
+            Arrive&& arrive) const;
+  /// Light of one chosen emitter that is scattered once at a collision, against `direction`; times the weight
+  /// of the collision.
+  template <class Rays>
+  glm::vec3 nextScattering(Rays& rays, RandomStream& random, const Collision& collision,
+                           const glm::vec3& direction) const;
+  template <class Rays>
+  void traceSurfaces(Rays& rays, RandomStream& random, const Hit& hit, const glm::vec3& direction,
+                     PathSample& result) const;
+  template <class Rays>
+  void traceScattered(Rays& rays, RandomStream& random, const glm::vec3& origin, const glm::vec3& direction,
+                      float reach, MediaPathSample& result) const;
+  /// Russian roulette once little of a path's radiance is left; survivors stand for the others. False: the
+  /// path ends.
+  bool survives(RandomStream& random, glm::vec3& throughput) const {
+    const float largest = std::max({throughput.x, throughput.y, throughput.z});
+    if (!(largest > 0.0f)) return false;
+    if (!roulette || largest >= kRouletteBelow) return true;
+    const float survival = largest / kRouletteBelow;
+    if (random.uniform() >= survival) return false;
+    throughput *= 1.0f / survival;
+    return true;
+  }
 };
 
-template <class Rays>
+template <bool ThroughMedia, class Rays>
 Integrator::NextEvent Integrator::nextEvent(Rays& rays, RandomStream& random, const Surface& surface) const {
-  const LightSample light = lights.sample(scene, surface, random);
+  const LightSample light = lights.sample(scene, surface.position, random);
   if (!light.shines) return {};
   const Reflectance reflectance = reflectanceTowards(surface, light.direction);
   if (reflectance.density == 0.0f) return {};
@@ -71,6 +136,12 @@ Integrator::NextEvent Integrator::nextEvent(Rays& rays, RandomStream& random, co
   // Only emissive triangles can also be met by a reflected ray; for other lights the ratio is zero and the
   // weight one.
   const float weight = powerHeuristic(reflectance.density * light.inverseDensity);
+  if constexpr (ThroughMedia) {
+    const glm::vec3 irradiance =
+        weight * light.irradiance *
+        media.transmittance(surface.position, light.direction, light.reach(), random);
+    return {reflectance.lambert * irradiance, reflectance.glossy * irradiance};
+  }
   return {weight * reflectance.lambert * light.irradiance, weight * reflectance.glossy * light.irradiance};
 }
 
@@ -87,13 +158,7 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
   Surface surface;
   scene.surfaceAt(hit, direction, surface);
 
-  if (occlusionDistance > 0.0f) {
-    const float u1 = random.uniform(), u2 = random.uniform();
-    const glm::vec3 probe = sampleCosine(surface.normal, u1, u2);
-    const bool open = glm::dot(probe, surface.geometricNormal) > 0.0f &&
-                      !rays.occluded(surface.position, probe, occlusionDistance);
-    result.unoccluded = open ? 1.0f : 0.0f;
-  }
+  result.unoccluded = unoccludedAt(rays, random, surface);
 
   // Throughput of the first surface's lobes, and of the path behind it; radiance that arrives at the first
   // surface over exactly one and over any number of bounces.
@@ -104,7 +169,7 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
     if (bounce == 1) arrivingOnce += throughput * radiance;
   };
   for (int depth = 0;; ++depth) {
-    const NextEvent event = lights.empty() ? NextEvent{} : nextEvent(rays, random, surface);
+    const NextEvent event = lights.empty() ? NextEvent{} : nextEvent<false>(rays, random, surface);
     surface.readTexture();
     const glm::vec3 reflected = event.diffuse * surface.diffuse + event.glossy;
     if (depth == 0) {
@@ -124,13 +189,7 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
       firstGlossy = reflection.glossy;
     } else {
       throughput *= reflection.diffuse + reflection.glossy;
-      // Russian roulette once little of the path's radiance is left; survivors stand for the others.
-      const float largest = std::max({throughput.x, throughput.y, throughput.z});
-      if (roulette && largest < kRouletteBelow) {
-        const float survival = largest / kRouletteBelow;
-        if (random.uniform() >= survival) break;
-        throughput *= 1.0f / survival;
-      }
+      if (!survives(random, throughput)) break;
     }
 
     if (!rays.closestHit(surface.position, reflection.direction, hit)) {
@@ -160,3 +219,5 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
 }
 
 }  // namespace lumivox::reference
+
+#include "reference/integrator_media.h"

@@ -105,13 +105,14 @@ LightSampler::LightSampler(RayScene& scene, const SceneSnapshot& snapshot) {
   choice_ = AliasTable(flux);
 }
 
-LightSample LightSampler::sample(const RayScene& scene, const Surface& surface, RandomStream& random) const {
+LightSample LightSampler::sample(const RayScene& scene, const glm::vec3& position,
+                                 RandomStream& random) const {
   const Choice& choice = choices_[choices_.size() == 1 ? 0 : choice_.pick(random.bits())];
-  return choice.triangle ? sampleTriangle(scene, surface, choice, random) : sampleLight(choice, surface);
+  return choice.triangle ? sampleTriangle(scene, position, choice, random) : sampleLight(choice, position);
 }
 
-LightSample LightSampler::sampleTriangle(const RayScene& scene, const Surface& surface, const Choice& choice,
-                                         RandomStream& random) const {
+LightSample LightSampler::sampleTriangle(const RayScene& scene, const glm::vec3& position,
+                                         const Choice& choice, RandomStream& random) const {
   LightSample result;
   const TriangleRecord& triangle = scene.triangles[choice.index];
   const SurfaceMaterial& material = scene.materials[triangle.material];
@@ -124,7 +125,7 @@ LightSample LightSampler::sampleTriangle(const RayScene& scene, const Surface& s
   // The shadow ray ends in front of the light, at the height where rays leave it.
   const glm::vec3 end =
       triangle.corner + u * triangle.edge1 + v * triangle.edge2 + triangle.offset * triangle.normal;
-  const glm::vec3 path = end - surface.position;
+  const glm::vec3 path = end - position;
   const float squaredDistance = glm::dot(path, path);
   // Density per area, seen from a distance of 1 and head on; where it vanishes the point lies on the light
   // itself.
@@ -142,7 +143,7 @@ LightSample LightSampler::sampleTriangle(const RayScene& scene, const Surface& s
   return result;
 }
 
-LightSample LightSampler::sampleLight(const Choice& choice, const Surface& surface) const {
+LightSample LightSampler::sampleLight(const Choice& choice, const glm::vec3& position) const {
   const PreparedLight& prepared = lights_[choice.index];
   const LightState& light = prepared.state;
   LightSample result;
@@ -153,7 +154,7 @@ LightSample LightSampler::sampleLight(const Choice& choice, const Surface& surfa
     result.irradiance = choice.inverseProbability * light.power;
     return result;
   }
-  const glm::vec3 path = light.position - surface.position;
+  const glm::vec3 path = light.position - position;
   const float squaredDistance = glm::dot(path, path);
   if (!(squaredDistance > 0.0f)) return result;
   result.direction = (1.0f / std::sqrt(squaredDistance)) * path;

@@ -1,6 +1,7 @@
 // Choosing a light, and a point of it, for next-event estimation.
 #pragma once
 
+#include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
 #include <vector>
@@ -21,6 +22,11 @@ struct LightSample {
       0.0f;  ///< sr; of choosing this direction among all to emissive triangles; 0 for a light without extent
   glm::vec3 shadowDirection;  ///< not unit: for the shadow ray
   float shadowReach = 0.0f;   ///< in lengths of shadowDirection
+
+  /// The whole way to the light, m.
+  float reach() const {
+    return std::isinf(shadowReach) ? shadowReach : shadowReach * glm::length(shadowDirection);
+  }
 };
 
 class LightSampler {
@@ -31,8 +37,8 @@ class LightSampler {
   bool empty() const { return choice_.empty(); }
   bool hasEmitters() const { return emitters_ > 0; }
 
-  /// A light for this surface.
-  LightSample sample(const RayScene& scene, const Surface& surface, RandomStream& random) const;
+  /// A light for this point.
+  LightSample sample(const RayScene& scene, const glm::vec3& position, RandomStream& random) const;
 
   /// 1/sr: density at which sample() would have picked the direction to this point of an emissive triangle.
   static float density(const TriangleRecord& triangle, float squaredDistance, float cosineAtLight) {
@@ -45,9 +51,9 @@ class LightSampler {
     std::uint32_t index;
     float inverseProbability;
   };
-  LightSample sampleTriangle(const RayScene& scene, const Surface& surface, const Choice& choice,
+  LightSample sampleTriangle(const RayScene& scene, const glm::vec3& position, const Choice& choice,
                              RandomStream& random) const;
-  LightSample sampleLight(const Choice& choice, const Surface& surface) const;
+  LightSample sampleLight(const Choice& choice, const glm::vec3& position) const;
 
   /// A light without extent, with the cosines of a spot's angles.
   struct PreparedLight {

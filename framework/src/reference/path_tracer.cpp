@@ -17,11 +17,6 @@ namespace lumivox {
 namespace reference {
 namespace {
 
-constexpr std::array<const char*, PixelStatistics::kRadianceLayers + 1> kLayerNames = {
-    "direct", "one_bounce_diffuse", "one_bounce_glossy", "one_bounce", "indirect_diffuse", "indirect_glossy",
-    "full",   "ambient_occlusion"};
-constexpr int kOcclusionLayer = PixelStatistics::kRadianceLayers;
-
 void require(bool good, const char* option, const std::string& value, const char* expected) {
   if (!good) throw Error(fmt::format("reference: {} is {}; expected {}", option, value, expected));
 }
@@ -41,9 +36,6 @@ ResolvedOptions resolve(const Scene& scene, const ReferenceOptions& given) {
   require(given.occlusionDistance >= 0.0 && !std::isnan(given.occlusionDistance),
           "the distance of ambient occlusion", std::to_string(given.occlusionDistance),
           "a positive number of metres (0 for a tenth of the scene's diagonal)");
-  if (!scene.media.empty()) {
-    logWarning("reference: '{}' has participating media; the path tracer leaves them out", scene.name);
-  }
   ResolvedOptions resolved{given, snapshotOf(scene, given.time, given.camera, given.width, given.height)};
   resolved.options.camera = scene.camera(given.camera).name;
   resolved.options.width = resolved.snapshot.camera.width;
@@ -58,36 +50,32 @@ ResolvedOptions resolve(const Scene& scene, const ReferenceOptions& given) {
 Tracer::Tracer(const Scene& scene, const ResolvedOptions& resolved)
     : rays(scene, resolved.snapshot),
       lights(rays, resolved.snapshot),
+      media(scene, resolved.snapshot),
       integrator{rays,
                  lights,
+                 media,
                  scene.environment,
                  resolved.options.bounces,
                  resolved.options.roulette,
                  static_cast<float>(resolved.options.occlusionDistance)} {}
 
-Film::Film(int width, int height) {
-  for (int layer = 0; layer <= kOcclusionLayer; ++layer) {
-    const auto index = static_cast<std::size_t>(layer);
-    means_[index] = Picture(width, height, layer == kOcclusionLayer ? 1 : 3);
-    variances_[index] = Picture(width, height, layer == kOcclusionLayer ? 1 : 3);
+Film::Film(int width, int height, bool media) {
+  if (media) {
+    names_.assign(kMediaLayers.begin(), kMediaLayers.end());
+  } else {
+    names_.assign(kSurfaceLayers.begin(), kSurfaceLayers.end());
   }
-}
-
-void Film::write(int x, int y, const PixelStatistics& pixel) {
-  for (int layer = 0; layer <= kOcclusionLayer; ++layer) {
-    const auto index = static_cast<std::size_t>(layer);
-    for (int channel = 0; channel < means_[index].channels(); ++channel) {
-      means_[index].at(x, y, channel) = pixel.mean(3 * layer + channel);
-      variances_[index].at(x, y, channel) = pixel.varianceOfMean(3 * layer + channel);
-    }
-  }
+  for (std::size_t layer = 0; layer < names_.size(); ++layer) means_.emplace_back(width, height, 3);
+  names_.push_back("ambient_occlusion");
+  means_.emplace_back(width, height, 1);
+  variances_ = means_;
 }
 
 LayeredPicture Film::take() {
   LayeredPicture result;
-  for (std::size_t layer = 0; layer < kLayerNames.size(); ++layer) {
-    result.layers.emplace(kLayerNames[layer], std::move(means_[layer]));
-    result.layers.emplace(std::string(kLayerNames[layer]) + ".variance", std::move(variances_[layer]));
+  for (std::size_t layer = 0; layer < names_.size(); ++layer) {
+    result.layers.emplace(names_[layer], std::move(means_[layer]));
+    result.layers.emplace(names_[layer] + ".variance", std::move(variances_[layer]));
   }
   return result;
 }
@@ -111,8 +99,8 @@ LayeredPicture renderReference(const Scene& scene, const ReferenceOptions& given
     throw Error(
         "reference: one sample per pixel; expected at least 2, because the noise is told from their spread");
   }
-  Film film(options.width, options.height);
   const Tracer tracer(scene, resolved);
+  Film film(options.width, options.height, !tracer.media.empty());
   const Tiles tiles(options.width, options.height);
   std::optional<Progress> progress;
   if (options.progress) {
@@ -147,7 +135,10 @@ glm::vec3 referenceRadiance(const Scene& scene, double time, glm::dvec3 originWo
     // A stream of its own, apart from those of pixels.
     RandomStream random(resolved.options.seed, std::numeric_limits<std::uint32_t>::max(),
                         static_cast<std::uint32_t>(sample));
-    sum += glm::dvec3(tracer.integrator.trace(rays, random, origin, direction / length).full());
+    const glm::vec3 unit = direction / length;
+    sum += glm::dvec3(tracer.media.empty()
+                          ? tracer.integrator.trace(rays, random, origin, unit).full()
+                          : tracer.integrator.traceThroughMedia(rays, random, origin, unit).full());
   }
   return glm::vec3(sum / static_cast<double>(resolved.options.samplesPerPixel));
 }

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <string>
+#include <vector>
 
 #include "lumivox/base/picture.h"
 #include "lumivox/reference/path_tracer.h"
@@ -28,54 +31,100 @@ struct Tracer {
 
   RayScene rays;
   LightSampler lights;
+  Media media;
   Integrator integrator;
 };
 
-/// Mean and variance of the mean of the paths of one pixel.
+/// The radiance layers that one path says something about, in the order of kRadianceLayers.
+inline constexpr std::array<const char*, 7> kSurfaceLayers = {
+    "direct", "one_bounce_diffuse", "one_bounce_glossy", "one_bounce", "indirect_diffuse", "indirect_glossy",
+    "full"};
+/// The same with media, where they stand behind those of the surfaces.
+inline constexpr std::array<const char*, 11> kMediaLayers = {"direct",
+                                                             "one_bounce_diffuse",
+                                                             "one_bounce_glossy",
+                                                             "one_bounce",
+                                                             "indirect_diffuse",
+                                                             "indirect_glossy",
+                                                             "full",
+                                                             "transmittance",
+                                                             "scattered_single",
+                                                             "scattered_multiple",
+                                                             "scattered"};
+
+inline std::array<glm::vec3, kSurfaceLayers.size()> radiancesOf(const PathSample& sample) {
+  const glm::vec3 oneBounce = sample.direct + sample.oneBounceDiffuse + sample.oneBounceGlossy;
+  return {sample.direct,          sample.oneBounceDiffuse, sample.oneBounceGlossy, oneBounce,
+          sample.indirectDiffuse, sample.indirectGlossy,   sample.full()};
+}
+inline std::array<glm::vec3, kMediaLayers.size()> radiancesOf(const MediaPathSample& sample) {
+  const PathSample& s = sample.surfaces;
+  const glm::vec3 oneBounce =
+      sample.transmittance * (s.direct + s.oneBounceDiffuse + s.oneBounceGlossy) + sample.scatteredSingle;
+  return {s.direct,
+          s.oneBounceDiffuse,
+          s.oneBounceGlossy,
+          oneBounce,
+          s.indirectDiffuse,
+          s.indirectGlossy,
+          sample.full(),
+          sample.transmittance,
+          sample.scatteredSingle,
+          sample.scatteredMultiple,
+          sample.scattered()};
+}
+
+/// Mean and variance of the mean of the paths of one pixel: radiance layers, then the occlusion.
+template <std::size_t Layers>
 class PixelStatistics {
  public:
-  static constexpr int kRadianceLayers = 7;
-  void add(const PathSample& sample) {
-    const glm::vec3 oneBounce = sample.direct + sample.oneBounceDiffuse + sample.oneBounceGlossy;
-    const glm::vec3 radiances[kRadianceLayers] = {
-        sample.direct,          sample.oneBounceDiffuse, sample.oneBounceGlossy, oneBounce,
-        sample.indirectDiffuse, sample.indirectGlossy,   sample.full()};
+  static constexpr std::size_t kChannels = 3 * Layers + 1;
+  void add(const std::array<glm::vec3, Layers>& radiances, float unoccluded) {
     std::array<float, kChannels> values;
-    for (std::size_t layer = 0; layer < kRadianceLayers; ++layer) {
+    for (std::size_t layer = 0; layer < Layers; ++layer) {
       for (std::size_t channel = 0; channel < 3; ++channel) {
         values[3 * layer + channel] = radiances[layer][static_cast<int>(channel)];
       }
     }
-    values[kChannels - 1] = sample.unoccluded;
+    values[kChannels - 1] = unoccluded;
     for (std::size_t i = 0; i < kChannels; ++i) sum_[i] += static_cast<double>(values[i]);
     for (std::size_t i = 0; i < kChannels; ++i) {
       squares_[i] += static_cast<double>(values[i]) * static_cast<double>(values[i]);
     }
     ++count_;
   }
-  float mean(int channel) const { return static_cast<float>(sum_[at(channel)] / count_); }
-  float varianceOfMean(int channel) const {
-    const double sum = sum_[at(channel)];
-    const double centred = std::max(0.0, squares_[at(channel)] - sum * sum / count_);
+  float mean(std::size_t channel) const { return static_cast<float>(sum_[channel] / count_); }
+  float varianceOfMean(std::size_t channel) const {
+    const double sum = sum_[channel];
+    const double centred = std::max(0.0, squares_[channel] - sum * sum / count_);
     return static_cast<float>(centred / (count_ - 1.0) / count_);
   }
 
  private:
-  static constexpr std::size_t kChannels = 3 * kRadianceLayers + 1;  ///< the last is the occlusion
-  static std::size_t at(int channel) { return static_cast<std::size_t>(channel); }
   std::array<double, kChannels> sum_{}, squares_{};
   double count_ = 0.0;
 };
 
-/// The pictures that pixels are written to.
+/// The pictures that pixels are written to: the radiance layers, and the occlusion last.
 class Film {
  public:
-  Film(int width, int height);
-  void write(int x, int y, const PixelStatistics& pixel);
+  Film(int width, int height, bool media);
+  template <std::size_t Layers>
+  void write(int x, int y, const PixelStatistics<Layers>& pixel) {
+    assert(means_.size() == Layers + 1);
+    for (std::size_t layer = 0; layer <= Layers; ++layer) {
+      for (int channel = 0; channel < means_[layer].channels(); ++channel) {
+        means_[layer].at(x, y, channel) = pixel.mean(3 * layer + static_cast<std::size_t>(channel));
+        variances_[layer].at(x, y, channel) =
+            pixel.varianceOfMean(3 * layer + static_cast<std::size_t>(channel));
+      }
+    }
+  }
   LayeredPicture take();
 
  private:
-  std::array<Picture, PixelStatistics::kRadianceLayers + 1> means_, variances_;
+  std::vector<std::string> names_;
+  std::vector<Picture> means_, variances_;
 };
 
 /// The picture's tiles, row by row.
@@ -100,10 +149,11 @@ class Tiles {
   int width_, height_, columns_, rows_;
 };
 
-/// Paths through the pixels of one tile. The numbers of a path depend on seed, pixel and sample only.
-template <class Rays>
-void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Tiles& tiles, int tile,
-                Rays& rays, Film& film) {
+/// Paths through the pixels of one tile: addPath(statistics, random, direction) each. The numbers of a path
+/// depend on seed, pixel and sample only.
+template <std::size_t Layers, class AddPath>
+void renderPixels(const ResolvedOptions& resolved, const Tiles& tiles, int tile, Film& film,
+                  AddPath&& addPath) {
   const CameraView& camera = resolved.snapshot.camera;
   // The direction is affine in the picture's coordinates.
   const glm::vec3 corner = camera.direction(0.0f, 0.0f);
@@ -111,7 +161,7 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
   const glm::vec3 perColumn = (camera.direction(width, 0.0f) - corner) / width;
   const glm::vec3 perRow = (camera.direction(0.0f, height) - corner) / height;
   tiles.forEachPixel(tile, [&](int x, int y) {
-    PixelStatistics pixel;
+    PixelStatistics<Layers> pixel;
     const auto stream = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(camera.width) +
                         static_cast<std::uint32_t>(x);
     for (int sample = 0; sample < resolved.options.samplesPerPixel; ++sample) {
@@ -119,10 +169,30 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
       const float column = static_cast<float>(x) + random.uniform(),
                   row = static_cast<float>(y) + random.uniform();
       const glm::vec3 direction = glm::normalize(corner + column * perColumn + row * perRow);
-      pixel.add(tracer.integrator.trace(rays, random, camera.eye, direction));
+      addPath(pixel, random, direction);
     }
     film.write(x, y, pixel);
   });
+}
+
+template <class Rays>
+void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Tiles& tiles, int tile,
+                Rays& rays, Film& film) {
+  const glm::vec3& eye = resolved.snapshot.camera.eye;
+  const Integrator& integrator = tracer.integrator;
+  if (tracer.media.empty()) {
+    renderPixels<kSurfaceLayers.size()>(
+        resolved, tiles, tile, film, [&](auto& pixel, RandomStream& random, const glm::vec3& direction) {
+          const PathSample sample = integrator.trace(rays, random, eye, direction);
+          pixel.add(radiancesOf(sample), sample.unoccluded);
+        });
+  } else {
+    renderPixels<kMediaLayers.size()>(
+        resolved, tiles, tile, film, [&](auto& pixel, RandomStream& random, const glm::vec3& direction) {
+          const MediaPathSample sample = integrator.traceThroughMedia(rays, random, eye, direction);
+          pixel.add(radiancesOf(sample), sample.surfaces.unoccluded);
+        });
+  }
 }
 
 /// Threads that a request of `threads` (0: all) gets.

@@ -9,6 +9,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "report/voxel_page.h"
 
 namespace lumivox::report {
 namespace {
@@ -260,6 +261,7 @@ nlohmann::ordered_json toJson(const ReportData& data) {
                                   {"paper", technique.paper}});
   json["scenes"] = Json::array();
   for (const SceneRecord& scene : data.scenes) json["scenes"].push_back(toJson(scene));
+  if (!data.voxels.empty()) json["voxels"] = voxelRecordsJson(data.voxels);
   return json;
 }
 

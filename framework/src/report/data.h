@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lumivox/report/report.h"
+#include "lumivox/report/voxelisers.h"
 
 namespace lumivox::report {
 
@@ -68,6 +69,7 @@ struct ReportData {
   std::vector<TechniqueRecord> techniques;
   std::vector<SkippedTechnique> skipped;
   std::vector<SceneRecord> scenes;
+  std::vector<VoxeliserRecord> voxels;  ///< only when they were asked for
 };
 
 /// Everything but the pictures.

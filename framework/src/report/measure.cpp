@@ -33,9 +33,9 @@ struct Judged {
   std::vector<Picture> seeds;
 };
 
-RenderOptions renderOptions(const MeasureContext& context, const PointRecord& record) {
+RenderOptions renderOptions(const MeasureContext& context, const ReportPoint& point) {
   RenderOptions options;
-  options.parameters = record.point.parameters;
+  options.parameters = point.parameters;
   options.seed = context.options.seed;
   options.camera = context.options.camera;
   options.width = context.width;
@@ -147,7 +147,7 @@ FrameResult renderFiltered(PipelineExecutor& executor, const MeasureContext& con
 }  // namespace
 
 void measureErrors(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
-  RenderOptions options = renderOptions(context, record);
+  RenderOptions options = renderOptions(context, record.point);
   std::vector<Judged> judged;
   for (int seed = 0; seed < std::max(1, context.options.seeds); ++seed) {
     options.seed = context.options.seed + static_cast<std::uint64_t>(seed);
@@ -198,43 +198,72 @@ void measureErrors(const MeasureContext& context, const Pipeline& pipeline, Poin
   }
 }
 
-void measureTimes(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
-  ReportPoint& point = record.point;
-  constexpr double kNextFrame = 1.0 / 60.0;  // s
-  PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline,
-                            renderOptions(context, record));
-  const double time = context.options.time;
-  executor.render(time, 0, PipelineExecutor::Pictures::no);  // warm-up: links programs, fills the pool
-
+struct TimedPoint::State {
+  ReportPoint& point;
+  double time;                        ///< s
+  const std::uint64_t bytesOfOthers;  ///< of points that are timed at the same time
+  PipelineExecutor executor;
+  int nextFrames = 0;
   std::vector<double> frameMs, shares, nextMs;
   std::map<std::string, std::vector<double>> deviceMs, hostMs;
-  for (int repeat = 0; repeat < std::max(1, context.options.repeats); ++repeat) {
-    executor.invalidate();
-    const FrameResult frame = executor.render(time, 0, PipelineExecutor::Pictures::no);
-    frameMs.push_back(frame.frameMs);
-    if (frame.frameMs > 0.0) shares.push_back(frame.betweenPassesMs / frame.frameMs);
-    if (repeat == 0) {
-      point.peakBytes = frame.peakBytes;
-      for (const PassRecord& pass : frame.passes) {
-        point.passOrder.push_back(pass.name);
-        point.passBytes[pass.name] = pass.bytes;
-      }
-    }
-    for (const PassRecord& pass : frame.passes) {
-      deviceMs[pass.name].push_back(pass.deviceMs);
-      hostMs[pass.name].push_back(pass.hostMs);
-    }
-  }
-  for (int repeat = 0; repeat < std::max(1, context.options.repeats); ++repeat)
-    nextMs.push_back(
-        executor.render(time + (repeat + 1) * kNextFrame, repeat + 1, PipelineExecutor::Pictures::no)
-            .frameMs);
 
-  point.frameMs = statisticsOf(frameMs);
-  point.nextFrameMs = statisticsOf(nextMs);
-  point.frameworkShare = shares.empty() ? 0.0 : statisticsOf(shares).median;
-  for (auto& [name, values] : deviceMs) point.passDeviceMs[name] = statisticsOf(std::move(values));
-  for (auto& [name, values] : hostMs) point.passHostMs[name] = statisticsOf(std::move(values));
+  State(const MeasureContext& context, const Pipeline& pipeline, ReportPoint& pointToTime)
+      : point(pointToTime),
+        time(context.options.time),
+        bytesOfOthers(context.device.allocatedBytes()),
+        executor(context.device, context.techniques, context.scene, pipeline,
+                 renderOptions(context, pointToTime)) {}
+};
+
+TimedPoint::TimedPoint(const MeasureContext& context, const Pipeline& pipeline, ReportPoint& point)
+    : state_(std::make_unique<State>(context, pipeline, point)) {
+  const FrameResult frame = state_->executor.render(state_->time, 0, PipelineExecutor::Pictures::no);
+  point.peakBytes = frame.peakBytes - state_->bytesOfOthers;
+  for (const PassRecord& pass : frame.passes) {
+    point.passOrder.push_back(pass.name);
+    point.passBytes[pass.name] = pass.bytes;
+  }
+}
+
+TimedPoint::~TimedPoint() = default;
+TimedPoint::TimedPoint(TimedPoint&&) noexcept = default;
+
+void TimedPoint::timeFrame() {
+  State& s = *state_;
+  s.executor.invalidate();
+  const FrameResult frame = s.executor.render(s.time, 0, PipelineExecutor::Pictures::no);
+  s.frameMs.push_back(frame.frameMs);
+  if (frame.frameMs > 0.0) s.shares.push_back(frame.betweenPassesMs / frame.frameMs);
+  for (const PassRecord& pass : frame.passes) {
+    s.deviceMs[pass.name].push_back(pass.deviceMs);
+    s.hostMs[pass.name].push_back(pass.hostMs);
+  }
+}
+
+void TimedPoint::timeNextFrame() {
+  constexpr double kNextFrame = 1.0 / 60.0;  // s
+  State& s = *state_;
+  ++s.nextFrames;
+  s.nextMs.push_back(
+      s.executor.render(s.time + s.nextFrames * kNextFrame, s.nextFrames, PipelineExecutor::Pictures::no)
+          .frameMs);
+}
+
+void TimedPoint::finish() {
+  State& s = *state_;
+  s.point.frameMs = statisticsOf(s.frameMs);
+  s.point.nextFrameMs = statisticsOf(s.nextMs);
+  s.point.frameworkShare = s.shares.empty() ? 0.0 : statisticsOf(s.shares).median;
+  for (auto& [name, values] : s.deviceMs) s.point.passDeviceMs[name] = statisticsOf(std::move(values));
+  for (auto& [name, values] : s.hostMs) s.point.passHostMs[name] = statisticsOf(std::move(values));
+}
+
+void measureTimes(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
+  TimedPoint timed(context, pipeline, record.point);
+  const int repeats = std::max(1, context.options.repeats);
+  for (int repeat = 0; repeat < repeats; ++repeat) timed.timeFrame();
+  for (int repeat = 0; repeat < repeats; ++repeat) timed.timeNextFrame();
+  timed.finish();
 }
 
 }  // namespace lumivox::report

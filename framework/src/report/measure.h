@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -42,7 +43,24 @@ struct MeasureContext {
 
 /// Fills the errors, pictures and health of a point: executors of their own, one per seed.
 void measureErrors(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record);
-/// Fills its times and bytes: no pictures are taken in the timed frames.
+/// One point that is timed frame by frame, so that the frames of several points can take turns: a machine
+/// that drifts then biases none of them. No pictures are taken.
+class TimedPoint {
+ public:
+  /// Renders one frame as warm-up: programs are linked, the pool is filled.
+  TimedPoint(const MeasureContext& context, const Pipeline& pipeline, ReportPoint& point);
+  ~TimedPoint();
+  TimedPoint(TimedPoint&&) noexcept;
+  void timeFrame();      ///< every kept pass runs
+  void timeNextFrame();  ///< 1/60 s after the last one
+  void finish();         ///< fills the point's times and bytes
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Times a point alone.
 void measureTimes(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record);
 
 /// The truth layers that were used, for the page.

@@ -9,64 +9,11 @@
 #include "lumivox/base/file.h"
 #include "report/data.h"
 #include "report/page_assets.h"
+#include "report/page_parts.h"
+#include "report/voxel_page.h"
 
 namespace lumivox::report {
 namespace {
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  safe.reserve(text.size());
-  for (const char c : text) switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      case '\'':
-        safe += "&#39;";
-        break;
-      default:
-        safe += c;
-    }
-  return safe;
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-  return text;
-}
-
-std::string number(double value) {
-  return std::isfinite(value) ? fmt::format("{:.3g}", value) : std::string("-");
-}
-
-std::string withUncertainty(const Measured& measured) {
-  if (!std::isfinite(measured.value)) return "-";
-  return fmt::format("{:.3g} <span class=\"uncertainty\">&plusmn; {:.1g}</span>", measured.value,
-                     measured.uncertainty);
-}
-
-std::string withQuartiles(const TimingStatistics& time) {
-  if (time.repeats == 0) return "-";
-  return fmt::format("{} <span class=\"uncertainty\">[{}, {}]</span>", formatMilliseconds(time.median),
-                     formatMilliseconds(time.lowerQuartile), formatMilliseconds(time.upperQuartile));
-}
-
-std::string percent(double share) {
-  return fmt::format("{:.1f} %", 100.0 * share);
-}
-
-std::string shortName(const std::string& pipelineFile) {
-  return std::filesystem::path(pipelineFile).stem().string();
-}
 
 std::string parametersText(const ParameterValues& values) {
   std::string text;
@@ -81,37 +28,6 @@ std::string componentTitle(const std::string& component) {
   title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
   return title;
 }
-
-/// A table that scrolls by itself. Cells are finished HTML.
-class Table {
- public:
-  struct Column {
-    std::string title;
-    const char* kind = "";  ///< "number", "wide" or nothing
-  };
-  explicit Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
-  void row(const std::vector<std::string>& cells, const char* kind = "") {
-    rows_ += *kind ? fmt::format("<tr class=\"{}\">", kind) : std::string("<tr>");
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const char* cellKind = i < columns_.size() ? columns_[i].kind : "";
-      rows_ += *cellKind ? fmt::format("<td class=\"{}\">{}</td>", cellKind, cells[i])
-                         : "<td>" + cells[i] + "</td>";
-    }
-    rows_ += "</tr>\n";
-  }
-  std::string html() const {
-    std::string head;
-    for (const Column& column : columns_)
-      head += *column.kind ? fmt::format("<th class=\"{}\">{}</th>", column.kind, column.title)
-                           : "<th>" + column.title + "</th>";
-    return "<div class=\"scroll\"><table><thead><tr>" + head + "</tr></thead><tbody>\n" + rows_ +
-           "</tbody></table></div>\n";
-  }
-
- private:
-  std::vector<Column> columns_;
-  std::string rows_;
-};
 
 const char* rowKind(const PointRecord& record) {
   return record.isDefault ? "default" : "";
@@ -570,16 +486,12 @@ std::string toHtml(const ReportData& data, const std::string& chartLibrary) {
                          escaped(data.scenes[i].name.empty() ? data.scenes[i].file : data.scenes[i].name));
   }
   std::string html =
-      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>Lumivox "
-      "report</title>\n<style>";
-  html += kPageStyle + truthStyles(data) + "</style>\n</head>\n<body>\n";
-  html +=
       "<header>\n<h1>Lumivox report</h1>\n<p class=\"soft\">How wrong, how fast, and what was left out. "
       "Measured on " +
       escaped(data.device.renderer) + ", " + escaped(data.date) +
       ". The same numbers stand in the .csv and .json files beside this page.</p>\n" +
       "<nav><a href=\"#summary\">Summary</a>" + links +
+      (data.voxels.empty() ? "" : "<a href=\"#voxels\">Voxels</a>") +
       "<a href=\"#device\">Device and contents</a></nav>\n</header>\n<main>\n";
   html +=
       "<h2 id=\"summary\">Summary</h2>\n<p class=\"caption\">RMSE, FLIP and mean ratio of the whole picture "
@@ -588,14 +500,13 @@ std::string toHtml(const ReportData& data, const std::string& chartLibrary) {
       "leaving "
       "out unneeded work saves. Bold rows are the default parameters.</p>\n" +
       summaryTable(data);
-  html += scenes + provenance(data) + "</main>\n";
-  const std::string records = toJson(data).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  // Text inside a script element must not end it.
-  html +=
-      "<script type=\"application/json\" id=\"data\">" + replaced(records, "<", "\\u003c") + "</script>\n";
-  html += "<script>" + replaced(chartLibrary, "</script", "<\\/script") + "</script>\n<script>" +
-          kPageScript + "</script>\n</body>\n</html>\n";
-  return html;
+  html += scenes;
+  html += voxelSection(data.voxels);
+  html += provenance(data) + "</main>\n";
+  html += dataBlock("data", toJson(data).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  std::string scripts = kPageScript;
+  if (!data.voxels.empty()) scripts += kVoxelScript;
+  return wholePage("Lumivox report", truthStyles(data), html, chartLibrary, scripts);
 }
 
 }  // namespace lumivox::report

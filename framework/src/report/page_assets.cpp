@@ -33,6 +33,7 @@ tr.total td { border-top: 2px solid var(--line); font-weight: 600; }
 .charts { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(460px, 100%), 1fr)); gap: 20px; }
 figure { margin: 0; } figcaption { font-size: .84rem; color: var(--soft); }
 .chart { position: relative; height: 360px; border: 1px solid var(--line); border-radius: 6px; padding: 8px; }
+.chart.tall { height: 560px; }
 .strip { display: flex; flex-wrap: wrap; gap: 12px; margin: 8px 0 16px; }
 .strip figure { width: 200px; }
 .strip img, .truth { display: block; width: 200px; border: 1px solid var(--line); border-radius: 3px; image-rendering: pixelated;

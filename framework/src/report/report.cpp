@@ -1,18 +1,15 @@
 // The main job from beginning to end.
 #include "lumivox/report/report.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <sys/utsname.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
 #include <set>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
+#include "report/choice.h"
 #include "report/measure.h"
 #include "report/plan.h"
 
@@ -21,126 +18,14 @@ namespace {
 
 using namespace report;
 
-/// Longest side of the pictures on a software rasteriser, where a frame at the camera's resolution takes too
-/// long to repeat.
-constexpr int kSoftwarePixels = 128;
-
-struct LoadedPipeline {
-  Pipeline pipeline;
-  std::string shown;
-  ParameterValues settings;
-};
-
-std::string hostText() {
-  utsname system{};
-  uname(&system);
-  std::string processor;
-  std::ifstream information("/proc/cpuinfo");
-  for (std::string line; processor.empty() && std::getline(information, line);)
-    if (line.rfind("model name", 0) == 0 && line.find(": ") != std::string::npos)
-      processor = line.substr(line.find(": ") + 2);
-  return fmt::format("{} {} {}, {} x {}", system.sysname, system.release, system.machine,
-                     sysconf(_SC_NPROCESSORS_ONLN), processor.empty() ? "processor" : processor);
-}
-
-/// All pipelines of a scene: those given, or every committed one.
-class PipelineChoice {
- public:
-  PipelineChoice(const ReportOptions& options, TechniqueSet& techniques)
-      : options_(options), techniques_(techniques) {
-    for (const std::filesystem::path& file : options.pipelines) given_.push_back(load(file));
-    for (const LoadedPipeline& one : given_) checkPipeline(one.pipeline, techniques);
-    requireKnownSettings(given_);
-  }
-
-  std::vector<const LoadedPipeline*> forScene(const Scene& scene,
-                                              std::vector<std::pair<std::string, std::string>>& unsuited) {
-    std::vector<const LoadedPipeline*> chosen;
-    if (!options_.pipelines.empty()) {
-      for (const LoadedPipeline& one : given_) chosen.push_back(&one);
-      return chosen;
-    }
-    const auto folder = committedScenes(scene.file.parent_path());
-    if (!folder)
-      throw Error(fmt::format(
-          "{}: no folder 'pipelines' beside the scene and no project around here; name one with --pipeline",
-          scene.file.string()));
-    std::vector<LoadedPipeline>& all = committed_[*folder];
-    if (all.empty()) {
-      for (const std::filesystem::path& file : pipelinesIn(*folder / "pipelines")) all.push_back(load(file));
-      requireKnownSettings(all);
-    }
-    const SceneTraits traits = SceneTraits::of(scene);
-    for (const LoadedPipeline& one : all) {
-      std::string why = missingTechnique(one.pipeline);
-      if (why.empty()) {
-        checkPipeline(one.pipeline, techniques_);
-        why = whyUnsuited(one.pipeline, techniques_, traits);
-        if (!why.empty()) why += ", which the scene does not have";
-      }
-      if (why.empty())
-        chosen.push_back(&one);
-      else
-        unsuited.emplace_back(one.shown, why);
-    }
-    if (chosen.empty())
-      throw Error(fmt::format(
-          "{}: no pipeline in {} suits this scene{}", scene.file.string(), (*folder / "pipelines").string(),
-          unsuited.empty() ? std::string() : "; the first one: " + unsuited.front().second));
-    return chosen;
-  }
-
- private:
-  LoadedPipeline load(const std::filesystem::path& file) {
-    LoadedPipeline loaded{Pipeline::load(file), shownPath(file), {}};
-    loaded.settings = loaded.pipeline.settings(settingsFor(loaded.pipeline, options_.settings));
-    return loaded;
-  }
-
-  /// A setting that no pipeline knows is a slip of the pen.
-  void requireKnownSettings(const std::vector<LoadedPipeline>& pipelines) {
-    for (const std::string& setting : options_.settings) {
-      const auto knows = [&](const LoadedPipeline& one) {
-        return !settingsFor(one.pipeline, {setting}).empty();
-      };
-      if (!pipelines.empty() && std::none_of(pipelines.begin(), pipelines.end(), knows))
-        pipelines.front().pipeline.settings({setting});
-    }
-  }
-
-  std::string missingTechnique(const Pipeline& pipeline) {
-    for (const std::string& name : pipeline.techniques()) {
-      if (techniques_.technique(name) != nullptr) continue;
-      for (const SkippedTechnique& skipped : techniques_.skipped())
-        if (skipped.library.stem() == "lib" + name || skipped.library.stem() == name)
-          return fmt::format("its technique '{}' was skipped: {}", name, skipped.reason);
-      return fmt::format("its technique '{}' is not among the technique libraries", name);
-    }
-    return {};
-  }
-
-  const ReportOptions& options_;
-  TechniqueSet& techniques_;
-  std::vector<LoadedPipeline> given_;
-  std::map<std::filesystem::path, std::vector<LoadedPipeline>> committed_;
-};
-
-std::string pointText(const ParameterValues& parameters) {
-  std::string text;
-  for (const auto& [name, value] : parameters) text += (text.empty() ? "" : " ") + name + "=" + value.text();
-  return text.empty() ? "default" : text;
-}
-
-PointRecord measurePoint(const MeasureContext& context, const LoadedPipeline& loaded,
-                         const PlannedPoint& planned, const std::string& sceneShown, int samples) {
+PointRecord measurePoint(const MeasureContext& context, TechniqueSet& techniques,
+                         const LoadedPipeline& loaded, const PlannedPoint& planned,
+                         const std::string& sceneShown, int samples, ResultsStore* store) {
+  StoredRun run = storedRunOf(context.device, techniques, context.scene, loaded, planned, context.options,
+                              context.width, context.height, samples, sceneShown);
   PointRecord record;
   record.isDefault = planned.isDefault;
-  record.point.scene = sceneShown;
-  record.point.pipeline = loaded.shown;
-  record.point.sweep = planned.sweep;
-  record.point.parameters = planned.parameters;
-  record.point.command = repeatingCommand(context.options, sceneShown, loaded.shown, planned.parameters,
-                                          context.width, context.height, samples);
+  record.point = run.point;
   logInformation("{}, {}: {}", sceneShown, loaded.shown, pointText(planned.parameters));
   try {
     measureErrors(context, loaded.pipeline, record);
@@ -152,33 +37,26 @@ PointRecord measurePoint(const MeasureContext& context, const LoadedPipeline& lo
     record.point.failure = error.what();
     logWarning("{}, {}, {}: {}", sceneShown, loaded.shown, pointText(planned.parameters), error.what());
   }
+  if (store != nullptr) {
+    run.created = dateText();
+    run.point = record.point;
+    store->add(run);
+  }
   return record;
 }
 
 SceneRecord measureScene(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
                          const Scene& scene, const std::vector<const LoadedPipeline*>& pipelines,
-                         const std::string& shown) {
-  const Camera& camera = scene.camera(options.camera);
+                         const std::string& shown, ResultsStore* store) {
   SceneRecord record;
   record.file = shown;
   record.name = scene.name;
   record.hash = scene.hash.text();
-  record.camera = camera.name;
+  record.camera = scene.camera(options.camera).name;
   record.time = options.time;
   record.triangles = scene.triangleCount();
-  std::tie(record.width, record.height) =
-      options.width > 0        ? std::pair(options.width, options.height)
-      : device.info().software ? reducedResolution(camera.width, camera.height, kSoftwarePixels)
-                               : std::pair(camera.width, camera.height);
-
-  ReferenceOptions truthOptions;
-  truthOptions.samplesPerPixel =
-      options.truthSamples > 0 ? options.truthSamples : truthSamplesFor(record.width, record.height);
-  truthOptions.seed = options.seed;
-  truthOptions.time = options.time;
-  truthOptions.camera = options.camera;
-  truthOptions.width = record.width;
-  truthOptions.height = record.height;
+  std::tie(record.width, record.height) = measuredSize(device, scene, options);
+  const ReferenceOptions truthOptions = truthOptionsOf(options, record.width, record.height);
   logInformation("{}: truth at {} x {}, {} samples per pixel", shown, record.width, record.height,
                  truthOptions.samplesPerPixel);
   Truth truth(scene, truthOptions);
@@ -191,7 +69,8 @@ SceneRecord measureScene(gpu::Device& device, TechniqueSet& techniques, const Re
     bool defaultWorks = true;
     for (const PlannedPoint& planned :
          plannedPoints(loaded->pipeline, loaded->settings, options.openSweeps)) {
-      record.points.push_back(measurePoint(context, *loaded, planned, shown, truthOptions.samplesPerPixel));
+      record.points.push_back(
+          measurePoint(context, techniques, *loaded, planned, shown, truthOptions.samplesPerPixel, store));
       if (planned.isDefault) defaultWorks = record.points.back().point.failure.empty();
     }
     if (!defaultWorks) continue;
@@ -223,6 +102,23 @@ SceneRecord measureScene(gpu::Device& device, TechniqueSet& techniques, const Re
 
 }  // namespace
 
+namespace {
+
+VoxeliserOptions voxeliserOptions(const ReportOptions& options, const SceneRecord& scene) {
+  VoxeliserOptions voxels;
+  voxels.resolutions = {options.voxelResolution};
+  voxels.camera = options.camera;
+  voxels.width = scene.width;
+  voxels.height = scene.height;
+  voxels.time = options.time;
+  voxels.seed = options.seed;
+  voxels.repeats = options.repeats;
+  voxels.openSweeps = options.openSweeps;
+  return voxels;
+}
+
+}  // namespace
+
 ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
                          const std::function<Scene(const std::filesystem::path&)>& loadScene) {
   ReportSummary summary;
@@ -235,13 +131,15 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
   if (options.scenes.empty()) throw Error("a report needs at least one scene");
   for (const auto& file : {summary.page, summary.csv, summary.json}) requireWritable(file);
   const std::string library = chartLibrary();
+  std::optional<ResultsStore> store;
+  if (!options.store.empty()) store.emplace(options.store);
 
   ReportData data;
   data.options = options;
   data.device = device.info();
   data.shaderInput = device.shaderInput() == gpu::ShaderInput::spirv ? "SPIR-V" : "GLSL made from the SPIR-V";
   data.host = hostText();
-  data.date = fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr)));
+  data.date = dateText();
 
   // Everything that can be wrong in any text is found before the first picture is rendered.
   PipelineChoice choice(options, techniques);
@@ -257,9 +155,14 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
 
   std::set<std::string> pipelineFiles, techniqueNames;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
-    data.scenes.push_back(
-        measureScene(device, techniques, options, scenes[i], pipelines[i], shownPath(options.scenes[i])));
+    data.scenes.push_back(measureScene(device, techniques, options, scenes[i], pipelines[i],
+                                       shownPath(options.scenes[i]), store ? &*store : nullptr));
     data.scenes.back().unsuited = unsuited[i];
+    if (options.voxelResolution > 0) {
+      const std::vector<VoxeliserRecord> voxels =
+          measureVoxelisers(device, techniques, scenes[i], voxeliserOptions(options, data.scenes.back()));
+      data.voxels.insert(data.voxels.end(), voxels.begin(), voxels.end());
+    }
     for (const LoadedPipeline* loaded : pipelines[i]) {
       if (pipelineFiles.insert(loaded->shown).second)
         data.pipelines.push_back({loaded->shown, loaded->pipeline.name, loaded->pipeline.hash.text()});

@@ -25,7 +25,7 @@ std::pair<std::string, std::string> truthLayers(Contributes component) {
     case Contributes::ambientOcclusion:
       return {"ambient_occlusion", "ambient_occlusion"};
     case Contributes::scattered:
-      return {"scattered", "scattered"};
+      return {"scattered_single", "scattered"};
     case Contributes::final:
       return {"one_bounce", "full"};
     case Contributes::nothing:

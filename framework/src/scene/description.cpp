@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "lumivox/dsl/schema.h"
+#include "lumivox/scene/medium.h"
 #include "lumivox/scene/text.h"
 
 namespace lumivox {
@@ -328,20 +329,74 @@ class Reader {
   }
 
   void readMedium(const CheckedBlock& block) {
-    Medium medium;
+    MediumText text;
+    text.place = block.block().place;
+    Medium& medium = text.medium;
     medium.name = block.name();
     medium.extinction = vector(block, "extinction", glm::dvec3(0));
     medium.albedo = vector(block, "albedo", glm::dvec3(0));
     medium.anisotropy = static_cast<float>(block.number("anisotropy", 0));
     medium.particles = static_cast<int>(block.number("particles", 0));
+    text.file = placed(block, "file");
+    text.grid = placed(block, "grid");
+    if (text.file && medium.particles > 0) {
+      report(*block.find("file"), "a medium of particles and of a file",
+             "one of the two; others are media of their own");
+    }
+    readBox(block, medium, text.file.has_value());
+    readParticles(block, medium);
+    if (!text.file && text.grid) report(*block.find("grid"), "'grid' without a file", "file \"NAME.vdb\"");
+    if (result_.media.size() == kMostMedia) {
+      report(block.block().place, static_cast<int>(block.block().word.size()), "too many media",
+             fmt::format("at most {}", kMostMedia));
+    }
+    const auto varies = [](const MediumText& one) {
+      return one.file.has_value() || one.medium.particles > 0;
+    };
+    if (varies(text) &&
+        std::count_if(result_.media.begin(), result_.media.end(), varies) == kMostVaryingMedia) {
+      report(block.block().place, static_cast<int>(block.block().word.size()),
+             "too many media of particles and files", fmt::format("at most {}", kMostVaryingMedia));
+    }
+    result_.media.push_back(std::move(text));
+  }
+
+  void readBox(const CheckedBlock& block, Medium& medium, bool isFile) {
+    if (!block.has("low") && !block.has("high")) return;
+    const Property& given = *block.find(block.has("low") ? "low" : "high");
+    if (isFile || medium.particles > 0) {
+      report(given, fmt::format("'{}' of a medium that is not even", given.word),
+             "corners only without particles and file");
+    }
+    if (!block.has("low") || !block.has("high")) {
+      report(given, fmt::format("'{}' alone", given.word), "both corners, low and high");
+      return;
+    }
+    medium.box.emplace(vector(block, "low", glm::dvec3(0)), vector(block, "high", glm::dvec3(0)));
+    if (!glm::all(glm::lessThan(medium.box->first, medium.box->second)))
+      report(given, "the corner 'low' is not below 'high'", "low < high along each axis");
+  }
+
+  void readParticles(const CheckedBlock& block, Medium& medium) {
+    if (medium.particles == 0) {
+      for (const char* word : {"source", "spread", "radius", "rise", "drift", "life", "seed"}) {
+        if (const Property* property = block.find(word))
+          report(*property, fmt::format("'{}' without particles", word), "particles NUMBER");
+      }
+      return;
+    }
     medium.source = vector(block, "source", glm::dvec3(0));
+    medium.spread = block.number("spread", 0);
     medium.radius = block.number("radius", 0);
     medium.rise = block.number("rise", 0);
-    if (medium.particles > 0 && medium.radius <= 0) {
+    medium.drift = block.number("drift", 0);
+    constexpr double kDefaultLife = 4.0;
+    medium.life = block.number("life", kDefaultLife);
+    medium.seed = static_cast<std::uint32_t>(block.number("seed", 1));
+    if (medium.radius <= 0) {
       report(block.block().place, static_cast<int>(block.block().word.size()), "particles without a radius",
              "radius above 0");
     }
-    result_.media.push_back(std::move(medium));
   }
 
   void readAnimation(const CheckedBlock& block) {

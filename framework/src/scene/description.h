@@ -46,6 +46,12 @@ struct MaterialText {
   std::optional<PlacedText> texture, mask;
 };
 
+struct MediumText {
+  Medium medium;
+  std::optional<PlacedText> file, grid;
+  SourcePlace place;
+};
+
 struct AreaLightText {
   std::string name;
   PlacedText mesh;
@@ -66,7 +72,7 @@ struct SceneDescription {
   std::vector<AreaLightText> areaLights;
   std::vector<Light> lights;
   glm::vec3 environment{0.0f};
-  std::vector<Medium> media;
+  std::vector<MediumText> media;
   std::vector<AnimationText> animations;
 };
 

@@ -15,6 +15,7 @@
 #include "scene/description.h"
 #include "scene/obj_model.h"
 #include "scene/texture.h"
+#include "scene/volume_file.h"
 
 namespace lumivox {
 namespace {
@@ -61,6 +62,9 @@ void findMissingFiles(const dsl::Document& document, const SceneDescription& des
     if (material.texture) require(*material.texture, material.texture->text, "picture");
     if (material.mask) require(*material.mask, material.mask->text, "picture");
   }
+  for (const MediumText& medium : description.media) {
+    if (medium.file) require(*medium.file, medium.file->text, "volume");
+  }
 }
 
 void throwIfAny(std::vector<Diagnostic> findings) {
@@ -82,10 +86,11 @@ class Loader {
     scene_.cameras = description_.cameras;
     scene_.lights = description_.lights;
     scene_.environment = description_.environment;
-    scene_.media = description_.media;
+    for (const MediumText& medium : description_.media) addMedium(medium);
     for (const MeshText& mesh : description_.meshes) addMesh(mesh);
     for (const AreaLightText& light : description_.areaLights) shine(light);
     finishMaterials();
+    checkMediaBounds();
     for (const AnimationText& animation : description_.animations) animate(animation);
     for (Object& object : scene_.objects) object.sweptBounds = sweptBoundsOf(scene_, object);
     throwIfAny(std::move(findings_));
@@ -135,6 +140,27 @@ class Loader {
     const auto& all = description_.materials;
     return &*std::find_if(all.begin(), all.end(),
                           [&](const MaterialText& one) { return one.material.name == name; });
+  }
+
+  void addMedium(const MediumText& text) {
+    Medium medium = text.medium;
+    if (text.file) {
+      medium.volume = std::make_shared<const DensityVolume>(
+          readVolumeFile(found(text.file->text, "volume"), text.grid ? text.grid->text : "", hasher_));
+    }
+    scene_.media.push_back(std::move(medium));
+  }
+
+  /// A medium that fills the scene needs something that has bounds.
+  void checkMediaBounds() {
+    const bool hasTriangles = std::any_of(scene_.objects.begin(), scene_.objects.end(),
+                                          [](const Object& object) { return !object.parts.empty(); });
+    for (std::size_t i = 0; i < scene_.media.size() && !hasTriangles; ++i) {
+      if (!scene_.media[i].homogeneous() || scene_.media[i].box) continue;
+      findings_.push_back(document_.finding(description_.media[i].place, 6,
+                                            "the medium fills the bounds of a scene that has no triangles",
+                                            "corners low and high, or a mesh"));
+    }
   }
 
   void addMesh(const MeshText& mesh) {

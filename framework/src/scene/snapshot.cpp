@@ -209,6 +209,8 @@ SceneTraits SceneTraits::of(const Scene& scene) {
   traits.emission = traits.areaLights > 0;
   traits.environment = scene.environment != glm::vec3(0.0f);
   traits.medium = !scene.media.empty();
+  traits.particles = std::any_of(scene.media.begin(), scene.media.end(),
+                                 [](const Medium& medium) { return medium.particles > 0; });
   traits.movingCamera = std::any_of(scene.cameras.begin(), scene.cameras.end(),
                                     [](const Camera& camera) { return camera.keys.size() > 1; });
   for (const Light& light : scene.lights) {
@@ -223,7 +225,7 @@ SceneTraits SceneTraits::of(const Scene& scene) {
 SceneTraits SceneTraits::everything() {
   SceneTraits traits;
   traits.triangles = traits.textures = traits.masks = traits.glossy = traits.emission = traits.environment =
-      traits.medium = true;
+      traits.medium = traits.particles = true;
   traits.movingGeometry = traits.movingCamera = true;
   traits.directionalLights = traits.pointLights = traits.spotLights = traits.areaLights = 1;
   return traits;

@@ -18,6 +18,11 @@ constexpr double kLargestPicture = 16384;
 // exp(-n 6e-8).
 constexpr double kLargestExponent = 1e6;
 constexpr double kSmallestScale = 1e-9, kLargestScale = 1e9;
+// Sums over the particles of one voxel are 64-bit integers of a particle's 2^24 units; the limit is one of
+// time and memory.
+constexpr double kMostParticles = 1e7;
+constexpr double kShortestLife = 1e-3, kLongestLife = 1e6;
+constexpr double kLargestSeed = 4294967295.0;
 
 /// A property that is being described; each step returns it, so that a table row reads as one line.
 struct Row {
@@ -182,23 +187,47 @@ BlockSpecification light() {
 
 BlockSpecification medium() {
   return block(
-      "medium", HeaderUse::required, "a participating medium with Henyey-Greenstein scattering",
-      {Row("extinction", PropertyType::oneOrThree, "extinction coefficient sigma_t", dsl::kInverseLength)
+      "medium", HeaderUse::required,
+      "a participating medium with Henyey-Greenstein scattering: even in a box, of particles, or from a file",
+      {Row("extinction", PropertyType::oneOrThree,
+           "extinction coefficient sigma_t: of an even medium; of particles in the middle of one cloud; of a "
+           "file where its density is 1",
+           dsl::kInverseLength)
            .from(0)
            .required(),
        Row("albedo", PropertyType::oneOrThree, "scattering / extinction").between(0, 1).byDefault("0"),
        Row("anisotropy", PropertyType::number, "mean cosine g of the scattering angle")
            .between(-0.999, 0.999)
            .byDefault("0"),
-       Row("particles", PropertyType::integer,
-           "number of particles; 0 for a medium that fills the scene evenly")
-           .between(0, 1e8)
+       Row("low", PropertyType::vector3,
+           "lowest corner of the box of an even medium; without both corners it fills the bounds of the scene",
+           dsl::kLength),
+       Row("high", PropertyType::vector3, "highest corner of that box", dsl::kLength),
+       Row("file", PropertyType::text,
+           "volume file (.vdb) beside the scene text or on the asset path; its own transform gives its place"),
+       Row("grid", PropertyType::name, "name of the file's float grid; not needed where it has only one"),
+       Row("particles", PropertyType::integer, "number of particles; 0 for none")
+           .between(0, kMostParticles)
            .byDefault("0"),
        Row("source", PropertyType::vector3, "where particles start", dsl::kLength).byDefault("0 0 0"),
-       Row("radius", PropertyType::number, "radius of a particle's cloud", dsl::kLength)
+       Row("spread", PropertyType::number, "farthest start of a particle from the source along each axis",
+           dsl::kLength)
            .from(0)
            .byDefault("0"),
-       Row("rise", PropertyType::number, "speed of rising particles", dsl::kSpeed).byDefault("0")});
+       Row("radius", PropertyType::number, "radius of a particle's cloud, whose density falls as (1 - q^2)^3",
+           dsl::kLength)
+           .from(0)
+           .byDefault("0"),
+       Row("rise", PropertyType::number, "speed of particles upwards", dsl::kSpeed).byDefault("0"),
+       Row("drift", PropertyType::number, "largest other speed of a particle along each axis", dsl::kSpeed)
+           .from(0)
+           .byDefault("0"),
+       Row("life", PropertyType::number, "time after which a particle is reborn at the source", dsl::kTime)
+           .between(kShortestLife, kLongestLife)
+           .byDefault("4"),
+       Row("seed", PropertyType::integer, "of the particles' random numbers")
+           .between(0, kLargestSeed)
+           .byDefault("1")});
 }
 
 std::vector<BlockSpecification> makeSpecifications() {

@@ -215,6 +215,7 @@ struct RenderTargets {
   const Texture* depth = nullptr;
   int depthLayer = -1;
   int width = 0, height = 0;
+  int samples = 1;    ///< of an empty framebuffer; above 1, a fragment sees in gl_SampleMaskIn what it covers
   bool clear = true;  ///< colours to 0, depth to 1
 };
 
@@ -227,6 +228,7 @@ struct DeviceInfo {
   std::string timerNote;                  ///< what that check found
   int maxTextureSize3d = 0;
   std::uint64_t maxStorageBytes = 0;
+  int maxSamples = 1;  ///< of an empty framebuffer
 };
 
 struct DeviceOptions {
@@ -261,6 +263,9 @@ class Device {
                    std::uint32_t firstIndex, std::uint32_t indexCount);
   void draw(const Program& program, std::span<const ResourceBinding> bindings, std::uint32_t vertexCount);
   void endDrawing();
+  /// Where an empty framebuffer of so many samples takes them, in the order of the bits of gl_SampleMaskIn:
+  /// x and y inside the pixel, 0..1, in the direction of gl_FragCoord. Error when the device has fewer.
+  std::vector<glm::vec2> samplePositions(int samples);
 
   /// Makes all earlier writes visible to all later reads (also to download, indirect arguments and texture
   /// fetches).

@@ -1,5 +1,4 @@
-// Differences between pictures, in linear radiance unless said otherwise; voxels, health and repeated
-// timings. Definitions, reasons and how the truth's noise enters: docs/metrics.md. Everything here gives the
+// Differences between pictures, in linear radiance unless said otherwise; health and repeated timings. Definitions, reasons and how the truth's noise enters: docs/metrics.md. Everything here gives the
 // same bits on any number of threads.
 #pragma once
 
@@ -67,15 +66,6 @@ float displayExposure(const Picture& truth);
 Picture falseColour(const Picture& map);
 
 Picture luminance(const Picture& rgb);  ///< Rec. 709 weights; one channel is luminance already
-
-// ---- voxels
-struct VoxelError {
-  std::uint64_t truePositive = 0, falsePositive = 0, falseNegative = 0;
-  double precision() const;  ///< share of the occupied voxels that are rightly so; 1 when none is occupied
-  double recall() const;     ///< share of the truth's voxels that are occupied; 1 when the truth has none
-};
-/// Error when the sizes differ.
-VoxelError compareVoxels(const std::vector<bool>& occupied, const std::vector<bool>& truth);
 
 // ---- health
 struct Health {

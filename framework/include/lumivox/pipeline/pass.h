@@ -42,7 +42,8 @@ enum class Needs : std::uint32_t {
   emission = 1u << 4,
   textures = 1u << 5,
   movingGeometry = 1u << 6,
-  triangles = 1u << 7
+  triangles = 1u << 7,
+  particles = 1u << 8
 };
 constexpr Needs operator|(Needs a, Needs b) {
   return static_cast<Needs>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
@@ -115,6 +116,7 @@ std::vector<gpu::TextureRef> texturesOf(const BinaryGrid&);
 std::vector<gpu::TextureRef> texturesOf(const AttributeGrid&);
 std::vector<gpu::TextureRef> texturesOf(const RadianceGrid&);
 std::vector<gpu::TextureRef> texturesOf(const ShGrid&);
+std::vector<gpu::TextureRef> texturesOf(const Particles&);
 std::vector<gpu::TextureRef> texturesOf(const ScatteringGrid&);
 
 /// An output: assigned by run() whenever it is wanted. The resources go back to the executor's pool after the

@@ -89,6 +89,7 @@ struct RenderOptions {
   bool keepEverything = false;
   ParameterValues parameters;       ///< over the defaults
   std::vector<std::string> wanted;  ///< output names; empty: all
+  bool wantsOutputs = true;         ///< false: none of them, only what keepOutput() names
   std::uint64_t seed = 1;
   bool health = false;  ///< scan every pass output for NaN, Inf and negative values; not part of the times
   bool interactive =
@@ -158,6 +159,8 @@ class PipelineExecutor {
   /// Keeps an output of a pass alive after each render, and its pass with it; for exporters and tests. Error
   /// for an unknown name.
   void keepOutput(const std::string& pass, const std::string& port);
+  /// A pass of the pipeline with its parameters set, whether it runs or not. Error for an unknown name.
+  const Pass& pass(const std::string& name) const;
   /// After the last render. Null when it was left out or given back. Error for an unknown name.
   const OutBase* output(const std::string& pass, const std::string& port) const;
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lumivox/gpu/device.h"
+#include "lumivox/scene/grid.h"
 #include "lumivox/scene/scene.h"
 
 namespace lumivox {
@@ -59,15 +60,6 @@ struct ReflectiveShadowMap {
   int layerCount = 0;
 };
 
-/// Where a cubic voxel grid lies. Voxel (i,j,k) covers low + [i,i+1] x [j,j+1] x [k,k+1] times voxelSize; its
-/// centre is the half-way point.
-struct GridPlacement {
-  glm::vec3 low{0.0f};       ///< corner of voxel (0,0,0), metres relative to the snapshot's origin
-  float voxelSize = 1.0f;    ///< m
-  glm::ivec3 resolution{0};  ///< voxels per axis
-  bool operator==(const GridPlacement&) const = default;
-};
-
 /// An unordered list of surface samples, one per triangle and voxel that it touches (Crassin & Green 2012).
 struct VoxelFragments {
   static constexpr const char* kPortKind = "VoxelFragments";
@@ -115,6 +107,7 @@ struct RadianceGrid {
   static constexpr const char* kPortKind = "RadianceGrid";
   GridPlacement grid;
   gpu::TextureRef radiance;  ///< d3 rgba16f or rgba32f with mips: rgb radiance * opacity, a opacity
+  int filledLevels = 0;      ///< mip levels that hold values, finest first; 0: all that the texture has
 };
 
 /// Spherical-harmonic coefficients per voxel, one volume per colour channel, in one or more nested grids.
@@ -123,17 +116,32 @@ struct ShGrid {
   struct Level {
     GridPlacement grid;
     std::array<gpu::TextureRef, 3> coefficients;  ///< d3 rgba16f or rgba32f: Y00, Y1-1, Y10, Y11
+    gpu::TextureRef closed;  ///< d3 rgba8, one voxel larger: xyz the shares of the faces to the voxels at lower
+                             ///< x, y and z that surfaces close; null: all open
   };
   std::vector<Level> levels;  ///< finest and smallest first
 };
 
-/// Scattering media. Extinction and scattering of one medium are its density times its constants.
+/// The particles of all media of the scene that have some, in the order of the scene (scene/medium.h).
+struct Particles {
+  static constexpr const char* kPortKind = "Particles";
+  struct Group {
+    int medium = 0;          ///< index into Scene::media
+    int count = 0;           ///< of particles
+    gpu::BufferRef offsets;  ///< vec4 each: xyz position relative to the medium's source, m; w age, s
+  };
+  std::vector<Group> groups;
+};
+
+/// Scattering media. Extinction and scattering of one medium are its density times its constants; they end at
+/// its bounds.
 struct ScatteringGrid {
   static constexpr const char* kPortKind = "ScatteringGrid";
   struct Medium {
     std::string name;
+    Bounds bounds;               ///< of all of it, metres relative to the snapshot's origin
     GridPlacement grid;          ///< where the density is stored; zero resolution when homogeneous
-    gpu::TextureRef density;     ///< d3 r32f, 1; null when homogeneous: the density is 1 everywhere
+    gpu::TextureRef density;     ///< d3 r32f, zero outside the grid; null: the density is 1 in the bounds
     glm::vec3 extinction{0.0f};  ///< sigma_t at density 1, 1/m
     glm::vec3 albedo{0.0f};      ///< sigma_s / sigma_t
     float anisotropy = 0.0f;     ///< Henyey-Greenstein mean cosine g

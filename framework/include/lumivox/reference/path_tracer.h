@@ -8,6 +8,9 @@
 //   its diffuse lobe; a bounced ray that misses brings the environment (the sky's light belongs here)
 // - indirect_glossy: the same for the Phong lobe
 // One bounce: exactly one further surface, or a miss in its place. Full: up to `bounces` of them.
+// With media these are dimmed and lit by them up to the first surface, not yet on the way to the camera; what
+// the media scatter to the camera has layers of its own, and full = transmittance * (direct + indirect) +
+// scattered. A scattering is a bounce.
 // The choices that this leaves open are stated in docs/reference_path_tracer.md.
 #pragma once
 
@@ -37,10 +40,11 @@ struct ReferenceOptions {
 
 /// Layers (RGB but for the occlusion): direct, one_bounce_diffuse, one_bounce_glossy, one_bounce (= direct +
 /// both), indirect_diffuse, indirect_glossy, full (= direct + both indirect), ambient_occlusion (one channel
-/// Y: unoccluded fraction, cosine-weighted); and for each of them "<layer>.variance": the variance of the
-/// pixel's mean. One path gives all of them, so sums have their own, right variance. Attributes hold the
-/// provenance: scene, hash, samples, bounces, roulette, seed, time, camera, resolution, occlusion_distance,
-/// tracer_version. At least two samples per pixel, or Error.
+/// Y: unoccluded fraction, cosine-weighted); with media also transmittance, scattered_single (light of the
+/// lights, scattered once and nothing else), scattered_multiple (all other) and scattered; and for each of
+/// them "<layer>.variance": the variance of the pixel's mean. One path gives all of them, so sums have their
+/// own, right variance. Attributes hold the provenance: scene, hash, samples, bounces, roulette, seed, time,
+/// camera, resolution, occlusion_distance, tracer_version. At least two samples per pixel, or Error.
 LayeredPicture renderReference(const Scene& scene, const ReferenceOptions& options);
 
 /// The same through the cache (base/file.h cacheDirectory), keyed by everything the picture depends on. A

@@ -85,8 +85,10 @@ struct ReportOptions {
   std::uint64_t seed = 1;  ///< the first one
   int subpixels = 16;      ///< pictures that are judged are means over this many positions in the pixel
   int repeats = 5, seeds = 2;
-  bool openSweeps = true;   ///< false: only the default point
-  std::string commandLine;  ///< as typed, for the page
+  bool openSweeps = true;       ///< false: only the default point
+  int voxelResolution = 0;      ///< of a section on the committed voxelisers; 0: none
+  std::filesystem::path store;  ///< results store that the points are added to; empty: none
+  std::string commandLine;      ///< as typed, for the page
   std::vector<std::string>
       repeatArguments;  ///< further options that a repeating command needs, e.g. --device
 };

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -112,14 +113,34 @@ struct Camera {
   std::vector<CameraKey> keys;
 };
 
+/// Densities at the centres of cubic voxels in world space: trilinear between the centres, zero outside.
+struct DensityVolume {
+  glm::dvec3 low{0};  ///< corner of voxel (0,0,0), m
+  double voxelSize = 1.0;
+  glm::ivec3 resolution{0};
+  std::vector<float> values;  ///< not negative; x fastest, then y
+};
+
+/// A participating medium: extinction and scattering are its density times constants. The density is 1 in a
+/// box (homogeneous), the sum of the clouds of rising particles, or that of a volume file. Scattering is
+/// Henyey-Greenstein's. See scene/medium.h.
 struct Medium {
   std::string name;
-  glm::vec3 extinction{0.0f};  ///< sigma_t, 1/m
+  glm::vec3 extinction{0.0f};  ///< sigma_t at density 1, 1/m
   glm::vec3 albedo{0.0f};      ///< sigma_s / sigma_t
   float anisotropy = 0.0f;     ///< Henyey-Greenstein mean cosine g
-  int particles = 0;           ///< 0: homogeneous
-  glm::dvec3 source{0};
-  double radius = 0.0, rise = 0.0;
+  /// Of a homogeneous medium: corners of its box, m; without it the bounds of the scene.
+  std::optional<std::pair<glm::dvec3, glm::dvec3>> box;
+  int particles = 0;                            ///< how many; 0: the medium has none
+  glm::dvec3 source{0};                         ///< middle of the place where particles start, m
+  double spread = 0.0;                          ///< farthest start from the source along each axis, m
+  double radius = 0.0;                          ///< of the cloud of one particle, m
+  double rise = 0.0;                            ///< speed upwards, m/s
+  double drift = 0.0;                           ///< largest other speed along each axis, m/s
+  double life = 1.0;                            ///< s, after which a particle is reborn at the source
+  std::uint32_t seed = 1;                       ///< of the particles' random numbers
+  std::shared_ptr<const DensityVolume> volume;  ///< of a volume file; else null
+  bool homogeneous() const { return particles == 0 && volume == nullptr; }
 };
 
 struct Scene {
@@ -146,7 +167,7 @@ struct Scene {
 /// What a scene has, and so what a pipeline can leave out. Computed from the content, never declared.
 struct SceneTraits {
   bool triangles = false, textures = false, masks = false, glossy = false, emission = false,
-       environment = false, medium = false;
+       environment = false, medium = false, particles = false;
   bool movingGeometry = false, movingCamera = false;
   int directionalLights = 0, pointLights = 0, spotLights = 0,
       areaLights = 0;  ///< area: objects with emissive parts

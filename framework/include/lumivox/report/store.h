@@ -1,0 +1,102 @@
+// The results store: every measured point with everything that it depends on, in one SQLite file. Schema and
+// the meaning of each column: docs/results.md.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lumivox/report/report.h"
+
+namespace lumivox {
+
+/// Everything that a result depends on. Two runs with the same identity measure the same thing, so that the
+/// second is not run.
+struct RunIdentity {
+  std::string sceneHash, pipelineHash;            ///< of the texts with all that they include and name
+  std::map<std::string, std::string> techniques;  ///< name to hash of library and shader pack
+  std::string framework;                          ///< hash of the framework's own libraries
+  std::map<std::string, std::string> parameters;  ///< all parameters of the pipeline, as settings
+  std::string camera;
+  double time = 0.0;  ///< s
+  int width = 0, height = 0;
+  std::uint64_t seed = 1;
+  int seeds = 1, repeats = 1, subpixels = 1, truthSamples = 0;
+  std::string device, driver, shaderInput, host;  ///< host: processor and system
+
+  std::string key() const;  ///< 32 hexadecimal digits
+};
+
+/// One record of the store.
+struct StoredRun {
+  std::int64_t id = 0;  ///< in its store; 0 before it is stored
+  RunIdentity identity;
+  std::string created;  ///< "2015-10-21 16:29:00 UTC"
+  std::string version;  ///< of lumivox
+  std::string sceneName, pipelineName;
+  bool isDefault = false;  ///< every parameter as the text has it
+  ReportPoint point;       ///< `command` repeats it; a point with `failure` has no numbers
+};
+
+/// Which runs. Empty members do not restrict. Names match when they are the stem, the whole path or the
+/// title of the text.
+struct RunFilter {
+  std::string scene, pipeline, device, since;  ///< device: a part of its name; since: "2015-10-21"
+  std::vector<std::string> parameters;         ///< "name=value"
+  std::vector<std::int64_t> ids;
+  std::optional<bool> failed;
+  bool everything() const;
+};
+
+class ResultsStore {
+ public:
+  enum class Mode { read, write };
+  /// Opens a store; `write` makes it where there is none. Error for a file that is no store, has a schema of
+  /// another version, or cannot be written.
+  explicit ResultsStore(const std::filesystem::path& file, Mode mode = Mode::write);
+  ~ResultsStore();
+  ResultsStore(ResultsStore&&) noexcept;
+  ResultsStore& operator=(ResultsStore&&) noexcept;
+
+  const std::filesystem::path& file() const;
+  bool contains(const std::string& key) const;
+  /// The run with this key, if it is there.
+  std::optional<StoredRun> find(const std::string& key) const;
+  /// In one transaction: all of it or nothing, whatever happens. Returns false, and stores nothing, when
+  /// another process has stored a run with this key meanwhile. A failed run is replaced by one that did not.
+  bool add(const StoredRun& run);
+  /// By id, so in the order of storing.
+  std::vector<StoredRun> runs(const RunFilter& filter = {}) const;
+  /// How many were removed.
+  std::size_t remove(const RunFilter& filter);
+  /// Takes over the runs of another store that are not here; returns how many. In one transaction.
+  std::size_t merge(const ResultsStore& other);
+
+  /// The store of a user who names none: $LUMIVOX_RESULTS, else results.sqlite in the cache directory.
+  static std::filesystem::path defaultFile();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Hash of the framework's libraries as they are loaded: part of every identity.
+std::string frameworkHash();
+
+/// The metrics of one error by name, with the same of a black picture: what the store's table `metrics`
+/// holds. Names: rmse, rmse_over_seeds, relative_mse, mean_ratio, bias, percentile95, ssim, flip, flip_ldr,
+/// noise_floor, non_finite_picture, non_finite_truth.
+struct NamedMetric {
+  std::string name;
+  Measured measured;
+  double ofNothing = 0.0;
+};
+std::vector<NamedMetric> metricsOf(const ComponentError& error);
+/// The inverse: fills the error's numbers from one metric; false for a name that it does not know.
+bool setMetric(ComponentError& error, const NamedMetric& metric);
+
+}  // namespace lumivox

@@ -1,0 +1,37 @@
+// Measuring many points into a results store, so that a later run only does what is missing.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+#include "lumivox/report/report.h"
+#include "lumivox/report/store.h"
+
+namespace lumivox {
+
+struct SweepOptions {
+  ReportOptions measure;     ///< what a report measures; `output` is not used
+  bool retryFailed = false;  ///< measure points anew that the store holds as failed
+  bool planOnly = false;     ///< say what would be measured, and measure nothing
+  /// Told after each point: how many of how many, and the seconds that the rest will take about (0: unknown).
+  std::function<void(std::size_t done, std::size_t total, double secondsLeft)> progress;
+};
+
+struct SweepSummary {
+  std::vector<StoredRun> runs;         ///< every point of the plan that the store holds now, in order
+  std::vector<std::string> keys;       ///< of every point of the plan
+  std::size_t measured = 0, held = 0;  ///< points measured now; points that the store held already
+  std::size_t failed = 0;              ///< of those measured now
+  std::vector<std::string> missing;    ///< what planOnly would have measured: "cornell, x: cones=6"
+  std::vector<std::string> unsuited;   ///< "scene, pipeline: why"
+};
+
+/// Measures every pipeline at every point of its sweeps on every scene, but for those that the store holds.
+/// Each batch of points is stored as soon as it is measured, so an interruption loses at most one batch.
+/// Errors are measured apart from times; the timed frames of a batch take turns. Throws as makeReport.
+SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const SweepOptions& options,
+                      ResultsStore& store,
+                      const std::function<Scene(const std::filesystem::path&)>& loadScene);
+
+}  // namespace lumivox

@@ -1,0 +1,45 @@
+// A texture atlas of a whole scene: every piece of surface has texels of its own in one square.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "lumivox/scene/scene.h"
+
+namespace lumivox {
+
+/// A texel that lies on the surface, and where. The place is on the triangle, so that it follows whatever
+/// the triangle does: it turns and deforms with it.
+struct AtlasTexel {
+  std::uint16_t x = 0, y = 0;         ///< in the square
+  std::uint32_t triangle = 0;         ///< of Scene::indices: its first index divided by three
+  float second = 0.0f, third = 0.0f;  ///< barycentric coordinates of its second and third corner
+  bool operator==(const AtlasTexel&) const = default;
+};
+
+/// The texels of one part of one object.
+struct AtlasPart {
+  std::uint32_t firstTexel = 0, texelCount = 0;
+};
+
+struct SurfaceAtlas {
+  int side = 0;  ///< texels along a side of the square
+  std::size_t chartCount = 0;
+  std::vector<AtlasTexel> texels;  ///< those that lie on the surface, by parts; at most one for each place
+  std::vector<AtlasPart> parts;    ///< of all objects, in their order
+};
+
+/// Charts are clusters of triangles that share edges and lie within kLargestChartTilt of their first one;
+/// each is projected along that one's normal onto square texels of `texelSize` metres at rest, so that
+/// centres of neighbouring texels are at most texelSize / cos(kLargestChartTilt) apart on the surface. A
+/// texel belongs to the triangle that its centre lies in; at a chart's border, where it lies in none, to the
+/// nearest one that it touches, at the nearest point. A chart that would cover itself is cut. No point of the
+/// surface is farther than 3.5 texels from the place of one. The same scene always gives the same atlas.
+/// Error when the texels would be more than kMostAtlasTexels.
+SurfaceAtlas makeSurfaceAtlas(const Scene& scene, double texelSize);
+
+inline constexpr double kLargestChartTilt = 0.7853981633974483;  ///< 45 degrees, rad
+inline constexpr std::uint64_t kMostAtlasTexels = std::uint64_t{1} << 25;
+
+}  // namespace lumivox

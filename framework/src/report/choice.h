@@ -1,0 +1,60 @@
+// What a report and a sweep measure: which pipelines on a scene, at which size, against which truth.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lumivox/report/report.h"
+#include "lumivox/report/store.h"
+#include "report/plan.h"
+
+namespace lumivox::report {
+
+struct LoadedPipeline {
+  Pipeline pipeline;
+  std::string shown;         ///< the file as a person would type it here
+  ParameterValues settings;  ///< of the command line, those that it has
+};
+
+/// All pipelines of a scene: those given, or every committed one that suits it. Every text is checked before
+/// anything is measured.
+class PipelineChoice {
+ public:
+  PipelineChoice(const ReportOptions& options, TechniqueSet& techniques);
+
+  /// `unsuited`: pipeline and why, for those that are left out by themselves.
+  std::vector<const LoadedPipeline*> forScene(const Scene& scene,
+                                              std::vector<std::pair<std::string, std::string>>& unsuited);
+
+ private:
+  LoadedPipeline load(const std::filesystem::path& file);
+  void requireKnownSettings(const std::vector<LoadedPipeline>& pipelines);
+  std::string missingTechnique(const Pipeline& pipeline);
+
+  const ReportOptions& options_;
+  TechniqueSet& techniques_;
+  std::vector<LoadedPipeline> given_;
+  std::map<std::filesystem::path, std::vector<LoadedPipeline>> committed_;
+};
+
+/// The size that is asked for, or the camera's, smaller on a software rasteriser.
+std::pair<int, int> measuredSize(const gpu::Device& device, const Scene& scene, const ReportOptions& options);
+ReferenceOptions truthOptionsOf(const ReportOptions& options, int width, int height);
+
+/// A point before it is measured: what it depends on and how it is called.
+StoredRun storedRunOf(gpu::Device& device, TechniqueSource& techniques, const Scene& scene,
+                      const LoadedPipeline& loaded, const PlannedPoint& point, const ReportOptions& options,
+                      int width, int height, int truthSamples, const std::string& sceneShown);
+
+/// System and processor.
+std::string hostText();
+
+/// Now, as "2015-10-21 16:29:00 UTC".
+std::string dateText();
+
+/// "cones=6 resolution=64", or "default" without parameters.
+std::string pointText(const ParameterValues& parameters);
+
+}  // namespace lumivox::report

@@ -1,0 +1,56 @@
+// Measures points of one scene into a results store: errors apart from times, the timed frames taking turns.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lumivox/report/store.h"
+#include "report/choice.h"
+#include "report/measure.h"
+
+namespace lumivox::report {
+
+/// One point that somebody wants to know.
+struct WantedPoint {
+  const LoadedPipeline* loaded = nullptr;
+  PlannedPoint point;
+};
+
+class Measurer {
+ public:
+  Measurer(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options, ResultsStore& store,
+           Scene scene, std::string sceneShown);
+
+  /// What the store holds of these points, in their order, before anything is measured. A failure counts as
+  /// held unless `retryFailed`.
+  std::vector<bool> held(const std::vector<WantedPoint>& points, bool retryFailed) const;
+  std::string key(const WantedPoint& point) const;
+  std::string text(const WantedPoint& point) const;
+
+  /// Measures the points together and stores them; gives them back as they are in the store now. `done` is
+  /// told after each batch how many points it had.
+  std::vector<StoredRun> measure(const std::vector<WantedPoint>& points,
+                                 const std::function<void(std::size_t)>& done = {});
+  /// Those that the store holds are taken from it, the others are measured.
+  std::vector<StoredRun> fetch(const std::vector<WantedPoint>& points);
+
+  const Scene& scene() const { return scene_; }
+
+ private:
+  StoredRun open(const WantedPoint& point) const;
+  void measureBatch(std::vector<std::pair<const LoadedPipeline*, StoredRun>>& batch);
+
+  gpu::Device& device_;
+  TechniqueSet& techniques_;
+  const ReportOptions& options_;
+  ResultsStore& store_;
+  Scene scene_;
+  std::string sceneShown_;
+  int width_ = 0, height_ = 0;
+  ReferenceOptions truthOptions_;
+  std::optional<Truth> truth_;  ///< made when the first point is measured
+};
+
+}  // namespace lumivox::report

@@ -1,0 +1,61 @@
+// The numbers of an error by name, so that the store's schema does not change with every metric.
+#include "lumivox/report/store.h"
+
+namespace lumivox {
+namespace {
+
+/// Reads or writes one metric; the same list serves both ways.
+template <class Error, class Visit>
+void visitMetrics(Error& error, Visit visit) {
+  auto& e = error.error;
+  auto& n = error.errorOfNothing;
+  visit("rmse", e.rmse.value, &e.rmse.uncertainty, n.rmse.value);
+  visit("relative_mse", e.relativeMse.value, &e.relativeMse.uncertainty, n.relativeMse.value);
+  visit("mean_ratio", e.meanRatio.value, &e.meanRatio.uncertainty, n.meanRatio.value);
+  visit("bias", e.bias.value, &e.bias.uncertainty, n.bias.value);
+  visit("percentile95", e.percentile95, &e.percentile95Uncertainty, n.percentile95);
+  visit("ssim", e.ssim, &e.ssimUncertainty, n.ssim);
+  visit("flip", e.flip, &e.flipUncertainty, n.flip);
+  visit("flip_ldr", e.flipLdr, &e.flipLdrUncertainty, n.flipLdr);
+}
+
+}  // namespace
+
+std::vector<NamedMetric> metricsOf(const ComponentError& error) {
+  std::vector<NamedMetric> metrics;
+  visitMetrics(error, [&](const char* name, double value, const double* uncertainty, double ofNothing) {
+    metrics.push_back({name, {value, *uncertainty}, ofNothing});
+  });
+  metrics.push_back({"rmse_over_seeds", error.rmseOverSeeds, error.errorOfNothing.rmse.value});
+  metrics.push_back({"noise_floor", {error.error.noiseFloor, 0.0}, error.errorOfNothing.noiseFloor});
+  metrics.push_back({"non_finite_picture", {static_cast<double>(error.error.nonFinitePicture), 0.0}, 0.0});
+  metrics.push_back({"non_finite_truth", {static_cast<double>(error.error.nonFiniteTruth), 0.0}, 0.0});
+  return metrics;
+}
+
+bool setMetric(ComponentError& error, const NamedMetric& metric) {
+  bool known = false;
+  visitMetrics(error, [&](const char* name, double& value, double* uncertainty, double& ofNothing) {
+    if (metric.name != name) return;
+    value = metric.measured.value;
+    *uncertainty = metric.measured.uncertainty;
+    ofNothing = metric.ofNothing;
+    known = true;
+  });
+  if (known) return true;
+  if (metric.name == "rmse_over_seeds") {
+    error.rmseOverSeeds = metric.measured;
+  } else if (metric.name == "noise_floor") {
+    error.error.noiseFloor = metric.measured.value;
+    error.errorOfNothing.noiseFloor = metric.ofNothing;
+  } else if (metric.name == "non_finite_picture") {
+    error.error.nonFinitePicture = static_cast<std::uint64_t>(metric.measured.value);
+  } else if (metric.name == "non_finite_truth") {
+    error.error.nonFiniteTruth = static_cast<std::uint64_t>(metric.measured.value);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace lumivox

@@ -1,0 +1,415 @@
+#include "lumivox/scene/atlas.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <numbers>
+
+#include "lumivox/base/error.h"
+#include "lumivox/scene/topology.h"
+
+namespace lumivox {
+namespace {
+
+constexpr double kLongestSide = 65535.0;  // that AtlasTexel::x and y can count
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+[[noreturn]] void tooLarge(double texels) {
+  throw Error(fmt::format("the atlas would have {:.3g} texels; at most {} are made: larger texels need fewer",
+                          texels, kMostAtlasTexels));
+}
+
+/// An object's triangles at rest in the world, and which share edges.
+struct Patch {
+  WeldedObject welded;
+  std::vector<glm::dvec3> places;                    ///< m
+  std::vector<glm::dvec3> normals;                   ///< of triangles; zero without area
+  std::vector<std::array<std::uint32_t, 3>> beyond;  ///< neighbour across each side, kNone: none
+
+  Patch(const Scene& scene, const Object& object) : welded(weld(scene, object)) {
+    for (const glm::vec3& place : welded.places)
+      places.emplace_back(object.placement * glm::dvec4(glm::dvec3(place), 1.0));
+    for (std::size_t t = 0; t < welded.triangleCount(); ++t) {
+      const glm::dvec3 normal = glm::cross(at(t, 1) - at(t, 0), at(t, 2) - at(t, 0));
+      const double size = glm::length(normal);
+      normals.push_back(size > 0.0 ? normal / size : glm::dvec3(0.0));
+    }
+    connect();
+  }
+
+  const glm::dvec3& at(std::size_t triangle, std::size_t corner) const {
+    return places[welded.corners[3 * triangle + corner]];
+  }
+  /// By the barycentric coordinates of the second and third corner.
+  glm::dvec3 point(std::size_t triangle, const glm::dvec2& weights) const {
+    return at(triangle, 0) + weights.x * (at(triangle, 1) - at(triangle, 0)) +
+           weights.y * (at(triangle, 2) - at(triangle, 0));
+  }
+
+ private:
+  /// Sides between the same places, two by two; a third at the same edge starts a chart of its own.
+  void connect() {
+    struct Side {
+      std::uint32_t low, high, triangle, number;
+      auto operator<=>(const Side&) const = default;
+    };
+    std::vector<Side> sides;
+    for (std::uint32_t t = 0; t < welded.triangleCount(); ++t)
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const auto [low, high] = std::minmax(welded.corners[3 * t + k], welded.corners[3 * t + (k + 1) % 3]);
+        sides.push_back({low, high, t, k});
+      }
+    std::sort(sides.begin(), sides.end());
+    beyond.assign(welded.triangleCount(), {kNone, kNone, kNone});
+    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+      const Side &a = sides[i], &b = sides[i + 1];
+      if (a.low != b.low || a.high != b.high) continue;
+      beyond[a.triangle][a.number] = b.triangle;
+      beyond[b.triangle][b.number] = a.triangle;
+      ++i;
+    }
+  }
+};
+
+using Triangle2d = std::array<glm::dvec2, 3>;
+
+/// Two directions across the chart's axis.
+struct Plane {
+  glm::dvec3 right, up;
+  glm::dvec2 operator()(const glm::dvec3& place) const {
+    return {glm::dot(right, place), glm::dot(up, place)};
+  }
+  Plane turned(double angle) const {
+    return {std::cos(angle) * right + std::sin(angle) * up, std::cos(angle) * up - std::sin(angle) * right};
+  }
+};
+
+/// Along the first side of the chart's first triangle, so that rectangles stay upright.
+Plane planeOf(const Patch& patch, std::uint32_t seed) {
+  glm::dvec3 side = patch.at(seed, 1) - patch.at(seed, 0);
+  if (glm::dot(side, side) == 0.0) side = patch.at(seed, 2) - patch.at(seed, 0);
+  const glm::dvec3 right = glm::dot(side, side) > 0.0 ? glm::normalize(side) : glm::dvec3(1, 0, 0);
+  glm::dvec3 axis = patch.normals[seed];
+  if (axis == glm::dvec3(0.0))
+    axis = glm::normalize(
+        glm::cross(right, std::abs(right.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+  return {right, glm::cross(axis, right)};
+}
+
+/// A chart being made: its triangles in texels, from the lower left corner of its rectangle.
+struct Chart {
+  std::vector<std::uint32_t> triangles;
+  std::vector<Triangle2d> corners;
+  int width = 0, height = 0;
+};
+
+/// Whether the ray from `point` towards growing x crosses the edge; the same for both directions of the edge.
+bool crosses(glm::dvec2 a, glm::dvec2 b, const glm::dvec2& point) {
+  if ((a.y <= point.y) == (b.y <= point.y)) return false;
+  if (b.y < a.y) std::swap(a, b);
+  return point.x < a.x + (b.x - a.x) * ((point.y - a.y) / (b.y - a.y));
+}
+
+/// Each point of the plane lies in exactly one of the triangles that fill a neighbourhood of it.
+bool inside(const Triangle2d& t, const glm::dvec2& point) {
+  return crosses(t[0], t[1], point) != (crosses(t[1], t[2], point) != crosses(t[2], t[0], point));
+}
+
+/// Separating axes of a triangle and a unit square around `centre` that overlap in their bounds.
+bool touches(const Triangle2d& t, const glm::dvec2& centre) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const glm::dvec2 side = t[(k + 1) % 3] - t[k], axis(-side.y, side.x);
+    const double reach = 0.5 * (std::abs(axis.x) + std::abs(axis.y));
+    const double onSide = glm::dot(axis, t[k] - centre), opposite = glm::dot(axis, t[(k + 2) % 3] - centre);
+    if (std::min(onSide, opposite) > reach || std::max(onSide, opposite) < -reach) return false;
+  }
+  return true;
+}
+
+/// Barycentric coordinates of the second and third corner of the triangle's point nearest to `point`.
+glm::dvec2 nearestIn(const Triangle2d& t, const glm::dvec2& point) {
+  const glm::dvec2 e1 = t[1] - t[0], e2 = t[2] - t[0], p = point - t[0];
+  const double doubleArea = e1.x * e2.y - e1.y * e2.x;
+  if (doubleArea != 0.0) {
+    const glm::dvec2 weights((p.x * e2.y - p.y * e2.x) / doubleArea, (e1.x * p.y - e1.y * p.x) / doubleArea);
+    if (weights.x >= 0.0 && weights.y >= 0.0 && weights.x + weights.y <= 1.0) return weights;
+  }
+  // The nearest point of the three sides.
+  double nearest = std::numeric_limits<double>::infinity();
+  glm::dvec2 result(0.0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    const glm::dvec2 side = t[next] - t[k];
+    const double lengthSquared = glm::dot(side, side);
+    const double along =
+        lengthSquared > 0.0 ? std::clamp(glm::dot(point - t[k], side) / lengthSquared, 0.0, 1.0) : 0.0;
+    const glm::dvec2 away = point - (t[k] + along * side);
+    if (const double distance = glm::dot(away, away); distance < nearest) {
+      nearest = distance;
+      std::array<double, 3> weights{};
+      weights[k] = 1.0 - along;
+      weights[next] = along;
+      result = {weights[1], weights[2]};
+    }
+  }
+  return result;
+}
+
+/// Calls `visit(texel, its centre)` for the texels in the bounds of a triangle.
+template <class Visit>
+void forEachTexel(const Triangle2d& t, int width, int height, Visit&& visit) {
+  const glm::dvec2 low = glm::min(t[0], glm::min(t[1], t[2])), high = glm::max(t[0], glm::max(t[1], t[2]));
+  const int lastX = std::min(static_cast<int>(high.x), width - 1),
+            lastY = std::min(static_cast<int>(high.y), height - 1);
+  for (int y = std::max(static_cast<int>(low.y), 0); y <= lastY; ++y)
+    for (int x = std::max(static_cast<int>(low.x), 0); x <= lastX; ++x)
+      visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x),
+            glm::dvec2(x + 0.5, y + 0.5));
+}
+
+struct PackedChart {
+  int width, height;
+  std::size_t firstTexel, texelCount;  ///< of AtlasMaker::texels, in places of the chart
+};
+
+class AtlasMaker {
+ public:
+  AtlasMaker(const Scene& scene, double texelSize) : scene_(scene), texelSize_(texelSize) {}
+
+  SurfaceAtlas make() {
+    std::uint32_t firstPart = 0;
+    for (const Object& object : scene_.objects) {
+      addObject(object, firstPart);
+      firstPart += static_cast<std::uint32_t>(object.parts.size());
+    }
+    SurfaceAtlas atlas;
+    atlas.side = pack();
+    atlas.chartCount = charts_.size();
+    sortByParts(atlas, firstPart);
+    return atlas;
+  }
+
+ private:
+  struct PlacedTexel {
+    AtlasTexel texel;
+    std::uint32_t part;
+  };
+
+  void addObject(const Object& object, std::uint32_t firstPart) {
+    const Patch patch(scene_, object);
+    checkArea(patch);
+    std::vector<std::uint32_t> parts;  // of triangles
+    for (std::uint32_t p = 0; p < object.parts.size(); ++p)
+      parts.insert(parts.end(), object.parts[p].indexCount / 3, firstPart + p);
+    std::vector<bool> taken(patch.welded.triangleCount(), false);
+    std::deque<std::uint32_t> seeds;
+    for (const bool withArea : {true, false})
+      for (std::uint32_t t = 0; t < patch.welded.triangleCount(); ++t)
+        if ((patch.normals[t] != glm::dvec3(0.0)) == withArea) seeds.push_back(t);
+    while (!seeds.empty()) {
+      const std::uint32_t seed = seeds.front();
+      seeds.pop_front();
+      if (taken[seed]) continue;
+      const Chart chart = project(patch, grow(patch, seed, taken), seed);
+      for (const std::uint32_t t : rasterise(patch, chart, parts)) {
+        taken[t] = false;
+        seeds.push_back(t);
+      }
+    }
+  }
+
+  /// Before memory is taken.
+  void checkArea(const Patch& patch) {
+    for (std::size_t t = 0; t < patch.welded.triangleCount(); ++t)
+      area_ += 0.5 *
+               glm::length(glm::cross(patch.at(t, 1) - patch.at(t, 0), patch.at(t, 2) - patch.at(t, 0))) /
+               (texelSize_ * texelSize_);
+    if (!(area_ <= static_cast<double>(kMostAtlasTexels))) tooLarge(area_);
+  }
+
+  /// Triangles around the seed, nearest first. The seed is the first.
+  static std::vector<std::uint32_t> grow(const Patch& patch, std::uint32_t seed, std::vector<bool>& taken) {
+    const double cosine = std::cos(kLargestChartTilt);
+    std::vector<std::uint32_t> triangles{seed};
+    taken[seed] = true;
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+      for (const std::uint32_t next : patch.beyond[triangles[i]]) {
+        if (next == kNone || taken[next]) continue;
+        // What has no area lies on the sides of its neighbours and goes with any of them.
+        const glm::dvec3& normal = patch.normals[next];
+        if (normal != glm::dvec3(0.0) && glm::dot(normal, patch.normals[seed]) < cosine) continue;
+        taken[next] = true;
+        triangles.push_back(next);
+      }
+    return triangles;
+  }
+
+  /// Turned so that its rectangle is small.
+  Chart project(const Patch& patch, std::vector<std::uint32_t> triangles, std::uint32_t seed) const {
+    constexpr int kTurns = 8;
+    const Plane upright = planeOf(patch, seed);
+    Plane best = upright;
+    glm::dvec2 bestLow(0.0), bestSize(0.0);
+    double smallest = std::numeric_limits<double>::infinity();
+    for (int turn = 0; turn < kTurns; ++turn) {
+      const Plane plane = upright.turned(turn * 0.5 * std::numbers::pi / kTurns);
+      glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
+      for (const std::uint32_t t : triangles)
+        for (std::size_t k = 0; k < 3; ++k) {
+          const glm::dvec2 place = plane(patch.at(t, k)) / texelSize_;
+          low = glm::min(low, place);
+          high = glm::max(high, place);
+        }
+      const glm::dvec2 size = high - low;
+      const double area = (size.x + 1.0) * (size.y + 1.0);
+      // Not for rounding alone.
+      if (area < smallest * (1.0 - 1e-6)) smallest = area, best = plane, bestLow = low, bestSize = size;
+    }
+    if (!(smallest <= static_cast<double>(kMostAtlasTexels) &&
+          std::max(bestSize.x, bestSize.y) < kLongestSide))
+      tooLarge(smallest);
+    Chart chart{std::move(triangles), {}, static_cast<int>(bestSize.x) + 1, static_cast<int>(bestSize.y) + 1};
+    for (const std::uint32_t t : chart.triangles) {
+      Triangle2d& corners = chart.corners.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k)
+        corners[k] = glm::max(best(patch.at(t, k)) / texelSize_ - bestLow, glm::dvec2(0.0));
+    }
+    return chart;
+  }
+
+  /// Who owns the texels of a chart's rectangle.
+  struct Ownership {
+    std::vector<std::uint32_t> owners;  ///< numbers in the chart, kNone: nobody
+    std::vector<glm::dvec3> places;     ///< of the owner, m
+    std::vector<double> gaps;           ///< from the texel's centre to its owner, 0 inside
+    explicit Ownership(std::size_t size) : owners(size, kNone), places(size), gaps(size, kUntouched) {}
+    static constexpr double kUntouched = std::numeric_limits<double>::infinity();
+  };
+
+  /// False, and nothing is taken, when the triangle lies over others of its chart.
+  bool take(const Patch& patch, const Chart& chart, std::uint32_t i, Ownership& ownership) const {
+    struct Claim {
+      std::size_t at;
+      double gap;
+      glm::dvec3 place;
+    };
+    const Triangle2d& t = chart.corners[i];
+    std::vector<Claim> claims;
+    bool free = true;
+    forEachTexel(t, chart.width, chart.height, [&](std::size_t at, const glm::dvec2& centre) {
+      if (!free || !touches(t, centre)) return;
+      const glm::dvec2 weights = nearestIn(t, centre);
+      const glm::dvec2 nearest = t[0] + weights.x * (t[1] - t[0]) + weights.y * (t[2] - t[0]);
+      // Exactly one triangle of a sheet has the centre inside; the others are at least at a distance above 0.
+      constexpr double kBeside = 1e-30;
+      const double gap = inside(t, centre) ? 0.0 : std::max(glm::length(nearest - centre), kBeside);
+      const glm::dvec3 point = patch.point(chart.triangles[i], weights);
+      // Two pieces of one sheet meet within a texel; farther apart than this they are two sheets.
+      constexpr double kSheet = 1.5;  // texels
+      free =
+          !(gap == 0.0 && ownership.gaps[at] == 0.0) &&
+          (ownership.owners[at] == kNone || glm::length(point - ownership.places[at]) <= kSheet * texelSize_);
+      claims.push_back({at, gap, point});
+    });
+    if (!free) return false;
+    for (const Claim& claim : claims) {
+      if (claim.gap >= ownership.gaps[claim.at]) continue;
+      ownership.owners[claim.at] = i;
+      ownership.places[claim.at] = claim.place;
+      ownership.gaps[claim.at] = claim.gap;
+    }
+    return true;
+  }
+
+  /// Gives texels to triangles; returns those that lie over others and need a chart of their own.
+  std::vector<std::uint32_t> rasterise(const Patch& patch, const Chart& chart,
+                                       const std::vector<std::uint32_t>& parts) {
+    const std::size_t size = static_cast<std::size_t>(chart.width) * static_cast<std::size_t>(chart.height);
+    Ownership ownership(size);
+    std::vector<std::uint32_t> rejected;
+    for (std::uint32_t i = 0; i < chart.triangles.size(); ++i)
+      if (!take(patch, chart, i, ownership)) rejected.push_back(chart.triangles[i]);
+    const std::size_t first = texels_.size();
+    for (std::size_t at = 0; at < size; ++at) {
+      const std::uint32_t owner = ownership.owners[at];
+      if (owner == kNone) continue;
+      const auto x = static_cast<std::uint16_t>(at % static_cast<std::size_t>(chart.width)),
+                 y = static_cast<std::uint16_t>(at / static_cast<std::size_t>(chart.width));
+      const glm::dvec2 weights = nearestIn(chart.corners[owner], {x + 0.5, y + 0.5});
+      const std::uint32_t t = chart.triangles[owner];
+      texels_.push_back({{x, y, patch.welded.firstIndices[t] / 3, static_cast<float>(weights.x),
+                          static_cast<float>(weights.y)},
+                         parts[t]});
+    }
+    if (texels_.size() > kMostAtlasTexels) tooLarge(static_cast<double>(texels_.size()));
+    charts_.push_back({chart.width, chart.height, first, texels_.size() - first});
+    return rejected;
+  }
+
+  /// Rectangles on shelves, the highest first, in the smallest square that takes them. Returns its side.
+  int pack() {
+    std::vector<std::size_t> order(charts_.size());
+    double area = 0.0;
+    int side = 1;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      order[i] = i;
+      area += static_cast<double>(charts_[i].width) * charts_[i].height;
+      side = std::max({side, charts_[i].width, charts_[i].height});
+    }
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return std::pair(charts_[b].height, charts_[b].width) < std::pair(charts_[a].height, charts_[a].width);
+    });
+    side = std::max(side, static_cast<int>(std::ceil(std::sqrt(area))));
+    std::vector<glm::ivec2> corners(charts_.size());
+    for (;; side += std::max(side / 64, 1)) {
+      glm::ivec2 pen(0);
+      int shelf = 0;
+      for (const std::size_t i : order) {
+        if (pen.x + charts_[i].width > side) pen = {0, pen.y + shelf}, shelf = 0;
+        if (shelf == 0) shelf = charts_[i].height;
+        corners[i] = pen;
+        pen.x += charts_[i].width;
+      }
+      if (pen.y + shelf <= side) break;
+    }
+    if (side > kLongestSide) tooLarge(static_cast<double>(side) * side);
+    for (std::size_t i = 0; i < charts_.size(); ++i)
+      for (std::size_t k = 0; k < charts_[i].texelCount; ++k) {
+        AtlasTexel& texel = texels_[charts_[i].firstTexel + k].texel;
+        texel.x = static_cast<std::uint16_t>(texel.x + corners[i].x);
+        texel.y = static_cast<std::uint16_t>(texel.y + corners[i].y);
+      }
+    return side;
+  }
+
+  /// Counting sort: the order within a part stays that of the charts.
+  void sortByParts(SurfaceAtlas& atlas, std::uint32_t partCount) const {
+    atlas.parts.resize(partCount);
+    for (const PlacedTexel& placed : texels_) ++atlas.parts[placed.part].texelCount;
+    for (std::size_t p = 1; p < atlas.parts.size(); ++p)
+      atlas.parts[p].firstTexel = atlas.parts[p - 1].firstTexel + atlas.parts[p - 1].texelCount;
+    atlas.texels.resize(texels_.size());
+    std::vector<std::uint32_t> next;
+    for (const AtlasPart& part : atlas.parts) next.push_back(part.firstTexel);
+    for (const PlacedTexel& placed : texels_) atlas.texels[next[placed.part]++] = placed.texel;
+  }
+
+  const Scene& scene_;
+  double texelSize_;
+  double area_ = 0.0;  ///< of all triangles so far, in texels
+  std::vector<PlacedTexel> texels_;
+  std::vector<PackedChart> charts_;
+};
+
+}  // namespace
+
+SurfaceAtlas makeSurfaceAtlas(const Scene& scene, double texelSize) {
+  if (!(texelSize > 0.0)) throw Error(fmt::format("a texel of {} m; its size must be above 0", texelSize));
+  return AtlasMaker(scene, texelSize).make();
+}
+
+}  // namespace lumivox

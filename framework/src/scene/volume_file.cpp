@@ -1,0 +1,40 @@
+#include "scene/volume_file.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+
+namespace lumivox {
+namespace {
+
+constexpr const char* kLibrary = "liblumivox_volume.so";
+
+/// The reader, from the folder of this library. It stays open: closing it would unload OpenVDB's types.
+VolumeReader* openReader() {
+  Dl_info info{};
+  std::filesystem::path library = kLibrary;
+  if (dladdr(reinterpret_cast<const void*>(&readVolumeFile), &info) != 0 && info.dli_fname != nullptr) {
+    library = std::filesystem::path(info.dli_fname).parent_path() / kLibrary;
+  }
+  void* handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* symbol = handle == nullptr ? nullptr : dlsym(handle, kVolumeReaderSymbol);
+  if (symbol == nullptr) {
+    throw Error(fmt::format("the reader of volume files cannot be opened: {}; expected {} beside liblumivox",
+                            dlerror(), kLibrary));
+  }
+  return reinterpret_cast<VolumeReader*>(symbol);
+}
+
+}  // namespace
+
+DensityVolume readVolumeFile(const std::filesystem::path& file, const std::string& grid, Hasher& hasher) {
+  hasher.add(readFile(file));  // first: it refuses folders and files that cannot be read
+  static VolumeReader* const reader = openReader();
+  DensityVolume volume;
+  reader(file.c_str(), grid.c_str(), volume);
+  return volume;
+}
+
+}  // namespace lumivox

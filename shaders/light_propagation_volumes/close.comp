@@ -1,0 +1,57 @@
+#version 450
+// Occlusion: which part of each face between two cells is closed by surfaces.
+// Deviates from Kaplanyan & Dachsbacher 2010, Sec. 4.2 and thesis 004 Listing 4.33, where a cosine lobe around a normal blocks: each
+// surface is moved to the nearest plane of faces, and its projection covers some of the 4 x 4 parts of a face. Parts are combined by OR,
+// so that overlapping triangles do not count twice and the order does not matter.
+#include "parts.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std140, binding = 0) uniform Parameters {
+  vec3 listLow;       // m, of the grid of the fragments
+  float listVoxel;    // m
+  vec3 gridLow;       // m, of the cells
+  float cellSize;     // m
+  ivec3 resolution;   // of the parts: one more than the cells
+};
+layout(std430, binding = 0) readonly buffer FragmentCount { uint fragmentCount; };
+layout(std430, binding = 1) readonly buffer Fragments { VoxelFragment fragments[]; };
+// For each axis, parts of the face towards the lower neighbour.
+layout(binding = 0, r32ui) uniform uimage3D partsX;
+layout(binding = 1, r32ui) uniform uimage3D partsY;
+layout(binding = 2, r32ui) uniform uimage3D partsZ;
+
+void mark(int axis, ivec3 face, uint parts) {
+  if (parts == 0u || any(lessThan(face, ivec3(0))) || any(greaterThanEqual(face, resolution))) return;
+  if (axis == 0) imageAtomicOr(partsX, face, parts);
+  else if (axis == 1) imageAtomicOr(partsY, face, parts);
+  else imageAtomicOr(partsZ, face, parts);
+}
+
+void main() {
+  uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  if (index >= fragmentCount) return;
+  VoxelFragment fragment = fragments[index];
+  vec3 position = (listLow + (vec3(unpackVoxel(fragment.voxel)) + unpackOffset(fragment.offset)) * listVoxel - gridLow) / cellSize;
+  vec3 normal = abs(unpackNormal(fragment.normal));
+  int dominant = dominantAxis(normal);
+  uint allowed = allowedParts(unpackHalf2x16(fragment.albedoBCoverage).y);
+
+  for (int axis = 0; axis < 3; ++axis) {
+    // The fragment covers one column of its list along the dominant axis; seen along another axis it is as high as the plane is steep.
+    int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    vec2 size = vec2(listVoxel / cellSize);
+    if (u == dominant) size.x *= normal[axis] / normal[dominant];
+    if (v == dominant) size.y *= normal[axis] / normal[dominant];
+    ivec2 first, last;
+    if (!partRange(vec2(position[u], position[v]), size, first, last)) continue;
+    ivec3 face;
+    face[axis] = int(floor(position[axis] + 0.5));
+    for (int cellV = cellOfPart(first.y); cellV <= cellOfPart(last.y); ++cellV)
+      for (int cellU = cellOfPart(first.x); cellU <= cellOfPart(last.x); ++cellU) {
+        face[u] = cellU;
+        face[v] = cellV;
+        mark(axis, face, partsInCell(first, last, ivec2(cellU, cellV)) & allowed);
+      }
+  }
+}

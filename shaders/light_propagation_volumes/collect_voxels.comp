@@ -1,0 +1,70 @@
+#version 450
+// Voxels of the cells: surfaces, both sides of each, in the cells in front of them. STEP weigh: how much of each there is, the
+// denominators of the means; STEP add: the means, the covered parts and the winner of the contrast.
+#pragma lumivox axis STEP weigh add
+#include "lit_voxel.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std140, binding = 0) uniform Parameters {
+  vec3 listLow;      // m, of the grid of the fragments
+  float listVoxel;   // m
+  vec3 gridLow;      // m, of the cells
+  float cellSize;    // m
+  ivec3 resolution;
+  int twoSided;
+};
+layout(std430, binding = 0) readonly buffer FragmentCount { uint fragmentCount; };
+layout(std430, binding = 1) readonly buffer Fragments { VoxelFragment fragments[]; };
+
+// Listing 4.27: contrast of a colour in 7 bits, behind it the colour in 8 bits each.
+uint packWinner(vec3 albedo) {
+  float contrast = length(albedo.rrg - albedo.gbb) / (sqrt(2.0) + albedo.r + albedo.g + albedo.b);
+  uvec3 colour = uvec3(clamp(albedo, 0.0, 1.0) * 255.0 + 0.5);
+  return 1u << 31 | uint(clamp(contrast, 0.0, 1.0) * 127.0) << 24 | colour.r << 16 | colour.g << 8 | colour.b;
+}
+
+void add(ivec3 cell, vec3 position, vec3 normal, vec3 albedo, uint parts) {
+  if (parts == 0u || any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, resolution))) return;
+  int voxel = ((cell.z * resolution.y + cell.y) * resolution.x + cell.x) * kWordsOfVoxel;
+  int group = voxel + kGroup + groupOf(normal) * kWordsOfGroup;
+  uint weight = uint(bitCount(parts));
+#if STEP == STEP_WEIGH
+  atomicAdd(voxels[voxel + kWeight], weight);
+  atomicAdd(voxels[group + kGroupWeight], weight);
+#else
+  float ofVoxel = float(voxels[voxel + kWeight]) / float(weight), ofGroup = float(voxels[group + kGroupWeight]) / float(weight);
+  vec3 offset = clamp((position - vec3(cell) - 0.5) / kPositionRange, -1.0, 1.0);
+  for (int i = 0; i < 3; ++i) {
+    atomicAdd(voxels[voxel + kAlbedo + i], shareOf(albedo[i], ofVoxel));
+    atomicAdd(voxels[group + kGroupNormal + i], shareOf(normal[i], ofGroup));
+    atomicAdd(voxels[group + kGroupPosition + i], shareOf(offset[i], ofGroup));
+  }
+  atomicOr(voxels[group + kGroupParts], parts);
+  atomicMax(voxels[voxel + kWinner], packWinner(albedo));
+#endif
+}
+
+void main() {
+  uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  if (index >= fragmentCount) return;
+  VoxelFragment fragment = fragments[index];
+  vec2 blueCoverage = unpackHalf2x16(fragment.albedoBCoverage);
+  vec3 albedo = clamp(vec3(unpackHalf2x16(fragment.albedoRg), blueCoverage.x), 0.0, 1.0);
+  vec3 position = (listLow + (vec3(unpackVoxel(fragment.voxel)) + unpackOffset(fragment.offset)) * listVoxel - gridLow) / cellSize;
+  vec3 front = unpackNormal(fragment.normal);
+  uint allowed = allowedParts(blueCoverage.y);
+  int axis = dominantAxis(front), u = (axis + 1) % 3, v = (axis + 2) % 3;
+  ivec2 first, last;
+  if (!partRange(vec2(position[u], position[v]), vec2(listVoxel / cellSize), first, last)) return;
+  for (int sideOf = 0; sideOf < (twoSided != 0 ? 2 : 1); ++sideOf) {
+    vec3 normal = sideOf == 0 ? front : -front;
+    ivec3 cell = cellInFront(position, normal);
+    for (int cellV = cellOfPart(first.y); cellV <= cellOfPart(last.y); ++cellV)
+      for (int cellU = cellOfPart(first.x); cellU <= cellOfPart(last.x); ++cellU) {
+        cell[u] = cellU;
+        cell[v] = cellV;
+        add(cell, position, normal, albedo, partsInCell(first, last, ivec2(cellU, cellV)) & allowed);
+      }
+  }
+}

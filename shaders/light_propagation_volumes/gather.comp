@@ -1,0 +1,147 @@
+#version 450
+// Indirect diffuse light at the visible surfaces (thesis 004 Sec. 4.3.5, Listings 4.35 and 4.36). One dispatch a grid, the coarsest
+// first; each finer one is blended over it.
+#include "cells.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const int published = 0;  // 1: Listing 4.35 to the letter
+layout(constant_id = 1) const int closure = 1;    // 0: what two bands make negative is cut off
+
+layout(std140, binding = 0) uniform Parameters {
+  vec3 gridLow;        // m
+  float cellSize;      // m
+  ivec3 resolution;
+  float blend;         // width of the seam, cells
+  float offset;        // of the lookup along the normal, cells
+  float exponent;      // of the radiance
+  float occlusion;     // amplifier of the closed share of a face
+  int first, last;     // 1 for the first and the last dispatch
+};
+layout(binding = 0) uniform sampler2D gPosition;
+layout(binding = 1) uniform sampler2D gNormal;
+layout(binding = 2) uniform sampler2D gGeometricNormal;
+layout(binding = 3) uniform sampler2D gDiffuse;
+layout(binding = 4) uniform sampler3D red;
+layout(binding = 5) uniform sampler3D green;
+layout(binding = 6) uniform sampler3D blue;
+layout(binding = 7) uniform sampler3D closed;
+layout(binding = 0, rgba32f) uniform image2D diffuseImage;
+layout(binding = 1, rgba32f) uniform image2D clippedImage;
+
+// Open share of the way from a cell to its neighbour `side` along an axis.
+float openWay(ivec3 cell, int axis, int side) {
+  if (side == 0) return 1.0;
+  ivec3 face = cell;
+  if (side > 0) ++face[axis];
+  return 1.0 - clamp(occlusion * texelFetch(closed, clamp(face, ivec3(0), resolution), 0)[axis], 0.0, 1.0);
+}
+
+// Light of intensity c . Y in a cell is a radiance: the cell shows the mean projected area 3/2 h^2 (Cauchy: a quarter of its surface). The
+// irradiance of a surface is its integral with the cosine: from both sides alike `mean`, and `net` more on the one than on the other.
+// Two bands can make mean + net negative. Deviates: with the closure, sqrt(mean^2 + net^2) takes the place of the mean, the least
+// smooth function that keeps the difference of both sides exactly and neither of them negative.
+struct Irradiance {
+  vec3 value;    // W/m^2
+  vec3 clipped;  // what was negative with two bands, as a positive value
+};
+Irradiance irradianceOf(vec4 redLight, vec4 greenLight, vec4 blueLight, vec3 normal) {
+  vec4 lobe = shClampedCosine(-normal) / (kMeanProjection * cellSize * cellSize);
+  vec3 mean = lobe.x * vec3(redLight.x, greenLight.x, blueLight.x);
+  vec3 net = vec3(dot(redLight.yzw, lobe.yzw), dot(greenLight.yzw, lobe.yzw), dot(blueLight.yzw, lobe.yzw));
+  vec3 clipped = max(-(mean + net), 0.0);
+  return Irradiance(closure != 0 ? max(sqrt(mean * mean + net * net) + net, 0.0) : mean + net, clipped);
+}
+
+Irradiance irradianceAt(vec3 position, vec3 normal, vec3 geometricNormal) {
+  // The surface lies on the nearest plane of faces, as it does for the light; the cell before it is where the ways begin.
+  vec3 size = abs(geometricNormal);
+  int dominant = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
+  int up = geometricNormal[dominant] >= 0.0 ? 1 : -1;
+  int plane = int(floor(position[dominant] + 0.5));
+  ivec3 base = ivec3(floor(position));
+  base[dominant] = up > 0 ? plane : plane - 1;
+  base = clamp(base, ivec3(0), resolution - 1);
+  // A lookup one cell away along the dominant axis stays the same when the plane jumps; never behind the first centre.
+  vec3 lookup = position + geometricNormal * (offset / size[dominant]);
+  float centre = float(base[dominant]) + 0.5;
+  lookup[dominant] = up > 0 ? max(lookup[dominant], centre) : min(lookup[dominant], centre);
+  // The lookup may have left the base sideways: it may do so by less than a cell.
+  lookup = clamp(lookup, vec3(base) - 0.5, vec3(base) + 1.5);
+
+  ivec3 low = ivec3(floor(lookup - 0.5));
+  vec3 share = lookup - 0.5 - vec3(low);
+  vec4 redSum = vec4(0.0), greenSum = vec4(0.0), blueSum = vec4(0.0);
+  float weights = 0.0;
+  // Near an edge the surface may lie, sideways too, in the cell behind a wall that was moved. No light comes there: then all cells with
+  // light count, whatever lies between.
+  for (int attempt = 0; attempt < 2 && redSum.x + greenSum.x + blueSum.x <= 0.0; ++attempt) {
+    redSum = greenSum = blueSum = vec4(0.0);
+    weights = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+      ivec3 high = ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+      ivec3 cell = clamp(low + high, ivec3(0), resolution - 1);
+      vec3 part = mix(1.0 - share, share, vec3(high));
+      float weight = part.x * part.y * part.z;
+      vec4 redLight = texelFetch(red, cell, 0), greenLight = texelFetch(green, cell, 0), blueLight = texelFetch(blue, cell, 0);
+      if (attempt == 0) {
+        // Only what can be reached without crossing a surface: sideways first, then away.
+        ivec3 way = clamp(cell - base, ivec3(-1), ivec3(1)), at = base;
+        for (int i = 1; i <= 3; ++i) {
+          int axis = (dominant + i) % 3;
+          weight *= openWay(at, axis, way[axis]);
+          at[axis] += way[axis];
+        }
+      } else if (redLight.x + greenLight.x + blueLight.x <= 0.0) {
+        weight = 0.0;
+      }
+      redSum += weight * redLight;
+      greenSum += weight * greenLight;
+      blueSum += weight * blueLight;
+      weights += weight;
+    }
+  }
+  if (weights <= 0.0) return Irradiance(vec3(0.0), vec3(0.0));
+  return irradianceOf(redSum / weights, greenSum / weights, blueSum / weights, normal);
+}
+
+// Listing 4.35: read with filtering half a cell away, whatever lies between.
+Irradiance publishedIrradiance(vec3 position, vec3 normal) {
+  vec3 texcoord = (position + 0.5 * normal) / vec3(resolution);
+  return irradianceOf(texture(red, texcoord), texture(green, texcoord), texture(blue, texcoord), normal);
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, textureSize(gPosition, 0)))) return;
+  vec4 posWorld = texelFetch(gPosition, pixel, 0);
+  vec3 irradiance = vec3(0.0), clipped = vec3(0.0);
+  if (first == 0) {
+    irradiance = imageLoad(diffuseImage, pixel).rgb;
+    clipped = imageLoad(clippedImage, pixel).rgb;
+  }
+  if (posWorld.w > 0.0) {
+    vec3 position = (posWorld.xyz - gridLow) / cellSize;
+    // Cells to the border; the coarsest grid ends at it.
+    vec3 inside = min(position, vec3(resolution) - position);
+    float toBorder = min(inside.x, min(inside.y, inside.z));
+    float weight = first != 0 ? clamp(toBorder, 0.0, 1.0) : clamp((toBorder - 1.0) / blend, 0.0, 1.0);
+    if (weight > 0.0) {
+      vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
+      Irradiance here;
+      if (published != 0) here = publishedIrradiance(position, normal);
+      else here = irradianceAt(position, normal, texelFetch(gGeometricNormal, pixel, 0).xyz);
+      irradiance = mix(irradiance, here.value, weight);
+      clipped = mix(clipped, here.clipped, weight);
+    }
+    if (last != 0) {
+      vec3 albedo = texelFetch(gDiffuse, pixel, 0).rgb;
+      vec3 radiance = max(irradiance, 0.0) / kPi;
+      if (exponent != 1.0) radiance = pow(radiance, vec3(exponent));
+      irradiance = albedo * radiance;
+      clipped *= albedo / kPi;
+    }
+  }
+  imageStore(diffuseImage, pixel, vec4(irradiance, 1.0));
+  imageStore(clippedImage, pixel, vec4(clipped, 1.0));
+}

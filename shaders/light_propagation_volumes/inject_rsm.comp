@@ -1,0 +1,25 @@
+#version 450
+// Kaplanyan & Dachsbacher 2010, Sec. 4.1: every texel of the reflective shadow map is a virtual point light.
+#include "virtual_lights.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(std140, binding = 0) uniform Parameters {
+  vec3 gridLow;       // m
+  float cellSize;     // m
+  ivec3 resolution;
+  float largestFlux;  // W
+};
+layout(binding = 0) uniform sampler2DArray rsmPosition;
+layout(binding = 1) uniform sampler2DArray rsmNormal;
+layout(binding = 2) uniform sampler2DArray rsmFlux;
+
+void main() {
+  ivec3 texel = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(texel, textureSize(rsmFlux, 0)))) return;
+  vec3 flux = texelFetch(rsmFlux, texel, 0).rgb;
+  if (!any(greaterThan(flux, vec3(0.0)))) return;
+  vec3 normal = texelFetch(rsmNormal, texel, 0).xyz;
+  vec3 position = (texelFetch(rsmPosition, texel, 0).xyz - gridLow) / cellSize;
+  addVirtualLight(cellInFront(position, normal), resolution, flux, normal, largestFlux);
+}

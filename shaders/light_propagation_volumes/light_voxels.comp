@@ -1,0 +1,73 @@
+#version 450
+// Doghramachi 2013; thesis 004 Sec. 4.3.2, Listing 4.30: illuminated voxels become virtual point lights. All lights at once.
+#define SHADOW_VIEWS
+#include "common/lights.glsl"
+#include "lit_voxel.glsl"
+#include "virtual_lights.glsl"
+
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+
+layout(std140, binding = 0) uniform Parameters {
+  vec3 gridLow;       // m
+  float cellSize;     // m
+  ivec3 resolution;
+  float largestFlux;  // W
+  int lightCount;
+  int contrastAlbedo;  // 1: the most contrasting albedo, as published; 0: the mean
+  int closestNormal;   // 1: only the normal nearest to the direction of the light, as published; 0: all
+  int wholeFaces;      // 1: a surface fills its voxel, as published; 0: the parts that it covers
+};
+
+// Irradiance of one light at a group's surface.
+vec3 irradianceFrom(LightSample light, vec3 posWorld, vec3 normal) {
+  vec3 toLight;
+  vec3 perpendicular = arrivingIrradiance(light, posWorld, toLight);
+  float cosSurface = dot(normal, toLight);
+  if (cosSurface <= 0.0) return vec3(0.0);
+  return perpendicular * (cosSurface * visibility(light, posWorld, normal, toLight));
+}
+
+void main() {
+  ivec3 cell = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(cell, resolution))) return;
+  int voxel = ((cell.z * resolution.y + cell.y) * resolution.x + cell.x) * kWordsOfVoxel;
+  if (voxels[voxel + kWeight] == 0u) return;
+  vec3 albedo = meanOf(voxels[voxel + kAlbedo], voxels[voxel + kAlbedo + 1], voxels[voxel + kAlbedo + 2]);
+  uint winner = voxels[voxel + kWinner];
+  if (contrastAlbedo != 0) albedo = vec3(winner >> 16 & 255u, winner >> 8 & 255u, winner & 255u) / 255.0;
+
+  vec3 centre = gridLow + (vec3(cell) + 0.5) * cellSize;
+  vec3 normals[4], positions[4], irradiance[4];
+  float areas[4];
+  for (int i = 0; i < kGroups; ++i) {
+    int group = voxel + kGroup + i * kWordsOfGroup;
+    vec3 mean = meanOf(voxels[group + kGroupNormal], voxels[group + kGroupNormal + 1], voxels[group + kGroupNormal + 2]);
+    float size = length(mean);
+    normals[i] = size > 0.0 ? mean / size : vec3(0.0);
+    // Parts are counted on the plane of faces: the surface is longer by the slant.
+    vec3 slant = abs(normals[i]);
+    uint parts = size > 0.0 ? (wholeFaces != 0 ? 16u : uint(bitCount(voxels[group + kGroupParts]))) : 0u;
+    areas[i] = parts == 0u ? 0.0 : float(parts) / 16.0 * cellSize * cellSize / max(slant.x, max(slant.y, slant.z));
+    positions[i] = centre + meanOf(voxels[group + kGroupPosition], voxels[group + kGroupPosition + 1],
+                                   voxels[group + kGroupPosition + 2]) * (kPositionRange * cellSize);
+    irradiance[i] = vec3(0.0);
+  }
+  for (int l = 0; l < lightCount; ++l) {
+    LightSample light = lights[l];
+    int closest = 0;
+    float largest = -2.0;
+    for (int i = 0; i < kGroups; ++i) {
+      vec3 toLight;
+      arrivingIrradiance(light, positions[i], toLight);
+      if (areas[i] > 0.0 && dot(normals[i], toLight) > largest) {
+        largest = dot(normals[i], toLight);
+        closest = i;
+      }
+    }
+    for (int i = 0; i < kGroups; ++i)
+      if (areas[i] > 0.0 && (closestNormal == 0 || i == closest)) irradiance[i] += irradianceFrom(light, positions[i], normals[i]);
+  }
+  // No cell reflects more than a quarter of the range for each group.
+  for (int i = 0; i < kGroups; ++i)
+    addVirtualLight(cell, resolution, min(albedo * irradiance[i] * areas[i], 0.25 * largestFlux), normals[i], largestFlux);
+}

@@ -1,0 +1,44 @@
+#version 450
+// The same iteration in the structure of thesis 004 Listing 4.32: every face of every neighbour in turn, its direction, solid angle and
+// harmonics worked out where they are needed, and every cell visited. The measure of the folded one, and the published heuristics.
+#include "propagation.glsl"
+
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+
+layout(constant_id = 1) const int publishedSum = 0;  // 1: negative flux is dropped, and the light of a cell stays in it
+
+const ivec3 kOffsets[6] =
+    ivec3[6](ivec3(1, 0, 0), ivec3(-1, 0, 0), ivec3(0, 1, 0), ivec3(0, -1, 0), ivec3(0, 0, 1), ivec3(0, 0, -1));
+
+void main() {
+  ivec3 cell = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(cell, resolution))) return;
+  vec4 sums[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
+  if (publishedSum != 0) sums = vec4[3](texelFetch(red, cell, 0), texelFetch(green, cell, 0), texelFetch(blue, cell, 0));
+  for (int n = 0; n < 6; ++n) {
+    ivec3 source = cell + kOffsets[n];
+    bool outside = any(lessThan(source, ivec3(0))) || any(greaterThanEqual(source, resolution));
+    if (outside && mirrors == 0) continue;
+    ivec3 read = outside ? cell : source;
+    vec4 light[3] = vec4[3](texelFetch(red, read, 0), texelFetch(green, read, 0), texelFetch(blue, read, 0));
+    int axis = n >> 1;
+    float open = outside ? 1.0 : openShare(texelFetch(closed, max(cell, source), 0)[axis]);
+    for (int f = 0; f < 6; ++f) {
+      // From the centre of the neighbour to the centre of a face of this cell.
+      vec3 direction = 0.5 * vec3(kOffsets[f]) - vec3(kOffsets[n]);
+      float distance = length(direction);
+      direction /= distance;
+      float solidAngle = distance < 0.75 ? 0.0 : distance > 1.25 ? kFarFace : kSideFace;  // the shared face is not reached
+      vec4 basis = shBasis(direction);
+      vec4 lobe = cosineLobe != 0 ? shClampedCosine(vec3(kOffsets[f])) / kPi : basis;
+      for (int channel = 0; channel < 3; ++channel) {
+        vec4 coefficients = light[channel];
+        if (outside) coefficients.yzw *= 1.0 - 2.0 * abs(vec3(kOffsets[n].yzx));
+        float flux = dot(coefficients, basis) * solidAngle * amplifier * open;
+        if (publishedSum != 0) flux = max(0.0, flux);
+        sums[channel] += lobe * flux;
+      }
+    }
+  }
+  store(cell, sums[0], sums[1], sums[2]);
+}

@@ -1,0 +1,34 @@
+#version 450
+// Collected virtual point lights to spherical harmonics: a light of flux F and normal n has the intensity
+//   F / (4 pi) (1 + 3 m n . w),  m its mean cosine: c0 = Y0 F, c1 = m Y1 F n.
+// Deviates from thesis 004 Listing 4.31, a clamped cosine (m = 2/3): see README, "injection".
+#include "cells.glsl"
+#include "virtual_lights.glsl"
+
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+
+layout(std140, binding = 0) uniform Parameters {
+  ivec3 resolution;
+  float largestFlux;   // W
+  float meanCosine;    // 0: the one at which nothing leaves backwards
+};
+layout(binding = 0, rgba32f) uniform writeonly image3D red;
+layout(binding = 1, rgba32f) uniform writeonly image3D green;
+layout(binding = 2, rgba32f) uniform writeonly image3D blue;
+
+void main() {
+  ivec3 cell = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(cell, resolution))) return;
+  int word = ((cell.z * resolution.y + cell.y) * resolution.x + cell.x) * kWordsOfCell;
+  // fluxAcross the face behind the light is 0: kCrossing0 Y0 = kCrossing1 m Y1.
+  float cosine = meanCosine > 0.0 ? meanCosine : kCrossing0 * kY0 / (kCrossing1 * kY1);
+  vec4 unit = vec4(kY0, vec3(cosine * kY1)) * (largestFlux / (0.5 * kFixedPoint));
+  vec4 channels[3];
+  for (int i = 0; i < 3; ++i) {
+    ivec4 sum = ivec4(sums[word + 4 * i], sums[word + 4 * i + 1], sums[word + 4 * i + 2], sums[word + 4 * i + 3]);
+    channels[i] = vec4(sum).xzwy * unit;  // x, y, z to the order of the harmonics
+  }
+  imageStore(red, cell, channels[0]);
+  imageStore(green, cell, channels[1]);
+  imageStore(blue, cell, channels[2]);
+}

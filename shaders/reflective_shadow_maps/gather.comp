@@ -1,0 +1,120 @@
+#version 450
+// Dachsbacher & Stamminger 2005, Sec. 3.2 and 4.2: one-bounce light at the visible surfaces as the sum over texels of the reflective
+// shadow map; occlusion between texel and surface is left out.
+#pragma lumivox axis METHOD chosen all projected
+#include "common/rsm.glsl"
+#if METHOD == METHOD_PROJECTED
+#include "common/lights.glsl"
+#endif
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(std140, binding = 0) uniform Parameters {
+  int width;      // texels along a side of a layer
+  int firstRow;   // METHOD_ALL: rows of texels, of all layers together, that this dispatch adds
+  int rows;
+  int samples;    // chosen texels; with METHOD_PROJECTED of each light
+  int lightCount;
+  int publishedWeights;
+  float reach;    // METHOD_PROJECTED: share of the half sphere, or of half the view, that is sampled
+};
+layout(binding = 0) uniform sampler2D gPosition;
+layout(binding = 1) uniform sampler2D gNormal;
+layout(binding = 2) uniform sampler2D gDiffuse;
+#if METHOD != METHOD_CHOSEN
+layout(binding = 3) uniform sampler2DArray rsmPosition;
+layout(binding = 4) uniform sampler2DArray rsmNormal;
+layout(binding = 5) uniform sampler2DArray rsmFlux;
+#else
+layout(std430, binding = 1) readonly buffer Chosen { SurfaceLight chosen[]; };
+#endif
+#if METHOD == METHOD_PROJECTED
+layout(std430, binding = 6) readonly buffer Views { mat4 views[]; };
+#endif
+layout(binding = 0, rgba32f) uniform image2D diffuseImage;
+
+#if METHOD != METHOD_CHOSEN
+SurfaceLight lightAt(ivec3 texel) {
+  vec4 normalArea = texelFetch(rsmNormal, texel, 0);
+  return SurfaceLight(vec4(texelFetch(rsmPosition, texel, 0).xyz, normalArea.w), vec4(normalArea.xyz, 0.0),
+                      vec4(texelFetch(rsmFlux, texel, 0).rgb, 0.0));
+}
+#endif
+
+#if METHOD == METHOD_PROJECTED
+// Sec. 4.2: samples around the projection of the surface point into the light's view, denser near it: at the distance reach * xi1 and
+// the angle 2 pi xi2. Deviates: for lights with perspective the distance is an angle, so that a pattern crosses the faces of a cube; the
+// weight is the Jacobian of the pattern, which makes the sum right for a constant map (as published: xi1 squared, normalised).
+vec3 aroundProjection(LightSample light, vec3 posWorld, vec3 normal) {
+  bool directional = int(light.positionKind.w) == kLightDirectional;
+  int firstLayer = int(light.directionLayer.w);
+  vec3 axis = directional ? light.directionLayer.xyz : normalize(posWorld - light.positionKind.xyz);
+  vec3 helper = abs(axis.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+  vec3 tangent = normalize(cross(helper, axis)), bitangent = cross(axis, tangent);
+  float largest = directional ? reach * light.shape.z * float(width) : reach * kPi;
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < samples; ++i) {
+    // R2 sequence (Roberts 2018), the same for every pixel, as published.
+    float xi1 = fract(0.5 + 0.7548776662466927 * float(i + 1)), xi2 = fract(0.5 + 0.5698402909980532 * float(i + 1));
+    float angle = 2.0 * kPi * xi2, distance = largest * xi1;
+    vec3 side = tangent * cos(angle) + bitangent * sin(angle);
+    vec3 target = directional ? posWorld + side * distance : light.positionKind.xyz + axis * cos(distance) + side * sin(distance);
+    int layer = firstLayer;
+    if (light.power.w > 1.0) layer += cubeFace(target - light.positionKind.xyz);
+    vec4 clip = views[layer] * vec4(target, 1.0);
+    if (clip.w <= 0.0) continue;
+    vec2 projected = clip.xy / clip.w;
+    vec2 texcoord = vec2(0.5 + 0.5 * projected.x, 0.5 - 0.5 * projected.y);
+    if (any(lessThan(texcoord, vec2(0.0))) || any(greaterThanEqual(texcoord, vec2(1.0)))) continue;
+    SurfaceLight patchLight = lightAt(ivec3(ivec2(texcoord * float(width)), layer));
+    // Texels that one sample stands for: its part of the plane or of the sphere over that of a texel.
+    float texelSize = light.shape.z * light.shape.z;
+    if (!directional) {
+      vec2 onPlane = (texcoord - 0.5) * float(width) * light.shape.z;
+      float secantSquared = 1.0 + dot(onPlane, onPlane);
+      texelSize /= secantSquared * sqrt(secantSquared);
+    }
+    float ring = directional ? distance : sin(distance);
+    float part = 2.0 * kPi * largest * ring / float(samples);
+    // As published: xi1^2 in place of xi1; both sum to the same for the disc as a whole (3/2 from their means).
+    if (publishedWeights != 0) part = 2.0 * kPi * largest * largest * 1.5 * xi1 * xi1 / float(samples);
+    float copies = part / texelSize;
+    patchLight.flux.rgb *= copies;
+    patchLight.positionArea.w *= copies;
+    sum += surfaceLightIrradiance(patchLight, posWorld, normal);
+  }
+  return sum;
+}
+#endif
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, textureSize(gPosition, 0)))) return;
+  vec4 position = texelFetch(gPosition, pixel, 0);
+  vec3 albedo = texelFetch(gDiffuse, pixel, 0).rgb;
+  vec3 irradiance = vec3(0.0);
+  if (position.w > 0.0 && any(greaterThan(albedo, vec3(0.0)))) {
+    vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
+#if METHOD == METHOD_CHOSEN
+    for (int i = 0; i < samples; ++i) irradiance += surfaceLightIrradiance(chosen[i], position.xyz, normal);
+#elif METHOD == METHOD_ALL
+    for (int row = firstRow; row < firstRow + rows; ++row) {
+      // A sum for each row keeps the rounding of a million small addends away.
+      vec3 sum = vec3(0.0);
+      for (int x = 0; x < width; ++x) {
+        ivec3 texel = ivec3(x, row % width, row / width);
+        if (all(equal(texelFetch(rsmFlux, texel, 0).rgb, vec3(0.0)))) continue;
+        sum += surfaceLightIrradiance(lightAt(texel), position.xyz, normal);
+      }
+      irradiance += sum;
+    }
+#else
+    for (int i = 0; i < lightCount; ++i) irradiance += aroundProjection(lights[i], position.xyz, normal);
+#endif
+  }
+  vec3 radiance = albedo / kPi * irradiance;
+#if METHOD == METHOD_ALL
+  radiance += imageLoad(diffuseImage, pixel).rgb;
+#endif
+  imageStore(diffuseImage, pixel, vec4(radiance, 1.0));
+}

@@ -1,0 +1,67 @@
+#version 450
+// Dachsbacher & Stamminger 2005, Sec. 4.1: position, normal and reflected flux of what each texel of a light's view sees.
+#pragma lumivox axis TEXTURES 0 1
+#pragma lumivox axis MASKS 0 1
+#define SCENE_MATERIALS
+#include "common/lights.glsl"
+#include "common/scene.glsl"
+
+layout(std140, binding = 1) uniform View {
+  mat4 worldToClip;
+  int lightIndex;
+  float halfSize;  // texels
+};
+
+#if TEXTURES
+layout(binding = 0) uniform sampler2D diffuseTexture;
+#endif
+#if MASKS
+layout(binding = 1) uniform sampler2D maskTexture;
+#endif
+
+layout(location = 0) in vec3 posWorld;
+layout(location = 1) in vec3 normalWorld;
+#if TEXTURES || MASKS
+layout(location = 2) in vec2 texcoord;
+#endif
+
+layout(location = 0) out vec4 outPosition;
+layout(location = 1) out vec4 outNormal;
+layout(location = 2) out vec4 outFlux;
+
+// At a more grazing angle a texel stands for no larger patch: it would be longer than what one texel can tell of.
+const float kSmallestCosine = 0.02;
+
+void main() {
+  // Derivatives before any discard: they are undefined after it.
+  vec3 geometricNormal = cross(dFdx(posWorld), dFdy(posWorld));
+#if MASKS
+  if (texture(maskTexture, texcoord).r < kMaskThreshold) discard;
+#endif
+  LightSample light = lights[lightIndex];
+  vec3 toLight;
+  vec3 perpendicular = arrivingIrradiance(light, posWorld, toLight);
+  float size = length(geometricNormal);
+  geometricNormal = size > 0.0 ? geometricNormal / size : normalize(normalWorld);
+  if (dot(geometricNormal, toLight) < 0.0) geometricNormal = -geometricNormal;
+  vec3 normal = normalize(normalWorld);
+  if (dot(normal, geometricNormal) < 0.0) normal = -normal;
+
+  // Cross-section of the light that falls into the texel. In perspective a texel at (u, v) on the plane at distance 1, w wide, has the
+  // solid angle w^2 / (1 + u^2 + v^2)^(3/2).
+  float crossSection = light.shape.z * light.shape.z;
+  if (int(light.positionKind.w) != kLightDirectional) {
+    vec2 onPlane = (gl_FragCoord.xy - halfSize) * light.shape.z;
+    float secantSquared = 1.0 + dot(onPlane, onPlane);
+    vec3 path = light.positionKind.xyz - posWorld;
+    crossSection *= dot(path, path) / (secantSquared * sqrt(secantSquared));
+  }
+  vec3 albedo = materials[materialIndex].diffuse.rgb;
+#if TEXTURES
+  albedo *= texture(diffuseTexture, texcoord).rgb;
+#endif
+  outPosition = vec4(posWorld, 1.0);
+  outNormal = vec4(normal, crossSection / max(dot(geometricNormal, toLight), kSmallestCosine));
+  // What arrives in the cross-section, whatever the slant: exact also where the patch is seen edge-on.
+  outFlux = vec4(albedo * perpendicular * crossSection, float(lightIndex));
+}

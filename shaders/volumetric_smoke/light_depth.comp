@@ -1,0 +1,27 @@
+#version 450
+// Optical depth of the media that vary between every voxel of a box and every light sample, one slab of the texture a light: what a
+// march from each sample of each ray would find, once a frame.
+#pragma lumivox axis MEDIUM even varying
+#pragma lumivox require MEDIUM == varying
+#include "common/media.glsl"
+
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+
+layout(std140, binding = 0) uniform Parameters {
+  vec3 boxLow;  // m
+  int side;     // voxels along a side of a slab
+  vec3 boxHigh; // m
+  int lightCount;
+  int mostSteps;
+};
+layout(binding = 0, rgba32f) uniform writeonly image3D depthImage;
+
+void main() {
+  ivec3 texel = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(texel, ivec3(side, side, side * lightCount)))) return;
+  vec3 share = (vec3(texel.xy, texel.z % side) + 0.5) / float(side);
+  vec3 posWorld = mix(boxLow, boxHigh, share), direction;
+  float reach;
+  wayToLight(lights[texel.z / side], posWorld, direction, reach);
+  imageStore(depthImage, texel, vec4(varyingDepth(posWorld, direction, reach, mostSteps), 0.0));
+}

@@ -1,0 +1,43 @@
+#version 450
+// Each fragment adds its share of the average as integers, and integer sums do not depend on the order:
+//   sum over n fragments of round(value / range * coverage * 2^31 / n),  0 <= value <= range,  which fits into 32 bits for any n.
+#pragma lumivox axis ATTRIBUTES 0 1
+#pragma lumivox axis EMISSION 0 1
+#pragma lumivox require !EMISSION || ATTRIBUTES
+#define AVERAGING
+#include "average.glsl"
+
+layout(std430, binding = 0) readonly buffer FragmentCount { uint fragmentCount; };
+layout(std430, binding = 1) readonly buffer Fragments { VoxelFragment fragments[]; };
+layout(std430, binding = 4) readonly buffer FragmentsOfSlot { uint fragmentsOfSlot[]; };
+layout(std430, binding = 5) buffer CoverageSums { uint coverageSums[]; };
+#if ATTRIBUTES
+layout(std430, binding = 6) buffer AlbedoSums { uint albedoSums[]; };
+layout(std430, binding = 7) buffer NormalSums { int normalSums[]; };
+#endif
+#if EMISSION
+layout(std430, binding = 8) buffer EmissionSums { uint emissionSums[]; };
+#endif
+layout(binding = 0, r32ui) uniform readonly uimage3D slots;
+
+void main() {
+  uint index = itemIndex();
+  if (index >= fragmentCount) return;
+  VoxelFragment fragment = fragments[index];
+  uint slot = imageLoad(slots, unpackVoxel(fragment.voxel)).r - 1u;
+  vec2 blueCoverage = unpackHalf2x16(fragment.albedoBCoverage);
+  float weight = clamp(blueCoverage.y, 0.0, 1.0) / float(fragmentsOfSlot[slot]);
+  atomicAdd(coverageSums[slot], uint(weight * kFixedPoint + 0.5));
+#if ATTRIBUTES
+  vec3 albedo = clamp(vec3(unpackHalf2x16(fragment.albedoRg), blueCoverage.x), 0.0, 1.0);
+  vec3 normal = unpackNormal(fragment.normal);
+  for (int c = 0; c < 3; ++c) {
+    atomicAdd(albedoSums[3u * slot + uint(c)], uint(albedo[c] * weight * kFixedPoint + 0.5));
+    atomicAdd(normalSums[3u * slot + uint(c)], int(round(normal[c] * weight * kSignedFixedPoint)));
+  }
+#endif
+#if EMISSION
+  vec3 emission = min(unpackShared(fragment.emission) / emissionRange, 1.0);
+  for (int c = 0; c < 3; ++c) atomicAdd(emissionSums[3u * slot + uint(c)], uint(emission[c] * weight * kFixedPoint + 0.5));
+#endif
+}

@@ -1,0 +1,49 @@
+#version 450
+// Sums to averages: opacity by the rule of the list, attributes weighted by coverage.
+#pragma lumivox axis ATTRIBUTES 0 1
+#pragma lumivox axis EMISSION 0 1
+#pragma lumivox axis OPACITY 0 1
+#pragma lumivox require !EMISSION || ATTRIBUTES
+#define AVERAGING
+#include "average.glsl"
+
+layout(std430, binding = 2) readonly buffer SlotCount { uint slotCount; };
+layout(std430, binding = 3) readonly buffer SlotVoxels { uint slotVoxels[]; };
+layout(std430, binding = 4) readonly buffer FragmentsOfSlot { uint fragmentsOfSlot[]; };
+layout(std430, binding = 5) readonly buffer CoverageSums { uint coverageSums[]; };
+#if ATTRIBUTES
+layout(std430, binding = 6) readonly buffer AlbedoSums { uint albedoSums[]; };
+layout(std430, binding = 7) readonly buffer NormalSums { int normalSums[]; };
+layout(binding = 0, rgba16f) uniform writeonly image3D albedoImage;
+layout(binding = 1, rgba16f) uniform writeonly image3D normalImage;
+#endif
+#if EMISSION
+layout(std430, binding = 8) readonly buffer EmissionSums { uint emissionSums[]; };
+layout(binding = 2, rgba32f) uniform writeonly image3D emissionImage;
+#endif
+#if OPACITY
+layout(binding = 3, r8) uniform writeonly image3D opacityImage;
+#endif
+
+void main() {
+  uint slot = itemIndex();
+  if (slot >= slotCount) return;
+  ivec3 voxel = unpackVoxel(slotVoxels[slot]);
+  float mean = float(coverageSums[slot]) / kFixedPoint;
+  float opacity = min(coverageSum != 0 ? mean * float(fragmentsOfSlot[slot]) : mean, 1.0);
+#if OPACITY
+  imageStore(opacityImage, voxel, vec4(opacity));
+#endif
+#if ATTRIBUTES
+  // Coverages of nothing at all leave no average.
+  float inverse = mean > 0.0 ? 1.0 / mean : 0.0;
+  vec3 albedo = vec3(albedoSums[3u * slot], albedoSums[3u * slot + 1u], albedoSums[3u * slot + 2u]) / kFixedPoint;
+  vec3 normal = vec3(normalSums[3u * slot], normalSums[3u * slot + 1u], normalSums[3u * slot + 2u]) / kSignedFixedPoint;
+  imageStore(albedoImage, voxel, vec4(albedo * inverse, opacity));
+  imageStore(normalImage, voxel, vec4(normal * inverse, 0.0));
+#endif
+#if EMISSION
+  vec3 emission = vec3(emissionSums[3u * slot], emissionSums[3u * slot + 1u], emissionSums[3u * slot + 2u]) / kFixedPoint;
+  imageStore(emissionImage, voxel, vec4(emission * (inverse * emissionRange), opacity));
+#endif
+}

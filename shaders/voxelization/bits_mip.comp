@@ -1,0 +1,21 @@
+#version 450
+// A coarser level of the stacks: the union of two by two, and of what is left over at an odd end (thesis 004 Sec. 4.4.5). The depth
+// keeps its resolution.
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(binding = 0, rgba32ui) uniform readonly uimage2DArray finer;
+layout(binding = 1, rgba32ui) uniform writeonly uimage2DArray coarser;
+
+void main() {
+  ivec3 texel = ivec3(gl_GlobalInvocationID), size = imageSize(coarser);
+  if (any(greaterThanEqual(texel, size))) return;
+  ivec2 finerSize = imageSize(finer).xy;
+  ivec2 low = 2 * texel.xy;
+  ivec2 high = min(low + 1, finerSize - 1);
+  if (texel.x == size.x - 1) high.x = finerSize.x - 1;
+  if (texel.y == size.y - 1) high.y = finerSize.y - 1;
+  uvec4 stack = uvec4(0u);
+  for (int y = low.y; y <= high.y; ++y)
+    for (int x = low.x; x <= high.x; ++x) stack |= imageLoad(finer, ivec3(x, y, texel.z));
+  imageStore(coarser, texel, stack);
+}

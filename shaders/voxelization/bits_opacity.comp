@@ -1,0 +1,14 @@
+#version 450
+// Bits as opacities.
+#include "bits.glsl"
+
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+
+layout(binding = 2, r8) uniform writeonly image3D opacity;
+
+void main() {
+  ivec3 voxel = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(voxel, imageSize(opacity)))) return;
+  uint bit = wordAt(ivec3(voxel.xy, voxel.z >> 5)) >> (voxel.z & 31) & 1u;
+  imageStore(opacity, voxel, vec4(float(bit)));
+}

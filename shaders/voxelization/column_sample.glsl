@@ -1,0 +1,68 @@
+// The fragment that a triangle leaves in the voxels of a column; the same to the bit for every voxeliser that goes by columns.
+// Including files declare the textures before, as the axes TEXTURES and MASKS say.
+#include "triangle.glsl"
+
+// Barycentric coordinates in the projection, clamped to the triangle.
+vec3 barycentric(mat3 corners, vec2 point) {
+  vec2 e1 = corners[1].xy - corners[0].xy, e2 = corners[2].xy - corners[0].xy, p = point - corners[0].xy;
+  float doubleArea = e1.x * e2.y - e1.y * e2.x;
+  if (doubleArea == 0.0) return vec3(1.0 / 3.0);
+  vec2 weights = vec2(p.x * e2.y - p.y * e2.x, e1.x * p.y - e1.y * p.x) / doubleArea;
+  vec3 result = max(vec3(1.0 - weights.x - weights.y, weights), 0.0);
+  return result / (result.x + result.y + result.z);
+}
+
+// What the triangle leaves in a column: the fragment of every voxel there, but for its place.
+struct ColumnSample {
+  vec3 centre;  // point of the triangle nearest to the middle of the column
+  VoxelFragment fragment;
+};
+
+// What all fragments of a material share.
+VoxelFragment fragmentOf(MaterialData material) {
+  VoxelFragment fragment;
+  fragment.voxel = fragment.offset = fragment.normal = 0u;
+  fragment.albedoRg = packHalf2x16(material.diffuse.rg);
+  fragment.albedoBCoverage = packHalf2x16(vec2(material.diffuse.b, 1.0));
+  fragment.emission = packShared(material.emission.rgb);
+  return fragment;
+}
+
+ColumnSample sampleColumn(mat3 corners, mat3 cornerNormals, vec2 cornerTexcoords[3], MaterialData material, VoxelFragment base, ivec2 column) {
+  ColumnSample result;
+  vec3 weights = barycentric(corners, vec2(column) + 0.5);
+  result.centre = corners * weights;
+  result.fragment = base;
+#if TEXTURES || MASKS
+  vec3 albedo = material.diffuse.rgb;
+  float coverage = 1.0;
+  vec2 texcoord = cornerTexcoords[0] * weights.x + cornerTexcoords[1] * weights.y + cornerTexcoords[2] * weights.z;
+  // A column is a voxel wide: the gradients of the affine map select the mip that averages over a voxel.
+  vec2 e1 = corners[1].xy - corners[0].xy, e2 = corners[2].xy - corners[0].xy;
+  vec2 t1 = cornerTexcoords[1] - cornerTexcoords[0], t2 = cornerTexcoords[2] - cornerTexcoords[0];
+  float doubleArea = e1.x * e2.y - e1.y * e2.x;
+  float inverse = doubleArea != 0.0 ? 1.0 / doubleArea : 0.0;
+  vec2 gradientX = (t1 * e2.y - t2 * e1.y) * inverse, gradientY = (t2 * e1.x - t1 * e2.x) * inverse;
+#if TEXTURES
+  albedo *= textureGrad(diffuseTexture, texcoord, gradientX, gradientY).rgb;
+#endif
+#if MASKS
+  coverage = textureGrad(maskTexture, texcoord, gradientX, gradientY).r;
+#endif
+  result.fragment.albedoRg = packHalf2x16(albedo.rg);
+  result.fragment.albedoBCoverage = packHalf2x16(vec2(albedo.b, coverage));
+#endif
+  vec3 normal = cornerNormals * weights;
+  result.fragment.normal = packNormal(dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0, 1.0, 0.0));
+  return result;
+}
+
+// The mask leaves nothing of the triangle there.
+bool isHole(ColumnSample s) { return s.fragment.albedoBCoverage >> 16 == 0u; }
+
+VoxelFragment fragmentAt(ColumnSample s, ivec3 voxel, int axis) {
+  VoxelFragment fragment = s.fragment;
+  fragment.voxel = packVoxel(unpermute(voxel, axis));
+  fragment.offset = packOffset(unpermute(s.centre - vec3(voxel), axis));
+  return fragment;
+}

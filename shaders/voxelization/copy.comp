@@ -1,0 +1,16 @@
+#version 450
+// The fragments of another list become the first ones of this list.
+#include "common/voxel.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430, binding = 0) readonly buffer BaseCount { uint baseCount; };
+layout(std430, binding = 1) readonly buffer BaseFragments { VoxelFragment baseFragments[]; };
+layout(std430, binding = 2) writeonly buffer Count { uint fragmentCount; };
+layout(std430, binding = 3) writeonly buffer Fragments { VoxelFragment fragments[]; };
+
+void main() {
+  uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  if (index == 0u) fragmentCount = baseCount;
+  if (index < baseCount) fragments[index] = baseFragments[index];
+}

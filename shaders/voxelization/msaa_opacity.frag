@@ -1,0 +1,107 @@
+#version 450
+// Opacity by multisampling (3D clipmaps; thesis 004 Sec. 3.5.2): the samples of a pixel that a triangle covers lie in one to three voxels of the
+// column; their number is what the triangle covers of each.
+// TARGET list: a fragment for each voxel, with that coverage. TARGET masks: the samples themselves, as bits of the voxel's three sides; they
+// are projected into the two other planes too, and the surface is made thicker along its normal's axis there.
+#pragma lumivox axis TEXTURES 0 1
+#pragma lumivox axis MASKS 0 1
+#pragma lumivox axis TARGET list masks
+#define SCENE_MATERIALS
+#include "common/scene.glsl"
+#include "common/voxel.glsl"
+#include "sample_grid.glsl"
+
+#if TARGET == TARGET_LIST
+layout(std430, binding = 7) buffer Count { uint fragmentCount; };
+layout(std430, binding = 8) writeonly buffer Fragments { VoxelFragment fragments[]; };
+#else
+layout(binding = 0, r32ui) uniform uimage3D sampleMasks;
+#endif
+#if TEXTURES
+layout(binding = 0) uniform sampler2D diffuseTexture;
+#endif
+#if MASKS
+layout(binding = 1) uniform sampler2D maskTexture;
+#endif
+#include "column_sample.glsl"
+
+layout(location = 0) flat in mat3 corners;
+layout(location = 3) flat in mat3 cornerNormals;
+layout(location = 6) flat in int dominantAxis;
+#if TEXTURES || MASKS
+layout(location = 7) flat in vec2 cornerTexcoords[3];
+#else
+const vec2 cornerTexcoords[3] = vec2[3](vec2(0.0), vec2(0.0), vec2(0.0));
+#endif
+
+#if TARGET == TARGET_MASKS
+// The sample that stands for a point of a voxel's side.
+uint nearestSample(vec2 point) {
+  int best = 0;
+  float least = 1e9;
+  for (int i = 0; i < sampleCount; ++i) {
+    vec2 offset = samples[i].xy - point;
+    float distanceSquared = dot(offset, offset);
+    if (distanceSquared < least) {
+      least = distanceSquared;
+      best = i;
+    }
+  }
+  return 1u << best;
+}
+
+// Bits of the planes across the grid's axes x, y, z: of the dominant axis the samples as they are.
+uint sideMasks(uint covered, float depths[kMostSamples], float slice) {
+  uvec3 masks = uvec3(0u, 0u, covered);  // across the permuted axes
+  for (int i = 0; i < sampleCount; ++i) {
+    if ((covered >> i & 1u) == 0u) continue;
+    for (int step = -1; step <= 1; ++step) {
+      float depth = depths[i] - slice + 0.5 * thickness * float(step);
+      if (depth < 0.0 || depth >= 1.0) continue;
+      masks.x |= nearestSample(vec2(samples[i].y, depth));
+      masks.y |= nearestSample(vec2(depth, samples[i].x));
+    }
+  }
+  ivec3 across = unpermute(ivec3(masks), dominantAxis);
+  return uint(across.x) | uint(across.y) << kMostSamples | uint(across.z) << (2 * kMostSamples);
+}
+#endif
+
+void main() {
+  uint covered = uint(gl_SampleMaskIn[0]) & ((1u << sampleCount) - 1u);
+  ivec2 column = ivec2(gl_FragCoord.xy);
+  vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  if (covered == 0u || normal.z == 0.0) discard;
+  MaterialData material = materials[materialIndex];
+  ColumnSample s = sampleColumn(corners, cornerNormals, cornerTexcoords, material, fragmentOf(material), column);
+  if (isHole(s)) discard;
+  vec2 blueCoverage = unpackHalf2x16(s.fragment.albedoBCoverage);
+
+  vec2 slope = -normal.xy / normal.z;
+  float depths[kMostSamples];
+  float nearest = 1e9, farthest = -1e9;
+  for (int i = 0; i < sampleCount; ++i) {
+    depths[i] = corners[0].z + dot(slope, vec2(column) + samples[i].xy - corners[0].xy);
+    if ((covered >> i & 1u) == 0u) continue;
+    nearest = min(nearest, depths[i]);
+    farthest = max(farthest, depths[i]);
+  }
+  ivec3 size = permute(resolution, dominantAxis);
+  if (any(greaterThanEqual(column, size.xy))) discard;
+  int last = int(clamp(floor(farthest), -1.0, float(size.z - 1)));
+  for (int depth = int(clamp(floor(nearest), 0.0, float(size.z))); depth <= last; ++depth) {
+    uint inside = 0u;
+    for (int i = 0; i < sampleCount; ++i) inside |= int(floor(depths[i])) == depth ? covered & 1u << i : 0u;
+    if (inside == 0u) continue;
+    ivec3 voxel = ivec3(column, depth);
+#if TARGET == TARGET_LIST
+    VoxelFragment fragment = fragmentAt(s, voxel, dominantAxis);
+    float share = float(bitCount(inside)) / float(sampleCount);
+    fragment.albedoBCoverage = packHalf2x16(vec2(blueCoverage.x, blueCoverage.y * share));
+    uint index = atomicAdd(fragmentCount, 1u);
+    if (index < uint(capacity)) fragments[index] = fragment;
+#else
+    if (blueCoverage.y >= kMaskThreshold) imageAtomicOr(sampleMasks, unpermute(voxel, dominantAxis), sideMasks(inside, depths, float(depth)));
+#endif
+  }
+}

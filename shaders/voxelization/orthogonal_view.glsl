@@ -1,0 +1,22 @@
+// Geometry seen along an axis of the grid, one pixel a column of voxels: what slicing, depth peeling and multisampled opacity draw.
+// Positions are in voxels and permuted so that z is the axis of the view.
+#define SCENE_VERTICES
+#include "common/scene.glsl"
+#include "common/voxel.glsl"
+#include "view_axis.glsl"
+
+layout(location = 0) out vec3 posView;
+layout(location = 1) out vec3 normalWorld;
+#if TEXTURES || MASKS
+layout(location = 2) out vec2 texcoord;
+#endif
+
+void main() {
+  posView = permute((vertexPosWorld() - gridLow) / voxelSize, axis);
+  normalWorld = vertexNormalWorld();
+#if TEXTURES || MASKS
+  texcoord = vertexTexcoord();
+#endif
+  // Row 0 is the top of a target: y turns over, so that pixel (x, y) is column (x, y).
+  gl_Position = vec4(2.0 * posView.x / side - 1.0, 1.0 - 2.0 * posView.y / side, (posView.z - depthLow) / (depthHigh - depthLow), 1.0);
+}

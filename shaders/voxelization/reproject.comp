@@ -1,0 +1,50 @@
+#version 450
+// Mavridis & Papaioannou 2011, Sec. 3.2: each pixel that sees a surface marks the voxel that the surface point lies in.
+// Deviates: the g-buffer holds positions, so that nothing has to be projected back from depth.
+#pragma lumivox axis EMISSION 0 1
+#include "common/voxel.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(std140, binding = 0) uniform Grid {
+  vec3 gridLow;     // m
+  float voxelSize;  // m
+  ivec3 resolution;
+  int capacity;
+};
+layout(std430, binding = 0) buffer Count { uint fragmentCount; };
+layout(std430, binding = 1) writeonly buffer Fragments { VoxelFragment fragments[]; };
+layout(binding = 0) uniform sampler2D position;
+layout(binding = 1) uniform sampler2D normal;
+layout(binding = 2) uniform sampler2D diffuse;
+#if EMISSION
+layout(binding = 3) uniform sampler2D emission;
+#endif
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, textureSize(position, 0)))) return;
+  vec4 posWorld = texelFetch(position, pixel, 0);
+  if (posWorld.w == 0.0) return;
+  vec3 posGrid = (posWorld.xyz - gridLow) / voxelSize;
+  ivec3 voxel = ivec3(floor(posGrid));
+  if (any(lessThan(voxel, ivec3(0))) || any(greaterThanEqual(voxel, resolution))) return;
+
+  // A fragment keeps the normal of the front side; the g-buffer's faces the camera.
+  vec4 facing = texelFetch(normal, pixel, 0);
+  vec3 albedo = texelFetch(diffuse, pixel, 0).rgb;
+  vec3 radiance = vec3(0.0);
+#if EMISSION
+  radiance = texelFetch(emission, pixel, 0).rgb;
+#endif
+  uint index = atomicAdd(fragmentCount, 1u);
+  if (index >= uint(capacity)) return;
+  VoxelFragment fragment;
+  fragment.voxel = packVoxel(voxel);
+  fragment.offset = packOffset(posGrid - vec3(voxel));
+  fragment.normal = packNormal(facing.w > 0.5 ? facing.xyz : -facing.xyz);
+  fragment.albedoRg = packHalf2x16(albedo.rg);
+  fragment.albedoBCoverage = packHalf2x16(vec2(albedo.b, 1.0));
+  fragment.emission = packShared(radiance);
+  fragments[index] = fragment;
+}

@@ -1,0 +1,21 @@
+#version 450
+// Fang et al. 2000 (thesis 004 Sec. 2.1.1): what is left of the scene between the clip planes of a slice; each pixel is a voxel of it.
+// Deviates: a list of fragments in place of one picture a slice, so that all of them are kept where several surfaces meet.
+#pragma lumivox axis TEXTURES 0 1
+#pragma lumivox axis MASKS 0 1
+#include "view_sample.glsl"
+
+layout(std430, binding = 7) buffer Count { uint fragmentCount; };
+layout(std430, binding = 8) writeonly buffer Fragments { VoxelFragment fragments[]; };
+
+void main() {
+  VoxelFragment fragment = sampleView();
+  if (fragment.albedoBCoverage >> 16 == 0u) discard;
+  ivec3 voxel = ivec3(gl_FragCoord.xy, int(depthLow));
+  ivec3 cell = unpermute(voxel, axis);
+  if (any(greaterThanEqual(cell, resolution))) discard;
+  fragment.voxel = packVoxel(cell);
+  fragment.offset = packOffset(unpermute(vec3(gl_FragCoord.xy, posView.z) - vec3(voxel), axis));
+  uint index = atomicAdd(fragmentCount, 1u);
+  if (index < uint(capacity)) fragments[index] = fragment;
+}

@@ -1,0 +1,40 @@
+// Textures and masks at points of triangles, as the axes TEXTURES and MASKS say.
+// Including files declare the scene's geometry and grid_corner.glsl before.
+#if TEXTURES
+layout(binding = 0) uniform sampler2D diffuseTexture;
+#endif
+#if MASKS
+layout(binding = 1) uniform sampler2D maskTexture;
+#endif
+
+struct SurfaceTexture {
+  vec3 albedo;  // that the material's is multiplied by
+  float coverage;
+};
+
+// At a point with these barycentric coordinates; the corners are in voxels.
+SurfaceTexture surfaceTextureAt(int triangle, vec3 corners[3], vec3 weights) {
+  SurfaceTexture result = SurfaceTexture(vec3(1.0), 1.0);
+#if TEXTURES || MASKS
+  vec2 texcoord[3];
+  for (int k = 0; k < 3; ++k) {
+    int vertex = 2 * int(indices[3 * triangle + k]);
+    texcoord[k] = vec2(texcoords[vertex], 1.0 - texcoords[vertex + 1]);
+  }
+  // Gradients of the texture coordinates per voxel along two perpendicular directions in the triangle's plane: they select the mip that
+  // averages over a voxel.
+  vec3 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];
+  float width = max(length(e1), 1e-20);
+  float along = dot(e1, e2) / width, height = max(length(cross(e1, e2)) / width, 1e-20);
+  vec2 gradientX = (texcoord[1] - texcoord[0]) / width;
+  vec2 gradientY = (texcoord[2] - texcoord[0] - gradientX * along) / height;
+  vec2 place = texcoord[0] * weights.x + texcoord[1] * weights.y + texcoord[2] * weights.z;
+#endif
+#if TEXTURES
+  result.albedo = textureGrad(diffuseTexture, place, gradientX, gradientY).rgb;
+#endif
+#if MASKS
+  result.coverage = textureGrad(maskTexture, place, gradientX, gradientY).r;
+#endif
+  return result;
+}

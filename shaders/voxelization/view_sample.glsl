@@ -1,0 +1,36 @@
+// The fragment that a drawn pixel leaves, but for its place. Gradients are those of the pixel, which is a voxel wide.
+#define SCENE_MATERIALS
+#include "common/scene.glsl"
+#include "common/voxel.glsl"
+#include "view_axis.glsl"
+
+layout(location = 0) in vec3 posView;
+layout(location = 1) in vec3 normalWorld;
+#if TEXTURES || MASKS
+layout(location = 2) in vec2 texcoord;
+#endif
+#if TEXTURES
+layout(binding = 0) uniform sampler2D diffuseTexture;
+#endif
+#if MASKS
+layout(binding = 1) uniform sampler2D maskTexture;
+#endif
+
+VoxelFragment sampleView() {
+  MaterialData material = materials[materialIndex];
+  vec3 albedo = material.diffuse.rgb;
+  float coverage = 1.0;
+#if TEXTURES
+  albedo *= texture(diffuseTexture, texcoord).rgb;
+#endif
+#if MASKS
+  coverage = texture(maskTexture, texcoord).r;
+#endif
+  VoxelFragment fragment;
+  fragment.voxel = fragment.offset = 0u;
+  fragment.normal = packNormal(dot(normalWorld, normalWorld) > 0.0 ? normalize(normalWorld) : vec3(0.0, 1.0, 0.0));
+  fragment.albedoRg = packHalf2x16(albedo.rg);
+  fragment.albedoBCoverage = packHalf2x16(vec2(albedo.b, coverage));
+  fragment.emission = packShared(material.emission.rgb);
+  return fragment;
+}

@@ -1,0 +1,381 @@
+// Light in participating media on a voxel grid: thesis Gomes 2015, Sec. 2.5 and 4.5, after Vos 2014,
+// "Volumetric light effects in Killzone: Shadow Fall". Particles, insertion into the grid, dithered ray
+// marching, bilateral upsampling.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "lumivox/base/error.h"
+#include "lumivox/pipeline/grid_placement.h"
+#include "lumivox/pipeline/media.h"
+#include "lumivox/plugin/technique.h"
+#include "volumetric_smoke_shaders.h"
+
+namespace lumivox::volumetric_smoke {
+namespace {
+
+namespace particlesShader = shaders::volumetric_smoke::particles;
+namespace insertShader = shaders::volumetric_smoke::insert;
+namespace densityShader = shaders::volumetric_smoke::density;
+namespace lightDepthShader = shaders::volumetric_smoke::light_depth;
+namespace marchShader = shaders::volumetric_smoke::march;
+namespace upsampleShader = shaders::volumetric_smoke::upsample;
+
+constexpr glm::ivec3 kParticleGroup{64, 1, 1};  // local sizes of the shaders
+constexpr glm::ivec3 kVoxelGroup{4, 4, 4};
+constexpr glm::ivec3 kImageGroup{8, 8, 1};
+
+constexpr double kUnitsPerParticle = 16777216.0;  // kUnits in insert.comp
+
+gpu::TextureDescription volumeOf(const glm::ivec3& size, gpu::Format format) {
+  gpu::TextureDescription description;
+  description.kind = gpu::TextureKind::d3;
+  description.format = format;
+  description.width = size.x;
+  description.height = size.y;
+  description.depth = size.z;
+  return description;
+}
+
+/// Sec. 4.5: the particle system. Table 2 calls it particle update.
+class ParticlesPass : public Pass {
+  Out<Particles> particles{this, "particles", "where the particles of every medium are"};
+
+  Reads readsFrom() const override { return Reads::time; }
+  Needs needs() const override { return Needs::particles; }
+
+  void run(PassContext& frame) override {
+    Particles result;
+    const std::vector<Medium>& media = frame.sceneDescription().media;
+    for (std::size_t i = 0; i < media.size(); ++i) {
+      const Medium& medium = media[i];
+      if (medium.particles == 0) continue;
+      const ParticleClock clock = particleClock(medium, frame.snapshot().time);
+      particlesShader::Parameters parameters{};
+      parameters.count = static_cast<std::uint32_t>(medium.particles);
+      parameters.seed = medium.seed;
+      parameters.lives = clock.lives;
+      parameters.share = clock.share;
+      parameters.life = static_cast<float>(medium.life);
+      parameters.spread = static_cast<float>(medium.spread);
+      parameters.drift = static_cast<float>(medium.drift);
+      parameters.rise = static_cast<float>(medium.rise);
+      Particles::Group group{static_cast<int>(i), medium.particles, {}};
+      group.offsets =
+          frame.buffer(static_cast<std::uint64_t>(medium.particles) * sizeof(glm::vec4), "particles");
+      frame.dispatch(frame.program(particlesShader::kProgram),
+                     {particlesShader::parameters(parameters), particlesShader::offsets(*group.offsets)},
+                     {medium.particles, 1, 1}, kParticleGroup);
+      result.groups.push_back(std::move(group));
+    }
+    particles = result;
+  }
+};
+
+/// Sec. 4.5, Listing 4.50: particles into the grid. Even media and volume files join here.
+class InsertPass : public Pass {
+  In<Particles> particles{this, "particles", Presence::optional, "where the particles are"};
+  In<OccupancyGrid> space{this, "space", Presence::optional,
+                          "voxels that are solid: particles share out their mass among the free ones"};
+  Param<int> resolution{this,
+                        "resolution",
+                        64,
+                        {8, kLargestGrid},
+                        "voxels along the longest side of the box that holds all particles of a medium"};
+  Out<ScatteringGrid> media{this, "media", "density, extinction and scattering of every medium"};
+
+  Reads readsFrom() const override { return Reads::geometry; }
+  Needs needs() const override { return Needs::medium; }
+
+  void run(PassContext& frame) override {
+    if (frame.startsAfresh()) volumes_.clear();
+    ScatteringGrid result;
+    const std::vector<Medium>& all = frame.sceneDescription().media;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Medium& medium = all[i];
+      ScatteringGrid::Medium one;
+      one.name = medium.name;
+      one.bounds = mediumBounds(medium, frame.snapshot());
+      one.extinction = medium.extinction;
+      one.albedo = medium.albedo;
+      one.anisotropy = medium.anisotropy;
+      if (medium.volume) {
+        uploadVolume(frame, *medium.volume, one);
+      } else if (medium.particles > 0) {
+        const auto& groups = particles->groups;
+        const auto group = std::find_if(groups.begin(), groups.end(), [&](const Particles::Group& each) {
+          return each.medium == static_cast<int>(i);
+        });
+        if (group == groups.end())
+          throw Error("volumetric_smoke.insert: the particles of medium '" + medium.name +
+                      "' are missing; expected them from the input 'particles'");
+        insert(frame, medium, *group, one);
+      }
+      result.media.push_back(std::move(one));
+    }
+    media = result;
+  }
+
+  /// The texture of a volume file is made once.
+  void uploadVolume(PassContext& frame, const DensityVolume& volume, ScatteringGrid::Medium& result) {
+    result.grid = {glm::vec3(volume.low - frame.snapshot().origin), static_cast<float>(volume.voxelSize),
+                   volume.resolution};
+    gpu::TextureRef& texture = volumes_[&volume];
+    if (texture == nullptr) {
+      texture = frame.texture(volumeOf(volume.resolution, gpu::Format::r32f), "density of a volume file");
+      texture->uploadFloats(0, volume.values);
+    }
+    result.density = texture;
+  }
+
+  void insert(PassContext& frame, const Medium& medium, const Particles::Group& group,
+              ScatteringGrid::Medium& result) {
+    result.grid = placeGrid(result.bounds, resolution);
+    const glm::ivec3 size = result.grid.resolution;
+    const float voxelSize = result.grid.voxelSize;
+    // Trilinear densities end half a voxel outside of the grid.
+    result.bounds.low = result.grid.low - 0.5f * voxelSize;
+    result.bounds.high = result.grid.low + voxelSize * (glm::vec3(size) + 0.5f);
+    const gpu::TextureRef low = frame.texture(volumeOf(size, gpu::Format::r32ui), "particle units");
+    const gpu::TextureRef high =
+        frame.texture(volumeOf(size, gpu::Format::r32ui), "particle units, high words");
+    low->clear(glm::vec4(0.0f));
+    high->clear(glm::vec4(0.0f));
+    insertShader::Parameters parameters{};
+    parameters.source = glm::vec3(medium.source - frame.snapshot().origin);
+    parameters.count = static_cast<std::uint32_t>(group.count);
+    parameters.gridLow = result.grid.low;
+    parameters.voxelSize = voxelSize;
+    parameters.resolution = size;
+    // A cloud smaller than a voxel could miss all centres.
+    parameters.radius = std::max(static_cast<float>(medium.radius), voxelSize);
+    insertShader::Variant variant;
+    variant.space = space.present();
+    std::vector<gpu::ResourceBinding> bindings{insertShader::offsets(*group.offsets),
+                                               insertShader::lowWords(*low), insertShader::highWords(*high)};
+    if (variant.space) {
+      parameters.spaceLow = space->grid.low;
+      parameters.spaceVoxelSize = space->grid.voxelSize;
+      bindings.push_back(insertShader::occupancy(*space->opacity, gpu::Sampling::nearest));
+    }
+    bindings.push_back(insertShader::parameters(parameters));
+    frame.dispatch(frame.program(insertShader::kProgram, variant.key()), bindings, {group.count, 1, 1},
+                   kParticleGroup);
+
+    result.density = frame.texture(volumeOf(size, gpu::Format::r32f), "density of particles");
+    const double voxelVolume = std::pow(static_cast<double>(voxelSize), 3.0);
+    const auto densityPerUnit = static_cast<float>(particleMass(medium) / kUnitsPerParticle / voxelVolume);
+    frame.dispatch(frame.program(densityShader::kProgram),
+                   {densityShader::parameters({size, densityPerUnit}), densityShader::lowWords(*low),
+                    densityShader::highWords(*high), densityShader::densityImage(*result.density)},
+                   size, kVoxelGroup);
+  }
+
+  std::map<const DensityVolume*, gpu::TextureRef> volumes_;
+};
+
+/// Block View of range.glsl. Its mirrors in the shaders' headers have the same members.
+template <class View>
+View viewOf(const CameraView& camera, int pixelsPerSample) {
+  View view{};
+  view.eyeWorld = camera.eye;
+  view.pixelsPerSample = pixelsPerSample;
+  view.cornerDirection = camera.direction(0.0f, 0.0f);
+  view.perColumn = camera.direction(1.0f, 0.0f) - view.cornerDirection;
+  view.perRow = camera.direction(0.0f, 1.0f) - view.cornerDirection;
+  return view;
+}
+
+/// Two images: scattered radiance and transmittance.
+struct Result {
+  gpu::TextureRef scattered, transmittance;
+  Result(PassContext& frame, int width, int height) {
+    gpu::TextureDescription description;
+    description.format = gpu::Format::rgba32f;
+    description.width = width;
+    description.height = height;
+    scattered = frame.texture(description, "scattered radiance");
+    transmittance = frame.texture(description, "transmittance");
+  }
+};
+
+class MarchPass : public Pass {
+  In<GBuffer> gbuffer{this, "gbuffer", "where the rays end"};
+  In<ScatteringGrid> media{this, "media", "what they go through"};
+  In<ShadowMap> shadow{this, "shadow", Presence::optional,
+                       "lights and their visibility; without it media only dim"};
+  Param<std::string> resolution{this,
+                                "resolution",
+                                "half",
+                                {"full", "half"},
+                                "one ray a pixel, or one for 2 x 2 pixels, to be upsampled"};
+  Param<int> steps{this, "steps", 32, {1, 4096}, "steps along a ray's way through the media"};
+  Param<std::string> lightDepth{this,
+                                "light_depth",
+                                "volume",
+                                {"volume", "march"},
+                                "optical depth between media that vary and the lights: once a frame for a "
+                                "grid of points, or for every step of every ray"};
+  Param<int> lightResolution{
+      this, "light_resolution", 32, {4, 256}, "points along each side of that grid, for each light"};
+  Param<int> lightSteps{this, "light_steps", 32, {1, 1024}, "most steps of a march towards a light"};
+  Param<std::string> start{
+      this,
+      "start",
+      "dithered",
+      {"dithered", "middle"},
+      "where each step is looked at: another place in neighbouring pixels, or the middle"};
+  Param<std::string> phase{
+      this,
+      "phase",
+      "normalised",
+      {"normalised", "as_published"},
+      "Henyey-Greenstein with the factor (1-g^2), or (1-g)^2, with which scattering loses energy"};
+  Out<Image> scattered{
+      this, "scattered", Contributes::scattered, Needs::medium,
+      "light that media scatter once to the camera, W/(sr m^2); with `half` an image of half "
+      "the size, to be upsampled"};
+  Out<Image> transmittance{this, "transmittance", Contributes::nothing, Needs::medium,
+                           "what the media leave of the light behind them; size as above"};
+
+  Reads readsFrom() const override { return Reads::camera | Reads::lights; }
+  Needs needs() const override { return Needs::medium; }
+
+  void run(PassContext& frame) override {
+    const CameraView& camera = frame.snapshot().camera;
+    const int pixels = resolution == "half" ? 2 : 1;
+    const glm::ivec2 size((camera.width + pixels - 1) / pixels, (camera.height + pixels - 1) / pixels);
+    const Result result(frame, size.x, size.y);
+    const MediaBinding bound(frame, *media);
+
+    marchShader::Variant variant;
+    variant.medium = bound.varying() ? marchShader::Variant::mediumVarying : marchShader::Variant::mediumEven;
+    variant.lights = shadow.present() && shadow->lightCount > 0;
+    marchShader::Constants constants;
+    constants.stepCount = steps;
+    constants.lightSteps = lightSteps;
+    constants.dithered = start == "dithered" ? 1 : 0;
+    constants.phaseIsPublished = phase == "as_published" ? 1 : 0;
+    marchShader::Parameters parameters{};
+    parameters.size = size;
+    parameters.lightCount = variant.lights != 0 ? shadow->lightCount : 0;
+
+    using gpu::Sampling;
+    gpu::TextureRef depths;
+    std::vector<gpu::ResourceBinding> bindings{marchShader::view(viewOf<marchShader::View>(camera, pixels)),
+                                               marchShader::gPosition(*gbuffer->position, Sampling::nearest),
+                                               marchShader::scatteredImage(*result.scattered),
+                                               marchShader::transmittanceImage(*result.transmittance)};
+    if (variant.lights != 0) {
+      bindings.push_back(marchShader::lights(*shadow->lights));
+      bindings.push_back(marchShader::views(*shadow->views));
+      bindings.push_back(marchShader::shadowDepth(*shadow->depth, Sampling::shadow));
+      if (bound.varying() && lightDepth == "volume") depths = makeDepths(frame, bound, parameters);
+    }
+    if (depths) {
+      variant.lightDepth = marchShader::Variant::lightDepthVolume;
+      bindings.push_back(marchShader::lightDepth(*depths, Sampling::linear));
+    }
+    bindings.push_back(marchShader::parameters(parameters));
+    bound.addTo(bindings);
+    frame.dispatch(frame.program(marchShader::kProgram, variant.key(), constants.values()), bindings,
+                   {size, 1}, kImageGroup);
+    scattered = Image{result.scattered};
+    transmittance = Image{result.transmittance};
+  }
+
+  /// Depths for all lights side by side along z. Null where so many lights do not fit into a texture.
+  gpu::TextureRef makeDepths(PassContext& frame, const MediaBinding& bound,
+                             marchShader::Parameters& parameters) {
+    const int lightCount = parameters.lightCount;
+    constexpr int kFewest = 4;  // points along a side that are still a grid
+    const int side = std::min<int>(lightResolution, frame.device().info().maxTextureSize3d / lightCount);
+    if (side < kFewest) {
+      frame.warn("so many lights have no room in one texture of light depths; every step marches to them");
+      return nullptr;
+    }
+    Bounds box;
+    for (const ScatteringGrid::Medium& medium : media->media) {
+      if (medium.density == nullptr) continue;
+      box.grow(medium.bounds.low);
+      box.grow(medium.bounds.high);
+    }
+    parameters.depthSide = side;
+    parameters.depthLow = box.low;
+    parameters.depthHigh = box.high;
+    const glm::ivec3 size(side, side, side * lightCount);
+    gpu::TextureRef depths = frame.texture(volumeOf(size, gpu::Format::rgba32f), "light depths");
+    lightDepthShader::Variant variant;
+    variant.medium = lightDepthShader::Variant::mediumVarying;
+    lightDepthShader::Parameters values{};
+    values.boxLow = box.low;
+    values.side = side;
+    values.boxHigh = box.high;
+    values.lightCount = lightCount;
+    values.mostSteps = lightSteps;
+    std::vector<gpu::ResourceBinding> bindings{lightDepthShader::parameters(values),
+                                               lightDepthShader::lights(*shadow->lights),
+                                               lightDepthShader::depthImage(*depths)};
+    bound.addTo(bindings);
+    frame.dispatch(frame.program(lightDepthShader::kProgram, variant.key()), bindings, size, kVoxelGroup);
+    return depths;
+  }
+};
+
+class UpsamplePass : public Pass {
+  In<GBuffer> gbuffer{this, "gbuffer", "where the pixels' rays end"};
+  In<ScatteringGrid> media{this, "media", "what they go through"};
+  In<Image> scatteredSamples{this, "scattered", "of the march"};
+  In<Image> transmittanceSamples{this, "transmittance", "of the march"};
+  Param<float> similarity{
+      this,
+      "similarity",
+      0.05f,
+      {1e-4f, 10.0f},
+      "",
+      "difference of the ends of two rays, as a share of their length, from which on they "
+      "are no longer alike"};
+  Out<Image> scattered{this, "scattered", Contributes::scattered, Needs::medium,
+                       "light that media scatter once to the camera, W/(sr m^2)"};
+  Out<Image> transmittance{this, "transmittance", Contributes::nothing, Needs::medium,
+                           "what the media leave of the light behind them"};
+
+  Reads readsFrom() const override { return Reads::camera; }
+  Needs needs() const override { return Needs::medium; }
+
+  void run(PassContext& frame) override {
+    const CameraView& camera = frame.snapshot().camera;
+    const int pixels = scatteredSamples->texture->description().width < camera.width ? 2 : 1;
+    const Result result(frame, camera.width, camera.height);
+    const MediaBinding bound(frame, *media);
+    using gpu::Sampling;
+    std::vector<gpu::ResourceBinding> bindings{
+        upsampleShader::view(viewOf<upsampleShader::View>(camera, pixels)),
+        upsampleShader::parameters({similarity}),
+        upsampleShader::gPosition(*gbuffer->position, Sampling::nearest),
+        upsampleShader::scatteredSamples(*scatteredSamples->texture, Sampling::nearest),
+        upsampleShader::transmittanceSamples(*transmittanceSamples->texture, Sampling::nearest),
+        upsampleShader::scatteredImage(*result.scattered),
+        upsampleShader::transmittanceImage(*result.transmittance)};
+    bound.addTo(bindings);
+    frame.dispatch(frame.program(upsampleShader::kProgram), bindings, {camera.width, camera.height, 1},
+                   kImageGroup);
+    scattered = Image{result.scattered};
+    transmittance = Image{result.transmittance};
+  }
+};
+
+}  // namespace
+}  // namespace lumivox::volumetric_smoke
+
+LUMIVOX_TECHNIQUE(registry) {
+  using namespace lumivox::volumetric_smoke;
+  registry.describe("Smoke and fog: particles in a voxel grid, dithered ray marching",
+                    "Vos 2014; thesis Gomes 2015, Sec. 2.5 and 4.5");
+  registry.add<ParticlesPass>("particles", "Rising particles (thesis Sec. 4.5)");
+  registry.add<InsertPass>("insert", "Media as densities in grids (thesis Listing 4.50)");
+  registry.add<MarchPass>("march",
+                          "Single scattering and transmittance along rays (thesis Listings 4.51-4.53)");
+  registry.add<UpsamplePass>("upsample", "Bilateral upsampling of the march (thesis Sec. 4.5)");
+}

@@ -1,0 +1,163 @@
+// A list of fragments to one value per voxel, in a way that does not depend on the order of the list: sums of
+// integers, as in Crassin & Green 2012, Sec. 22.4, but exact.
+#include <algorithm>
+#include <cstring>
+
+#include "bit_voxeliser.h"
+#include "fragment_list.h"
+#include "voxelization_shaders.h"
+
+namespace lumivox::voxelization {
+namespace {
+
+namespace claimShader = shaders::voxelization::average_claim;
+namespace numberShader = shaders::voxelization::average_number;
+namespace addShader = shaders::voxelization::average_add;
+namespace resolveShader = shaders::voxelization::average_resolve;
+
+/// The largest emitted radiance of a component: what the fixed-point sums must hold.
+float largestEmission(const Scene& scene) {
+  float largest = 0.0f;
+  for (const Object& object : scene.objects) {
+    for (const Part& part : object.parts) {
+      const glm::vec3& emission = scene.materials[static_cast<std::size_t>(part.material)].emission;
+      largest = std::max({largest, emission.x, emission.y, emission.z});
+    }
+  }
+  // The fragments round to half a 128th of the largest component.
+  return largest > 0.0f ? largest * (1.0f + 1.0f / 128.0f) : 1.0f;
+}
+
+class AveragePass : public Pass {
+  In<VoxelFragments> fragments{this, "fragments", "surface samples"};
+  Out<AttributeGrid> attributes{this, "attributes",
+                                "albedo, normal and emission, averaged with the coverage as weight"};
+  Out<OccupancyGrid> opacity{this, "opacity", "mean or sum of the coverages, as the list says"};
+  Out<BinaryGrid> bits{this, "bits", "one bit a voxel that has a fragment"};
+
+  Reads readsFrom() const override { return Reads::materials; }
+
+  /// Slots of sums grow in steps, so that a moving scene does not ask for another size in every frame.
+  static constexpr std::uint64_t kSlotStep = 1u << 14;
+
+  struct Slots {
+    gpu::TextureRef numbers;  ///< per voxel: its slot from 1 on, or 0
+    gpu::BufferRef count, voxels, fragments;
+    std::uint64_t used = 0, room = 0;
+  };
+
+  static gpu::TextureRef emptyVolume(PassContext& frame, const GridPlacement& grid, gpu::Format format,
+                                     const char* label) {
+    gpu::TextureRef texture = frame.texture(volumeOf(grid, format), label);
+    texture->clear(glm::vec4(0.0f));
+    return texture;
+  }
+
+  Slots claimSlots(PassContext& frame) const {
+    Slots slots;
+    slots.numbers = emptyVolume(frame, fragments->grid, gpu::Format::r32ui, "slots of voxels");
+    slots.count = frame.buffer(sizeof(std::uint32_t), "slot count");
+    slots.count->clear();
+    slots.voxels = frame.buffer(std::max<std::uint64_t>(fragments->capacity, 1) * sizeof(std::uint32_t),
+                                "voxels of slots");
+    frame.shaders().dispatchIndirect(
+        frame.program(claimShader::kProgram),
+        {claimShader::fragmentCount(*fragments->count), claimShader::fragments(*fragments->fragments),
+         claimShader::slotCount(*slots.count), claimShader::slotVoxels(*slots.voxels),
+         claimShader::slots(*slots.numbers)},
+        *fragments->count, sizeof(std::uint32_t));
+    frame.device().barrier();
+    slots.used = slots.count->downloadValues<std::uint32_t>().at(0);
+    slots.room = (slots.used / kSlotStep + 1) * kSlotStep;
+    slots.fragments = frame.buffer(slots.room * sizeof(std::uint32_t), "fragments of slots");
+    frame.shaders().dispatch(
+        frame.program(numberShader::kProgram),
+        {numberShader::slotCount(*slots.count), numberShader::slotVoxels(*slots.voxels),
+         numberShader::fragmentsOfSlot(*slots.fragments), numberShader::slots(*slots.numbers)},
+        workGroupsFor(slots.used));
+    frame.device().barrier();
+    return slots;
+  }
+
+  void sumAndResolve(PassContext& frame) {
+    const Slots slots = claimSlots(frame);
+    const bool withAttributes = attributes.wanted();
+    const bool withEmission = withAttributes && frame.traits().emission;
+    const auto zeroed = [&](std::uint64_t wordsPerSlot, const char* label) {
+      gpu::BufferRef buffer = frame.buffer(slots.room * wordsPerSlot * sizeof(std::uint32_t), label);
+      buffer->clear();
+      return buffer;
+    };
+    const gpu::BufferRef coverage = zeroed(1, "sums of coverage");
+    gpu::BufferRef albedo, normal, emission;
+    const GridPlacement& grid = fragments->grid;
+    addShader::Variant adding;
+    resolveShader::Variant resolving;
+    adding.attributes = resolving.attributes = withAttributes;
+    adding.emission = resolving.emission = withEmission;
+    resolving.opacity = opacity.wanted();
+    const addShader::Averaging averaging{grid.resolution, largestEmission(frame.sceneDescription()),
+                                         fragments->coverage == VoxelFragments::Coverage::sum ? 1 : 0};
+    std::vector<gpu::ResourceBinding> add{addShader::averaging(averaging),
+                                          addShader::fragmentCount(*fragments->count),
+                                          addShader::fragments(*fragments->fragments),
+                                          addShader::fragmentsOfSlot(*slots.fragments),
+                                          addShader::coverageSums(*coverage),
+                                          addShader::slots(*slots.numbers)};
+    std::vector<gpu::ResourceBinding> resolve{
+        resolveShader::averaging(averaging), resolveShader::slotCount(*slots.count),
+        resolveShader::slotVoxels(*slots.voxels), resolveShader::fragmentsOfSlot(*slots.fragments),
+        resolveShader::coverageSums(*coverage)};
+    if (withAttributes) {
+      AttributeGrid result;
+      result.grid = grid;
+      result.albedo = emptyVolume(frame, grid, gpu::Format::rgba16f, "mean albedo");
+      result.normal = emptyVolume(frame, grid, gpu::Format::rgba16f, "mean normal");
+      albedo = zeroed(3, "sums of albedo");
+      normal = zeroed(3, "sums of normals");
+      add.insert(add.end(), {addShader::albedoSums(*albedo), addShader::normalSums(*normal)});
+      resolve.insert(resolve.end(), {resolveShader::albedoSums(*albedo), resolveShader::normalSums(*normal),
+                                     resolveShader::albedoImage(*result.albedo),
+                                     resolveShader::normalImage(*result.normal)});
+      if (withEmission) {
+        result.emission = emptyVolume(frame, grid, gpu::Format::rgba32f, "mean emission");
+        emission = zeroed(3, "sums of emission");
+        add.push_back(addShader::emissionSums(*emission));
+        resolve.insert(resolve.end(), {resolveShader::emissionSums(*emission),
+                                       resolveShader::emissionImage(*result.emission)});
+      }
+      attributes = result;
+    }
+    if (opacity.wanted()) {
+      OccupancyGrid result;
+      result.grid = grid;
+      result.opacity = emptyVolume(frame, grid, gpu::Format::r8, "opacity");
+      resolve.push_back(resolveShader::opacityImage(*result.opacity));
+      opacity = result;
+    }
+    frame.shaders().dispatchIndirect(frame.program(addShader::kProgram, adding.key()), add, *fragments->count,
+                                     sizeof(std::uint32_t));
+    frame.device().barrier();
+    frame.shaders().dispatch(frame.program(resolveShader::kProgram, resolving.key()), resolve,
+                             workGroupsFor(slots.used));
+    frame.device().barrier();
+  }
+
+  void run(PassContext& frame) override {
+    if (attributes.wanted() || opacity.wanted()) sumAndResolve(frame);
+    if (bits.wanted()) {
+      const gpu::TextureRef words = bitWords(frame, fragments->grid, "bits");
+      markFragments(frame, *fragments, *words);
+      bits = binaryGridOf(frame, fragments->grid, *words, nullptr);
+    }
+  }
+};
+
+}  // namespace
+
+void addAverage(TechniqueRegistry& registry) {
+  registry.add<AveragePass>("average",
+                            "Averages over the fragments of each voxel, independent of their order");
+}
+
+}  // namespace lumivox::voxelization

@@ -1,0 +1,154 @@
+#include "bit_voxeliser.h"
+
+#include <algorithm>
+
+#include "fragment_list.h"
+#include "voxelization_shaders.h"
+
+namespace lumivox::voxelization {
+
+namespace copyShader = shaders::voxelization::bits_copy;
+namespace markShader = shaders::voxelization::bits_mark;
+namespace stackShader = shaders::voxelization::bits_stack;
+namespace mipShader = shaders::voxelization::bits_mip;
+namespace opacityShader = shaders::voxelization::bits_opacity;
+namespace fragmentShader = shaders::voxelization::bits_fragments;
+
+namespace {
+
+constexpr int kWordBits = 32;
+
+glm::ivec3 wordCount(const GridPlacement& grid) {
+  return {grid.resolution.x, grid.resolution.y, (grid.resolution.z + kWordBits - 1) / kWordBits};
+}
+
+}  // namespace
+
+const gpu::Texture& BitVoxeliser::surfaceOf(const Words& words) {
+  return words.surface != nullptr ? *words.surface : *words.voxels;
+}
+
+gpu::TextureRef bitWords(PassContext& frame, const GridPlacement& grid, const char* label) {
+  gpu::TextureDescription description;
+  description.kind = gpu::TextureKind::d3;
+  description.format = gpu::Format::r32ui;
+  const glm::ivec3 size = wordCount(grid);
+  description.width = size.x;
+  description.height = size.y;
+  description.depth = size.z;
+  gpu::TextureRef words = frame.texture(description, label);
+  words->clear(glm::vec4(0.0f));
+  return words;
+}
+
+void markFragments(PassContext& frame, const VoxelFragments& fragments, const gpu::Texture& words) {
+  frame.shaders().dispatchIndirect(frame.program(markShader::kProgram),
+                                   {markShader::count(*fragments.count),
+                                    markShader::fragments(*fragments.fragments), markShader::words(words)},
+                                   *fragments.count, sizeof(std::uint32_t));
+  frame.device().barrier();
+}
+
+gpu::TextureRef BitVoxeliser::wordsOf(PassContext& frame, const GridPlacement& grid) {
+  Draws still, moving;
+  for (const SceneDraw& draw : frame.scene().draws()) (draw.moving ? moving : still).push_back(&draw);
+  const StillKey key = stillKey(frame, grid, still);
+  const bool kept = !frame.startsAfresh() && still_ != nullptr && key == stillKey_;
+  if (!kept) {
+    still_ = bitWords(frame, grid, "bits of what stands still");
+    if (!still.empty()) mark(frame, grid, *still_, still);
+    stillKey_ = key;
+  } else if (!still.empty()) {
+    frame.reused("bits of what stands still", "static geometry is voxelised once");
+  }
+  if (moving.empty()) return still_;
+  const gpu::TextureRef words = bitWords(frame, grid, "bits");
+  frame.dispatch(frame.program(copyShader::kProgram),
+                 {copyShader::source(*still_), copyShader::target(*words)}, wordCount(grid),
+                 copyShader::kGroupSize);
+  mark(frame, grid, *words, moving);
+  return words;
+}
+
+void BitVoxeliser::run(PassContext& frame) {
+  const GridPlacement grid = surface() != nullptr ? surface()->grid : placement(frame);
+  Words words{wordsOf(frame, grid), nullptr};
+  if (surface() != nullptr) {
+    words.surface = bitWords(frame, grid, "bits of the surface");
+    markFragments(frame, *surface(), *words.surface);
+  }
+  if (bits.wanted()) bits = binaryGridOf(frame, grid, *words.voxels, words.surface.get());
+  if (opacity.wanted()) opacity = opacityOf(frame, grid, words);
+  if (fragments.wanted()) fragments = fragmentsOf(frame, grid, words);
+}
+
+BinaryGrid binaryGridOf(PassContext& frame, const GridPlacement& grid, const gpu::Texture& voxels,
+                        const gpu::Texture* surface) {
+  BinaryGrid result;
+  result.grid = grid;
+  gpu::TextureDescription description;
+  description.kind = gpu::TextureKind::d2Array;
+  description.format = gpu::Format::rgba32ui;
+  description.width = grid.resolution.x;
+  description.height = grid.resolution.y;
+  description.depth = (grid.resolution.z + BinaryGrid::kStack - 1) / BinaryGrid::kStack;
+  description.levels = gpu::fullLevelCount(grid.resolution.x, grid.resolution.y);
+  result.stacks = frame.texture(description, "voxel stacks");
+  frame.dispatch(
+      frame.program(stackShader::kProgram, stackShader::Variant{surface != nullptr}.key()),
+      {stackShader::words(voxels), stackShader::surfaceWords(surface != nullptr ? *surface : voxels),
+       stackShader::stacks(*result.stacks)},
+      {description.width, description.height, description.depth}, stackShader::kGroupSize);
+  for (int level = 1; level < description.levels; ++level)
+    frame.dispatch(frame.program(mipShader::kProgram),
+                   {mipShader::finer(*result.stacks, level - 1), mipShader::coarser(*result.stacks, level)},
+                   {std::max(description.width >> level, 1), std::max(description.height >> level, 1),
+                    description.depth},
+                   mipShader::kGroupSize);
+  return result;
+}
+
+OccupancyGrid BitVoxeliser::opacityOf(PassContext& frame, const GridPlacement& grid,
+                                      const Words& words) const {
+  OccupancyGrid result;
+  result.grid = grid;
+  gpu::TextureDescription description;
+  description.kind = gpu::TextureKind::d3;
+  description.format = gpu::Format::r8;
+  description.width = grid.resolution.x;
+  description.height = grid.resolution.y;
+  description.depth = grid.resolution.z;
+  result.opacity = frame.texture(description, "opacity");
+  frame.dispatch(
+      frame.program(opacityShader::kProgram, opacityShader::Variant{words.surface != nullptr}.key()),
+      {opacityShader::words(*words.voxels), opacityShader::surfaceWords(surfaceOf(words)),
+       opacityShader::opacity(*result.opacity)},
+      grid.resolution, opacityShader::kGroupSize);
+  return result;
+}
+
+VoxelFragments BitVoxeliser::fragmentsOf(PassContext& frame, const GridPlacement& grid,
+                                         const Words& words) const {
+  // How many there are is known only to the device: they are counted first, then written.
+  const auto runOver = [&](const VoxelFragments& list, int append) {
+    fragmentShader::Variant variant;
+    variant.append = append;
+    variant.surface = words.surface != nullptr;
+    frame.dispatch(frame.program(fragmentShader::kProgram, variant.key()),
+                   {fragmentShader::parameters({static_cast<int>(list.capacity)}),
+                    fragmentShader::words(*words.voxels), fragmentShader::surfaceWords(surfaceOf(words)),
+                    fragmentShader::count(*list.count), fragmentShader::fragments(*list.fragments)},
+                   wordCount(grid), fragmentShader::kGroupSize);
+  };
+  const VoxelFragments counted = listBehind(frame, grid, nullptr, 0);
+  runOver(counted, 0);
+  std::uint32_t count = 0;
+  const std::vector<std::byte> word = counted.count->download(0, sizeof(count));
+  std::memcpy(&count, word.data(), sizeof(count));
+  const VoxelFragments list = listBehind(frame, grid, surface(), count);
+  runOver(list, 1);
+  finishList(frame, list);
+  return list;
+}
+
+}  // namespace lumivox::voxelization

@@ -1,0 +1,54 @@
+#include "fragment_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+
+#include "lumivox/base/error.h"
+#include "voxelization_shaders.h"
+
+namespace lumivox::voxelization {
+
+namespace copyShader = shaders::voxelization::copy;
+namespace finishShader = shaders::voxelization::finish;
+
+glm::uvec3 workGroupsFor(std::uint64_t items) {
+  constexpr std::uint64_t kMostGroups = 65535;  // that OpenGL guarantees per axis
+  const std::uint64_t groups = std::max<std::uint64_t>((items + kWorkGroupSize - 1) / kWorkGroupSize, 1);
+  const std::uint64_t rows = (groups + kMostGroups - 1) / kMostGroups;
+  return {static_cast<std::uint32_t>(std::min(groups, kMostGroups)), static_cast<std::uint32_t>(rows), 1u};
+}
+
+VoxelFragments listBehind(PassContext& frame, const GridPlacement& grid, const VoxelFragments* base,
+                          std::uint64_t more) {
+  VoxelFragments list;
+  list.grid = grid;
+  list.workGroupSize = kWorkGroupSize;
+  list.capacity = more + (base != nullptr ? base->capacity : 0);
+  if (list.capacity > 0x7fffffffu)
+    throw Error(fmt::format("{} fragments do not fit into one list", list.capacity));
+  list.count = frame.buffer(4 * sizeof(std::uint32_t), "voxel fragment count");
+  list.fragments = frame.buffer(std::max<std::uint64_t>(list.capacity, 1) * VoxelFragments::kFragmentBytes,
+                                "voxel fragments");
+  list.count->clear();
+  if (base == nullptr) return list;
+  assert(base->workGroupSize == kWorkGroupSize);
+  list.coverage = base->coverage;
+  frame.shaders().dispatchIndirect(
+      frame.program(copyShader::kProgram),
+      {copyShader::baseCount(*base->count), copyShader::baseFragments(*base->fragments),
+       copyShader::count(*list.count), copyShader::fragments(*list.fragments)},
+      *base->count, sizeof(std::uint32_t));
+  frame.device().barrier();
+  return list;
+}
+
+void finishList(PassContext& frame, const VoxelFragments& list) {
+  frame.dispatch(frame.program(finishShader::kProgram),
+                 {finishShader::count(*list.count),
+                  finishShader::parameters({static_cast<int>(list.capacity), kWorkGroupSize})},
+                 {1, 1, 1}, {1, 1, 1});
+}
+
+}  // namespace lumivox::voxelization

@@ -1,0 +1,140 @@
+// Opacity by multisampled rasterisation, as the voxels of 3D clipmaps have it (thesis Gomes 2015, Sec.
+// 3.5.2).
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lumivox/base/error.h"
+#include "orthogonal_view.h"
+
+namespace lumivox::voxelization {
+namespace {
+
+namespace msaaShader = shaders::voxelization::msaa_opacity;
+namespace countShader = shaders::voxelization::msaa_opacity_count;
+namespace copyShader = shaders::voxelization::bits_copy;
+
+class MsaaOpacityPass : public Voxeliser {
+  Param<int> samples{this, "samples", 8, {2, 8}, "per pixel; at most what the device has"};
+  Param<float> thickness{this, "thickness",
+                         0.5f, {0.0f, 1.0f},
+                         "",   "how thick a surface is seen from the side, in voxels; 0: as thin as it is"};
+  Out<OccupancyGrid> opacity{this, "opacity", "of the most opaque side of each voxel"};
+  Out<OccupancyGrid> opacityX{this, "opacity_x", "seen along x"};
+  Out<OccupancyGrid> opacityY{this, "opacity_y", "seen along y"};
+  Out<OccupancyGrid> opacityZ{this, "opacity_z", "seen along z"};
+
+ public:
+  void run(PassContext& frame) override {
+    const int most = frame.device().info().maxSamples;
+    if (most < 2) throw Error("the device has one sample per pixel: it cannot measure coverage");
+    // Powers of two are what devices have.
+    sampleCount_ = 2;
+    while (2 * sampleCount_ <= std::min<int>(samples, most)) sampleCount_ *= 2;
+    if (sampleCount_ < samples) {
+      frame.warn(fmt::format("{} samples per pixel in place of {}: the device has at most {}", sampleCount_,
+                             static_cast<int>(samples), most));
+    }
+    positions_ = frame.device().samplePositions(sampleCount_);
+    Voxeliser::run(frame);
+    if (opacity.wanted() || opacityX.wanted() || opacityY.wanted() || opacityZ.wanted()) countSides(frame);
+  }
+
+ private:
+  VoxelFragments::Coverage coverage() const override { return VoxelFragments::Coverage::sum; }
+
+  void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) override {
+    rasterise(frame, list.grid, draws, static_cast<int>(list.capacity), msaaShader::Variant::targetList,
+              {msaaShader::count(*list.count), msaaShader::fragments(*list.fragments)});
+  }
+
+  void rasterise(PassContext& frame, const GridPlacement& placement, const Draws& draws, int capacity,
+                 int target, const std::vector<gpu::ResourceBinding>& results) const {
+    GpuScene& scene = frame.scene();
+    gpu::RenderTargets targets;
+    targets.width = targets.height = viewSide(placement);
+    targets.samples = sampleCount_;
+    msaaShader::SampleGrid grid{};
+    grid.gridLow = placement.low;
+    grid.voxelSize = placement.voxelSize;
+    grid.resolution = placement.resolution;
+    grid.capacity = capacity;
+    grid.sampleCount = sampleCount_;
+    grid.thickness = thickness;
+    for (std::size_t i = 0; i < positions_.size(); ++i)
+      grid.samples[i] = glm::vec4(positions_[i], 0.0f, 0.0f);
+    frame.device().beginDrawing(targets, {});
+    for (const SceneDraw* draw : draws) {
+      grid.firstIndex = static_cast<int>(draw->firstIndex);
+      msaaShader::Variant variant;
+      variant.textures = frame.keepsEverything() || draw->diffuseTexture != nullptr;
+      variant.masks = frame.keepsEverything() || draw->maskTexture != nullptr;
+      variant.target = target;
+      std::vector<gpu::ResourceBinding> bindings = viewBindings(frame, {}, *draw);
+      std::erase_if(bindings,
+                    [](const gpu::ResourceBinding& one) { return std::string(one.name) == "View"; });
+      bindings.insert(bindings.end(), {msaaShader::indices(scene.indices()), msaaShader::sampleGrid(grid)});
+      bindings.insert(bindings.end(), results.begin(), results.end());
+      frame.shaders().draw(frame.program(msaaShader::kProgram, variant.key()), bindings, draw->indexCount);
+    }
+    frame.device().endDrawing();
+    frame.device().barrier();
+  }
+
+  /// The covered samples of every voxel's three sides. Those of what stands still are kept.
+  gpu::TextureRef sideMasks(PassContext& frame, const GridPlacement& grid) {
+    Draws still, moving;
+    for (const SceneDraw& draw : frame.scene().draws()) (draw.moving ? moving : still).push_back(&draw);
+    const auto mark = [&](const gpu::Texture& masks, const Draws& draws) {
+      rasterise(frame, grid, draws, 0, msaaShader::Variant::targetMasks, {msaaShader::sampleMasks(masks)});
+    };
+    const StillKey key = stillKey(frame, grid, still);
+    if (frame.startsAfresh() || stillMasks_ == nullptr || !(key == stillMasksKey_)) {
+      stillMasks_ = frame.texture(volumeOf(grid, gpu::Format::r32ui), "samples of what stands still");
+      stillMasks_->clear(glm::vec4(0.0f));
+      mark(*stillMasks_, still);
+      stillMasksKey_ = key;
+    } else {
+      frame.reused("samples of what stands still", "static geometry is voxelised once");
+    }
+    if (moving.empty()) return stillMasks_;
+    const gpu::TextureRef masks = frame.texture(volumeOf(grid, gpu::Format::r32ui), "samples");
+    frame.dispatch(frame.program(copyShader::kProgram),
+                   {copyShader::source(*stillMasks_), copyShader::target(*masks)}, grid.resolution,
+                   copyShader::kGroupSize);
+    mark(*masks, moving);
+    return masks;
+  }
+
+  void countSides(PassContext& frame) {
+    const GridPlacement& grid = fragments.value().grid;
+    const gpu::TextureRef masks = sideMasks(frame, grid);
+    const std::array<Out<OccupancyGrid>*, 4> outputs{&opacityX, &opacityY, &opacityZ, &opacity};
+    for (int side = 0; side < 4; ++side) {
+      Out<OccupancyGrid>& output = *outputs[static_cast<std::size_t>(side)];
+      if (!output.wanted()) continue;
+      OccupancyGrid result;
+      result.grid = grid;
+      result.opacity = frame.texture(volumeOf(grid, gpu::Format::r8), output.name());
+      frame.dispatch(frame.program(countShader::kProgram),
+                     {countShader::sides({sampleCount_, side}), countShader::sampleMasks(*masks),
+                      countShader::opacity(*result.opacity)},
+                     grid.resolution, countShader::kGroupSize);
+      output = result;
+    }
+  }
+
+  int sampleCount_ = 2;
+  std::vector<glm::vec2> positions_;
+  gpu::TextureRef stillMasks_;
+  StillKey stillMasksKey_;
+};
+
+}  // namespace
+
+void addMsaaOpacity(TechniqueRegistry& registry) {
+  registry.add<MsaaOpacityPass>("msaa_opacity",
+                                "Opacity by multisampled rasterisation, seen along each axis (3D clipmaps)");
+}
+
+}  // namespace lumivox::voxelization

@@ -1,0 +1,21 @@
+// Views along the axes of a grid, one pixel a column of voxels: what slicing and depth peeling draw.
+#pragma once
+
+#include "voxeliser.h"
+#include "voxelization_shaders.h"
+
+namespace lumivox::voxelization {
+
+using OrthogonalView = shaders::voxelization::View;
+
+/// Pixels along a side of the square target of all views of a grid.
+int viewSide(const GridPlacement& grid);
+
+/// What lies between two depths, in voxels, along axis 0, 1 or 2.
+OrthogonalView viewAlong(const VoxelFragments& list, int axis, float depthLow, float depthHigh);
+
+/// The bindings of the programs that draw a view, for one draw.
+std::vector<gpu::ResourceBinding> viewBindings(PassContext& frame, const OrthogonalView& view,
+                                               const SceneDraw& draw);
+
+}  // namespace lumivox::voxelization

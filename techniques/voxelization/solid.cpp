@@ -1,0 +1,165 @@
+// The inside of closed meshes (solid voxelisation by parity along columns).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "aside.h"
+#include "bit_voxeliser.h"
+#include "fragment_list.h"
+#include "lumivox/scene/topology.h"
+#include "voxelization_shaders.h"
+
+namespace lumivox::voxelization {
+namespace {
+
+namespace flipShader = shaders::voxelization::solid_flip;
+namespace fillShader = shaders::voxelization::solid_fill;
+
+/// The closed surfaces of an object.
+struct ClosedSurface {
+  std::string name;                                    ///< of the object
+  std::uint32_t firstTriangle = 0, triangleCount = 0;  ///< in the list of all objects
+  Bounds bounds;                                       ///< object space, at rest
+  bool room = false;                                   ///< its front sides look inwards
+};
+
+/// Columns that an object may lie in.
+struct Columns {
+  glm::ivec2 low{0}, size{0};
+};
+
+Columns columnsOf(const Bounds& bounds, const glm::mat4& toWorld, const GridPlacement& grid) {
+  Bounds inGrid;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 local((corner & 1) != 0 ? bounds.high.x : bounds.low.x,
+                          (corner & 2) != 0 ? bounds.high.y : bounds.low.y,
+                          (corner & 4) != 0 ? bounds.high.z : bounds.low.z);
+    inGrid.grow((glm::vec3(toWorld * glm::vec4(local, 1.0f)) - grid.low) / grid.voxelSize);
+  }
+  const glm::vec2 most(grid.resolution);
+  // A voxel more on every side: the device's arithmetic may round otherwise.
+  const glm::ivec2 low(glm::clamp(glm::floor(glm::vec2(inGrid.low)) - 1.0f, glm::vec2(0.0f), most));
+  const glm::ivec2 high(glm::clamp(glm::ceil(glm::vec2(inGrid.high)) + 1.0f, glm::vec2(0.0f), most));
+  return {low, high - low};
+}
+
+class SolidPass : public BitVoxeliser {
+  In<VoxelFragments> base{this, "fragments", Presence::optional,
+                          "surface samples that the inside is added to; the grid is theirs then"};
+  Param<std::string> inwards{
+      this,
+      "inwards",
+      "leave",
+      {"leave", "fill"},
+      "closed surfaces whose front sides look inwards: rooms, which hold air, or solid like the others"};
+
+  static constexpr std::size_t kMostNames = 8;  // of objects in one message
+
+  const VoxelFragments* surface() const override { return base.present() ? &*base : nullptr; }
+
+  void mark(PassContext& frame, const GridPlacement& grid, const gpu::Texture& words,
+            const Draws& draws) override {
+    if (triangles_ == nullptr) findClosedSurfaces(frame);
+    std::set<int> objects;
+    std::vector<std::string> rooms;
+    for (const SceneDraw* draw : draws) {
+      const ClosedSurface& closed = surfaces_[static_cast<std::size_t>(draw->object)];
+      if (closed.triangleCount == 0 || objects.count(draw->object) == 1) continue;
+      if (!closed.room || inwards == "fill")
+        objects.insert(draw->object);
+      else if (const std::string name = "'" + closed.name + "'"; rooms.empty() || rooms.back() != name)
+        rooms.push_back(name);
+    }
+    if (!rooms.empty())
+      frame.warn(fmt::format("closed but facing inwards, so taken for rooms full of air: {}", listed(rooms)));
+    if (objects.empty()) return;
+    const gpu::TextureRef parity = bitWords(frame, grid, "parity");
+    Aside aside(frame, mostTriangles_);
+    // Within an object a second surface inside the first is a cavity; objects that overlap are both solid.
+    for (const int object : objects) fillObject(frame, grid, words, *parity, aside, object);
+  }
+
+  void fillObject(PassContext& frame, const GridPlacement& grid, const gpu::Texture& words,
+                  const gpu::Texture& parity, Aside& aside, int object) const {
+    const ClosedSurface& closed = surfaces_[static_cast<std::size_t>(object)];
+    const ObjectState& state = frame.snapshot().objects[static_cast<std::size_t>(object)];
+    const Columns columns = state.positions.empty() ? columnsOf(closed.bounds, state.toWorld, grid)
+                                                    : Columns{{0, 0}, {grid.resolution.x, grid.resolution.y}};
+    if (columns.size.x <= 0 || columns.size.y <= 0) return;
+    const std::vector<gpu::ResourceBinding> bindings{
+        flipShader::positions(frame.scene().positions()),
+        flipShader::objects(frame.scene().objects()),
+        flipShader::indices(frame.scene().indices()),
+        flipShader::draw({object, 0}),
+        flipShader::grid({grid.low, grid.voxelSize, grid.resolution, static_cast<int>(closed.firstTriangle),
+                          static_cast<int>(closed.triangleCount)}),
+        flipShader::triangles(*triangles_),
+        flipShader::aside(aside.buffer()),
+        flipShader::parity(parity)};
+    aside.clear();
+    frame.shaders().dispatch(frame.program(flipShader::kProgram, flipShader::Variant{0}.key()), bindings,
+                             workGroupsFor(closed.triangleCount));
+    frame.device().barrier();
+    aside.workOff(frame, frame.program(flipShader::kProgram, flipShader::Variant{1}.key()), bindings);
+    frame.dispatch(frame.program(fillShader::kProgram),
+                   {fillShader::parameters({columns.low, columns.size, grid.resolution.z}),
+                    fillShader::parity(parity), fillShader::words(words)},
+                   {columns.size, 1}, fillShader::kGroupSize);
+  }
+
+  /// Once a scene: how surfaces hang together does not change while they move.
+  void findClosedSurfaces(PassContext& frame) {
+    const Scene& scene = frame.sceneDescription();
+    std::vector<std::uint32_t> triangles;
+    std::vector<std::string> open;
+    for (const Object& object : scene.objects) {
+      const WeldedObject welded = weld(scene, object);
+      const std::vector<SurfaceComponent> components = surfaceComponents(welded);
+      std::size_t openEdges = 0;
+      double volume = 0.0;
+      for (const SurfaceComponent& component : components) {
+        openEdges += component.openEdges;
+        if (component.closed()) volume += component.volume;
+      }
+      if (openEdges > 0) open.push_back(fmt::format("'{}' ({} open edges)", object.name, openEdges));
+      ClosedSurface& closed = surfaces_.emplace_back();
+      closed.name = object.name;
+      closed.room = volume < 0.0;
+      closed.firstTriangle = static_cast<std::uint32_t>(triangles.size());
+      for (const SurfaceComponent& component : components) {
+        if (!component.closed()) continue;
+        for (const std::uint32_t t : component.triangles) {
+          triangles.push_back(welded.firstIndices[t] / 3);
+          for (std::size_t k = 0; k < 3; ++k)
+            closed.bounds.grow(welded.places[welded.corners[3 * std::size_t{t} + k]]);
+        }
+      }
+      closed.triangleCount = static_cast<std::uint32_t>(triangles.size()) - closed.firstTriangle;
+      mostTriangles_ = std::max(mostTriangles_, closed.triangleCount);
+    }
+    if (!open.empty()) frame.warn(fmt::format("not closed, so without an inside: {}", listed(open)));
+    triangles.resize(std::max<std::size_t>(triangles.size(), 1));
+    triangles_ = frame.buffer(triangles.size() * sizeof(std::uint32_t), "triangles of closed surfaces");
+    triangles_->upload(std::as_bytes(std::span(triangles)));
+  }
+
+  static std::string listed(const std::vector<std::string>& names) {
+    const auto shown = static_cast<std::ptrdiff_t>(std::min(names.size(), kMostNames));
+    std::string text = fmt::format("{}", fmt::join(names.begin(), names.begin() + shown, ", "));
+    if (names.size() > kMostNames) text += fmt::format(" and {} more", names.size() - kMostNames);
+    return text;
+  }
+
+  std::vector<ClosedSurface> surfaces_;  ///< per object
+  std::uint32_t mostTriangles_ = 0;      ///< of one object
+  gpu::BufferRef triangles_;
+};
+
+}  // namespace
+
+void addSolid(TechniqueRegistry& registry) {
+  registry.add<SolidPass>("solid", "The inside of closed meshes, by parity along columns");
+}
+
+}  // namespace lumivox::voxelization

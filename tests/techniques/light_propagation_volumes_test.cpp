@@ -1,0 +1,551 @@
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "lumivox/measure/metrics.h"
+#include "lumivox/reference/path_tracer.h"
+#include "support/scene_builder.h"
+#include "support/techniques.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+const double kY0 = 0.5 / std::sqrt(kPi), kY1 = std::sqrt(0.75 / kPi);
+const double kFarFace = 4.0 * std::atan(1.0 / (3.0 * std::sqrt(11.0)));  // of a cube at distance 3/2, sr
+const double kSideFace = (2.0 * kPi / 3.0 - kFarFace) / 4.0;  // five faces are a sixth of the sphere
+/// Flux across a face of what a cell holds: across0 c0 + across1 c1.
+const double kAcross0 = 2.0 * kPi / 3.0 * kY0, kAcross1 = (kFarFace + 8.0 / std::sqrt(5.0) * kSideFace) * kY1;
+
+using Cells = std::vector<float>;  ///< four coefficients a cell: Y00, Y1-1, Y10, Y11
+
+std::size_t at(int n, int x, int y, int z) {
+  return static_cast<std::size_t>(4 * ((z * n + y) * n + x));
+}
+
+gpu::TextureRef volume(int n, gpu::Format format) {
+  gpu::TextureDescription description;
+  description.kind = gpu::TextureKind::d3;
+  description.format = format;
+  description.width = description.height = description.depth = n;
+  auto texture = std::make_shared<gpu::Texture>(device(), description, "test cells");
+  texture->clear(glm::vec4(0.0f));
+  return texture;
+}
+
+/// A grid of [-1,1]^3 with the same light in all channels; `closed` gives xyz shares of (n+1)^3 faces.
+ShGrid gridOf(int n, const Cells& cells, const std::vector<float>& closed = {}) {
+  ShGrid::Level level;
+  level.grid = {glm::vec3(-1.0f), 2.0f / static_cast<float>(n), glm::ivec3(n)};
+  for (gpu::TextureRef& texture : level.coefficients) {
+    texture = volume(n, gpu::Format::rgba32f);
+    texture->uploadFloats(0, cells);
+  }
+  level.closed = volume(n + 1, gpu::Format::rgba8);
+  if (!closed.empty()) {
+    std::vector<std::byte> bytes;
+    for (const float share : closed)
+      bytes.push_back(static_cast<std::byte>(static_cast<int>(share * 255.0f + 0.5f)));
+    level.closed->upload(0, bytes);
+  }
+  return {{level}};
+}
+
+/// A virtual light of flux 1: c0 = Y0, c1 = m Y1 along the direction.
+void addLight(Cells& cells, int n, const glm::ivec3& cell, const glm::vec3& direction, double meanCosine) {
+  const std::size_t first = at(n, cell.x, cell.y, cell.z);
+  cells[first] += static_cast<float>(kY0);
+  cells[first + 1] += static_cast<float>(meanCosine * kY1) * direction.y;
+  cells[first + 2] += static_cast<float>(meanCosine * kY1) * direction.z;
+  cells[first + 3] += static_cast<float>(meanCosine * kY1) * direction.x;
+}
+
+/// Nothing leaves backwards at this mean cosine.
+double forwardCosine() {
+  return kAcross0 * kY0 / (kAcross1 * kY1);
+}
+
+Cells empty(int n) {
+  return Cells(at(n, 0, 0, n), 0.0f);
+}
+
+double energy(const Cells& cells) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < cells.size(); i += 4) sum += cells[i] / kY0;  // integral over the sphere
+  return sum;
+}
+double norm(const Cells& cells) {
+  double sum = 0.0;
+  for (const float value : cells) sum += static_cast<double>(value) * value;
+  return std::sqrt(sum);
+}
+
+SceneBuilder emptyScene(float environment = 0.0f) {
+  SceneBuilder builder;
+  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);
+  builder.scene.environment = glm::vec3(environment);
+  return builder;
+}
+
+/// The pass with its parameters; numbers and words.
+class Propagation {
+ public:
+  explicit Propagation(const Scene& scene)
+      : harness_(device(), techniques(), "light_propagation_volumes", "propagate", scene,
+                 snapshotOf(scene, 0.0)) {}
+  Propagation& set(const char* name, double value) {
+    harness_.setParameter(name, value);
+    return *this;
+  }
+  Propagation& set(const char* name, const char* word) {
+    harness_.setParameter(name, std::string(word));
+    return *this;
+  }
+  Propagation& run(const ShGrid& light) {
+    harness_.setInput("light", light);
+    harness_.run();
+    return *this;
+  }
+  ShGrid grid(const char* port) { return harness_.output<ShGrid>(port); }
+  Cells cells(const char* port) { return grid(port).levels[0].coefficients[0]->downloadFloats(0); }
+
+ private:
+  PassHarness harness_;
+};
+
+Cells randomLight(int n, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal;
+  Cells cells = empty(n);
+  for (float& value : cells) value = normal(random);
+  return cells;
+}
+std::vector<float> randomFaces(int n, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<float> faces(at(n + 1, 0, 0, n + 1));
+  for (float& value : faces) value = static_cast<float>(random() % 5) / 4.0f;
+  return faces;
+}
+
+Picture indirect(const Scene& scene, const char* name, const std::vector<std::string>& settings, int width,
+                 int height) {
+  const Pipeline text = pipeline(name);
+  RenderOptions options;
+  options.width = width;
+  options.height = height;
+  options.parameters = text.settings(settings);
+  return renderOnce(scene, text, options).outputs.at("indirect_diffuse");
+}
+
+/// Largest difference between the folded shader and the one that goes face by face, as a share of the norm.
+double differenceOfMethods(const ShGrid& light, Propagation& folded, Propagation& plain) {
+  double worst = 0.0;
+  folded.run(light);
+  plain.run(light);
+  for (const char* port : {"light", "travelling"}) {
+    const Cells fast = folded.cells(port), slow = plain.cells(port);
+    double difference = 0.0;
+    for (std::size_t i = 0; i < fast.size(); ++i) difference += std::pow(fast[i] - slow[i], 2.0);
+    REQUIRE(norm(slow) > 0.0);
+    worst = std::max(worst, std::sqrt(difference) / norm(slow));
+  }
+  return worst;
+}
+
+void checkMethods(const char* lobe) {
+  const SceneBuilder builder = emptyScene(0.7f);
+  Propagation folded(builder.scene), plain(builder.scene);
+  folded.set("lobe", lobe).set("occlusion_amplifier", 0.8);
+  plain.set("lobe", lobe).set("occlusion_amplifier", 0.8).set("method", "plain");
+  constexpr int n = 10;  // not a whole number of bricks
+  for (const char* border : {"open", "mirror"}) {
+    folded.set("border", border).set("iterations", 5);
+    plain.set("border", border).set("iterations", 5);
+    CHECK(differenceOfMethods(gridOf(n, randomLight(n, 11), randomFaces(n, 5)), folded, plain) < 1e-5);
+  }
+  // A single light in a corner of a grid of 24: most bricks are dark, and left out, for most of the
+  // iterations.
+  constexpr int large = 24;
+  Cells cells = empty(large);
+  addLight(cells, large, {1, 2, 1}, {1, 0, 0}, forwardCosine());
+  for (const int iterations : {1, 2, 7, 30}) {
+    folded.set("iterations", iterations);
+    plain.set("iterations", iterations);
+    CHECK(differenceOfMethods(gridOf(large, cells), folded, plain) < 1e-5);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a closed lossless box keeps its energy in every iteration, with both lobes") {
+  constexpr int n = 12;
+  Cells cells = empty(n);
+  addLight(cells, n, {2, 7, 5}, {1, 0, 0}, 2.0 / 3.0);
+  addLight(cells, n, {0, 0, 11}, glm::normalize(glm::vec3(1, 2, -1)), forwardCosine());
+  const SceneBuilder builder = emptyScene();
+  for (const char* lobe : {"straight", "cosine"})
+    for (const int iterations : {1, 2, 3, 8, 64, 257}) {
+      Propagation step(builder.scene);
+      step.set("border", "mirror").set("lobe", lobe).set("iterations", iterations).run(gridOf(n, cells));
+      INFO(lobe << ", " << iterations << " iterations");
+      CHECK(energy(step.cells("travelling")) == Approx(2.0).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("in an open box what is inside and what left make up what was sent out, and the norm never grows") {
+  constexpr int n = 9;
+  Cells cells = empty(n);
+  addLight(cells, n, {4, 4, 4}, {0, 1, 0}, forwardCosine());
+  const SceneBuilder builder = emptyScene();
+  for (const char* lobe : {"straight", "cosine"}) {
+    double before = norm(cells);
+    for (int iterations = 1; iterations <= 32; ++iterations) {
+      Propagation step(builder.scene);
+      step.set("lobe", lobe).set("iterations", iterations).run(gridOf(n, cells));
+      const Cells passed = step.cells("light"), inside = step.cells("travelling");
+      double left = 0.0;
+      for (int u = 0; u < n; ++u)
+        for (int v = 0; v < n; ++v) {
+          const std::array<std::pair<std::size_t, int>, 6> faces{{{at(n, 0, u, v), -4},
+                                                                  {at(n, n - 1, u, v), 4},
+                                                                  {at(n, u, 0, v), -2},
+                                                                  {at(n, u, n - 1, v), 2},
+                                                                  {at(n, u, v, 0), -3},
+                                                                  {at(n, u, v, n - 1), 3}}};
+          for (const auto& [cell, direction] : faces) {
+            const auto component = static_cast<std::size_t>(std::abs(direction) - 1);
+            left +=
+                kAcross0 * passed[cell] + (direction > 0 ? 1.0 : -1.0) * kAcross1 * passed[cell + component];
+          }
+        }
+      INFO(lobe << ", " << iterations << " iterations: inside " << energy(inside) << ", left " << left);
+      CHECK(energy(inside) + left == Approx(1.0).epsilon(1e-4));
+      CHECK(energy(inside) <= 1.0 + 1e-5);
+      CHECK(norm(inside) <= before * (1.0 + 1e-6));
+      before = norm(inside);
+    }
+  }
+}
+
+TEST_CASE("no iteration of a thousand amplifies, whatever is closed") {
+  // Power iteration: the norm of a random state tends to that of the most amplified one.
+  constexpr int n = 6;
+  const SceneBuilder builder = emptyScene();
+  for (const char* lobe : {"straight", "cosine"})
+    for (const char* border : {"mirror", "open"})
+      for (const bool occluded : {false, true}) {
+        if (occluded && std::string(border) == "open") continue;
+        Propagation step(builder.scene);
+        step.set("lobe", lobe).set("border", border).set("iterations", 1);
+        ShGrid state = gridOf(n, randomLight(n, 7), occluded ? randomFaces(n, 3) : std::vector<float>{});
+        double before = norm(state.levels[0].coefficients[0]->downloadFloats(0)), largest = 0.0;
+        for (int i = 0; i < 1000; ++i) {
+          state = step.run(state).grid("travelling");
+          const double now = norm(state.levels[0].coefficients[0]->downloadFloats(0));
+          if (before < 1e-20) break;  // all has left
+          largest = std::max(largest, now / before);
+          before = now;
+        }
+        INFO(lobe << ", " << border << ", occluded " << occluded << ": " << largest);
+        CHECK(largest <= 1.0 + 1e-5);
+        CHECK(largest > 0.5);
+      }
+}
+
+TEST_CASE(
+    "light moves 2 across1 Y1 m cells an iteration straight on; as a cosine its direction is soon lost") {
+  // Of flux 1 with mean cosine m, across0 c0 + across1 c1 leaves forwards and across0 c0 - across1 c1
+  // backwards: the centre of energy moves by 2 across1 Y1 m. Straight on m stays; a cosine keeps of it, with
+  // the five fluxes through neighbours in all six directions, (2/3)(2 far + 8 side / sqrt 5)(3 / 4 pi).
+  constexpr int n = 31, centre = 15;
+  const double cosine = forwardCosine(), speed = 2.0 * kAcross1 * kY1 * cosine;
+  const double kept = (2.0 / 3.0) * (2.0 * kFarFace + 8.0 / std::sqrt(5.0) * kSideFace) * 0.75 / kPi;
+  CHECK(speed == Approx(1.0 / 3.0).epsilon(1e-6));
+  const SceneBuilder builder = emptyScene();
+  for (const bool straight : {true, false}) {
+    double expected = 0.0, now = speed;
+    for (int iterations = 1; iterations <= 12; ++iterations) {
+      expected += now;
+      if (!straight) now *= kept;
+      if (iterations % 4 != 0) continue;
+      Cells cells = empty(n);
+      addLight(cells, n, {centre, centre, centre}, {0, 0, 1}, cosine);
+      Propagation step(builder.scene);
+      step.set("lobe", straight ? "straight" : "cosine").set("iterations", iterations).run(gridOf(n, cells));
+      const Cells after = step.cells("travelling");
+      double moved = 0.0;
+      for (int z = 0; z < n; ++z)
+        for (int y = 0; y < n; ++y)
+          for (int x = 0; x < n; ++x) moved += after[at(n, x, y, z)] / kY0 * (z - centre);
+      CHECK(moved == Approx(expected).epsilon(1e-3));
+    }
+  }
+}
+
+TEST_CASE(
+    "the folded shader, which leaves dark bricks out, gives the light of the one that goes face by face") {
+  checkMethods("straight");
+}
+
+TEST_CASE("the folded shader gives the same light with the published lobe too", "[slow]") {
+  checkMethods("cosine");
+}
+
+TEST_CASE("light along any of the six axes is the same light, turned") {
+  constexpr int n = 11;
+  const SceneBuilder builder = emptyScene();
+  const auto along = [&](int axis, int side) {
+    Cells cells = empty(n);
+    glm::vec3 direction(0.0f);
+    direction[axis] = static_cast<float>(side);
+    addLight(cells, n, {5, 5, 5}, direction, forwardCosine());
+    Propagation step(builder.scene);
+    step.set("iterations", 9).run(gridOf(n, cells));
+    return step.cells("light");
+  };
+  const Cells reference = along(2, 1);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {1, -1}) {
+      const Cells turned = along(axis, side);
+      double difference = 0.0;
+      for (int x = 0; x < n; ++x)
+        for (int y = 0; y < n; ++y)
+          for (int z = 0; z < n; ++z) {
+            glm::ivec3 cell;
+            cell[axis] = side > 0 ? z : n - 1 - z;
+            cell[(axis + 1) % 3] = x;
+            cell[(axis + 2) % 3] = y;
+            difference += std::pow(turned[at(n, cell.x, cell.y, cell.z)] - reference[at(n, x, y, z)], 2.0);
+          }
+      CHECK(std::sqrt(difference) < 1e-5 * norm(reference));
+    }
+}
+
+TEST_CASE("a closed plane lets nothing through, and an open one does") {
+  constexpr int n = 12;
+  Cells cells = empty(n);
+  addLight(cells, n, {2, 6, 6}, {1, 0, 0}, forwardCosine());
+  std::vector<float> closed(at(n + 1, 0, 0, n + 1), 0.0f);
+  for (int z = 0; z <= n; ++z)
+    for (int y = 0; y <= n; ++y) closed[at(n + 1, 6, y, z)] = 1.0f;
+  const SceneBuilder builder = emptyScene();
+  for (const bool wall : {false, true}) {
+    Propagation step(builder.scene);
+    step.set("iterations", 40).run(gridOf(n, cells, wall ? closed : std::vector<float>{}));
+    const Cells light = step.cells("light");
+    double behind = 0.0;
+    for (int z = 0; z < n; ++z)
+      for (int y = 0; y < n; ++y)
+        for (int x = 6; x < n; ++x) behind += std::abs(light[at(n, x, y, z)]);
+    if (wall) CHECK(behind == 0.0);
+    if (!wall) CHECK(behind > 0.1);
+  }
+}
+
+TEST_CASE(
+    "an environment of radiance L fills an empty grid with 3/2 h^2 L, and a surface in it receives pi L") {
+  // A cube shows the mean projected area 3/2 h^2: what passes it in a field of equal radiance L.
+  constexpr int n = 8;
+  constexpr float kRadiance = 0.7f;
+  const SceneBuilder builder = emptyScene(kRadiance);
+  Propagation step(builder.scene);
+  step.set("iterations", 300).run(gridOf(n, empty(n)));
+  const ShGrid light = step.grid("light");
+  const double h = light.levels[0].grid.voxelSize;
+  const Cells cells = step.cells("light");
+  for (std::size_t i = 0; i < cells.size(); i += 4) {
+    CHECK(cells[i] * kY0 == Approx(1.5 * h * h * kRadiance).epsilon(0.01));
+    CHECK(std::abs(cells[i + 1]) < 0.01 * cells[i]);
+  }
+  gpu::TextureDescription description;
+  description.format = gpu::Format::rgba32f;
+  description.width = description.height = 8;
+  const auto filled = [&](const glm::vec4& value) {
+    auto texture = std::make_shared<gpu::Texture>(device(), description, "test g-buffer");
+    texture->clear(value);
+    return texture;
+  };
+  const glm::vec4 normal(glm::normalize(glm::vec3(1, 2, -0.5f)), 1.0f);
+  PassHarness gather(device(), techniques(), "light_propagation_volumes", "gather", builder.scene,
+                     snapshotOf(builder.scene, 0.0));
+  gather.setInput("gbuffer", GBuffer{filled({0.1f, -0.2f, 0.3f, 1}), filled(normal), filled(normal),
+                                     filled(glm::vec4(1.0f)), nullptr, nullptr});
+  gather.setInput("light", light);
+  gather.run();
+  CHECK(pictureOf(*gather.output<Image>("diffuse").texture).at(4, 4, 0) == Approx(kRadiance).epsilon(0.01));
+}
+
+TEST_CASE("nested grids hold the same radiance on both sides of their seam") {
+  // Under an environment alone every cell of every level must come to 3/2 h^2 L.
+  SceneBuilder builder = emptyScene(0.5f);
+  builder.quad({-1, -1, -1}, {0.01f, 0, 0}, {0, 0.01f, 0}, builder.lambert(0.0f));
+  builder.quad({1, 1, 1}, {0.01f, 0, 0}, {0, 0.01f, 0}, builder.lambert(0.0f));
+  const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
+  PassHarness voxels(device(), techniques(), "voxelization", "conservative", builder.scene, snapshot);
+  voxels.run();
+  PassHarness inject(device(), techniques(), "light_propagation_volumes", "inject_rsm", builder.scene,
+                     snapshot);
+  inject.setParameter("levels", 3);
+  inject.setParameter("resolution", 8);
+  inject.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
+  inject.run();
+  Propagation step(builder.scene);
+  step.set("iterations", 400).run(inject.output<ShGrid>("light"));
+  const ShGrid light = step.grid("light");
+  REQUIRE(light.levels.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const ShGrid::Level& level = light.levels[i];
+    const double h = level.grid.voxelSize;
+    if (i > 0) CHECK(h == Approx(2.0 * light.levels[i - 1].grid.voxelSize));
+    const std::vector<float> cells = level.coefficients[1]->downloadFloats(0);
+    double sum = 0.0;
+    for (std::size_t c = 0; c < cells.size(); c += 4) sum += cells[c];
+    CHECK(sum / (static_cast<double>(cells.size()) / 4.0) * kY0 == Approx(1.5 * h * h * 0.5).epsilon(0.02));
+  }
+}
+
+TEST_CASE("both injections give a lit plane the flux albedo E cos A, in integers: the same bits twice") {
+  SceneBuilder builder;
+  builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.6f));
+  builder.quad({-1, 1, -1}, {0, 0, 0.001f}, {0.001f, 0, 0},
+               builder.lambert(0.0f));  // gives the grid its height
+  builder.light(LightKind::directional, glm::vec3(3.0f), {}, {0.3, -1, 0.2});
+  const double cosine = 1.0 / std::sqrt(1.0 + 0.09 + 0.04);
+  const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
+  PassHarness voxels(device(), techniques(), "voxelization", "conservative", builder.scene, snapshot);
+  voxels.run();
+  PassHarness map(device(), techniques(), "reflective_shadow_maps", "render", builder.scene, snapshot);
+  map.setParameter("size", 512);
+  map.run();
+  PassHarness shadow(device(), techniques(), "direct_lighting", "shadow_map", builder.scene, snapshot);
+  shadow.run();
+  for (const char* name : {"inject_rsm", "inject_voxels"}) {
+    std::array<Cells, 2> results;
+    for (Cells& result : results) {
+      PassHarness inject(device(), techniques(), "light_propagation_volumes", name, builder.scene, snapshot);
+      inject.setParameter("levels", 1);
+      inject.setParameter("resolution", 32);
+      inject.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
+      if (std::string(name) == "inject_rsm")
+        inject.setInput("map", map.output<ReflectiveShadowMap>("map"));
+      else
+        inject.setInput("shadow", shadow.output<ShadowMap>("depth"));
+      inject.run();
+      result = inject.output<ShGrid>("light").levels[0].coefficients[0]->downloadFloats(0);
+    }
+    INFO(name);
+    CHECK(energy(results[0]) == Approx(0.6 * 3.0 * cosine * 4.0).epsilon(0.03));
+    CHECK(results[0] == results[1]);
+  }
+}
+
+TEST_CASE("the printed sum grows with every iteration, the default never does", "[slow]") {
+  constexpr int n = 9;
+  Cells cells = empty(n);
+  addLight(cells, n, {4, 4, 4}, {0, 1, 0}, 2.0 / 3.0);
+  const SceneBuilder builder = emptyScene();
+  Propagation published(builder.scene);
+  published.set("as_published", "on").set("border", "mirror").set("iterations", 8).run(gridOf(n, cells));
+  CHECK(energy(published.cells("light")) > 256.0);  // doubled eight times, and what was negative dropped
+}
+
+TEST_CASE("light on a grid moved by half a cell differs by less than two per cent") {
+  // Moving the scene against a grid that lies on whole cells of the world is moving the grid.
+  constexpr int resolution = 16;
+  const auto meanOf = [&](float cells) {
+    Scene scene = litRoom(24, 24);
+    glm::vec3 low(1e9f), high(-1e9f);
+    for (const glm::vec3& position : scene.positions) {
+      low = glm::min(low, position);
+      high = glm::max(high, position);
+    }
+    const glm::vec3 size = high - low;
+    const float cell = std::max({size.x, size.y, size.z}) / (resolution - 3);
+    for (glm::vec3& position : scene.positions) position += cells * cell;
+    scene.cameras.front().eye += static_cast<double>(cells * cell);
+    scene.cameras.front().target += static_cast<double>(cells * cell);
+    const Picture picture =
+        indirect(scene, "light_propagation_volumes", {"levels=1", "resolution=16", "iterations=48"}, 24, 24);
+    double sum = 0.0;
+    for (const float value : picture.values()) sum += value;
+    return sum / static_cast<double>(picture.values().size());
+  };
+  const double base = meanOf(0.0f);
+  const double moved = meanOf(0.5f);
+  INFO(moved / base);
+  CHECK(moved == Approx(base).epsilon(0.02));
+}
+
+TEST_CASE("no negative radiance reaches a picture, and what two bands made negative is told") {
+  const Scene scene = loadScene(sourceDirectory() / "scenes/cornell.scene");
+  const Pipeline text = pipeline("light_propagation_volumes");
+  RenderOptions options;
+  options.width = options.height = 32;
+  options.parameters = text.settings({"resolution=16"});
+  PipelineExecutor executor(device(), techniques(), scene, text, options);
+  executor.keepOutput("gather", "clipped");
+  const FrameResult frame = executor.render(0.0);
+  double lowest = 0.0, sum = 0.0, clipped = 0.0;
+  for (const float value : frame.outputs.at("indirect_diffuse").values()) {
+    lowest = std::min<double>(lowest, value);
+    sum += value;
+  }
+  const Picture negative = pictureOf(*executor.output("gather", "clipped")->textures()[0]);
+  for (const float value : negative.values()) {
+    CHECK(value >= 0.0f);
+    clipped += value;
+  }
+  CHECK(lowest >= 0.0);
+  INFO("share: " << clipped / sum);
+  CHECK(clipped < 0.05 * sum);
+}
+
+TEST_CASE("without glossy materials there is no reflection grid, with them there is") {
+  for (const bool glossy : {false, true}) {
+    const Scene scene =
+        loadScene(sourceDirectory() / "scenes" / (glossy ? "cornell_glossy.scene" : "cornell.scene"));
+    const Pipeline text = pipeline("light_propagation_volumes");
+    RenderOptions options;
+    options.width = options.height = 16;
+    options.parameters = text.settings({"resolution=8", "iterations=8", "surfaces=16"});
+    PipelineExecutor executor(device(), techniques(), scene, text, options);
+    const FrameResult frame = executor.render(0.0);
+    bool reflects = false;
+    for (const PassRecord& pass : frame.passes) reflects = reflects || pass.name == "reflect";
+    CHECK(reflects == glossy);
+    double sum = 0.0;
+    for (const float value : frame.outputs.at("indirect_glossy").values()) sum += value;
+    CHECK((sum > 0.0) == glossy);
+  }
+}
+
+TEST_CASE(
+    "light propagation volumes are better than no indirect light on the Cornell box and the arcade, with the right energy within 0.7 to 1.3") {
+  for (const char* name : {"cornell", "arcade"}) {
+    const Scene scene = loadScene(sourceDirectory() / "scenes" / (std::string(name) + ".scene"));
+    ReferenceOptions truthOptions = quietly(64, 1);
+    truthOptions.width = 64;
+    truthOptions.height = 36;
+    truthOptions.useCache = true;
+    const Picture oneBounce = cachedReference(scene, truthOptions).layers.at("one_bounce_diffuse");
+    for (const char* text : {"light_propagation_volumes", "light_propagation_volumes_voxels"}) {
+      const PictureError error = compare(indirect(scene, text, {}, 64, 36), oneBounce),
+                         nothing = compare(Picture(64, 36, 3), oneBounce);
+      INFO(name << " through " << text << ": RMSE " << error.rmse.value << " against " << nothing.rmse.value
+                << ", ratio " << error.meanRatio.value);
+      CHECK(error.rmse.value < 0.8 * nothing.rmse.value);
+      CHECK(error.meanRatio.value >= 0.7);
+      CHECK(error.meanRatio.value <= 1.3);
+    }
+  }
+}
+
+TEST_CASE("the same seed and device give the same bits twice through light propagation volumes") {
+  const Scene scene = litRoom(24, 24);
+  for (const char* name : {"light_propagation_volumes", "light_propagation_volumes_voxels"}) {
+    const std::vector<std::string> settings{"resolution=16", "iterations=16"};
+    CHECK(indirect(scene, name, settings, 24, 24).values() ==
+          indirect(scene, name, settings, 24, 24).values());
+  }
+}

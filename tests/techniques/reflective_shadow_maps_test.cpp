@@ -1,0 +1,203 @@
+#include <cmath>
+
+#include "lumivox/measure/metrics.h"
+#include "lumivox/reference/path_tracer.h"
+#include "support/scene_builder.h"
+#include "support/techniques.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+struct Map {
+  double flux = 0.0, area = 0.0;  ///< sums over all texels
+  ReflectiveShadowMap value;
+};
+
+Map render(const Scene& scene, int size) {
+  PassHarness harness(device(), techniques(), "reflective_shadow_maps", "render", scene,
+                      snapshotOf(scene, 0.0));
+  harness.setParameter("size", size);
+  harness.setParameter("area_size", size);
+  harness.run();
+  Map map;
+  map.value = harness.output<ReflectiveShadowMap>("map");
+  const std::vector<float> flux = map.value.flux->downloadFloats(0),
+                           normal = map.value.normal->downloadFloats(0),
+                           position = map.value.position->downloadFloats(0);
+  for (std::size_t i = 0; i < flux.size(); i += 4) {
+    map.flux += flux[i];
+    if (position[i + 3] > 0.0f) map.area += normal[i + 3];
+  }
+  return map;
+}
+
+SceneBuilder closedBox(float albedo) {
+  SceneBuilder builder;
+  builder.box({-1, -1, -1}, {1, 1, 1}, builder.lambert(albedo), true);
+  return builder;
+}
+
+GBuffer surfacePoints(const glm::vec3& position, const glm::vec3& normal) {
+  gpu::TextureDescription description;
+  description.format = gpu::Format::rgba32f;
+  description.width = description.height = 8;
+  const auto filled = [&](const glm::vec4& value) {
+    auto texture = std::make_shared<gpu::Texture>(device(), description, "test g-buffer");
+    texture->clear(value);
+    return texture;
+  };
+  return {filled(glm::vec4(position, 1)),
+          filled(glm::vec4(normal, 1)),
+          filled(glm::vec4(normal, 0)),
+          filled(glm::vec4(1.0f)),
+          nullptr,
+          nullptr};
+}
+
+Picture gather(const Scene& scene, const ReflectiveShadowMap& map, const char* method, int samples) {
+  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
+  PassHarness view(device(), techniques(), "direct_lighting", "gbuffer", scene, snapshot);
+  view.run();
+  PassHarness harness(device(), techniques(), "reflective_shadow_maps", "gather", scene, snapshot);
+  harness.setInput("gbuffer", view.output<GBuffer>("gbuffer"));
+  harness.setInput("map", map);
+  harness.setParameter("method", std::string(method));
+  harness.setParameter("samples", samples);
+  harness.run();
+  return pictureOf(*harness.output<Image>("diffuse").texture);
+}
+
+}  // namespace
+
+TEST_CASE("the texels of a plane under a directional light sum to its area and to albedo E cos A") {
+  SceneBuilder builder;
+  builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.6f));
+  for (const glm::dvec3& direction : {glm::dvec3(0, -1, 0), glm::dvec3(1, -1, 0.5)}) {
+    builder.scene.lights.clear();
+    builder.light(LightKind::directional, glm::vec3(3.0f), {}, direction);
+    const Map map = render(builder.scene, 512);
+    const double cosine = -glm::normalize(direction).y;
+    CHECK(map.area == Approx(4.0).epsilon(0.01));
+    CHECK(map.flux == Approx(0.6 * 3.0 * cosine * 4.0).epsilon(0.01));
+  }
+}
+
+TEST_CASE("in a closed box all light of a point light is reflected: the texels sum to 4 pi I albedo") {
+  SceneBuilder builder = closedBox(0.5f);
+  builder.light(LightKind::point, glm::vec3(2.0f), {0.3, -0.2, 0.1});
+  const Map map = render(builder.scene, 128);
+  CHECK(map.flux == Approx(4.0 * kPi * 2.0 * 0.5).epsilon(0.002));
+  CHECK(map.area == Approx(24.0).epsilon(0.01));  // six sides of 2 m x 2 m
+}
+
+TEST_CASE("a spot light's texels sum to 2 pi I albedo times the mean of its smoothstep over the cone") {
+  // smoothstep is odd about its middle, so that the integral over the cosine is (1 - ci) + (ci - co) / 2.
+  SceneBuilder builder = closedBox(0.5f);
+  Light& spot = builder.light(LightKind::spot, glm::vec3(2.0f), {0, 0.5, 0}, {0.2, -1, 0.1});
+  spot.innerAngle = 0.4f;
+  spot.outerAngle = 0.7f;
+  const double inner = std::cos(0.4), outer = std::cos(0.7);
+  const double expected = 2.0 * kPi * 2.0 * 0.5 * ((1.0 - inner) + 0.5 * (inner - outer));
+  CHECK(render(builder.scene, 256).flux == Approx(expected).epsilon(0.005));
+}
+
+TEST_CASE("an area light's texels sum to pi L A albedo in a closed box") {
+  SceneBuilder builder = closedBox(0.5f);
+  builder.quad({-0.1f, 0.5f, -0.1f}, {0.2f, 0, 0}, {0, 0, 0.2f}, builder.lambert(0.0f, 10.0f));
+  CHECK(render(builder.scene, 64).flux == Approx(kPi * 10.0 * 0.04 * 0.5).epsilon(0.02));
+}
+
+TEST_CASE("several lights add up texel by texel") {
+  SceneBuilder builder = closedBox(0.5f);
+  builder.light(LightKind::point, glm::vec3(2.0f), {0.3, -0.2, 0.1});
+  const double one = render(builder.scene, 64).flux;
+  builder.scene.lights.clear();
+  builder.light(LightKind::spot, glm::vec3(5.0f), {0, 0, 0}).outerAngle = 0.6f;
+  const double other = render(builder.scene, 64).flux;
+  builder.light(LightKind::point, glm::vec3(2.0f), {0.3, -0.2, 0.1});
+  CHECK(render(builder.scene, 64).flux == Approx(one + other).epsilon(1e-4));
+}
+
+TEST_CASE("a texel lights a surface on its axis as a disc of its area does") {
+  // Lambert: a disc of radius r and exitance M seen from its axis at distance d gives M r^2 / (d^2 + r^2);
+  // with A = pi r^2 and flux F = M A that is F / (pi d^2 + A).
+  SceneBuilder builder;
+  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);
+  gpu::TextureDescription description;
+  description.kind = gpu::TextureKind::d2Array;
+  description.format = gpu::Format::rgba32f;
+  const auto texel = [&](const glm::vec4& value) {
+    auto texture = std::make_shared<gpu::Texture>(device(), description, "one texel");
+    texture->clear(value);
+    return texture;
+  };
+  for (const double area : {1e-4, 0.5, 4.0}) {
+    ReflectiveShadowMap map;
+    map.position = texel({0, 1, 0, 1});
+    map.normal = texel({0, -1, 0, static_cast<float>(area)});
+    map.flux = texel({3, 3, 3, 0});
+    map.lights = std::make_shared<gpu::Buffer>(device(), 64, "lights");
+    map.views = std::make_shared<gpu::Buffer>(device(), 64, "views");
+    map.lightCount = map.layerCount = 1;
+    for (const char* method : {"all", "flux"}) {
+      PassHarness harness(device(), techniques(), "reflective_shadow_maps", "gather", builder.scene,
+                          snapshotOf(builder.scene, 0.0));
+      harness.setInput("gbuffer", surfacePoints({0, 0, 0}, {0, 1, 0}));
+      harness.setInput("map", map);
+      harness.setParameter("method", std::string(method));
+      harness.setParameter("samples", 1);
+      harness.run();
+      const double expected = 3.0 / (kPi + area) / kPi;
+      CHECK(pictureOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) ==
+            Approx(expected).epsilon(1e-4));
+    }
+  }
+}
+
+TEST_CASE("gathering chosen texels converges to gathering all of them, by flux and by projection") {
+  const Scene scene = litRoom(16, 16);
+  const ReflectiveShadowMap map = render(scene, 32).value;
+  const Picture all = gather(scene, map, "all", 1);
+  const auto errorOf = [&](const char* method, int samples) {
+    const PictureError error = compare(gather(scene, map, method, samples), all);
+    return error.rmse.value / compare(Picture(16, 16, 3), all).rmse.value;
+  };
+  for (const char* method : {"flux", "projected"}) {
+    const double few = errorOf(method, 160), many = errorOf(method, 40000);
+    INFO(method << ": " << few << ", " << many);
+    CHECK(many < 0.5 * few);
+    CHECK(many < (std::string(method) == "flux" ? 0.05 : 0.1));  // the pattern samples texels unevenly
+  }
+}
+
+TEST_CASE("the same seed and device give the same bits twice through reflective shadow maps") {
+  const Scene scene = litRoom(24, 24);
+  const FrameResult first = renderOnce(scene, pipeline("reflective_shadow_maps")),
+                    second = renderOnce(scene, pipeline("reflective_shadow_maps"));
+  CHECK(first.outputs.at("indirect_diffuse").values() == second.outputs.at("indirect_diffuse").values());
+}
+
+TEST_CASE(
+    "reflective shadow maps are better than no indirect light on the Cornell box and the arcade, with the right energy within 0.7 to 1.3") {
+  for (const char* name : {"cornell", "arcade"}) {
+    const Scene scene = loadScene(sourceDirectory() / "scenes" / (std::string(name) + ".scene"));
+    ReferenceOptions truthOptions = quietly(64, 1);
+    truthOptions.width = 64;
+    truthOptions.height = 36;
+    truthOptions.useCache = true;
+    const Picture oneBounce = cachedReference(scene, truthOptions).layers.at("one_bounce_diffuse");
+    RenderOptions options;
+    options.width = 64;
+    options.height = 36;
+    const Picture picture =
+        renderOnce(scene, pipeline("reflective_shadow_maps"), options).outputs.at("indirect_diffuse");
+    const PictureError error = compare(picture, oneBounce), nothing = compare(Picture(64, 36, 3), oneBounce);
+    INFO(name << ": RMSE " << error.rmse.value << " against " << nothing.rmse.value << ", ratio "
+              << error.meanRatio.value);
+    CHECK(error.rmse.value < 0.8 * nothing.rmse.value);
+    CHECK(error.meanRatio.value >= 0.7);
+    CHECK(error.meanRatio.value <= 1.3);
+  }
+}

@@ -1,0 +1,252 @@
+// Averages over the fragments of a voxel: closed forms, whatever the order of the list.
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/packing.hpp>
+#include <random>
+
+#include "lumivox/pipeline/light_samples.h"
+#include "support/scene_builder.h"
+#include "support/techniques.h"
+#include "support/voxel_fragments.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+constexpr int kSide = 8;
+
+/// A fragment at the centre of a voxel.
+FragmentData fragment(const glm::ivec3& cell, const glm::vec3& albedo, float coverage,
+                      const glm::vec3& normal, std::uint32_t emission = 0) {
+  FragmentData result{};
+  result.voxel = static_cast<std::uint32_t>(cell.x | cell.y << 10 | cell.z << 20);
+  result.offset = 512u | 512u << 10 | 512u << 20;
+  const glm::vec3 n = normal / (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+  // Normals of the upper half alone: no fold.
+  result.normal = glm::packSnorm2x16(glm::vec2(n));
+  result.albedoRg = glm::packHalf2x16(glm::vec2(albedo));
+  result.albedoBCoverage = glm::packHalf2x16(glm::vec2(albedo.z, coverage));
+  result.emission = emission;
+  return result;
+}
+
+/// The radiance `value` in all channels, a power of two: mantissa 128 of 256 beside an exponent.
+std::uint32_t sharedExponent(float value) {
+  const auto exponent = static_cast<std::uint32_t>(std::lround(std::log2(value)) + 1 + 128);
+  return 128u | 128u << 8 | 128u << 16 | exponent << 24;
+}
+
+VoxelFragments listOf(const std::vector<FragmentData>& fragments, VoxelFragments::Coverage rule) {
+  VoxelFragments list;
+  list.grid = {glm::vec3(0.0f), 1.0f / kSide, glm::ivec3(kSide, kSide - 1, kSide - 2)};
+  list.capacity = fragments.size() + 3;
+  list.coverage = rule;
+  list.fragments = std::make_shared<gpu::Buffer>(device(), list.capacity * sizeof(FragmentData), "list");
+  list.fragments->uploadValues(std::span<const FragmentData>(fragments));
+  const auto count = static_cast<std::uint32_t>(fragments.size());
+  const std::array<std::uint32_t, 4> words{count, std::max(1u, (count + 63) / 64), 1, 1};
+  list.count = std::make_shared<gpu::Buffer>(device(), sizeof(words), "count");
+  list.count->uploadValues(std::span<const std::uint32_t>(words));
+  return list;
+}
+
+Scene sceneThatEmits(float radiance) {
+  SceneBuilder builder;
+  builder.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, builder.lambert(0.5f, radiance));
+  return builder.scene;
+}
+
+struct Averages {
+  std::vector<float> albedo, normal, emission, opacity;
+  std::set<Cell> bits;
+
+  static std::size_t at(const glm::ivec3& cell) {
+    return static_cast<std::size_t>((cell.z * (kSide - 1) + cell.y) * kSide + cell.x);
+  }
+  static glm::vec4 texel(const std::vector<float>& values, const glm::ivec3& cell) {
+    const float* first = values.data() + 4 * at(cell);
+    return {first[0], first[1], first[2], first[3]};
+  }
+  bool operator==(const Averages&) const = default;
+};
+
+Averages averagesOf(const Scene& scene, const std::vector<FragmentData>& fragments,
+                    VoxelFragments::Coverage rule = VoxelFragments::Coverage::mean) {
+  PassHarness harness(device(), techniques(), "voxelization", "average", scene, snapshotOf(scene, 0.0));
+  harness.setInput("fragments", listOf(fragments, rule));
+  harness.run();
+  const auto& grid = harness.output<AttributeGrid>("attributes");
+  Averages result;
+  result.albedo = grid.albedo->downloadFloats();
+  result.normal = grid.normal->downloadFloats();
+  if (grid.emission) result.emission = grid.emission->downloadFloats();
+  result.opacity = harness.output<OccupancyGrid>("opacity").opacity->downloadFloats();
+  result.bits = cellsOf(harness.output<BinaryGrid>("bits"));
+  return result;
+}
+
+const glm::vec3 kUp(0, 0, 1);
+
+}  // namespace
+
+TEST_CASE(
+    "albedo, emission and normal are means weighted by coverage, and the mean coverage is the opacity") {
+  const glm::ivec3 cell(3, 2, 5);
+  // Weights 1 and 1/4: albedo (0.8 + 0.25 * 0.4) / 1.25 = 0.72; emission (4 + 0.25 * 8) / 1.25 = 4.8.
+  const Averages averages = averagesOf(
+      sceneThatEmits(8.0f), {fragment(cell, {0.8f, 0.5f, 0.0f}, 1.0f, kUp, sharedExponent(4.0f)),
+                             fragment(cell, {0.4f, 0.5f, 1.0f}, 0.25f, {1, 0, 0}, sharedExponent(8.0f))});
+  const glm::vec4 albedo = Averages::texel(averages.albedo, cell),
+                  normal = Averages::texel(averages.normal, cell),
+                  emission = Averages::texel(averages.emission, cell);
+  CHECK(albedo.x == Approx(0.72).epsilon(1e-3));
+  CHECK(albedo.y == Approx(0.5).epsilon(1e-3));
+  CHECK(albedo.z == Approx(0.2).epsilon(1e-3));
+  CHECK(albedo.w == Approx(0.625).epsilon(1e-3));
+  CHECK(normal.x == Approx(0.2).epsilon(1e-3));
+  CHECK(normal.z == Approx(0.8).epsilon(1e-3));
+  CHECK(emission.x == Approx(4.8).epsilon(1e-3));
+  CHECK(averages.opacity[Averages::at(cell)] == Approx(0.625).margin(0.5 / 255));
+  CHECK(averages.bits == std::set<Cell>{{3, 2, 5}});
+}
+
+TEST_CASE("coverages of parts of a voxel add up, to one at most") {
+  std::vector<FragmentData> fragments;
+  const glm::ivec3 few(1, 1, 1), many(2, 1, 1);
+  for (int i = 0; i < 3; ++i) fragments.push_back(fragment(few, {0.6f, 0.6f, 0.6f}, 0.125f, kUp));
+  for (int i = 0; i < 40; ++i) fragments.push_back(fragment(many, {0.3f, 0.3f, 0.3f}, 0.125f, kUp));
+  const Averages sum = averagesOf(sceneThatEmits(1.0f), fragments, VoxelFragments::Coverage::sum);
+  CHECK(Averages::texel(sum.albedo, few).w == Approx(0.375).epsilon(1e-3));
+  CHECK(Averages::texel(sum.albedo, few).x == Approx(0.6).epsilon(1e-3));
+  CHECK(Averages::texel(sum.albedo, many).w == 1.0f);
+  CHECK(Averages::texel(sum.albedo, many).x == Approx(0.3).epsilon(1e-3));
+  const Averages mean = averagesOf(sceneThatEmits(1.0f), fragments);
+  CHECK(Averages::texel(mean.albedo, few).w == Approx(0.125).epsilon(1e-3));
+  CHECK(Averages::texel(mean.albedo, many).w == Approx(0.125).epsilon(1e-3));
+}
+
+TEST_CASE("opposite normals cancel, and where they agree the mean has unit length") {
+  const glm::ivec3 thin(4, 4, 4), flat(5, 4, 4);
+  const Averages averages = averagesOf(
+      sceneThatEmits(1.0f),
+      {fragment(thin, glm::vec3(0.5f), 1.0f, {1, 0, 0}), fragment(thin, glm::vec3(0.5f), 1.0f, {-1, 0, 0}),
+       fragment(flat, glm::vec3(0.5f), 0.5f, {0, 1, 0}), fragment(flat, glm::vec3(0.5f), 1.0f, {0, 1, 0})});
+  CHECK(glm::length(glm::vec3(Averages::texel(averages.normal, thin))) < 1e-4f);
+  CHECK(glm::length(glm::vec3(Averages::texel(averages.normal, flat))) == Approx(1.0).epsilon(1e-3));
+}
+
+TEST_CASE("averages do not depend on the order of the list, to the bit") {
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  std::vector<FragmentData> fragments;
+  for (int i = 0; i < 5000; ++i) {
+    const glm::ivec3 cell(glm::vec3(uniform(generator), uniform(generator), uniform(generator)) * 3.9f);
+    fragments.push_back(fragment(cell, {uniform(generator), uniform(generator), uniform(generator)},
+                                 uniform(generator), {uniform(generator), uniform(generator), 0.1f},
+                                 sharedExponent(std::exp2(std::floor(uniform(generator) * 5.0f)))));
+  }
+  const Scene scene = sceneThatEmits(16.0f);
+  for (const auto rule : {VoxelFragments::Coverage::mean, VoxelFragments::Coverage::sum}) {
+    const Averages first = averagesOf(scene, fragments, rule);
+    std::shuffle(fragments.begin(), fragments.end(), generator);
+    CHECK(averagesOf(scene, fragments, rule) == first);
+  }
+}
+
+TEST_CASE("a hundred thousand fragments of one voxel neither overflow nor lose their mean") {
+  std::vector<FragmentData> fragments(
+      100000, fragment({0, 0, 0}, {0.25f, 0.5f, 1.0f}, 1.0f, kUp, sharedExponent(2.0f)));
+  const Averages averages = averagesOf(sceneThatEmits(2.0f), fragments);
+  const glm::vec4 albedo = Averages::texel(averages.albedo, {0, 0, 0});
+  CHECK(albedo.x == Approx(0.25).epsilon(1e-3));
+  CHECK(albedo.z == Approx(1.0).epsilon(1e-3));
+  CHECK(albedo.w == Approx(1.0).epsilon(1e-3));
+  CHECK(Averages::texel(averages.emission, {0, 0, 0}).x == Approx(2.0).epsilon(1e-3));
+}
+
+TEST_CASE("an empty list gives empty grids, and a scene that emits nothing no emission") {
+  const Averages empty = averagesOf(sceneThatEmits(1.0f), {});
+  CHECK(empty.bits.empty());
+  CHECK(std::all_of(empty.albedo.begin(), empty.albedo.end(), [](float value) { return value == 0.0f; }));
+  const Averages dark = averagesOf(sceneThatEmits(0.0f), {fragment({1, 1, 1}, glm::vec3(0.5f), 1.0f, kUp)});
+  CHECK(dark.emission.empty());
+}
+
+TEST_CASE("the averages of a voxelised scene have its albedo and its voxels") {
+  SceneBuilder builder;
+  builder.box({-1, -1, -1}, {1, 1, 1}, builder.lambert(0.25f, 3.0f), false);
+  const Pipeline text = Pipeline::parse(
+      "pipeline \"averages\" {\n  pass voxels voxelization.conservative { resolution 16 }\n"
+      "  pass mean voxelization.average { fragments voxels.fragments }\n}\n",
+      "made_by_a_test.pipeline");
+  std::vector<Averages> runs;
+  for (const bool keepEverything : {false, false, true}) {
+    RenderOptions options;
+    options.keepEverything = keepEverything;
+    PipelineExecutor executor(device(), techniques(), builder.scene, text, options);
+    for (const char* port : {"attributes", "opacity", "bits"}) executor.keepOutput("mean", port);
+    executor.render(0.0);
+    const auto& grid = static_cast<const Out<AttributeGrid>*>(executor.output("mean", "attributes"))->value();
+    Averages run;
+    run.albedo = grid.albedo->downloadFloats();
+    run.normal = grid.normal->downloadFloats();
+    run.emission = grid.emission->downloadFloats();
+    run.opacity = static_cast<const Out<OccupancyGrid>*>(executor.output("mean", "opacity"))
+                      ->value()
+                      .opacity->downloadFloats();
+    run.bits = cellsOf(static_cast<const Out<BinaryGrid>*>(executor.output("mean", "bits"))->value());
+    runs.push_back(run);
+  }
+  CHECK(runs[0] == runs[1]);
+  CHECK(runs[0] == runs[2]);
+  // One empty voxel around a box of 14 voxels a side: its shell.
+  CHECK(runs[0].bits.size() == 14u * 14u * 14u - 12u * 12u * 12u);
+  std::size_t occupied = 0;
+  for (std::size_t i = 0; i < runs[0].opacity.size(); ++i) {
+    if (runs[0].opacity[i] == 0.0f) continue;
+    ++occupied;
+    CHECK(runs[0].opacity[i] == 1.0f);
+    CHECK(runs[0].albedo[4 * i] == Approx(0.25).epsilon(1e-3));
+    CHECK(runs[0].emission[4 * i + 1] == Approx(3.0).epsilon(5e-3));
+  }
+  CHECK(occupied == runs[0].bits.size());
+}
+
+TEST_CASE("the grid of cone tracing takes coverages by the rule of the list") {
+  // Three fragments of a quarter each, lit from the front by 2 pi W/m^2: radiance 2 albedo = 1.2 where
+  // covered.
+  SceneBuilder builder;
+  builder.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, builder.lambert(0.5f));
+  builder.light(LightKind::directional, glm::vec3(2.0f * static_cast<float>(kPi)), {0, 0, 0}, {0, 0, -1});
+  const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
+  const LightSet lights = sampleLights(builder.scene, snapshot, 1, 4);
+  ShadowMap shadow;
+  shadow.lightCount = static_cast<int>(lights.samples.size());
+  shadow.layerCount = static_cast<int>(lights.views.size());
+  REQUIRE(shadow.lightCount == 1);
+  shadow.lights = std::make_shared<gpu::Buffer>(device(), sizeof(LightSampleData), "light");
+  shadow.lights->uploadValues(std::span<const LightSampleData>(lights.samples));
+  std::vector<glm::mat4> matrices;
+  for (const LightView& view : lights.views) matrices.push_back(view.worldToClip);
+  shadow.views = std::make_shared<gpu::Buffer>(device(), matrices.size() * sizeof(glm::mat4), "views");
+  shadow.views->uploadValues(std::span<const glm::mat4>(matrices));
+  shadow.depth = std::make_shared<gpu::Texture>(
+      device(),
+      gpu::TextureDescription{gpu::TextureKind::d2Array, gpu::Format::depth32f, 4, 4, shadow.layerCount, 1},
+      "depth");
+  shadow.depth->clear(glm::vec4(1.0f));
+  const glm::ivec3 cell(2, 2, 2);
+  const std::vector<FragmentData> fragments(3, fragment(cell, glm::vec3(0.6f), 0.25f, kUp));
+  for (const auto rule : {VoxelFragments::Coverage::mean, VoxelFragments::Coverage::sum}) {
+    PassHarness harness(device(), techniques(), "voxel_cone_tracing", "inject", builder.scene, snapshot);
+    harness.setInput("fragments", listOf(fragments, rule));
+    harness.setInput("shadow", shadow);
+    harness.run();
+    const auto values = harness.output<RadianceGrid>("radiance").radiance->downloadFloats();
+    const glm::vec4 voxel = Averages::texel(values, cell);
+    const double opacity = rule == VoxelFragments::Coverage::sum ? 0.75 : 0.25;
+    CHECK(voxel.w == Approx(opacity).epsilon(1e-4));
+    CHECK(voxel.x == Approx(1.2 * opacity).epsilon(2e-3));
+  }
+}

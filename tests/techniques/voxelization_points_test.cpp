@@ -1,0 +1,307 @@
+// Random points on triangles, and what the camera sees, as voxels.
+#include <cmath>
+
+#include "support/scene_builder.h"
+#include "support/techniques.h"
+#include "support/voxel_fragments.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+struct Setting {
+  const char* name;
+  double value;
+};
+
+Voxels pointsOf(const Scene& scene, const std::vector<Setting>& settings, std::uint64_t seed = 1) {
+  PassHarness harness(device(), techniques(), "voxelization", "points", scene, snapshotOf(scene, 0.0));
+  for (const Setting& setting : settings) {
+    if (std::string(setting.name) == "adaptive")
+      harness.setParameter("adaptive", std::string(setting.value != 0.0 ? "on" : "off"));
+    else
+      harness.setParameter(setting.name, setting.value);
+  }
+  harness.run(seed);
+  return voxelsOf(harness.output<VoxelFragments>("fragments"));
+}
+
+/// One triangle: the half of a quad.
+Scene oneTriangle(const glm::vec3& edge1, const glm::vec3& edge2) {
+  SceneBuilder builder;
+  Object& object = builder.quad({0, 0, 0}, edge1, edge2, builder.lambert(0.5f, 3.0f));
+  object.parts.front().indexCount = 3;
+  builder.scene.indices.resize(builder.scene.indices.size() - 3);
+  return builder.scene;
+}
+
+/// A level square of `side` metres.
+Scene floorOf(float side, const Material& material = {}, float height = 0.0f) {
+  SceneBuilder builder;
+  builder.quad({0, height, 0}, {0, 0, side}, {side, 0, 0}, builder.material(material));
+  return builder.scene;
+}
+
+/// A texture of alternating texels of two values.
+SurfaceTexture checkers(int size, bool mask) {
+  SurfaceTexture texture;
+  texture.name = "checkers";
+  texture.width = texture.height = size;
+  texture.mask = mask;
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x)
+      for (int c = 0; c < (mask ? 1 : 3); ++c) texture.values.push_back((x + y) % 2 == 0 ? 1.0f : 0.0f);
+  return texture;
+}
+
+}  // namespace
+
+TEST_CASE("the points of a triangle are uniform over its area") {
+  // The triangle (0,0), (3,0), (3,2) as the quad's first half, in sixteen congruent parts.
+  constexpr int kPoints = 8000;
+  const Scene scene = oneTriangle({3, 0, 0}, {0, 2, 0});
+  const Voxels voxels = pointsOf(scene, {{"points", kPoints}, {"resolution", 64}});
+  REQUIRE(voxels.fragments.size() == kPoints);
+  std::array<int, 16> counts{};
+  glm::dvec2 mean(0.0);
+  for (const FragmentData& fragment : voxels.fragments) {
+    const glm::dvec3 posWorld = fragment.position() * static_cast<double>(voxels.grid.voxelSize) +
+                                glm::dvec3(voxels.grid.low) + glm::dvec3(snapshotOf(scene, 0.0).origin);
+    // p = a (3,0) + b (3,2): a + b is x / 3, b is y / 2.
+    const double b = posWorld.y / 2.0, a = posWorld.x / 3.0 - b;
+    mean += glm::dvec2(a, b) / static_cast<double>(kPoints);
+    CHECK(a >= -2e-4);
+    CHECK(b >= -2e-4);
+    CHECK(a + b <= 1.0 + 2e-4);
+    // Row by b; within a row upright and turned triangles alternate.
+    const int row = std::clamp(static_cast<int>(b * 4.0), 0, 3);
+    const double u = a * 4.0, v = b * 4.0 - row;
+    const int column = std::clamp(static_cast<int>(u), 0, 3 - row);
+    const bool turned = u - column + v > 1.0 && column < 3 - row;
+    const int before = row == 0 ? 0 : row == 1 ? 7 : row == 2 ? 12 : 15;
+    ++counts[static_cast<std::size_t>(before + 2 * column + (turned ? 1 : 0))];
+  }
+  // A barycentric coordinate has mean 1/3 and variance 1/18.
+  const double deviation = std::sqrt(1.0 / 18.0 / kPoints);
+  CHECK(std::abs(mean.x - 1.0 / 3.0) < 4.0 * deviation);
+  CHECK(std::abs(mean.y - 1.0 / 3.0) < 4.0 * deviation);
+  double chiSquared = 0.0;
+  const double expected = kPoints / 16.0;
+  for (const int count : counts) chiSquared += (count - expected) * (count - expected) / expected;
+  CHECK(chiSquared < 37.7);  // 15 degrees of freedom: exceeded once in a thousand
+}
+
+TEST_CASE("the same seed gives the same points and another seed others") {
+  const Scene scene = litRoom(64, 64);
+  const Voxels first = pointsOf(scene, {}, 7), again = pointsOf(scene, {}, 7), other = pointsOf(scene, {}, 8);
+  const Voxels high = pointsOf(scene, {}, 7 + (std::uint64_t{1} << 32));
+  CHECK(first.fragments == again.fragments);
+  CHECK(first.fragments != other.fragments);
+  CHECK(first.fragments != high.fragments);
+}
+
+TEST_CASE("each triangle gets exactly N points, and more points only add to them") {
+  const Scene scene = litRoom(64, 64);
+  const Voxels few = pointsOf(scene, {{"points", 40}}), many = pointsOf(scene, {{"points", 300}});
+  CHECK(few.fragments.size() == 40 * scene.triangleCount());
+  CHECK(many.fragments.size() == 300 * scene.triangleCount());
+  CHECK(std::includes(many.fragments.begin(), many.fragments.end(), few.fragments.begin(),
+                      few.fragments.end()));
+}
+
+TEST_CASE("adaptive points follow the area, and a plane's voxel is missed with probability exp(-density)") {
+  // 62 of 64 voxels span the floor: the area of one triangle is 62^2 / 2 voxels, up to the slack of the grid.
+  const Scene scene = floorOf(1.0f);
+  for (const double density : {0.5, 1.0, 2.0, 4.0}) {
+    const Voxels voxels = pointsOf(scene, {{"adaptive", 1}, {"density", density}, {"resolution", 64}});
+    const double side = 1.0 / voxels.grid.voxelSize;
+    CHECK(voxels.fragments.size() == 2 * static_cast<std::size_t>(std::ceil(density * side * side / 2.0)));
+    // Of columns that the floor covers as a whole; those on its rim are covered for 49 parts of 50 or so.
+    std::set<Cell> inner;
+    for (const Cell& cell : voxels.occupied)
+      if (cell[0] >= 2 && cell[0] < 62 && cell[2] >= 2 && cell[2] < 62) inner.insert({cell[0], 0, cell[2]});
+    const double cells = 60.0 * 60.0, missed = std::exp(-density);
+    const double deviation = std::sqrt(cells * missed * (1.0 - missed));
+    INFO("density " << density << ", voxels " << inner.size());
+    CHECK(std::abs(static_cast<double>(inner.size()) - cells * (1.0 - missed)) < 4.0 * deviation);
+  }
+}
+
+TEST_CASE("a point keeps albedo, normal and emission of its triangle") {
+  const Voxels voxels = pointsOf(oneTriangle({1, 0, 0}, {0, 1, 0}), {});
+  REQUIRE(voxels.fragments.size() == 19);
+  for (const FragmentData& fragment : voxels.fragments) {
+    CHECK(fragment.albedo() == glm::vec3(0.5f));
+    CHECK(fragment.coverage() == 1.0f);
+    CHECK(glm::length(fragment.unitNormal() - glm::vec3(0, 0, 1)) < 1e-4f);
+    CHECK(fragment.emittedRadiance() == glm::vec3(3.0f));
+  }
+}
+
+TEST_CASE("points see textures and masks through the mip that averages over a voxel") {
+  Material material;
+  material.diffuse = glm::vec3(1.0f);
+  material.diffuseTexture = 0;
+  material.maskTexture = 1;
+  Scene scene = floorOf(1.0f, material);
+  scene.textures = {checkers(256, false), checkers(256, true)};
+  // 16 texels a voxel: every mean is 1/2, up to the half floats of the mips.
+  const Voxels voxels = pointsOf(scene, {{"points", 200}, {"resolution", 16}});
+  REQUIRE(voxels.fragments.size() == 400);
+  for (const FragmentData& fragment : voxels.fragments) {
+    CHECK(fragment.albedo().g == Approx(0.5f).margin(2e-3));
+    CHECK(fragment.coverage() == Approx(0.5f).margin(2e-3));
+  }
+}
+
+TEST_CASE("a surface that a mask takes away leaves no points") {
+  Material material;
+  material.diffuse = glm::vec3(1.0f);
+  material.maskTexture = 0;
+  Scene scene = floorOf(1.0f, material);
+  SurfaceTexture hole = checkers(4, true);
+  hole.values.assign(hole.values.size(), 0.0f);
+  scene.textures = {hole};
+  CHECK(pointsOf(scene, {}).fragments.empty());
+}
+
+TEST_CASE("points outside a grid around the camera are left out, whatever size the triangle has") {
+  Scene scene = floorOf(100.0f, {}, 0.2f);  // between two faces of voxels
+  scene.cameras.front().eye = {50, 0.5, 50};
+  PassHarness harness(device(), techniques(), "voxelization", "points", scene, snapshotOf(scene, 0.0));
+  harness.setParameter("around", std::string("camera"));
+  harness.setParameter("extent", 8.0);
+  harness.setParameter("resolution", 16);
+  harness.setParameter("adaptive", std::string("on"));
+  harness.run();
+  const std::set<Cell> cells = cellsOf(fragmentsOf(harness.output<VoxelFragments>("fragments")));
+  CHECK(cells.size() == 16 * 16);  // each is missed once in 3000
+}
+
+TEST_CASE("points of nothing, of a point and of a line are no special cases") {
+  SceneBuilder empty;
+  CHECK(pointsOf(empty.scene, {}).fragments.empty());
+  for (const glm::vec3& edge : {glm::vec3(0, 0, 0), glm::vec3(1, 1, 0)}) {
+    SceneBuilder builder;
+    builder.quad({0, 0, 0}, {0, 1, 0}, {1, 0, 0}, builder.lambert(0.5f));
+    Scene scene = builder.scene;
+    scene.positions[1] = scene.positions[0] + edge;
+    scene.positions[2] = scene.positions[0] + 2.0f * edge;
+    for (const double adaptive : {0.0, 1.0}) {
+      const Voxels voxels = pointsOf(scene, {{"adaptive", adaptive}});
+      CHECK(!voxels.fragments.empty());
+      for (const FragmentData& fragment : voxels.fragments)
+        CHECK(glm::length(fragment.unitNormal()) == Approx(1.0f));
+    }
+  }
+}
+
+namespace {
+
+const char* const kReprojected = R"(pipeline "reprojected" {
+  pass gbuffer direct_lighting.gbuffer { }
+  pass points voxelization.points { resolution 32 }
+  pass alone voxelization.reproject { gbuffer gbuffer resolution 32 }
+  pass both voxelization.reproject { gbuffer gbuffer fragments points.fragments }
+  pass direct direct_lighting.shade { gbuffer gbuffer }
+  output direct direct.radiance
+})";
+
+const VoxelFragments& listOf(const PipelineExecutor& executor, const char* pass) {
+  return static_cast<const Out<VoxelFragments>&>(*executor.output(pass, "fragments")).value();
+}
+
+}  // namespace
+
+TEST_CASE("every pixel that sees a surface becomes one fragment in the voxel of what it sees") {
+  const Scene scene = litRoom(48, 40);
+  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
+  PassHarness camera(device(), techniques(), "direct_lighting", "gbuffer", scene, snapshot);
+  camera.run();
+  const auto& gbuffer = camera.output<GBuffer>("gbuffer");
+  PassHarness harness(device(), techniques(), "voxelization", "reproject", scene, snapshot);
+  harness.setInput("gbuffer", gbuffer);
+  harness.setParameter("resolution", 32);
+  harness.run();
+  const auto& list = harness.output<VoxelFragments>("fragments");
+  const std::vector<FragmentData> fragments = fragmentsOf(list);
+
+  const std::vector<float> positions = gbuffer.position->downloadFloats();
+  const std::vector<float> emission = gbuffer.emission->downloadFloats();
+  std::multiset<Cell> expected;
+  std::size_t shining = 0;
+  for (std::size_t pixel = 0; pixel < positions.size() / 4; ++pixel) {
+    if (positions[4 * pixel + 3] == 0.0f) continue;
+    Cell cell;
+    for (int axis = 0; axis < 3; ++axis)
+      cell[static_cast<std::size_t>(axis)] = static_cast<int>(
+          std::floor((positions[4 * pixel + static_cast<std::size_t>(axis)] - list.grid.low[axis]) /
+                     list.grid.voxelSize));
+    expected.insert(cell);
+    shining += emission[4 * pixel] > 0.0f;
+  }
+  std::multiset<Cell> found;
+  std::size_t bright = 0;
+  for (const FragmentData& fragment : fragments) {
+    const glm::ivec3 cell = fragment.cell();
+    found.insert({cell.x, cell.y, cell.z});
+    bright += fragment.emittedRadiance().r > 0.0f;
+  }
+  CHECK(expected.size() > 500);
+  CHECK(found == expected);
+  CHECK(shining > 0);
+  CHECK(bright == shining);
+}
+
+TEST_CASE("what the camera sees stands behind the fragments of another list, and none of either is lost") {
+  const Scene scene = litRoom(48, 40);
+  const Pipeline pipeline = Pipeline::parse(kReprojected, "reprojected.pipeline");
+  PipelineExecutor executor(device(), techniques(), scene, pipeline, {});
+  for (const char* pass : {"points", "alone", "both"}) executor.keepOutput(pass, "fragments");
+  executor.render(0.0, 0, PipelineExecutor::Pictures::no);
+  const std::vector<FragmentData> points = fragmentsOf(listOf(executor, "points")),
+                                  alone = fragmentsOf(listOf(executor, "alone")),
+                                  both = fragmentsOf(listOf(executor, "both"));
+  std::vector<FragmentData> merged;
+  std::merge(points.begin(), points.end(), alone.begin(), alone.end(), std::back_inserter(merged));
+  CHECK(both == merged);
+  // The first ones of the list are those of the input.
+  std::vector<FragmentData> first = listOf(executor, "both").fragments->downloadValues<FragmentData>();
+  first.resize(points.size());
+  std::sort(first.begin(), first.end());
+  CHECK(first == points);
+  CHECK(listOf(executor, "both").grid == listOf(executor, "points").grid);
+}
+
+TEST_CASE("a seen back side keeps the normal of its front and does not shine") {
+  SceneBuilder builder;
+  builder.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, builder.lambert(0.5f, 2.0f));  // faces +z
+  builder.look({0.5, 0.5, -2}, {0.5, 0.5, 0}, {0, 1, 0}, 0.8, 32, 32);
+  const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
+  PassHarness camera(device(), techniques(), "direct_lighting", "gbuffer", builder.scene, snapshot);
+  camera.run();
+  PassHarness harness(device(), techniques(), "voxelization", "reproject", builder.scene, snapshot);
+  harness.setInput("gbuffer", camera.output<GBuffer>("gbuffer"));
+  harness.run();
+  const std::vector<FragmentData> fragments = fragmentsOf(harness.output<VoxelFragments>("fragments"));
+  REQUIRE(!fragments.empty());
+  for (const FragmentData& fragment : fragments) {
+    CHECK(glm::length(fragment.unitNormal() - glm::vec3(0, 0, 1)) < 1e-4f);
+    CHECK(fragment.emittedRadiance() == glm::vec3(0.0f));
+  }
+}
+
+TEST_CASE("leaving out nothing gives the same points and the same seen voxels to the bit") {
+  const Scene scene = litRoom(32, 32);
+  const Pipeline pipeline = Pipeline::parse(kReprojected, "reprojected.pipeline");
+  RenderOptions everything;
+  everything.keepEverything = true;
+  PipelineExecutor pruned(device(), techniques(), scene, pipeline, {}),
+      whole(device(), techniques(), scene, pipeline, everything);
+  for (PipelineExecutor* executor : {&pruned, &whole}) {
+    executor->keepOutput("both", "fragments");
+    executor->render(0.0, 0, PipelineExecutor::Pictures::no);
+  }
+  CHECK(fragmentsOf(listOf(pruned, "both")) == fragmentsOf(listOf(whole, "both")));
+}

@@ -1,0 +1,154 @@
+#include <nlohmann/json.hpp>
+
+#include "lumivox/base/file.h"
+#include "support/support.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::string kScene = (sourceDirectory() / "scenes/cornell.scene").string();
+
+/// A pipeline with a small sweep, in a folder of its own beside a store.
+struct Sweep {
+  TemporaryDirectory directory;
+  std::string pipeline, store;
+
+  explicit Sweep(const std::string& samples = "[1 2]") {
+    pipeline =
+        directory
+            .write(
+                "direct.pipeline",
+                "pipeline \"Direct\" {\n"
+                "  param area_samples 1 in 1..64\n"
+                "  pass gbuffer direct_lighting.gbuffer { }\n"
+                "  pass shadow direct_lighting.shadow_map { size 32 area_size 32 area_samples $area_samples }\n"
+                "  pass direct direct_lighting.shade { gbuffer gbuffer shadow shadow.depth }\n"
+                "  output direct direct.radiance\n"
+                "}\n"
+                "sweep samples { area_samples " +
+                    samples + " }\n")
+            .string();
+    store = (directory.path() / "results.sqlite").string();
+  }
+  CommandResult run(const std::string& more = {}) const {
+    return runCommand("lumivox -q sweep " + kScene + " --pipeline " + pipeline + " --store " + store +
+                      " --resolution 16x16 --spp 4 --subpixels 1 --repeats 2 --seeds 1 --json " + more);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a sweep measures what the store lacks, and the same sweep again measures nothing") {
+  const Sweep sweep;
+  const CommandResult plan = sweep.run("--plan");
+  CHECK(Json::parse(plan.output)["missing"].size() == 2);
+  const CommandResult first = sweep.run();
+  INFO(first.errors);
+  REQUIRE(first.exitCode == 0);
+  const Json measured = Json::parse(first.output);
+  CHECK(measured["measured"] == 2);
+  CHECK(measured["held"] == 0);
+  REQUIRE(measured["runs"].size() == 2);
+  for (const Json& run : measured["runs"]) {
+    CHECK(run["frame"]["repeats"] == 2);
+    CHECK(run["frame"]["median_ms"] > 0.0);
+    CHECK(run["passes"].size() == 3);
+    CHECK(run["errors"].size() > 0);
+    CHECK(run["peak_bytes"] > 0);
+  }
+  // The same numbers: nothing was measured anew.
+  const Json again = Json::parse(sweep.run().output);
+  CHECK(again["measured"] == 0);
+  CHECK(again["held"] == 2);
+  CHECK(again["runs"] == measured["runs"]);
+  CHECK(Json::parse(sweep.run("--plan").output)["missing"].empty());
+}
+
+TEST_CASE("a longer sweep, another seed or another text costs only its own points") {
+  const Sweep sweep;
+  REQUIRE(sweep.run().exitCode == 0);
+  CHECK(Json::parse(sweep.run("--seed 2").output)["measured"] == 2);
+  CHECK(Json::parse(sweep.run("--set area_samples=3").output)["measured"] == 1);
+  std::string text = readFile(sweep.pipeline);
+  writeFileAtomically(sweep.pipeline, text + "# a remark changes the text\n");
+  CHECK(Json::parse(sweep.run().output)["measured"] == 2);
+  writeFileAtomically(sweep.pipeline, text);
+  CHECK(Json::parse(sweep.run().output)["measured"] == 0);
+}
+
+TEST_CASE("the memory of a point does not count the points that are timed beside it") {
+  const Sweep both("[1 8]"), alone("[8]");
+  const Json pair = Json::parse(both.run().output)["runs"], one = Json::parse(alone.run().output)["runs"];
+  const auto bytesOf = [](const Json& runs) {
+    for (const Json& run : runs)
+      if (run["identity"]["parameters"]["area_samples"] == "8") return run["peak_bytes"].get<std::uint64_t>();
+    return std::uint64_t{0};
+  };
+  CHECK(bytesOf(pair) == bytesOf(one));
+  CHECK(bytesOf(one) > 0);
+}
+
+TEST_CASE("results are listed, exported, merged and removed from the command line") {
+  const Sweep sweep;
+  REQUIRE(sweep.run().exitCode == 0);
+  const std::string store = " --store " + sweep.store;
+  const CommandResult list = runCommand("lumivox results list --scene cornell" + store);
+  CHECK(list.exitCode == 0);
+  CHECK(list.output.find("area_samples=2") != std::string::npos);
+  CHECK(list.output.find("2 runs") != std::string::npos);
+  CHECK(runCommand("lumivox results list --scene arcade" + store).output.find("0 runs") != std::string::npos);
+
+  const std::string csv = runCommand("lumivox results export --set area_samples=2" + store).output;
+  const auto columns = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
+  const std::size_t head = csv.find("\r\n");
+  REQUIRE(head != std::string::npos);
+  // Fields that hold commas are quoted; these have none but the device and the host.
+  CHECK(columns(csv.substr(0, head)) > 50);
+  CHECK(csv.find("area_samples=2") != std::string::npos);
+  CHECK(csv.find("area_samples=1") == std::string::npos);
+  const auto file = sweep.directory.path() / "results.json";
+  CHECK(runCommand("lumivox results export --format json -o " + file.string() + store).exitCode == 0);
+  CHECK(Json::parse(readFile(file)).size() == 2);
+
+  const std::string other = (sweep.directory.path() / "other.sqlite").string();
+  CHECK(runCommand("lumivox results merge " + sweep.store + " --store " + other).output.find("2 runs") !=
+        std::string::npos);
+  CHECK(runCommand("lumivox results remove --set area_samples=1 --dry-run --store " + other)
+            .output.find("1 runs would be removed") != std::string::npos);
+  CHECK(runCommand("lumivox results remove --set area_samples=1 --store " + other).output ==
+        "1 runs removed\n");
+  const CommandResult changes = runCommand("lumivox compare-runs " + sweep.store + " " + other + " --json");
+  INFO(changes.errors);
+  REQUIRE(changes.exitCode == 0);
+  const Json compared = Json::parse(changes.output);
+  CHECK(compared["compared"] == 1);
+  CHECK(compared["only_before"].size() == 1);
+  for (const Json& change : compared["changes"]) CHECK(change["significant"] == false);
+  CHECK(runCommand("lumivox compare-runs 1 2 --all" + store).output.find("1 points compared") !=
+        std::string::npos);
+}
+
+TEST_CASE("bad requests to the results store are refused with what was expected") {
+  const Sweep sweep;
+  const std::string store = " --store " + sweep.store;
+  const CommandResult absent = runCommand("lumivox results list" + store);
+  CHECK(absent.exitCode == 2);
+  CHECK(absent.errors.find("there is no results store") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(sweep.store));
+  REQUIRE(sweep.run().exitCode == 0);
+  const CommandResult everything = runCommand("lumivox results remove" + store);
+  CHECK(everything.exitCode == 2);
+  CHECK(everything.errors.find("--all") != std::string::npos);
+  const CommandResult run = runCommand("lumivox compare-runs 1 99" + store);
+  CHECK(run.exitCode == 2);
+  CHECK(run.errors.find("there is no run 99") != std::string::npos);
+  CHECK(runCommand("lumivox results list --set area_samples" + store).exitCode == 2);
+  CHECK(runCommand("lumivox results export --format xml" + store).exitCode == 2);
+  CHECK(runCommand("lumivox results" + store).exitCode == 2);
+  const auto text = sweep.directory.write("broken.sqlite", std::string(4096, 'x'));
+  CHECK(runCommand("lumivox results merge " + text.string() + store).exitCode == 2);
+  CHECK(runCommand("lumivox -q sweep " + kScene + " --store " + text.string()).exitCode == 2);
+}

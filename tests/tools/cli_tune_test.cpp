@@ -1,0 +1,105 @@
+#include <nlohmann/json.hpp>
+
+#include "lumivox/base/file.h"
+#include "support/support.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::string kScene = (sourceDirectory() / "scenes/cornell.scene").string();
+
+struct Tuning {
+  TemporaryDirectory directory;
+  std::string pipeline, store;
+
+  Tuning() {
+    pipeline =
+        directory
+            .write("direct.pipeline",
+                   "pipeline \"Direct\" {\n"
+                   "  param samples 1 in 1..16 # of the lamp\n"
+                   "  pass gbuffer direct_lighting.gbuffer { }\n"
+                   "  pass shadow direct_lighting.shadow_map { size 32 area_size 32 area_samples $samples }\n"
+                   "  pass direct direct_lighting.shade { gbuffer gbuffer shadow shadow.depth }\n"
+                   "  output direct direct.radiance\n"
+                   "}\n")
+            .string();
+    store = (directory.path() / "results.sqlite").string();
+  }
+  CommandResult run(const std::string& more) const {
+    return runCommand("lumivox -q tune " + kScene + " --pipeline " + pipeline + " --store " + store +
+                      " --resolution 24x24 --spp 64 --subpixels 1 --repeats 2 --seeds 1 " + more);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a search without a tight limit ends at a point that none of its neighbours beats") {
+  const Tuning tuning;
+  const CommandResult result = tuning.run("--budget 1000s --output direct --metric percentile95 --json");
+  INFO(result.errors);
+  REQUIRE(result.exitCode == 0);
+  const Json json = Json::parse(result.output);
+  CHECK(json["exhausted"] == true);
+  const Json& seen = json["seen"];
+  REQUIRE(seen.size() > 3);
+  const Json& winner = seen[json["winner"].get<std::size_t>()];
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    INFO(seen[i].dump());
+    if (i > 0) CHECK(seen[i]["time_ms"] >= seen[i - 1]["time_ms"]);
+    // Whole numbers stay whole.
+    CHECK(seen[i]["parameters"]["samples"].get<std::string>().find('.') == std::string::npos);
+    if (seen[i]["time_ms"] <= winner["time_ms"])
+      CHECK(seen[i]["error"].get<double>() >= winner["error"].get<double>());
+    // Points that were left in spite of a smaller error bring less than a hundredth for their time.
+    CHECK(seen[i]["error"].get<double>() > 0.98 * winner["error"].get<double>());
+  }
+}
+
+TEST_CASE("the winning text is the pipeline with its parameters as defaults, and measures the same") {
+  const Tuning tuning;
+  const auto best = tuning.directory.path() / "best.pipeline";
+  const CommandResult result = tuning.run("--error 100 --output direct --json -o " + best.string());
+  INFO(result.errors);
+  REQUIRE(result.exitCode == 0);
+  const Json json = Json::parse(result.output);
+  const Json winner = json["seen"][json["winner"].get<std::size_t>()];
+  // Everything fits, so the quickest wins.
+  CHECK(json["winner"] == 0);
+  const std::string text = readFile(best);
+  CHECK(text.find("param samples " + winner["parameters"]["samples"].get<std::string>() + " in 1..16") !=
+        std::string::npos);
+  CHECK(text.find("# of the lamp") != std::string::npos);
+  CHECK(runCommand("lumivox check " + best.string()).exitCode == 0);
+  CHECK(runCommand("lumivox fmt --check " + best.string()).exitCode == 0);
+}
+
+TEST_CASE("a limit that nothing meets writes no pipeline and says so") {
+  const Tuning tuning;
+  const auto best = tuning.directory.path() / "best.pipeline";
+  const CommandResult result = tuning.run("--error 1e-9 --evaluations 2 -o " + best.string());
+  CHECK(result.exitCode == 1);
+  CHECK(result.output.find("nothing fits within") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(best));
+}
+
+TEST_CASE("contradicting or unknown wishes for tuning are refused") {
+  const Tuning tuning;
+  const auto refused = [&](const std::string& options, const std::string& part) {
+    const CommandResult result = tuning.run(options);
+    INFO(options << ": " << result.errors);
+    CHECK(result.exitCode == 2);
+    CHECK(result.errors.find(part) != std::string::npos);
+  };
+  refused("", "a budget or an error");
+  refused("--budget 16ms --error 1", "excludes");
+  refused("--budget 16parsecs", "16ms or 0.5s");
+  refused("--budget -1ms", "above 0");
+  refused("--error 0", "above 0");
+  refused("--error 1 --metric flop", "did you mean 'flip'");
+  refused("--error 1 --metric ssim", "expected one of");
+  refused("--error 1 --output indirect", "expected one of");
+}

@@ -1,0 +1,74 @@
+#include "measure_options.h"
+
+#include <fmt/format.h>
+
+namespace lumivox::command {
+
+void MeasureOptions::addTo(CLI::App& app, const std::string& store) {
+  app.add_option("SCENE", options.scenes, "the scenes' texts")->required();
+  app.add_option("--pipeline", options.pipelines,
+                 "pipelines' texts (default: every committed one that suits the scene)");
+  run.addTo(app);
+  app.add_option("--spp", options.truthSamples,
+                 "the truth's samples per pixel (default: by the size of the picture)")
+      ->check(CLI::Range(1, 1 << 24));
+  app.add_option("--subpixels", options.subpixels,
+                 "judged pictures are means over N positions in the pixel (default 16; 1: its centre)")
+      ->check(CLI::Range(1, 4096));
+  app.add_option("--repeats", options.repeats, "timed frames per point (default 5)")
+      ->check(CLI::Range(1, 10000));
+  app.add_option("--seeds", options.seeds, "seeds per point (default 2)")->check(CLI::Range(1, 10000));
+  app.add_flag("--no-sweep", noSweep, "only the default parameters, not the points of the pipelines' sweeps");
+  app.add_option("--store", options.store, store);
+}
+
+ReportOptions MeasureOptions::asked(const GlobalOptions& global) const {
+  ReportOptions asked = options;
+  asked.settings = run.settings;
+  asked.camera = run.camera;
+  asked.time = run.time;
+  asked.seed = run.seed;
+  std::tie(asked.width, asked.height) = run.size();
+  asked.openSweeps = !noSweep;
+  asked.commandLine = global.commandLine;
+  const auto repeat = [&](std::initializer_list<std::string> arguments) {
+    asked.repeatArguments.insert(asked.repeatArguments.end(), arguments);
+  };
+  if (global.device != "auto") repeat({"--device", global.device});
+  if (global.shaders != "auto") repeat({"--shaders", global.shaders});
+  for (const auto& folder : global.assets) repeat({"--assets", folder.string()});
+  return asked;
+}
+
+std::string quartilesText(const TimingStatistics& time) {
+  return time.repeats == 0
+             ? "-"
+             : fmt::format("{} [{}, {}]", formatMilliseconds(time.median),
+                           formatMilliseconds(time.lowerQuartile), formatMilliseconds(time.upperQuartile));
+}
+
+std::string parametersText(const std::map<std::string, std::string>& parameters) {
+  std::string text;
+  for (const auto& [name, value] : parameters) text += (text.empty() ? "" : " ") + name + "=" + value;
+  return text;
+}
+
+const ComponentError* errorOf(const ReportPoint& point, const std::string& output, bool bias) {
+  const ComponentError* only = nullptr;
+  for (const ComponentError& error : point.errors) {
+    if (error.output != output) continue;
+    if (error.bias == bias) return &error;
+    if (only == nullptr) only = &error;
+  }
+  return only;
+}
+
+std::string rmseText(const ComponentError* error) {
+  if (error == nullptr) return "";
+  const Measured rmse = error->rmse();
+  const double ratio = error->ratioToNothing();
+  return fmt::format("{:.3g} ± {:.1g}", rmse.value, rmse.uncertainty) +
+         (ratio == ratio ? fmt::format(" ({:.2f})", ratio) : std::string());
+}
+
+}  // namespace lumivox::command

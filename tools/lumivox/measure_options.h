@@ -1,0 +1,29 @@
+// The options of every command that measures pipelines on scenes: report, sweep.
+#pragma once
+
+#include "command.h"
+#include "lumivox/report/report.h"
+
+namespace lumivox::command {
+
+struct MeasureOptions {
+  ReportOptions options;
+  RunOptions run;
+  bool noSweep = false;
+
+  /// `store`: the meaning of --store here.
+  void addTo(CLI::App& app, const std::string& store);
+  /// Everything that was asked for, in the words of the framework.
+  ReportOptions asked(const GlobalOptions& global) const;
+};
+
+std::string quartilesText(const TimingStatistics& time);  ///< "1.2 [1.1, 1.4]"; "-" when nothing was timed
+/// "cones=6 resolution=64"
+std::string parametersText(const std::map<std::string, std::string>& parameters);
+/// "0.0123 ± 0.0004 (0.31)": RMSE, and in brackets its ratio to leaving the component out. Empty for null.
+std::string rmseText(const ComponentError* error);
+/// The error of an output by name: against the truth that is wanted, or the only one. Null when there is
+/// none.
+const ComponentError* errorOf(const ReportPoint& point, const std::string& output, bool bias);
+
+}  // namespace lumivox::command

@@ -1,0 +1,213 @@
+// results: lists, exports, merges and removes what a results store holds. compare-runs: what changed.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "command.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/report/changes.h"
+#include "lumivox/report/report.h"
+#include "results_text.h"
+
+namespace lumivox::command {
+namespace {
+
+struct ResultsCommand {
+  std::filesystem::path store, output;
+  RunFilter filter;
+  bool failed = false, good = false;
+  std::string format = "csv";
+  std::vector<std::filesystem::path> others;
+  bool all = false, dryRun = false, json = false;
+
+  std::filesystem::path file() const { return store.empty() ? ResultsStore::defaultFile() : store; }
+  RunFilter asked() const {
+    RunFilter result = filter;
+    if (failed || good) result.failed = failed;
+    return result;
+  }
+  void addStoreTo(CLI::App& app) {
+    app.add_option("--store", store,
+                   "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)");
+  }
+  void addFilterTo(CLI::App& app) {
+    addStoreTo(app);
+    app.add_option("--scene", filter.scene, "only runs of this scene: file, its stem, or title");
+    app.add_option("--pipeline", filter.pipeline, "only runs of this pipeline: file, its stem, or title");
+    addRepeatable(app, "--set", filter.parameters, "only runs with this parameter, as name=value");
+    app.add_option("--on", filter.device, "only runs whose device's name contains this");
+    app.add_option("--since", filter.since, "only runs from this day on, as 2026-01-31");
+    app.add_option("--run", filter.ids, "only the runs with these numbers");
+    auto* onlyFailed = app.add_flag("--failed", failed, "only runs that failed");
+    app.add_flag("--good", good, "only runs that did not fail")->excludes(onlyFailed);
+  }
+};
+
+int listResults(const ResultsCommand& command) {
+  const ResultsStore store(command.file(), ResultsStore::Mode::read);
+  const std::vector<StoredRun> runs = store.runs(command.asked());
+  if (command.json) {
+    printJson(runsJson(runs));
+  } else {
+    print((runs.empty() ? std::string() : runsTable(runs)) +
+          fmt::format("{} runs; {}\n", runs.size(), store.file().string()));
+  }
+  return kGood;
+}
+
+int exportResults(const ResultsCommand& command) {
+  if (!command.output.empty()) requireWritable(command.output);
+  const ResultsStore store(command.file(), ResultsStore::Mode::read);
+  const std::vector<StoredRun> runs = store.runs(command.asked());
+  const std::string text = command.format == "json" ? runsJson(runs).dump(1) + "\n" : runsCsv(runs);
+  if (command.output.empty()) {
+    print(text);
+  } else {
+    writeFileAtomically(command.output, text);
+    print(fmt::format("{} runs; {}\n", runs.size(), command.output.string()));
+  }
+  return kGood;
+}
+
+int mergeResults(const ResultsCommand& command) {
+  // All are opened before the first is taken over.
+  std::vector<ResultsStore> others;
+  for (const std::filesystem::path& file : command.others)
+    others.emplace_back(file, ResultsStore::Mode::read);
+  ResultsStore store(command.file());
+  for (const ResultsStore& other : others)
+    print(fmt::format("{} runs from {}\n", store.merge(other), other.file().string()));
+  return kGood;
+}
+
+int removeResults(const ResultsCommand& command) {
+  const RunFilter filter = command.asked();
+  if (filter.everything() && !command.all)
+    throw Error("results remove: it would remove every run; say which, or --all");
+  if (!filter.everything() && command.all)
+    throw Error("results remove: --all removes every run; it cannot be restricted");
+  ResultsStore store(command.file(), command.dryRun ? ResultsStore::Mode::read : ResultsStore::Mode::write);
+  if (command.dryRun) {
+    const std::vector<StoredRun> runs = store.runs(filter);
+    print((runs.empty() ? std::string() : runsTable(runs)) +
+          fmt::format("{} runs would be removed\n", runs.size()));
+  } else {
+    print(fmt::format("{} runs removed\n", store.remove(filter)));
+  }
+  return kGood;
+}
+
+/// The runs that A or B of compare-runs stands for: a store, or one run of --store.
+std::vector<StoredRun> runsOf(const std::string& text, const ResultsCommand& command) {
+  if (text.find_first_not_of("0123456789") != std::string::npos)
+    return ResultsStore(text, ResultsStore::Mode::read).runs(command.asked());
+  const ResultsStore store(command.file(), ResultsStore::Mode::read);
+  RunFilter filter;
+  filter.ids = {std::strtoll(text.c_str(), nullptr, 10)};
+  std::vector<StoredRun> runs = store.runs(filter);
+  if (runs.empty())
+    throw Error(
+        fmt::format("{}: there is no run {}; lumivox results list shows them", store.file().string(), text));
+  return runs;
+}
+
+Json changesJson(const RunComparison& comparison) {
+  Json list = Json::array();
+  for (const RunChange& change : comparison.changes)
+    list.push_back({{"point", change.point},
+                    {"quantity", change.quantity},
+                    {"before", change.before.value},
+                    {"before_uncertainty", change.before.uncertainty},
+                    {"after", change.after.value},
+                    {"after_uncertainty", change.after.uncertainty},
+                    {"sigmas", change.sigmas},
+                    {"significant", change.significant},
+                    {"better", change.better}});
+  return {{"compared", comparison.compared},
+          {"only_before", comparison.onlyBefore},
+          {"only_after", comparison.onlyAfter},
+          {"incomparable", comparison.incomparable},
+          {"changes", list}};
+}
+
+int compareRuns(const ResultsCommand& command, const std::string& before, const std::string& after) {
+  const RunComparison comparison = compareResults(runsOf(before, command), runsOf(after, command));
+  if (command.json) {
+    printJson(changesJson(comparison));
+    return kGood;
+  }
+  std::string text;
+  std::vector<std::vector<std::string>> rows;
+  const auto closePoint = [&](const std::string& point) {
+    if (rows.size() > 1) text += point + "\n" + textTable(rows);
+    rows = {{"  Quantity", "Before", "After", "Change", "Sigmas", ""}};
+  };
+  std::string point;
+  for (const RunChange& change : comparison.changes) {
+    if (change.point != point) closePoint(point);
+    point = change.point;
+    if (!change.significant && !command.all) continue;
+    const double share =
+        change.before.value != 0.0 ? change.after.value / change.before.value - 1.0 : std::nan("");
+    rows.push_back({"  " + change.quantity,
+                    fmt::format("{:.3g} ± {:.1g}", change.before.value, change.before.uncertainty),
+                    fmt::format("{:.3g} ± {:.1g}", change.after.value, change.after.uncertainty),
+                    std::isnan(share) ? std::string("-") : fmt::format("{:+.1f} %", 100.0 * share),
+                    std::isinf(change.sigmas) ? std::string("exact") : fmt::format("{:.1f}", change.sigmas),
+                    !change.significant ? "not significant"
+                    : change.better     ? "better"
+                                        : "worse"});
+  }
+  closePoint(point);
+  const auto significant = std::count_if(comparison.changes.begin(), comparison.changes.end(),
+                                         [](const RunChange& change) { return change.significant; });
+  text += fmt::format("{} points compared, {} of {} quantities changed significantly\n", comparison.compared,
+                      significant, comparison.changes.size());
+  for (const std::string& one : comparison.onlyBefore) text += "only before: " + one + "\n";
+  for (const std::string& one : comparison.onlyAfter) text += "only after: " + one + "\n";
+  for (const std::string& one : comparison.incomparable) text += "not compared: " + one + "\n";
+  print(text);
+  return kGood;
+}
+
+}  // namespace
+
+void addResultsCommands(Commands& commands) {
+  auto* results = commands.app.add_subcommand("results", "what a results store holds");
+  results->require_subcommand(1);
+  results->fallthrough();
+  auto command = std::make_shared<ResultsCommand>();
+  const auto add = [&](const char* name, const char* meaning, auto work) {
+    auto* subcommand = results->add_subcommand(name, meaning);
+    commands.onChosen(subcommand, [=] { return work(*command); });
+    return subcommand;
+  };
+  auto* list = add("list", "the runs, as a table", listResults);
+  command->addFilterTo(*list);
+  list->add_flag("--json", command->json, "print everything as JSON in place of the table");
+  auto* exported = add("export", "the runs with every number, as CSV or JSON", exportResults);
+  command->addFilterTo(*exported);
+  exported->add_option("--format", command->format, "csv or json")->check(CLI::IsMember({"csv", "json"}));
+  exported->add_option("-o,--out", command->output, "the file (default: standard output)");
+  auto* merge = add("merge", "takes over the runs of other stores that are not there yet", mergeResults);
+  command->addStoreTo(*merge);
+  merge->add_option("STORE", command->others, "the other stores")->required();
+  auto* remove = add("remove", "removes runs", removeResults);
+  command->addFilterTo(*remove);
+  remove->add_flag("--all", command->all, "every run");
+  remove->add_flag("--dry-run", command->dryRun, "only tell which");
+
+  auto* compare = commands.app.add_subcommand(
+      "compare-runs", "what changed significantly between two stored runs, or two results stores");
+  auto before = std::make_shared<std::string>(), after = std::make_shared<std::string>();
+  compare->add_option("BEFORE", *before, "a results store, or the number of a run in --store")->required();
+  compare->add_option("AFTER", *after, "the same")->required();
+  command->addFilterTo(*compare);
+  compare->add_flag("--all", command->all, "also what did not change significantly");
+  compare->add_flag("--json", command->json, "print JSON in place of the table");
+  commands.onChosen(compare, [=] { return compareRuns(*command, *before, *after); });
+}
+
+}  // namespace lumivox::command

@@ -1,0 +1,186 @@
+#include "results_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lumivox/base/file.h"
+#include "measure_options.h"
+
+namespace lumivox::command {
+namespace {
+
+std::string stem(const std::string& file) {
+  return std::filesystem::path(file).stem().string();
+}
+
+std::string quoted(const std::string& field) {
+  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
+  std::string result = "\"";
+  for (const char c : field) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + "\"";
+}
+
+/// A number that reads back as the same bits; nothing for NaN.
+std::string exact(double value) {
+  return std::isnan(value) ? std::string() : fmt::format("{}", value);
+}
+
+/// JSON has no NaN.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json timeJson(const TimingStatistics& time) {
+  return {{"median_ms", number(time.median)},
+          {"lower_quartile_ms", number(time.lowerQuartile)},
+          {"upper_quartile_ms", number(time.upperQuartile)},
+          {"smallest_ms", number(time.smallest)},
+          {"largest_ms", number(time.largest)},
+          {"repeats", time.repeats}};
+}
+
+Json errorJson(const ComponentError& error) {
+  Json metrics;
+  for (const NamedMetric& metric : metricsOf(error))
+    metrics[metric.name] = {{"value", number(metric.measured.value)},
+                            {"uncertainty", number(metric.measured.uncertainty)},
+                            {"of_nothing", number(metric.ofNothing)}};
+  return {{"output", error.output},
+          {"component", error.component},
+          {"truth", error.truth},
+          {"against", error.bias ? "bias" : "misses"},
+          {"seeds", error.seeds},
+          {"deterministic", error.deterministic},
+          {"noise_rmse", number(error.noiseRmse)},
+          {"metrics", metrics}};
+}
+
+Json identityJson(const RunIdentity& identity) {
+  return {{"scene_hash", identity.sceneHash},
+          {"pipeline_hash", identity.pipelineHash},
+          {"techniques", identity.techniques},
+          {"framework", identity.framework},
+          {"parameters", identity.parameters},
+          {"camera", identity.camera},
+          {"time", identity.time},
+          {"width", identity.width},
+          {"height", identity.height},
+          {"seed", identity.seed},
+          {"seeds", identity.seeds},
+          {"repeats", identity.repeats},
+          {"subpixels", identity.subpixels},
+          {"truth_samples", identity.truthSamples},
+          {"device", identity.device},
+          {"driver", identity.driver},
+          {"shader_input", identity.shaderInput},
+          {"host", identity.host}};
+}
+
+}  // namespace
+
+std::string runsTable(const std::vector<StoredRun>& runs) {
+  std::vector<std::string> outputs{kWholePicture};
+  for (const StoredRun& run : runs)
+    for (const ComponentError& error : run.point.errors)
+      if (std::find(outputs.begin(), outputs.end(), error.output) == outputs.end())
+        outputs.push_back(error.output);
+  std::vector<std::vector<std::string>> rows{
+      {"Run", "Scene", "Pipeline", "Parameters", "Size", "Frame ms", "Memory"}};
+  for (const std::string& output : outputs)
+    rows[0].push_back(output == kWholePicture ? "misses in all" : output + " bias");
+  rows[0].push_back("State");
+  for (const StoredRun& run : runs) {
+    const ReportPoint& point = run.point;
+    std::vector<std::string> row{std::to_string(run.id),
+                                 stem(point.scene),
+                                 stem(point.pipeline),
+                                 parametersText(run.identity.parameters),
+                                 fmt::format("{}x{}", run.identity.width, run.identity.height),
+                                 quartilesText(point.frameMs),
+                                 formatBytes(point.peakBytes)};
+    for (const std::string& output : outputs)
+      row.push_back(rmseText(errorOf(point, output, output != kWholePicture)));
+    row.push_back(!point.failure.empty()         ? "failed: " + point.failure
+                  : point.healthFindings.empty() ? "good"
+                                                 : fmt::format("{} findings", point.healthFindings.size()));
+    rows.push_back(std::move(row));
+  }
+  return textTable(rows);
+}
+
+std::string runsCsv(const std::vector<StoredRun>& runs) {
+  std::string text =
+      "run,created,scene,pipeline,sweep,parameters,camera,time,width,height,seed,device,driver,host,"
+      "frame_ms,frame_ms_lower,frame_ms_upper,next_frame_ms,peak_bytes,failure,output,component,truth,against";
+  const std::vector<NamedMetric> names = metricsOf(ComponentError{});
+  for (const NamedMetric& metric : names)
+    text += fmt::format(",{0},{0}_uncertainty,{0}_of_nothing", metric.name);
+  text += "\r\n";
+  for (const StoredRun& run : runs) {
+    const ReportPoint& point = run.point;
+    const RunIdentity& identity = run.identity;
+    const std::string head = fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", run.id, run.created,
+        quoted(point.scene), quoted(point.pipeline), quoted(point.sweep),
+        quoted(parametersText(identity.parameters)), quoted(identity.camera), exact(identity.time),
+        identity.width, identity.height, identity.seed, quoted(identity.device), quoted(identity.driver),
+        quoted(identity.host), exact(point.frameMs.median), exact(point.frameMs.lowerQuartile),
+        exact(point.frameMs.upperQuartile), exact(point.nextFrameMs.median), point.peakBytes,
+        quoted(point.failure));
+    if (point.errors.empty()) text += head + ",,,," + std::string(3 * names.size(), ',') + "\r\n";
+    for (const ComponentError& error : point.errors) {
+      text += fmt::format("{},{},{},{},{}", head, quoted(error.output), error.component, error.truth,
+                          error.bias ? "bias" : "misses");
+      for (const NamedMetric& metric : metricsOf(error))
+        text += fmt::format(",{},{},{}", exact(metric.measured.value), exact(metric.measured.uncertainty),
+                            exact(metric.ofNothing));
+      text += "\r\n";
+    }
+  }
+  return text;
+}
+
+Json runsJson(const std::vector<StoredRun>& runs) {
+  Json list = Json::array();
+  for (const StoredRun& run : runs) {
+    const ReportPoint& point = run.point;
+    Json passes = Json::array();
+    for (const std::string& name : point.passOrder) {
+      Json pass{{"name", name}};
+      if (const auto time = point.passDeviceMs.find(name); time != point.passDeviceMs.end())
+        pass["device"] = timeJson(time->second);
+      if (const auto time = point.passHostMs.find(name); time != point.passHostMs.end())
+        pass["host"] = timeJson(time->second);
+      if (const auto bytes = point.passBytes.find(name); bytes != point.passBytes.end())
+        pass["bytes"] = bytes->second;
+      passes.push_back(std::move(pass));
+    }
+    Json errors = Json::array();
+    for (const ComponentError& error : point.errors) errors.push_back(errorJson(error));
+    list.push_back({{"run", run.id},
+                    {"key", run.identity.key()},
+                    {"created", run.created},
+                    {"version", run.version},
+                    {"scene", point.scene},
+                    {"scene_name", run.sceneName},
+                    {"pipeline", point.pipeline},
+                    {"pipeline_name", run.pipelineName},
+                    {"sweep", point.sweep},
+                    {"default", run.isDefault},
+                    {"identity", identityJson(run.identity)},
+                    {"frame", timeJson(point.frameMs)},
+                    {"next_frame", timeJson(point.nextFrameMs)},
+                    {"framework_share", number(point.frameworkShare)},
+                    {"peak_bytes", point.peakBytes},
+                    {"passes", passes},
+                    {"errors", errors},
+                    {"health", point.healthFindings},
+                    {"failure", point.failure},
+                    {"command", point.command}});
+  }
+  return list;
+}
+
+}  // namespace lumivox::command

@@ -1,0 +1,18 @@
+// Stored results as tables, CSV and JSON.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/command_line.h"
+#include "lumivox/report/store.h"
+
+namespace lumivox::command {
+
+/// One row per run; errors of the outputs beside the frame time.
+std::string runsTable(const std::vector<StoredRun>& runs);
+/// One row per run and error (RFC 4180); a run without errors has one row.
+std::string runsCsv(const std::vector<StoredRun>& runs);
+Json runsJson(const std::vector<StoredRun>& runs);
+
+}  // namespace lumivox::command

@@ -1,0 +1,82 @@
+// sweep: measures what a results store does not hold yet.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/base/log.h"
+#include "lumivox/report/sweep.h"
+#include "measure_options.h"
+#include "results_text.h"
+
+namespace lumivox::command {
+namespace {
+
+struct SweepCommand {
+  MeasureOptions measure;
+  bool plan = false, retryFailed = false, json = false;
+};
+
+std::string durationText(double seconds) {
+  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  return fmt::format("{:.1f} h", seconds / 3600.0);
+}
+
+int sweep(const SweepCommand& command, const GlobalOptions& global) {
+  SweepOptions options;
+  options.measure = command.measure.asked(global);
+  options.retryFailed = command.retryFailed;
+  options.planOnly = command.plan;
+  options.progress = [](std::size_t done, std::size_t total, double secondsLeft) {
+    logInformation("{} of {} points{}", done, total,
+                   done < total ? ", about " + durationText(secondsLeft) + " left" : std::string());
+  };
+  const std::filesystem::path file =
+      options.measure.store.empty() ? ResultsStore::defaultFile() : options.measure.store;
+  ResultsStore store(file);
+  TechniqueSet techniques = global.techniqueSet();
+  const auto device = global.openDevice();
+  const SweepSummary summary =
+      runSweep(*device, techniques, options, store,
+               [&](const std::filesystem::path& scene) { return global.loadScene(scene); });
+  if (command.json) {
+    printJson({{"store", file.string()},
+               {"measured", summary.measured},
+               {"held", summary.held},
+               {"failed", summary.failed},
+               {"missing", summary.missing},
+               {"unsuited", summary.unsuited},
+               {"runs", runsJson(summary.runs)}});
+  } else {
+    std::string text = summary.runs.empty() ? std::string() : runsTable(summary.runs);
+    for (const std::string& missing : summary.missing) text += "not measured yet: " + missing + "\n";
+    for (const std::string& unsuited : summary.unsuited) text += "not run: " + unsuited + "\n";
+    text += fmt::format("{} measured{}, {} held already; {}\n", summary.measured,
+                        summary.failed == 0 ? "" : fmt::format(", {} of them failed", summary.failed),
+                        summary.held, file.string());
+    print(text);
+  }
+  const bool good = std::all_of(summary.runs.begin(), summary.runs.end(), [](const StoredRun& run) {
+    return run.point.failure.empty() && run.point.healthFindings.empty();
+  });
+  return good ? kGood : kNotGood;
+}
+
+}  // namespace
+
+void addSweepCommand(Commands& commands) {
+  auto* command = commands.app.add_subcommand(
+      "sweep", "measures every point of the pipelines' sweeps that the results store does not hold yet");
+  auto all = std::make_shared<SweepCommand>();
+  all->measure.addTo(*command,
+                     "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)");
+  command->add_flag("--plan", all->plan, "only tell which points are missing");
+  command->add_flag("--retry-failed", all->retryFailed, "measure points that failed before once more");
+  command->add_flag("--json", all->json, "print JSON in place of the table");
+  const GlobalOptions& global = commands.global;
+  commands.onChosen(command, [=, &global] { return sweep(*all, global); });
+}
+
+}  // namespace lumivox::command

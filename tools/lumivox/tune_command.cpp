@@ -1,0 +1,132 @@
+// tune: the best technique and parameters within a time or an error.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/dsl/document.h"
+#include "lumivox/report/tune.h"
+#include "measure_options.h"
+
+namespace lumivox::command {
+namespace {
+
+struct TuneCommand {
+  MeasureOptions measure;
+  TuneOptions tune;
+  std::string budget;
+  double error = 0.0;
+  bool hasError = false, json = false;
+  std::filesystem::path output;
+};
+
+/// "16ms", "0.016 s" or "16" (milliseconds).
+double budgetOf(const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  std::string unit = end;
+  unit.erase(0, unit.find_first_not_of(' '));
+  if (unit.empty()) unit = "ms";
+  if (end != text.c_str() && std::isfinite(number) && number > 0.0)
+    for (const dsl::Unit& known : dsl::knownUnits())
+      if (known.name == unit && known.dimension == dsl::kTime) return number * known.toBase * 1000.0;
+  throw Error(fmt::format("--budget '{}': expected a time above 0, as 16ms or 0.5s", text));
+}
+
+std::string resultText(const TuneResult& result, const TuneOptions& options) {
+  std::vector<std::vector<std::string>> rows{{"Pipeline", "Parameters", "Frame ms", options.metric, ""}};
+  for (std::size_t i = 0; i < result.seen.size(); ++i) {
+    const TunedPoint& point = result.seen[i];
+    if (!point.onFront && result.winner != i) continue;
+    rows.push_back({std::filesystem::path(point.run.point.pipeline).stem().string(),
+                    parametersText(point.run.identity.parameters), quartilesText(point.run.point.frameMs),
+                    threeDigits(point.error),
+                    result.winner == i ? "the best that fits"
+                    : point.fits       ? "fits"
+                                       : ""});
+  }
+  std::string text = rows.size() > 1 ? textTable(rows) : std::string();
+  const std::string limit = options.budgetMs
+                                ? fmt::format("{} ms", formatMilliseconds(*options.budgetMs))
+                                : fmt::format("{} {}", options.metric, threeDigits(*options.errorLimit));
+  text += fmt::format(
+      "{} points seen{}; limit {}; only the front is shown\n", result.seen.size(),
+      result.exhausted ? ", every neighbour of the front among them" : ", then the evaluations were used up",
+      limit);
+  if (!result.winner) text += "nothing fits within " + limit + "\n";
+  for (const std::string& unsuited : result.unsuited) text += "not run: " + unsuited + "\n";
+  return text;
+}
+
+Json resultJson(const TuneResult& result) {
+  Json seen = Json::array();
+  for (const TunedPoint& point : result.seen)
+    seen.push_back({{"pipeline", point.run.point.pipeline},
+                    {"parameters", point.run.identity.parameters},
+                    {"time_ms", point.timeMs},
+                    {"error", point.error},
+                    {"on_front", point.onFront},
+                    {"fits", point.fits},
+                    {"command", point.run.point.command}});
+  return {{"seen", seen},
+          {"winner", result.winner ? Json(*result.winner) : Json(nullptr)},
+          {"exhausted", result.exhausted},
+          {"unsuited", result.unsuited}};
+}
+
+int tuneScene(const TuneCommand& command, const GlobalOptions& global) {
+  TuneOptions options = command.tune;
+  options.measure = command.measure.asked(global);
+  if (!command.budget.empty()) options.budgetMs = budgetOf(command.budget);
+  if (command.hasError) options.errorLimit = command.error;
+  if (options.metric == "rmse") options.metric = "rmse_over_seeds";
+  if (!command.output.empty()) requireWritable(command.output);
+  ResultsStore store(options.measure.store.empty() ? ResultsStore::defaultFile() : options.measure.store);
+  TechniqueSet techniques = global.techniqueSet();
+  const auto device = global.openDevice();
+  const TuneResult result = tune(*device, techniques, options, store,
+                                 [&](const std::filesystem::path& scene) { return global.loadScene(scene); });
+  if (result.winner && !command.output.empty()) writeFileAtomically(command.output, result.pipelineText);
+  if (command.json) {
+    printJson(resultJson(result));
+  } else {
+    print(resultText(result, options) +
+          (result.winner && !command.output.empty() ? command.output.string() + "\n" : std::string()));
+  }
+  return result.winner ? kGood : kNotGood;
+}
+
+}  // namespace
+
+void addTuneCommand(Commands& commands) {
+  auto* command = commands.app.add_subcommand(
+      "tune",
+      "finds the technique and parameters with the least error within a time, or the other way round");
+  auto all = std::make_shared<TuneCommand>();
+  all->measure.addTo(*command,
+                     "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)");
+  auto* budget = command->add_option("--budget", all->budget, "most time for a frame, as 16ms");
+  auto* error = command->add_option_function<double>(
+      "--error",
+      [all](double value) {
+        all->error = value;
+        all->hasError = true;
+      },
+      "most error, in the unit of the metric");
+  budget->excludes(error);
+  command->add_option("--metric", all->tune.metric,
+                      "rmse (default), relative_mse, percentile95, flip, flip_ldr, ...");
+  command->add_option("--output", all->tune.output,
+                      "the pipelines' output that is judged (default: the whole picture)");
+  command->add_flag("--bias", all->tune.bias,
+                    "judge against the technique's own model (one bounce) in place of full transport");
+  command->add_option("--evaluations", all->tune.evaluations, "most points to look at (default 60)")
+      ->check(CLI::Range(1, 100000));
+  command->add_option("-o,--out", all->output, "writes the best pipeline's text, its parameters as defaults");
+  command->add_flag("--json", all->json, "print JSON in place of the table");
+  const GlobalOptions& global = commands.global;
+  commands.onChosen(command, [=, &global] { return tuneScene(*all, global); });
+}
+
+}  // namespace lumivox::command

@@ -1,0 +1,139 @@
+// voxels: every voxeliser on a scene, for time, memory and what its grid gets wrong.
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "command.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/report/report.h"
+#include "lumivox/report/voxelisers.h"
+
+namespace lumivox::command {
+namespace {
+
+struct VoxelsCommand {
+  std::vector<std::filesystem::path> scenes;
+  VoxeliserOptions options;
+  std::vector<std::string> resolutions;
+  std::string picture;
+  std::filesystem::path output;
+  bool scaling = false, noSweep = false, json = false;
+};
+
+/// "64" and "32,64,128".
+std::vector<int> resolutionsOf(const std::vector<std::string>& texts) {
+  std::vector<int> resolutions;
+  for (const std::string& text : texts)
+    for (std::size_t start = 0; start <= text.size();) {
+      const std::size_t end = std::min(text.find(',', start), text.size());
+      int value = 0;
+      const auto read = std::from_chars(text.data() + start, text.data() + end, value);
+      if (read.ec != std::errc() || read.ptr != text.data() + end)
+        throw Error(fmt::format(
+            "--resolution '{}': expected voxels along the longest side, as 64 or 32,64,128", text));
+      resolutions.push_back(value);
+      start = end + 1;
+    }
+  return resolutions;
+}
+
+std::string percentText(double share) {
+  return fmt::format("{:.3f}", 100.0 * share);
+}
+
+void printTable(const std::vector<VoxeliserRecord>& records) {
+  std::vector<std::vector<std::string>> rows{{"voxeliser", "res", "triangles", "ms", "quartiles", "fragments",
+                                              "occupied", "recall", "precision", "axis holes %",
+                                              "oblique holes %", "output", "B/voxel", "memory"}};
+  std::string skipped;
+  for (const VoxeliserRecord& record : records) {
+    if (!record.whyNot.empty()) {
+      skipped += fmt::format("not measured: {}, resolution {}: {}\n", record.label(), record.resolution,
+                             record.whyNot);
+      continue;
+    }
+    rows.push_back({record.label(), std::to_string(record.resolution), std::to_string(record.triangles),
+                    formatMilliseconds(record.frameMs.median),
+                    fmt::format("[{}, {}]", formatMilliseconds(record.frameMs.lowerQuartile),
+                                formatMilliseconds(record.frameMs.upperQuartile)),
+                    record.fragments == 0 ? "-" : std::to_string(record.fragments),
+                    std::to_string(record.occupied), fmt::format("{:.4f}", record.error.recall()),
+                    fmt::format("{:.4f}", record.error.precision()), percentText(record.holes.axisShare()),
+                    percentText(record.holes.obliqueShare()), formatBytes(record.bytes),
+                    threeDigits(record.bytesPerVoxel()), formatBytes(record.allocatedBytes)});
+  }
+  std::string text = records.empty() ? "" : records.front().scene + "\n";
+  if (rows.size() > 1) text += textTable(rows);
+  for (const VoxeliserScaling& scaling : scalingOf(records)) {
+    if (scaling.withResolution)
+      text +=
+          fmt::format("{}: time ~ (voxels along a side)^{:.2f}\n", scaling.label, *scaling.withResolution);
+    if (scaling.withTriangles)
+      text += fmt::format("{}: time ~ triangles^{:.2f}\n", scaling.label, *scaling.withTriangles);
+  }
+  print(text + skipped);
+}
+
+int voxels(const VoxelsCommand& command, const GlobalOptions& global) {
+  constexpr int kScalingSubdivisions = 2;  // 4 and 16 times the triangles
+  VoxeliserOptions options = command.options;
+  if (!command.resolutions.empty()) options.resolutions = resolutionsOf(command.resolutions);
+  if (!command.picture.empty()) std::tie(options.width, options.height) = parseResolution(command.picture);
+  options.openSweeps = !command.noSweep;
+  if (command.scaling) options.subdivisions = kScalingSubdivisions;
+  const VoxeliserFiles files = voxeliserFiles(command.output);
+  if (!command.output.empty())
+    for (const auto& file : {files.page, files.csv, files.json}) requireWritable(file);
+
+  TechniqueSet techniques = global.techniqueSet();
+  const auto device = global.openDevice();
+  std::vector<VoxeliserRecord> all;
+  for (const std::filesystem::path& file : command.scenes) {
+    const std::vector<VoxeliserRecord> records =
+        measureVoxelisers(*device, techniques, global.loadScene(file), options);
+    if (!command.json) printTable(records);
+    all.insert(all.end(), records.begin(), records.end());
+  }
+  if (command.json) print(voxelisersJson(all, device->info(), global.commandLine));
+  if (!command.output.empty()) {
+    writeVoxelisers(files, all, device->info(), global.commandLine);
+    if (!command.json) print(files.page.string() + "\n");
+  }
+  const bool any = std::any_of(all.begin(), all.end(),
+                               [](const VoxeliserRecord& record) { return record.whyNot.empty(); });
+  return any ? kGood : kNotGood;
+}
+
+}  // namespace
+
+void addVoxelsCommand(Commands& commands) {
+  auto* command = commands.app.add_subcommand(
+      "voxels", "measures voxelisers on scenes: time, memory, precision, recall and holes");
+  auto all = std::make_shared<VoxelsCommand>();
+  VoxeliserOptions& options = all->options;
+  command->add_option("SCENE", all->scenes, "the scenes' texts")->required();
+  addRepeatable(*command, "--resolution", all->resolutions,
+                "voxels along the longest side, 1..1024; several as 32,64,128 (default 64)");
+  addRepeatable(*command, "--pipelines", options.pipelines,
+                "a pipeline's text or a folder of them; may be repeated (default: the committed voxelisers)");
+  addRepeatable(*command, "--set", options.settings,
+                "a parameter, as name=value, of those pipelines that have it");
+  command->add_option("--repeats", options.repeats, "timed frames per voxeliser (default 5)")
+      ->check(CLI::Range(1, 10000));
+  command->add_flag("--no-sweep", all->noSweep,
+                    "only the default parameters, not the points of the pipelines' sweeps");
+  command->add_flag("--scaling", all->scaling,
+                    "measure again with every triangle split into 4 and 16: how time grows with triangles");
+  command->add_option("--picture", all->picture,
+                      "size of the picture for voxelisers that start from one (default: the camera's)");
+  command->add_option("--camera", options.camera, "the scene's camera of this name (default: the first)");
+  command->add_option("--time", options.time, "seconds");
+  command->add_option("--seed", options.seed, "of the random numbers of techniques");
+  command->add_option("-o,--out", all->output, "a folder for index.html, voxels.csv and voxels.json");
+  command->add_flag("--json", all->json, "print the JSON in place of the table");
+  const GlobalOptions& global = commands.global;
+  commands.onChosen(command, [=, &global] { return voxels(*all, global); });
+}
+
+}  // namespace lumivox::command

@@ -1,0 +1,68 @@
+// From a pipeline on a scene to named OpenVDB grids with their place in the world and where they come from.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lumivox/pipeline/pipeline.h"
+#include "vdbexport/fields.h"
+
+namespace lumivox::vdb {
+
+/// An output of a pass whose port can be exported.
+struct Source {
+  std::string pass, port;                ///< names in the pipeline's text
+  std::string technique, techniquePass;  ///< who makes it
+  std::string portKind, meaning;
+  std::string text() const { return pass + "." + port; }
+};
+
+/// All of a pipeline, in text order. Nothing is run.
+std::vector<Source> exportableSources(const Pipeline& pipeline, TechniqueSource& techniques);
+
+struct ExportRequest {
+  std::vector<std::string> grids;  ///< "PASS.PORT"; empty: everything that can be exported
+  std::vector<int> levels = {0};   ///< empty: every level
+  bool half = false;               ///< floats are stored with 16 bits
+};
+
+/// A field of a source under the name that its grid gets: PASS.PORT.FIELD, with .levelL behind it for the
+/// coarser levels; "density" when it is the only density of a medium, which is what viewers look for.
+struct NamedField {
+  std::string name;
+  Source source;
+  Field field;
+};
+
+/// Runs the passes that the wanted grids need, and no others.
+class Exporter {
+ public:
+  /// Device, techniques and scene must outlive it. Error for a grid that the pipeline does not have.
+  Exporter(gpu::Device& device, TechniqueSource& techniques, const Scene& scene, const Pipeline& pipeline,
+           const RenderOptions& options, ExportRequest request);
+
+  /// The fields of one frame. What was named and cannot be had is an Error; what was not named is left out
+  /// with a message. Outputs that hold the same textures count once.
+  std::vector<NamedField> render(double time, int frame);
+
+  /// One grid of the last frame, with its transform and metadata. Call it once for each field.
+  openvdb::GridBase::Ptr grid(const NamedField& named,
+                              const std::map<std::string, std::string>& provenance) const;
+
+ private:
+  const OutBase* outputOf(const Source& source) const;
+  std::string whyLeftOut(const Source& source) const;
+  void append(const Source& source, const OutBase& output, std::vector<NamedField>& fields) const;
+  void dropCopies(std::vector<Source>& sources) const;
+
+  const Scene& scene_;
+  RenderOptions options_;
+  ExportRequest request_;
+  PipelineExecutor executor_;
+  std::vector<Source> sources_;
+  SceneSnapshot snapshot_;
+  int frame_ = 0;
+};
+
+}  // namespace lumivox::vdb
