@@ -1,6 +1,7 @@
 // Loops over triangles, as fast as plain C++ makes them here.
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
@@ -171,6 +172,7 @@ glm::vec3 sampled(const SurfaceTexture& texture, const glm::vec2& at) {
                   glm::mix(texel(x0, y0 + 1), texel(x0 + 1, y0 + 1), u), v);
 }
 
+constexpr int kMostThreads = 16;
 constexpr std::size_t kGrain = 512;  // triangles that one task takes at a time
 
 }  // namespace
@@ -183,6 +185,7 @@ struct CpuLoops::State {
   mutable VoxelSet occupied;
   std::vector<Fragment> list;
   std::atomic<std::uint64_t> count{0};
+  std::vector<Fragment> scratch[kMostThreads];  ///< of each thread, kept from call to call
 
   template <bool kShared>
   void markBits(std::size_t first, std::size_t last) {
@@ -252,12 +255,6 @@ struct CpuLoops::State {
     }
   }
 
-  /// Kept from call to call for the calling thread; a helper's ends with it.
-  static std::vector<Fragment>& scratch() {
-    thread_local std::vector<Fragment> mine;
-    return mine;
-  }
-
   /// The list is long enough once the first call has counted.
   void flush(std::vector<Fragment>& mine) {
     const std::uint64_t first = count.fetch_add(mine.size());
@@ -266,19 +263,20 @@ struct CpuLoops::State {
     mine.clear();
   }
 
-  /// `work(first, last)` over all triangles. Threads of its own: a scheduler's workers may still sleep when a
-  /// job of a few milliseconds is over.
+  /// `work(first, last, thread)` over all triangles. Threads of its own: a scheduler's workers may still
+  /// sleep when a job of a few milliseconds is over.
   template <class Work>
   void overTriangles(int threads, const Work& work) {
     std::atomic<std::size_t> next{0};
-    const auto run = [&] {
+    assert(threads <= kMostThreads);
+    const auto run = [&](int thread) {
       for (std::size_t first = next.fetch_add(kGrain); first < mesh.triangles.size();
            first = next.fetch_add(kGrain))
-        work(first, std::min(first + kGrain, mesh.triangles.size()));
+        work(first, std::min(first + kGrain, mesh.triangles.size()), thread);
     };
     std::vector<std::jthread> helpers;
-    for (int i = 1; i < threads; ++i) helpers.emplace_back(run);
-    run();
+    for (int i = 1; i < threads; ++i) helpers.emplace_back(run, i);
+    run(0);
   }
 };
 
@@ -291,7 +289,7 @@ CpuLoops::~CpuLoops() = default;
 void CpuLoops::bits(int threads) {
   State& s = *state_;
   std::fill(s.words.begin(), s.words.end(), 0);
-  s.overTriangles(threads, [&](std::size_t first, std::size_t last) {
+  s.overTriangles(threads, [&](std::size_t first, std::size_t last, int) {
     threads == 1 ? s.markBits<false>(first, last) : s.markBits<true>(first, last);
   });
 }
@@ -310,8 +308,8 @@ const VoxelSet& CpuLoops::occupied() const {
 std::uint64_t CpuLoops::fragments(int threads) {
   State& s = *state_;
   s.count = 0;
-  s.overTriangles(threads, [&](std::size_t first, std::size_t last) {
-    std::vector<Fragment>& mine = s.scratch();
+  s.overTriangles(threads, [&](std::size_t first, std::size_t last, int thread) {
+    std::vector<Fragment>& mine = s.scratch[thread];
     s.appendFragments(first, last, mine);
     s.flush(mine);
   });
