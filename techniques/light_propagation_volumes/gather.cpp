@@ -1,5 +1,7 @@
 // What the surfaces receive from the grids, and what they give on to reflections: thesis Gomes 2015,
 // Sec. 4.3.4 and 4.3.5.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "light_propagation_volumes_shaders.h"
@@ -71,8 +73,24 @@ class GatherPass : public Pass {
                       gatherShader::diffuseImage(*result.texture), gatherShader::clippedImage(*cut.texture)},
                      {frame.snapshot().camera.width, frame.snapshot().camera.height, 1}, kImageGroup);
     }
+    if (frame.inspects()) tellShare(frame, *result.texture, *cut.texture);
     diffuse = result;
     clipped = cut;
+  }
+
+  /// How much two bands made negative, of all that reaches the picture.
+  static void tellShare(PassContext& frame, const gpu::Texture& light, const gpu::Texture& cut) {
+    const auto sum = [](const gpu::Texture& texture) {
+      const std::vector<float> values = texture.downloadFloats();
+      double total = 0.0;
+      for (std::size_t i = 0; i < values.size(); ++i) total += i % 4 == 3 ? 0.0 : values[i];
+      return total;
+    };
+    const double all = sum(light), negative = sum(cut);
+    if (all > 0.0)
+      frame.note(
+          fmt::format("{:.2g} % of the light of the picture was negative in two bands before it was mended",
+                      100.0 * negative / all));
   }
 };
 

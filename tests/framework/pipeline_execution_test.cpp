@@ -68,6 +68,7 @@ class Warner : public Toy {
   Reads readsFrom() const override { return Reads::time; }
   void run(PassContext& frame) override {
     frame.warn("too dark");
+    frame.note(frame.inspects() ? "inspected" : "not inspected");
     picture = paint(frame, 1.0f);
   }
 };
@@ -412,6 +413,20 @@ TEST_CASE("a warning of a pass is told once per run") {
   executor.render(1.0, 1);
   CHECK_THAT(log.text(), Contains("pass dim: too dark"));
   CHECK(log.text().find("too dark") == log.text().rfind("too dark"));
+}
+
+TEST_CASE("what a pass tells about itself is kept only when the run is inspected, frame by frame") {
+  Fixture f;
+  if (!f) return;
+  f.techniques.add<Warner>("toy", "warner");
+  const char* text = "pass dim toy.warner { }\noutput o dim.picture";
+  PipelineExecutor plain = f.executor(text);
+  CHECK(plain.render(0.0, 0).notes.empty());
+  RenderOptions options;
+  options.health = true;
+  PipelineExecutor inspected = f.executor(text, options);
+  for (int frame = 0; frame < 2; ++frame)
+    CHECK(inspected.render(0.0, frame).notes == std::vector<std::string>{"pass dim: inspected"});
 }
 
 TEST_CASE("the health scan names pass, port, count and first place of bad values") {

@@ -483,9 +483,13 @@ TEST_CASE("no negative radiance reaches a picture, and what two bands made negat
   RenderOptions options;
   options.width = options.height = 32;
   options.parameters = text.settings({"resolution=16"});
+  options.health = true;
   PipelineExecutor executor(device(), techniques(), scene, text, options);
   executor.keepOutput("gather", "clipped");
   const FrameResult frame = executor.render(0.0);
+  REQUIRE(frame.notes.size() == 1);
+  CHECK(frame.notes[0].find("% of the light of the picture was negative") != std::string::npos);
+  CHECK(frame.healthFindings.empty());
   double lowest = 0.0, sum = 0.0, clipped = 0.0;
   for (const float value : frame.outputs.at("indirect_diffuse").values()) {
     lowest = std::min<double>(lowest, value);

@@ -87,6 +87,7 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
     for (const std::string& finding : result.healthFindings)
       std::cerr << (animation ? fmt::format("frame {}: ", frame) : std::string()) << finding << "\n";
     findings += result.healthFindings.size();
+    for (const std::string& note : result.notes) logInformation("{}", note);
     const fs::path file = animation ? numberedName(command.output, frame) : command.output;
     auto attributes = provenance(global, scene, pipeline, options, *device, time);
     if (animation) attributes["lumivox.frame"] = fmt::format("{}", frame);

@@ -32,6 +32,10 @@ void FrameContext::warn(const std::string& text) {
   if (warnings_.insert(message).second) logWarning("{}", message);
 }
 
+void FrameContext::note(const std::string& text) {
+  if (inspects_) notes_.push_back("pass " + passName_ + ": " + text);
+}
+
 void FrameContext::reused(const std::string& what, const std::string& why) {
   reusedParts_.insert({passName_, what, why});
 }

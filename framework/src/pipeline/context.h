@@ -5,6 +5,8 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "lumivox/pipeline/gpu_scene.h"
 #include "lumivox/pipeline/pass.h"
@@ -36,12 +38,17 @@ class FrameContext : public PassContext {
   void warn(const std::string& text) override;
   bool startsAfresh() const override { return keepsEverything_ || afresh_; }
   void reused(const std::string& what, const std::string& why) override;
+  bool inspects() const override { return inspects_; }
+  void note(const std::string& text) override;
 
   ResourcePool& pool() { return pool_; }
   void setSeed(std::uint64_t seed) { seed_ = seed; }
   /// The device's copy of the scene follows when `geometryChanged`.
   void setFrame(SceneSnapshot snapshot, int frameIndex, bool geometryChanged);
   void setAfresh(bool afresh) { afresh_ = afresh; }
+  void setInspects(bool inspects) { inspects_ = inspects; }
+  /// What passes told about themselves since the last call, each with its pass's name.
+  std::vector<std::string> takeNotes() { return std::exchange(notes_, {}); }
   /// Parts of passes that were taken over from earlier frames, by pass, and why.
   struct Reused {
     std::string pass, what, why;
@@ -67,7 +74,8 @@ class FrameContext : public PassContext {
   int frameIndex_ = 0;
   std::uint64_t seed_ = 1, bytesOfRun_ = 0;
   std::string passName_;
-  bool afresh_ = true;
+  bool afresh_ = true, inspects_ = false;
+  std::vector<std::string> notes_;
   std::set<std::string> warnings_;
   std::set<Reused> reusedParts_;
 };

@@ -89,6 +89,7 @@ PipelineExecutor::State::State(gpu::Device& gpuDevice, TechniqueSource& source, 
     if (!technique->shaders.technique.empty()) context.shaders().addPack(technique->shaders);
   }
   context.setSeed(options.seed);
+  context.setInspects(options.health);
 }
 
 const PrunePlan& PipelineExecutor::State::planned() {
@@ -203,6 +204,7 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
   result.frameMs = millisecondsSince(start) - scanMs;
   result.betweenPassesMs = result.frameMs - passesMs;
   result.peakBytes = device.peakBytes();
+  result.notes = context.takeNotes();
   context.pool().endFrame();
   complete = true;
   collectPictures(result, pictures);

@@ -89,6 +89,7 @@ Json toJson(const PointRecord& record) {
   for (const ComponentError& error : point.errors) errors.push_back(toJson(error));
   json["errors"] = std::move(errors);
   json["health_findings"] = point.healthFindings;
+  json["notes"] = point.notes;
   json["command"] = point.command;
   return json;
 }

@@ -155,7 +155,10 @@ void measureErrors(const MeasureContext& context, const Pipeline& pipeline, Poin
     options.interactive = true;
     PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
     FrameResult frame = renderFiltered(executor, context, options);
-    if (seed == 0) record.point.healthFindings = frame.healthFindings;
+    if (seed == 0) {
+      record.point.healthFindings = frame.healthFindings;
+      record.point.notes = frame.notes;
+    }
     Picture whole = compositePicture(frame);
     for (const std::string& output : executor.outputNames()) {
       const auto picture = frame.outputs.find(output);

@@ -392,6 +392,17 @@ std::string healthSection(const SceneRecord& scene) {
               : "<ul>\n" + items + "</ul>\n");
 }
 
+/// What passes measured about themselves, at the default points.
+std::string noteSection(const SceneRecord& scene) {
+  std::string items;
+  for (const PointRecord& record : scene.points) {
+    if (!record.isDefault) continue;
+    for (const std::string& note : record.point.notes)
+      items += "<li>" + escaped(shortName(record.point.pipeline) + ", " + note) + "</li>\n";
+  }
+  return items.empty() ? items : "<p>What passes tell of themselves:</p>\n<ul>\n" + items + "</ul>\n";
+}
+
 std::string truthText(const SceneRecord& scene) {
   std::string html = fmt::format(
       "<p>{} triangles, camera &ldquo;{}&rdquo;, {} &times; {} pixels, time {} s. Truth: path tracing with "
@@ -472,6 +483,7 @@ std::string sceneSection(std::size_t index, const SceneRecord& scene) {
   html += timeSection(index, scene);
   html += leftOutSection(scene);
   html += healthSection(scene);
+  html += noteSection(scene);
   html += commandsSection(scene);
   return html;
 }

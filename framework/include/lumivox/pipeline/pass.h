@@ -300,6 +300,10 @@ class PassContext {
   /// True when a pass may use nothing that it kept from an earlier frame: in the first one, after
   /// PipelineExecutor::invalidate() and with --keep-everything.
   virtual bool startsAfresh() const = 0;
+  /// True when this run is inspected (RenderOptions::health): what a pass measures about itself may then cost
+  /// time, and is told with note(), a sentence that begins in the middle: "1.1 % of the irradiance was ...".
+  virtual bool inspects() const = 0;
+  virtual void note(const std::string& text) = 0;
   /// Tells explain() of a part of the pass's work that this frame took over from an earlier one.
   virtual void reused(const std::string& what, const std::string& why) = 0;
 

@@ -114,6 +114,8 @@ struct FrameResult {
   double betweenPassesMs = 0;  ///< frameMs minus the passes: what the framework itself costs
   std::uint64_t peakBytes = 0;
   std::vector<std::string> healthFindings;  ///< "pass gather, port diffuse: 3 NaN, first at pixel (12, 40)"
+  /// With `health`, what passes measured about themselves: "pass gather: 1.1 % of the irradiance was ..."
+  std::vector<std::string> notes;
 };
 
 /// One thing that a run does without.

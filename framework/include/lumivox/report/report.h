@@ -52,6 +52,7 @@ struct ReportPoint {
   std::uint64_t peakBytes = 0;
   std::vector<ComponentError> errors;
   std::vector<std::string> healthFindings;
+  std::vector<std::string> notes;  ///< what passes measured about themselves; not kept in the results store
   std::string failure;  ///< why it has no numbers (it did not fit into memory, ...); empty when it has
   std::string command;  ///< that repeats it
 };
