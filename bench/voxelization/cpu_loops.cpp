@@ -185,7 +185,11 @@ struct CpuLoops::State {
   mutable VoxelSet occupied;
   std::vector<Fragment> list;
   std::atomic<std::uint64_t> count{0};
-  std::vector<Fragment> scratch[kMostThreads];  ///< of each thread, kept from call to call
+  /// Of each thread, kept from call to call; on cache lines of its own, since every fragment moves its end.
+  struct alignas(64) Scratch {
+    std::vector<Fragment> fragments;
+  };
+  Scratch scratch[kMostThreads];
 
   template <bool kShared>
   void markBits(std::size_t first, std::size_t last) {
@@ -309,7 +313,7 @@ std::uint64_t CpuLoops::fragments(int threads) {
   State& s = *state_;
   s.count = 0;
   s.overTriangles(threads, [&](std::size_t first, std::size_t last, int thread) {
-    std::vector<Fragment>& mine = s.scratch[thread];
+    std::vector<Fragment>& mine = s.scratch[thread].fragments;
     s.appendFragments(first, last, mine);
     s.flush(mine);
   });

@@ -132,6 +132,29 @@ TEST_CASE("every format gives back the bytes that were put in") {
   }
 }
 
+TEST_CASE("slices of a volume and layers of an array are the parts of the whole that they name") {
+  for (const TextureKind kind : {TextureKind::d2Array, TextureKind::d3}) {
+    Texture texture(device(), {kind, Format::rg16f, 6, 5, 9, 2}, "slices");
+    for (int level = 0; level < 2; ++level) {
+      std::vector<std::byte> bytes = texture.download(level);
+      for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i * 7 % 50 + i / 64);
+      texture.upload(level, bytes);
+      const int slices = kind == TextureKind::d2Array || level == 0 ? 9 : 4;
+      const std::size_t sliceBytes = bytes.size() / static_cast<std::size_t>(slices);
+      for (int first = 0; first < slices; ++first) {
+        for (int count = 1; count <= slices - first; ++count) {
+          const std::byte* expected = bytes.data() + sliceBytes * static_cast<std::size_t>(first);
+          // A byte behind the slices shows that no more is written.
+          std::vector<std::byte> some(sliceBytes * static_cast<std::size_t>(count) + 1, std::byte{77});
+          texture.downloadSlices(level, first, count, std::span(some).first(some.size() - 1));
+          REQUIRE(std::equal(some.begin(), some.end() - 1, expected));
+          REQUIRE(some.back() == std::byte{77});
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("every format is cleared to the value, at every level") {
   for (const Format format : kAllFormats) {
     CAPTURE(name(format));

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 #include <openvdb/math/Half.h>
+#include <tbb/task_group.h>
+
+#include <span>
 
 #include "lumivox/base/error.h"
 
@@ -13,12 +16,9 @@ glm::ivec3 sizeOf(const gpu::Texture& texture) {
   return {description.width, description.height, description.depth};
 }
 
+/// All bytes are zero when the first is, and each equals the one before it.
 bool anyBit(const std::byte* bytes, std::size_t count) {
-  std::uint64_t bits = 0;
-  for (; count >= sizeof(bits); bytes += sizeof(bits), count -= sizeof(bits))
-    bits |= detail::readAs<std::uint64_t>(bytes);
-  for (; count > 0; ++bytes, --count) bits |= static_cast<std::uint64_t>(*bytes);
-  return bits != 0;
+  return bytes[0] != std::byte{0} || std::memcmp(bytes, bytes + 1, count - 1) != 0;
 }
 
 struct Half {
@@ -37,13 +37,11 @@ float asFloat(float value) {
 }
 
 template <class Stored, int kComponents>
-void decodeRow(const std::byte* texels, int count, glm::vec4* values) {
-  for (int i = 0; i < count; ++i) {
-    values[i] = glm::vec4(0.0f);
-    for (int c = 0; c < kComponents; ++c)
-      values[i][c] = asFloat(
-          detail::readAs<Stored>(texels + static_cast<std::size_t>(i * kComponents + c) * sizeof(Stored)));
-  }
+glm::vec4 decode(const std::byte* texel) {
+  glm::vec4 values(0.0f);
+  for (int c = 0; c < kComponents; ++c)
+    values[c] = asFloat(detail::readAs<Stored>(texel + static_cast<std::size_t>(c) * sizeof(Stored)));
+  return values;
 }
 
 }  // namespace
@@ -64,51 +62,106 @@ std::uint64_t Texels::sizeBytes() const {
 }
 
 void Texels::load() {
-  if (!bytes_.empty()) return;
-  requireMemory(sizeBytes(), fmt::format("downloading {}", texture_->label()));
-  bytes_ = texture_->download(level_);
-  findOccupied();
+  if (!leaves_.empty()) return;
+  const std::uint64_t atMost = sizeBytes() + layout_.count() * sizeof(Leaf);
+  requireMemory(atMost, fmt::format("downloading {}", texture_->label()));
+  leaves_.resize(layout_.count());
+  texels_.resize(layout_.count() / static_cast<std::size_t>(layout_.leaves.x));
+  // A layer of leaves at a time, through buffers that stay in the caches: what is empty, mostly nearly all of
+  // the volume, is not written to memory. One layer is searched while the next is downloaded.
+  std::array<std::vector<std::byte>, 2> buffers;
+  tbb::task_group searching;
+  try {
+    for (int layer = 0; layer < layout_.leaves.z; ++layer) {
+      const int first = layer * kLeaf, count = std::min(kLeaf, layout_.resolution.z - first);
+      std::vector<std::byte>& buffer = buffers[static_cast<std::size_t>(layer % 2)];
+      buffer.resize(sliceBytes() * static_cast<std::size_t>(count));
+      texture_->downloadSlices(level_, first, count, buffer);
+      searching.wait();
+      searching.run([this, layer, &buffer] { keepLayer(layer, buffer); });
+    }
+    searching.wait();
+  } catch (...) {
+    searching.wait();
+    leaves_.clear();
+    throw;
+  }
 }
 
-void Texels::findOccupied() {
-  occupied_.assign(layout_.count(), 0);
-  // A thread takes whole layers of leaves, so that no two write beside each other and reading is in order.
-  const auto leavesX = static_cast<std::size_t>(layout_.leaves.x),
-             leavesY = static_cast<std::size_t>(layout_.leaves.y);
-  tbb::parallel_for(0, layout_.leaves.z, [&](int layer) {
-    const int end = std::min((layer + 1) * kLeaf, layout_.resolution.z);
-    for (int z = layer * kLeaf; z < end; ++z)
-      for (int y = 0; y < layout_.resolution.y; ++y)
-        for (std::size_t i = 0; i < leavesX; ++i) {
-          char& occupied = occupied_[i + leavesX * (static_cast<std::size_t>(y / kLeaf) +
-                                                    leavesY * static_cast<std::size_t>(layer))];
-          if (occupied != 0) continue;
-          const int x = static_cast<int>(i) * kLeaf;
-          const auto count = static_cast<std::size_t>(std::min(kLeaf, layout_.resolution.x - x));
-          if (anyBit(at({x, y, z}), count * texelBytes_)) occupied = 1;
-        }
+void Texels::keepLayer(int layer, const std::vector<std::byte>& slices) {
+  const int count = std::min(kLeaf, layout_.resolution.z - layer * kLeaf);
+  tbb::parallel_for(0, layout_.leaves.y, [&](int i) {
+    const int y = i * kLeaf;
+    const std::byte* first = slices.data() + volumeRowBytes() * static_cast<std::size_t>(y);
+    const auto leafRow = static_cast<std::size_t>(i + layout_.leaves.y * layer);
+    findKept(leafRow, {std::min(kLeaf, layout_.resolution.y - y), count}, first);
+    keepRow(leafRow, first);
   });
 }
 
-detail::DecodeRow detail::decoderOf(gpu::Format format, std::string_view what) {
+/// `slices` begins at the first texel of the row of leaves; `extent`: voxels of the leaves along y and z.
+void Texels::findKept(std::size_t leafRow, const glm::ivec2& extent, const std::byte* slices) {
+  const auto leavesX = static_cast<std::size_t>(layout_.leaves.x);
+  const std::size_t partBytes = kLeaf * texelBytes_;
+  for (std::size_t z = 0; z < static_cast<std::size_t>(extent.y); ++z)
+    for (std::size_t y = 0; y < static_cast<std::size_t>(extent.x); ++y) {
+      const std::byte* row = slices + z * sliceBytes() + y * volumeRowBytes();
+      if (!anyBit(row, volumeRowBytes())) continue;
+      for (std::size_t i = 0; i < leavesX; ++i) {
+        const std::byte* part = row + i * partBytes;
+        const std::size_t size = std::min(partBytes, volumeRowBytes() - i * partBytes);
+        if (!anyBit(part, size)) continue;
+        std::uint64_t bits = 0;
+        for (std::size_t x = 0; x * texelBytes_ < size; ++x)
+          bits |= static_cast<std::uint64_t>(anyBit(part + x * texelBytes_, texelBytes_)) << x;
+        leaves_[i + leavesX * leafRow].kept[z] |= bits << (kLeaf * y);
+      }
+    }
+}
+
+void Texels::keepRow(std::size_t leafRow, const std::byte* slices) {
+  const auto leavesX = static_cast<std::size_t>(layout_.leaves.x);
+  const std::span<Leaf> leaves = std::span(leaves_).subspan(leafRow * leavesX, leavesX);
+  std::size_t bytes = 0;
+  for (Leaf& leaf : leaves) {
+    leaf.firstByte = bytes;
+    for (const std::uint64_t word : leaf.kept)
+      bytes += texelBytes_ * static_cast<std::size_t>(std::popcount(word));
+  }
+  if (bytes == 0) return;
+  texels_[leafRow] = std::make_unique_for_overwrite<std::byte[]>(bytes);
+  std::byte* to = texels_[leafRow].get();
+  for (std::size_t i = 0; i < leavesX; ++i)
+    for (std::size_t z = 0; z < kLeaf; ++z)
+      for (std::uint64_t bits = leaves[i].kept[z]; bits != 0; bits &= bits - 1) {
+        const auto bit = static_cast<std::size_t>(std::countr_zero(bits));
+        std::memcpy(to,
+                    slices + z * sliceBytes() + bit / kLeaf * volumeRowBytes() +
+                        (i * kLeaf + bit % kLeaf) * texelBytes_,
+                    texelBytes_);
+        to += texelBytes_;
+      }
+}
+
+detail::Decode detail::decoderOf(gpu::Format format, std::string_view what) {
   using gpu::Format;
   switch (format) {
     case Format::r8:
-      return decodeRow<std::uint8_t, 1>;
+      return decode<std::uint8_t, 1>;
     case Format::rgba8:
-      return decodeRow<std::uint8_t, 4>;
+      return decode<std::uint8_t, 4>;
     case Format::r16f:
-      return decodeRow<Half, 1>;
+      return decode<Half, 1>;
     case Format::rg16f:
-      return decodeRow<Half, 2>;
+      return decode<Half, 2>;
     case Format::rgba16f:
-      return decodeRow<Half, 4>;
+      return decode<Half, 4>;
     case Format::r32f:
-      return decodeRow<float, 1>;
+      return decode<float, 1>;
     case Format::rg32f:
-      return decodeRow<float, 2>;
+      return decode<float, 2>;
     case Format::rgba32f:
-      return decodeRow<float, 4>;
+      return decode<float, 4>;
     default:
       throw Error(fmt::format("{}: its texture has the format {}; expected floats or bytes", what,
                               gpu::name(format)));

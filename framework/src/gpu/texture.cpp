@@ -89,21 +89,23 @@ void uploadAs(GLuint handle, const TextureDescription& d, int level, GLenum type
   }
 }
 
+void downloadSlicesAs(GLuint handle, const TextureDescription& d, int level, GLenum type, int first,
+                      int count, void* data, std::size_t sizeBytes) {
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+  const Extent e = extentOf(d, level);
+  // The size argument of OpenGL has 31 bits: slice by slice where all together are more.
+  const std::size_t slice = sizeBytes / static_cast<std::size_t>(count);
+  const int step = sizeBytes > static_cast<std::size_t>(std::numeric_limits<GLsizei>::max()) ? 1 : count;
+  for (int z = 0; z < count; z += step) {
+    glGetTextureSubImage(handle, level, 0, 0, first + z, e.width, e.height, step, traitsOf(d.format).external,
+                         type, static_cast<GLsizei>(slice * static_cast<std::size_t>(step)),
+                         static_cast<std::byte*>(data) + slice * static_cast<std::size_t>(z));
+  }
+}
+
 void downloadAs(GLuint handle, const TextureDescription& d, int level, GLenum type, void* data,
                 std::size_t sizeBytes) {
-  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
-  if (sizeBytes > static_cast<std::size_t>(std::numeric_limits<GLsizei>::max())) {
-    // The size argument of glGetTextureImage has 31 bits: slice by slice.
-    const Extent e = extentOf(d, level);
-    const std::size_t slice = sizeBytes / static_cast<std::size_t>(e.depth);
-    for (int z = 0; z < e.depth; ++z) {
-      glGetTextureSubImage(handle, level, 0, 0, z, e.width, e.height, 1, traitsOf(d.format).external, type,
-                           static_cast<GLsizei>(slice),
-                           static_cast<std::byte*>(data) + slice * static_cast<std::size_t>(z));
-    }
-    return;
-  }
-  glGetTextureImage(handle, level, traitsOf(d.format).external, type, static_cast<GLsizei>(sizeBytes), data);
+  downloadSlicesAs(handle, d, level, type, 0, extentOf(d, level).depth, data, sizeBytes);
 }
 
 }  // namespace
@@ -153,6 +155,17 @@ std::vector<std::byte> Texture::download(int level) const {
   downloadAs(handle_, description_, level, traitsOf(description_.format).type, texels.data(), texels.size());
   device_->check("downloading " + label_);
   return texels;
+}
+
+void Texture::downloadSlices(int level, int first, int count, std::span<std::byte> texels) const {
+  device_->use();
+  Extent slices = extentOf(description_, level);
+  assert(first >= 0 && count > 0 && first + count <= slices.depth);
+  slices.depth = count;
+  assert(texels.size() == texelsOf(slices) * bytesPerTexel(description_.format));
+  downloadSlicesAs(handle_, description_, level, traitsOf(description_.format).type, first, count,
+                   texels.data(), texels.size());
+  device_->check("downloading " + label_);
 }
 
 void Texture::uploadFloats(int level, std::span<const float> values) {
