@@ -1,11 +1,12 @@
 // The only door of the framework to OpenVDB: float grids become density volumes.
 #include <fmt/format.h>
-#include <openvdb/io/File.h>
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -28,24 +29,24 @@ struct Refusal {
 
 /// The grid with this name, or the only one.
 openvdb::GridBase::Ptr readGrid(const std::string& file, const std::string& name, Refusal& refuse) {
-  openvdb::io::File source(file);
   std::vector<std::string> names;
   openvdb::GridBase::Ptr grid;
   try {
-    source.open(false);  // all values now, so that a truncated file shows here
-    for (auto one = source.beginName(); one != source.endName(); ++one) names.push_back(one.gridName());
-    const bool known = std::find(names.begin(), names.end(), name) != names.end();
-    if (known || (name.empty() && names.size() == 1)) {
-      refuse.grid = known ? name : names.front();
-      grid = source.readGrid(refuse.grid);
+    std::ifstream stream(file, std::ios::binary);
+    // OpenVDB does not look whether its stream has ended, and would go on with sizes that it never read.
+    stream.exceptions(std::ios::failbit | std::ios::badbit);
+    const openvdb::GridPtrVecPtr grids = openvdb::io::Stream(stream, /*delayLoad=*/false).getGrids();
+    for (const openvdb::GridBase::Ptr& one : *grids) {
+      names.push_back(one->getName());
+      if (name.empty() ? grids->size() == 1 : one->getName() == name) grid = one;
     }
-    source.close();
+    if (grid != nullptr) refuse.grid = grid->getName();
   } catch (const openvdb::Exception& error) {
-    refuse.grid.clear();
     refuse(fmt::format("cannot be read as a volume file ({})", error.what()), "a whole .vdb file");
+  } catch (const std::ios_base::failure&) {
+    refuse("is damaged: it ends too early, or its parts contradict each other", "a whole .vdb file");
   } catch (const std::exception& error) {
     // A damaged file may ask for any amount of memory.
-    refuse.grid.clear();
     refuse(fmt::format("is damaged ({})", error.what()), "a whole .vdb file");
   }
   if (grid == nullptr) {

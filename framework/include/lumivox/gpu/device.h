@@ -76,8 +76,8 @@ class Texture {
   /// All texels of one level, tightly packed in the texture's own format, row 0 first.
   void upload(int level, std::span<const std::byte> texels);
   std::vector<std::byte> download(int level = 0) const;
-  /// Slices (layers of an array) `first` to `first + count - 1` of one level, packed as `download` packs them,
-  /// into `texels`, which has exactly their size: a volume can be read through one small buffer.
+  /// Slices (layers of an array) `first` to `first + count - 1` of one level, packed as `download` packs
+  /// them, into `texels`, which has exactly their size: a volume can be read through one small buffer.
   void downloadSlices(int level, int first, int count, std::span<std::byte> texels) const;
   /// Every format but the integer ones, as floats: texel-major, `components` of the format (half floats
   /// widened, bytes divided by 255).

@@ -1,5 +1,6 @@
-// Differences between pictures, in linear radiance unless said otherwise; health and repeated timings. Definitions, reasons and how the truth's noise enters: docs/metrics.md. Everything here gives the
-// same bits on any number of threads.
+// Differences between pictures, in linear radiance unless said otherwise; health and repeated timings.
+// Definitions, reasons and how the truth's noise enters: docs/metrics.md. Everything here gives the same bits
+// on any number of threads.
 #pragma once
 
 #include <cstddef>

@@ -116,8 +116,8 @@ struct ShGrid {
   struct Level {
     GridPlacement grid;
     std::array<gpu::TextureRef, 3> coefficients;  ///< d3 rgba16f or rgba32f: Y00, Y1-1, Y10, Y11
-    gpu::TextureRef closed;  ///< d3 rgba8, one voxel larger: xyz the shares of the faces to the voxels at lower
-                             ///< x, y and z that surfaces close; null: all open
+    gpu::TextureRef closed;  ///< d3 rgba8, one voxel larger: xyz the shares of the faces to the voxels at
+                             ///< lower x, y and z that surfaces close; null: all open
   };
   std::vector<Level> levels;  ///< finest and smallest first
 };
