@@ -22,7 +22,7 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
   PipelineChoice choice(measure, techniques);
   struct ScenePlan {
     Measurer measurer;
-    std::vector<WantedPoint> toDo;
+    std::vector<WantedPoint> missing;
   };
   // All texts are read before the first picture is rendered.
   std::vector<ScenePlan> plans;
@@ -42,12 +42,12 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
         ++summary.held;
       } else {
         if (options.planOnly) summary.missing.push_back(plan.measurer.text(points[i]));
-        plan.toDo.push_back(points[i]);
+        plan.missing.push_back(points[i]);
       }
     }
     for (const auto& [pipeline, why] : unsuited)
       summary.unsuited.push_back(fmt::format("{}, {}: {}", shown, pipeline, why));
-    total += plan.toDo.size();
+    total += plan.missing.size();
     plans.push_back(std::move(plan));
   }
 
@@ -61,7 +61,7 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
   };
   for (ScenePlan& plan : plans) {
     if (options.planOnly) break;
-    for (const StoredRun& run : plan.measurer.measure(plan.toDo, done))
+    for (const StoredRun& run : plan.measurer.measure(plan.missing, done))
       summary.failed += run.point.failure.empty() ? 0 : 1;
   }
   for (const std::string& key : summary.keys)
