@@ -104,7 +104,7 @@ std::vector<Include> includesOf(const std::string& text) {
 // ------------------------------------------------------------------------------------------------------
 
 /// For each part of the framework those that it may include: base <- dsl <- scene; base <- gpu <- shader;
-/// those <- pipeline <- plugin; scene <- reference; base <- measure; all <- report.
+/// those <- pipeline <- plugin; scene <- reference; base <- measure; all <- report <- stress.
 const std::map<std::string, std::set<std::string>>& houseOrder() {
   static const std::map<std::string, std::set<std::string>> order = {
       {"base", {}},
@@ -117,7 +117,9 @@ const std::map<std::string, std::set<std::string>>& houseOrder() {
       {"volume", {"base", "scene"}},
       {"reference", {"base", "dsl", "scene"}},
       {"measure", {"base", "dsl", "scene"}},
-      {"report", {"base", "dsl", "scene", "gpu", "shader", "pipeline", "plugin", "reference", "measure"}}};
+      {"report", {"base", "dsl", "scene", "gpu", "shader", "pipeline", "plugin", "reference", "measure"}},
+      {"stress",
+       {"base", "dsl", "scene", "gpu", "shader", "pipeline", "plugin", "reference", "measure", "report"}}};
   return order;
 }
 
@@ -240,7 +242,7 @@ Violations namedTechniques(const Sources& sources, const std::vector<std::string
 /// its folder and common.
 Violations dependentTechniques(const Sources& sources, const std::vector<std::string>& techniques) {
   Violations found;
-  static const std::set<std::string> closedParts = {"report", "reference", "measure"};
+  static const std::set<std::string> closedParts = {"report", "stress", "reference", "measure"};
   for (const SourceFile& source : sources) {
     const bool shader = startsWith(source.path, "shaders/");
     if (!shader && !startsWith(source.path, "techniques/")) continue;

@@ -12,10 +12,10 @@
 #include "lumivox/base/hash.h"
 #include "report/database.h"
 #include "report/store_schema.h"
+#include "report/store_state.h"
 
 namespace lumivox {
 
-using report::Database;
 using report::Statement;
 using report::Transaction;
 
@@ -96,23 +96,6 @@ std::string frameworkHash() {
   return hash;
 }
 
-struct ResultsStore::State {
-  Database database;
-  Mode mode;
-
-  State(const fs::path& file, Mode openMode) : database(file, openMode == Mode::write), mode(openMode) {}
-  void requireSchema();
-  std::int64_t insertRun(const StoredRun& run);
-  void insertTimes(std::int64_t id, const ReportPoint& point);
-  void insertErrors(std::int64_t id, const ReportPoint& point);
-  void insertNames(std::int64_t id, const StoredRun& run);
-  bool add(const StoredRun& run);
-  StoredRun runAt(const Statement& row) const;
-  void readTimes(StoredRun& run) const;
-  void readErrors(StoredRun& run) const;
-  void readNames(StoredRun& run) const;
-};
-
 ResultsStore::ResultsStore(const fs::path& file, Mode mode) {
   std::error_code ignored;
   if (mode == Mode::read && !fs::exists(file, ignored))
@@ -141,14 +124,24 @@ void ResultsStore::State::requireSchema() {
     // Another process may have made it while this one waited.
     if (isEmpty()) {
       database.execute(report::kSchema);
+      database.execute(report::kSchema2);
       database.execute(fmt::format("PRAGMA user_version = {}", report::kSchemaVersion).c_str());
       database.execute(fmt::format("PRAGMA application_id = {}", report::kApplicationId).c_str());
     }
     transaction.commit();
   }
   if (database.pragma("application_id") != report::kApplicationId) refuse("this is another kind of database");
-  const std::int64_t version = database.pragma("user_version");
-  if (version != report::kSchemaVersion) refuse(fmt::format("it has schema {}", version));
+  schema = database.pragma("user_version");
+  if (schema == 1 && mode == Mode::write) {
+    Transaction transaction(database);
+    if (database.pragma("user_version") == 1) {
+      database.execute(report::kSchema2);
+      database.execute("PRAGMA user_version = 2");
+    }
+    transaction.commit();
+    schema = database.pragma("user_version");
+  }
+  if (schema < 1 || schema > report::kSchemaVersion) refuse(fmt::format("it has schema {}", schema));
 }
 
 const fs::path& ResultsStore::file() const {

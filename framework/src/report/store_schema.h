@@ -5,7 +5,7 @@
 
 namespace lumivox::report {
 
-inline constexpr std::int64_t kSchemaVersion = 1;           // PRAGMA user_version
+inline constexpr std::int64_t kSchemaVersion = 2;           // PRAGMA user_version
 inline constexpr std::int64_t kApplicationId = 0x4c4d5658;  // PRAGMA application_id: "LMVX"
 
 inline constexpr const char* kSchema = R"sql(
@@ -103,6 +103,61 @@ CREATE TABLE health (
   position INTEGER NOT NULL,
   finding TEXT NOT NULL,
   PRIMARY KEY (run, position)
+) STRICT, WITHOUT ROWID;
+)sql";
+
+/// What schema 2 adds to schema 1.
+inline constexpr const char* kSchema2 = R"sql(
+CREATE TABLE stress_cells (
+  id INTEGER PRIMARY KEY,
+  key TEXT NOT NULL UNIQUE,
+  created TEXT NOT NULL,
+  version TEXT NOT NULL,
+  family TEXT NOT NULL,
+  name TEXT NOT NULL,
+  pipeline TEXT NOT NULL,
+  technique TEXT NOT NULL,
+  size TEXT NOT NULL,
+  outcome TEXT NOT NULL,
+  measure TEXT NOT NULL,
+  unit TEXT NOT NULL,
+  value REAL,
+  uncertainty REAL,
+  limit_value REAL,
+  detail TEXT NOT NULL,
+  explanation TEXT NOT NULL,
+  picture TEXT NOT NULL,
+  command TEXT NOT NULL,
+  seconds REAL NOT NULL,
+  pipeline_hash TEXT NOT NULL,
+  framework TEXT NOT NULL,
+  device TEXT NOT NULL,
+  driver TEXT NOT NULL,
+  shader_input TEXT NOT NULL,
+  host TEXT NOT NULL
+) STRICT;
+CREATE TABLE stress_provenance (
+  cell INTEGER NOT NULL REFERENCES stress_cells ON DELETE CASCADE,
+  technique TEXT NOT NULL,
+  hash TEXT NOT NULL,
+  PRIMARY KEY (cell, technique)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE ceilings (
+  device TEXT NOT NULL,
+  driver TEXT NOT NULL,
+  shader_input TEXT NOT NULL,
+  host TEXT NOT NULL,
+  name TEXT NOT NULL,
+  unit TEXT NOT NULL,
+  created TEXT NOT NULL,
+  version TEXT NOT NULL,
+  median REAL NOT NULL,
+  lower_quartile REAL NOT NULL,
+  upper_quartile REAL NOT NULL,
+  smallest REAL NOT NULL,
+  largest REAL NOT NULL,
+  repeats INTEGER NOT NULL,
+  PRIMARY KEY (device, driver, shader_input, host, name)
 ) STRICT, WITHOUT ROWID;
 )sql";
 

@@ -52,6 +52,50 @@ struct RunFilter {
   bool everything() const;
 };
 
+/// What became of one pipeline on one stress case.
+enum class StressOutcome {
+  stable,         ///< healthy, and within the case's limit
+  biased,         ///< healthy, bounded, and beyond the limit: `value` says by how much
+  diverges,       ///< finite, but it grows without bound or does not converge where it should
+  refused,        ///< a clear message in place of a picture
+  notApplicable,  ///< the case asks for something that the pipeline does not have
+  broken          ///< NaN, infinite, negative radiance, a crash or a hang: never acceptable
+};
+const char* name(StressOutcome outcome);  ///< "not_applicable"
+std::optional<StressOutcome> stressOutcomeNamed(const std::string& name);
+
+/// One cell of the stress battery's matrix, with everything that it depends on.
+struct StressCell {
+  std::int64_t id = 0;
+  std::string created, version;
+  std::string family, name;  ///< of the case
+  std::string pipeline;      ///< file as given
+  std::string technique;     ///< the technique that the pipeline stands for
+  std::string size;          ///< "quick" or "full"
+  StressOutcome outcome = StressOutcome::stable;
+  std::string measure, unit;  ///< of value and limit; empty when only health was looked at
+  Measured value;
+  double limit = 0.0;
+  std::string detail;       ///< the first bad pass, port and voxel or pixel; the refusal; more numbers
+  std::string explanation;  ///< of a property of the published method, from the technique's card
+  std::string picture;      ///< file beside the page; empty: none
+  std::string command;      ///< repeats it
+  double seconds = 0.0;
+  std::string pipelineHash, framework;            ///< content hashes
+  std::map<std::string, std::string> techniques;  ///< name to hash of library and shader pack
+  std::string device, driver, shaderInput, host;
+
+  std::string key() const;  ///< 32 hexadecimal digits
+};
+
+/// What one device can do at most, measured: `lumivox device`.
+struct DeviceCeiling {
+  std::string name;       ///< "texture_sampling_rgba16f_3d"
+  std::string unit;       ///< "samples/s", "writes/s", "operations/s", "bytes/s"
+  TimingStatistics rate;  ///< in that unit
+  std::string created, version, device, driver, shaderInput, host;
+};
+
 class ResultsStore {
  public:
   enum class Mode { read, write };
@@ -75,6 +119,14 @@ class ResultsStore {
   std::size_t remove(const RunFilter& filter);
   /// Takes over the runs of another store that are not here; returns how many. In one transaction.
   std::size_t merge(const ResultsStore& other);
+
+  /// Cells of the stress battery. A cell with the same key takes the place of the older one.
+  void add(const std::vector<StressCell>& cells);
+  std::vector<StressCell> stressCells() const;  ///< by id; empty for a store of schema 1 that is only read
+  /// The newest ceilings of each device; those of the same name take the place of the older ones.
+  void add(const std::vector<DeviceCeiling>& ceilings);
+  std::vector<DeviceCeiling> ceilings(const std::string& device, const std::string& driver,
+                                      const std::string& shaderInput, const std::string& host) const;
 
   /// The store of a user who names none: $LUMIVOX_RESULTS, else results.sqlite in the cache directory.
   static std::filesystem::path defaultFile();

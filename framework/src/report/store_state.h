@@ -1,0 +1,30 @@
+// The inside of a results store, shared by the files that read and write its tables.
+#pragma once
+
+#include <string>
+
+#include "lumivox/report/store.h"
+#include "report/database.h"
+
+namespace lumivox {
+
+struct ResultsStore::State {
+  report::Database database;
+  Mode mode;
+  std::int64_t schema = 0;  ///< of the file; an older one has fewer tables
+
+  State(const std::filesystem::path& file, Mode openMode)
+      : database(file, openMode == Mode::write), mode(openMode) {}
+  void requireSchema();
+  std::int64_t insertRun(const StoredRun& run);
+  void insertTimes(std::int64_t id, const ReportPoint& point);
+  void insertErrors(std::int64_t id, const ReportPoint& point);
+  void insertNames(std::int64_t id, const StoredRun& run);
+  bool add(const StoredRun& run);
+  StoredRun runAt(const report::Statement& row) const;
+  void readTimes(StoredRun& run) const;
+  void readErrors(StoredRun& run) const;
+  void readNames(StoredRun& run) const;
+};
+
+}  // namespace lumivox

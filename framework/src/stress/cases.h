@@ -1,0 +1,110 @@
+// What a case of the battery is written with. A case knows neither techniques nor passes: it makes scenes,
+// has the pipeline under test render them, and compares what comes out with closed forms, with the truth, or
+// with the pipeline's own picture of an equivalent scene.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lumivox/base/picture.h"
+#include "lumivox/measure/metrics.h"
+#include "lumivox/pipeline/pipeline.h"
+#include "lumivox/reference/path_tracer.h"
+#include "lumivox/report/store.h"
+#include "lumivox/scene/scene.h"
+#include "lumivox/stress/stress.h"
+
+namespace lumivox::stress {
+
+/// How one picture of the pipeline under test is made. Health is always scanned, every pass's output.
+struct Shot {
+  int width = 0, height = 0;  ///< 0: the battery's (48 x 48 quick, 96 x 96 full)
+  double time = 0.0;          ///< s
+  std::uint64_t seed = 1;
+  std::string camera;
+  /// Over the battery's own. Only those that the pipeline has are used; hasParameter() tells.
+  ParameterValues parameters;
+  int subpixels =
+      1;  ///< the picture is the mean over this many positions in the pixel (for comparisons with the truth)
+  bool keepEverything = false;
+};
+
+struct Frame {
+  FrameResult result;
+  Picture whole;  ///< composite (report.h compositePicture); for a pipeline without outputs an empty picture
+};
+
+/// A case's hands: the pipeline under test on a device. Throws Unhealthy (with the first finding of the first
+/// bad pass) when a pass's output holds NaN, infinite or forbidden negative values, so that no case can
+/// forget to look.
+class Bench {
+ public:
+  virtual ~Bench() = default;
+  virtual bool quick() const = 0;
+  virtual const Pipeline& pipeline() const = 0;
+  virtual const PipelineParameter* parameter(
+      const std::string& name) const = 0;  ///< null: the pipeline has none
+  /// A text with scene-relative paths below `scenes/stress/`: the same language as a committed scene, with
+  /// all of its checks.
+  virtual Scene sceneFromText(const std::string& text) const = 0;
+  virtual Scene committedScene(const std::string& name) const = 0;  ///< "cornell", "stress/one_triangle"
+  /// One frame of a fresh executor.
+  virtual Frame render(const Scene& scene, const Shot& shot = {}) = 0;
+  /// Frames of one executor, at these times in this order; the last is what matters. Snapshots may be changed
+  /// (teleported cameras) by `edit` before each is rendered.
+  virtual std::vector<Frame> renderSequence(
+      const Scene& scene, const std::vector<double>& times, const Shot& shot = {},
+      const std::function<void(std::size_t frame, SceneSnapshot&)>& edit = {}) = 0;
+  /// Bits of everything that the pipeline makes: outputs, or for a pipeline without outputs the textures and
+  /// fragments of its last pass. For comparisons "the same bits".
+  virtual std::uint64_t contentOf(const Scene& scene, const Shot& shot = {}) = 0;
+  /// Cached path-traced truth at the shot's size.
+  virtual LayeredPicture truth(const Scene& scene, const Shot& shot, int samplesPerPixel) = 0;
+  /// The picture that the cell links to.
+  virtual void show(const Picture& picture) = 0;
+};
+
+/// What a case found. `outcome` follows from value and limit unless the case says otherwise.
+struct Finding {
+  StressOutcome outcome = StressOutcome::stable;
+  std::string
+      measure;       ///< "RMSE against the same scene of 1 m, of its mean"; empty: only health was looked at
+  std::string unit;  ///< "" for shares
+  Measured value;
+  double limit = 0.0;  ///< above: biased; 0 with an empty unit and measure: none
+  std::string detail;  ///< more numbers: "spectral radius 0.9986, 4600 bounces to 1 %"
+};
+
+struct Case {
+  StressCaseInfo info;
+  /// Nullopt: the case says nothing about this pipeline (a parameter that it lacks); `why` may be left in the
+  /// finding.
+  std::function<std::optional<Finding>(Bench&)> run;
+};
+
+/// value <= limit: stable, else biased.
+Finding judged(std::string measure, Measured value, double limit, std::string detail = {});
+/// RMS difference divided by the mean of `wanted` (by 1 where that is black).
+double relativeDifference(const Picture& picture, const Picture& wanted);
+
+// The families, a file each: cases_<family>.cpp.
+std::vector<Case> stiffTransportCases();
+std::vector<Case> geometryCases();
+std::vector<Case> scaleAndPlaceCases();
+std::vector<Case> lightCases();
+std::vector<Case> pictureAndCameraCases();
+std::vector<Case> timeCases();
+std::vector<Case> refinementCases();
+std::vector<Case> repeatabilityCases();
+/// Every declared parameter at both ends of its range and at every word, the others at the battery's own
+/// values.
+std::vector<Case> parameterCases();
+
+/// All of them.
+const std::vector<Case>& allCases();
+
+}  // namespace lumivox::stress
