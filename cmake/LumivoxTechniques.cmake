@@ -24,7 +24,8 @@ function(add_shaders name)
   add_custom_target(shaders_${name} DEPENDS ${pack} ${header})
 endfunction()
 
-# add_technique(NAME): the shared library of techniques/NAME/*.cpp and, when shaders/NAME exists, its shaders.
+# add_technique(NAME): the shared library of techniques/NAME/*.cpp, when shaders/NAME exists its shaders, and beside both the paper card
+# NAME.md, which explains where the technique breaks.
 function(add_technique name)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/techniques/${name}/*.cpp)
   add_library(technique_${name} MODULE ${sources})
@@ -32,6 +33,14 @@ function(add_technique name)
     OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/techniques)
   target_link_libraries(technique_${name} PRIVATE lumivox)
   set_property(GLOBAL APPEND PROPERTY LUMIVOX_TECHNIQUES technique_${name})
+  set(card ${CMAKE_BINARY_DIR}/lib/techniques/${name}.md)
+  add_custom_command(
+    OUTPUT ${card}
+    COMMAND ${CMAKE_COMMAND} -E copy ${CMAKE_SOURCE_DIR}/techniques/${name}/README.md ${card}
+    DEPENDS ${CMAKE_SOURCE_DIR}/techniques/${name}/README.md
+    VERBATIM)
+  add_custom_target(card_${name} DEPENDS ${card})
+  add_dependencies(technique_${name} card_${name})
   if(EXISTS ${CMAKE_SOURCE_DIR}/shaders/${name})
     add_shaders(${name})
     add_dependencies(technique_${name} shaders_${name})

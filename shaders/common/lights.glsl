@@ -23,7 +23,8 @@ layout(std430, binding = 6) readonly buffer Views { mat4 views[]; };
 layout(binding = 7) uniform sampler2DArrayShadow shadowDepth;
 #endif
 
-// Irradiance on a plane perpendicular to the arriving light, W/m^2, without visibility; toLight is made unit length.
+// Irradiance on a plane perpendicular to the arriving light, W/m^2, without visibility; toLight is made unit length. A point in which the
+// light itself lies has no direction to it: both are 0.
 vec3 arrivingIrradiance(LightSample light, vec3 posWorld, out vec3 toLight) {
   int kind = int(light.positionKind.w);
   if (kind == kLightDirectional) {
@@ -31,6 +32,10 @@ vec3 arrivingIrradiance(LightSample light, vec3 posWorld, out vec3 toLight) {
     return light.power.rgb;
   }
   vec3 path = light.positionKind.xyz - posWorld;
+  if (dot(path, path) == 0.0) {
+    toLight = vec3(0.0);
+    return vec3(0.0);
+  }
   toLight = normalize(path);
   // A disc of radius r seen from its axis at distance d gives pi r^2 L / (d^2 + r^2); for a point r is 0.
   float distanceSquared = dot(path, path) + light.shape.w;

@@ -7,7 +7,11 @@
 #define SCENE_MATERIALS
 #include "common/scene.glsl"
 
-layout(std140, binding = 2) uniform Eye { vec3 eyeWorld; };
+layout(std140, binding = 1) uniform View { mat4 worldToClip; };
+layout(std140, binding = 2) uniform Eye {
+  vec3 eyeWorld;
+  vec2 pictureSize;  // pixels
+};
 
 #if TEXTURES
 layout(binding = 0) uniform sampler2D diffuseTexture;
@@ -33,9 +37,21 @@ layout(location = 4) out vec4 outSpecular;
 layout(location = 5) out vec4 outEmission;
 #endif
 
+// Whether the surface is not what this pixel's ray meets. A triangle whose plane holds the eye has no extent in the picture, but its
+// corners are rounded to steps of the rasteriser, and what it covers then lies anywhere in its plane.
+bool isElsewhere() {
+  const float kTolerance = 2.0;  // pixels: beyond what rounding moves a triangle that is seen
+  // Share of the coordinates below which their rounding leaves no direction.
+  const float kNearest = 1e-5;
+  vec4 clip = worldToClip * vec4(posWorld, 1.0);
+  vec2 pixel = (0.5 + vec2(0.5, -0.5) * clip.xy / clip.w) * pictureSize;
+  return !(clip.w > kNearest * (length(posWorld) + length(eyeWorld)) && all(lessThan(abs(pixel - gl_FragCoord.xy), vec2(kTolerance))));
+}
+
 void main() {
   // Derivatives before any discard: they are undefined after it.
   vec3 geometricNormal = cross(dFdx(posWorld), dFdy(posWorld));
+  if (isElsewhere()) discard;
 #if MASKS
   if (texture(maskTexture, texcoord).r < kMaskThreshold) discard;
 #endif

@@ -29,6 +29,9 @@ layout(binding = 7) uniform sampler3D closed;
 layout(binding = 0, rgba32f) uniform image2D diffuseImage;
 layout(binding = 1, rgba32f) uniform image2D clippedImage;
 
+// W/(sr m^2): what an exponent makes of bright light stays finite.
+const float kMostRadiance = 1e30;
+
 // Open share of the way from a cell to its neighbour `side` along an axis.
 float openWay(ivec3 cell, int axis, int side) {
   if (side == 0) return 1.0;
@@ -137,7 +140,7 @@ void main() {
     if (last != 0) {
       vec3 albedo = texelFetch(gDiffuse, pixel, 0).rgb;
       vec3 radiance = max(irradiance, 0.0) / kPi;
-      if (exponent != 1.0) radiance = pow(radiance, vec3(exponent));
+      if (exponent != 1.0) radiance = min(pow(radiance, vec3(exponent)), vec3(kMostRadiance));
       irradiance = albedo * radiance;
       clipped *= albedo / kPi;
     }

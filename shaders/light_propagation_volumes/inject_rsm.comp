@@ -1,5 +1,7 @@
 #version 450
-// Kaplanyan & Dachsbacher 2010, Sec. 4.1: every texel of the reflective shadow map is a virtual point light.
+// Kaplanyan & Dachsbacher 2010, Sec. 4.1: every texel of the reflective shadow map is a virtual point light. STEP weigh: how many there
+// are in a cell and how bright the brightest is; STEP add: their sums.
+#pragma lumivox axis STEP weigh add
 #include "virtual_lights.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -8,7 +10,6 @@ layout(std140, binding = 0) uniform Parameters {
   vec3 gridLow;       // m
   float cellSize;     // m
   ivec3 resolution;
-  float largestFlux;  // W
 };
 layout(binding = 0) uniform sampler2DArray rsmPosition;
 layout(binding = 1) uniform sampler2DArray rsmNormal;
@@ -21,5 +22,13 @@ void main() {
   if (!any(greaterThan(flux, vec3(0.0)))) return;
   vec3 normal = texelFetch(rsmNormal, texel, 0).xyz;
   vec3 position = (texelFetch(rsmPosition, texel, 0).xyz - gridLow) / cellSize;
-  addVirtualLight(cellInFront(position, normal), resolution, flux, normal, largestFlux);
+  int word = wordsOf(cellInFront(position, normal), resolution);
+  if (word < 0) return;
+#if STEP == STEP_WEIGH
+  // The order of the bits of numbers from 0 on is that of the numbers.
+  atomicMax(sums[word + kBrightest], floatBitsToUint(largestOf(flux)));
+  atomicAdd(sums[word + kLights], 1u);
+#else
+  addVirtualLight(word, flux, normal);
+#endif
 }

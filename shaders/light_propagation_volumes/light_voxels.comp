@@ -67,7 +67,15 @@ void main() {
     for (int i = 0; i < kGroups; ++i)
       if (areas[i] > 0.0 && (closestNormal == 0 || i == closest)) irradiance[i] += irradianceFrom(light, positions[i], normals[i]);
   }
-  // No cell reflects more than a quarter of the range for each group.
-  for (int i = 0; i < kGroups; ++i)
-    addVirtualLight(cell, resolution, min(albedo * irradiance[i] * areas[i], 0.25 * largestFlux), normals[i], largestFlux);
+  // No cell reflects more than all lights emit: near a light the irradiance of one point says little about its cell.
+  vec3 fluxes[4];
+  float brightest = 0.0;
+  for (int i = 0; i < kGroups; ++i) {
+    fluxes[i] = min(albedo * irradiance[i] * areas[i], largestFlux);
+    brightest = max(brightest, largestOf(fluxes[i]));
+  }
+  int word = wordsOf(cell, resolution);
+  sums[word + kBrightest] = floatBitsToUint(brightest);
+  sums[word + kLights] = uint(kGroups);
+  for (int i = 0; i < kGroups; ++i) addVirtualLight(word, fluxes[i], normals[i]);
 }

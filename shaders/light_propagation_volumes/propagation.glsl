@@ -22,7 +22,16 @@ layout(binding = 3, rgba32f) uniform image3D redTotal;
 layout(binding = 4, rgba32f) uniform image3D greenTotal;
 layout(binding = 5, rgba32f) uniform image3D blueTotal;
 
+// W: light that an amplifier above 1, or the published sum, lets grow without end stops here, where sums, products with albedos and
+// squares of it are finite yet.
+const float kMostFlux = 1e18;
+
+vec4 bounded(vec4 flux) { return clamp(flux, vec4(-kMostFlux), vec4(kMostFlux)); }
+
 void store(ivec3 cell, vec4 redSum, vec4 greenSum, vec4 blueSum) {
+  redSum = bounded(redSum);
+  greenSum = bounded(greenSum);
+  blueSum = bounded(blueSum);
   imageStore(redNext, cell, redSum);
   imageStore(greenNext, cell, greenSum);
   imageStore(blueNext, cell, blueSum);

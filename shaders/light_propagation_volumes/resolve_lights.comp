@@ -9,7 +9,6 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 layout(std140, binding = 0) uniform Parameters {
   ivec3 resolution;
-  float largestFlux;   // W
   float meanCosine;    // 0: the one at which nothing leaves backwards
 };
 layout(binding = 0, rgba32f) uniform writeonly image3D red;
@@ -19,10 +18,10 @@ layout(binding = 2, rgba32f) uniform writeonly image3D blue;
 void main() {
   ivec3 cell = ivec3(gl_GlobalInvocationID);
   if (any(greaterThanEqual(cell, resolution))) return;
-  int word = ((cell.z * resolution.y + cell.y) * resolution.x + cell.x) * kWordsOfCell;
+  int word = wordsOf(cell, resolution);
   // fluxAcross the face behind the light is 0: kCrossing0 Y0 = kCrossing1 m Y1.
   float cosine = meanCosine > 0.0 ? meanCosine : kCrossing0 * kY0 / (kCrossing1 * kY1);
-  vec4 unit = vec4(kY0, vec3(cosine * kY1)) * (largestFlux / (0.5 * kFixedPoint));
+  vec4 unit = vec4(kY0, vec3(cosine * kY1)) * (fullFlux(word) / (0.5 * kFixedPoint));
   vec4 channels[3];
   for (int i = 0; i < 3; ++i) {
     ivec4 sum = ivec4(sums[word + 4 * i], sums[word + 4 * i + 1], sums[word + 4 * i + 2], sums[word + 4 * i + 3]);

@@ -28,6 +28,7 @@ layout(std140, binding = 0) uniform Parameters {
   float startShare;   // start of a cone along its axis, in voxels
   float coarsest;     // coarsest level
   float clearance;    // largest diameter of a sample as a share of its height over the tangent plane
+  float unit;         // W/(sr m^2) that the value 1 of the grid stands for
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
@@ -91,6 +92,7 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta) {
 #endif
     distance += stride;
   }
+  radiance *= unit;
 #if ENVIRONMENT
 #if MEDIUM != MEDIUM_NONE
   if (opacity < kOpaque) passed *= exp(-opticalDepth(apex + direction * distance, direction, kNoReach, kMediumSteps));

@@ -11,6 +11,9 @@ uint itemIndex() {
 // Like kFixedPoint, for shares of either sign.
 const float kSignedFixedPoint = 1073741824.0;  // 2^30
 
+// What a fragment of coverage 1 adds to the sum of coverages of a voxel with so many.
+uint fullShare(uint fragments) { return uint(kFixedPoint / float(fragments) + 0.5); }
+
 #ifdef AVERAGING
 layout(std140, binding = 0) uniform Averaging {
   ivec3 resolution;

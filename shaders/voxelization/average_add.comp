@@ -26,8 +26,9 @@ void main() {
   VoxelFragment fragment = fragments[index];
   uint slot = imageLoad(slots, unpackVoxel(fragment.voxel)).r - 1u;
   vec2 blueCoverage = unpackHalf2x16(fragment.albedoBCoverage);
-  float weight = clamp(blueCoverage.y, 0.0, 1.0) / float(fragmentsOfSlot[slot]);
-  atomicAdd(coverageSums[slot], uint(weight * kFixedPoint + 0.5));
+  float covered = clamp(blueCoverage.y, 0.0, 1.0), weight = covered / float(fragmentsOfSlot[slot]);
+  uint full = fullShare(fragmentsOfSlot[slot]);
+  atomicAdd(coverageSums[slot], covered < 1.0 ? uint(weight * kFixedPoint + 0.5) : full);
 #if ATTRIBUTES
   vec3 albedo = clamp(vec3(unpackHalf2x16(fragment.albedoRg), blueCoverage.x), 0.0, 1.0);
   vec3 normal = unpackNormal(fragment.normal);

@@ -29,14 +29,16 @@ void main() {
   uint slot = itemIndex();
   if (slot >= slotCount) return;
   ivec3 voxel = unpackVoxel(slotVoxels[slot]);
-  float mean = float(coverageSums[slot]) / kFixedPoint;
-  float opacity = min(coverageSum != 0 ? mean * float(fragmentsOfSlot[slot]) : mean, 1.0);
+  // Against what full coverages add up to, rounded as each of them was: a voxel that all of its fragments fill is opaque, exactly.
+  uint fragments = fragmentsOfSlot[slot];
+  float mean = float(coverageSums[slot]) / float(fragments * fullShare(fragments));
+  float opacity = min(coverageSum != 0 ? mean * float(fragments) : mean, 1.0);
 #if OPACITY
   imageStore(opacityImage, voxel, vec4(opacity));
 #endif
 #if ATTRIBUTES
   // Coverages of nothing at all leave no average.
-  float inverse = mean > 0.0 ? 1.0 / mean : 0.0;
+  float inverse = mean > 0.0 ? kFixedPoint / float(coverageSums[slot]) : 0.0;
   vec3 albedo = vec3(albedoSums[3u * slot], albedoSums[3u * slot + 1u], albedoSums[3u * slot + 2u]) / kFixedPoint;
   vec3 normal = vec3(normalSums[3u * slot], normalSums[3u * slot + 1u], normalSums[3u * slot + 2u]) / kSignedFixedPoint;
   imageStore(albedoImage, voxel, vec4(albedo * inverse, opacity));

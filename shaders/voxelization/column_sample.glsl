@@ -2,14 +2,23 @@
 // Including files declare the textures before, as the axes TEXTURES and MASKS say.
 #include "triangle.glsl"
 
-// Barycentric coordinates in the projection, clamped to the triangle.
+// How far inside an edge, in voxels, the sample of a column lies whose middle the triangle does not cover. On the edge itself, where the next
+// surface begins, rounding would decide whether light reaches it.
+const float kInset = 1.0 / 64.0;
+
+// Barycentric coordinates in the projection of the point of the triangle nearest to a point, or just inside of it.
 vec3 barycentric(mat3 corners, vec2 point) {
   vec2 e1 = corners[1].xy - corners[0].xy, e2 = corners[2].xy - corners[0].xy, p = point - corners[0].xy;
+  const vec3 kMiddle = vec3(1.0 / 3.0);
   float doubleArea = e1.x * e2.y - e1.y * e2.x;
-  if (doubleArea == 0.0) return vec3(1.0 / 3.0);
+  if (doubleArea == 0.0) return kMiddle;
   vec2 weights = vec2(p.x * e2.y - p.y * e2.x, e1.x * p.y - e1.y * p.x) / doubleArea;
-  vec3 result = max(vec3(1.0 - weights.x - weights.y, weights), 0.0);
-  return result / (result.x + result.y + result.z);
+  vec3 result = vec3(1.0 - weights.x - weights.y, weights);
+  if (all(greaterThanEqual(result, vec3(0.0)))) return result;
+  result = max(result, 0.0);
+  result /= result.x + result.y + result.z;
+  float toMiddle = length((corners * (kMiddle - result)).xy);
+  return mix(result, kMiddle, toMiddle > kInset ? kInset / toMiddle : 1.0);
 }
 
 // What the triangle leaves in a column: the fragment of every voxel there, but for its place.

@@ -80,7 +80,7 @@ class GBufferPass : public Pass {
                         const gpu::RasterState& state) {
     const SceneTraits& traits = frame.traits();
     const gbufferShader::View view{worldToClip(frame.snapshot())};
-    const gbufferShader::Eye eye{frame.snapshot().camera.eye};
+    const gbufferShader::Eye eye{frame.snapshot().camera.eye, glm::vec2(pixelsOf(frame.snapshot()))};
     GpuScene& scene = frame.scene();
     frame.device().beginDrawing(targets, state);
     for (const SceneDraw& draw : scene.draws()) {

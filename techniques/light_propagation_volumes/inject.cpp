@@ -12,13 +12,14 @@ namespace lumivox::light_propagation_volumes {
 namespace {
 
 namespace closeShader = shaders::light_propagation_volumes::close;
+namespace fillShader = shaders::light_propagation_volumes::fill_corners;
 namespace resolveClosedShader = shaders::light_propagation_volumes::resolve_closed;
 namespace rsmShader = shaders::light_propagation_volumes::inject_rsm;
 namespace collectShader = shaders::light_propagation_volumes::collect_voxels;
 namespace lightShader = shaders::light_propagation_volumes::light_voxels;
 namespace resolveShader = shaders::light_propagation_volumes::resolve_lights;
 
-constexpr std::uint64_t kSumBytes = 12 * sizeof(std::uint32_t);    // of a cell, virtual_lights.glsl
+constexpr std::uint64_t kSumBytes = 14 * sizeof(std::uint32_t);    // of a cell, virtual_lights.glsl
 constexpr std::uint64_t kVoxelBytes = 37 * sizeof(std::uint32_t);  // of a cell, lit_voxel.glsl
 constexpr int kLargestVoxelGrid = 96;  // cells along a side whose voxels fit into 128 MiB, which every driver
                                        // can address
@@ -30,20 +31,27 @@ std::uint64_t cellCount(const GridPlacement& grid) {
 
 class Inject : public Pass {
  public:
-  Reads readsFrom() const override { return Reads::camera | Reads::geometry | Reads::lights; }
+  Reads readsFrom() const override { return Reads::partOfCamera | Reads::geometry | Reads::lights; }
+  /// The grids move with the camera, but by whole cells and not out of the scene.
+  std::vector<float> readsOfCamera(const SceneSnapshot& snapshot) const override {
+    std::vector<float> places;
+    for (const GridPlacement& grid : placeGrids(snapshot, levels, resolution, extent)) {
+      places.insert(places.end(), {grid.low.x, grid.low.y, grid.low.z, grid.voxelSize});
+      for (int axis = 0; axis < 3; ++axis) places.push_back(static_cast<float>(grid.resolution[axis]));
+    }
+    return places;
+  }
 
   void run(PassContext& frame) override {
-    const float flux = largestFlux(frame.sceneDescription(), frame.snapshot());
     ShGrid result;
     for (const GridPlacement& grid : placeGrids(frame.snapshot(), levels, resolution, extent)) {
       ShGrid::Level level{grid, coefficientTextures(frame, grid.resolution, "coefficients"), nullptr};
       level.closed = closedFaces(frame, grid);
       const gpu::BufferRef sums = frame.buffer(cellCount(grid) * kSumBytes, "virtual lights");
       sums->clear();
-      addLights(frame, grid, *sums, flux);
+      addLights(frame, grid, *sums);
       resolveShader::Parameters parameters{};
       parameters.resolution = grid.resolution;
-      parameters.largestFlux = flux;
       // A clamped cosine has the mean cosine 2/3; 0 asks for that of the default lobe.
       parameters.meanCosine = lobe == "cosine" ? 2.0f / 3.0f : 0.0f;
       frame.dispatch(
@@ -59,8 +67,7 @@ class Inject : public Pass {
 
  protected:
   /// Adds virtual lights to the sums of the cells, and a barrier.
-  virtual void addLights(PassContext& frame, const GridPlacement& grid, const gpu::Buffer& sums,
-                         float largestFlux) = 0;
+  virtual void addLights(PassContext& frame, const GridPlacement& grid, const gpu::Buffer& sums) = 0;
 
   In<VoxelFragments> fragments{this, "fragments",
                                "surface samples; their voxels no larger than the finest cells"};
@@ -86,10 +93,11 @@ class Inject : public Pass {
                       "with a higher resolution",
                       fragments->grid.voxelSize, grid.voxelSize));
     const glm::ivec3 faces = grid.resolution + 1;
-    std::array<gpu::TextureRef, 3> parts;
-    for (gpu::TextureRef& texture : parts) {
-      texture = cellTexture(frame, faces, gpu::Format::r32ui, "parts of faces");
-      texture->clear(glm::vec4(0.0f));
+    std::array<gpu::TextureRef, 3> parts, filled;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      parts[axis] = cellTexture(frame, faces, gpu::Format::r32ui, "parts of faces");
+      parts[axis]->clear(glm::vec4(0.0f));
+      filled[axis] = cellTexture(frame, faces, gpu::Format::r32ui, "parts of faces, corners filled");
     }
     closeShader::Parameters parameters{};
     parameters.listLow = fragments->grid.low;
@@ -104,6 +112,14 @@ class Inject : public Pass {
          closeShader::partsY(*parts[1]), closeShader::partsZ(*parts[2])},
         *fragments->count, sizeof(std::uint32_t));
     frame.device().barrier();
+    for (int round = 0; round < 2; ++round) {
+      frame.dispatch(
+          frame.program(fillShader::kProgram),
+          {fillShader::partsX(*parts[0]), fillShader::partsY(*parts[1]), fillShader::partsZ(*parts[2]),
+           fillShader::filledX(*filled[0]), fillShader::filledY(*filled[1]), fillShader::filledZ(*filled[2])},
+          faces, kCellGroup);
+      std::swap(parts, filled);
+    }
     const gpu::TextureRef closed = cellTexture(frame, faces, gpu::Format::rgba8, "closed faces");
     frame.dispatch(frame.program(resolveClosedShader::kProgram),
                    {resolveClosedShader::partsX(*parts[0]), resolveClosedShader::partsY(*parts[1]),
@@ -117,17 +133,20 @@ class InjectRsmPass : public Inject {
   In<ReflectiveShadowMap> map{this, "map", Presence::optional,
                               "what the lights see; without it only the environment shines"};
 
-  void addLights(PassContext& frame, const GridPlacement& grid, const gpu::Buffer& sums,
-                 float largestFlux) override {
+  void addLights(PassContext& frame, const GridPlacement& grid, const gpu::Buffer& sums) override {
     if (!map.present() || map->lightCount == 0) return;
     using gpu::Sampling;
     const gpu::TextureDescription& layers = map->flux->description();
-    frame.dispatch(frame.program(rsmShader::kProgram),
-                   {rsmShader::parameters({grid.low, grid.voxelSize, grid.resolution, largestFlux}),
-                    rsmShader::rsmPosition(*map->position, Sampling::nearest),
-                    rsmShader::rsmNormal(*map->normal, Sampling::nearest),
-                    rsmShader::rsmFlux(*map->flux, Sampling::nearest), rsmShader::sums(sums)},
-                   {layers.width, layers.height, layers.depth}, kImageGroup);
+    for (const int step : {rsmShader::Variant::stepWeigh, rsmShader::Variant::stepAdd}) {
+      rsmShader::Variant variant;
+      variant.step = step;
+      frame.dispatch(frame.program(rsmShader::kProgram, variant.key()),
+                     {rsmShader::parameters({grid.low, grid.voxelSize, grid.resolution}),
+                      rsmShader::rsmPosition(*map->position, Sampling::nearest),
+                      rsmShader::rsmNormal(*map->normal, Sampling::nearest),
+                      rsmShader::rsmFlux(*map->flux, Sampling::nearest), rsmShader::sums(sums)},
+                     {layers.width, layers.height, layers.depth}, kImageGroup);
+    }
   }
 };
 
@@ -154,8 +173,7 @@ class InjectVoxelsPass : public Inject {
     return {};
   }
 
-  void addLights(PassContext& frame, const GridPlacement& grid, const gpu::Buffer& sums,
-                 float largestFlux) override {
+  void addLights(PassContext& frame, const GridPlacement& grid, const gpu::Buffer& sums) override {
     if (!shadow.present() || shadow->lightCount == 0) return;
     const gpu::BufferRef voxels = frame.buffer(cellCount(grid) * kVoxelBytes, "lit voxels");
     voxels->clear();
@@ -180,7 +198,7 @@ class InjectVoxelsPass : public Inject {
     parameters.gridLow = grid.low;
     parameters.cellSize = grid.voxelSize;
     parameters.resolution = grid.resolution;
-    parameters.largestFlux = largestFlux;
+    parameters.largestFlux = largestFlux(frame.sceneDescription(), frame.snapshot());
     parameters.lightCount = shadow->lightCount;
     parameters.contrastAlbedo = asPublished || albedo == "contrast" ? 1 : 0;
     parameters.closestNormal = asPublished || normals == "closest" ? 1 : 0;

@@ -9,8 +9,10 @@ namespace lumivox::light_propagation_volumes {
 namespace {
 
 /// Empty cells between the scene and the border of the coarsest grid: half a cell is lost by the placement on
-/// whole cells, and a surface on the bounds needs the cell behind it.
-constexpr float kMargin = 1.5f;
+/// whole cells, and a surface on the bounds needs the cell behind it. The rest keeps such a surface a third
+/// of a cell away from the nearest face in every level, so that rounding does not decide in which cell it
+/// lies.
+constexpr float kMargin = 1.5f + 1.0f / 6.0f;
 
 /// Without the cells that the scene does not reach.
 GridPlacement trimmed(const GridPlacement& grid, const Bounds& bounds) {
@@ -55,7 +57,7 @@ std::vector<GridPlacement> placeGrids(const SceneSnapshot& snapshot, int levels,
         centre[axis] = low < high ? std::clamp(centre[axis], low, high) : 0.5f * (low + high);
       }
     }
-    const GridPlacement grid = placeNestedGrid(centre, finestExtent, resolution, level, snapshot.origin);
+    const GridPlacement grid = placeNestedGrid(centre, finestExtent, resolution, level);
     grids.push_back(around ? grid : trimmed(grid, bounds));
   }
   return grids;

@@ -77,7 +77,8 @@ class ParticlesPass : public Pass {
 class InsertPass : public Pass {
   In<Particles> particles{this, "particles", Presence::optional, "where the particles are"};
   In<OccupancyGrid> space{this, "space", Presence::optional,
-                          "voxels that are solid: particles share out their mass among the free ones"};
+                          "voxels that are solid: particles share out their mass among the free ones",
+                          Needs::particles};
   Param<int> resolution{this,
                         "resolution",
                         64,

@@ -14,22 +14,22 @@
 namespace lumivox::voxel_cone_tracing {
 namespace {
 
-namespace countShader = shaders::voxel_cone_tracing::count;
 namespace injectShader = shaders::voxel_cone_tracing::inject;
+namespace addShader = shaders::voxel_cone_tracing::add;
 namespace resolveShader = shaders::voxel_cone_tracing::resolve;
 namespace filterShader = shaders::voxel_cone_tracing::filter;
 namespace gatherShader = shaders::voxel_cone_tracing::gather;
 
 constexpr glm::ivec3 kVoxelGroup{4, 4, 4};  // local size of the passes over voxels
 constexpr glm::ivec3 kImageGroup{8, 8, 1};
+constexpr float kLargestHalf = 32768.0f;  // half floats end at 65504; filtering adds nothing to the largest
 
-/// The largest radiance that a fragment can reflect: what the fixed-point sums must hold. The albedo is at
-/// most 1.
+/// What no voxel can reflect: all lights at half a voxel's distance, nearer than which a grid cannot say
+/// anything. The albedo is at most 1.
 float largestRadiance(const Scene& scene, const SceneSnapshot& snapshot, float voxelSize) {
   const auto largest = [](const glm::vec3& v) { return std::max({v.x, v.y, v.z}); };
   float sum = 0.0f;
   for (const LightState& light : snapshot.lights) {
-    // Nearer to a point light than half a voxel the grid cannot say anything.
     const float distance = 0.5f * voxelSize;
     const float irradiance = light.kind == LightKind::directional
                                  ? largest(light.power)
@@ -78,7 +78,7 @@ class InjectPass : public Pass {
     result.radiance = frame.texture(description, "radiance grid");
     result.filledLevels = 1;
 
-    // Counts and sums: one 32-bit integer a voxel each.
+    // Counts, largest values and sums: one 32-bit integer a voxel each.
     gpu::TextureDescription words = description;
     words.format = gpu::Format::r32ui;
     words.levels = 1;
@@ -87,26 +87,46 @@ class InjectPass : public Pass {
       texture->clear(glm::vec4(0.0f));
       return texture;
     };
-    const gpu::TextureRef counts = zeroed("fragments per voxel");
+    const gpu::TextureRef counts = zeroed("fragments per voxel"),
+                          brightest = zeroed("brightest fragment per voxel");
     const gpu::TextureRef red = zeroed("sum of red"), green = zeroed("sum of green"),
-                          blue = zeroed("sum of blue");
-    const gpu::TextureRef coverage = zeroed("sum of coverage");
+                          blue = zeroed("sum of blue"), coverage = zeroed("sum of coverage");
+    const gpu::BufferRef radiances =
+        frame.buffer(std::max<std::uint64_t>(fragments->capacity, 1) * 3 * sizeof(float),
+                     "reflected radiance per fragment");
     const float range = largestRadiance(frame.sceneDescription(), frame.snapshot(), result.grid.voxelSize);
+    if (precision == "half") result.unit = range / kLargestHalf;
 
+    light(frame, *counts, *brightest, *radiances, range);
     frame.shaders().dispatchIndirect(
-        frame.program(countShader::kProgram),
-        {countShader::fragmentCount(*fragments->count), countShader::fragments(*fragments->fragments),
-         countShader::counts(*counts)},
+        frame.program(addShader::kProgram),
+        {addShader::fragmentCount(*fragments->count), addShader::fragments(*fragments->fragments),
+         addShader::radiances(*radiances), addShader::counts(*counts), addShader::brightest(*brightest),
+         addShader::sumRed(*red), addShader::sumGreen(*green), addShader::sumBlue(*blue),
+         addShader::sumCoverage(*coverage)},
         *fragments->count, sizeof(std::uint32_t));
     frame.device().barrier();
+    frame.dispatch(
+        frame.program(resolveShader::kProgram),
+        {resolveShader::parameters(
+             {size, result.unit, fragments->coverage == VoxelFragments::Coverage::sum ? 1 : 0}),
+         resolveShader::counts(*counts), resolveShader::brightest(*brightest), resolveShader::sumRed(*red),
+         resolveShader::sumGreen(*green), resolveShader::sumBlue(*blue),
+         resolveShader::sumCoverage(*coverage), resolveShader::radianceImage(*result.radiance)},
+        size, kVoxelGroup);
+    radiance = result;
+  }
 
+  /// What each fragment reflects, and of each voxel the number and the brightest of its fragments.
+  void light(PassContext& frame, const gpu::Texture& counts, const gpu::Texture& brightest,
+             const gpu::Buffer& radiances, float mostRadiance) {
     injectShader::Variant variant;
     variant.lights = variant.shadows = shadow.present();
     injectShader::Grid grid{};
-    grid.gridLow = result.grid.low;
-    grid.voxelSize = result.grid.voxelSize;
+    grid.gridLow = fragments->grid.low;
+    grid.voxelSize = fragments->grid.voxelSize;
     grid.lightCount = shadow.present() ? shadow->lightCount : 0;
-    grid.radianceRange = range;
+    grid.mostRadiance = mostRadiance;
     grid.twoSided = twoSided ? 1 : 0;
     grid.mediumSteps = mediumSteps;
     MediaBinding bound;
@@ -118,11 +138,9 @@ class InjectPass : public Pass {
     std::vector<gpu::ResourceBinding> bindings{injectShader::grid(grid),
                                                injectShader::fragmentCount(*fragments->count),
                                                injectShader::fragments(*fragments->fragments),
-                                               injectShader::counts(*counts),
-                                               injectShader::sumRed(*red),
-                                               injectShader::sumGreen(*green),
-                                               injectShader::sumBlue(*blue),
-                                               injectShader::sumCoverage(*coverage)};
+                                               injectShader::radiances(radiances),
+                                               injectShader::counts(counts),
+                                               injectShader::brightest(brightest)};
     if (shadow.present()) {
       bindings.push_back(injectShader::lights(*shadow->lights));
       bindings.push_back(injectShader::views(*shadow->views));
@@ -132,15 +150,6 @@ class InjectPass : public Pass {
     frame.shaders().dispatchIndirect(frame.program(injectShader::kProgram, variant.key()), bindings,
                                      *fragments->count, sizeof(std::uint32_t));
     frame.device().barrier();
-
-    frame.dispatch(frame.program(resolveShader::kProgram),
-                   {resolveShader::parameters(
-                        {size, range, fragments->coverage == VoxelFragments::Coverage::sum ? 1 : 0}),
-                    resolveShader::counts(*counts), resolveShader::sumRed(*red),
-                    resolveShader::sumGreen(*green), resolveShader::sumBlue(*blue),
-                    resolveShader::sumCoverage(*coverage), resolveShader::radianceImage(*result.radiance)},
-                   size, kVoxelGroup);
-    radiance = result;
   }
 };
 
@@ -237,6 +246,7 @@ class GatherPass : public Pass {
     parameters.offset = offset;
     parameters.startShare = start;
     parameters.clearance = clearance;
+    parameters.unit = input.unit;
     parameters.coarsest = static_cast<float>(input.radiance->description().levels - 1);
 
     using gpu::Sampling;

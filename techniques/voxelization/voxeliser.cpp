@@ -31,7 +31,7 @@ std::string GridPass::checkParameters() const {
 
 GridPlacement GridPass::placement(PassContext& frame) const {
   const SceneSnapshot& snapshot = frame.snapshot();
-  if (around == "camera") return placeGridAround(snapshot.camera.eye, extent, resolution, snapshot.origin);
+  if (around == "camera") return placeGridAround(snapshot.camera.eye, extent, resolution);
   return placeGrid(snapshot.gridBounds, resolution);
 }
 

@@ -1,5 +1,6 @@
 // Running pipelines: what is left out and why, what runs again, what memory is shared, what goes wrong.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "lumivox/base/log.h"
@@ -51,6 +52,16 @@ class Failing : public Toy {
   void run(PassContext& frame) override {
     if (fail) throw Error("the grid is on fire");
     picture = paint(frame, 1.0f);
+  }
+};
+
+/// A grid that follows the camera in steps of a metre, but not upwards.
+class SteppedGrid : public Voxels {
+ public:
+  using Voxels::Voxels;
+  Reads readsFrom() const override { return Reads::partOfCamera; }
+  std::vector<float> readsOfCamera(const SceneSnapshot& snapshot) const override {
+    return {std::floor(snapshot.camera.eye.x), std::floor(snapshot.camera.eye.z)};
   }
 };
 
@@ -276,6 +287,33 @@ TEST_CASE("a moving camera runs what reads the camera again, and nothing else") 
   const Explanation explanation = executor.explain();
   CHECK(find(explanation, LeftOut::Level::time, "voxels") != nullptr);
   CHECK(find(explanation, LeftOut::Level::time, "gather") == nullptr);
+}
+
+TEST_CASE("a pass that reads a part of the camera runs again when that part changed, and only then") {
+  Fixture f;
+  if (!f) return;
+  f.techniques.add<SteppedGrid>("toy", "stepped_grid");
+  RenderOptions options;
+  options.interactive = true;
+  PipelineExecutor executor = f.executor(
+      "pass grid toy.stepped_grid { }\npass gather toy.gather { grid grid }\noutput o gather.diffuse",
+      options);
+  SceneSnapshot snapshot = snapshotOf(f.scene, 0.0);
+  snapshot.camera.eye = glm::vec3(0.2f);
+  executor.render(snapshot);
+  CHECK(f.techniques.takeRan() == Ran{"stepped_grid", "gather"});
+  snapshot.camera.eye = {0.6f, 7.0f, 0.2f};  // the same cell
+  CHECK(first(executor.render(snapshot, 1), "o") == 0.25f);
+  CHECK(f.techniques.takeRan() == Ran{"gather"});
+  snapshot.camera.eye = {1.2f, 7.0f, 0.2f};  // another one
+  executor.render(snapshot, 2);
+  CHECK(f.techniques.takeRan() == Ran{"stepped_grid", "gather"});
+  snapshot.camera.eye = {0.3f, 7.0f, 0.2f};  // back: not what was computed last
+  executor.render(snapshot, 3);
+  CHECK(f.techniques.takeRan() == Ran{"stepped_grid", "gather"});
+  executor.invalidate();
+  executor.render(snapshot, 4);
+  CHECK(f.techniques.takeRan() == Ran{"stepped_grid", "gather"});
 }
 
 TEST_CASE("moving geometry runs what reads the geometry and what depends on that again") {

@@ -2,6 +2,8 @@
 // L = E + a L. Cut off after B indirect bounces it is the geometric series E (1 + a + ... + a^(B+1)) = E (1 -
 // a^(B+2)) / (1 - a): emission, direct light and B bounces.
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 
 #include "lumivox/reference/path_tracer.h"
 #include "support/scene_builder.h"
@@ -51,6 +53,22 @@ TEST_CASE("a furnace of albedo 0.999 converges when enough bounces are allowed")
   const double full = estimateOf(renderReference(furnace(0.999f, 1.0f, 4), options), "full").mean;
   CHECK(full == Approx(geometricSeries(0.999f, 10002)).epsilon(0.002));
   CHECK(full == Approx(1000.0).epsilon(0.002));
+}
+
+TEST_CASE("a truth tells how much light lies beyond its last bounce") {
+  // N bounces leave a^(N+2) of a furnace's light out.
+  for (const float albedo : {0.5f, 0.9f, 0.95f, 0.99f}) {
+    CAPTURE(albedo);
+    ReferenceOptions options = quietly(64, 32);
+    options.roulette = false;
+    std::istringstream told(renderReference(furnace(albedo, 1.0f, 16), options).attributes.at("cut_off"));
+    double share = -1.0, radius = -1.0;
+    told >> share >> radius;
+    CHECK(share == Approx(std::pow(static_cast<double>(albedo), 34.0)).epsilon(0.1).margin(1e-9));
+    CHECK(radius == Approx(static_cast<double>(albedo)).epsilon(0.01));
+  }
+  // Three bounces have no quarters to compare.
+  CHECK(renderReference(furnace(0.9f, 1.0f, 8), quietly(4, 3)).attributes.at("cut_off") == "0 0");
 }
 
 TEST_CASE("Russian roulette leaves the furnace's radiance as it is") {

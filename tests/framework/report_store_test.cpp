@@ -13,6 +13,7 @@
 #include "lumivox/base/file.h"
 #include "lumivox/report/changes.h"
 #include "lumivox/report/store.h"
+#include "lumivox/report/stress_cells.h"
 #include "support/support.h"
 
 using namespace lumivox;
@@ -35,6 +36,9 @@ ComponentError errorOf(double rmse) {
   error.rmseOverSeeds = {rmse, 0.0};
   error.seeds = 2;
   error.deterministic = true;
+  error.parts.bias = {0.5 * rmse, 0.02};
+  error.parts.noise = {kNan, 0.0};
+  error.flicker = {0.25, 0.001};
   error.errorOfNothing.rmse.value = 1.0 / 3.0;
   return error;
 }
@@ -52,6 +56,7 @@ StoredRun runNumber(int number) {
   run.identity.width = 64;
   run.identity.height = 48;
   run.identity.seed = 0xffffffffffffffffull;
+  run.identity.flickerPairs = 4;
   run.identity.device = "a device, 'quoted'";
   run.identity.host = "a host";
   run.created = "2026-01-31 12:00:00 UTC";
@@ -151,11 +156,13 @@ TEST_CASE("a key changes with each thing that a result depends on and with nothi
   changed([](RunIdentity& i) { i.repeats += 1; });
   changed([](RunIdentity& i) { i.subpixels += 1; });
   changed([](RunIdentity& i) { i.truthSamples += 1; });
+  changed([](RunIdentity& i) { i.flickerPairs = 0; });
+  changed([](RunIdentity& i) { i.flickerPairs += 1; });
   changed([](RunIdentity& i) { i.device += "1"; });
   changed([](RunIdentity& i) { i.driver += "1"; });
   changed([](RunIdentity& i) { i.shaderInput = "glsl"; });
   changed([](RunIdentity& i) { i.host += "1"; });
-  CHECK(keys.size() == 20);
+  CHECK(keys.size() == 22);
   StoredRun same = runNumber(6);
   same.created = "2026-02-01 00:00:00 UTC";
   same.point.frameMs.median = 99.0;
@@ -304,8 +311,8 @@ TEST_CASE("merging takes over what is not there, once") {
   ResultsStore mine(directory.path() / "mine.sqlite"), theirs(directory.path() / "theirs.sqlite");
   for (int number : {1, 2}) mine.add(runNumber(number));
   for (int number : {2, 3, 4}) theirs.add(runNumber(number));
-  CHECK(mine.merge(theirs) == 2);
-  CHECK(mine.merge(theirs) == 0);
+  CHECK(mine.merge(theirs).runs == 2);
+  CHECK(mine.merge(theirs).runs == 0);
   CHECK(mine.runs().size() == 4);
   CHECK(theirs.runs().size() == 3);
 }
@@ -422,4 +429,176 @@ TEST_CASE("points are matched by what they are called, and what cannot be compar
   CHECK(compareResults({old}, {now}).incomparable.size() == 1);
   now.point.failure = "4 GiB do not fit";
   CHECK(compareResults({old}, {now}).incomparable.at(0).find("it fails now") != std::string::npos);
+}
+
+namespace {
+
+/// A store as an earlier version left it.
+std::filesystem::path oldStore(const TemporaryDirectory& directory) {
+  const auto file = directory.path() / "old.sqlite";
+  sqlite3* handle = nullptr;
+  REQUIRE(sqlite3_open(file.c_str(), &handle) == SQLITE_OK);
+  const std::string dump = readFile(sourceDirectory() / "tests/framework/data/results_schema_1.sql");
+  REQUIRE(sqlite3_exec(handle, dump.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK);
+  sqlite3_close(handle);
+  return file;
+}
+
+std::int64_t schemaOf(const std::filesystem::path& file) {
+  sqlite3* handle = nullptr;
+  REQUIRE(sqlite3_open(file.c_str(), &handle) == SQLITE_OK);
+  std::int64_t version = 0;
+  const auto read = [](void* result, int, char** values, char**) {
+    *static_cast<std::int64_t*>(result) = std::atoll(values[0]);
+    return 0;
+  };
+  REQUIRE(sqlite3_exec(handle, "PRAGMA user_version", read, &version, nullptr) == SQLITE_OK);
+  sqlite3_close(handle);
+  return version;
+}
+
+StressCell cellNumber(int number) {
+  StressCell cell;
+  cell.created = "2015-10-21 16:29:00 UTC";
+  cell.version = "0.1.0";
+  cell.family = number % 2 == 0 ? "light" : "geometry";
+  cell.name = "case_" + std::to_string(number);
+  cell.pipeline = "scenes/pipelines/one.pipeline";
+  cell.technique = "one";
+  cell.size = "quick";
+  cell.outcome = number == 3 ? StressOutcome::broken : StressOutcome::biased;
+  cell.measure = "RMSE, of the mean";
+  cell.unit = "m";
+  cell.value = {0.25 * number, 0.5};
+  cell.limit = 0.125;
+  cell.detail = "pass a, port b: 1 NaN";
+  cell.explanation = "the method has no sides";
+  cell.picture = "pictures/a.png";
+  cell.command = "lumivox stress --case a";
+  cell.seconds = 1.5;
+  cell.pipelineHash = "cafe";
+  cell.framework = "beef";
+  cell.techniques = {{"one", "1+2"}, {"two", "3+4"}};
+  cell.device = "a device";
+  cell.driver = "a driver";
+  cell.shaderInput = "spirv";
+  cell.host = "a host";
+  return cell;
+}
+
+DeviceCeiling ceilingNamed(const std::string& name, double rate, const std::string& created) {
+  return {name,    "writes/s", {rate, rate, rate, rate, rate, 3}, created, "0.1.0", "a device", "a driver",
+          "spirv", "a host"};
+}
+
+}  // namespace
+
+TEST_CASE("a store of the schema before is read as it is, and gets the new tables when it is written") {
+  const TemporaryDirectory directory;
+  const auto file = oldStore(directory);
+  {
+    const ResultsStore store(file, ResultsStore::Mode::read);
+    const std::vector<StoredRun> runs = store.runs();
+    REQUIRE(runs.size() == 1);
+    CHECK(runs[0].sceneName == "Cornell box");
+    CHECK(runs[0].identity.width == 8);
+    CHECK(runs[0].point.passOrder == std::vector<std::string>{"gbuffer", "shadow", "direct"});
+    CHECK_FALSE(runs[0].point.errors.empty());
+    CHECK(store.stressCells().empty());
+    CHECK(store.ceilings().empty());
+  }
+  CHECK(schemaOf(file) == 1);
+  // A merge reads it without touching it.
+  ResultsStore other(directory.path() / "new.sqlite");
+  CHECK(other.merge(ResultsStore(file, ResultsStore::Mode::read)).runs == 1);
+  CHECK(schemaOf(file) == 1);
+  {
+    ResultsStore store(file);
+    CHECK(store.runs().size() == 1);
+    store.add({cellNumber(1)});
+    CHECK(store.stressCells().size() == 1);
+  }
+  CHECK(schemaOf(file) == 2);
+  CHECK(ResultsStore(file, ResultsStore::Mode::read).runs().size() == 1);
+}
+
+TEST_CASE("a cell of the stress battery comes back as it was stored") {
+  const TemporaryDirectory directory;
+  const auto file = directory.path() / "results.sqlite";
+  StressCell cell = cellNumber(1);
+  cell.value = {kNan, kNan};
+  ResultsStore(file).add({cell});
+  const std::vector<StressCell> cells = ResultsStore(file, ResultsStore::Mode::read).stressCells();
+  REQUIRE(cells.size() == 1);
+  CHECK(cells[0].key() == cell.key());
+  CHECK(std::isnan(cells[0].value.value));
+  // Everything else in one: the JSON holds all of a cell but its number.
+  StressCell numberless = cells[0];
+  numberless.id = 0;
+  CHECK(stressCellJson(numberless) == stressCellJson(cell));
+  CHECK(stressCellJson(stressCellFrom(stressCellJson(cell))) == stressCellJson(cell));
+  CHECK(messageOf<Error>([] { stressCellFrom("{\"case\": 1}"); }).find("no cell") != std::string::npos);
+}
+
+TEST_CASE("a newer cell takes the place of the older, and cells are chosen and removed by what they are") {
+  const TemporaryDirectory directory;
+  ResultsStore store(directory.path() / "results.sqlite");
+  store.add({cellNumber(1), cellNumber(2), cellNumber(3)});
+  StressCell again = cellNumber(2);
+  again.outcome = StressOutcome::stable;
+  store.add({again});
+  CHECK(store.stressCells().size() == 3);
+  const auto count = [&](auto set) {
+    CellFilter filter;
+    set(filter);
+    CHECK_FALSE(filter.everything());
+    return store.stressCells(filter).size();
+  };
+  CHECK(count([](CellFilter& f) { f.outcome = StressOutcome::stable; }) == 1);
+  CHECK(count([](CellFilter& f) { f.outcome = StressOutcome::broken; }) == 1);
+  CHECK(count([](CellFilter& f) { f.family = "geometry"; }) == 2);
+  CHECK(count([](CellFilter& f) { f.name = "case_2"; }) == 1);
+  CHECK(count([](CellFilter& f) { f.pipeline = "one"; }) == 3);
+  CHECK(count([](CellFilter& f) { f.pipeline = "two"; }) == 0);
+  CHECK(count([](CellFilter& f) { f.technique = "two"; }) == 0);
+  CHECK(count([](CellFilter& f) { f.device = "dev"; }) == 3);
+  CHECK(count([](CellFilter& f) { f.since = "2016-01-01"; }) == 0);
+  CellFilter geometry;
+  geometry.family = "geometry";
+  CHECK(store.removeCells(geometry) == 2);
+  CHECK(store.stressCells().size() == 1);
+  CHECK(store.stressCells()[0].techniques.size() == 2);
+}
+
+TEST_CASE("merging takes over stress cells and ceilings that are newer, once") {
+  const TemporaryDirectory directory;
+  ResultsStore mine(directory.path() / "mine.sqlite"), theirs(directory.path() / "theirs.sqlite");
+  StressCell newer = cellNumber(2), older = cellNumber(3);
+  newer.created = "2016-10-21 16:29:00 UTC";
+  older.created = "2014-10-21 16:29:00 UTC";
+  mine.add({cellNumber(1), cellNumber(2), cellNumber(3)});
+  theirs.add({newer, older, cellNumber(4)});
+  mine.add({ceilingNamed("writes", 1.0, "2015"), ceilingNamed("atomics", 1.0, "2015")});
+  theirs.add({ceilingNamed("writes", 2.0, "2016"), ceilingNamed("atomics", 2.0, "2014"),
+              ceilingNamed("samples", 2.0, "2014")});
+  theirs.add(runNumber(1));
+  const MergeCount first = mine.merge(theirs), second = mine.merge(theirs);
+  CHECK(first.runs == 1);
+  CHECK(first.cells == 2);
+  CHECK(first.ceilings == 2);
+  CHECK(second.runs + second.cells + second.ceilings == 0);
+  CHECK(mine.stressCells().size() == 4);
+  for (const DeviceCeiling& ceiling : mine.ceilings("a device", "a driver", "spirv", "a host"))
+    CHECK(ceiling.rate.median == (ceiling.name == "atomics" ? 1.0 : 2.0));
+  CHECK(mine.ceilings("a device", "another driver", "spirv", "a host").empty());
+}
+
+TEST_CASE("the newest cells are full ones where there are any") {
+  StressCell quick = cellNumber(1), full = cellNumber(1), later = cellNumber(1);
+  full.size = "full";
+  later.created = "2016-10-21 16:29:00 UTC";
+  CHECK(newestCells({quick, later}).at(0).created == later.created);
+  CHECK(newestCells({full, later}).at(0).size == "full");
+  CHECK(newestCells({later, full}).at(0).size == "full");
+  CHECK(newestCells({quick, cellNumber(2)}).size() == 2);
 }

@@ -70,6 +70,19 @@ TEST_CASE("a Lambert plane under a point light falls off with the squared distan
   }
 }
 
+TEST_CASE("a light in the very point that is seen lights it no more than any other point of its plane") {
+  // Of an odd number of pixels the middle one sees the middle of the floor.
+  SceneBuilder builder = floorFromAbove(0.8f, 5);
+  for (const LightKind kind : {LightKind::point, LightKind::spot}) {
+    builder.scene.lights.clear();
+    Light& light = builder.light(kind, {10, 10, 10}, {0, 0, 0}, {0, -1, 0});
+    light.innerAngle = 1.0f;
+    light.outerAngle = 1.5f;
+    const Picture picture = direct(builder.scene);
+    for (const float radiance : picture.values()) CHECK(radiance == 0.0f);
+  }
+}
+
 TEST_CASE("a spot light keeps its intensity inside the inner angle and is dark outside the outer one") {
   SceneBuilder builder = floorFromAbove(1.0f, 32);
   Light& spot = builder.light(LightKind::spot, {5, 5, 5}, {0, 1, 0}, {0, -1, 0});

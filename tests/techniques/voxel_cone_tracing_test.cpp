@@ -92,7 +92,8 @@ glm::vec3 gather(const Scene& scene, const RadianceGrid& grid, const glm::vec3& 
 }
 
 /// The finest level after injecting the fragments of a scene under its lights.
-std::vector<float> injected(const Scene& scene, int resolution, GridPlacement* placement = nullptr) {
+std::vector<float> injected(const Scene& scene, int resolution, GridPlacement* placement = nullptr,
+                            const char* precision = "float", float* unit = nullptr) {
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshot);
   voxels.setParameter("resolution", resolution);
@@ -100,11 +101,13 @@ std::vector<float> injected(const Scene& scene, int resolution, GridPlacement* p
   PassHarness shadow(device(), techniques(), "direct_lighting", "shadow_map", scene, snapshot);
   shadow.run();
   PassHarness inject(device(), techniques(), "voxel_cone_tracing", "inject", scene, snapshot);
+  inject.setParameter("precision", precision);
   inject.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
   inject.setInput("shadow", shadow.output<ShadowMap>("depth"));
   inject.run();
   const auto& grid = inject.output<RadianceGrid>("radiance");
   if (placement != nullptr) *placement = grid.grid;
+  if (unit != nullptr) *unit = grid.unit;
   return grid.radiance->downloadFloats(0);
 }
 
@@ -230,6 +233,61 @@ TEST_CASE("a lit plane stores albedo / pi times its irradiance in its voxels") {
     CHECK(texels[i + 3] == Approx(1.0f));
   }
   CHECK(occupied >= 14 * 14);
+}
+
+TEST_CASE(
+    "a dim lamp keeps its light in a grid with one 10^9 times as bright, in half floats with one of 10^6") {
+  // Two spots that light a patch of the floor each. What the dim one lights alone is that of a scene without
+  // the other. In half floats values below 6e-5 units have fewer digits: a hundredth of the largest here is
+  // 4e-6 units.
+  const auto scene = [](float bright) {
+    SceneBuilder builder;
+    builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.5f));
+    const auto spot = [&](float intensity, double x) {
+      Light& light = builder.light(LightKind::spot, glm::vec3(intensity), {x, 0.5, 0});
+      light.innerAngle = 0.2;
+      light.outerAngle = 0.5;
+    };
+    spot(1.0f, -0.6);
+    if (bright > 0.0f) spot(bright, 0.6);
+    return builder.scene;
+  };
+  const std::vector<float> alone = injected(scene(0.0f), 16);
+  struct Run {
+    const char* precision;
+    float bright;
+    double tolerance;
+  };
+  for (const auto& [precision, bright, tolerance] :
+       {Run{"float", 1e6f, 1e-5}, Run{"float", 1e9f, 1e-5}, Run{"half", 1e6f, 0.01}}) {
+    INFO(precision << ", " << bright);
+    float unit = 0.0f;
+    const std::vector<float> both = injected(scene(bright), 16, nullptr, precision, &unit);
+    REQUIRE(both.size() == alone.size());
+    double largest = 0.0;
+    int lit = 0;
+    for (std::size_t i = 0; i < both.size(); i += 4) {
+      REQUIRE(std::isfinite(both[i]));
+      largest = std::max(largest, static_cast<double>(both[i]) * unit);
+      if (alone[i] < 0.01f) continue;
+      ++lit;
+      CHECK(both[i] * unit == Approx(alone[i]).epsilon(tolerance));
+    }
+    CHECK(lit > 8);
+    CHECK(largest > 0.1 * bright);
+  }
+}
+
+TEST_CASE("a gather multiplies by the unit of its grid") {
+  const auto grid = [](float unit) {
+    RadianceGrid made = makeGrid(16, [&](int, int, int) { return glm::vec4(glm::vec3(0.1f / unit), 0.1f); });
+    made.unit = unit;
+    return filtered(made);
+  };
+  const glm::vec3 plain = gather(emptyScene(), grid(1.0f), {0, 0, 0}, {0, 1, 0}, {}),
+                  scaled = gather(emptyScene(), grid(4096.0f), {0, 0, 0}, {0, 1, 0}, {});
+  CHECK(plain.r > 0.1f);
+  CHECK(scaled.r == Approx(plain.r).epsilon(1e-5));
 }
 
 TEST_CASE("injecting twice gives the same bits, however the fragments were ordered") {

@@ -111,6 +111,26 @@ TEST_CASE(
   CHECK(averages.bits == std::set<Cell>{{3, 2, 5}});
 }
 
+TEST_CASE("the mean over more fragments of one voxel than 16 bits count is exact") {
+  const glm::ivec3 cell(2, 3, 4);
+  std::vector<FragmentData> fragments;
+  // 30 % dark and 70 % bright, facing two ways: the means are (0.3 * 0.125 + 0.7 * 0.75) = 0.5625 and halves.
+  constexpr int kCount = 70000;
+  for (int i = 0; i < kCount; ++i) {
+    const bool dark = i % 10 < 3, up = i % 2 == 0;
+    fragments.push_back(fragment(cell, glm::vec3(dark ? 0.125f : 0.75f), 1.0f,
+                                 up ? glm::vec3(0, 0, 1) : glm::vec3(1, 0, 0),
+                                 sharedExponent(dark ? 1.0f : 8.0f)));
+  }
+  const Averages averages = averagesOf(sceneThatEmits(8.0f), fragments);
+  const glm::vec4 albedo = Averages::texel(averages.albedo, cell);
+  CHECK(albedo.x == Approx(0.5625).epsilon(1e-3));
+  CHECK(albedo.w == 1.0f);
+  CHECK(Averages::texel(averages.normal, cell).x == Approx(0.5).epsilon(1e-3));
+  CHECK(Averages::texel(averages.normal, cell).z == Approx(0.5).epsilon(1e-3));
+  CHECK(Averages::texel(averages.emission, cell).x == Approx(5.9).epsilon(1e-3));
+}
+
 TEST_CASE("coverages of parts of a voxel add up, to one at most") {
   std::vector<FragmentData> fragments;
   const glm::ivec3 few(1, 1, 1), many(2, 1, 1);

@@ -82,6 +82,8 @@ std::string sourcesOf(const std::string& language) {
       std::pair<std::set<std::string>, std::pair<std::set<std::string>, std::vector<std::string>>>>
       homes = {{{"scene"}, {{".scene"}, {"scenes", "docs/examples"}}},
                {{"pipeline"}, {{".pipeline"}, {"scenes", "docs/examples"}}},
+               {{"sweep"}, {{".sweep"}, {"scenes"}}},
+               {{"reproduction"}, {{".reproduction"}, {"scenes"}}},
                {{"cpp"}, {{".cpp", ".h"}, {"techniques", "framework/include", "tests"}}},
                {{"glsl"}, {{".glsl", ".vert", ".geom", ".frag", ".comp"}, {"shaders"}}},
                {{"cmake"}, {{".txt", ".cmake"}, {"techniques", "cmake"}}}};
@@ -109,7 +111,7 @@ TEST_CASE("the reader of guides sees quotes, links and commands") {
 }
 
 TEST_CASE("what the guides quote stands word for word in files that are built or tested") {
-  const std::set<std::string> quoted = {"scene", "pipeline", "cpp", "glsl", "cmake"};
+  const std::set<std::string> quoted = {"scene", "pipeline", "sweep", "reproduction", "cpp", "glsl", "cmake"};
   for (const std::string& language : quoted) {
     const std::string sources = sourcesOf(language);
     for (const fs::path& guide : guides())
@@ -135,7 +137,7 @@ TEST_CASE("the commands that the guides show exist, and the files that they name
     for (const Quote& quote : quotesOf(readFile(guide))) {
       if (quote.language != "sh") continue;
       commands.merge(commandsOf(quote.text));
-      static const std::regex file("[\\w./]+\\.(scene|pipeline)\\b");
+      static const std::regex file("[\\w./]+\\.(scene|pipeline|sweep|reproduction)\\b");
       for (std::sregex_iterator match(quote.text.begin(), quote.text.end(), file), end; match != end;
            ++match) {
         INFO(guide << ": " << match->str());

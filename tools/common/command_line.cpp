@@ -40,13 +40,17 @@ Scene GlobalOptions::loadScene(const std::filesystem::path& file) const {
   return scene;
 }
 
-std::unique_ptr<gpu::Device> GlobalOptions::openDevice() const {
+gpu::DeviceOptions GlobalOptions::deviceOptions() const {
   gpu::DeviceOptions options;
   options.device = device;
   options.shaderInput = shaders == "spirv"  ? gpu::ShaderInput::spirv
                         : shaders == "glsl" ? gpu::ShaderInput::glsl
                                             : gpu::ShaderInput::automatic;
-  auto opened = std::make_unique<gpu::Device>(options);
+  return options;
+}
+
+std::unique_ptr<gpu::Device> GlobalOptions::openDevice() const {
+  auto opened = std::make_unique<gpu::Device>(deviceOptions());
   const gpu::DeviceInfo& info = opened->info();
   logInformation("device: {} ({}){}", info.renderer, info.platform,
                  info.software ? ", a software rasteriser" : "");

@@ -37,6 +37,7 @@ struct GlobalOptions {
   void addTo(CLI::App& app);
   SceneLoadOptions sceneLoad() const;
   Scene loadScene(const std::filesystem::path& file) const;  ///< refuses warnings under --strict
+  gpu::DeviceOptions deviceOptions() const;
   std::unique_ptr<gpu::Device> openDevice() const;
   TechniqueSet techniqueSet() const;
 };

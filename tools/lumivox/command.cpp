@@ -16,15 +16,20 @@ void Commands::onChosen(CLI::App* subcommand, Work work) {
 TextKind kindOfText(const std::filesystem::path& file) {
   if (file.extension() == ".scene") return TextKind::scene;
   if (file.extension() == ".pipeline") return TextKind::pipeline;
+  if (file.extension() == ".sweep") return TextKind::sweep;
+  if (file.extension() == ".reproduction") return TextKind::reproduction;
   constexpr std::uint64_t kLongestText = std::uint64_t{64} << 20;
   const dsl::Document document = dsl::parse(readFile(file, kLongestText), file);
-  for (const dsl::Item& item : document.items) {
-    if (item.block && item.block->word == "scene") return TextKind::scene;
-    if (item.block && (item.block->word == "pipeline" || item.block->word == "sweep"))
-      return TextKind::pipeline;
-  }
-  throw Error(fmt::format("{}: neither a scene nor a pipeline; expected a block 'scene' or 'pipeline'",
-                          file.string()));
+  // A pipeline may have sweeps before it.
+  static const std::pair<const char*, TextKind> kBlocks[] = {{"scene", TextKind::scene},
+                                                             {"pipeline", TextKind::pipeline},
+                                                             {"sweep", TextKind::sweep},
+                                                             {"reproduction", TextKind::reproduction}};
+  for (const auto& [word, kind] : kBlocks)
+    for (const dsl::Item& item : document.items)
+      if (item.block && item.block->word == word) return kind;
+  throw Error(fmt::format(
+      "{}: no text of ours; expected a block 'scene', 'pipeline', 'sweep' or 'reproduction'", file.string()));
 }
 
 }  // namespace lumivox::command

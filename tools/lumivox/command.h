@@ -26,14 +26,17 @@ void addReferenceCommand(Commands& commands);  // reference
 void addCompareCommand(Commands& commands);    // compare
 void addReportCommand(Commands& commands);     // report
 void addSweepCommand(Commands& commands);      // sweep
+void addReproduceCommand(Commands& commands);  // reproduce
 void addTuneCommand(Commands& commands);       // tune
+void addStressCommand(Commands& commands);     // stress
 void addResultsCommands(Commands& commands);   // results, compare-runs
 void addVoxelsCommand(Commands& commands);     // voxels
 void addExplainCommand(Commands& commands);    // explain
+void addDeviceCommand(Commands& commands);     // device
 void addShadersCommand(Commands& commands);    // shaders
 
-enum class TextKind { scene, pipeline };
-/// By the extension, else by the first block; Error when it is neither.
+enum class TextKind { scene, pipeline, sweep, reproduction };
+/// By the extension, else by the blocks; Error when it is none of them.
 TextKind kindOfText(const std::filesystem::path& file);
 
 }  // namespace lumivox::command

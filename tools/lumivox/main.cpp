@@ -26,10 +26,13 @@ int run(int count, char** arguments) {
   addCompareCommand(commands);
   addReportCommand(commands);
   addSweepCommand(commands);
+  addReproduceCommand(commands);
   addTuneCommand(commands);
+  addStressCommand(commands);
   addResultsCommands(commands);
   addVoxelsCommand(commands);
   addExplainCommand(commands);
+  addDeviceCommand(commands);
   addShadersCommand(commands);
 
   if (const auto done = parseOptions(app, global, count, arguments)) return *done;

@@ -2,10 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <cstdlib>
+
+#include "lumivox/base/error.h"
+#include "lumivox/dsl/document.h"
+
 namespace lumivox::command {
 
-void MeasureOptions::addTo(CLI::App& app, const std::string& store) {
-  app.add_option("SCENE", options.scenes, "the scenes' texts")->required();
+void MeasureOptions::addTo(CLI::App& app, const std::string& store, const std::string& scenes) {
+  app.add_option("SCENE", options.scenes, scenes)->required();
   app.add_option("--pipeline", options.pipelines,
                  "pipelines' texts (default: every committed one that suits the scene)");
   run.addTo(app);
@@ -18,6 +24,9 @@ void MeasureOptions::addTo(CLI::App& app, const std::string& store) {
   app.add_option("--repeats", options.repeats, "timed frames per point (default 5)")
       ->check(CLI::Range(1, 10000));
   app.add_option("--seeds", options.seeds, "seeds per point (default 2)")->check(CLI::Range(1, 10000));
+  app.add_option("--flicker-frames", options.flickerPairs,
+                 "pairs of frames 1/24 s apart for the flicker of scenes that move (default 4; 0: none)")
+      ->check(CLI::Range(0, 1000));
   app.add_flag("--no-sweep", noSweep, "only the default parameters, not the points of the pipelines' sweeps");
   app.add_option("--store", options.store, store);
 }
@@ -31,13 +40,36 @@ ReportOptions MeasureOptions::asked(const GlobalOptions& global) const {
   std::tie(asked.width, asked.height) = run.size();
   asked.openSweeps = !noSweep;
   asked.commandLine = global.commandLine;
-  const auto repeat = [&](std::initializer_list<std::string> arguments) {
-    asked.repeatArguments.insert(asked.repeatArguments.end(), arguments);
-  };
-  if (global.device != "auto") repeat({"--device", global.device});
-  if (global.shaders != "auto") repeat({"--shaders", global.shaders});
-  for (const auto& folder : global.assets) repeat({"--assets", folder.string()});
+  asked.repeatArguments = repeatArguments(global);
   return asked;
+}
+
+std::vector<std::string> repeatArguments(const GlobalOptions& global) {
+  std::vector<std::string> arguments;
+  if (global.device != "auto") arguments.insert(arguments.end(), {"--device", global.device});
+  if (global.shaders != "auto") arguments.insert(arguments.end(), {"--shaders", global.shaders});
+  for (const auto& folder : global.assets) arguments.insert(arguments.end(), {"--assets", folder.string()});
+  return arguments;
+}
+
+double millisecondsOf(const std::string& option, const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  std::string unit = end;
+  unit.erase(0, unit.find_first_not_of(' '));
+  if (unit.empty()) unit = "ms";
+  if (end != text.c_str() && std::isfinite(number) && number > 0.0)
+    for (const dsl::Unit& known : dsl::knownUnits())
+      if (known.name == unit && known.dimension == dsl::kTime) return number * known.toBase * 1000.0;
+  throw Error(fmt::format("{} '{}': expected a time above 0, as 16ms or 0.5s", option, text));
+}
+
+double positiveNumberOf(const std::string& option, const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  if (end == text.c_str() || *end != '\0' || !std::isfinite(number) || !(number > 0.0))
+    throw Error(fmt::format("{} '{}': expected a number above 0", option, text));
+  return number;
 }
 
 std::string quartilesText(const TimingStatistics& time) {

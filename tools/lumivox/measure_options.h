@@ -1,4 +1,4 @@
-// The options of every command that measures pipelines on scenes: report, sweep.
+// The options of every command that measures pipelines on scenes: report, sweep, tune.
 #pragma once
 
 #include "command.h"
@@ -11,11 +11,18 @@ struct MeasureOptions {
   RunOptions run;
   bool noSweep = false;
 
-  /// `store`: the meaning of --store here.
-  void addTo(CLI::App& app, const std::string& store);
+  /// `store`: the meaning of --store here; `scenes`: that of the positional texts.
+  void addTo(CLI::App& app, const std::string& store, const std::string& scenes = "the scenes' texts");
   /// Everything that was asked for, in the words of the framework.
   ReportOptions asked(const GlobalOptions& global) const;
 };
+
+/// The options of every command that a repeating one needs too.
+std::vector<std::string> repeatArguments(const GlobalOptions& global);
+/// "16ms", "0.016 s" or "16" (milliseconds); Error with the option's name otherwise.
+double millisecondsOf(const std::string& option, const std::string& text);
+/// A number above 0; Error with the option's name otherwise.
+double positiveNumberOf(const std::string& option, const std::string& text);
 
 std::string quartilesText(const TimingStatistics& time);  ///< "1.2 [1.1, 1.4]"; "-" when nothing was timed
 /// "cones=6 resolution=64"

@@ -13,6 +13,7 @@ namespace {
 
 struct ReportCommand {
   MeasureOptions measure;
+  std::vector<std::string> equalTimes, equalErrors;
   bool json = false;
 };
 
@@ -64,7 +65,11 @@ void printSummary(const ReportSummary& summary) {
 }
 
 int report(const ReportCommand& command, const GlobalOptions& global) {
-  const ReportOptions options = command.measure.asked(global);
+  ReportOptions options = command.measure.asked(global);
+  for (const std::string& text : command.equalTimes)
+    options.equalTimesMs.push_back(millisecondsOf("--equal-time", text));
+  for (const std::string& text : command.equalErrors)
+    options.equalErrors.push_back(positiveNumberOf("--equal-error", text));
   requireWritable(options.output);
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();
@@ -96,6 +101,10 @@ void addReportCommand(Commands& commands) {
       ->add_option("--voxels", all->measure.options.voxelResolution,
                    "adds a section on the voxelisers at this resolution (default: none)")
       ->check(CLI::Range(1, 1024));
+  addRepeatable(*command, "--equal-time", all->equalTimes,
+                "a budget of the table of equal time, as 16ms; may be repeated (default: round numbers)");
+  addRepeatable(*command, "--equal-error", all->equalErrors,
+                "an error of the table of equal error; may be repeated (default: round numbers)");
   command->add_flag("--json", all->json, "print the JSON in place of the table");
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] { return report(*all, global); });

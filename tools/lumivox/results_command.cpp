@@ -1,14 +1,19 @@
-// results: lists, exports, merges and removes what a results store holds. compare-runs: what changed.
+// results: lists, exports, merges and removes what a results store holds, and sets its pipelines against each
+// other. compare-runs: what changed.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "command.h"
+#include "comparison_text.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/report/changes.h"
+#include "lumivox/report/comparison.h"
 #include "lumivox/report/report.h"
+#include "lumivox/report/stress_cells.h"
+#include "measure_options.h"
 #include "results_text.h"
 
 namespace lumivox::command {
@@ -17,16 +22,47 @@ namespace {
 struct ResultsCommand {
   std::filesystem::path store, output;
   RunFilter filter;
-  bool failed = false, good = false;
+  bool failed = false, good = false, stress = false;
+  CellFilter cells;
+  std::string outcome;
   std::string format = "csv";
   std::vector<std::filesystem::path> others;
   bool all = false, dryRun = false, json = false;
+  std::string component = kWholePicture, metric = "rmse", against = "misses";
+  std::vector<std::string> budgets, errors;
 
   std::filesystem::path file() const { return store.empty() ? ResultsStore::defaultFile() : store; }
   RunFilter asked() const {
     RunFilter result = filter;
     if (failed || good) result.failed = failed;
     return result;
+  }
+  /// The choice of cells; pipeline, device, day and number are those that runs are chosen by.
+  CellFilter askedCells() const {
+    CellFilter result = cells;
+    result.pipeline = filter.pipeline;
+    result.device = filter.device;
+    result.since = filter.since;
+    result.ids = filter.ids;
+    if (!outcome.empty()) result.outcome = stressOutcomeNamed(outcome);
+    RunFilter rest = filter;
+    rest.pipeline = rest.device = rest.since = {};
+    rest.ids = {};
+    if (!rest.everything() || failed || good)
+      throw Error(
+          "--scene, --set, --failed and --good choose runs; with --stress expected --family, --case, "
+          "--technique, --pipeline, --outcome, --on, --since or --run");
+    return result;
+  }
+  void addStressTo(CLI::App& app) {
+    auto* flag = app.add_flag("--stress", stress, "cells of the stress battery in place of runs");
+    app.add_option("--family", cells.family, "only cells of this family of cases")->needs(flag);
+    app.add_option("--case", cells.name, "only cells of this case")->needs(flag);
+    app.add_option("--technique", cells.technique, "only cells of pipelines that stand for this technique")
+        ->needs(flag);
+    app.add_option("--outcome", outcome, "only cells with this outcome")
+        ->needs(flag)
+        ->check(CLI::IsMember({"stable", "biased", "diverges", "refused", "not_applicable", "broken"}));
   }
   void addStoreTo(CLI::App& app) {
     app.add_option("--store", store,
@@ -45,8 +81,26 @@ struct ResultsCommand {
   }
 };
 
+std::string cellsList(const std::vector<StressCell>& cells) {
+  std::vector<std::vector<std::string>> rows{
+      {"Cell", "Created", "Pipeline", "Family", "Case", "Size", "Outcome", "Limit", "Seconds"}};
+  for (const StressCell& cell : cells)
+    rows.push_back({std::to_string(cell.id), cell.created,
+                    std::filesystem::path(cell.pipeline).stem().string(), cell.family, cell.name, cell.size,
+                    stressValueText(cell), cell.measure.empty() ? "" : threeDigits(cell.limit),
+                    threeDigits(cell.seconds)});
+  return cells.empty() ? std::string() : textTable(rows);
+}
+
 int listResults(const ResultsCommand& command) {
   const ResultsStore store(command.file(), ResultsStore::Mode::read);
+  if (command.stress) {
+    const std::vector<StressCell> cells = store.stressCells(command.askedCells());
+    print(command.json
+              ? stressCellsJson(cells)
+              : cellsList(cells) + fmt::format("{} cells; {}\n", cells.size(), store.file().string()));
+    return kGood;
+  }
   const std::vector<StoredRun> runs = store.runs(command.asked());
   if (command.json) {
     printJson(runsJson(runs));
@@ -57,16 +111,70 @@ int listResults(const ResultsCommand& command) {
   return kGood;
 }
 
+/// The component that a comparison is asked for.
+std::string componentNamed(const std::string& asked) {
+  if (asked == kWholePicture) return name(Contributes::final);
+  std::vector<std::string> known = comparableComponents();
+  known.back() = kWholePicture;
+  if (std::find(known.begin(), known.end(), asked) != known.end()) return asked;
+  const std::string nearest = nearestWord(asked, known);
+  throw Error(fmt::format("--component '{}': expected one of {}{}", asked, fmt::join(known, ", "),
+                          nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+}
+
+int comparePipelinesOf(const ResultsCommand& command, ComparisonTable table) {
+  requireErrorMetric(command.metric);
+  ComparisonLimits limits;
+  for (const std::string& text : command.budgets)
+    limits.budgetsMs.push_back(millisecondsOf("--budget", text));
+  for (const std::string& text : command.errors) limits.errors.push_back(positiveNumberOf("--error", text));
+  const std::string component = componentNamed(command.component);
+  const ResultsStore store(command.file(), ResultsStore::Mode::read);
+  const std::vector<StoredRun> runs = store.runs(command.asked());
+  std::string text;
+  Json list = Json::array();
+  for (const ComparableRuns& group : comparableRuns(runs)) {
+    std::vector<const ReportPoint*> points;
+    for (const StoredRun* run : group.runs) points.push_back(&run->point);
+    const PipelineComparison comparison =
+        comparePipelines(points, component, command.against == "bias", command.metric, limits);
+    text +=
+        group.title + "\n" +
+        (comparison.points.empty() ? fmt::format("no run has a {} of {}\n", command.metric, command.component)
+                                   : comparisonText(comparison, table)) +
+        (group.passedOver == 0 ? ""
+                               : fmt::format("{} older or failed runs passed over\n", group.passedOver)) +
+        "\n";
+    Json json = toJson(comparison);
+    json["runs"] = group.title;
+    json["passed_over"] = group.passedOver;
+    list.push_back(std::move(json));
+  }
+  if (command.json)
+    printJson(list);
+  else
+    print(text + fmt::format("{} runs; {}\n", runs.size(), store.file().string()));
+  return kGood;
+}
+
 int exportResults(const ResultsCommand& command) {
   if (!command.output.empty()) requireWritable(command.output);
   const ResultsStore store(command.file(), ResultsStore::Mode::read);
-  const std::vector<StoredRun> runs = store.runs(command.asked());
-  const std::string text = command.format == "json" ? runsJson(runs).dump(1) + "\n" : runsCsv(runs);
+  std::string text, count;
+  if (command.stress) {
+    const std::vector<StressCell> cells = store.stressCells(command.askedCells());
+    text = command.format == "json" ? stressCellsJson(cells) : stressCellsCsv(cells);
+    count = fmt::format("{} cells", cells.size());
+  } else {
+    const std::vector<StoredRun> runs = store.runs(command.asked());
+    text = command.format == "json" ? runsJson(runs).dump(1) + "\n" : runsCsv(runs);
+    count = fmt::format("{} runs", runs.size());
+  }
   if (command.output.empty()) {
     print(text);
   } else {
     writeFileAtomically(command.output, text);
-    print(fmt::format("{} runs; {}\n", runs.size(), command.output.string()));
+    print(fmt::format("{}; {}\n", count, command.output.string()));
   }
   return kGood;
 }
@@ -77,12 +185,31 @@ int mergeResults(const ResultsCommand& command) {
   for (const std::filesystem::path& file : command.others)
     others.emplace_back(file, ResultsStore::Mode::read);
   ResultsStore store(command.file());
-  for (const ResultsStore& other : others)
-    print(fmt::format("{} runs from {}\n", store.merge(other), other.file().string()));
+  for (const ResultsStore& other : others) {
+    const MergeCount count = store.merge(other);
+    print(fmt::format("{} runs, {} stress cells, {} ceilings from {}\n", count.runs, count.cells,
+                      count.ceilings, other.file().string()));
+  }
+  return kGood;
+}
+
+int removeCells(const ResultsCommand& command) {
+  const CellFilter filter = command.askedCells();
+  if (filter.everything() != command.all)
+    throw Error(command.all ? "results remove --stress: --all removes every cell; it cannot be restricted"
+                            : "results remove --stress: it would remove every cell; say which, or --all");
+  ResultsStore store(command.file(), command.dryRun ? ResultsStore::Mode::read : ResultsStore::Mode::write);
+  if (command.dryRun) {
+    const std::vector<StressCell> cells = store.stressCells(filter);
+    print(cellsList(cells) + fmt::format("{} cells would be removed\n", cells.size()));
+  } else {
+    print(fmt::format("{} cells removed\n", store.removeCells(filter)));
+  }
   return kGood;
 }
 
 int removeResults(const ResultsCommand& command) {
+  if (command.stress) return removeCells(command);
   const RunFilter filter = command.asked();
   if (filter.everything() && !command.all)
     throw Error("results remove: it would remove every run; say which, or --all");
@@ -186,16 +313,41 @@ void addResultsCommands(Commands& commands) {
   };
   auto* list = add("list", "the runs, as a table", listResults);
   command->addFilterTo(*list);
+  command->addStressTo(*list);
   list->add_flag("--json", command->json, "print everything as JSON in place of the table");
   auto* exported = add("export", "the runs with every number, as CSV or JSON", exportResults);
   command->addFilterTo(*exported);
+  command->addStressTo(*exported);
   exported->add_option("--format", command->format, "csv or json")->check(CLI::IsMember({"csv", "json"}));
   exported->add_option("-o,--out", command->output, "the file (default: standard output)");
-  auto* merge = add("merge", "takes over the runs of other stores that are not there yet", mergeResults);
+  const auto addComparison = [&](const char* name, const char* meaning, ComparisonTable table) {
+    auto* subcommand =
+        add(name, meaning, [table](const ResultsCommand& asked) { return comparePipelinesOf(asked, table); });
+    command->addFilterTo(*subcommand);
+    subcommand->add_option("--component", command->component,
+                           "whole_picture (default), direct, indirect_diffuse, ...");
+    subcommand->add_option("--metric", command->metric,
+                           "rmse (default), relative_mse, percentile95, flip, ...");
+    subcommand->add_option("--against", command->against, "misses (full transport) or bias (the own model)")
+        ->check(CLI::IsMember({"misses", "bias"}));
+    subcommand->add_flag("--json", command->json, "print everything as JSON in place of the table");
+    return subcommand;
+  };
+  addComparison("front", "which pipelines no other beats in time and error", ComparisonTable::front);
+  addRepeatable(*addComparison("equal-time", "the error that each pipeline reaches within a time",
+                               ComparisonTable::equalTime),
+                "--budget", command->budgets, "a time, as 16ms; may be repeated (default: round numbers)");
+  addRepeatable(*addComparison("equal-error", "the time that each pipeline needs for an error",
+                               ComparisonTable::equalError),
+                "--error", command->errors, "an error; may be repeated (default: round numbers)");
+  auto* merge =
+      add("merge", "takes over the runs, stress cells and ceilings of other stores that are not there yet",
+          mergeResults);
   command->addStoreTo(*merge);
   merge->add_option("STORE", command->others, "the other stores")->required();
   auto* remove = add("remove", "removes runs", removeResults);
   command->addFilterTo(*remove);
+  command->addStressTo(*remove);
   remove->add_flag("--all", command->all, "every run");
   remove->add_flag("--dry-run", command->dryRun, "only tell which");
 

@@ -27,33 +27,35 @@ std::string exact(double value) {
   return std::isnan(value) ? std::string() : fmt::format("{}", value);
 }
 
-/// JSON has no NaN.
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
+/// "1..2", or "3" alone.
+std::string seedsText(const RunIdentity& identity) {
+  return identity.seeds <= 1 ? fmt::format("{}", identity.seed)
+                             : fmt::format("{}..{}", identity.seed,
+                                           identity.seed + static_cast<unsigned>(identity.seeds) - 1);
 }
 
 Json timeJson(const TimingStatistics& time) {
-  return {{"median_ms", number(time.median)},
-          {"lower_quartile_ms", number(time.lowerQuartile)},
-          {"upper_quartile_ms", number(time.upperQuartile)},
-          {"smallest_ms", number(time.smallest)},
-          {"largest_ms", number(time.largest)},
+  return {{"median_ms", jsonNumber(time.median)},
+          {"lower_quartile_ms", jsonNumber(time.lowerQuartile)},
+          {"upper_quartile_ms", jsonNumber(time.upperQuartile)},
+          {"smallest_ms", jsonNumber(time.smallest)},
+          {"largest_ms", jsonNumber(time.largest)},
           {"repeats", time.repeats}};
 }
 
 Json errorJson(const ComponentError& error) {
   Json metrics;
   for (const NamedMetric& metric : metricsOf(error))
-    metrics[metric.name] = {{"value", number(metric.measured.value)},
-                            {"uncertainty", number(metric.measured.uncertainty)},
-                            {"of_nothing", number(metric.ofNothing)}};
+    metrics[metric.name] = {{"value", jsonNumber(metric.measured.value)},
+                            {"uncertainty", jsonNumber(metric.measured.uncertainty)},
+                            {"of_nothing", jsonNumber(metric.ofNothing)}};
   return {{"output", error.output},
           {"component", error.component},
           {"truth", error.truth},
           {"against", error.bias ? "bias" : "misses"},
           {"seeds", error.seeds},
           {"deterministic", error.deterministic},
-          {"noise_rmse", number(error.noiseRmse)},
+          {"noise_rmse", jsonNumber(error.noiseRmse)},
           {"metrics", metrics}};
 }
 
@@ -80,6 +82,16 @@ Json identityJson(const RunIdentity& identity) {
 
 }  // namespace
 
+std::string durationText(double seconds) {
+  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  return fmt::format("{:.1f} h", seconds / 3600.0);
+}
+
+Json jsonNumber(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
 std::string runsTable(const std::vector<StoredRun>& runs) {
   std::vector<std::string> outputs{kWholePicture};
   for (const StoredRun& run : runs)
@@ -87,19 +99,17 @@ std::string runsTable(const std::vector<StoredRun>& runs) {
       if (std::find(outputs.begin(), outputs.end(), error.output) == outputs.end())
         outputs.push_back(error.output);
   std::vector<std::vector<std::string>> rows{
-      {"Run", "Scene", "Pipeline", "Parameters", "Size", "Frame ms", "Memory"}};
+      {"Run", "Scene", "Pipeline", "Parameters", "Seeds", "Size", "Frame ms", "Memory"}};
   for (const std::string& output : outputs)
     rows[0].push_back(output == kWholePicture ? "misses in all" : output + " bias");
   rows[0].push_back("State");
   for (const StoredRun& run : runs) {
     const ReportPoint& point = run.point;
-    std::vector<std::string> row{std::to_string(run.id),
-                                 stem(point.scene),
-                                 stem(point.pipeline),
-                                 parametersText(run.identity.parameters),
-                                 fmt::format("{}x{}", run.identity.width, run.identity.height),
-                                 quartilesText(point.frameMs),
-                                 formatBytes(point.peakBytes)};
+    std::vector<std::string> row{
+        std::to_string(run.id),       stem(point.scene),
+        stem(point.pipeline),         parametersText(run.identity.parameters),
+        seedsText(run.identity),      fmt::format("{}x{}", run.identity.width, run.identity.height),
+        quartilesText(point.frameMs), formatBytes(point.peakBytes)};
     for (const std::string& output : outputs)
       row.push_back(rmseText(errorOf(point, output, output != kWholePicture)));
     row.push_back(!point.failure.empty()         ? "failed: " + point.failure
@@ -172,7 +182,7 @@ Json runsJson(const std::vector<StoredRun>& runs) {
                     {"identity", identityJson(run.identity)},
                     {"frame", timeJson(point.frameMs)},
                     {"next_frame", timeJson(point.nextFrameMs)},
-                    {"framework_share", number(point.frameworkShare)},
+                    {"framework_share", jsonNumber(point.frameworkShare)},
                     {"peak_bytes", point.peakBytes},
                     {"passes", passes},
                     {"errors", errors},

@@ -9,10 +9,16 @@
 
 namespace lumivox::command {
 
+/// Null for NaN and infinity, which JSON does not have.
+Json jsonNumber(double value);
+
 /// One row per run; errors of the outputs beside the frame time.
 std::string runsTable(const std::vector<StoredRun>& runs);
 /// One row per run and error (RFC 4180); a run without errors has one row.
 std::string runsCsv(const std::vector<StoredRun>& runs);
 Json runsJson(const std::vector<StoredRun>& runs);
+
+/// "12 s", "34 min", "5.6 h": what is left.
+std::string durationText(double seconds);
 
 }  // namespace lumivox::command

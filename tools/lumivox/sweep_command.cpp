@@ -18,15 +18,15 @@ struct SweepCommand {
   bool plan = false, retryFailed = false, json = false;
 };
 
-std::string durationText(double seconds) {
-  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
-  return fmt::format("{:.1f} h", seconds / 3600.0);
-}
-
 int sweep(const SweepCommand& command, const GlobalOptions& global) {
   SweepOptions options;
   options.measure = command.measure.asked(global);
+  // Texts of their own stand among the scenes.
+  std::vector<std::filesystem::path>& scenes = options.measure.scenes;
+  const auto isScene = [](const std::filesystem::path& file) { return kindOfText(file) != TextKind::sweep; };
+  const auto texts = std::stable_partition(scenes.begin(), scenes.end(), isScene);
+  options.texts.assign(texts, scenes.end());
+  scenes.erase(texts, scenes.end());
   options.retryFailed = command.retryFailed;
   options.planOnly = command.plan;
   options.progress = [](std::size_t done, std::size_t total, double secondsLeft) {
@@ -48,10 +48,12 @@ int sweep(const SweepCommand& command, const GlobalOptions& global) {
                {"failed", summary.failed},
                {"missing", summary.missing},
                {"unsuited", summary.unsuited},
+               {"notes", summary.notes},
                {"runs", runsJson(summary.runs)}});
   } else {
     std::string text = summary.runs.empty() ? std::string() : runsTable(summary.runs);
     for (const std::string& missing : summary.missing) text += "not measured yet: " + missing + "\n";
+    for (const std::string& note : summary.notes) text += "note: " + note + "\n";
     for (const std::string& unsuited : summary.unsuited) text += "not run: " + unsuited + "\n";
     text += fmt::format("{} measured{}, {} held already; {}\n", summary.measured,
                         summary.failed == 0 ? "" : fmt::format(", {} of them failed", summary.failed),
@@ -71,7 +73,8 @@ void addSweepCommand(Commands& commands) {
       "sweep", "measures every point of the pipelines' sweeps that the results store does not hold yet");
   auto all = std::make_shared<SweepCommand>();
   all->measure.addTo(*command,
-                     "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)");
+                     "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)",
+                     "the scenes' texts, and texts of sweeps that name scenes and pipelines themselves");
   command->add_flag("--plan", all->plan, "only tell which points are missing");
   command->add_flag("--retry-failed", all->retryFailed, "measure points that failed before once more");
   command->add_flag("--json", all->json, "print JSON in place of the table");

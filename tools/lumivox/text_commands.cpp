@@ -10,6 +10,8 @@
 #include "lumivox/base/log.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/dsl/schema.h"
+#include "lumivox/pipeline/sweep_text.h"
+#include "lumivox/report/reproduce.h"
 #include "lumivox/scene/text.h"
 
 namespace lumivox::command {
@@ -39,10 +41,23 @@ struct CheckedFile {
 CheckedFile checkFile(const fs::path& file, const GlobalOptions& global, TechniqueSet& techniques) {
   CheckedFile checked;
   try {
-    if (kindOfText(file) == TextKind::scene)
-      checkScene(file, global.sceneLoad());
-    else
-      checkPipeline(Pipeline::load(file), techniques);
+    switch (kindOfText(file)) {
+      case TextKind::scene:
+        checkScene(file, global.sceneLoad());
+        break;
+      case TextKind::pipeline:
+        checkPipeline(Pipeline::load(file), techniques);
+        break;
+      case TextKind::sweep: {
+        std::vector<std::string> notes;
+        sweepShares(SweepText::load(file), techniques, notes);
+        for (const std::string& note : notes) logInformation("{}", note);
+        break;
+      }
+      case TextKind::reproduction:
+        checkReproduction(PublishedTable::load(file), techniques);
+        break;
+    }
   } catch (const DiagnosticsError& error) {
     checked.findings = error.diagnostics();
   } catch (const Error& error) {
@@ -112,8 +127,10 @@ std::string rangeText(const ParamBase& parameter) {
 }
 
 std::string inputText(const InBase& input) {
-  return fmt::format("{}{}", input.portKind(),
-                     input.presence() == Presence::optional ? ", may be left out" : "");
+  const std::string need = unmetNeed(input.needs(), SceneTraits{});
+  return fmt::format("{}{}{}", input.portKind(),
+                     input.presence() == Presence::optional ? ", may be left out" : "",
+                     need.empty() ? "" : ", read when the scene has " + need);
 }
 
 std::string outputText(const OutBase& output) {
@@ -194,7 +211,8 @@ int describe(const std::string& word, const GlobalOptions& global) {
   TechniqueSet techniques = global.techniqueSet();
   std::vector<std::string> known;
   std::string text;
-  for (const auto* specifications : {&sceneSpecifications(), &pipelineSpecifications()}) {
+  for (const auto* specifications : {&sceneSpecifications(), &pipelineSpecifications(),
+                                     &sweepSpecifications(), &reproductionSpecifications()}) {
     std::string found = dsl::describe(*specifications, word);
     if (!found.empty()) text += found + (found.back() == '\n' ? "\n" : "\n\n");
     for (const std::string& one : dsl::words(*specifications)) known.push_back(one);
@@ -222,7 +240,10 @@ int describeAsMarkdown(const GlobalOptions& global) {
   std::string text =
       "# Reference\n\nWritten by `lumivox describe --markdown` from the tables that the parser uses.\n\n";
   text += "## Scene texts\n\n" + dsl::describeAsMarkdown(sceneSpecifications()) + "\n";
-  text += "## Pipeline texts\n\n" + dsl::describeAsMarkdown(pipelineSpecifications()) + "\n## Techniques\n";
+  text += "## Pipeline texts\n\n" + dsl::describeAsMarkdown(pipelineSpecifications()) + "\n";
+  text += "## Sweep texts\n\n" + dsl::describeAsMarkdown(sweepSpecifications()) + "\n";
+  text +=
+      "## Published tables\n\n" + dsl::describeAsMarkdown(reproductionSpecifications()) + "\n## Techniques\n";
   std::string technique;
   forEachPass(techniques, [&](const Technique& owner, const PassEntry& entry) {
     if (owner.name != technique)
@@ -253,11 +274,10 @@ int describeAsMarkdown(const GlobalOptions& global) {
 void addTextCommands(Commands& commands) {
   const GlobalOptions& global = commands.global;
   {
-    auto* command =
-        commands.app.add_subcommand("check", "finds everything that is wrong in scenes and pipelines");
+    auto* command = commands.app.add_subcommand("check", "finds everything that is wrong in texts");
     auto files = std::make_shared<std::vector<fs::path>>();
     auto json = std::make_shared<bool>(false);
-    command->add_option("FILE", *files, "scenes and pipelines")->required();
+    command->add_option("FILE", *files, "scenes, pipelines, sweeps and published tables")->required();
     command->add_flag("--json", *json, "print the findings as JSON");
     commands.onChosen(command, [=, &global] { return check(*files, *json, global); });
   }
@@ -265,7 +285,7 @@ void addTextCommands(Commands& commands) {
     auto* command = commands.app.add_subcommand("fmt", "lays texts out in the one canonical way");
     auto files = std::make_shared<std::vector<fs::path>>();
     auto onlyCheck = std::make_shared<bool>(false);
-    command->add_option("FILE", *files, "scenes and pipelines")->required();
+    command->add_option("FILE", *files, "scenes, pipelines, sweeps and published tables")->required();
     command->add_flag("--check", *onlyCheck, "change nothing; exit code 1 when a file would change");
     commands.onChosen(command, [=, &global] { return formatFiles(*files, *onlyCheck, global.quiet); });
   }

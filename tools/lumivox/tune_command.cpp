@@ -1,11 +1,8 @@
 // tune: the best technique and parameters within a time or an error.
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
-#include "lumivox/dsl/document.h"
 #include "lumivox/report/tune.h"
 #include "measure_options.h"
 
@@ -20,19 +17,6 @@ struct TuneCommand {
   bool hasError = false, json = false;
   std::filesystem::path output;
 };
-
-/// "16ms", "0.016 s" or "16" (milliseconds).
-double budgetOf(const std::string& text) {
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  std::string unit = end;
-  unit.erase(0, unit.find_first_not_of(' '));
-  if (unit.empty()) unit = "ms";
-  if (end != text.c_str() && std::isfinite(number) && number > 0.0)
-    for (const dsl::Unit& known : dsl::knownUnits())
-      if (known.name == unit && known.dimension == dsl::kTime) return number * known.toBase * 1000.0;
-  throw Error(fmt::format("--budget '{}': expected a time above 0, as 16ms or 0.5s", text));
-}
 
 std::string resultText(const TuneResult& result, const TuneOptions& options) {
   std::vector<std::vector<std::string>> rows{{"Pipeline", "Parameters", "Frame ms", options.metric, ""}};
@@ -78,7 +62,7 @@ Json resultJson(const TuneResult& result) {
 int tuneScene(const TuneCommand& command, const GlobalOptions& global) {
   TuneOptions options = command.tune;
   options.measure = command.measure.asked(global);
-  if (!command.budget.empty()) options.budgetMs = budgetOf(command.budget);
+  if (!command.budget.empty()) options.budgetMs = millisecondsOf("--budget", command.budget);
   if (command.hasError) options.errorLimit = command.error;
   if (options.metric == "rmse") options.metric = "rmse_over_seeds";
   if (!command.output.empty()) requireWritable(command.output);

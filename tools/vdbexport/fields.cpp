@@ -104,10 +104,11 @@ std::vector<Field> fields(const RadianceGrid& port) {
   const int all = port.radiance->description().levels;
   const int filled = port.filledLevels == 0 ? all : port.filledLevels;
   std::vector<Field> result;
+  const auto radiance = [unit = port.unit](const OneTexel& texel) { return rgb(texel) * unit; };
   for (int level = 0; level < filled; ++level) {
     const FieldsOfTexels<1> texels(port.grid, {port.radiance}, level);
     result.push_back(texels.make<Vec3fGrid>("radiance", "outgoing radiance, multiplied by the opacity",
-                                            "W/(sr m^2)", rgb));
+                                            "W/(sr m^2)", radiance));
     result.push_back(asFog(texels.make<FloatGrid>("opacity", "opacity", "1", alpha)));
   }
   return result;

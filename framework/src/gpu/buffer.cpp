@@ -47,6 +47,7 @@ void Buffer::upload(std::span<const std::byte> bytes, std::uint64_t offsetBytes)
   assert(offsetBytes + bytes.size() <= sizeBytes_);
   glNamedBufferSubData(handle_, static_cast<GLintptr>(offsetBytes), static_cast<GLsizeiptr>(bytes.size()),
                        bytes.data());
+  device_->transfers.uploaded += bytes.size();
   device_->check("uploading to " + label_);
 }
 
@@ -58,6 +59,7 @@ std::vector<std::byte> Buffer::download(std::uint64_t offsetBytes, std::uint64_t
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glGetNamedBufferSubData(handle_, static_cast<GLintptr>(offsetBytes), static_cast<GLsizeiptr>(bytes.size()),
                           bytes.data());
+  device_->transfers.downloaded += bytes.size();
   device_->check("downloading " + label_);
   return bytes;
 }
@@ -74,6 +76,7 @@ void Buffer::clear(std::uint32_t word) {
     glNamedBufferSubData(handle_, static_cast<GLintptr>(whole), static_cast<GLsizeiptr>(sizeBytes_ - whole),
                          &word);
   }
+  device_->transfers.cleared += sizeBytes_;
   device_->check("clearing " + label_);
 }
 

@@ -232,7 +232,18 @@ void Device::beginDrawing(const RenderTargets& targets, const RasterState& raste
   }
   glBindFramebuffer(GL_FRAMEBUFFER, state.framebuffer);
   glViewport(0, 0, size.x, size.y);
-  if (targets.clear) clearTargets(state.framebuffer, targets);
+  if (targets.clear) {
+    clearTargets(state.framebuffer, targets);
+    const auto count = [&](const Texture* texture, int layer) {
+      if (texture == nullptr) return;
+      const TextureDescription& d = texture->description();
+      state.transfers.cleared += bytesPerTexel(d.format) * static_cast<std::uint64_t>(d.width) *
+                                 static_cast<std::uint64_t>(d.height) *
+                                 static_cast<std::uint64_t>(layer >= 0 ? 1 : d.depth);
+    };
+    for (const ColourTarget& colour : targets.colours) count(colour.texture, colour.layer);
+    count(targets.depth, targets.depthLayer);
+  }
   setRasterState(raster);
 }
 

@@ -268,6 +268,9 @@ void Device::leavePass() {
   state_->check("running");
 }
 
+Device::Transfers Device::transfers() const {
+  return state_->transfers;
+}
 std::uint64_t Device::allocatedBytes() const {
   return state_->allocatedBytes;
 }

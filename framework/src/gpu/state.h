@@ -122,6 +122,7 @@ struct DeviceState {
   std::string pass;
   std::vector<std::string> driverErrors;
   std::uint64_t allocatedBytes = 0, peakBytes = 0;
+  Device::Transfers transfers;
   std::array<GLuint, 7> samplers{};
   GLuint vertexArray = 0;
   GLuint elementBuffer = 0;

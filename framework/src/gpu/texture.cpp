@@ -146,6 +146,7 @@ void Texture::upload(int level, std::span<const std::byte> texels) {
   device_->use();
   assert(texels.size() == texelsOf(extentOf(description_, level)) * bytesPerTexel(description_.format));
   uploadAs(handle_, description_, level, traitsOf(description_.format).type, texels.data());
+  device_->transfers.uploaded += texels.size();
   device_->check("uploading to " + label_);
 }
 
@@ -153,6 +154,7 @@ std::vector<std::byte> Texture::download(int level) const {
   device_->use();
   std::vector<std::byte> texels(texelsOf(extentOf(description_, level)) * bytesPerTexel(description_.format));
   downloadAs(handle_, description_, level, traitsOf(description_.format).type, texels.data(), texels.size());
+  device_->transfers.downloaded += texels.size();
   device_->check("downloading " + label_);
   return texels;
 }
@@ -165,6 +167,7 @@ void Texture::downloadSlices(int level, int first, int count, std::span<std::byt
   assert(texels.size() == texelsOf(slices) * bytesPerTexel(description_.format));
   downloadSlicesAs(handle_, description_, level, traitsOf(description_.format).type, first, count,
                    texels.data(), texels.size());
+  device_->transfers.downloaded += texels.size();
   device_->check("downloading " + label_);
 }
 
@@ -174,6 +177,7 @@ void Texture::uploadFloats(int level, std::span<const float> values) {
   assert(values.size() == texelsOf(extentOf(description_, level)) *
                               static_cast<std::size_t>(componentCount(description_.format)));
   uploadAs(handle_, description_, level, GL_FLOAT, values.data());
+  device_->transfers.uploaded += values.size_bytes();
   device_->check("uploading to " + label_);
 }
 
@@ -183,6 +187,7 @@ std::vector<float> Texture::downloadFloats(int level) const {
   std::vector<float> values(texelsOf(extentOf(description_, level)) *
                             static_cast<std::size_t>(componentCount(description_.format)));
   downloadAs(handle_, description_, level, GL_FLOAT, values.data(), values.size() * sizeof(float));
+  device_->transfers.downloaded += values.size() * sizeof(float);
   device_->check("downloading " + label_);
   return values;
 }
@@ -191,6 +196,7 @@ void Texture::clear(const glm::vec4& value, int level) {
   device_->use();
   const FormatTraits& traits = traitsOf(description_.format);
   for (int i = level < 0 ? 0 : level; i < (level < 0 ? description_.levels : level + 1); ++i) {
+    device_->transfers.cleared += texelsOf(extentOf(description_, i)) * bytesPerTexel(description_.format);
     if (traits.integer) {
       std::array<GLuint, 4> words{};
       for (int c = 0; c < 4; ++c)

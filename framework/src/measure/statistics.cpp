@@ -63,6 +63,14 @@ TimingStatistics statisticsOf(std::vector<double> values) {
   return result;
 }
 
+Measured medianOf(const TimingStatistics& statistics) {
+  constexpr double kQuartilesApart = 1.349;   // in sigmas of a normal distribution
+  constexpr double kMedianOverMean = 1.2533;  // sqrt(pi/2)
+  const double sigma = (statistics.upperQuartile - statistics.lowerQuartile) / kQuartilesApart;
+  return {statistics.median,
+          statistics.repeats > 0 ? kMedianOverMean * sigma / std::sqrt(statistics.repeats) : 0.0};
+}
+
 Measured meanOverSeeds(const std::vector<double>& values) {
   if (values.empty()) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
   const auto n = static_cast<double>(values.size());

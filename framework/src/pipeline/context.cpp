@@ -1,6 +1,7 @@
 #include "pipeline/context.h"
 
 #include <exception>
+#include <new>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
@@ -70,6 +71,8 @@ gpu::Device::Elapsed FrameContext::run(Pass& pass, const std::string& name) {
     std::rethrow_exception(failure);
   } catch (const AbsentError& error) {
     throw AbsentError("pass " + name + ": " + error.what());
+  } catch (const std::bad_alloc&) {
+    throw Error("pass " + name + ": out of memory");
   } catch (const std::exception& error) {
     throw Error("pass " + name + ": " + error.what());
   }

@@ -47,12 +47,14 @@ struct PipelineExecutor::State {
   std::optional<SceneSnapshot> last;  ///< of the last frame
   bool complete = false;              ///< the last frame's results are there; otherwise every pass runs
   std::optional<int> lastFrameIndex;
-  std::map<int, PassRecord> lastRun;  ///< per pass, from the last time that it ran
+  std::map<int, PassRecord> lastRun;                       ///< per pass, from the last time that it ran
+  std::map<std::size_t, std::vector<float>> lastOfCamera;  ///< Pass::readsOfCamera(), the same
 
   State(gpu::Device& gpuDevice, TechniqueSource& source, const Scene& sceneToRender, const Pipeline& text,
         const RenderOptions& renderOptions);
   const PrunePlan& planned();
-  std::vector<bool> passesToRun(Reads changed);
+  std::vector<bool> passesToRun(Reads changed, const SceneSnapshot& snapshot);
+  bool readsWhatChanged(std::size_t pass, Reads changed, const SceneSnapshot& snapshot) const;
   void runPass(std::size_t index, FrameResult& result);
   FrameResult frame(SceneSnapshot snapshot, int frameIndex, Pictures pictures, Clock::time_point start);
   void collectPictures(FrameResult& result, Pictures pictures);
@@ -90,6 +92,7 @@ PipelineExecutor::State::State(gpu::Device& gpuDevice, TechniqueSource& source, 
   }
   context.setSeed(options.seed);
   context.setInspects(options.health);
+  if (options.countWork) context.shaders().countWork();
 }
 
 const PrunePlan& PipelineExecutor::State::planned() {
@@ -104,15 +107,24 @@ const PrunePlan& PipelineExecutor::State::planned() {
   return *plan;
 }
 
+bool PipelineExecutor::State::readsWhatChanged(std::size_t pass, Reads changed,
+                                               const SceneSnapshot& snapshot) const {
+  const Pass& object = *graph.passes[pass].object;
+  const Reads read = object.readsFrom();
+  if ((static_cast<std::uint32_t>(read) & static_cast<std::uint32_t>(changed)) != 0) return true;
+  if (!reads(read, Reads::partOfCamera) || !reads(changed, Reads::camera)) return false;
+  const auto before = lastOfCamera.find(pass);
+  return before == lastOfCamera.end() || object.readsOfCamera(snapshot) != before->second;
+}
+
 /// Per pass of the graph. A pass runs when something that it reads changed, when a source of it did, or when
 /// a value that such a pass needs was given back meanwhile.
-std::vector<bool> PipelineExecutor::State::passesToRun(Reads changed) {
+std::vector<bool> PipelineExecutor::State::passesToRun(Reads changed, const SceneSnapshot& snapshot) {
   const bool all = !complete || options.keepEverything;
   std::vector<bool> runs(graph.passes.size(), false);
   for (const int position : plan->order) {
     const auto index = static_cast<std::size_t>(position);
-    runs[index] = all || (static_cast<std::uint32_t>(graph.passes[index].object->readsFrom()) &
-                          static_cast<std::uint32_t>(changed)) != 0;
+    runs[index] = all || readsWhatChanged(index, changed, snapshot);
     for (const OutputIndex source : graph.passes[index].sources) {
       if (source.valid() && runs[static_cast<std::size_t>(source.pass)]) runs[index] = true;
     }
@@ -138,7 +150,9 @@ std::vector<bool> PipelineExecutor::State::passesToRun(Reads changed) {
 void PipelineExecutor::State::runPass(std::size_t index, FrameResult& result) {
   const BoundPass& bound = graph.passes[index];
   PassRecord record{bound.name, bound.technique, bound.pass};
+  if (options.countWork) context.shaders().takeWork();  // what was done between the passes
   const gpu::Device::Elapsed elapsed = context.run(*bound.object, bound.name);
+  if (options.countWork) record.work = context.shaders().takeWork();
   record.hostMs = elapsed.hostMs;
   record.deviceMs = elapsed.deviceMs;
   record.bytes = context.bytesOfRun();
@@ -152,6 +166,8 @@ void PipelineExecutor::State::runPass(std::size_t index, FrameResult& result) {
     }
   }
   lastRun[static_cast<int>(index)] = record;
+  if (reads(bound.object->readsFrom(), Reads::partOfCamera))
+    lastOfCamera[index] = bound.object->readsOfCamera(context.snapshot());
   result.passes.push_back(std::move(record));
 }
 
@@ -161,7 +177,7 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
   FrameResult result;
   Reads changed = last ? whatChanged(scene, *last, snapshot) : Reads::geometry;
   if (lastFrameIndex && *lastFrameIndex != frameIndex) changed = changed | Reads::time;
-  const std::vector<bool> runs = passesToRun(changed);
+  const std::vector<bool> runs = passesToRun(changed, snapshot);
   context.pool().beginFrame();
   context.setFrame(snapshot, frameIndex, reads(changed, Reads::geometry));
   context.setAfresh(!complete);

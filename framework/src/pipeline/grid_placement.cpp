@@ -32,21 +32,21 @@ GridPlacement placeGrid(const Bounds& bounds, int resolution) {
   return grid;
 }
 
-GridPlacement placeGridAround(const glm::vec3& centre, float extent, int resolution,
-                              const glm::dvec3& snapshotOrigin) {
+GridPlacement placeGridAround(const glm::vec3& centre, float extent, int resolution) {
   assert(extent > 0.0f && resolution >= 1 && resolution <= kLargestGrid);
   GridPlacement grid;
   grid.resolution = glm::ivec3(resolution);
   grid.voxelSize = extent / static_cast<float>(resolution);
   const double voxel = grid.voxelSize;
-  const glm::dvec3 low = glm::dvec3(centre) + snapshotOrigin - 0.5 * static_cast<double>(extent);
-  grid.low = glm::vec3(glm::round(low / voxel) * voxel - snapshotOrigin);
+  // The middle is rounded and not the corner: a camera in the middle of the scene, which is common, must not
+  // lie where rounding decides between two voxels.
+  const glm::dvec3 middle = glm::round(glm::dvec3(centre) / voxel);
+  grid.low = glm::vec3((middle - 0.5 * static_cast<double>(resolution)) * voxel);
   return grid;
 }
 
-GridPlacement placeNestedGrid(const glm::vec3& centre, float finestExtent, int resolution, int level,
-                              const glm::dvec3& snapshotOrigin) {
-  return placeGridAround(centre, std::ldexp(finestExtent, level), resolution, snapshotOrigin);
+GridPlacement placeNestedGrid(const glm::vec3& centre, float finestExtent, int resolution, int level) {
+  return placeGridAround(centre, std::ldexp(finestExtent, level), resolution);
 }
 
 }  // namespace lumivox

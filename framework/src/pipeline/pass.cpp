@@ -68,8 +68,9 @@ OutBase::OutBase(Pass* pass, std::string name, std::string portKind, Contributes
   pass->outputs_.push_back(this);
 }
 
-InBase::InBase(Pass* pass, std::string name, std::string portKind, Presence presence, std::string meaning)
-    : PortBase(std::move(name), std::move(portKind), std::move(meaning)), presence_(presence) {
+InBase::InBase(Pass* pass, std::string name, std::string portKind, Presence presence, std::string meaning,
+               Needs needs)
+    : PortBase(std::move(name), std::move(portKind), std::move(meaning)), presence_(presence), needs_(needs) {
   pass->inputs_.push_back(this);
 }
 

@@ -69,6 +69,17 @@ class Availability {
   std::vector<std::vector<bool>> available_;
 };
 
+/// What a kept pass reads: its connected inputs, but for optional ones that this scene gives no use.
+std::vector<OutputIndex> sourcesRead(const BoundPass& pass, const PruneRequest& request) {
+  std::vector<OutputIndex> result;
+  for (std::size_t i = 0; i < pass.sources.size(); ++i) {
+    const bool ofUse =
+        request.keepEverything || unmetNeed(pass.object->inputs()[i]->needs(), request.traits).empty();
+    if (pass.sources[i].valid() && ofUse) result.push_back(pass.sources[i]);
+  }
+  return result;
+}
+
 void markWanted(const BoundGraph& graph, const PruneRequest& request,
                 const std::vector<std::vector<bool>>& available, PrunePlan& plan) {
   const auto want = [&](OutputIndex index) {
@@ -93,9 +104,7 @@ void markWanted(const BoundGraph& graph, const PruneRequest& request,
       if (pass.why.empty()) pass.why = "nothing that is wanted depends on it";
       continue;
     }
-    for (const OutputIndex source : bound.sources) {
-      if (source.valid()) want(source);
-    }
+    for (const OutputIndex source : sourcesRead(bound, request)) want(source);
     for (OutputPlan& output : pass.outputs) {
       if (!output.wanted && output.why.empty()) output.why = "nothing that is wanted depends on it";
     }
@@ -103,11 +112,12 @@ void markWanted(const BoundGraph& graph, const PruneRequest& request,
 }
 
 Reads whatMayChange(const PruneRequest& request) {
-  if (request.interactive) return Reads::geometry | Reads::lights | Reads::camera | Reads::time;
+  const Reads camera = Reads::camera | Reads::partOfCamera;
+  if (request.interactive) return Reads::geometry | Reads::lights | camera | Reads::time;
   Reads result = Reads::time;
   if (request.traits.movingGeometry) result = result | Reads::geometry;
   if (request.traits.movingGeometry && request.traits.areaLights > 0) result = result | Reads::lights;
-  if (request.traits.movingCamera) result = result | Reads::camera;
+  if (request.traits.movingCamera) result = result | camera;
   return result;
 }
 
@@ -120,8 +130,8 @@ void planLifetimes(const BoundGraph& graph, const PruneRequest& request, PrunePl
     const std::size_t index = static_cast<std::size_t>(plan.order[position]);
     PassPlan& pass = plan.passes[index];
     pass.dependsOn = graph.passes[index].object->readsFrom();
-    for (const OutputIndex source : graph.passes[index].sources) {
-      if (!source.valid() || !plan.output(source).wanted) continue;
+    for (const OutputIndex source : sourcesRead(graph.passes[index], request)) {
+      if (!plan.output(source).wanted) continue;
       pass.dependsOn = pass.dependsOn | plan.passes[static_cast<std::size_t>(source.pass)].dependsOn;
       plan.output(source).lastReader = static_cast<int>(position);
     }
@@ -129,8 +139,8 @@ void planLifetimes(const BoundGraph& graph, const PruneRequest& request, PrunePl
   // A reader that something changes which leaves its source alone runs again without it.
   for (const int index : plan.order) {
     const PassPlan& reader = plan.passes[static_cast<std::size_t>(index)];
-    for (const OutputIndex source : graph.passes[static_cast<std::size_t>(index)].sources) {
-      if (!source.valid() || !plan.output(source).wanted) continue;
+    for (const OutputIndex source : sourcesRead(graph.passes[static_cast<std::size_t>(index)], request)) {
+      if (!plan.output(source).wanted) continue;
       const std::uint32_t more =
           bits(reader.dependsOn) & ~bits(plan.passes[static_cast<std::size_t>(source.pass)].dependsOn);
       if ((more & bits(plan.mayChange)) != 0) plan.output(source).keep = true;
@@ -168,6 +178,7 @@ std::string readsText(Reads set) {
   if (reads(set, Reads::materials)) words.push_back("materials");
   if (reads(set, Reads::lights)) words.push_back("lights");
   if (reads(set, Reads::camera)) words.push_back("camera");
+  if (reads(set, Reads::partOfCamera)) words.push_back("part of the camera");
   if (reads(set, Reads::time)) words.push_back("time");
   return words.empty() ? "nothing of the scene" : fmt::format("{}", fmt::join(words, ", "));
 }

@@ -7,6 +7,7 @@
 
 #include "lumivox/base/log.h"
 #include "lumivox/pipeline/pipeline.h"
+#include "pipeline/read_sweep.h"
 #include "pipeline/text_values.h"
 
 namespace lumivox {
@@ -52,28 +53,16 @@ std::vector<dsl::BlockSpecification> makeSpecifications() {
           "passes make no part of a picture, a voxeliser for instance, needs none.")};
   pipeline.blocks = {pass};
 
-  dsl::BlockSpecification sweep;
-  sweep.word = "sweep";
-  sweep.name = dsl::HeaderUse::required;
-  sweep.meaning =
-      "`sweep NAME { parameter [values] ... }`: the points at which a report measures the pipeline, the grid "
-      "over all "
-      "of its lists.";
-  return {pipeline, sweep};
-}
-
-bool isNumberRange(const dsl::Value& value) {
-  return value.kind == dsl::ValueKind::range && value.items.at(0).kind == dsl::ValueKind::number &&
-         value.items.at(1).kind == dsl::ValueKind::number;
+  return {pipeline, sweepSpecification(SweepHome::pipeline)};
 }
 
 /// Collects what one text says, and every finding in it.
-class TextReader {
+class TextReader : TextFindings {
  public:
-  TextReader(Pipeline& pipeline, const dsl::Document& document) : pipeline_(pipeline), document_(document) {}
+  TextReader(Pipeline& pipeline, const dsl::Document& document, std::vector<Diagnostic>& findings)
+      : TextFindings(document, findings), pipeline_(pipeline) {}
 
-  std::vector<Diagnostic> read() {
-    findings_ = document_.findings;
+  void read() {
     const dsl::Block* main = nullptr;
     for (const dsl::Item& item : document_.items) {
       if (item.property) {
@@ -100,20 +89,9 @@ class TextReader {
       if (item.block && item.block->word == "sweep") readSweep(*item.block);
     }
     warnOfUnused();
-    return std::move(findings_);
   }
 
  private:
-  void report(const SourcePlace& place, int length, std::string what, std::string expected = {},
-              std::string suggestion = {}) {
-    findings_.push_back(
-        document_.finding(place, length, std::move(what), std::move(expected), std::move(suggestion)));
-  }
-  void report(const SourcePlace& place, const std::string& word, std::string what, std::string expected = {},
-              std::string suggestion = {}) {
-    report(place, static_cast<int>(word.size()), std::move(what), std::move(expected), std::move(suggestion));
-  }
-
   void readPipeline(const dsl::Block& block) {
     if (block.header.size() != 1 ||
         (block.header[0].kind != dsl::ValueKind::text && !block.header[0].isPlainWord())) {
@@ -208,6 +186,11 @@ class TextReader {
              fmt::format("the default of '{}' is {}, which does not fit", parameter.name, value->text()),
              misfitExpectation(misfit));
     }
+    for (const char* word : {kSweptScenes, kSweptPipelines, kSweptSeeds}) {
+      if (parameter.name == word)
+        report(values[0].place, values[0].length, fmt::format("'{}' is a word of sweeps", word),
+               "another name for the parameter");
+    }
     for (const PipelineParameter& other : pipeline_.parameters) {
       if (other.name == parameter.name) {
         report(values[0].place, values[0].length, fmt::format("a second parameter named '{}'", other.name));
@@ -238,60 +221,18 @@ class TextReader {
   }
 
   void readSweep(const dsl::Block& block) {
-    Sweep sweep;
-    if (block.header.size() == 1 && block.header[0].isPlainWord()) {
-      sweep.name = block.header[0].text;
-    } else {
-      report(block.place, block.word, "a sweep needs one name", "sweep NAME { parameter [values] }");
-    }
+    const SweepBlock read = readSweepBlock(document_, block, SweepHome::pipeline, findings_);
     for (const Sweep& other : pipeline_.sweeps) {
-      if (other.name == sweep.name)
-        report(block.place, block.word, fmt::format("a second sweep named '{}'", sweep.name));
+      if (other.name == read.name)
+        report(block.place, block.word, fmt::format("a second sweep named '{}'", read.name));
     }
-    for (const dsl::Item& item : block.items) {
-      if (item.block) {
-        report(item.block->place, item.block->word, "a sweep holds no blocks", "parameter [values]");
-      } else {
-        readAxis(*item.property, sweep);
-      }
-    }
-    if (sweep.axes.empty() && findings_.empty())
-      report(block.place, block.word, "the sweep is empty", "parameter [values]");
-    pipeline_.sweeps.push_back(std::move(sweep));
-  }
-
-  void readAxis(const dsl::Property& property, Sweep& sweep) {
-    const PipelineParameter* parameter = findParameter(pipeline_, property.word);
-    if (parameter == nullptr) {
-      const std::vector<std::string> names = parameterNames(pipeline_);
-      report(property.place, property.word, fmt::format("unknown parameter '{}'", property.word),
-             oneOf(names, "a parameter, but this pipeline declares none"), nearestWord(property.word, names));
-      return;
-    }
-    for (const auto& axis : sweep.axes) {
-      if (axis.first == property.word)
-        report(property.place, property.word, fmt::format("'{}' is swept twice", property.word));
-    }
-    if (property.values.size() != 1 || property.values[0].kind != dsl::ValueKind::list ||
-        property.values[0].items.empty()) {
-      report(property.place, property.word, "a sweep needs a list of values", property.word + " [a b c]");
-      return;
-    }
-    std::vector<ParameterValue> values;
-    for (const dsl::Value& item : property.values[0].items) {
-      const auto value = parameterValue(item);
-      const std::string misfit =
-          value ? parameter->misfit(*value) : std::string("must be a number or a word");
-      if (misfit.empty()) {
-        values.push_back(*value);
-        values.back().dimension = parameter->value.dimension;
-      } else {
-        report(item.place, item.length,
-               fmt::format("this value does not fit the parameter '{}'", parameter->name),
-               misfitExpectation(misfit));
-      }
-    }
-    sweep.axes.emplace_back(parameter->name, std::move(values));
+    std::vector<const SweepAxis*> unknown;
+    pipeline_.sweeps.push_back(fittedSweep(read, pipeline_, document_, findings_, unknown));
+    const std::vector<std::string> names = parameterNames(pipeline_);
+    for (const SweepAxis* axis : unknown)
+      report(axis->place, axis->parameter, fmt::format("unknown parameter '{}'", axis->parameter),
+             oneOf(names, "a parameter, but this pipeline declares none"),
+             nearestWord(axis->parameter, names));
   }
 
   void warnOfUnused() {
@@ -305,8 +246,6 @@ class TextReader {
   }
 
   Pipeline& pipeline_;
-  const dsl::Document& document_;
-  std::vector<Diagnostic> findings_;
   std::vector<SourcePlace> parameterPlaces_;
   std::set<std::string> usedParameters_;
 };
@@ -321,13 +260,30 @@ Pipeline fromDocument(dsl::Document parsed) {
   for (const auto& included : document->includedFiles)
     hasher.add(document->includedSources.at(included.string()));
   pipeline.hash = hasher.finish();
-  throwOrLog(TextReader(pipeline, *document).read());
+  std::vector<Diagnostic> findings = document->findings;
+  TextReader(pipeline, *document, findings).read();
+  throwOrLog(std::move(findings));
   return pipeline;
 }
 
 }  // namespace
 
 // ---- values --------------------------------------------------------------------------------------------
+
+void TextFindings::report(const SourcePlace& place, int length, std::string what, std::string expected,
+                          std::string suggestion) {
+  findings_.push_back(
+      document_.finding(place, length, std::move(what), std::move(expected), std::move(suggestion)));
+}
+
+void TextFindings::report(const SourcePlace& place, const std::string& word, std::string what,
+                          std::string expected, std::string suggestion) {
+  report(place, static_cast<int>(word.size()), std::move(what), std::move(expected), std::move(suggestion));
+}
+
+std::filesystem::path besideText(const dsl::Value& value) {
+  return (std::filesystem::path(value.place.file).parent_path() / value.text).lexically_normal();
+}
 
 std::optional<std::pair<std::string, std::string>> splitDotted(const dsl::Value& value) {
   if (value.kind != dsl::ValueKind::word) return std::nullopt;
@@ -350,6 +306,11 @@ std::optional<ParameterValue> parameterValue(const dsl::Value& value) {
     return result;
   }
   return std::nullopt;
+}
+
+bool isNumberRange(const dsl::Value& value) {
+  return value.kind == dsl::ValueKind::range && value.items.at(0).kind == dsl::ValueKind::number &&
+         value.items.at(1).kind == dsl::ValueKind::number;
 }
 
 const PipelineParameter* findParameter(const Pipeline& pipeline, const std::string& name) {
@@ -407,21 +368,6 @@ std::string PipelineParameter::misfit(const ParameterValue& candidate) const {
   const bool inside =
       std::isfinite(candidate.number) && (!low || (candidate.number >= *low && candidate.number <= *high));
   return inside ? std::string() : "must be a number" + range;
-}
-
-std::vector<ParameterValues> Sweep::points() const {
-  std::vector<ParameterValues> points{{}};
-  for (const auto& [parameter, values] : axes) {
-    std::vector<ParameterValues> longer;
-    for (const ParameterValues& point : points) {
-      for (const ParameterValue& value : values) {
-        longer.push_back(point);
-        longer.back()[parameter] = value;
-      }
-    }
-    points = std::move(longer);
-  }
-  return points;
 }
 
 const std::vector<dsl::BlockSpecification>& pipelineSpecifications() {

@@ -1,6 +1,7 @@
-// What reading a pipeline text and binding it have in common.
+// What readers of pipelines, sweeps and published tables have in common, and binding with them.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,10 +11,31 @@
 
 namespace lumivox {
 
+/// The part of a reader that notes what is wrong in its text.
+class TextFindings {
+ protected:
+  TextFindings(const dsl::Document& document, std::vector<Diagnostic>& findings)
+      : document_(document), findings_(findings) {}
+  void report(const SourcePlace& place, int length, std::string what, std::string expected = {},
+              std::string suggestion = {});
+  /// At a word as long as it is.
+  void report(const SourcePlace& place, const std::string& word, std::string what, std::string expected = {},
+              std::string suggestion = {});
+
+  const dsl::Document& document_;
+  std::vector<Diagnostic>& findings_;
+};
+
+/// The file that a value names beside the text in which it is written; an included text has a folder of its
+/// own.
+std::filesystem::path besideText(const dsl::Value& value);
+
 /// "a.b" as (a, b); nothing for any other value.
 std::optional<std::pair<std::string, std::string>> splitDotted(const dsl::Value& value);
 /// A number, word or string as the value of a parameter; nothing for any other value.
 std::optional<ParameterValue> parameterValue(const dsl::Value& value);
+/// LOW..HIGH with numbers at both ends.
+bool isNumberRange(const dsl::Value& value);
 const PipelineParameter* findParameter(const Pipeline& pipeline, const std::string& name);
 std::vector<std::string> parameterNames(const Pipeline& pipeline);
 /// "one of a, b, c", or `otherwise` when there are none.

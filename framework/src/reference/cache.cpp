@@ -179,6 +179,7 @@ LayeredPicture cachedReference(const Scene& scene, const ReferenceOptions& optio
       cacheDirectory() / fmt::format("reference-{}.exr", cacheKey(scene, resolve(scene, options)).text());
   if (std::optional<LayeredPicture> entry = readEntry(file)) {
     entry->attributes.erase(kPixelHash);
+    if (options.progress) warnOfCutOff(entry->attributes);
     return *std::move(entry);
   }
   LayeredPicture picture = renderReference(scene, options);

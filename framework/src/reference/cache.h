@@ -11,7 +11,7 @@ namespace lumivox::reference {
 
 /// The version of the path tracer; raise it with every change that changes pictures, so that older cached
 /// truths are not taken.
-inline constexpr int kTracerVersion = 2;
+inline constexpr int kTracerVersion = 3;
 /// The same for what changes pictures of scenes with media alone.
 inline constexpr int kMediaVersion = 2;
 

@@ -12,12 +12,25 @@
 
 namespace lumivox::reference {
 
+/// Light of the last bounces that a path may have, of `bounces`: of those over a quarter up to a half of
+/// them, and of those over a half. Their ratio tells what lies beyond the last.
+struct LateLight {
+  glm::vec3 middle{0.0f}, late{0.0f};
+
+  void add(const glm::vec3& radiance, int bounce, int bounces) {
+    if (4 * bounce <= bounces) return;
+    (2 * bounce <= bounces ? middle : late) += radiance;
+  }
+  LateLight times(const glm::vec3& factor) const { return {factor * middle, factor * late}; }
+};
+
 /// What one path says about a pixel; radiance, components as in path_tracer.h.
 struct PathSample {
   glm::vec3 direct{0.0f};
   glm::vec3 oneBounceDiffuse{0.0f}, oneBounceGlossy{0.0f};
   glm::vec3 indirectDiffuse{0.0f}, indirectGlossy{0.0f};
   float unoccluded = 1.0f;
+  LateLight lateLight;
 
   glm::vec3 full() const { return direct + indirectDiffuse + indirectGlossy; }
 };
@@ -29,6 +42,7 @@ struct MediaPathSample {
   glm::vec3 transmittance{1.0f};      ///< between the camera and the first surface, or the end of all media
   glm::vec3 scatteredSingle{0.0f};    ///< light of the lights that the media scatter to the camera once
   glm::vec3 scatteredMultiple{0.0f};  ///< all other light that comes to the camera out of the media
+  LateLight lateLight;                ///< of all of it
 
   glm::vec3 scattered() const { return scatteredSingle + scatteredMultiple; }
   glm::vec3 full() const { return transmittance * surfaces.full() + scattered(); }
@@ -164,8 +178,10 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
   // surface over exactly one and over any number of bounces.
   glm::vec3 firstDiffuse(0.0f), firstGlossy(0.0f), throughput(1.0f);
   glm::vec3 arrivingOnce(0.0f), arriving(0.0f);
+  LateLight arrivingLate;
   const auto arrive = [&](const glm::vec3& radiance, int bounce) {
     arriving += throughput * radiance;
+    arrivingLate.add(throughput * radiance, bounce, bounces);
     if (bounce == 1) arrivingOnce += throughput * radiance;
   };
   for (int depth = 0;; ++depth) {
@@ -215,6 +231,7 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
   result.oneBounceGlossy = firstGlossy * arrivingOnce;
   result.indirectDiffuse = firstDiffuse * arriving;
   result.indirectGlossy = firstGlossy * arriving;
+  result.lateLight = arrivingLate.times(firstDiffuse + firstGlossy);
   return result;
 }
 

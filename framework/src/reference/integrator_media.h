@@ -100,6 +100,7 @@ void Integrator::traceSurfaces(Rays& rays, RandomStream& random, const Hit& hit,
     }
     result.indirectDiffuse += diffuse;
     result.indirectGlossy += glossy;
+    result.lateLight.add(diffuse + glossy, light.bounces, bounces);
     if (light.bounces > 1 || light.scattered) return;
     result.oneBounceDiffuse += diffuse;
     result.oneBounceGlossy += glossy;
@@ -117,6 +118,7 @@ void Integrator::traceScattered(Rays& rays, RandomStream& random, const glm::vec
   const glm::vec3 onwards = scatter(collision, direction, random, density);
   walk(rays, random, collision.position, onwards, density, [&](const Arrival& light) {
     (light.bounces == 0 ? result.scatteredSingle : result.scatteredMultiple) += weight * light.radiance;
+    result.lateLight.add(weight * light.radiance, light.bounces, bounces);
   });
 }
 
@@ -131,6 +133,9 @@ MediaPathSample Integrator::traceThroughMedia(Rays& rays, RandomStream& random, 
   traceScattered(rays, random, origin, direction, reach, result);
   if (met) {
     traceSurfaces(rays, random, hit, direction, result.surfaces);
+    const LateLight behind = result.surfaces.lateLight.times(result.transmittance);
+    result.lateLight.middle += behind.middle;
+    result.lateLight.late += behind.late;
   } else {
     result.surfaces.direct = environment;
   }

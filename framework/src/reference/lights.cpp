@@ -6,6 +6,10 @@
 namespace lumivox::reference {
 namespace {
 
+/// How far a shadow ray goes towards a light without extent, as a share of the way: a surface that the light
+/// lies on does not hide it. More than the rounding of single precision.
+constexpr float kReachOfPoint = 1.0f - 1e-5f;
+
 double meanOf(const glm::vec3& rgb) {
   return (std::max(0.0, double(rgb.x)) + std::max(0.0, double(rgb.y)) + std::max(0.0, double(rgb.z))) / 3.0;
 }
@@ -159,7 +163,7 @@ LightSample LightSampler::sampleLight(const Choice& choice, const glm::vec3& pos
   if (!(squaredDistance > 0.0f)) return result;
   result.direction = (1.0f / std::sqrt(squaredDistance)) * path;
   result.shadowDirection = path;
-  result.shadowReach = 1.0f;
+  result.shadowReach = kReachOfPoint;
   const float falloff = light.kind == LightKind::spot
                             ? prepared.falloffTowards(-glm::dot(result.direction, light.direction))
                             : 1.0f;

@@ -4,9 +4,12 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
+#include <sstream>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
@@ -69,6 +72,25 @@ Film::Film(int width, int height, bool media) {
   names_.push_back("ambient_occlusion");
   means_.emplace_back(width, height, 1);
   variances_ = means_;
+  middle_.assign(means_[0].pixelCount(), 0.0);
+  late_ = middle_;
+}
+
+CutOff cutOffOf(double middle, double late, double full, int bounces) {
+  constexpr int kFewestBounces = 8;  // with fewer the quarters hold no geometric series
+  if (bounces < kFewestBounces || !(middle > 0.0) || !(late > 0.0) || !(full > 0.0)) return {};
+  const double quarter = 0.5 * (std::sqrt(1.0 + 4.0 * late / middle) - 1.0);
+  if (quarter >= 1.0) return {1.0, 1.0};
+  const double beyond = late * quarter * quarter / (1.0 - quarter * quarter);
+  return {beyond / (full + beyond), std::pow(quarter, 4.0 / bounces)};
+}
+
+CutOff Film::cutOff(int bounces) const {
+  const auto layer = std::find(names_.begin(), names_.end(), "full");
+  const std::vector<float>& full = means_[static_cast<std::size_t>(layer - names_.begin())].values();
+  return cutOffOf(std::accumulate(middle_.begin(), middle_.end(), 0.0),
+                  std::accumulate(late_.begin(), late_.end(), 0.0),
+                  std::accumulate(full.begin(), full.end(), 0.0), bounces);
 }
 
 LayeredPicture Film::take() {
@@ -78,6 +100,25 @@ LayeredPicture Film::take() {
     result.layers.emplace(names_[layer] + ".variance", std::move(variances_[layer]));
   }
   return result;
+}
+
+void warnOfCutOff(const std::map<std::string, std::string>& attributes) {
+  constexpr double kTolerable = 0.01;
+  const auto entry = attributes.find("cut_off");
+  if (entry == attributes.end()) return;
+  CutOff cutOff;
+  std::istringstream(entry->second) >> cutOff.share >> cutOff.radius;
+  if (cutOff.share <= kTolerable) return;
+  const int bounces = std::stoi(attributes.at("bounces"));
+  const std::string enough =
+      cutOff.radius < 1.0
+          ? fmt::format("about {} bounces leave out 1 %",
+                        bounces + static_cast<int>(std::ceil(std::log(kTolerable / cutOff.share) /
+                                                             std::log(cutOff.radius))))
+          : "the light hardly shrinks from bounce to bounce";
+  logWarning(
+      "reference of {}: paths end after {} bounces, which leaves out about {:.2g} % of the light; {} (--bounces)",
+      attributes.at("scene"), bounces, 100.0 * cutOff.share, enough);
 }
 
 int threadsOf(int threads) {
@@ -113,8 +154,11 @@ LayeredPicture renderReference(const Scene& scene, const ReferenceOptions& given
     renderTile(tracer, resolved, tiles, tile, rays, film);
     if (progress) progress->advance();
   });
+  const CutOff cutOff = film.cutOff(options.bounces);
   LayeredPicture picture = film.take();
   picture.attributes = provenance(scene, resolved);
+  picture.attributes["cut_off"] = fmt::format("{:.3g} {:.6g}", cutOff.share, cutOff.radius);
+  if (options.progress) warnOfCutOff(picture.attributes);
   return picture;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -93,6 +94,15 @@ class PixelStatistics {
     }
     ++count_;
   }
+  void addLate(const LateLight& light) {
+    for (int channel = 0; channel < 3; ++channel) {
+      middle_ += static_cast<double>(light.middle[channel]);
+      late_ += static_cast<double>(light.late[channel]);
+    }
+  }
+  /// Sums of the three channels' means.
+  double middle() const { return middle_ / count_; }
+  double late() const { return late_ / count_; }
   float mean(std::size_t channel) const { return static_cast<float>(sum_[channel] / count_); }
   float varianceOfMean(std::size_t channel) const {
     const double sum = sum_[channel];
@@ -102,8 +112,18 @@ class PixelStatistics {
 
  private:
   std::array<double, kChannels> sum_{}, squares_{};
+  double middle_ = 0.0, late_ = 0.0;
   double count_ = 0.0;
 };
+
+/// What the limit on bounces costs.
+struct CutOff {
+  double share = 0.0;   ///< of all light that paths of more bounces would bring, estimated; 1: without end
+  double radius = 0.0;  ///< of what is missing, the share that one further bounce leaves
+};
+/// `middle` and `late` are LateLight, summed over the picture like `full`. Where bounces shrink by a factor
+/// r, late / middle = x (1 + x) with x = r^(N/4), and late x^2 / (1 - x^2) lies beyond the last bounce N.
+CutOff cutOffOf(double middle, double late, double full, int bounces);
 
 /// The pictures that pixels are written to: the radiance layers, and the occlusion last.
 class Film {
@@ -119,12 +139,19 @@ class Film {
             pixel.varianceOfMean(3 * layer + static_cast<std::size_t>(channel));
       }
     }
+    const std::size_t index = static_cast<std::size_t>(y) * static_cast<std::size_t>(means_[0].width()) +
+                              static_cast<std::size_t>(x);
+    middle_[index] = pixel.middle();
+    late_[index] = pixel.late();
   }
+  /// Sums in the order of the pixels, so that threads change nothing.
+  CutOff cutOff(int bounces) const;
   LayeredPicture take();
 
  private:
   std::vector<std::string> names_;
   std::vector<Picture> means_, variances_;
+  std::vector<double> middle_, late_;  ///< LateLight of each pixel
 };
 
 /// The picture's tiles, row by row.
@@ -185,15 +212,20 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
         resolved, tiles, tile, film, [&](auto& pixel, RandomStream& random, const glm::vec3& direction) {
           const PathSample sample = integrator.trace(rays, random, eye, direction);
           pixel.add(radiancesOf(sample), sample.unoccluded);
+          pixel.addLate(sample.lateLight);
         });
   } else {
     renderPixels<kMediaLayers.size()>(
         resolved, tiles, tile, film, [&](auto& pixel, RandomStream& random, const glm::vec3& direction) {
           const MediaPathSample sample = integrator.traceThroughMedia(rays, random, eye, direction);
           pixel.add(radiancesOf(sample), sample.surfaces.unoccluded);
+          pixel.addLate(sample.lateLight);
         });
   }
 }
+
+/// Says so when the limit on bounces costs more than a hundredth, by the attributes of a truth.
+void warnOfCutOff(const std::map<std::string, std::string>& attributes);
 
 /// Threads that a request of `threads` (0: all) gets.
 int threadsOf(int threads);

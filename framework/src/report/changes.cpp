@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <map>
 
+#include "lumivox/report/interpolation.h"
 #include "report/choice.h"
 
 namespace lumivox {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -20,14 +21,6 @@ std::string pointName(const StoredRun& run) {
   if (run.identity.time != 0.0) text += fmt::format(", {} s", run.identity.time);
   if (run.identity.seed != 1) text += fmt::format(", seed {}", run.identity.seed);
   return text + (run.identity.camera.empty() ? "" : ", camera " + run.identity.camera);
-}
-
-/// Median of n values of a normal distribution: its standard error is sqrt(pi/2) sigma / sqrt(n).
-Measured medianOf(const TimingStatistics& time) {
-  constexpr double kQuartilesApart = 1.349;   // in sigmas of a normal distribution
-  constexpr double kMedianOverMean = 1.2533;  // sqrt(pi/2)
-  const double sigma = (time.upperQuartile - time.lowerQuartile) / kQuartilesApart;
-  return {time.median, time.repeats > 0 ? kMedianOverMean * sigma / std::sqrt(time.repeats) : 0.0};
 }
 
 class Comparison {
@@ -99,12 +92,8 @@ class Comparison {
            double leastShare) {
     RunChange change{point_, quantity, before, after, 0.0, false, false};
     const double difference = after.value - before.value;
-    const double uncertainty = std::hypot(before.uncertainty, after.uncertainty);
-    if (difference != 0.0)
-      change.sigmas =
-          uncertainty > 0.0 ? std::abs(difference) / uncertainty : std::numeric_limits<double>::infinity();
-    change.significant =
-        change.sigmas > kSignificantSigmas && std::abs(difference) > leastShare * std::abs(before.value);
+    change.sigmas = sigmasApart(before, after);
+    change.significant = differ(before, after, leastShare);
     change.better = lessIsBetter ? difference < 0.0 : difference > 0.0;
     result.changes.push_back(std::move(change));
   }

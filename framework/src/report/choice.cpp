@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "lumivox/base/error.h"
+#include "report/measure.h"
 #include "report/plan.h"
 
 namespace lumivox::report {
@@ -19,13 +20,40 @@ namespace {
 /// long to repeat.
 constexpr int kSoftwarePixels = 128;
 
+std::vector<LoadedPipeline> loadAll(const std::vector<std::filesystem::path>& files,
+                                    const std::vector<std::string>& settings) {
+  std::vector<LoadedPipeline> all;
+  for (const std::filesystem::path& file : files) all.push_back(withSettings(Pipeline::load(file), settings));
+  std::vector<const LoadedPipeline*> pointers;
+  for (const LoadedPipeline& one : all) pointers.push_back(&one);
+  requireKnownSettings(pointers, settings);
+  return all;
+}
+
 }  // namespace
+
+LoadedPipeline withSettings(Pipeline pipeline, const std::vector<std::string>& settings) {
+  LoadedPipeline loaded{std::move(pipeline), {}, {}};
+  loaded.shown = shownPath(loaded.pipeline.file);
+  loaded.settings = loaded.pipeline.settings(settingsFor(loaded.pipeline, settings));
+  return loaded;
+}
+
+void requireKnownSettings(const std::vector<const LoadedPipeline*>& pipelines,
+                          const std::vector<std::string>& settings) {
+  for (const std::string& setting : settings) {
+    const auto knows = [&](const LoadedPipeline* one) {
+      return !settingsFor(one->pipeline, {setting}).empty();
+    };
+    if (!pipelines.empty() && std::none_of(pipelines.begin(), pipelines.end(), knows))
+      pipelines.front()->pipeline.settings({setting});
+  }
+}
 
 PipelineChoice::PipelineChoice(const ReportOptions& options, TechniqueSet& techniques)
     : options_(options), techniques_(techniques) {
-  for (const std::filesystem::path& file : options.pipelines) given_.push_back(load(file));
+  given_ = loadAll(options.pipelines, options.settings);
   for (const LoadedPipeline& one : given_) checkPipeline(one.pipeline, techniques);
-  requireKnownSettings(given_);
 }
 
 std::vector<const LoadedPipeline*> PipelineChoice::forScene(
@@ -41,10 +69,7 @@ std::vector<const LoadedPipeline*> PipelineChoice::forScene(
         "{}: no folder 'pipelines' beside the scene and no project around here; name one with --pipeline",
         scene.file.string()));
   std::vector<LoadedPipeline>& all = committed_[*folder];
-  if (all.empty()) {
-    for (const std::filesystem::path& file : pipelinesIn(*folder / "pipelines")) all.push_back(load(file));
-    requireKnownSettings(all);
-  }
+  if (all.empty()) all = loadAll(pipelinesIn(*folder / "pipelines"), options_.settings);
   const SceneTraits traits = SceneTraits::of(scene);
   for (const LoadedPipeline& one : all) {
     std::string why = missingTechnique(one.pipeline);
@@ -63,23 +88,6 @@ std::vector<const LoadedPipeline*> PipelineChoice::forScene(
         "{}: no pipeline in {} suits this scene{}", scene.file.string(), (*folder / "pipelines").string(),
         unsuited.empty() ? std::string() : "; the first one: " + unsuited.front().second));
   return chosen;
-}
-
-LoadedPipeline PipelineChoice::load(const std::filesystem::path& file) {
-  LoadedPipeline loaded{Pipeline::load(file), shownPath(file), {}};
-  loaded.settings = loaded.pipeline.settings(settingsFor(loaded.pipeline, options_.settings));
-  return loaded;
-}
-
-/// A setting that no pipeline knows is a slip of the pen.
-void PipelineChoice::requireKnownSettings(const std::vector<LoadedPipeline>& pipelines) {
-  for (const std::string& setting : options_.settings) {
-    const auto knows = [&](const LoadedPipeline& one) {
-      return !settingsFor(one.pipeline, {setting}).empty();
-    };
-    if (!pipelines.empty() && std::none_of(pipelines.begin(), pipelines.end(), knows))
-      pipelines.front().pipeline.settings({setting});
-  }
 }
 
 std::string PipelineChoice::missingTechnique(const Pipeline& pipeline) {
@@ -104,7 +112,7 @@ std::pair<int, int> measuredSize(const gpu::Device& device, const Scene& scene,
 ReferenceOptions truthOptionsOf(const ReportOptions& options, int width, int height) {
   ReferenceOptions truth;
   truth.samplesPerPixel = options.truthSamples > 0 ? options.truthSamples : truthSamplesFor(width, height);
-  truth.seed = options.seed;
+  // The seed is the techniques' alone: all of them are judged against one truth.
   truth.time = options.time;
   truth.camera = options.camera;
   truth.width = width;
@@ -133,10 +141,12 @@ StoredRun storedRunOf(gpu::Device& device, TechniqueSource& techniques, const Sc
   identity.repeats = options.repeats;
   identity.subpixels = options.subpixels;
   identity.truthSamples = truthSamples;
-  identity.device = device.info().renderer;
-  identity.driver = device.info().version;
-  identity.shaderInput = device.shaderInput() == gpu::ShaderInput::spirv ? "spirv" : "glsl";
-  identity.host = hostText();
+  identity.flickerPairs = flickers(scene, options) ? options.flickerPairs : 0;
+  const DeviceIdentity where = identityOf(device);
+  identity.device = where.device;
+  identity.driver = where.driver;
+  identity.shaderInput = where.shaderInput;
+  identity.host = where.host;
   run.version = LUMIVOX_VERSION;
   run.sceneName = scene.name;
   run.pipelineName = loaded.pipeline.name;
@@ -148,6 +158,11 @@ StoredRun storedRunOf(gpu::Device& device, TechniqueSource& techniques, const Sc
   run.point.command =
       repeatingCommand(options, sceneShown, loaded.shown, point.parameters, width, height, truthSamples);
   return run;
+}
+
+DeviceIdentity identityOf(const gpu::Device& device) {
+  return {device.info().renderer, device.info().version,
+          device.shaderInput() == gpu::ShaderInput::spirv ? "spirv" : "glsl", hostText()};
 }
 
 std::string hostText() {

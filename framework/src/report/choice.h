@@ -18,19 +18,26 @@ struct LoadedPipeline {
   ParameterValues settings;  ///< of the command line, those that it has
 };
 
+/// The pipeline with the settings that it knows.
+LoadedPipeline withSettings(Pipeline pipeline, const std::vector<std::string>& settings);
+
+/// Refuses a setting that no pipeline knows: a slip of the pen.
+void requireKnownSettings(const std::vector<const LoadedPipeline*>& pipelines,
+                          const std::vector<std::string>& settings);
+
 /// All pipelines of a scene: those given, or every committed one that suits it. Every text is checked before
 /// anything is measured.
 class PipelineChoice {
  public:
   PipelineChoice(const ReportOptions& options, TechniqueSet& techniques);
 
+  /// Those of the options, checked.
+  const std::vector<LoadedPipeline>& given() const { return given_; }
   /// `unsuited`: pipeline and why, for those that are left out by themselves.
   std::vector<const LoadedPipeline*> forScene(const Scene& scene,
                                               std::vector<std::pair<std::string, std::string>>& unsuited);
 
  private:
-  LoadedPipeline load(const std::filesystem::path& file);
-  void requireKnownSettings(const std::vector<LoadedPipeline>& pipelines);
   std::string missingTechnique(const Pipeline& pipeline);
 
   const ReportOptions& options_;
@@ -47,6 +54,12 @@ ReferenceOptions truthOptionsOf(const ReportOptions& options, int width, int hei
 StoredRun storedRunOf(gpu::Device& device, TechniqueSource& techniques, const Scene& scene,
                       const LoadedPipeline& loaded, const PlannedPoint& point, const ReportOptions& options,
                       int width, int height, int truthSamples, const std::string& sceneShown);
+
+/// What times depend on besides the work.
+struct DeviceIdentity {
+  std::string device, driver, shaderInput, host;
+};
+DeviceIdentity identityOf(const gpu::Device& device);
 
 /// System and processor.
 std::string hostText();

@@ -9,6 +9,10 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/report/device.h"
+#include "report/slopes.h"
+#include "report/stress_page.h"
+#include "report/time_page.h"
 #include "report/voxel_page.h"
 
 namespace lumivox::report {
@@ -51,7 +55,10 @@ Json toJson(const ComponentError& record) {
           {"rmse_over_seeds", toJson(record.rmseOverSeeds)},
           {"seeds", record.seeds},
           {"deterministic", record.deterministic},
+          {"rms_bias", toJson(record.parts.bias)},
           {"picture_noise", number(record.noiseRmse)},
+          {"rms_noise", toJson(record.parts.noise)},
+          {"flicker", toJson(record.flicker)},
           {"truth_noise", number(error.noiseFloor)},
           {"relative_mse", toJson(error.relativeMse)},
           {"mean_ratio", toJson(error.meanRatio)},
@@ -83,7 +90,8 @@ Json toJson(const PointRecord& record) {
     passes.push_back({{"pass", pass},
                       {"device_ms", toJson(point.passDeviceMs.at(pass))},
                       {"host_ms", toJson(point.passHostMs.at(pass))},
-                      {"bytes", point.passBytes.at(pass)}});
+                      {"bytes", point.passBytes.at(pass)},
+                      {"limit", limitJson(point, pass)}});
   json["passes"] = std::move(passes);
   Json errors = Json::array();
   for (const ComponentError& error : point.errors) errors.push_back(toJson(error));
@@ -150,19 +158,16 @@ Json toJson(const SceneRecord& scene) {
   json["truth"]["layers"] = std::move(layers);
   json["points"] = Json::array();
   for (const PointRecord& point : scene.points) json["points"].push_back(toJson(point));
+  json["slopes"] = slopesJson(slopesOf(scene));
   json["pruning"] = Json::array();
   for (const PruningRecord& pruning : scene.pruning) json["pruning"].push_back(toJson(pruning));
   json["unsuited"] = Json::array();
   for (const auto& [pipeline, why] : scene.unsuited)
     json["unsuited"].push_back({{"pipeline", pipeline}, {"why", why}});
+  json["comparisons"] = Json::array();
+  for (const PipelineComparison& comparison : scene.comparisons)
+    json["comparisons"].push_back(lumivox::toJson(comparison));
   return json;
-}
-
-std::string csvField(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
 }
 
 std::string csvNumber(double value) {
@@ -211,6 +216,9 @@ CsvRow csvRow(const SceneRecord& scene, const PointRecord& record, const Compone
   row.add("rmse", error.rmse());
   row.add("seeds", static_cast<std::uint64_t>(error.seeds));
   row.add("picture_noise", error.noiseRmse);
+  row.add("rms_bias", error.parts.bias);
+  row.add("rms_noise", error.parts.noise);
+  row.add("flicker", error.flicker);
   row.add("truth_noise", error.error.noiseFloor);
   row.add("relative_mse", error.error.relativeMse);
   row.add("mean_ratio", error.error.meanRatio);
@@ -238,6 +246,13 @@ CsvRow csvRow(const SceneRecord& scene, const PointRecord& record, const Compone
 
 }  // namespace
 
+std::string csvField(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
 nlohmann::ordered_json toJson(const ReportData& data) {
   Json json = {
       {"report", "lumivox"}, {"format", 1}, {"date", data.date}, {"command", data.options.commandLine}};
@@ -250,6 +265,7 @@ nlohmann::ordered_json toJson(const ReportData& data) {
                     {"timer_queries_trusted", data.device.timerQueriesTrusted},
                     {"timer_note", data.device.timerNote},
                     {"host", data.host}};
+  json["ceilings"] = ceilingsJson(data.ceilings);
   json["units"] = {{"error", "radiance, W/(sr m^2)"}, {"time", "ms"}, {"memory", "bytes"}};
   json["pipelines"] = Json::array();
   for (const PipelineRecord& pipeline : data.pipelines)
@@ -263,6 +279,7 @@ nlohmann::ordered_json toJson(const ReportData& data) {
   json["scenes"] = Json::array();
   for (const SceneRecord& scene : data.scenes) json["scenes"].push_back(toJson(scene));
   if (!data.voxels.empty()) json["voxels"] = voxelRecordsJson(data.voxels);
+  for (const StressCell& cell : data.stress) json["stress"].push_back(stressJson(cell));
   return json;
 }
 
@@ -321,17 +338,19 @@ std::string base64(const std::string& bytes) {
   return text;
 }
 
-std::vector<std::string> componentsOf(const SceneRecord& scene) {
+std::vector<std::string> componentsOf(const std::vector<const ReportPoint*>& points) {
   std::vector<std::string> present;
-  for (const Contributes component :
-       {Contributes::direct, Contributes::indirectDiffuse, Contributes::indirectGlossy,
-        Contributes::scattered, Contributes::ambientOcclusion, Contributes::final}) {
-    const auto has = [&](const PointRecord& record) {
-      return errorOf(record.point, name(component), true) != nullptr;
-    };
-    if (std::any_of(scene.points.begin(), scene.points.end(), has)) present.emplace_back(name(component));
+  for (const std::string& component : comparableComponents()) {
+    const auto has = [&](const ReportPoint* point) { return errorOf(*point, component, true) != nullptr; };
+    if (std::any_of(points.begin(), points.end(), has)) present.push_back(component);
   }
   return present;
+}
+
+std::vector<const ReportPoint*> pointsOf(const SceneRecord& scene) {
+  std::vector<const ReportPoint*> points;
+  for (const PointRecord& record : scene.points) points.push_back(&record.point);
+  return points;
 }
 
 const ComponentError* errorOf(const ReportPoint& point, const std::string& component, bool bias) {
@@ -345,22 +364,15 @@ const ComponentError* errorOf(const ReportPoint& point, const std::string& compo
   return only;
 }
 
-std::vector<bool> frontOf(const std::vector<PointRecord>& points, const std::string& component, bool bias) {
-  std::vector<bool> front(points.size(), false);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const ComponentError* own = errorOf(points[i].point, component, bias);
-    if (own == nullptr || points[i].point.frameMs.repeats == 0) continue;
-    front[i] = true;
-    for (const PointRecord& other : points) {
-      const ComponentError* theirs = errorOf(other.point, component, bias);
-      if (theirs == nullptr || other.point.frameMs.repeats == 0) continue;
-      const double ownTime = points[i].point.frameMs.median, theirTime = other.point.frameMs.median;
-      const double ownError = own->rmse().value, theirError = theirs->rmse().value;
-      if (theirTime <= ownTime && theirError <= ownError && (theirTime < ownTime || theirError < ownError))
-        front[i] = false;
-    }
+const PipelineComparison* comparisonOf(const SceneRecord& scene, const std::string& component, bool bias,
+                                       const std::string& metric) {
+  const PipelineComparison* only = nullptr;
+  for (const PipelineComparison& comparison : scene.comparisons) {
+    if (comparison.component != component || comparison.metric != metric) continue;
+    if (comparison.bias == bias) return &comparison;
+    only = &comparison;
   }
-  return front;
+  return only;
 }
 
 }  // namespace lumivox::report

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "lumivox/report/comparison.h"
 #include "lumivox/report/report.h"
+#include "lumivox/report/store.h"
 #include "lumivox/report/voxelisers.h"
 
 namespace lumivox::report {
@@ -55,6 +57,7 @@ struct SceneRecord {
   std::vector<PointRecord> points;
   std::vector<PruningRecord> pruning;
   std::vector<std::pair<std::string, std::string>> unsuited;  ///< pipeline, why
+  std::vector<PipelineComparison> comparisons;
 };
 
 struct TechniqueRecord {
@@ -69,8 +72,13 @@ struct ReportData {
   std::vector<TechniqueRecord> techniques;
   std::vector<SkippedTechnique> skipped;
   std::vector<SceneRecord> scenes;
+  std::vector<DeviceCeiling> ceilings;  ///< of this device; empty when nobody has measured them
   std::vector<VoxeliserRecord> voxels;  ///< only when they were asked for
+  std::vector<StressCell> stress;       ///< that the results store holds, the newest of each
 };
+
+/// The metrics that the page compares pipelines by.
+inline constexpr const char* kPageMetrics[] = {"rmse", "relative_mse", "percentile95", "flip"};
 
 /// Everything but the pictures.
 nlohmann::ordered_json toJson(const ReportData& data);
@@ -86,16 +94,21 @@ std::string chartLibrary();
 
 std::string base64(const std::string& bytes);
 
-/// The components that some point of the scene has an error for, in the order of a picture's making; the
-/// whole picture last.
-std::vector<std::string> componentsOf(const SceneRecord& scene);
+/// One field of a CSV row (RFC 4180), quoted where it needs it.
+std::string csvField(const std::string& text);
+
+/// The components that some point has an error for, in the order of a picture's making; the whole picture
+/// last.
+std::vector<std::string> componentsOf(const std::vector<const ReportPoint*>& points);
+std::vector<const ReportPoint*> pointsOf(const SceneRecord& scene);
 
 /// The error of a component at a point, if it was measured: against the bias truth or the full one (a
 /// component with one truth has only the first, which then answers for both). For the component "final" it is
 /// that of the whole picture.
 const ComponentError* errorOf(const ReportPoint& point, const std::string& component, bool bias);
 
-/// Points that no other point beats in both time and error: the front. One value per point of the scene.
-std::vector<bool> frontOf(const std::vector<PointRecord>& points, const std::string& component, bool bias);
+/// The comparison of a component by a metric; null when no point has it. One truth answers for both.
+const PipelineComparison* comparisonOf(const SceneRecord& scene, const std::string& component, bool bias,
+                                       const std::string& metric);
 
 }  // namespace lumivox::report

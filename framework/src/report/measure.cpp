@@ -9,6 +9,8 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "lumivox/base/low_discrepancy.h"
+#include "lumivox/report/device.h"
+#include "pipeline/changes.h"
 
 namespace lumivox {
 
@@ -33,7 +35,7 @@ struct Judged {
   std::vector<Picture> seeds;
 };
 
-RenderOptions renderOptions(const MeasureContext& context, const ReportPoint& point) {
+RenderOptions renderOptions(const TimingContext& context, const ReportPoint& point) {
   RenderOptions options;
   options.parameters = point.parameters;
   options.seed = context.options.seed;
@@ -51,6 +53,19 @@ void collect(std::vector<Judged>& judged, const std::string& output, Contributes
     judged.push_back({output, component, {std::move(picture)}});
   else
     found->seeds.push_back(std::move(picture));
+}
+
+void collectOutputs(std::vector<Judged>& judged, const PipelineExecutor& executor, FrameResult frame) {
+  Picture whole = compositePicture(frame);
+  for (const std::string& output : executor.outputNames()) {
+    const auto picture = frame.outputs.find(output);
+    const auto component = frame.components.find(output);
+    // An output that is the whole picture already is judged as that, once.
+    if (picture != frame.outputs.end() && component != frame.components.end() &&
+        component->second != Contributes::final)
+      collect(judged, output, component->second, std::move(picture->second));
+  }
+  collect(judged, kWholePicture, Contributes::final, std::move(whole));
 }
 
 /// RMSE over the values that are finite in both, as `compare` counts them.
@@ -100,6 +115,7 @@ ComponentError errorAgainst(const Judged& judged, Truth& truth, const std::strin
   record.seeds = static_cast<int>(judged.seeds.size());
   record.noiseRmse = noiseOver(judged.seeds);
   record.deterministic = judged.seeds.size() > 1 && record.noiseRmse == 0.0;
+  record.parts = errorParts(judged.seeds, reference.mean, reference.variance, record.deterministic);
   std::vector<double> rmses{record.error.rmse.value};
   for (std::size_t seed = 1; seed < judged.seeds.size(); ++seed)
     rmses.push_back(rmseOf(judged.seeds[seed], reference.mean));
@@ -109,15 +125,18 @@ ComponentError errorAgainst(const Judged& judged, Truth& truth, const std::strin
   return record;
 }
 
-/// The picture that a pipeline converges to under sub-pixel motion of the camera (temporal anti-aliasing):
-/// the mean over a regular grid of positions inside the pixel. The truth is filtered over the pixel, so that
-/// with one sample at its centre the silhouettes of bright lamps would outweigh every other error. The camera
-/// turns by the fraction of a pixel, which shifts the picture but for second order.
-FrameResult renderFiltered(PipelineExecutor& executor, const MeasureContext& context,
-                           const RenderOptions& options) {
-  const int count = std::max(1, context.options.subpixels);
-  const SceneSnapshot centre =
-      snapshotOf(context.scene, context.options.time, options.camera, options.width, options.height);
+SceneSnapshot snapshotAt(const MeasureContext& context, const RenderOptions& options, double time) {
+  return snapshotOf(context.scene, time, options.camera, options.width, options.height);
+}
+
+}  // namespace
+
+FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& centre, int positions,
+                           int frameIndex) {
+  // The truth is filtered over the pixel, so that with one sample at its centre the silhouettes of bright
+  // lamps would outweigh every other error. The camera turns by the fraction of a pixel, which shifts the
+  // picture but for second order.
+  const int count = std::max(1, positions);
   const float pixel = 2.0f * centre.camera.tanHalfFov / static_cast<float>(centre.camera.height);
   // Unlike a regular grid, the sequence has as many different rows and columns as positions, which matters
   // where edges run along the rows. A single position is the centre.
@@ -129,11 +148,12 @@ FrameResult renderFiltered(PipelineExecutor& executor, const MeasureContext& con
     CameraView& camera = shifted.camera;
     camera.forward =
         glm::normalize(camera.forward + pixel * (offset.x * camera.right + offset.y * camera.up));
-    FrameResult frame = executor.render(shifted);
-    if (sum.outputs.empty()) {
+    FrameResult frame = executor.render(shifted, frameIndex);
+    if (position == 0) {
       sum = std::move(frame);
       continue;
     }
+    if (sum.healthFindings.empty()) sum.healthFindings = std::move(frame.healthFindings);
     for (auto& [name, picture] : sum.outputs) {
       const std::vector<float>& added = frame.outputs.at(name).values();
       for (std::size_t i = 0; i < added.size(); ++i) picture.values()[i] += added[i];
@@ -144,7 +164,14 @@ FrameResult renderFiltered(PipelineExecutor& executor, const MeasureContext& con
   return sum;
 }
 
-}  // namespace
+bool flickers(const Scene& scene, const ReportOptions& options) {
+  if (options.flickerPairs < 1) return false;
+  const auto at = [&](double time) { return snapshotOf(scene, time, options.camera, 1, 1); };
+  const Reads changed =
+      whatChanged(scene, at(options.time), at(options.time + options.flickerPairs * kFlickerStep));
+  return reads(changed, Reads::geometry) || reads(changed, Reads::lights) || reads(changed, Reads::camera) ||
+         SceneTraits::of(scene).particles;
+}
 
 void measureErrors(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
   RenderOptions options = renderOptions(context, record.point);
@@ -154,21 +181,13 @@ void measureErrors(const MeasureContext& context, const Pipeline& pipeline, Poin
     options.health = seed == 0;
     options.interactive = true;
     PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
-    FrameResult frame = renderFiltered(executor, context, options);
+    FrameResult frame = renderFiltered(executor, snapshotAt(context, options, context.options.time),
+                                       context.options.subpixels);
     if (seed == 0) {
       record.point.healthFindings = frame.healthFindings;
       record.point.notes = frame.notes;
     }
-    Picture whole = compositePicture(frame);
-    for (const std::string& output : executor.outputNames()) {
-      const auto picture = frame.outputs.find(output);
-      const auto component = frame.components.find(output);
-      // An output that is the whole picture already is judged as that, once.
-      if (picture != frame.outputs.end() && component != frame.components.end() &&
-          component->second != Contributes::final)
-        collect(judged, output, component->second, std::move(picture->second));
-    }
-    collect(judged, kWholePicture, Contributes::final, std::move(whole));
+    collectOutputs(judged, executor, std::move(frame));
     // A technique without random numbers gives the same bits for every seed: two show it, more would only
     // cost time.
     if (seed == 1 && std::all_of(judged.begin(), judged.end(),
@@ -201,6 +220,46 @@ void measureErrors(const MeasureContext& context, const Pipeline& pipeline, Poin
   }
 }
 
+void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
+  if (record.point.errors.empty() || !flickers(context.scene, context.options)) return;
+  RenderOptions options = renderOptions(context, record.point);
+  options.interactive = true;
+  PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
+  std::vector<Judged> judged;  // with frames in place of seeds
+  for (int frame = 0; frame <= context.options.flickerPairs; ++frame)
+    collectOutputs(
+        judged, executor,
+        renderFiltered(executor, snapshotAt(context, options, context.options.time + frame * kFlickerStep),
+                       context.options.subpixels, frame));
+  for (ComponentError& error : record.point.errors)
+    for (const Judged& one : judged) {
+      if (one.output != error.output) continue;
+      std::vector<Picture> means, variances;
+      for (int frame = 0; frame <= context.options.flickerPairs; ++frame) {
+        const TruthLayer& layer = *context.truth.later(context.scene, frame).layer(error.truth);
+        means.push_back(layer.mean);
+        variances.push_back(layer.variance);
+      }
+      error.flicker = flicker(one.seeds, means, variances);
+    }
+}
+
+void countWork(const MeasureContext& context, const Pipeline& pipeline,
+               const std::vector<DeviceCeiling>& ceilings, PointRecord& record) {
+  RenderOptions options = renderOptions(context, record.point);
+  options.countWork = true;
+  try {
+    PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
+    FrameResult frame = executor.render(context.options.time, 0, PipelineExecutor::Pictures::no);
+    for (PassRecord& pass : frame.passes) {
+      record.point.passBounds[pass.name] = lowerBounds(pass.work, ceilings);
+      record.point.passWork[pass.name] = std::move(pass.work);
+    }
+  } catch (const AbsentError& error) {
+    record.point.whyNotCounted = error.what();
+  }
+}
+
 struct TimedPoint::State {
   ReportPoint& point;
   double time;                        ///< s
@@ -210,7 +269,7 @@ struct TimedPoint::State {
   std::vector<double> frameMs, shares, nextMs;
   std::map<std::string, std::vector<double>> deviceMs, hostMs;
 
-  State(const MeasureContext& context, const Pipeline& pipeline, ReportPoint& pointToTime)
+  State(const TimingContext& context, const Pipeline& pipeline, ReportPoint& pointToTime)
       : point(pointToTime),
         time(context.options.time),
         bytesOfOthers(context.device.allocatedBytes()),
@@ -218,14 +277,20 @@ struct TimedPoint::State {
                  renderOptions(context, pointToTime)) {}
 };
 
-TimedPoint::TimedPoint(const MeasureContext& context, const Pipeline& pipeline, ReportPoint& point)
+TimedPoint::TimedPoint(const TimingContext& context, const Pipeline& pipeline, ReportPoint& point,
+                       const std::vector<std::pair<std::string, std::string>>& kept)
     : state_(std::make_unique<State>(context, pipeline, point)) {
+  for (const auto& [pass, port] : kept) state_->executor.keepOutput(pass, port);
   const FrameResult frame = state_->executor.render(state_->time, 0, PipelineExecutor::Pictures::no);
   point.peakBytes = frame.peakBytes - state_->bytesOfOthers;
   for (const PassRecord& pass : frame.passes) {
     point.passOrder.push_back(pass.name);
     point.passBytes[pass.name] = pass.bytes;
   }
+}
+
+const PipelineExecutor& TimedPoint::executor() const {
+  return state_->executor;
 }
 
 TimedPoint::~TimedPoint() = default;
@@ -261,7 +326,7 @@ void TimedPoint::finish() {
   for (auto& [name, values] : s.hostMs) s.point.passHostMs[name] = statisticsOf(std::move(values));
 }
 
-void measureTimes(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
+void measureTimes(const TimingContext& context, const Pipeline& pipeline, PointRecord& record) {
   TimedPoint timed(context, pipeline, record.point);
   const int repeats = std::max(1, context.options.repeats);
   for (int repeat = 0; repeat < repeats; ++repeat) timed.timeFrame();

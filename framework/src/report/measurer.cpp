@@ -16,7 +16,10 @@ namespace {
 constexpr std::size_t kBatch = 6;
 
 std::string runText(const StoredRun& run) {
-  return fmt::format("{}, {}: {}", run.point.scene, run.point.pipeline, pointText(run.point.parameters));
+  const std::string seed =
+      run.identity.seeds == 1 ? fmt::format(", seed {}", run.identity.seed) : std::string();
+  return fmt::format("{}, {}: {}{}", run.point.scene, run.point.pipeline, pointText(run.point.parameters),
+                     seed);
 }
 
 }  // namespace
@@ -34,8 +37,20 @@ Measurer::Measurer(gpu::Device& device, TechniqueSet& techniques, const ReportOp
 }
 
 StoredRun Measurer::open(const WantedPoint& point) const {
-  return storedRunOf(device_, techniques_, scene_, *point.loaded, point.point, options_, width_, height_,
+  ReportOptions options = options_;
+  if (point.seed) {
+    options.seed = *point.seed;
+    options.seeds = 1;
+  }
+  return storedRunOf(device_, techniques_, scene_, *point.loaded, point.point, options, width_, height_,
                      truthOptions_.samplesPerPixel, sceneShown_);
+}
+
+ReportOptions Measurer::optionsOf(const RunIdentity& identity) const {
+  ReportOptions options = options_;
+  options.seed = identity.seed;
+  options.seeds = identity.seeds;
+  return options;
 }
 
 std::string Measurer::key(const WantedPoint& point) const {
@@ -87,7 +102,6 @@ std::vector<StoredRun> Measurer::fetch(const std::vector<WantedPoint>& points) {
 }
 
 void Measurer::measureBatch(std::vector<std::pair<const LoadedPipeline*, StoredRun>>& batch) {
-  const MeasureContext context{device_, techniques_, scene_, options_, *truth_, width_, height_};
   // One point that does not fit into memory, say, must not cost the others.
   const auto guarded = [](StoredRun& run, const auto& work) {
     if (!run.point.failure.empty()) return;
@@ -105,7 +119,10 @@ void Measurer::measureBatch(std::vector<std::pair<const LoadedPipeline*, StoredR
     guarded(entry.second, [&] {
       PointRecord record;
       record.point = entry.second.point;
+      const ReportOptions options = optionsOf(entry.second.identity);
+      const MeasureContext context{{device_, techniques_, scene_, options, width_, height_}, *truth_};
       measureErrors(context, entry.first->pipeline, record);
+      measureFlicker(context, entry.first->pipeline, record);
       entry.second.point = std::move(record.point);
     });
   }
@@ -116,7 +133,9 @@ void Measurer::measureBatch(std::vector<std::pair<const LoadedPipeline*, StoredR
   std::vector<Timed> timed;
   for (auto& entry : batch)
     guarded(entry.second, [&] {
-      timed.push_back({entry.second, TimedPoint(context, entry.first->pipeline, entry.second.point)});
+      const ReportOptions options = optionsOf(entry.second.identity);
+      timed.push_back({entry.second, TimedPoint({device_, techniques_, scene_, options, width_, height_},
+                                                entry.first->pipeline, entry.second.point)});
     });
   const int repeats = std::max(1, options_.repeats);
   for (int repeat = 0; repeat < repeats; ++repeat)

@@ -16,6 +16,7 @@ namespace lumivox::report {
 struct WantedPoint {
   const LoadedPipeline* loaded = nullptr;
   PlannedPoint point;
+  std::optional<std::uint64_t> seed = std::nullopt;  ///< that alone, in place of the seeds of the options
 };
 
 class Measurer {
@@ -40,6 +41,8 @@ class Measurer {
 
  private:
   StoredRun open(const WantedPoint& point) const;
+  /// The options of one run: of its seeds.
+  ReportOptions optionsOf(const RunIdentity& identity) const;
   void measureBatch(std::vector<std::pair<const LoadedPipeline*, StoredRun>>& batch);
 
   gpu::Device& device_;

@@ -7,27 +7,20 @@
 #include <set>
 
 #include "lumivox/base/file.h"
+#include "report/comparison_page.h"
 #include "report/data.h"
+#include "report/needs_page.h"
+#include "report/noise_page.h"
 #include "report/page_assets.h"
 #include "report/page_parts.h"
+#include "report/picture_page.h"
+#include "report/slopes.h"
+#include "report/stress_page.h"
+#include "report/time_page.h"
 #include "report/voxel_page.h"
 
 namespace lumivox::report {
 namespace {
-
-std::string parametersText(const ParameterValues& values) {
-  std::string text;
-  for (const auto& [name, value] : values) text += (text.empty() ? "" : ", ") + name + " " + value.text();
-  return text.empty() ? "default" : text;
-}
-
-std::string componentTitle(const std::string& component) {
-  if (component == "final") return "Whole picture";
-  std::string title = component;
-  std::replace(title.begin(), title.end(), '_', ' ');
-  title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
-  return title;
-}
 
 const char* rowKind(const PointRecord& record) {
   return record.isDefault ? "default" : "";
@@ -43,7 +36,7 @@ std::string healthText(const PointRecord& record) {
 std::string summaryTable(const ReportData& data) {
   Table table({{"Scene"},
                {"Pipeline"},
-               {"Parameters"},
+               {"Parameters", "wide"},
                {"Frame, ms", "number"},
                {"RMSE, whole picture", "number"},
                {"FLIP", "number"},
@@ -52,7 +45,10 @@ std::string summaryTable(const ReportData& data) {
                {"Front"},
                {"Health"}});
   for (const SceneRecord& scene : data.scenes) {
-    const std::vector<bool> front = frontOf(scene.points, "final", false);
+    // Points on the front of the whole picture against full transport.
+    std::vector<bool> front(scene.points.size(), false);
+    if (const PipelineComparison* comparison = comparisonOf(scene, "final", false, "rmse"))
+      for (const ComparedPoint& point : comparison->points) front[point.source] = !point.beatenBy;
     for (std::size_t i = 0; i < scene.points.size(); ++i) {
       const PointRecord& record = scene.points[i];
       const ComponentError* error = errorOf(record.point, "final", false);
@@ -70,65 +66,6 @@ std::string summaryTable(const ReportData& data) {
     }
   }
   return table.html();
-}
-
-std::string errorCharts(std::size_t sceneIndex, const std::vector<std::string>& components,
-                        const SceneRecord& scene) {
-  std::string html =
-      "<h3>Error against run time</h3>\n<p class=\"caption\">Filled points and full lines: against the truth "
-      "of the technique's own "
-      "model (one bounce where it computes one), which is its bias. Hollow points and broken lines: against "
-      "full transport, which is what a "
-      "viewer misses. Bars: quartiles of the frame time; one standard uncertainty of the error, of the "
-      "truth's noise and the spread over "
-      "seeds together. The dashed grey line is the error of leaving the component out. Down and to the left "
-      "is better.</p>\n"
-      "<p><label>Measure: <select class=\"metric\" data-scene=\"" +
-      std::to_string(sceneIndex) +
-      "\"><option value=\"rmse\">RMSE</option><option value=\"relative_mse\">relative MSE</option>"
-      "<option value=\"percentile_95\">95th percentile</option><option value=\"flip_hdr\">FLIP</option>"
-      "</select></label> <span class=\"caption\">A few very bright pixels, such as the edges of a lamp, can "
-      "rule "
-      "the RMSE; the 95th percentile and FLIP are less moved by them.</span></p>\n"
-      "<div class=\"charts\">\n";
-  for (const std::string& component : components) {
-    const bool drawable =
-        std::any_of(scene.points.begin(), scene.points.end(), [&](const PointRecord& record) {
-          const ComponentError* bias = errorOf(record.point, component, true);
-          const ComponentError* miss = errorOf(record.point, component, false);
-          return record.point.failure.empty() && ((bias != nullptr && bias->rmse().value > 0.0) ||
-                                                  (miss != nullptr && miss->rmse().value > 0.0));
-        });
-    html += "<figure><h4>" + escaped(componentTitle(component)) + "</h4>";
-    if (drawable)
-      html += fmt::format(
-          "<div class=\"chart\"><canvas data-chart=\"error\" data-scene=\"{}\" "
-          "data-component=\"{}\"></canvas></div>",
-          sceneIndex, escaped(component));
-    else
-      html +=
-          "<p class=\"caption\">Nothing to draw: no error, since neither the truth nor any picture has such "
-          "light.</p>";
-    html += "</figure>\n";
-  }
-  return html + "</div>\n";
-}
-
-std::string frontText(const SceneRecord& scene, const std::vector<std::string>& components) {
-  std::string html =
-      "<p class=\"caption\">Not beaten by any other point in both time and error (against full "
-      "transport):</p>\n<ul>\n";
-  for (const std::string& component : components) {
-    const std::vector<bool> front = frontOf(scene.points, component, false);
-    std::string names;
-    for (std::size_t i = 0; i < front.size(); ++i)
-      if (front[i])
-        names += (names.empty() ? "" : "; ") + escaped(shortName(scene.points[i].point.pipeline)) + " (" +
-                 escaped(parametersText(scene.points[i].point.parameters)) + ")";
-    html += "<li><b>" + escaped(componentTitle(component)) + ":</b> " + (names.empty() ? "none" : names) +
-            "</li>\n";
-  }
-  return html + "</ul>\n";
 }
 
 std::string errorTable(const SceneRecord& scene) {
@@ -179,200 +116,6 @@ std::string errorTable(const SceneRecord& scene) {
          "after &plusmn; are one standard "
          "uncertainty. Bold rows are the default parameters.</p>\n" +
          table.html();
-}
-
-std::string timeSection(std::size_t sceneIndex, const SceneRecord& scene) {
-  const std::size_t bars = scene.points.size();
-  std::string html =
-      "<h3>Time and memory per pass</h3>\n<p class=\"caption\">Medians over repeats of frames in which every "
-      "kept pass "
-      "runs; quartiles in brackets. Measured apart from the pictures above.</p>\n<div class=\"charts\">\n";
-  for (const char* chart : {"time", "bytes"})
-    html += fmt::format(
-        "<figure><div class=\"chart\" style=\"height:{}px\"><canvas data-chart=\"{}\" "
-        "data-scene=\"{}\"></canvas></div></figure>\n",
-        140 + 48 * bars, chart, sceneIndex);
-  html += "</div>\n";
-
-  std::vector<std::string> pipelines;
-  for (const PointRecord& record : scene.points)
-    if (std::find(pipelines.begin(), pipelines.end(), record.point.pipeline) == pipelines.end())
-      pipelines.push_back(record.point.pipeline);
-  for (const std::string& pipeline : pipelines) {
-    std::vector<const PointRecord*> points;
-    std::vector<std::string> passes;
-    for (const PointRecord& record : scene.points) {
-      if (record.point.pipeline != pipeline || !record.point.failure.empty()) continue;
-      points.push_back(&record);
-      for (const std::string& pass : record.point.passOrder)
-        if (std::find(passes.begin(), passes.end(), pass) == passes.end()) passes.push_back(pass);
-    }
-    if (points.empty()) continue;
-    std::vector<Table::Column> columns{{"Pass"}};
-    for (const PointRecord* record : points)
-      columns.push_back({escaped(parametersText(record->point.parameters)) + ": ms", "number"});
-    for (const PointRecord* record : points)
-      columns.push_back({escaped(parametersText(record->point.parameters)) + ": memory", "number"});
-    Table table(columns);
-    const auto row = [&](const std::string& title, const auto& time, const auto& memory,
-                         const char* kind = "") {
-      std::vector<std::string> cells{title};
-      for (const PointRecord* record : points) cells.push_back(time(record->point));
-      for (const PointRecord* record : points) cells.push_back(memory(record->point));
-      table.row(cells, kind);
-    };
-    const auto nothing = [](const ReportPoint&) { return std::string(); };
-    for (const std::string& pass : passes)
-      row(
-          escaped(pass),
-          [&](const ReportPoint& point) {
-            const auto found = point.passDeviceMs.find(pass);
-            return found == point.passDeviceMs.end() ? std::string("-") : withQuartiles(found->second);
-          },
-          [&](const ReportPoint& point) {
-            const auto found = point.passBytes.find(pass);
-            return found == point.passBytes.end() ? std::string("-") : formatBytes(found->second);
-          });
-    row(
-        "whole frame; most memory at once",
-        [](const ReportPoint& point) { return withQuartiles(point.frameMs); },
-        [](const ReportPoint& point) { return formatBytes(point.peakBytes); }, "total");
-    row(
-        "between passes (the framework)",
-        [](const ReportPoint& point) { return percent(point.frameworkShare); }, nothing);
-    row(
-        "next frame, only what changed",
-        [](const ReportPoint& point) { return withQuartiles(point.nextFrameMs); }, nothing);
-    html += "<h4>" + escaped(shortName(pipeline)) + "</h4>\n" + table.html();
-  }
-  return html;
-}
-
-std::string image(const std::string& png, const std::string& text) {
-  return fmt::format("<img alt=\"{}\" src=\"data:image/png;base64,{}\">", escaped(text), base64(png));
-}
-
-std::string truthFigure(std::size_t sceneIndex, const SceneRecord& scene, const std::string& layer,
-                        const std::string& caption) {
-  const auto known = std::any_of(scene.truths.begin(), scene.truths.end(),
-                                 [&](const TruthRecord& truth) { return truth.layer == layer; });
-  if (!known) return {};
-  return fmt::format(
-      "<figure><div class=\"truth truth-{}-{}\" style=\"aspect-ratio:{}/{}\" role=\"img\" "
-      "aria-label=\"truth: {}\"></div>"
-      "<figcaption>{}</figcaption></figure>\n",
-      sceneIndex, escaped(layer), scene.width, scene.height, escaped(layer), caption);
-}
-
-/// Every truth picture once, as a style, however often it is shown.
-std::string truthStyles(const ReportData& data) {
-  std::string css;
-  for (std::size_t i = 0; i < data.scenes.size(); ++i)
-    for (const TruthRecord& truth : data.scenes[i].truths)
-      css += fmt::format(".truth-{}-{} {{ background-image: url(data:image/png;base64,{}); }}\n", i,
-                         truth.layer, base64(truth.picture));
-  return css;
-}
-
-std::string pictureStrip(std::size_t sceneIndex, const SceneRecord& scene, const OutputPictures& pictures,
-                         const std::string& title) {
-  std::string html = "<div class=\"strip\">\n<figure>" + image(pictures.picture, title) + "<figcaption>" +
-                     escaped(title) + "</figcaption></figure>\n";
-  for (const OutputPictures::Against& against : pictures.against) {
-    html += truthFigure(sceneIndex, scene, against.truth, "truth: " + escaped(against.truth));
-    html += "<figure>" + image(against.flipMap, "FLIP map against " + against.truth) +
-            fmt::format("<figcaption>FLIP against {}: mean {:.3f}</figcaption></figure>\n",
-                        escaped(against.truth), against.flip);
-  }
-  return html + "</div>\n";
-}
-
-std::string pictureSection(std::size_t sceneIndex, const SceneRecord& scene,
-                           const std::vector<std::string>& components) {
-  std::string html =
-      "<h3>Pictures, truth and FLIP maps</h3>\n<p class=\"caption\">All pictures of one component are shown "
-      "at one exposure, which puts the "
-      "99th percentile of its full truth at 0.8 before the sRGB curve. A FLIP map is dark where a viewer "
-      "sees no difference and bright where "
-      "the difference is plain. NaN pixels are magenta. Pictures are means over positions in the pixel, as the truth is.</p>\n";
-  // The whole picture is what a reader looks for first.
-  std::vector<std::string> order(components);
-  std::stable_partition(order.begin(), order.end(),
-                        [](const std::string& component) { return component == "final"; });
-  for (const std::string& component : order) {
-    double exposure = 1.0;
-    std::string strips, more;
-    for (const PointRecord& record : scene.points)
-      for (const OutputPictures& pictures : record.pictures) {
-        if (pictures.component != component || (component == "final" && pictures.output != kWholePicture))
-          continue;
-        for (const TruthRecord& truth : scene.truths)
-          if (!pictures.against.empty() && truth.layer == pictures.against.back().truth)
-            exposure = truth.exposure;
-        const std::string strip =
-            pictureStrip(sceneIndex, scene, pictures,
-                         shortName(record.point.pipeline) + ", " + parametersText(record.point.parameters));
-        (record.isDefault ? strips : more) += strip;
-      }
-    html += fmt::format("<h4>{} <span class=\"soft\">(exposure {:.3g})</span></h4>\n",
-                        escaped(componentTitle(component)), exposure) +
-            strips;
-    if (!more.empty())
-      html += "<details><summary>Other points of the sweeps</summary>\n" + more + "</details>\n";
-  }
-  return html;
-}
-
-std::string leftOutSection(const SceneRecord& scene) {
-  std::string html =
-      "<h3>What was left out, and what that saved</h3>\n<p class=\"caption\">The pipeline as it runs and the "
-      "same with everything kept, timed "
-      "alternately at the default parameters. Leaving out may change the cost, never the picture.</p>\n";
-  for (const PruningRecord& record : scene.pruning) {
-    const Explanation& explanation = record.explanation;
-    html += "<h4>" + escaped(shortName(record.pipeline)) + "</h4>\n";
-    html += fmt::format(
-        "<p>{} ms instead of {} ms: <b>{}</b> of the time of a first frame saved; {} ms instead of {} ms: "
-        "<b>{}</b> "
-        "of that of a frame that follows another while the camera moves. {} of {} passes kept; shader "
-        "variants: {} possible, {} "
-        "compiled, {} needed. Memory taken by the passes: {} instead of {}. Same picture, bit for bit: "
-        "{}.</p>\n",
-        withQuartiles(record.prunedMs), withQuartiles(record.unprunedMs), percent(record.savedShare()),
-        withQuartiles(record.nextPrunedMs), withQuartiles(record.nextUnprunedMs),
-        percent(record.savedShareNext()), explanation.passesKept, explanation.passesTotal,
-        explanation.variantsPossible, explanation.variantsCompiled, explanation.variantsNeeded,
-        formatBytes(record.prunedBytes), formatBytes(record.unprunedBytes),
-        record.samePicture ? "<span class=\"good\">yes</span>" : "<span class=\"bad\">NO</span>");
-    if (!explanation.leftOut.empty()) {
-      Table table(
-          {{"Level"}, {"Left out"}, {"Why", "wide"}, {"Saved memory", "number"}, {"Saved ms", "number"}});
-      for (const LeftOut& one : explanation.leftOut)
-        table.row({name(one.level), escaped(one.what), escaped(one.why),
-                   one.savedBytes == 0 ? "" : formatBytes(one.savedBytes),
-                   one.savedMs == 0.0 ? "" : number(one.savedMs)});
-      html += table.html();
-    }
-    Table passes(
-        {{"Pass"}, {"as it runs, ms", "number"}, {"everything kept, ms", "number"}, {"saved, ms", "number"}});
-    for (const std::string& pass : record.passOrder) {
-      const auto pruned = record.prunedPassMs.find(pass), unpruned = record.unprunedPassMs.find(pass);
-      const double before = unpruned == record.unprunedPassMs.end() ? 0.0 : unpruned->second.median;
-      const double after = pruned == record.prunedPassMs.end() ? 0.0 : pruned->second.median;
-      passes.row({escaped(pass),
-                  pruned == record.prunedPassMs.end() ? "left out" : withQuartiles(pruned->second),
-                  unpruned == record.unprunedPassMs.end() ? "-" : withQuartiles(unpruned->second),
-                  number(before - after)});
-    }
-    html += "<details><summary>Pass by pass</summary>\n" + passes.html() + "</details>\n";
-  }
-  if (!scene.unsuited.empty()) {
-    html += "<p>Committed pipelines that do not suit this scene:</p>\n<ul>\n";
-    for (const auto& [pipeline, why] : scene.unsuited)
-      html += "<li>" + escaped(shortName(pipeline)) + ": " + escaped(why) + "</li>\n";
-    html += "</ul>\n";
-  }
-  return html;
 }
 
 std::string healthSection(const SceneRecord& scene) {
@@ -448,7 +191,7 @@ std::string provenance(const ReportData& data) {
   item("Timer",
        std::string(device.timerQueriesTrusted ? "timer queries; " : "fenced clock; ") + device.timerNote);
   item("Date", data.date);
-  html += "</dl>\n";
+  html += "</dl>\n" + ceilingSection(data.ceilings);
   Table table({{"Kind"}, {"Name"}, {"File"}, {"Hash"}});
   for (const SceneRecord& scene : data.scenes)
     table.row({"scene", escaped(scene.name), escaped(scene.file), "<code>" + scene.hash + "</code>"});
@@ -473,15 +216,15 @@ std::string provenance(const ReportData& data) {
 }
 
 std::string sceneSection(std::size_t index, const SceneRecord& scene) {
-  const std::vector<std::string> components = componentsOf(scene);
   std::string html = fmt::format("<h2 id=\"scene-{}\">{}</h2>\n", index,
                                  escaped(scene.name.empty() ? scene.file : scene.name));
   html += truthText(scene);
-  html += errorCharts(index, components, scene) + frontText(scene, components);
-  html += pictureSection(index, scene, components);
+  html += comparisonSection(index, scene);
+  html += pictureSection(index, scene);
   html += errorTable(scene);
+  html += noiseSection(scene) + slopeSection(scene);
   html += timeSection(index, scene);
-  html += leftOutSection(scene);
+  html += neededSection(scene);
   html += healthSection(scene);
   html += noteSection(scene);
   html += commandsSection(scene);
@@ -502,8 +245,9 @@ std::string toHtml(const ReportData& data, const std::string& chartLibrary) {
       "Measured on " +
       escaped(data.device.renderer) + ", " + escaped(data.date) +
       ". The same numbers stand in the .csv and .json files beside this page.</p>\n" +
-      "<nav><a href=\"#summary\">Summary</a>" + links +
+      "<nav><a href=\"#summary\">Summary</a><a href=\"#needed\">What was needed</a>" + links +
       (data.voxels.empty() ? "" : "<a href=\"#voxels\">Voxels</a>") +
+      (data.stress.empty() ? "" : "<a href=\"#stress\">Where it breaks</a>") +
       "<a href=\"#device\">Device and contents</a></nav>\n</header>\n<main>\n";
   html +=
       "<h2 id=\"summary\">Summary</h2>\n<p class=\"caption\">RMSE, FLIP and mean ratio of the whole picture "
@@ -512,13 +256,16 @@ std::string toHtml(const ReportData& data, const std::string& chartLibrary) {
       "leaving "
       "out unneeded work saves. Bold rows are the default parameters.</p>\n" +
       summaryTable(data);
+  html += neededMatrix(data);
   html += scenes;
   html += voxelSection(data.voxels);
+  html += stressSection(data.stress, "");
   html += provenance(data) + "</main>\n";
   html += dataBlock("data", toJson(data).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-  std::string scripts = kPageScript;
+  std::string scripts = std::string(kPageScript) + kComparisonScript + kPictureScript;
   if (!data.voxels.empty()) scripts += kVoxelScript;
-  return wholePage("Lumivox report", truthStyles(data), html, chartLibrary, scripts);
+  const std::string styles = truthStyles(data) + (data.stress.empty() ? "" : kStressStyle);
+  return wholePage("Lumivox report", styles, html, chartLibrary, scripts);
 }
 
 }  // namespace lumivox::report

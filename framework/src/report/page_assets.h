@@ -4,6 +4,7 @@
 namespace lumivox::report {
 
 extern const char* const kPageStyle;
+extern const char* const kPageHelpers;  ///< lumivoxPage: the records of the block "data", colours, names
 extern const char* const kPageScript;
 
 }  // namespace lumivox::report

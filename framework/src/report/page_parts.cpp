@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 
@@ -45,10 +47,16 @@ std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.3g}", value) : std::string("-");
 }
 
+std::string oneDigit(double value) {
+  if (!(std::abs(value) >= 10.0) || !std::isfinite(value)) return fmt::format("{:.1g}", value);
+  const double decade = std::pow(10.0, std::floor(std::log10(std::abs(value))));
+  return fmt::format("{:.0f}", std::round(value / decade) * decade);
+}
+
 std::string withUncertainty(const Measured& measured) {
   if (!std::isfinite(measured.value)) return "-";
-  return fmt::format("{:.3g} <span class=\"uncertainty\">&plusmn; {:.1g}</span>", measured.value,
-                     measured.uncertainty);
+  return fmt::format("{:.3g} <span class=\"uncertainty\">&plusmn; {}</span>", measured.value,
+                     oneDigit(measured.uncertainty));
 }
 
 std::string withQuartiles(const TimingStatistics& time) {
@@ -65,6 +73,20 @@ std::string shortName(const std::string& pipelineFile) {
   return std::filesystem::path(pipelineFile).stem().string();
 }
 
+std::string parametersText(const ParameterValues& values) {
+  std::string text;
+  for (const auto& [name, value] : values) text += (text.empty() ? "" : ", ") + name + " " + value.text();
+  return text.empty() ? "default" : text;
+}
+
+std::string componentTitle(const std::string& component) {
+  if (component == "final") return "Whole picture";
+  std::string title = component;
+  std::replace(title.begin(), title.end(), '_', ' ');
+  title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
+  return title;
+}
+
 std::string dataBlock(const std::string& id, const std::string& json) {
   return "<script type=\"application/json\" id=\"" + id + "\">" + replaced(json, "<", "\\u003c") +
          "</script>\n";
@@ -77,8 +99,8 @@ std::string wholePage(const std::string& title, const std::string& styles, const
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
       title + "</title>\n<style>";
   html += kPageStyle + styles + "</style>\n</head>\n<body>\n" + body;
-  html += "<script>" + replaced(chartLibrary, "</script", "<\\/script") + "</script>\n<script>" + scripts +
-          "</script>\n</body>\n</html>\n";
+  html += "<script>" + replaced(chartLibrary, "</script", "<\\/script") + "</script>\n<script>" +
+          kPageHelpers + scripts + "</script>\n</body>\n</html>\n";
   return html;
 }
 

@@ -7,20 +7,25 @@
 #include <vector>
 
 #include "lumivox/measure/metrics.h"
+#include "lumivox/pipeline/pipeline.h"
 
 namespace lumivox::report {
 
 std::string escaped(const std::string& text);  ///< for HTML
 std::string replaced(std::string text, const std::string& from, const std::string& to);
-std::string number(double value);  ///< three digits; "-" when there is none
+std::string number(double value);    ///< three digits; "-" when there is none
+std::string oneDigit(double value);  ///< one that counts: "0.02", "7", "40"
 std::string withUncertainty(const Measured& measured);
 std::string withQuartiles(const TimingStatistics& time);
 std::string percent(double share);
 std::string shortName(const std::string& pipelineFile);
 
+std::string parametersText(const ParameterValues& values);  ///< "cones 6, resolution 64", or "default"
+std::string componentTitle(const std::string& component);   ///< "Indirect diffuse"; "final": "Whole picture"
+
 /// JSON as the content of a script element, which no text in it can end.
 std::string dataBlock(const std::string& id, const std::string& json);
-/// A whole page around its body; the scripts come after the chart library.
+/// A whole page around its body; the scripts come after the chart library and kPageHelpers.
 std::string wholePage(const std::string& title, const std::string& styles, const std::string& body,
                       const std::string& chartLibrary, const std::string& scripts);
 
@@ -29,7 +34,7 @@ class Table {
  public:
   struct Column {
     std::string title;
-    const char* kind = "";  ///< "number", "wide" or nothing
+    const char* kind = "";  ///< "number", "wide", "cell" or nothing
   };
   explicit Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
   void row(const std::vector<std::string>& cells, const char* kind = "") {

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -149,6 +150,17 @@ std::string formatMilliseconds(double milliseconds) {
                                               : fmt::format("{:.3g}", milliseconds);
 }
 
+std::string formatThousands(double value) {
+  constexpr std::array<const char*, 6> kThousands{"", " k", " M", " G", " T", " P"};
+  constexpr double kNext = 999.5;  // what would round to 1000 at three digits
+  std::size_t power = 0;
+  while (value >= kNext && power + 1 < kThousands.size()) {
+    value /= 1000.0;
+    ++power;
+  }
+  return fmt::format("{:.3g}{}", value, kThousands[power]);
+}
+
 std::string formatPercent(double share) {
   return fmt::format("{:.0f} %", std::round(100.0 * share) + 0.0);  // adding a positive zero drops its sign
 }
@@ -172,33 +184,56 @@ void requireWritable(const fs::path& file) {
 
 namespace lumivox::report {
 
-std::vector<PlannedPoint> plannedPoints(const Pipeline& pipeline, const ParameterValues& settings,
-                                        bool openSweeps) {
+namespace {
+
+/// By what they say: 64 is 64, whether written in the text or in a sweep.
+bool sameParameters(const ParameterValues& a, const ParameterValues& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& one, const auto& other) {
+    return one.first == other.first && one.second.text() == other.second.text();
+  });
+}
+
+ParameterValues defaultsOf(const Pipeline& pipeline, const ParameterValues& settings) {
   ParameterValues defaults;
   for (const PipelineParameter& parameter : pipeline.parameters) defaults[parameter.name] = parameter.value;
   for (const auto& [name, value] : settings) defaults[name] = value;
+  return defaults;
+}
 
-  // By what they say: 64 is 64, whether written in the text or in a sweep.
-  const auto same = [](const ParameterValues& a, const ParameterValues& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& one, const auto& other) {
-      return one.first == other.first && one.second.text() == other.second.text();
-    });
-  };
+void addPoint(std::vector<PlannedPoint>& points, PlannedPoint point) {
+  const auto known = std::find_if(points.begin(), points.end(), [&](const PlannedPoint& other) {
+    return sameParameters(other.parameters, point.parameters);
+  });
+  if (known == points.end()) {
+    points.push_back(std::move(point));
+    return;
+  }
+  for (const std::uint64_t seed : point.seeds)
+    if (std::find(known->seeds.begin(), known->seeds.end(), seed) == known->seeds.end())
+      known->seeds.push_back(seed);
+}
+
+}  // namespace
+
+std::vector<PlannedPoint> pointsOfSweeps(const Pipeline& pipeline, const ParameterValues& settings,
+                                         const std::vector<Sweep>& sweeps) {
+  const ParameterValues defaults = defaultsOf(pipeline, settings);
   std::vector<PlannedPoint> points;
-  const auto add = [&](PlannedPoint point) {
-    const auto known = [&](const PlannedPoint& other) { return same(other.parameters, point.parameters); };
-    if (std::none_of(points.begin(), points.end(), known)) points.push_back(std::move(point));
-  };
-  if (openSweeps)
-    for (const Sweep& sweep : pipeline.sweeps)
-      for (const ParameterValues& swept : sweep.points()) {
-        ParameterValues values = defaults;
-        for (const auto& [name, value] : swept)
-          if (settings.find(name) == settings.end()) values[name] = value;
-        add({sweep.name, values, false});
-      }
-  add({"", defaults, false});
-  for (PlannedPoint& point : points) point.isDefault = same(point.parameters, defaults);
+  for (const Sweep& sweep : sweeps)
+    for (const ParameterValues& swept : sweep.points()) {
+      ParameterValues values = defaults;
+      for (const auto& [name, value] : swept)
+        if (settings.find(name) == settings.end()) values[name] = value;
+      addPoint(points, {sweep.name, values, sameParameters(values, defaults), sweep.seeds});
+    }
+  return points;
+}
+
+std::vector<PlannedPoint> plannedPoints(const Pipeline& pipeline, const ParameterValues& settings,
+                                        bool openSweeps) {
+  std::vector<PlannedPoint> points =
+      pointsOfSweeps(pipeline, settings, openSweeps ? pipeline.sweeps : std::vector<Sweep>());
+  addPoint(points, {"", defaultsOf(pipeline, settings), true, {}});
   return points;
 }
 
@@ -241,6 +276,8 @@ std::string repeatingCommand(const ReportOptions& options, const std::string& sc
   command +=
       fmt::format(" --no-sweep --resolution {}x{} --spp {} --subpixels {} --repeats {} --seeds {} --seed {}",
                   width, height, samples, options.subpixels, options.repeats, options.seeds, options.seed);
+  if (options.flickerPairs != ReportOptions{}.flickerPairs)
+    command += fmt::format(" --flicker-frames {}", options.flickerPairs);
   if (!options.camera.empty()) command += " --camera " + shellQuoted(options.camera);
   if (options.time != 0.0) command += fmt::format(" --time {}", options.time);
   for (const std::string& argument : options.repeatArguments) command += " " + shellQuoted(argument);

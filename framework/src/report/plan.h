@@ -12,11 +12,17 @@ struct PlannedPoint {
   std::string sweep;
   ParameterValues parameters;
   bool isDefault = false;
+  std::vector<std::uint64_t> seeds =
+      {};  ///< each a run of its own; empty: one run with those of the command line
 };
 
-/// The default point and the points of every sweep, each once. Settings pin their axes.
+/// The default point and the points of every sweep, each once. Settings pin their axes. A point of several
+/// sweeps has the seeds of all.
 std::vector<PlannedPoint> plannedPoints(const Pipeline& pipeline, const ParameterValues& settings,
                                         bool openSweeps);
+/// The points of these sweeps alone.
+std::vector<PlannedPoint> pointsOfSweeps(const Pipeline& pipeline, const ParameterValues& settings,
+                                         const std::vector<Sweep>& sweeps);
 
 /// Of the assignments "name=value", those whose parameter the pipeline has.
 std::vector<std::string> settingsFor(const Pipeline& pipeline, const std::vector<std::string>& assignments);

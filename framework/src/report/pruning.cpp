@@ -76,7 +76,7 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
   }
   // Alternately, so that a machine that grows slower or faster meanwhile does so for both.
   Series prunedSeries, unprunedSeries;
-  for (int repeat = 0; repeat < std::max(1, repeats); ++repeat) {
+  for (int repeat = 0; repeat < repeats; ++repeat) {
     pruned.invalidate();
     prunedSeries.add(pruned.render(time, 0, PipelineExecutor::Pictures::no));
     unpruned.invalidate();
@@ -85,6 +85,13 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
   record.explanation = pruned.explain();  // here: the memory is that of a whole frame
   record.prunedBytes = record.explanation.poolBytes;
   record.unprunedBytes = unpruned.explain().poolBytes;
+  for (LeftOut& leftOut : record.explanation.leftOut) {
+    const auto bytes = record.unprunedPassBytes.find(leftOut.pass);
+    if (leftOut.level != LeftOut::Level::pass || leftOut.savedBytes != 0) continue;
+    if (bytes != record.unprunedPassBytes.end() && record.prunedPassBytes.count(leftOut.pass) == 0)
+      leftOut.savedBytes = bytes->second;
+  }
+  if (repeats <= 0) return record;
 
   // Frames that follow: time goes on and the camera moves by a thousandth of the scene, as in an interactive
   // walk. A camera that stands still would leave nothing to do at all in a static scene, which says little.
@@ -93,7 +100,7 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
   PipelineExecutor walking(device, techniques, scene, pipeline, options);
   walking.render(time, 0, PipelineExecutor::Pictures::no);
   std::vector<double> nextPruned, nextUnpruned;
-  for (int repeat = 1; repeat <= std::max(1, repeats); ++repeat) {
+  for (int repeat = 1; repeat <= repeats; ++repeat) {
     constexpr double kNextFrame = 1.0 / 60.0;  // s
     constexpr float kStride = 1e-3f;
     SceneSnapshot next =
@@ -115,7 +122,6 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
     if (leftOut.level != LeftOut::Level::pass || unprunedTime == record.unprunedPassMs.end()) continue;
     if (record.prunedPassMs.count(leftOut.pass) != 0) continue;
     leftOut.savedMs = unprunedTime->second.median;
-    if (leftOut.savedBytes == 0) leftOut.savedBytes = record.unprunedPassBytes[leftOut.pass];
   }
   return record;
 }

@@ -9,6 +9,8 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
+#include "lumivox/report/device.h"
+#include "lumivox/report/stress_cells.h"
 #include "report/choice.h"
 #include "report/measure.h"
 #include "report/plan.h"
@@ -20,7 +22,8 @@ using namespace report;
 
 PointRecord measurePoint(const MeasureContext& context, TechniqueSet& techniques,
                          const LoadedPipeline& loaded, const PlannedPoint& planned,
-                         const std::string& sceneShown, int samples, ResultsStore* store) {
+                         const std::string& sceneShown, int samples,
+                         const std::vector<DeviceCeiling>& ceilings, ResultsStore* store) {
   StoredRun run = storedRunOf(context.device, techniques, context.scene, loaded, planned, context.options,
                               context.width, context.height, samples, sceneShown);
   PointRecord record;
@@ -29,7 +32,9 @@ PointRecord measurePoint(const MeasureContext& context, TechniqueSet& techniques
   logInformation("{}, {}: {}", sceneShown, loaded.shown, pointText(planned.parameters));
   try {
     measureErrors(context, loaded.pipeline, record);
+    measureFlicker(context, loaded.pipeline, record);
     measureTimes(context, loaded.pipeline, record);
+    countWork(context, loaded.pipeline, ceilings, record);
   } catch (const DiagnosticsError&) {
     throw;  // a wrong text is wrong at every point
   } catch (const Error& error) {
@@ -47,7 +52,8 @@ PointRecord measurePoint(const MeasureContext& context, TechniqueSet& techniques
 
 SceneRecord measureScene(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
                          const Scene& scene, const std::vector<const LoadedPipeline*>& pipelines,
-                         const std::string& shown, ResultsStore* store) {
+                         const std::string& shown, const std::vector<DeviceCeiling>& ceilings,
+                         ResultsStore* store) {
   SceneRecord record;
   record.file = shown;
   record.name = scene.name;
@@ -64,13 +70,13 @@ SceneRecord measureScene(gpu::Device& device, TechniqueSet& techniques, const Re
   record.truthSeconds = truth.seconds();
   record.truthAttributes = truth.layers().attributes;
 
-  const MeasureContext context{device, techniques, scene, options, truth, record.width, record.height};
+  const MeasureContext context{{device, techniques, scene, options, record.width, record.height}, truth};
   for (const LoadedPipeline* loaded : pipelines) {
     bool defaultWorks = true;
     for (const PlannedPoint& planned :
          plannedPoints(loaded->pipeline, loaded->settings, options.openSweeps)) {
-      record.points.push_back(
-          measurePoint(context, techniques, *loaded, planned, shown, truthOptions.samplesPerPixel, store));
+      record.points.push_back(measurePoint(context, techniques, *loaded, planned, shown,
+                                           truthOptions.samplesPerPixel, ceilings, store));
       if (planned.isDefault) defaultWorks = record.points.back().point.failure.empty();
     }
     if (!defaultWorks) continue;
@@ -97,6 +103,8 @@ SceneRecord measureScene(gpu::Device& device, TechniqueSet& techniques, const Re
   for (const PointRecord& point : record.points)
     for (const ComponentError& error : point.point.errors) used.insert(error.truth);
   record.truths = truthRecords(truth, used);
+  record.comparisons = compareComponents(pointsOf(record), {std::begin(kPageMetrics), std::end(kPageMetrics)},
+                                         {options.equalTimesMs, options.equalErrors});
   return record;
 }
 
@@ -140,6 +148,7 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
   data.shaderInput = device.shaderInput() == gpu::ShaderInput::spirv ? "SPIR-V" : "GLSL made from the SPIR-V";
   data.host = hostText();
   data.date = dateText();
+  data.ceilings = storedCeilings(device, options.store);
 
   // Everything that can be wrong in any text is found before the first picture is rendered.
   PipelineChoice choice(options, techniques);
@@ -156,7 +165,8 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
   std::set<std::string> pipelineFiles, techniqueNames;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     data.scenes.push_back(measureScene(device, techniques, options, scenes[i], pipelines[i],
-                                       shownPath(options.scenes[i]), store ? &*store : nullptr));
+                                       shownPath(options.scenes[i]), data.ceilings,
+                                       store ? &*store : nullptr));
     data.scenes.back().unsuited = unsuited[i];
     if (options.voxelResolution > 0) {
       const std::vector<VoxeliserRecord> voxels =
@@ -174,6 +184,7 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
       data.techniques.push_back({name, technique->hash.text(), technique->shaders.hash.text(),
                                  technique->meaning, technique->paper});
   data.skipped = techniques.skipped();
+  if (store) data.stress = newestCells(store->stressCells());
 
   writeFileAtomically(summary.json,
                       toJson(data).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <tuple>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -30,7 +31,7 @@ constexpr const char* kRunColumns =
 constexpr const char* kTimings[] = {"frame", "next_frame", "pass_device", "pass_host"};
 
 bool hasNamed(const std::string& wanted, const std::string& file, const std::string& title) {
-  return wanted.empty() || wanted == file || wanted == title || fs::path(file).stem() == wanted;
+  return wanted.empty() || wanted == title || report::namesFile(wanted, file);
 }
 
 bool matches(const RunFilter& filter, const StoredRun& run) {
@@ -71,6 +72,7 @@ std::string RunIdentity::key() const {
   hasher.add(std::uint64_t{parameters.size()});
   for (const auto& [name, value] : parameters) hasher.add(name).add(value);
   hasher.add(camera).add(time).add(width).add(height).add(seed).add(seeds).add(repeats).add(subpixels);
+  if (flickerPairs > 0) hasher.add("flicker").add(flickerPairs);
   hasher.add(truthSamples).add(device).add(driver).add(shaderInput).add(host);
   return hasher.finish().text();
 }
@@ -175,6 +177,8 @@ void ResultsStore::State::insertNames(std::int64_t id, const StoredRun& run) {
   provenance.run(id, "scene", run.point.scene, run.identity.sceneHash);
   provenance.run(id, "pipeline", run.point.pipeline, run.identity.pipelineHash);
   provenance.run(id, "framework", "lumivox", run.identity.framework);
+  if (run.identity.flickerPairs > 0)
+    provenance.run(id, "flicker", fmt::format("{} pairs", run.identity.flickerPairs), "");
   for (const auto& [name, hash] : run.identity.techniques) provenance.run(id, "technique", name, hash);
   Statement health(database, "INSERT INTO health VALUES (?,?,?)");
   int position = 0;
@@ -276,6 +280,7 @@ void ResultsStore::State::readNames(StoredRun& run) const {
   Statement provenance(database, "SELECT kind, name, hash FROM provenance WHERE run = ?");
   for (provenance.bind(run.id); provenance.step();) {
     const std::string kind = provenance.text(0), hash = provenance.text(2);
+    if (kind == "flicker") run.identity.flickerPairs = std::atoi(provenance.text(1).c_str());
     if (kind == "scene") run.identity.sceneHash = hash;
     if (kind == "pipeline") run.identity.pipelineHash = hash;
     if (kind == "framework") run.identity.framework = hash;
@@ -362,13 +367,34 @@ std::size_t ResultsStore::remove(const RunFilter& filter) {
   return chosen.size();
 }
 
-std::size_t ResultsStore::merge(const ResultsStore& other) {
+MergeCount ResultsStore::merge(const ResultsStore& other) {
   const std::vector<StoredRun> theirs = other.runs();
+  const std::vector<StressCell> theirCells = other.stressCells();
+  const std::vector<DeviceCeiling> theirCeilings = other.ceilings();
   Transaction transaction(state_->database);
-  std::size_t added = 0;
-  for (const StoredRun& run : theirs) added += state_->add(run) ? 1 : 0;
+  MergeCount count;
+  for (const StoredRun& run : theirs) count.runs += state_->add(run) ? 1 : 0;
+  std::map<std::string, std::string> created;
+  for (const StressCell& cell : stressCells()) created[cell.key()] = cell.created;
+  std::vector<StressCell> cells;
+  for (const StressCell& cell : theirCells)
+    if (created[cell.key()] < cell.created) cells.push_back(cell);
+  state_->addCells(cells);
+  count.cells = cells.size();
+  const auto identity = [](const DeviceCeiling& ceiling) {
+    return std::tie(ceiling.device, ceiling.driver, ceiling.shaderInput, ceiling.host, ceiling.name);
+  };
+  const std::vector<DeviceCeiling> mine = ceilings();
+  std::vector<DeviceCeiling> newer;
+  for (const DeviceCeiling& ceiling : theirCeilings)
+    if (std::none_of(mine.begin(), mine.end(), [&](const DeviceCeiling& one) {
+          return identity(one) == identity(ceiling) && one.created >= ceiling.created;
+        }))
+      newer.push_back(ceiling);
+  state_->addCeilings(newer);
+  count.ceilings = newer.size();
   transaction.commit();
-  return added;
+  return count;
 }
 
 fs::path ResultsStore::defaultFile() {

@@ -1,6 +1,7 @@
 // The stress battery's cells and the devices' ceilings in the results store.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "lumivox/base/hash.h"
@@ -13,9 +14,29 @@ namespace lumivox {
 using report::Statement;
 using report::Transaction;
 
+namespace report {
+
+bool namesFile(const std::string& wanted, const std::string& file) {
+  return wanted == file || std::filesystem::path(file).stem() == wanted;
+}
+
+}  // namespace report
+
 namespace {
 
 constexpr std::array kOutcomes{"stable", "biased", "diverges", "refused", "not_applicable", "broken"};
+
+bool matches(const CellFilter& filter, const StressCell& cell) {
+  const auto same = [](const std::string& wanted, const std::string& found) {
+    return wanted.empty() || wanted == found;
+  };
+  return same(filter.family, cell.family) && same(filter.name, cell.name) &&
+         same(filter.technique, cell.technique) &&
+         (filter.pipeline.empty() || report::namesFile(filter.pipeline, cell.pipeline)) &&
+         cell.device.find(filter.device) != std::string::npos && cell.created >= filter.since &&
+         (!filter.outcome || *filter.outcome == cell.outcome) &&
+         (filter.ids.empty() || std::find(filter.ids.begin(), filter.ids.end(), cell.id) != filter.ids.end());
+}
 
 }  // namespace
 
@@ -38,13 +59,23 @@ std::string StressCell::key() const {
   return hasher.finish().text();
 }
 
+bool CellFilter::everything() const {
+  return family.empty() && name.empty() && pipeline.empty() && technique.empty() && device.empty() &&
+         since.empty() && !outcome && ids.empty();
+}
+
 void ResultsStore::add(const std::vector<StressCell>& cells) {
   Transaction transaction(state_->database);
-  Statement remove(state_->database, "DELETE FROM stress_cells WHERE key = ?");
+  state_->addCells(cells);
+  transaction.commit();
+}
+
+/// Inside a transaction.
+void ResultsStore::State::addCells(const std::vector<StressCell>& cells) {
+  Statement remove(database, "DELETE FROM stress_cells WHERE key = ?");
   Statement insert(
-      state_->database,
-      "INSERT INTO stress_cells VALUES (NULL,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
-  Statement provenance(state_->database, "INSERT INTO stress_provenance VALUES (?,?,?)");
+      database, "INSERT INTO stress_cells VALUES (NULL,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+  Statement provenance(database, "INSERT INTO stress_provenance VALUES (?,?,?)");
   for (const StressCell& cell : cells) {
     remove.run(cell.key());
     insert.run(cell.key(), cell.created, cell.version, cell.family, cell.name, cell.pipeline, cell.technique,
@@ -52,13 +83,12 @@ void ResultsStore::add(const std::vector<StressCell>& cells) {
                cell.value.uncertainty, cell.limit, cell.detail, cell.explanation, cell.picture, cell.command,
                cell.seconds, cell.pipelineHash, cell.framework, cell.device, cell.driver, cell.shaderInput,
                cell.host);
-    const std::int64_t id = state_->database.lastRow();
+    const std::int64_t id = database.lastRow();
     for (const auto& [technique, hash] : cell.techniques) provenance.run(id, technique, hash);
   }
-  transaction.commit();
 }
 
-std::vector<StressCell> ResultsStore::stressCells() const {
+std::vector<StressCell> ResultsStore::stressCells(const CellFilter& filter) const {
   std::vector<StressCell> cells;
   if (state_->schema < 2) return cells;
   Statement row(state_->database, "SELECT * FROM stress_cells ORDER BY id");
@@ -89,6 +119,7 @@ std::vector<StressCell> ResultsStore::stressCells() const {
     cell.driver = row.text(23);
     cell.shaderInput = row.text(24);
     cell.host = row.text(25);
+    if (!matches(filter, cell)) continue;
     for (provenance.bind(cell.id); provenance.step();)
       cell.techniques[provenance.text(0)] = provenance.text(1);
     cells.push_back(std::move(cell));
@@ -96,37 +127,58 @@ std::vector<StressCell> ResultsStore::stressCells() const {
   return cells;
 }
 
+std::size_t ResultsStore::removeCells(const CellFilter& filter) {
+  const std::vector<StressCell> chosen = stressCells(filter);
+  Transaction transaction(state_->database);
+  Statement statement(state_->database, "DELETE FROM stress_cells WHERE id = ?");
+  for (const StressCell& cell : chosen) statement.run(cell.id);
+  transaction.commit();
+  return chosen.size();
+}
+
 void ResultsStore::add(const std::vector<DeviceCeiling>& ceilings) {
   Transaction transaction(state_->database);
-  Statement insert(state_->database, "INSERT OR REPLACE INTO ceilings VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+  state_->addCeilings(ceilings);
+  transaction.commit();
+}
+
+/// Inside a transaction.
+void ResultsStore::State::addCeilings(const std::vector<DeviceCeiling>& ceilings) {
+  Statement insert(database, "INSERT OR REPLACE INTO ceilings VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
   for (const DeviceCeiling& ceiling : ceilings)
     insert.run(ceiling.device, ceiling.driver, ceiling.shaderInput, ceiling.host, ceiling.name, ceiling.unit,
                ceiling.created, ceiling.version, ceiling.rate.median, ceiling.rate.lowerQuartile,
                ceiling.rate.upperQuartile, ceiling.rate.smallest, ceiling.rate.largest, ceiling.rate.repeats);
-  transaction.commit();
+}
+
+std::vector<DeviceCeiling> ResultsStore::ceilings() const {
+  std::vector<DeviceCeiling> ceilings;
+  if (state_->schema < 2) return ceilings;
+  Statement row(state_->database,
+                "SELECT name, unit, created, version, median, lower_quartile, upper_quartile, smallest, "
+                "largest, repeats, device, driver, shader_input, host FROM ceilings "
+                "ORDER BY device, driver, shader_input, host, name");
+  while (row.step()) {
+    DeviceCeiling ceiling{row.text(0),  row.text(1),  {},           row.text(2), row.text(3),
+                          row.text(10), row.text(11), row.text(12), row.text(13)};
+    ceiling.rate = {row.number(4), row.number(5), row.number(6),
+                    row.number(7), row.number(8), static_cast<int>(row.integer(9))};
+    ceilings.push_back(std::move(ceiling));
+  }
+  return ceilings;
 }
 
 std::vector<DeviceCeiling> ResultsStore::ceilings(const std::string& device, const std::string& driver,
                                                   const std::string& shaderInput,
                                                   const std::string& host) const {
-  std::vector<DeviceCeiling> ceilings;
-  if (state_->schema < 2) return ceilings;
-  Statement row(
-      state_->database,
-      "SELECT name, unit, created, version, median, lower_quartile, upper_quartile, smallest, largest, "
-      "repeats FROM ceilings WHERE device = ? AND driver = ? AND shader_input = ? AND host = ? ORDER BY name");
-  for (row.bind(device, driver, shaderInput, host); row.step();)
-    ceilings.push_back({row.text(0),
-                        row.text(1),
-                        {row.number(4), row.number(5), row.number(6), row.number(7), row.number(8),
-                         static_cast<int>(row.integer(9))},
-                        row.text(2),
-                        row.text(3),
-                        device,
-                        driver,
-                        shaderInput,
-                        host});
-  return ceilings;
+  std::vector<DeviceCeiling> result = ceilings();
+  result.erase(std::remove_if(result.begin(), result.end(),
+                              [&](const DeviceCeiling& one) {
+                                return one.device != device || one.driver != driver ||
+                                       one.shaderInput != shaderInput || one.host != host;
+                              }),
+               result.end());
+  return result;
 }
 
 }  // namespace lumivox

@@ -1,4 +1,7 @@
 // The numbers of an error by name, so that the store's schema does not change with every metric.
+#include <cmath>
+#include <limits>
+
 #include "lumivox/report/store.h"
 
 namespace lumivox {
@@ -27,6 +30,13 @@ std::vector<NamedMetric> metricsOf(const ComponentError& error) {
     metrics.push_back({name, {value, *uncertainty}, ofNothing});
   });
   metrics.push_back({"rmse_over_seeds", error.rmseOverSeeds, error.errorOfNothing.rmse.value});
+  const double floorOfNothing = error.errorOfNothing.noiseFloor,
+               rmseOfNothing = error.errorOfNothing.rmse.value;
+  const double biasOfNothing =
+      std::sqrt(std::max(0.0, rmseOfNothing * rmseOfNothing - floorOfNothing * floorOfNothing));
+  metrics.push_back({"rms_bias", error.parts.bias, biasOfNothing});
+  metrics.push_back({"rms_noise", error.parts.noise, 0.0});
+  metrics.push_back({"flicker", error.flicker, std::numeric_limits<double>::quiet_NaN()});
   metrics.push_back({"noise_floor", {error.error.noiseFloor, 0.0}, error.errorOfNothing.noiseFloor});
   metrics.push_back({"non_finite_picture", {static_cast<double>(error.error.nonFinitePicture), 0.0}, 0.0});
   metrics.push_back({"non_finite_truth", {static_cast<double>(error.error.nonFiniteTruth), 0.0}, 0.0});
@@ -45,7 +55,14 @@ bool setMetric(ComponentError& error, const NamedMetric& metric) {
   if (known) return true;
   if (metric.name == "rmse_over_seeds") {
     error.rmseOverSeeds = metric.measured;
+  } else if (metric.name == "rms_bias") {
+    error.parts.bias = metric.measured;
+  } else if (metric.name == "rms_noise") {
+    error.parts.noise = metric.measured;
+  } else if (metric.name == "flicker") {
+    error.flicker = metric.measured;
   } else if (metric.name == "noise_floor") {
+    error.parts.truthNoise = metric.measured.value;
     error.error.noiseFloor = metric.measured.value;
     error.errorOfNothing.noiseFloor = metric.ofNothing;
   } else if (metric.name == "non_finite_picture") {

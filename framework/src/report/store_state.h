@@ -6,6 +6,13 @@
 #include "lumivox/report/store.h"
 #include "report/database.h"
 
+namespace lumivox::report {
+
+/// Whether a word of a filter stands for a file: its whole path as given, or its stem.
+bool namesFile(const std::string& wanted, const std::string& file);
+
+}  // namespace lumivox::report
+
 namespace lumivox {
 
 struct ResultsStore::State {
@@ -21,6 +28,8 @@ struct ResultsStore::State {
   void insertErrors(std::int64_t id, const ReportPoint& point);
   void insertNames(std::int64_t id, const StoredRun& run);
   bool add(const StoredRun& run);
+  void addCells(const std::vector<StressCell>& cells);
+  void addCeilings(const std::vector<DeviceCeiling>& ceilings);
   StoredRun runAt(const report::Statement& row) const;
   void readTimes(StoredRun& run) const;
   void readErrors(StoredRun& run) const;

@@ -58,10 +58,25 @@ std::optional<TruthLayer> truthLayer(const LayeredPicture& truth, const std::str
 
 namespace lumivox::report {
 
-Truth::Truth(const Scene& scene, const ReferenceOptions& options) {
+Truth::Truth(const Scene& scene, const ReferenceOptions& options) : options_(options) {
   const auto start = std::chrono::steady_clock::now();
   layers_ = cachedReference(scene, options);
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Truth& Truth::later(const Scene& scene, int frame) {
+  if (frame == 0) return *this;
+  std::unique_ptr<Truth>& truth = later_[frame];
+  if (!truth) {
+    constexpr int kFewerSamples = 4, kFewest = 16;
+    ReferenceOptions options = options_;
+    options.time += frame * kFlickerStep;
+    options.seed += static_cast<std::uint64_t>(frame);
+    options.samplesPerPixel =
+        std::min(options.samplesPerPixel, std::max(kFewest, options.samplesPerPixel / kFewerSamples));
+    truth = std::make_unique<Truth>(scene, options);
+  }
+  return *truth;
 }
 
 const TruthLayer* Truth::layer(const std::string& name) {

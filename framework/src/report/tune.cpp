@@ -9,6 +9,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
+#include "lumivox/report/comparison.h"
 #include "report/measurer.h"
 #include "report/plan.h"
 
@@ -221,18 +222,7 @@ void requireSensible(const TuneOptions& options) {
     throw Error("tuning needs a budget or an error, one of the two");
   if (options.budgetMs && !(*options.budgetMs > 0.0)) throw Error("the budget must be above 0 ms");
   if (options.errorLimit && !(*options.errorLimit > 0.0)) throw Error("the error must be above 0");
-  std::vector<std::string> names;
-  for (const NamedMetric& metric : metricsOf(ComponentError{})) {
-    // More is better for similarity, and nothing is for the mean ratio and the signed bias.
-    if (metric.name == "ssim" || metric.name == "mean_ratio" || metric.name == "bias") continue;
-    names.push_back(metric.name);
-  }
-  if (std::find(names.begin(), names.end(), options.metric) == names.end()) {
-    const std::string nearest = nearestWord(options.metric, names);
-    throw Error(fmt::format("there is no metric '{}' to tune for; expected one of {}{}", options.metric,
-                            fmt::join(names, ", "),
-                            nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
-  }
+  requireErrorMetric(options.metric);
 }
 
 }  // namespace

@@ -213,10 +213,8 @@ Json voxelRecordsJson(const std::vector<VoxeliserRecord>& records) {
 const char* const kVoxelScript = R"js(
 "use strict";
 (function () {
-  const records = JSON.parse(document.getElementById("data").textContent).voxels.filter(record => !record.why_not);
-  const palette = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5195", "#555555"];
-  const names = [...new Set(records.map(record => record.pipeline))];
-  const shortName = file => file.replace(/^.*\//, "").replace(/\.pipeline$/, "");
+  const { data, style, shortName } = lumivoxPage;
+  const records = data.voxels.filter(record => !record.why_not);
   const axes = {
     recall: { of: record => record.frame_ms.median, value: record => record.recall, title: "time, ms", other: "recall" },
     resolution: { of: record => record.resolution, value: record => record.frame_ms.median, title: "voxels along a side", other: "time, ms" },
@@ -235,12 +233,11 @@ const char* const kVoxelScript = R"js(
       series.get(key).data.push({ x: axis.of(record), y: axis.value(record),
         text: record.label + ", resolution " + record.resolution + ", " + record.triangles + " triangles" });
     }
-    const shapes = ["circle", "triangle", "rect", "rectRot", "star", "crossRot"];
-    const datasets = [...series.values()].map((one, index) => ({
-      label: one.label, data: one.data.sort((a, b) => a.x - b.x), showLine: kind !== "recall", borderWidth: 1.5, pointRadius: 5,
-      pointStyle: shapes[Math.floor(names.indexOf(one.record.pipeline) / palette.length) % shapes.length],
-      borderColor: palette[names.indexOf(one.record.pipeline) % palette.length],
-      backgroundColor: palette[names.indexOf(one.record.pipeline) % palette.length] }));
+    const datasets = [...series.values()].map(one => {
+      const { colour, shape } = style(one.record.pipeline);
+      return { label: one.label, data: one.data.sort((a, b) => a.x - b.x), showLine: kind !== "recall", borderWidth: 1.5,
+               pointRadius: 5, pointStyle: shape, borderColor: colour, backgroundColor: colour };
+    });
     new Chart(canvas, {
       type: "scatter", data: { datasets },
       options: {

@@ -11,6 +11,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "lumivox/scene/scene.h"
+#include "lumivox/scene/text.h"
 #include "scene/assets.h"
 #include "scene/description.h"
 #include "scene/obj_model.h"
@@ -22,12 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-dsl::Document parsedScene(const fs::path& file, std::vector<Diagnostic>& findings,
-                          SceneDescription& description) {
-  dsl::Document document = dsl::parseFile(file);
-  findings = document.findings;
-  description = describeScene(document, findings);
-  return document;
+void throwIfAny(std::vector<Diagnostic> findings) {
+  if (!findings.empty()) throw DiagnosticsError(std::move(findings));
 }
 
 /// `name_##.obj` for frame 7 is `name_07.obj`.
@@ -65,10 +62,6 @@ void findMissingFiles(const dsl::Document& document, const SceneDescription& des
   for (const MediumText& medium : description.media) {
     if (medium.file) require(*medium.file, medium.file->text, "volume");
   }
-}
-
-void throwIfAny(std::vector<Diagnostic> findings) {
-  if (!findings.empty()) throw DiagnosticsError(std::move(findings));
 }
 
 class Loader {
@@ -425,22 +418,37 @@ class Loader {
 
 }  // namespace
 
-void checkScene(const fs::path& file, const SceneLoadOptions& options) {
-  std::vector<Diagnostic> findings;
-  SceneDescription description;
-  const dsl::Document document = parsedScene(file, findings, description);
-  findMissingFiles(document, description, AssetSearch(file, options), findings);
+namespace {
+
+/// Everything that can be found without a model; DiagnosticsError with all of it.
+SceneDescription describedScene(const dsl::Document& document, const AssetSearch& assets) {
+  std::vector<Diagnostic> findings = document.findings;
+  SceneDescription description = describeScene(document, findings);
+  findMissingFiles(document, description, assets, findings);
   throwIfAny(std::move(findings));
+  return description;
+}
+
+Scene loadDocument(const dsl::Document& document, const SceneLoadOptions& options) {
+  const AssetSearch assets(document.file, options);
+  const SceneDescription description = describedScene(document, assets);
+  return Loader(document, description, assets, options).run();
+}
+
+}  // namespace
+
+void checkScene(const fs::path& file, const SceneLoadOptions& options) {
+  describedScene(dsl::parseFile(file), AssetSearch(file, options));
 }
 
 Scene loadScene(const fs::path& file, const SceneLoadOptions& options) {
-  std::vector<Diagnostic> findings;
-  SceneDescription description;
-  const dsl::Document document = parsedScene(file, findings, description);
-  const AssetSearch assets(file, options);
-  findMissingFiles(document, description, assets, findings);
-  throwIfAny(std::move(findings));
-  return Loader(document, description, assets, options).run();
+  return loadDocument(dsl::parseFile(file), options);
+}
+
+Scene loadSceneText(std::string text, const fs::path& file, const SceneLoadOptions& options) {
+  dsl::Document document = dsl::parse(std::move(text), file);
+  dsl::resolveIncludes(document);
+  return loadDocument(document, options);
 }
 
 }  // namespace lumivox

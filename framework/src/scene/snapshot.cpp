@@ -136,8 +136,16 @@ CameraView viewOf(const Camera& camera, double time, const glm::dvec3& origin, i
     eye = glm::mix(before.eye, after.eye, weight);
     target = glm::mix(before.target, after.target, weight);
   }
+  // The text's check sees the keys, not what lies between them.
+  if (eye == target)
+    throw Error(fmt::format("camera '{}': eye and target are the same point at {} s; expected two points",
+                            camera.name, time));
   const glm::dvec3 forward = glm::normalize(target - eye);
-  const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up));
+  const glm::dvec3 sideways = glm::cross(forward, camera.up);
+  if (glm::length(sideways) == 0.0)
+    throw Error(fmt::format("camera '{}' looks along 'up' at {} s; expected another up direction",
+                            camera.name, time));
+  const glm::dvec3 right = glm::normalize(sideways);
   CameraView view;
   view.eye = glm::vec3(eye - origin);
   view.forward = glm::vec3(forward);
@@ -210,7 +218,7 @@ SceneTraits SceneTraits::of(const Scene& scene) {
   traits.environment = scene.environment != glm::vec3(0.0f);
   traits.medium = !scene.media.empty();
   traits.particles = std::any_of(scene.media.begin(), scene.media.end(),
-                                 [](const Medium& medium) { return medium.particles > 0; });
+                                 [](const Medium& made) { return made.particles > 0; });
   traits.movingCamera = std::any_of(scene.cameras.begin(), scene.cameras.end(),
                                     [](const Camera& camera) { return camera.keys.size() > 1; });
   for (const Light& light : scene.lights) {

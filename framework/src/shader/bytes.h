@@ -45,8 +45,13 @@ class ByteReader {
   template <class T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void value(T& v) { take(&v, sizeof(v)); }
+  void value(bool& v) {
+    std::uint8_t byte = 0;
+    value(byte);
+    v = byte != 0;
+  }
   void value(std::string& text) {
-    text.resize(count(1));
+    text.resize(count());
     take(text.data(), text.size());
   }
   template <class T>
@@ -55,16 +60,18 @@ class ByteReader {
   }
   template <class T, class Read>
   void each(std::vector<T>& values, Read&& read) {
-    values.resize(count(1));
-    for (T& v : values) read(v);
+    // Grows as the elements come, so that a wrong count takes no more memory than the bytes that are there.
+    values.clear();
+    for (std::size_t rest = count(); rest > 0; --rest) read(values.emplace_back());
   }
   bool atEnd() const { return rest_.empty(); }
 
  private:
-  std::size_t count(std::size_t leastBytesEach) {
+  /// Of elements, each of which takes at least a byte.
+  std::size_t count() {
     std::uint32_t n = 0;
     value(n);
-    if (n > rest_.size() / leastBytesEach) throw Truncated{};
+    if (n > rest_.size()) throw Truncated{};
     return n;
   }
   void take(void* target, std::size_t size) {

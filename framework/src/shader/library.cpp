@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "lumivox/base/error.h"
+#include "shader/counting.h"
 
 namespace lumivox::shader {
 namespace {
@@ -98,9 +100,21 @@ struct ShaderLibrary::State {
   gpu::Device& device;
   std::map<std::string, ShaderPack> packs;
   std::map<ProgramKey, BoundProgram> programs;
+  bool counts = false;
+  Work work;
+  gpu::Device::Transfers transfers, own;  ///< when work was taken last; of counting itself since then
+
+  /// What counting itself moves and clears is nobody's work.
+  template <class Counting>
+  void apart(Counting&& counting) {
+    const gpu::Device::Transfers before = device.transfers();
+    counting();
+    own.downloaded += device.transfers().downloaded - before.downloaded;
+    own.cleared += device.transfers().cleared - before.cleared;
+  }
 };
 
-ShaderLibrary::ShaderLibrary(gpu::Device& device) : state_(new State{device, {}, {}}) {}
+ShaderLibrary::ShaderLibrary(gpu::Device& device) : state_(new State{device, {}, {}, false, {}, {}, {}}) {}
 ShaderLibrary::~ShaderLibrary() = default;
 
 void ShaderLibrary::addPack(ShaderPack pack) {
@@ -135,10 +149,15 @@ const BoundProgram& ShaderLibrary::program(const ProgramName& name, const Varian
     const PackedCode& code = pack->second.codes[stage.code];
     stages.push_back({stage.stage, code.spirv, code.glsl});
   }
+  std::shared_ptr<CountingProgram> counting;
+  if (state_->counts) {
+    state_->apart([&] { counting = std::make_shared<CountingProgram>(state_->device, packed, stages); });
+    stages = counting->stages();
+  }
   std::string label = fmt::format("{}/{}", name.technique, name.program);
   if (!variant.values.empty()) label += " [" + packed.text(variant.values) + "]";
   BoundProgram bound{std::make_unique<gpu::Program>(state_->device, std::move(label), stages, constants),
-                     &packed, found};
+                     &packed, found, std::move(counting)};
   return state_->programs.emplace(std::move(key), std::move(bound)).first->second;
 }
 
@@ -166,26 +185,71 @@ std::vector<ResourceBinding> ShaderLibrary::select(const BoundProgram& program,
   return selected;
 }
 
+/// Runs a program with what it binds; a counting one with its counters too.
+template <class Run>
+void ShaderLibrary::run(const BoundProgram& program, const std::vector<ResourceBinding>& bindings,
+                        Run&& run) {
+  std::vector<ResourceBinding> selected = select(program, bindings);
+  if (!program.counting) {
+    run(selected);
+    return;
+  }
+  const std::vector<ResourceBinding> own = selected;
+  selected.push_back(program.counting->counters());
+  run(selected);
+  state_->device.barrier();
+  state_->apart([&] { add(state_->work, program.counting->take(own)); });
+}
+
 void ShaderLibrary::dispatch(const BoundProgram& program, const std::vector<ResourceBinding>& bindings,
                              glm::uvec3 groups) {
-  state_->device.dispatch(*program.program, select(program, bindings), groups);
+  run(program, bindings,
+      [&](const auto& selected) { state_->device.dispatch(*program.program, selected, groups); });
 }
 
 void ShaderLibrary::dispatchIndirect(const BoundProgram& program,
                                      const std::vector<ResourceBinding>& bindings,
                                      const gpu::Buffer& arguments, std::uint64_t offsetBytes) {
-  state_->device.dispatchIndirect(*program.program, select(program, bindings), arguments, offsetBytes);
+  run(program, bindings, [&](const auto& selected) {
+    state_->device.dispatchIndirect(*program.program, selected, arguments, offsetBytes);
+  });
 }
 
 void ShaderLibrary::drawIndexed(const BoundProgram& program, const std::vector<ResourceBinding>& bindings,
                                 const gpu::Buffer& indices, std::uint32_t firstIndex,
                                 std::uint32_t indexCount) {
-  state_->device.drawIndexed(*program.program, select(program, bindings), indices, firstIndex, indexCount);
+  run(program, bindings, [&](const auto& selected) {
+    state_->device.drawIndexed(*program.program, selected, indices, firstIndex, indexCount);
+  });
+  if (state_->counts) state_->work["triangles"] += indexCount / 3;
 }
 
 void ShaderLibrary::draw(const BoundProgram& program, const std::vector<ResourceBinding>& bindings,
                          std::uint32_t vertexCount) {
-  state_->device.draw(*program.program, select(program, bindings), vertexCount);
+  run(program, bindings,
+      [&](const auto& selected) { state_->device.draw(*program.program, selected, vertexCount); });
+  if (state_->counts) state_->work["triangles"] += vertexCount / 3;
+}
+
+void ShaderLibrary::countWork() {
+  if (state_->device.shaderInput() != gpu::ShaderInput::spirv)
+    throw AbsentError(fmt::format("{} takes its programs as GLSL, and operations are counted in SPIR-V only",
+                                  state_->device.info().renderer));
+  state_->counts = true;
+}
+
+Work ShaderLibrary::takeWork() {
+  State& s = *state_;
+  Work work = std::exchange(s.work, {});
+  const gpu::Device::Transfers before = s.transfers, own = std::exchange(s.own, {});
+  s.transfers = s.device.transfers();
+  const auto count = [&](const char* name, std::uint64_t bytes) {
+    if (bytes > 0) work[name] += static_cast<double>(bytes);
+  };
+  count("upload_bytes", s.transfers.uploaded - before.uploaded);
+  count("download_bytes", s.transfers.downloaded - before.downloaded - own.downloaded);
+  count("clear_bytes", s.transfers.cleared - before.cleared - own.cleared);
+  return work;
 }
 
 std::map<std::string, ShaderLibrary::Usage> ShaderLibrary::usage() const {

@@ -87,15 +87,17 @@ void readContent(ByteReader& in, ShaderPack& pack) {
   in.value(pack.technique);
   in.each(pack.programs, [&](PackedProgram& program) {
     exchangeProgram(in, program);
+    for (const PackedConstant& constant : program.constants) requireBelow(static_cast<int>(constant.type), 4);
     std::uint64_t possible = 0;
     in.value(possible);
     program.possible = possible;
     in.each(program.bindings, [&](PackedBinding& binding) {
       exchangeBinding(in, binding);
       requireBelow(static_cast<int>(binding.kind), 4);
+      requireBelow(static_cast<int>(binding.textureKind), 3);
       std::int32_t format = -1;
       in.value(format);
-      if (format >= 0) {
+      if (format != -1) {
         requireBelow(format, kFormats);
         binding.format = static_cast<gpu::Format>(format);
       }

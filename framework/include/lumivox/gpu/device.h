@@ -282,6 +282,12 @@ class Device {
   };
   Elapsed time(const std::function<void()>& work);
 
+  /// Bytes that were moved or filled by commands that are no shader's, since the device was made.
+  struct Transfers {
+    std::uint64_t uploaded = 0, downloaded = 0, cleared = 0;
+  };
+  Transfers transfers() const;
+
   /// Bytes in textures and buffers that are alive now, and the most so far.
   std::uint64_t allocatedBytes() const;
   std::uint64_t peakBytes() const;

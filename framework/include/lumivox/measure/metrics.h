@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "lumivox/base/picture.h"
@@ -51,12 +52,34 @@ PictureError compare(const Picture& picture, const Picture& truth, const Picture
 Picture flipLdr(const Picture& linearPicture, const Picture& linearTruth, double pixelsPerDegree = 67.0206);
 Picture flipHdr(const Picture& linearPicture, const Picture& linearTruth, double pixelsPerDegree = 67.0206);
 
+/// What the mean square error of a picture with random numbers is made of: bias² + noise² + truthNoise². The
+/// squares are unbiased estimates; where chance makes one negative, its root is given as 0.
+struct ErrorParts {
+  Measured bias{std::numeric_limits<double>::quiet_NaN(),
+                0.0};  ///< RMS of what stays when noise is averaged away; NaN when it cannot be told
+  Measured noise{std::numeric_limits<double>::quiet_NaN(),
+                 0.0};      ///< RMS of the picture's own noise; NaN for a single picture
+  double truthNoise = 0.0;  ///< RMS of the truth's noise; 0 when it is not known
+};
+/// `seeds`: the same picture made with different random numbers, or a single picture `withoutNoise`, as two
+/// that are the same are. From three pictures on the uncertainty is that of the jackknife over them, which
+/// needs no independence of pixels; of two it is the bound for pixels that all err together. Definitions and
+/// derivations: docs/metrics.md. Error as for compare().
+ErrorParts errorParts(const std::vector<Picture>& seeds, const Picture& truth,
+                      const Picture& truthVariance = {}, bool withoutNoise = false);
+
 /// Mean structural similarity of two one-channel pictures with values in [0,1], over the windows that lie
 /// within the picture.
 double ssim(const Picture& pictureLuminance, const Picture& truthLuminance);
 
 /// Changes between consecutive frames that the truth does not make: RMS over pixels of ((p1-p0) - (t1-t0)).
 double flicker(const Picture& frame0, const Picture& frame1, const Picture& truth0, const Picture& truth1);
+
+/// The same over a sequence: RMS over consecutive pairs, from which the truth's noise is subtracted, which
+/// must be independent from frame to frame. Where chance makes the square negative, 0. `variances` may be
+/// empty. NaN for fewer than two frames; Error when there are not as many truths as frames.
+Measured flicker(const std::vector<Picture>& frames, const std::vector<Picture>& truths,
+                 const std::vector<Picture>& variances = {});
 
 /// The exposure at which the truth's 99th percentile of luminance (its largest, when that is 0) becomes 0.8:
 /// used for display and LDR metrics; 1 for a black picture.
@@ -86,6 +109,9 @@ struct TimingStatistics {
   int repeats = 0;
 };
 TimingStatistics statisticsOf(std::vector<double> values);
+/// The median with its standard error, sqrt(pi/2) sigma / sqrt(n) for n normal values; sigma from the
+/// quartiles, which are 1.349 sigma apart.
+Measured medianOf(const TimingStatistics& statistics);
 
 /// Mean and standard error of the mean over seeds. One seed has no spread to measure: its uncertainty is 0,
 /// and whoever reports it says that there was one.

@@ -14,15 +14,14 @@ inline constexpr int kLargestGrid = 1024;
 /// grid of one metre around the origin.
 GridPlacement placeGrid(const Bounds& bounds, int resolution);
 
-/// A cube of `resolution` voxels and `extent` metres a side around `centre`, placed on whole multiples of the
-/// voxel size, so that it moves by whole voxels and what is stored in it does not flicker. Multiples count
-/// from the world's origin, not the snapshot's. A function of its arguments alone.
-GridPlacement placeGridAround(const glm::vec3& centre, float extent, int resolution,
-                              const glm::dvec3& snapshotOrigin);
+/// A cube of `resolution` voxels and `extent` metres a side around `centre`, whose middle lies on a whole
+/// multiple of the voxel size, so that it moves by whole voxels and what is stored in it does not flicker.
+/// Multiples count from the snapshot's origin, which is bound to the scene: a scene that is moved or scaled
+/// as a whole, its camera with it, has the same voxels. A function of its arguments alone.
+GridPlacement placeGridAround(const glm::vec3& centre, float extent, int resolution);
 
-/// The same for nested grids: level 0 is the finest, each next one has voxels of twice the size and lies on
-/// whole multiples of its own.
-GridPlacement placeNestedGrid(const glm::vec3& centre, float finestExtent, int resolution, int level,
-                              const glm::dvec3& snapshotOrigin);
+/// The same for nested grids: level 0 is the finest, each next one has voxels of twice the size and its
+/// middle on a whole multiple of its own.
+GridPlacement placeNestedGrid(const glm::vec3& centre, float finestExtent, int resolution, int level);
 
 }  // namespace lumivox

@@ -52,15 +52,16 @@ constexpr Needs operator|(Needs a, Needs b) {
 std::string unmetNeed(Needs needs, const SceneTraits& traits);
 
 /// What a pass reads besides its inputs and parameters. A pass is run again only when one of these or an
-/// input changed. lights: also the motion of emissive objects. camera: also the size of the picture. time:
-/// also the frame's index.
+/// input changed. lights: also the motion of emissive objects. camera: also the size of the picture.
+/// partOfCamera: only what Pass::readsOfCamera() returns. time: also the frame's index.
 enum class Reads : std::uint32_t {
   nothing = 0,
   geometry = 1u << 0,
   materials = 1u << 1,
   lights = 1u << 2,
   camera = 1u << 3,
-  time = 1u << 4
+  time = 1u << 4,
+  partOfCamera = 1u << 5
 };
 constexpr Reads operator|(Reads a, Reads b) {
   return static_cast<Reads>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
@@ -148,8 +149,11 @@ enum class Presence { required, optional };
 
 class InBase : public PortBase {
  public:
-  InBase(Pass* pass, std::string name, std::string portKind, Presence presence, std::string meaning);
+  InBase(Pass* pass, std::string name, std::string portKind, Presence presence, std::string meaning,
+         Needs needs);
   Presence presence() const { return presence_; }
+  /// What the scene must have for this input to be read. Without it nothing is made for its sake.
+  Needs needs() const { return needs_; }
   /// False when nothing is connected or what is connected was pruned away: the pass then uses the variant
   /// without this input.
   bool present() const { return source_ != nullptr && source_->hasValue(); }
@@ -162,15 +166,18 @@ class InBase : public PortBase {
 
  private:
   Presence presence_;
+  Needs needs_;
 };
 
 template <class Port>
 class In : public InBase {
  public:
   In(Pass* pass, std::string name, std::string meaning = {})
-      : InBase(pass, std::move(name), Port::kPortKind, Presence::required, std::move(meaning)) {}
-  In(Pass* pass, std::string name, Presence presence, std::string meaning = {})
-      : InBase(pass, std::move(name), Port::kPortKind, presence, std::move(meaning)) {}
+      : InBase(pass, std::move(name), Port::kPortKind, Presence::required, std::move(meaning),
+               Needs::nothing) {}
+  /// `needs` is for optional inputs: what the scene must have for the input to be read.
+  In(Pass* pass, std::string name, Presence presence, std::string meaning = {}, Needs needs = Needs::nothing)
+      : InBase(pass, std::move(name), Port::kPortKind, presence, std::move(meaning), needs) {}
   const Port& operator*() const { return static_cast<const Out<Port>*>(source_)->value(); }
   const Port* operator->() const { return &**this; }
 };
@@ -323,6 +330,9 @@ class Pass {
   virtual void run(PassContext& frame) = 0;
   /// What it reads besides its inputs.
   virtual Reads readsFrom() const { return Reads::nothing; }
+  /// With Reads::partOfCamera: what it reads of the camera, such as where its grids lie. While that stays the
+  /// same, a moved camera is no reason to run the pass again.
+  virtual std::vector<float> readsOfCamera(const SceneSnapshot&) const { return {}; }
   /// What the scene must have for the pass as a whole.
   virtual Needs needs() const { return Needs::nothing; }
   /// Contradictions between parameters, in words; empty when there are none.

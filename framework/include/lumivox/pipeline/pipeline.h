@@ -37,11 +37,14 @@ struct PipelineParameter {
   std::string misfit(const ParameterValue& candidate) const;
 };
 
-/// `sweep NAME { parameter [values] ... }`: the grid over its lists.
+/// `sweep NAME { parameter [values] ... }`: the grid over its lists. `sweep NAME list { ... }`: the points
+/// along them, the first values of all lists together, then the second ones.
 struct Sweep {
   std::string name;
+  bool isList = false;  ///< then all axes have the same number of values
   std::vector<std::pair<std::string, std::vector<ParameterValue>>> axes;
-  std::vector<ParameterValues> points() const;  ///< in text order, the last axis fastest
+  std::vector<std::uint64_t> seeds;             ///< each is a run of its own; empty: the command line's
+  std::vector<ParameterValues> points() const;  ///< in text order, the last axis fastest; one without axes
 };
 
 struct PassText {
@@ -91,7 +94,8 @@ struct RenderOptions {
   std::vector<std::string> wanted;  ///< output names; empty: all
   bool wantsOutputs = true;         ///< false: none of them, only what keepOutput() names
   std::uint64_t seed = 1;
-  bool health = false;  ///< scan every pass output for NaN, Inf and negative values; not part of the times
+  bool health = false;     ///< scan every pass output for NaN, Inf and negative values; not part of the times
+  bool countWork = false;  ///< count what every pass does: the same pictures, several times slower
   bool interactive =
       false;  ///< camera, lights and objects may change in ways that the scene text does not announce
   std::string camera;
@@ -103,6 +107,7 @@ struct PassRecord {
   bool ran = true;  ///< false: its inputs had not changed
   double hostMs = 0, deviceMs = 0;
   std::uint64_t bytes = 0;  ///< resources that it took from the pool
+  Work work{};              ///< what it did; only with RenderOptions::countWork
 };
 
 struct FrameResult {

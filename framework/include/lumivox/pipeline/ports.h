@@ -106,7 +106,8 @@ struct AttributeGrid {
 struct RadianceGrid {
   static constexpr const char* kPortKind = "RadianceGrid";
   GridPlacement grid;
-  gpu::TextureRef radiance;  ///< d3 rgba16f or rgba32f with mips: rgb radiance * opacity, a opacity
+  gpu::TextureRef radiance;  ///< d3 rgba16f or rgba32f with mips: rgb radiance * opacity / unit, a opacity
+  float unit = 1.0f;         ///< W/(sr m^2): keeps very bright and very dark light within half floats
   int filledLevels = 0;      ///< mip levels that hold values, finest first; 0: all that the texture has
 };
 

@@ -32,9 +32,9 @@ struct ReferenceOptions {
   std::string camera;
   int width = 0, height = 0;  ///< 0: the camera's
   double occlusionDistance =
-      0.0;          ///< m, for ambient occlusion; 0: a tenth of the diagonal of the scene's bounds
-  int threads = 0;  ///< 0: all
-  bool progress = true;
+      0.0;               ///< m, for ambient occlusion; 0: a tenth of the diagonal of the scene's bounds
+  int threads = 0;       ///< 0: all
+  bool progress = true;  ///< tells the user how far it is, and of light that the limit on bounces leaves out
   bool useCache = true;
 };
 
@@ -44,7 +44,9 @@ struct ReferenceOptions {
 /// lights, scattered once and nothing else), scattered_multiple (all other) and scattered; and for each of
 /// them "<layer>.variance": the variance of the pixel's mean. One path gives all of them, so sums have their
 /// own, right variance. Attributes hold the provenance: scene, hash, samples, bounces, roulette, seed, time,
-/// camera, resolution, occlusion_distance, tracer_version. At least two samples per pixel, or Error.
+/// camera, resolution, occlusion_distance, tracer_version, cut_off (the estimated share of all light that
+/// lies beyond the last bounce, which is warned of above 1 %, and the factor from bounce to bounce). At least
+/// two samples per pixel, or Error.
 LayeredPicture renderReference(const Scene& scene, const ReferenceOptions& options);
 
 /// The same through the cache (base/file.h cacheDirectory), keyed by everything the picture depends on. A

@@ -31,8 +31,7 @@ inline constexpr double kSignificantTimeShare = 0.05;
 
 /// Matches points by scene, pipeline, parameters, camera, time and seed, the last stored of each. Two runs
 /// alone are compared whatever they measure. Times of different devices or hosts are not compared; errors of
-/// different sizes or other scenes are not. Uncertainty of a median: 1.25 sigma / sqrt(n), sigma from the
-/// quartiles (1.349 sigma apart).
+/// different sizes or other scenes are not.
 RunComparison compareResults(const std::vector<StoredRun>& before, const std::vector<StoredRun>& after);
 
 }  // namespace lumivox

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -27,16 +28,25 @@ struct ComponentError {
   std::string truth;   ///< layer: one_bounce_diffuse (bias) or indirect_diffuse (what the viewer misses), ...
   bool bias = true;    ///< against the truth of the technique's own model; false: against the full truth
   PictureError error;  ///< of the first seed; uncertainties come from the truth's noise
-  Measured rmseOverSeeds;       ///< mean and standard error over the seeds that were run
-  int seeds = 1;                ///< that were run
-  bool deterministic = false;   ///< two seeds gave the same bits, so that there is no noise to average
-  double noiseRmse = 0.0;       ///< RMS of the picture's own noise, from the differences between the seeds
+  Measured rmseOverSeeds;      ///< mean and standard error over the seeds that were run
+  int seeds = 1;               ///< that were run
+  bool deterministic = false;  ///< two seeds gave the same bits, so that there is no noise to average
+  double noiseRmse = 0.0;      ///< RMS of the picture's own noise, from the differences between the seeds
+  ErrorParts parts;            ///< mean square over seeds = bias² + noise² + the truth's noise²
+  Measured flicker{std::numeric_limits<double>::quiet_NaN(),
+                   0.0};        ///< over the pairs of frames that follow; NaN when none was measured
   PictureError errorOfNothing;  ///< of a black picture: what leaving the component out would cost
 
   /// RMSE over seeds with the truth's noise and the spread over seeds added in quadrature.
   Measured rmse() const;
   /// rmse / RMSE of nothing: below 1 the component is better than none.
   double ratioToNothing() const;
+};
+
+/// The least time that the work of a pass can take on one resource of the device (report/device.h).
+struct WorkBound {
+  std::string resource;  ///< "texture sampling"
+  double ms = 0.0;
 };
 
 /// One sweep point: both error and time, in one record.
@@ -47,6 +57,12 @@ struct ReportPoint {
   TimingStatistics nextFrameMs;        ///< 1/60 s later, only what changed runs
   std::map<std::string, TimingStatistics> passDeviceMs, passHostMs;
   std::map<std::string, std::uint64_t> passBytes;
+  /// What each pass does, counted in a frame of its own; not kept in the results store.
+  std::map<std::string, Work> passWork;
+  /// What each pass takes at least: one bound per resource, the largest first. Empty without the ceilings of
+  /// this device.
+  std::map<std::string, std::vector<WorkBound>> passBounds;
+  std::string whyNotCounted;           ///< empty when passWork is there
   std::vector<std::string> passOrder;  ///< as they ran
   double frameworkShare = 0.0;         ///< time between passes / frame
   std::uint64_t peakBytes = 0;
@@ -86,10 +102,13 @@ struct ReportOptions {
   std::uint64_t seed = 1;  ///< the first one
   int subpixels = 16;      ///< pictures that are judged are means over this many positions in the pixel
   int repeats = 5, seeds = 2;
-  bool openSweeps = true;       ///< false: only the default point
-  int voxelResolution = 0;      ///< of a section on the committed voxelisers; 0: none
-  std::filesystem::path store;  ///< results store that the points are added to; empty: none
-  std::string commandLine;      ///< as typed, for the page
+  /// Pairs of frames 1/24 s apart whose flicker is measured where the scene moves; 0: none.
+  int flickerPairs = 4;
+  bool openSweeps = true;                         ///< false: only the default point
+  int voxelResolution = 0;                        ///< of a section on the committed voxelisers; 0: none
+  std::filesystem::path store;                    ///< results store that the points are added to; empty: none
+  std::vector<double> equalTimesMs, equalErrors;  ///< of the tables; empty: round numbers from the data
+  std::string commandLine;                        ///< as typed, for the page
   std::vector<std::string>
       repeatArguments;  ///< further options that a repeating command needs, e.g. --device
 };
@@ -122,7 +141,8 @@ std::optional<TruthLayer> truthLayer(const LayeredPicture& truth, const std::str
 /// there is none of them.
 Picture compositePicture(const FrameResult& frame);
 
-/// Renders pruned and unpruned alternately, `repeats` times each after one warm-up.
+/// Renders pruned and unpruned alternately, `repeats` times each after one warm-up. With 0 only the warm-up
+/// is rendered, for the pictures, the bytes and the variants; nothing is timed.
 PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, const Scene& scene,
                              const Pipeline& pipeline, RenderOptions options, double time, int repeats);
 
@@ -145,6 +165,9 @@ int truthSamplesFor(int width, int height);
 
 /// Three digits, whole from 100 on: "0.0123", "4.56", "1548".
 std::string formatMilliseconds(double milliseconds);
+
+/// Three digits and the thousands: "1.23 G", "45.6 k".
+std::string formatThousands(double value);
 
 /// A share as "12 %", never "-0 %".
 std::string formatPercent(double share);

@@ -26,6 +26,7 @@ struct RunIdentity {
   int width = 0, height = 0;
   std::uint64_t seed = 1;
   int seeds = 1, repeats = 1, subpixels = 1, truthSamples = 0;
+  int flickerPairs = 0;                           ///< 0 where the scene does not move
   std::string device, driver, shaderInput, host;  ///< host: processor and system
 
   std::string key() const;  ///< 32 hexadecimal digits
@@ -88,12 +89,25 @@ struct StressCell {
   std::string key() const;  ///< 32 hexadecimal digits
 };
 
+/// Which cells. Empty members do not restrict; the pipeline matches as in RunFilter, without its title.
+struct CellFilter {
+  std::string family, name, pipeline, technique, device, since;
+  std::optional<StressOutcome> outcome;
+  std::vector<std::int64_t> ids;
+  bool everything() const;
+};
+
 /// What one device can do at most, measured: `lumivox device`.
 struct DeviceCeiling {
   std::string name;       ///< "texture_sampling_rgba16f_3d"
   std::string unit;       ///< "samples/s", "writes/s", "operations/s", "bytes/s"
   TimingStatistics rate;  ///< in that unit
   std::string created, version, device, driver, shaderInput, host;
+};
+
+/// How much a store took over from another.
+struct MergeCount {
+  std::size_t runs = 0, cells = 0, ceilings = 0;
 };
 
 class ResultsStore {
@@ -117,16 +131,20 @@ class ResultsStore {
   std::vector<StoredRun> runs(const RunFilter& filter = {}) const;
   /// How many were removed.
   std::size_t remove(const RunFilter& filter);
-  /// Takes over the runs of another store that are not here; returns how many. In one transaction.
-  std::size_t merge(const ResultsStore& other);
+  /// Takes over the runs of another store that are not here, and the cells and ceilings that are not here or
+  /// are older here. In one transaction.
+  MergeCount merge(const ResultsStore& other);
 
   /// Cells of the stress battery. A cell with the same key takes the place of the older one.
   void add(const std::vector<StressCell>& cells);
-  std::vector<StressCell> stressCells() const;  ///< by id; empty for a store of schema 1 that is only read
+  /// By id; empty for a store of schema 1 that is only read.
+  std::vector<StressCell> stressCells(const CellFilter& filter = {}) const;
+  std::size_t removeCells(const CellFilter& filter);  ///< how many were removed
   /// The newest ceilings of each device; those of the same name take the place of the older ones.
   void add(const std::vector<DeviceCeiling>& ceilings);
   std::vector<DeviceCeiling> ceilings(const std::string& device, const std::string& driver,
                                       const std::string& shaderInput, const std::string& host) const;
+  std::vector<DeviceCeiling> ceilings() const;  ///< of all devices
 
   /// The store of a user who names none: $LUMIVOX_RESULTS, else results.sqlite in the cache directory.
   static std::filesystem::path defaultFile();
@@ -141,7 +159,7 @@ std::string frameworkHash();
 
 /// The metrics of one error by name, with the same of a black picture: what the store's table `metrics`
 /// holds. Names: rmse, rmse_over_seeds, relative_mse, mean_ratio, bias, percentile95, ssim, flip, flip_ldr,
-/// noise_floor, non_finite_picture, non_finite_truth.
+/// rms_bias, rms_noise, flicker, noise_floor, non_finite_picture, non_finite_truth.
 struct NamedMetric {
   std::string name;
   Measured measured;

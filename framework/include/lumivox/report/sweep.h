@@ -11,7 +11,10 @@
 namespace lumivox {
 
 struct SweepOptions {
-  ReportOptions measure;     ///< what a report measures; `output` is not used
+  ReportOptions measure;  ///< what a report measures; `output` is not used
+  /// Texts of their own that name scenes, pipelines, parameters and seeds; with them the scenes above may be
+  /// none. Settings pin their axes too.
+  std::vector<std::filesystem::path> texts;
   bool retryFailed = false;  ///< measure points anew that the store holds as failed
   bool planOnly = false;     ///< say what would be measured, and measure nothing
   /// Told after each point: how many of how many, and the seconds that the rest will take about (0: unknown).
@@ -25,9 +28,11 @@ struct SweepSummary {
   std::size_t failed = 0;              ///< of those measured now
   std::vector<std::string> missing;    ///< what planOnly would have measured: "cornell, x: cones=6"
   std::vector<std::string> unsuited;   ///< "scene, pipeline: why"
+  std::vector<std::string> notes;      ///< which pipeline goes without which axis of a text
 };
 
-/// Measures every pipeline at every point of its sweeps on every scene, but for those that the store holds.
+/// Measures every pipeline at every point of its sweeps on every scene, and what the texts name, but for what
+/// the store holds. Each seed of a sweep's axis is a run of its own with that seed alone.
 /// Each batch of points is stored as soon as it is measured, so an interruption loses at most one batch.
 /// Errors are measured apart from times; the timed frames of a batch take turns. Throws as makeReport.
 SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const SweepOptions& options,

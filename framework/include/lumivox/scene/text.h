@@ -1,14 +1,21 @@
 // The grammar of scene texts: the tables from which the checker, `lumivox describe` and the generated
-// reference read.
+// reference read; and scenes from texts that lie in no file.
 #pragma once
 
+#include <filesystem>
+#include <string>
 #include <vector>
 
 #include "lumivox/dsl/schema.h"
+#include "lumivox/scene/scene.h"
 
 namespace lumivox {
 
 /// One block, `scene NAME { ... }`, with everything that may stand inside.
 const std::vector<dsl::BlockSpecification>& sceneSpecifications();
+
+/// As loadScene, for a text: `file` names it in messages, and relative paths start beside it.
+Scene loadSceneText(std::string text, const std::filesystem::path& file,
+                    const SceneLoadOptions& options = {});
 
 }  // namespace lumivox

@@ -10,14 +10,18 @@
 
 #include "lumivox/shader/pack.h"
 #include "lumivox/shader/slots.h"
+#include "lumivox/shader/work.h"
 
 namespace lumivox::shader {
+
+class CountingProgram;  // shader/counting.h
 
 /// A linked program together with what it binds.
 struct BoundProgram {
   std::unique_ptr<gpu::Program> program;
   const PackedProgram* packed;
   const PackedVariant* variant;
+  std::shared_ptr<CountingProgram> counting;  ///< null unless ShaderLibrary::countWork() was called
 };
 
 class ShaderLibrary {
@@ -56,7 +60,15 @@ class ShaderLibrary {
   const std::map<std::string, ShaderPack>& packs() const;
   gpu::Device& device();
 
+  /// From now on every program counts what it does: the same results, several times slower. Call it before
+  /// the first program is asked for. AbsentError when the device takes its programs as GLSL.
+  void countWork();
+  /// What all programs did since the last call, in operations by name.
+  Work takeWork();
+
  private:
+  template <class Run>
+  void run(const BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings, Run&& run);
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -7,37 +7,71 @@
 #include <string>
 #include <vector>
 
+#include "lumivox/gpu/device.h"
 #include "lumivox/report/store.h"
 
 namespace lumivox {
 
 /// A case as `lumivox stress --list` shows it.
 struct StressCaseInfo {
-  std::string family;  ///< stiff_transport, geometry, scale_and_place, light, picture_and_camera, time,
-                       ///< refinement, repeatability, parameters
+  std::string family;   ///< stiff_transport, geometry, scale_and_place, light, picture_and_camera, time,
+                        ///< refinement, repeatability, parameters
   std::string name;     ///< unique: "closed_box_albedo_0.999"
   std::string meaning;  ///< what is extreme about it and what is measured, one sentence
   bool quick = false;   ///< part of the quick battery
 };
-const std::vector<StressCaseInfo>& stressCases();
 
-struct StressOptions {
-  std::vector<std::filesystem::path> pipelines;  ///< empty: every committed one
-  std::string technique;                         ///< only pipelines of this technique; empty: all
-  std::vector<std::string> families, cases;      ///< empty: all
-  bool quick = false;                            ///< only the quick cases, at small sizes
-  double timeLimit = 0.0;                        ///< s for one cell; 0: 20 quick, 300 full
-  std::filesystem::path output;                  ///< folder for the page and the pictures; empty: neither
-  std::filesystem::path store;                   ///< results store; empty: none
-  std::vector<std::string> program;              ///< that runs one worker: the words of its command line
-  std::function<void(const StressCell& cell, std::size_t done, std::size_t total)> progress;
+/// One case on one pipeline, not yet run.
+struct StressJob {
+  StressCaseInfo info;
+  std::filesystem::path pipeline;
+  std::string technique;  ///< that the pipeline stands for
 };
 
+struct StressOptions {
+  std::vector<std::filesystem::path> pipelines;  ///< empty: every committed one, voxelisers too
+  std::string technique;                         ///< only pipelines of this technique; empty: all
+  std::vector<std::string> families, cases;      ///< empty: all; cases may end in '*'
+  bool quick = false;                            ///< only the quick cases, at small sizes
+  double timeLimit = 0.0;                        ///< s for one cell; 0: 60 quick, 600 full
+  int workers = 0;                               ///< 0: as many as is fastest here
+  std::filesystem::path output;                  ///< folder for the page and the pictures; empty: neither
+  std::filesystem::path store;                   ///< results store; empty: none
+  /// That runs one worker: the words of its command line, which ends up in serveStress().
+  std::vector<std::string> program;
+  std::vector<std::string>
+      repeatArguments;      ///< further options that a repeating command needs, e.g. --device
+  std::string commandLine;  ///< as typed, for the page
+  std::function<void(const StressCell& cell, std::size_t done, std::size_t total, double secondsLeft)>
+      progress;
+};
+
+/// The jobs of a battery, pipeline by pipeline. Error for an unknown family, case or technique, and for a
+/// wrong pipeline text.
+std::vector<StressJob> plannedStress(const StressOptions& options, TechniqueSource& techniques);
+
 struct StressSummary {
-  std::vector<StressCell> cells;
-  std::filesystem::path page;  ///< empty: none was asked for
+  std::vector<StressCell> cells;  ///< in the order of the plan
+  std::filesystem::path page;     ///< empty: none was asked for
   /// No cell is broken: NaN, infinite, crashed or hung.
   bool sound() const;
 };
+StressSummary runStress(const StressOptions& options, TechniqueSource& techniques);
+
+/// What a worker stands on.
+struct StressWorker {
+  gpu::DeviceOptions device;
+  SceneLoadOptions sceneLoad;
+  std::vector<std::string> program;  ///< its own command line, for cells that need another process
+  std::vector<std::string> repeatArguments;
+};
+/// A worker's life: reads one request a line from standard input, writes one answer a line to standard
+/// output, until the input ends. What anything else prints goes to standard error.
+void serveStress(const StressWorker& worker, TechniqueSource& techniques);
+
+/// The technique that a pipeline stands for: the one whose name its file's stem begins with (the longest);
+/// else that of the last pass, for a pipeline without outputs; else that of the pass behind its first output
+/// other than direct light, or behind its first output.
+std::string techniqueOf(const Pipeline& pipeline, TechniqueSource& techniques);
 
 }  // namespace lumivox

@@ -1,0 +1,69 @@
+// Equal time and equal error: what a pipeline reaches between the points that were measured, and how sure
+// that is. Pure functions.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "lumivox/measure/metrics.h"
+
+namespace lumivox {
+
+/// One measured point of a pipeline, both numbers with one standard uncertainty.
+struct TradeOff {
+  Measured timeMs;
+  Measured error;
+};
+
+/// Indices of the points that no other beats by its values alone, by time; of equal ones the first. Their
+/// errors fall strictly. Points whose time or error is not above 0 are passed over: they have no logarithm.
+std::vector<std::size_t> frontByValue(const std::vector<TradeOff>& points);
+
+/// Whether a and b differ by more than kSignificantSigmas standard uncertainties of their difference, and by
+/// more than `leastShare` of `a`.
+bool differ(const Measured& a, const Measured& b, double leastShare = 0.0);
+/// |a - b| over the standard uncertainty of the difference; infinite when that is 0 and they differ.
+double sigmasApart(const Measured& a, const Measured& b);
+
+/// The rule of all fronts: a is no slower and has no more error than b, and in one of the two it is better
+/// by more than the uncertainty (differ(); for times with kSignificantTimeShare). Points within their
+/// uncertainties do not beat each other.
+bool beats(const TradeOff& a, const TradeOff& b);
+/// For each point the one that beats it: of those the one with the least error. None: it is on the front.
+std::vector<std::optional<std::size_t>> beatenBy(const std::vector<TradeOff>& points);
+
+enum class Reach {
+  interpolated,  ///< between two measured points, or at one
+  atMost,        ///< the last measured point has this much already: less is not measured
+  notReached,    ///< every measured point is slower than the budget, or has more error
+  notMeasured    ///< there is no point
+};
+const char* name(Reach reach);  ///< "not_reached"
+
+struct Interpolated {
+  Reach reach = Reach::notMeasured;
+  Measured value;                ///< ms or error; with notReached that of the nearest measured point
+  std::size_t from = 0, to = 0;  ///< the measured points on both sides, indices into `points`
+};
+
+/// The error at a time. `front` are indices from frontByValue(). Between two of its points (t1, e1), (t2, e2)
+/// the logarithm of the error is linear in that of the time, exact on power laws; beyond them nothing is
+/// extrapolated. With w = ln(T/t1) / ln(t2/t1), the slope s = ln(e2/e1) / ln(t2/t1) and relative
+/// uncertainties u, to first order:
+///   u^2 = ((1-w) u_e1 + w u_e2)^2 + s^2 ((1-w)^2 u_t1^2 + w^2 u_t2^2).
+/// Errors add linearly, since the two may share the truth's noise and then err together: the safe side. The
+/// second term is at most ln(e2/e1)^2: a segment shorter than its times are sure says no more than its ends.
+Interpolated errorAtTime(const std::vector<TradeOff>& points, const std::vector<std::size_t>& front,
+                         double timeMs);
+/// The time at an error: the same segment read the other way, with 1/s in place of s:
+///   u^2 = (1-w)^2 u_t1^2 + w^2 u_t2^2 + ((1-w) u_e1 + w u_e2)^2 / s^2,  w = ln(E/e1) / ln(e2/e1).
+Interpolated timeAtError(const std::vector<TradeOff>& points, const std::vector<std::size_t>& front,
+                         double error);
+
+/// Round numbers within [low, high]: 1, 2, 5 times powers of ten; 1, 1.5, 2, 3, 5, 7 where those would be
+/// fewer than three; else the multiples of a round step. Empty when low is not above 0, or high not 0.5 %
+/// above it.
+std::vector<double> roundNumbers(double low, double high);
+
+}  // namespace lumivox

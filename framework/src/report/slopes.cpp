@@ -1,0 +1,148 @@
+#include "report/slopes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "report/page_parts.h"
+
+namespace lumivox::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The RMSE that the truth's noise does not explain. Its square is the difference of two squares.
+Measured withoutTruthNoise(const ComponentError& error) {
+  const Measured rmse = error.rmse();
+  const double square = rmse.value * rmse.value - error.error.noiseFloor * error.error.noiseFloor;
+  if (!(square > 0.0)) return {0.0, 0.0};
+  return {std::sqrt(square), rmse.value / std::sqrt(square) * rmse.uncertainty};
+}
+
+/// Points of one pipeline that differ in one parameter alone.
+struct Series {
+  std::string pipeline, parameter, others;
+  std::vector<std::pair<double, const ReportPoint*>> points;
+};
+
+std::vector<Series> seriesOf(const SceneRecord& scene) {
+  std::map<std::tuple<std::string, std::string, std::string>, Series> all;
+  for (const PointRecord& record : scene.points) {
+    if (!record.point.failure.empty()) continue;
+    for (const auto& [name, value] : record.point.parameters) {
+      if (!value.word.empty()) continue;
+      ParameterValues others = record.point.parameters;
+      others.erase(name);
+      const std::string text = others.empty() ? std::string() : parametersText(others);
+      Series& series = all[{record.point.pipeline, name, text}];
+      series.pipeline = record.point.pipeline;
+      series.parameter = name;
+      series.others = text;
+      series.points.emplace_back(value.number, &record.point);
+    }
+  }
+  std::vector<Series> result;
+  for (auto& [key, series] : all) {
+    std::set<double> values;
+    for (const auto& [value, point] : series.points) values.insert(value);
+    if (values.size() >= 3) result.push_back(std::move(series));
+  }
+  return result;
+}
+
+void add(std::vector<SweepSlope>& slopes, const Series& series, const std::string& output,
+         const std::string& quantity, const std::vector<PowerLawPoint>& points) {
+  SweepSlope slope{series.pipeline,    series.parameter, series.others, output, quantity, 0.0, 0.0,
+                   fitPowerLaw(points)};
+  if (std::isnan(slope.law.slope.value)) return;
+  const auto [low, high] = std::minmax_element(
+      points.begin(), points.end(), [](const PowerLawPoint& a, const PowerLawPoint& b) { return a.x < b.x; });
+  slope.low = low->x;
+  slope.high = high->x;
+  slopes.push_back(std::move(slope));
+}
+
+}  // namespace
+
+std::vector<SweepSlope> slopesOf(const SceneRecord& scene) {
+  std::vector<SweepSlope> slopes;
+  for (const Series& series : seriesOf(scene)) {
+    // By output and quantity, in the order in which the first point has them.
+    std::vector<std::pair<std::pair<std::string, std::string>, std::vector<PowerLawPoint>>> quantities;
+    const auto put = [&](const std::string& output, const char* quantity, double x, const Measured& y) {
+      const std::pair<std::string, std::string> key(output, quantity);
+      auto found = std::find_if(quantities.begin(), quantities.end(),
+                                [&](const auto& entry) { return entry.first == key; });
+      if (found == quantities.end()) found = quantities.insert(quantities.end(), {key, {}});
+      found->second.push_back({x, y});
+    };
+    for (const auto& [value, point] : series.points) {
+      for (const ComponentError& error : point->errors) {
+        put(error.output, error.bias ? "bias" : "misses", value, withoutTruthNoise(error));
+        if (error.bias && error.parts.noise.value > 0.0) put(error.output, "noise", value, error.parts.noise);
+      }
+      if (point->frameMs.repeats > 0) put("", "time", value, medianOf(point->frameMs));
+    }
+    for (const auto& [key, points] : quantities) add(slopes, series, key.first, key.second, points);
+  }
+  return slopes;
+}
+
+std::string slopeSection(const SceneRecord& scene) {
+  const std::vector<SweepSlope> slopes = slopesOf(scene);
+  if (slopes.empty()) return {};
+  Table table({{"Pipeline"},
+               {"Parameter"},
+               {"Others"},
+               {"Output"},
+               {"Quantity"},
+               {"Slope", "number"},
+               {"Plateau", "number"},
+               {"Slope above it", "number"},
+               {"Values", "number"}});
+  for (const SweepSlope& slope : slopes)
+    table.row({escaped(shortName(slope.pipeline)),
+               escaped(fmt::format("{} {:.4g} .. {:.4g}", slope.parameter, slope.low, slope.high)),
+               escaped(slope.others),
+               slope.output.empty()            ? "whole frame"
+               : slope.output == kWholePicture ? "whole picture"
+                                               : escaped(slope.output),
+               slope.quantity, withUncertainty(slope.law.slope),
+               slope.law.hasPlateau()                ? withUncertainty(slope.law.plateau)
+               : std::isnan(slope.law.plateau.value) ? "-"
+                                                     : "none",
+               slope.law.hasPlateau() ? number(slope.law.slopeAbove) : "-",
+               fmt::format("{}", slope.law.points)});
+  return "<h3>Convergence</h3>\n<p class=\"caption\">Over each parameter that takes three values or more, the "
+         "others fixed: the slope of log error, or log time, against the log of the parameter, by least "
+         "squares. An error that falls in proportion to the voxel's size has the slope -1 over the resolution, "
+         "noise -0.5 over the number of samples. Errors are RMSE without the truth's noise. The plateau, from "
+         "four values on, is what stays however large the parameter becomes (of times: however small), as far "
+         "as the fit of plateau plus power can tell; &ldquo;none&rdquo;: not above twice its uncertainty.</p>\n" +
+         table.html();
+}
+
+Json slopesJson(const std::vector<SweepSlope>& slopes) {
+  const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
+  const auto measured = [&](const Measured& m) {
+    return Json{{"value", number(m.value)}, {"uncertainty", number(m.uncertainty)}};
+  };
+  Json list = Json::array();
+  for (const SweepSlope& slope : slopes)
+    list.push_back({{"pipeline", slope.pipeline},
+                    {"parameter", slope.parameter},
+                    {"others", slope.others},
+                    {"output", slope.output},
+                    {"quantity", slope.quantity},
+                    {"low", slope.low},
+                    {"high", slope.high},
+                    {"values", slope.law.points},
+                    {"slope", measured(slope.law.slope)},
+                    {"plateau", measured(slope.law.plateau)},
+                    {"has_plateau", slope.law.hasPlateau()},
+                    {"slope_above_plateau", number(slope.law.slopeAbove)}});
+  return list;
+}
+
+}  // namespace lumivox::report

@@ -1,0 +1,292 @@
+#include "stress/bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/hash.h"
+#include "lumivox/report/report.h"
+#include "lumivox/report/voxelisers.h"
+#include "lumivox/scene/text.h"
+#include "report/measure.h"
+#include "stress/elsewhere.h"
+#include "stress/pass_parameters.h"
+
+namespace lumivox::stress {
+namespace {
+
+constexpr int kQuickPixels = 48, kFullPixels = 96;
+
+/// A shot ready to run: the pipeline's text with the parameters of its passes, and the options.
+struct Ready {
+  Pipeline pipeline;
+  RenderOptions options;
+};
+
+void requireHealthy(const FrameResult& frame) {
+  if (frame.healthFindings.empty()) return;
+  const std::size_t more = frame.healthFindings.size() - 1;
+  throw Unhealthy(frame.healthFindings.front() +
+                  (more == 0 ? std::string() : fmt::format(" (and {} more findings)", more)));
+}
+
+/// A list has no order; its content is the sorted fragments.
+void addContent(Hasher& hasher, const VoxelFragments& list) {
+  using Fragment = std::array<std::uint32_t, VoxelFragments::kFragmentBytes / sizeof(std::uint32_t)>;
+  std::uint32_t count = 0;
+  const std::vector<std::byte> word = list.count->download(0, sizeof(count));
+  std::memcpy(&count, word.data(), sizeof(count));
+  count = static_cast<std::uint32_t>(std::min<std::uint64_t>(count, list.capacity));
+  hasher.add(count);
+  if (count == 0) return;
+  const std::vector<std::byte> bytes = list.fragments->download(0, count * sizeof(Fragment));
+  std::vector<Fragment> fragments(count);
+  std::memcpy(fragments.data(), bytes.data(), bytes.size());
+  std::sort(fragments.begin(), fragments.end());
+  hasher.bytes(fragments.data(), bytes.size());
+}
+
+void addContent(Hasher& hasher, const OutBase& output) {
+  if (output.portKind() == VoxelFragments::kPortKind && output.hasValue())
+    addContent(hasher, static_cast<const Out<VoxelFragments>&>(output).value());
+  for (const gpu::TextureRef& texture : output.textures()) {
+    if (!texture) continue;
+    for (int level = 0; level < texture->description().levels; ++level) hasher.add(texture->download(level));
+  }
+}
+
+/// Voxels seen along z: the nearer the first one, the brighter.
+Picture pictureOf(const VoxelSet& voxels) {
+  const glm::ivec3 size = voxels.resolution();
+  Picture picture(std::max(1, size.x), std::max(1, size.y), 1);
+  for (int y = 0; y < size.y; ++y)
+    for (int x = 0; x < size.x; ++x)
+      for (int z = 0; z < size.z; ++z)
+        if (voxels.contains({x, y, z})) {
+          picture.at(x, size.y - 1 - y, 0) = 1.0f - 0.9f * static_cast<float>(z) / static_cast<float>(size.z);
+          break;
+        }
+  return picture;
+}
+
+}  // namespace
+
+ParameterValues batteryValues(const Pipeline& pipeline, bool quick) {
+  ParameterValues values;
+  for (const PipelineParameter& parameter : pipeline.parameters) values[parameter.name] = parameter.value;
+  if (!quick || pipeline.sweeps.empty()) return values;
+  const std::vector<ParameterValues> points = pipeline.sweeps.front().points();
+  if (!points.empty())
+    for (const auto& [name, value] : points.front()) values[name] = value;
+  return values;
+}
+
+struct PipelineBench::State {
+  Ground& ground;
+  const Pipeline& pipeline;
+  ParameterValues values;
+  Picture last, given;
+
+  Ready ready(const Shot& shot) const;
+  /// Outputs of the last pass are kept where the pipeline has none of its own.
+  void keepVoxels(PipelineExecutor& executor, const Pipeline& text) const;
+  SceneSnapshot snapshot(const Scene& scene, const Ready& ready, double time) const {
+    return snapshotOf(scene, time, ready.options.camera, ready.options.width, ready.options.height);
+  }
+  Frame frame(PipelineExecutor& executor, const SceneSnapshot& snapshot, const Shot& shot, int index);
+  void lookAtVoxels(const std::vector<const OutBase*>& outputs);
+  std::vector<const OutBase*> lastOutputs(const PipelineExecutor& executor, const Pipeline& text) const;
+  std::vector<Frame> sequence(PipelineExecutor& executor, const Scene& scene, const Ready& ready,
+                              const std::vector<double>& times, const Shot& shot, const Edit& edit);
+  std::uint64_t content(gpu::Device& device, const Scene& scene, const std::vector<double>& times,
+                        const Shot& shot, const Edit& edit);
+};
+
+Ready PipelineBench::State::ready(const Shot& shot) const {
+  Ready ready{shot.passParameters.empty() ? pipeline : withPassParameters(pipeline, shot.passParameters), {}};
+  const int pixels = ground.quick ? kQuickPixels : kFullPixels;
+  ready.options.parameters = values;
+  for (const auto& [name, value] : shot.parameters)
+    if (values.count(name) != 0) ready.options.parameters[name] = value;
+  ready.options.width = shot.width > 0 ? shot.width : pixels;
+  ready.options.height = shot.height > 0 ? shot.height : pixels;
+  ready.options.seed = shot.seed;
+  ready.options.camera = shot.camera;
+  ready.options.keepEverything = shot.keepEverything;
+  ready.options.health = true;
+  return ready;
+}
+
+std::vector<const OutBase*> PipelineBench::State::lastOutputs(const PipelineExecutor& executor,
+                                                              const Pipeline& text) const {
+  std::vector<const OutBase*> outputs;
+  const std::string& lastPass = text.passes.back().name;
+  for (const OutBase* port : executor.pass(lastPass).outputs())
+    if (const OutBase* output = executor.output(lastPass, port->name())) outputs.push_back(output);
+  return outputs;
+}
+
+void PipelineBench::State::keepVoxels(PipelineExecutor& executor, const Pipeline& text) const {
+  if (text.passes.empty()) throw Error(fmt::format("{}: the pipeline has no pass", text.file.string()));
+  const std::string& lastPass = text.passes.back().name;
+  for (const OutBase* port : executor.pass(lastPass).outputs()) executor.keepOutput(lastPass, port->name());
+}
+
+void PipelineBench::State::lookAtVoxels(const std::vector<const OutBase*>& outputs) {
+  for (const OutBase* output : outputs)
+    if (const auto voxels = occupiedVoxels(*output)) {
+      last = pictureOf(voxels->voxels);
+      return;
+    }
+}
+
+Frame PipelineBench::State::frame(PipelineExecutor& executor, const SceneSnapshot& snapshot, const Shot& shot,
+                                  int index) {
+  Frame frame;
+  if (pipeline.outputs.empty()) {
+    frame.result = executor.render(snapshot, index, PipelineExecutor::Pictures::no);
+    lookAtVoxels(lastOutputs(executor, pipeline));
+  } else {
+    frame.result = shot.subpixels > 1 ? report::renderFiltered(executor, snapshot, shot.subpixels, index)
+                                      : executor.render(snapshot, index);
+    frame.whole = compositePicture(frame.result);
+    if (!frame.whole.empty()) last = frame.whole;
+  }
+  // After the picture, which shows where it is bad.
+  requireHealthy(frame.result);
+  return frame;
+}
+
+PipelineBench::PipelineBench(Ground& ground, const Pipeline& pipeline)
+    : state_(new State{ground, pipeline, batteryValues(pipeline, ground.quick), {}, {}}) {}
+PipelineBench::~PipelineBench() = default;
+
+bool PipelineBench::quick() const {
+  return state_->ground.quick;
+}
+const Pipeline& PipelineBench::pipeline() const {
+  return state_->pipeline;
+}
+const PipelineParameter* PipelineBench::parameter(const std::string& name) const {
+  for (const PipelineParameter& parameter : state_->pipeline.parameters)
+    if (parameter.name == name) return &parameter;
+  return nullptr;
+}
+TechniqueSource& PipelineBench::techniques() {
+  return state_->ground.techniques;
+}
+
+Scene PipelineBench::sceneFromText(const std::string& text) const {
+  return loadSceneText(text, state_->ground.scenes / "stress" / "made_by_a_case.scene",
+                       state_->ground.sceneLoad);
+}
+Scene PipelineBench::committedScene(const std::string& name) const {
+  return loadScene(state_->ground.scenes / (name + ".scene"), state_->ground.sceneLoad);
+}
+
+Frame PipelineBench::render(const Scene& scene, const Shot& shot) {
+  State& s = *state_;
+  const Ready ready = s.ready(shot);
+  PipelineExecutor executor(s.ground.device, s.ground.techniques, scene, ready.pipeline, ready.options);
+  if (s.pipeline.outputs.empty()) s.keepVoxels(executor, ready.pipeline);
+  return s.frame(executor, s.snapshot(scene, ready, shot.time), shot, 0);
+}
+
+std::vector<Frame> PipelineBench::State::sequence(PipelineExecutor& executor, const Scene& scene,
+                                                  const Ready& ready, const std::vector<double>& times,
+                                                  const Shot& shot, const Edit& edit) {
+  if (pipeline.outputs.empty()) keepVoxels(executor, ready.pipeline);
+  std::vector<Frame> frames;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    SceneSnapshot at = snapshot(scene, ready, times[i]);
+    if (edit) edit(i, at);
+    frames.push_back(frame(executor, at, shot, shot.firstFrame + static_cast<int>(i)));
+  }
+  return frames;
+}
+
+std::vector<Frame> PipelineBench::renderSequence(const Scene& scene, const std::vector<double>& times,
+                                                 const Shot& shot, const Edit& edit) {
+  State& s = *state_;
+  Ready ready = s.ready(shot);
+  ready.options.interactive = static_cast<bool>(edit);
+  PipelineExecutor executor(s.ground.device, s.ground.techniques, scene, ready.pipeline, ready.options);
+  return s.sequence(executor, scene, ready, times, shot, edit);
+}
+
+std::uint64_t PipelineBench::State::content(gpu::Device& device, const Scene& scene,
+                                            const std::vector<double>& times, const Shot& shot,
+                                            const Edit& edit) {
+  Ready made = ready(shot);
+  made.options.interactive = static_cast<bool>(edit);
+  PipelineExecutor executor(device, ground.techniques, scene, made.pipeline, made.options);
+  const Frame rendered = sequence(executor, scene, made, times, shot, edit).back();
+  Hasher hasher;
+  for (const auto& [name, picture] : rendered.result.outputs) hasher.add(name).add(picture.values());
+  if (pipeline.outputs.empty())
+    for (const OutBase* output : lastOutputs(executor, made.pipeline)) addContent(hasher, *output);
+  return hasher.finish().low;
+}
+
+std::uint64_t PipelineBench::contentOf(const Scene& scene, const Shot& shot) {
+  return state_->content(state_->ground.device, scene, {shot.time}, shot, {});
+}
+
+std::uint64_t PipelineBench::contentOfSequence(const Scene& scene, const std::vector<double>& times,
+                                               const Shot& shot, const Edit& edit) {
+  return state_->content(state_->ground.device, scene, times, shot, edit);
+}
+
+std::uint64_t PipelineBench::contentOnSecondDevice(const Scene& scene, const Shot& shot) {
+  gpu::Device device(state_->ground.deviceOptions);
+  return state_->content(device, scene, {shot.time}, shot, {});
+}
+
+std::uint64_t PipelineBench::contentElsewhere(const std::string& committedScene, const Shot& shot,
+                                              const std::vector<std::string>& environment) {
+  return askForContent(state_->ground, {state_->pipeline.file, committedScene, state_->ground.quick, shot},
+                       environment);
+}
+
+std::optional<VoxelError> PipelineBench::voxelError(const Scene& scene, const Shot& shot) {
+  State& s = *state_;
+  const Ready ready = s.ready(shot);
+  if (ready.pipeline.passes.empty()) return std::nullopt;
+  PipelineExecutor executor(s.ground.device, s.ground.techniques, scene, ready.pipeline, ready.options);
+  s.keepVoxels(executor, ready.pipeline);
+  const SceneSnapshot snapshot = s.snapshot(scene, ready, shot.time);
+  requireHealthy(executor.render(snapshot, 0, PipelineExecutor::Pictures::no));
+  for (const OutBase* output : s.lastOutputs(executor, ready.pipeline))
+    if (const auto voxels = occupiedVoxels(*output)) {
+      s.last = pictureOf(voxels->voxels);
+      return compareVoxels(voxels->voxels, trueVoxels(scene, snapshot, voxels->grid));
+    }
+  return std::nullopt;
+}
+
+LayeredPicture PipelineBench::truth(const Scene& scene, const Shot& shot, int samplesPerPixel, int threads) {
+  const Ready ready = state_->ready(shot);
+  ReferenceOptions options;
+  options.samplesPerPixel = samplesPerPixel;
+  options.seed = shot.seed;
+  options.time = shot.time;
+  options.camera = shot.camera;
+  options.width = ready.options.width;
+  options.height = ready.options.height;
+  options.threads = threads;
+  options.progress = false;
+  return threads > 0 ? renderReference(scene, options) : cachedReference(scene, options);
+}
+
+void PipelineBench::show(const Picture& picture) {
+  state_->given = picture;
+}
+
+const Picture& PipelineBench::shown() const {
+  return state_->given.empty() ? state_->last : state_->given;
+}
+
+}  // namespace lumivox::stress

@@ -1,0 +1,40 @@
+// What several families of cases need.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "lumivox/report/report.h"
+#include "stress/cases.h"
+
+namespace lumivox::stress {
+
+/// A committed room in which every output of the technique that the pipeline stands for can be seen: the
+/// plainest that will do, with something glossy or with a medium where one is needed.
+Scene suitableScene(Bench& bench);
+
+/// Whether a pass of the pipeline reads the camera.
+bool seesCamera(Bench& bench);
+
+bool makesPictures(const Bench& bench);
+
+/// Share of the occupied voxels that no triangle touches; 0 for a pipeline that makes none.
+double spuriousShare(Bench& bench, const Scene& scene, const Shot& shot);
+
+double meanOf(const Picture& picture);
+double largestOf(const Picture& picture);
+bool hasComponent(const FrameResult& frame, Contributes component);
+
+/// RMSE against a truth without the part that is the truth's own noise, divided by the truth's mean (by 1
+/// where that is black); the uncertainty is that noise, divided likewise.
+Measured differenceFromTruth(const Picture& picture, const TruthLayer& truth);
+
+/// The case says nothing about this pipeline, and why.
+Finding notApplicable(std::string why);
+
+/// RMSE of every output as a share of the RMSE of leaving it out, by its name; outputs that the truth is
+/// black in are passed over.
+std::map<std::string, Measured> ratiosToNothing(Bench& bench, const Scene& scene, const Shot& shot,
+                                                int truthSamples);
+
+}  // namespace lumivox::stress

@@ -1,0 +1,151 @@
+#include "stress/child.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+#include "lumivox/base/error.h"
+
+extern char** environ;
+
+namespace lumivox::stress {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// What is kept of standard error.
+constexpr std::size_t kWordsKept = 4096;
+
+std::vector<char*> pointersTo(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+std::vector<std::string> environmentWith(const std::vector<std::string>& settings) {
+  std::vector<std::string> all = settings;
+  for (char** one = environ; *one != nullptr; ++one) {
+    const std::string name = std::string(*one).substr(0, std::strcspn(*one, "=")) + "=";
+    if (std::none_of(settings.begin(), settings.end(),
+                     [&](const std::string& setting) { return setting.rfind(name, 0) == 0; }))
+      all.emplace_back(*one);
+  }
+  return all;
+}
+
+}  // namespace
+
+Child::Child(const std::vector<std::string>& words, const std::vector<std::string>& environment) {
+  int requests[2], answers[2], messages[2];
+  // A socket, since writing into one whose other end is gone can be told not to raise a signal.
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, requests) != 0 || pipe2(answers, O_CLOEXEC) != 0 ||
+      pipe2(messages, O_CLOEXEC) != 0)
+    throw Error(fmt::format("cannot start '{}': {}", words.at(0), std::strerror(errno)));
+  std::vector<std::string> arguments = words, variables = environmentWith(environment);
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_adddup2(&files, requests[1], STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&files, answers[1], STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&files, messages[1], STDERR_FILENO);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  // A group of its own, so that what it starts ends with it.
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  const int failure = posix_spawn(&process_, arguments[0].c_str(), &files, &attributes,
+                                  pointersTo(arguments).data(), pointersTo(variables).data());
+  posix_spawn_file_actions_destroy(&files);
+  posix_spawnattr_destroy(&attributes);
+  close(requests[1]);
+  close(answers[1]);
+  close(messages[1]);
+  requests_ = requests[0];
+  answers_ = answers[0];
+  messages_ = messages[0];
+  if (failure != 0) {
+    for (const int file : {requests_, answers_, messages_}) close(file);
+    throw Error(fmt::format("cannot start '{}': {}", words.at(0), std::strerror(failure)));
+  }
+}
+
+Child::~Child() {
+  if (!status_) {
+    kill(-process_, SIGKILL);
+    int status = 0;
+    waitpid(process_, &status, 0);
+  }
+  for (const int file : {requests_, answers_, messages_}) close(file);
+}
+
+void Child::send(const std::string& line) {
+  const std::string text = line + "\n";
+  for (std::size_t sent = 0; sent < text.size();) {
+    const ssize_t count = ::send(requests_, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return;
+    sent += static_cast<std::size_t>(count);
+  }
+}
+
+void Child::read(int file, std::string& into, bool& open) {
+  char buffer[4096];
+  const ssize_t count = ::read(file, buffer, sizeof(buffer));
+  if (count > 0)
+    into.append(buffer, static_cast<std::size_t>(count));
+  else if (count == 0 || errno != EINTR)
+    open = false;
+}
+
+Child::Answer Child::receive(double seconds) {
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  for (;;) {
+    if (const std::size_t newline = pending_.find('\n'); newline != std::string::npos) {
+      Answer answer{State::answered, pending_.substr(0, newline)};
+      pending_.erase(0, newline + 1);
+      return answer;
+    }
+    if (!answersOpen_) {
+      // What it still says may hold the reason.
+      while (messagesOpen_) read(messages_, errors_, messagesOpen_);
+      return {State::ended, {}};
+    }
+    const double left = std::chrono::duration<double>(end - Clock::now()).count();
+    if (left <= 0.0) return {State::silent, {}};
+    pollfd files[] = {{answers_, POLLIN, 0}, {messagesOpen_ ? messages_ : -1, POLLIN, 0}};
+    poll(files, 2, static_cast<int>(std::ceil(std::min(left, 3600.0) * 1000.0)));
+    if (files[1].revents != 0) read(messages_, errors_, messagesOpen_);
+    if (errors_.size() > 2 * kWordsKept) errors_.erase(0, errors_.size() - kWordsKept);
+    if (files[0].revents != 0) read(answers_, pending_, answersOpen_);
+  }
+}
+
+std::string Child::ending() {
+  int status = 0;
+  if (!status_ && waitpid(process_, &status, 0) == process_) {
+    status_ = status;
+    kill(-process_, SIGKILL);  // what it started
+  }
+  if (!status_) return "ended";
+  if (WIFSIGNALED(*status_))
+    return fmt::format("killed by signal {} ({})", WTERMSIG(*status_), strsignal(WTERMSIG(*status_)));
+  return fmt::format("ended with exit code {}", WEXITSTATUS(*status_));
+}
+
+std::string Child::lastWords() const {
+  std::string words = errors_.size() > kWordsKept ? errors_.substr(errors_.size() - kWordsKept) : errors_;
+  while (!words.empty() && words.back() == '\n') words.pop_back();
+  return words;
+}
+
+}  // namespace lumivox::stress

@@ -1,0 +1,47 @@
+// A process of its own that answers requests line by line.
+#pragma once
+
+#include <sys/types.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lumivox::stress {
+
+class Child {
+ public:
+  /// Starts the words as a command line, found without a search path, with these "NAME=value" over the
+  /// environment. Error when that fails.
+  Child(const std::vector<std::string>& words, const std::vector<std::string>& environment);
+  ~Child();  ///< kills it and everything that it started
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  /// A child that is gone does not answer; that is found out by receive().
+  void send(const std::string& line);
+
+  enum class State { answered, ended, silent };
+  struct Answer {
+    State state = State::silent;
+    std::string line;
+  };
+  /// Waits for a line at most so long, in s.
+  Answer receive(double seconds);
+  /// After `ended`: "killed by signal 6 (Aborted)", "ended with exit code 3".
+  std::string ending();
+  /// The last lines that it wrote to standard error.
+  std::string lastWords() const;
+  /// Standard error from here on.
+  void forgetWords() { errors_.clear(); }
+
+ private:
+  void read(int file, std::string& into, bool& open);
+  pid_t process_ = -1;
+  int requests_ = -1, answers_ = -1, messages_ = -1;
+  bool answersOpen_ = true, messagesOpen_ = true;
+  std::string pending_, errors_;
+  std::optional<int> status_;
+};
+
+}  // namespace lumivox::stress

@@ -1,0 +1,24 @@
+// Parameters of single passes, which a pipeline's text may have left at their defaults.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lumivox/pipeline/pipeline.h"
+
+namespace lumivox::stress {
+
+/// A parameter of a pass that no parameter of the pipeline stands for.
+struct PassParameter {
+  std::string name;  ///< "gather.cones"
+  ParamBase::Type type;
+  double low = 0.0, high = 0.0;  ///< of numbers
+  std::vector<std::string> words;
+  std::string value;  ///< as the text sets it, or the default
+};
+std::vector<PassParameter> freePassParameters(const Pipeline& pipeline, TechniqueSource& techniques);
+
+/// The same text with these parameters of passes set, by "pass.parameter". Error for an unknown pass.
+Pipeline withPassParameters(const Pipeline& pipeline, const ParameterValues& values);
+
+}  // namespace lumivox::stress

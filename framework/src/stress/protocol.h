@@ -1,0 +1,40 @@
+// What the battery and its workers say to each other: one JSON object a line.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "stress/cases.h"
+
+namespace lumivox::stress {
+
+/// What a worker says when its device is open, before anything is asked.
+inline constexpr const char* kReady = "ready";
+
+/// One cell to be run.
+struct CellRequest {
+  std::filesystem::path pipeline;
+  std::string name;  ///< of the case
+  bool quick = false;
+  std::filesystem::path picture;  ///< where to; empty: nowhere
+};
+/// The content of a frame: Bench::contentOf() for another process.
+struct ContentRequest {
+  std::filesystem::path pipeline;
+  std::string committedScene;
+  bool quick = false;
+  Shot shot;
+};
+
+std::string lineOf(const CellRequest& request);
+std::string lineOf(const ContentRequest& request);
+/// Exactly one of the two.
+struct AnyRequest {
+  std::optional<CellRequest> cell;
+  std::optional<ContentRequest> content;
+};
+/// Error for a line that is none.
+AnyRequest requestOf(const std::string& line);
+
+}  // namespace lumivox::stress

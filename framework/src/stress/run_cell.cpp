@@ -1,0 +1,116 @@
+#include "stress/run_cell.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <new>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "report/choice.h"
+#include "report/plan.h"
+#include "stress/cards.h"
+
+namespace lumivox::stress {
+namespace {
+
+std::string repeatingCommand(const CellRequest& request, const std::vector<std::string>& repeatArguments) {
+  std::string command =
+      fmt::format("lumivox stress --case {} --pipeline {}{}", report::shellQuoted(request.name),
+                  report::shellQuoted(report::shownPath(request.pipeline)), request.quick ? " --quick" : "");
+  for (const std::string& argument : repeatArguments) command += " " + report::shellQuoted(argument);
+  return command;
+}
+
+void fillIn(StressCell& cell, Finding finding) {
+  cell.outcome = finding.outcome;
+  cell.measure = std::move(finding.measure);
+  cell.unit = std::move(finding.unit);
+  cell.value = finding.value;
+  cell.limit = finding.limit;
+  cell.detail = std::move(finding.detail);
+}
+
+void end(StressCell& cell, StressOutcome outcome, std::string detail) {
+  cell.outcome = outcome;
+  cell.detail = std::move(detail);
+}
+
+/// Whatever is thrown by bad input is a refusal; what is no Error was not foreseen.
+void runGuarded(const Case& one, Bench& bench, StressCell& cell) {
+  try {
+    std::optional<Finding> finding = one.run(bench);
+    if (finding)
+      fillIn(cell, std::move(*finding));
+    else
+      cell.outcome = StressOutcome::notApplicable;
+  } catch (const Unhealthy& bad) {
+    end(cell, StressOutcome::broken, bad.what());
+  } catch (const AbsentError& absent) {
+    end(cell, StressOutcome::notApplicable, absent.what());
+  } catch (const Error& refusal) {
+    end(cell, StressOutcome::refused, refusal.what());
+  } catch (const std::bad_alloc&) {
+    end(cell, StressOutcome::broken, "out of memory, without a word about what was too large");
+  } catch (const std::exception& error) {
+    end(cell, StressOutcome::broken, fmt::format("an error that nobody foresaw: {}", error.what()));
+  }
+}
+
+}  // namespace
+
+void describeDevice(StressCell& cell, const gpu::Device& device) {
+  cell.device = device.info().renderer;
+  cell.driver = device.info().version;
+  cell.shaderInput = device.shaderInput() == gpu::ShaderInput::spirv ? "spirv" : "glsl";
+}
+
+StressCell cellBefore(const CellRequest& request, const std::string& family, TechniqueSource& techniques,
+                      const std::vector<std::string>& repeatArguments) {
+  const Pipeline pipeline = Pipeline::load(request.pipeline);
+  StressCell cell;
+  cell.created = report::dateText();
+  cell.version = LUMIVOX_VERSION;
+  cell.family = family;
+  cell.name = request.name;
+  cell.pipeline = report::shownPath(request.pipeline);
+  cell.technique = techniqueOf(pipeline, techniques);
+  cell.size = request.quick ? "quick" : "full";
+  cell.command = repeatingCommand(request, repeatArguments);
+  cell.pipelineHash = pipeline.hash.text();
+  cell.framework = frameworkHash();
+  for (const std::string& name : pipeline.techniques())
+    if (const Technique* technique = techniques.technique(name))
+      cell.techniques[name] = technique->hash.text() + "+" + technique->shaders.hash.text();
+  cell.host = report::hostText();
+  return cell;
+}
+
+StressCell runCell(Ground& ground, const CellRequest& request,
+                   const std::vector<std::string>& repeatArguments) {
+  const Pipeline pipeline = Pipeline::load(request.pipeline);
+  const std::vector<Case> cases = casesFor(pipeline, ground.techniques);
+  const auto one =
+      std::find_if(cases.begin(), cases.end(), [&](const Case& c) { return c.info.name == request.name; });
+  if (one == cases.end())
+    throw Error(fmt::format("{}: there is no stress case '{}' for this pipeline", request.pipeline.string(),
+                            request.name));
+  StressCell cell = cellBefore(request, one->info.family, ground.techniques, repeatArguments);
+  describeDevice(cell, ground.device);
+  ground.quick = request.quick;
+  PipelineBench bench(ground, pipeline);
+  const auto start = std::chrono::steady_clock::now();
+  runGuarded(*one, bench, cell);
+  cell.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  cell.explanation = explanationOf(cell, pipeline, ground.techniques);
+  const Picture& picture = bench.shown();
+  if (!request.picture.empty() && !picture.empty()) {
+    createParentDirectories(request.picture);
+    writePng(request.picture, picture, picture.channels() == 1 ? 1.0f : displayExposure(picture));
+    cell.picture = (request.picture.parent_path().filename() / request.picture.filename()).string();
+  }
+  return cell;
+}
+
+}  // namespace lumivox::stress

@@ -1,0 +1,54 @@
+// Scenes that cases are made of, and ways to change a scene whose effect on the picture is known.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "lumivox/scene/builder.h"
+#include "lumivox/scene/scene.h"
+
+namespace lumivox::stress {
+
+/// p -> scale * rotation * p + translation.
+struct Similarity {
+  double scale = 1.0;
+  glm::dmat3 rotation{1.0};
+  glm::dvec3 translation{0.0};
+};
+/// Radians about Y.
+glm::dmat3 turnAboutY(double angle);
+
+/// A scene with everything in it moved, so that its picture stays the same: objects by their placements, with
+/// them motions, lights, cameras and media. Radiances and irradiances stay as they are; intensities grow with
+/// the square of the scale, extinctions fall with it. Error for a medium in a box or a volume that is turned
+/// by anything but quarter turns, and for particles that no longer rise along Y.
+Scene moved(const Scene& scene, const Similarity& by);
+
+/// Every power of every light, with the emission of surfaces and the environment, times a factor.
+Scene brighter(const Scene& scene, float factor);
+
+/// Every object that does not shine a second time, in the same place.
+Scene doubled(const Scene& scene);
+
+/// Corners, three a triangle, of a parallelogram in `columns` x `rows` cells of two triangles each; the front
+/// side is that of cross(edge1, edge2).
+std::vector<glm::vec3> gridOfTriangles(const glm::vec3& corner, const glm::vec3& edge1,
+                                       const glm::vec3& edge2, int columns, int rows);
+
+/// A closed box of size 1 seen from inside, white walls of one albedo, with a point light of 1 W/sr near its
+/// middle; the camera looks at a corner, so that floor and two walls fill the picture.
+SceneBuilder closedRoom(float albedo);
+
+/// Two closed rooms of 1 m beside each other along x with a wall between them, `wall` m thick (0: one sheet).
+/// A point light shines in the middle of the one at lower x. Cameras "lit" and "dark" look at the same corner
+/// of either, as mirror images in the wall.
+Scene twoRooms(float wall);
+
+/// A floor of 2 m with a box on it under the open sky, seen from above at a slant; no light.
+SceneBuilder openFloor();
+
+/// All light in the view comes from one lit square of 4 mm in mid-air, in `cells` x `cells` cells of two
+/// triangles, in a closed room of 1 m. It lies within one voxel of grids of 16, 32 and 64 around the scene.
+Scene glowingSpeck(int cells);
+
+}  // namespace lumivox::stress

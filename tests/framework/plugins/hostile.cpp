@@ -1,0 +1,51 @@
+// A technique whose passes do what no pass may do, for the tests of the stress battery.
+#include <atomic>
+#include <cstdlib>
+#include <limits>
+
+#include "lumivox/base/error.h"
+#include "lumivox/plugin/technique.h"
+
+namespace {
+
+using namespace lumivox;
+
+/// A white picture, unless the deed is something else.
+class Paint : public Pass {
+ public:
+  Param<std::string> deed{this,
+                          "deed",
+                          "paint",
+                          {"paint", "abort", "fault", "spin", "nan", "refuse", "exhaust"},
+                          "what it does in place of painting"};
+  Param<float> value{this, "value", 1.0f, {0.0f, 10.0f}, "", "radiance"};
+  Out<Image> radiance{this, "radiance", Contributes::direct};
+  Reads readsFrom() const override { return Reads::camera; }
+  void run(PassContext& frame) override {
+    if (deed == "abort") std::abort();
+    if (deed == "fault") *std::atomic<volatile int*>{nullptr}.load() = 1;
+    static std::atomic<bool> spinning;
+    if (deed == "spin")
+      for (spinning = true; spinning;) {
+      }
+    if (deed == "refuse") throw Error("the pass refuses; expected a scene of another kind");
+    if (deed == "exhaust") throw std::bad_alloc();
+    Image image{frame.image(gpu::Format::rgba32f, "picture")};
+    image.texture->clear(glm::vec4(value));
+    if (deed == "nan") {
+      std::vector<float> values = image.texture->downloadFloats();
+      const auto width = static_cast<std::size_t>(image.texture->description().width);
+      constexpr std::size_t kX = 3, kY = 2;
+      values[4 * (kY * width + kX)] = std::numeric_limits<float>::quiet_NaN();
+      image.texture->uploadFloats(0, values);
+    }
+    radiance = image;
+  }
+};
+
+}  // namespace
+
+LUMIVOX_TECHNIQUE(registry) {
+  registry.describe("does what no pass may do", "no paper");
+  registry.add<Paint>("paint", "paints one value everywhere, or worse");
+}

@@ -1,0 +1,116 @@
+// The scenes that the stress battery is made of: a case that measures a difference is worth no more than the
+// claim that there is none in the truth.
+#include "lumivox/base/error.h"
+#include "lumivox/pipeline/grid_placement.h"
+#include "stress/scene_pieces.h"
+#include "support/scene_builder.h"
+#include "support/support.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+/// A lit room of 1 m with a lamp, a spot, something glossy and fog: all that moved() must move.
+Scene furnishedRoom() {
+  SceneBuilder builder = stress::closedRoom(0.6f);
+  builder.quad({0.4f, 0.99f, 0.4f}, {0.2f, 0, 0}, {0, 0, 0.2f}, builder.lambert(0.5f, 4.0f));
+  builder.box({0.2f, 0.01f, 0.3f}, {0.4f, 0.3f, 0.5f}, builder.phong(0.3f, 0.4f, 20.0f), false);
+  Light& spot = builder.light(LightKind::spot, glm::vec3(0.7f), {0.8, 0.9, 0.7}, {-0.5, -0.7, -0.4});
+  spot.innerAngle = 0.3f;
+  spot.outerAngle = 0.6f;
+  Medium fog;
+  fog.extinction = glm::vec3(0.6f);
+  fog.albedo = glm::vec3(0.7f);
+  fog.anisotropy = 0.4f;
+  fog.box = {{0.1, 0.1, 0.1}, {0.7, 0.6, 0.8}};
+  builder.scene.media.push_back(fog);
+  return builder.scene;
+}
+
+double meanOfTruth(const Scene& scene, const std::string& camera = {}) {
+  ReferenceOptions options = quietly(32, 4);
+  options.width = options.height = 24;
+  options.camera = camera;
+  return estimateOf(renderReference(scene, options), "full").mean;
+}
+
+}  // namespace
+
+TEST_CASE("a scene that is scaled, turned and moved with everything in it has the same truth") {
+  const Scene scene = furnishedRoom();
+  const double wanted = meanOfTruth(scene);
+  CHECK(wanted > 0.1);
+  // The same random numbers: only rounding differs.
+  for (const double scale : {1e-3, 1.0, 1e3}) {
+    for (const double turn : {0.0, 0.5 * kPi}) {
+      INFO("scale " << scale << ", turned by " << turn);
+      stress::Similarity by;
+      by.scale = scale;
+      by.rotation = stress::turnAboutY(turn);
+      by.translation = {1e4, -20.0, 1e4};
+      CHECK(meanOfTruth(stress::moved(scene, by)) == Approx(wanted).epsilon(0.01));
+    }
+  }
+}
+
+TEST_CASE("what cannot be turned without changing what it is is refused") {
+  stress::Similarity by;
+  by.rotation = stress::turnAboutY(0.3);
+  CHECK(messageOf<Error>([&] { stress::moved(furnishedRoom(), by); }).find("quarter turns") !=
+        std::string::npos);
+}
+
+TEST_CASE("all light times a factor is the truth times the factor") {
+  const Scene scene = furnishedRoom();
+  CHECK(meanOfTruth(stress::brighter(scene, 64.0f)) == Approx(64.0 * meanOfTruth(scene)).epsilon(1e-4));
+  CHECK(meanOfTruth(stress::brighter(scene, 0.0f)) == 0.0);
+}
+
+TEST_CASE("the truth of the dark one of two rooms is black, whatever the wall between them") {
+  for (const float wall : {0.0f, 0.01f}) {
+    INFO("wall of " << wall << " m");
+    const Scene scene = stress::twoRooms(wall);
+    CHECK(meanOfTruth(scene, "lit") > 0.1);
+    CHECK(meanOfTruth(scene, "dark") == 0.0);
+  }
+}
+
+TEST_CASE("a grid of triangles has the area of its parallelogram and faces one way") {
+  const std::vector<glm::vec3> corners = stress::gridOfTriangles({1, 2, 3}, {2, 0, 0}, {0, 0, -3}, 7, 5);
+  REQUIRE(corners.size() == 3 * 2 * 7 * 5);
+  double area = 0.0;
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
+    const glm::dvec3 cross =
+        glm::cross(glm::dvec3(corners[i + 1] - corners[i]), glm::dvec3(corners[i + 2] - corners[i]));
+    CHECK(cross.y > 0.0);
+    area += 0.5 * cross.y;
+  }
+  CHECK(area == Approx(6.0).epsilon(1e-6));
+}
+
+TEST_CASE("doubled surfaces are all but those that shine, and the truth stays") {
+  const Scene scene = furnishedRoom(), twice = stress::doubled(scene);
+  CHECK(twice.objects.size() == 2 * scene.objects.size() - 1);
+  CHECK(meanOfTruth(twice) == Approx(meanOfTruth(scene)).epsilon(0.02));
+}
+
+TEST_CASE("the glowing speck lies within one voxel of the grids that it was made for") {
+  const Scene scene = stress::glowingSpeck(188);
+  const Object& speck = scene.objects.back();
+  CHECK(speck.vertexCount / 3 > 65536);
+  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
+  for (const int resolution : {16, 32, 64}) {
+    INFO(resolution);
+    const GridPlacement grid = placeGrid(snapshot.gridBounds, resolution);
+    const auto voxelOf = [&](std::uint32_t vertex) {
+      return glm::ivec3(
+          glm::floor((scene.positions[vertex] - glm::vec3(snapshot.origin) - grid.low) / grid.voxelSize));
+    };
+    const glm::ivec3 first = voxelOf(speck.firstVertex);
+    std::size_t elsewhere = 0;
+    for (std::uint32_t v = 0; v < speck.vertexCount; ++v)
+      elsewhere += voxelOf(speck.firstVertex + v) != first;
+    CHECK(elsewhere == 0);
+  }
+}

@@ -1,0 +1,36 @@
+// What is wrong with a page, as a browser without a network sees it: any page of the laboratory.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "support/browser.h"
+
+namespace lumivox::test {
+
+struct PageFindings {
+  std::size_t canvases = 0, charts = 0, tables = 0, rows = 0, images = 0, links = 0;
+  struct Control {
+    std::string name;         ///< its tag and attributes
+    bool slider = false;      ///< else a choice
+    std::size_t changed = 0;  ///< pixels of the canvases that were other ones at its ends or other choices
+  };
+  std::vector<Control> controls;
+  /// Sentences, each with the element: a script's error, a blank canvas, a chart without a point in it, a
+  /// control that changes nothing, a table without rows or with a cell like "undefined", a picture that does
+  /// not show, a link to nowhere, a request to elsewhere, a body wider than the window (of a desk or a
+  /// phone).
+  std::vector<std::string> problems;
+
+  bool hasProblem(const std::string& part) const;  ///< some sentence contains it
+  std::string text() const;                        ///< all problems, one a line
+};
+
+/// Opens all details, moves every slider and tries every choice. The page's file stays as it is.
+PageFindings checkPage(Browser& browser, const std::filesystem::path& page);
+
+/// The first place of the text where it would load something from elsewhere; empty: nowhere.
+std::string externalLoad(const std::string& html);
+
+}  // namespace lumivox::test

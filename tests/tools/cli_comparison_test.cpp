@@ -1,0 +1,133 @@
+// What a store says of pipelines against each other, and what many scenes needed, on the command line.
+#include "tools/cli_support.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+/// Direct light alone, and with light that bounces once: the one is quicker, the other misses less.
+constexpr const char* kDirect =
+    "pipeline \"Direct\" {\n  param samples 1 in 1..16\n  pass gbuffer direct_lighting.gbuffer { }\n"
+    "  pass shadow direct_lighting.shadow_map { size 64  area_samples $samples }\n"
+    "  pass direct direct_lighting.shade { gbuffer gbuffer  shadow shadow.depth }\n"
+    "  output direct direct.radiance\n}\n";
+
+struct Swept {
+  Workplace place;
+  std::string store;
+  Swept() : store(place.file("results.sqlite")) {
+    place.write("direct.pipeline", kDirect);
+    const CommandResult result =
+        runCommand("lumivox sweep '" + place.scene() + "' --pipeline '" + place.file("direct.pipeline") +
+                   "' '" + committedPipeline("voxel_cone_tracing") +
+                   "' -q --set cones=4 --set resolution=8 --no-sweep --spp 64 "
+                   "--subpixels 4 --repeats 3 --store '" +
+                   store + "'");
+    INFO(result.errors);
+    REQUIRE(result.exitCode == 0);
+  }
+  CommandResult results(const std::string& what) const {
+    return runCommand("lumivox results " + what + " --store '" + store + "'");
+  }
+  nlohmann::json json(const std::string& what) const {
+    const CommandResult result = results(what + " --json");
+    INFO(result.errors);
+    REQUIRE(result.exitCode == 0);
+    const auto list = nlohmann::json::parse(result.output);
+    REQUIRE(list.size() == 1);  // one scene on one device
+    return list.at(0);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a store tells the front, the errors at equal time and the times at equal error of its pipelines") {
+  const Swept swept;
+  const auto front = swept.json("front");
+  CHECK(front.at("component") == "final");
+  CHECK(front.at("truth") == "full");
+  CHECK(front.at("points").size() == 2);
+  const double quick = front.at("points").at(0).at("frame_ms").at("median");
+  const double slow = front.at("points").at(1).at("frame_ms").at("median");
+  CHECK(quick <= slow);
+
+  // Between the two times one of the pipelines is slower, beyond them neither.
+  const std::string between = std::to_string(0.5 * (quick + slow));
+  for (const auto& pipeline : swept.json("equal-time --budget " + between + "ms").at("pipelines"))
+    CHECK(pipeline.at("equal_time").size() == 1);
+  for (const auto& pipeline : swept.json("equal-time --budget 1000s").at("pipelines"))
+    CHECK(pipeline.at("equal_time").at(0).at("reach") == "at_most");
+  for (const auto& pipeline : swept.json("equal-error --error 1e-9").at("pipelines"))
+    CHECK(pipeline.at("equal_error").at(0).at("reach") == "not_reached");
+  for (const auto& pipeline : swept.json("equal-error --error 1e9 --metric flip").at("pipelines"))
+    CHECK(pipeline.at("equal_error").at(0).at("reach") == "at_most");
+  CHECK(swept.json("front --against bias --component indirect_diffuse").at("truth") == "one_bounce_diffuse");
+
+  const CommandResult text = swept.results("front");
+  CHECK(contains(text.output, "on the front"));
+  CHECK(contains(text.output, "room, camera main, 24x16"));
+  CHECK(contains(swept.results("equal-time --budget 1000s").output, "<= "));
+  CHECK(contains(swept.results("equal-error --error 1e-9").output, "not reached"));
+  CHECK(contains(swept.results("front --component scattered").output, "no run has"));
+}
+
+TEST_CASE("comparisons that make no sense are refused with what was expected") {
+  const Workplace place;
+  const auto refused = [&](const std::string& arguments, const std::string& named) {
+    checkRefused(runCommand("lumivox results " + arguments + " --store '" + place.file("none.sqlite") + "'"),
+                 named);
+  };
+  refused("equal-time --budget -3ms", "--budget '-3ms'");
+  refused("equal-time --budget 3kg", "expected a time above 0");
+  refused("equal-error --error nothing", "expected a number above 0");
+  refused("front --metric flop", "did you mean 'flip'");
+  refused("front --component indirect_difuse", "did you mean 'indirect_diffuse'");
+  refused("front", "none.sqlite");
+}
+
+TEST_CASE("explain sets scenes against pipelines, and says which scene's model is not here") {
+  const Workplace place;
+  place.write("direct.pipeline", kDirect);
+  place.write("lost.scene",
+              "scene \"Lost\" {\n  camera main { eye 0 0 1  target 0 0 0  fov 40 deg  resolution 8 8 }\n"
+              "  mesh lost { file \"other_models/nowhere.obj\" }\n}\n");
+  const std::string command = "lumivox explain -q --no-times --set resolution=8 '" + place.scene() + "' '" +
+                              place.file("lost.scene") + "' '" + place.file("direct.pipeline") +
+                              "' --pipeline '" + committedPipeline("voxel_cone_tracing") +
+                              "' --resolution 16x16";
+  const CommandResult result = runCommand(command + " --json");
+  INFO(result.errors);
+  REQUIRE(result.exitCode == 0);
+  const auto cells = nlohmann::json::parse(result.output).at("cells");
+  REQUIRE(cells.size() == 4);
+  CHECK(cells.at(0).at("passes_kept") == 3);
+  CHECK(cells.at(0).at("same_picture").get<bool>());
+  CHECK(cells.at(0).at("frame_ms").is_null());
+  CHECK(cells.at(1).at("passes_total").get<int>() > 3);
+  CHECK(cells.at(1).at("variants").at("needed") < cells.at(1).at("variants").at("compiled"));
+  CHECK(contains(cells.at(2).at("absent").get<std::string>(), "other_models/nowhere.obj"));
+  CHECK_FALSE(cells.at(3).at("failed").get<bool>());
+
+  const CommandResult text = runCommand(command);
+  CHECK(contains(text.output, "3/3"));
+  CHECK(contains(text.output, "B: voxel_cone_tracing"));
+  CHECK(contains(text.output, "bit for bit: 2 of 2; 2 absent"));
+}
+
+TEST_CASE("explain of one scene and one pipeline goes without times when it is told to") {
+  const Workplace place;
+  place.write("direct.pipeline", kDirect);
+  const CommandResult result = runCommand("lumivox explain -q --no-times '" + place.scene() + "' '" +
+                                          place.file("direct.pipeline") + "'");
+  INFO(result.errors);
+  CHECK(result.exitCode == 0);
+  CHECK(contains(result.output, "3 of 3 passes kept"));
+  CHECK_FALSE(contains(result.output, "whole frame"));
+  checkRefused(runCommand("lumivox explain"), "expected a scene's text, or --all");
+  checkRefused(runCommand("lumivox explain --all '" + place.scene() + "'"),
+               "--all takes every committed scene");
+  checkRefused(runCommand("lumivox explain '" + place.scene() + "' '" + place.file("direct.pipeline") +
+                          "' --set sampels=2"),
+               "did you mean 'samples'");
+}

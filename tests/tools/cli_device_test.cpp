@@ -1,0 +1,86 @@
+// The ceilings of the device from the command line, and how a report and the store use them.
+#include "tools/cli_support.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+using Json = nlohmann::json;
+
+namespace {
+
+constexpr const char* kPipeline =
+    "pipeline \"Quick\" {\n  pass gbuffer direct_lighting.gbuffer { }\n"
+    "  pass shadow direct_lighting.shadow_map { size 64 }\n"
+    "  pass direct direct_lighting.shade { gbuffer gbuffer  shadow shadow.depth }\n  output direct "
+    "direct.radiance\n}\n";
+
+}  // namespace
+
+TEST_CASE("ceilings are measured, told with the device's limits, and kept in the store that is named") {
+  const Workplace place;
+  const std::string store = place.file("results.sqlite");
+  const std::string command =
+      "lumivox -q device --repeats 2 --only float_operations --only image_writes_d2_rgba32f";
+  const CommandResult json = runCommand(command + " --json --store " + store);
+  INFO(json.errors);
+  REQUIRE(json.exitCode == 0);
+  const Json told = Json::parse(json.output);
+  CHECK_FALSE(told.at("device").at("renderer").get<std::string>().empty());
+  CHECK(told.at("device").at("largest_buffer_bytes").get<std::uint64_t>() > 0);
+  CHECK(told.at("device").contains("timer_note"));
+  REQUIRE(told.at("ceilings").size() == 2);
+  for (const Json& ceiling : told.at("ceilings")) {
+    CHECK(ceiling.at("median").get<double>() > 1e6);
+    CHECK(ceiling.at("repeats") == 2);
+  }
+  CHECK(told.at("store") == store);
+  CHECK(place.has("results.sqlite"));
+  const CommandResult text = runCommand(command + " --store " + store);
+  CHECK(contains(text.output, "float_operations"));
+  CHECK(contains(text.output, "operations/s"));
+  CHECK(contains(text.output, "Largest volume"));
+  checkRefused(runCommand("lumivox device --only sampling --store " + store),
+               "texture_samples_d2_rgba8_nearest");
+  checkRefused(runCommand("lumivox device --repeats 0 --store " + store), "--repeats");
+}
+
+TEST_CASE(
+    "a report says how far each pass is from the ceilings in its store, and how to get them otherwise") {
+  const Workplace place;
+  const std::string store = place.file("results.sqlite");
+  place.write("quick.pipeline", kPipeline);
+  const auto report = [&](const std::string& more) {
+    const CommandResult result = runCommand(
+        "lumivox report '" + place.scene() + "' --pipeline '" + place.file("quick.pipeline") +
+        "' -q --spp 16 --subpixels 1 --seeds 2 --repeats 2 -o '" + place.file("page.html") + "' " + more);
+    INFO(result.errors);
+    REQUIRE(result.exitCode == 0);
+    return Json::parse(place.read("page.json"));
+  };
+  const Json without = report("");
+  CHECK(without.at("ceilings").empty());
+  const std::string page = place.read("page.html");
+  CHECK(contains(page, "<code>lumivox device</code>"));
+  const bool counted = !contains(page, "was not counted");
+
+  REQUIRE(runCommand("lumivox -q device --repeats 2 --only float_operations --only triangles --only draws "
+                     "--only image_writes_d2_rgba32f --store " +
+                     store)
+              .exitCode == 0);
+  const Json with = report("--store " + store);
+  CHECK(with.at("ceilings").size() == 4);
+  if (!counted) return skip("this driver takes GLSL, and operations are counted in SPIR-V");
+  for (const Json& pass : with.at("scenes").at(0).at("points").at(0).at("passes")) {
+    INFO(pass.at("pass"));
+    const Json& limit = pass.at("limit");
+    CHECK(limit.at("work").size() > 2);
+    CHECK_FALSE(limit.at("limited_by").get<std::string>().empty());
+    CHECK(limit.at("of_ceiling").get<double>() > 0.0);
+    const double least = limit.at("at_least_ms").at(limit.at("limited_by").get<std::string>()).get<double>();
+    CHECK(limit.at("of_ceiling").get<double>() ==
+          Approx(least / pass.at("device_ms").at("median").get<double>()));
+  }
+  const Json& shade = with.at("scenes").at(0).at("points").at(0).at("passes").at(2).at("limit");
+  CHECK(shade.at("work").at("image_writes_d2_rgba32f") == 24 * 16);
+  CHECK(contains(place.read("page.html"), "Limited by"));
+  CHECK(contains(place.read("page.html"), "What this device can do at most"));
+}

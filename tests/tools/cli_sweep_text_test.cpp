@@ -1,0 +1,138 @@
+// Texts of sweeps: checked, described, laid out and measured.
+#include <set>
+
+#include "lumivox/dsl/document.h"
+#include "tools/cli_support.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+using Json = nlohmann::json;
+
+namespace {
+
+std::string data(const std::string& name) {
+  return (sourceDirectory() / "tests/tools/data/sweeps" / name).string();
+}
+
+CommandResult check(const std::string& name) {
+  return runCommand("lumivox check " + data(name));
+}
+
+/// The sweep of small.sweep at the least cost.
+CommandResult measure(const std::string& store, const std::string& more = {}) {
+  return runCommand("lumivox -q sweep " + data("small.sweep") + " --store " + store +
+                    " --resolution 12x12 --spp 2 --subpixels 1 --repeats 1 --json " + more);
+}
+
+}  // namespace
+
+TEST_CASE("check tells everything that is wrong in a text of sweeps, each at its place") {
+  const CommandResult words = check("wrong_words.sweep");
+  checkRefused(words, "wrong_words.sweep:1:15: unknown kind 'gird' of a sweep");
+  for (const char* finding :
+       {"did you mean 'grid'", "wrong_words.sweep:2:46: there is no file",
+        "wrong_words.sweep:2:62: ", "is given twice", "wrong_words.sweep:3:14: the seed 2 is given twice",
+        "wrong_words.sweep:3:16: this is no seed", "wrong_words.sweep:3:20: this is no seed",
+        "wrong_words.sweep:4:21: this value does not fit",
+        "wrong_words.sweep:5:3: 'resolution' is swept twice",
+        "wrong_words.sweep:6:3: a sweep needs a list of values; expected cones [a b c]",
+        "wrong_words.sweep:7:15: these steps never reach the upper end",
+        "wrong_words.sweep:8:23: the range runs backwards",
+        "wrong_words.sweep:9:3: steps are not written like this",
+        "wrong_words.sweep:1:1: the sweep lacks its pipelines",
+        "wrong_words.sweep:11:1: unknown block 'pipeline'", "a second sweep named 'Words'",
+        "wrong_words.sweep:14:14: this names no file"}) {
+    INFO(finding);
+    CHECK(contains(words.errors, finding));
+  }
+  const CommandResult values = check("wrong_values.sweep");
+  checkRefused(values, "wrong_values.sweep:7:25: this value does not fit the parameter 'resolution'");
+  CHECK(contains(values.errors, "wrong_values.sweep:8:3: no pipeline of the sweep has a parameter 'conez'"));
+  CHECK(contains(values.errors, "did you mean 'cones'"));
+  CHECK(contains(values.errors, "wrong_values.sweep:9:16: this value does not fit the parameter 'samples'"));
+  checkRefused(check("unequal.sweep"), "unequal.sweep:5:3: 'cones' has 2 values, but 'resolution' has 3");
+}
+
+TEST_CASE("the committed sweeps pass check and stand in the canonical layout") {
+  const auto folder = sourceDirectory() / "scenes/sweeps";
+  std::size_t seen = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    INFO(entry.path());
+    const CommandResult result = runCommand("lumivox check '" + entry.path().string() + "'");
+    INFO(result.errors);
+    CHECK(result.exitCode == 0);
+    const dsl::Document document = dsl::parse(readFile(entry.path()), entry.path());
+    REQUIRE(document.findings.empty());
+    CHECK(dsl::format(document) == readFile(entry.path()));
+    ++seen;
+  }
+  CHECK(seen >= 1);
+}
+
+TEST_CASE("describe knows the words of sweeps, and a text without a name is told by its blocks") {
+  CHECK(contains(runCommand("lumivox describe sweep").output, "scenes [...] pipelines [...]"));
+  CHECK(contains(runCommand("lumivox describe seeds").output, "a run of its own"));
+  const Workplace place;
+  place.write("unnamed", "sweep s { scenes [\"room.scene\"]  pipelines [\"none.pipeline\"] }\n");
+  checkRefused(runCommand("lumivox check '" + place.file("unnamed") + "'"), "none.pipeline");
+}
+
+TEST_CASE("one text measures scenes by pipelines by parameters by seeds, and the same text again nothing") {
+  const TemporaryDirectory directory;
+  const std::string store = (directory.path() / "results.sqlite").string();
+  // Cone tracing has 2 resolutions, direct lighting none: (2 + 1) points by 2 scenes by 2 seeds.
+  const CommandResult plan = measure(store, "--plan");
+  INFO(plan.errors);
+  REQUIRE(plan.exitCode == 0);
+  const Json planned = Json::parse(plan.output);
+  CHECK(planned["missing"].size() == 12);
+  REQUIRE(planned["notes"].size() == 2);
+  CHECK(contains(planned["notes"][0].get<std::string>(),
+                 "small.sweep:9:3: pipeline \"Direct lighting\" has no parameter 'resolution'"));
+  const CommandResult first = measure(store);
+  INFO(first.errors);
+  REQUIRE(first.exitCode == 0);
+  const Json measured = Json::parse(first.output);
+  CHECK(measured["measured"] == 12);
+  std::set<std::string> points;
+  for (const Json& run : measured["runs"]) {
+    CHECK(run["identity"]["seeds"] == 1);
+    points.insert(run["scene"].get<std::string>() + run["pipeline"].get<std::string>() +
+                  run["identity"]["parameters"].dump() + run["identity"]["seed"].dump());
+    CHECK((run["identity"]["seed"] == 3 || run["identity"]["seed"] == 5));
+  }
+  CHECK(points.size() == 12);
+  CHECK(Json::parse(measure(store).output)["measured"] == 0);
+
+  // Direct light has no random numbers, and both seeds are judged against one truth: the same errors to the
+  // bit.
+  std::vector<Json> direct;
+  for (const Json& run : measured["runs"])
+    if (contains(run["pipeline"], "direct_lighting") && contains(run["scene"], "cornell"))
+      direct.push_back(run["errors"]);
+  REQUIRE(direct.size() == 2);
+  CHECK_FALSE(direct[0].empty());
+  CHECK(direct[0] == direct[1]);
+
+  // The command that a run carries measures the same point: the store knows it already.
+  const std::string again = measured["runs"][0]["command"];
+  const auto words = again.find(" report ");
+  REQUIRE(words != std::string::npos);
+  const CommandResult repeated = runCommand("cd '" + sourceDirectory().string() + "' && '" +
+                                            (binaryDirectory() / "bin/lumivox").string() + "' -q sweep " +
+                                            again.substr(words + 8) + " --store " + store + " --json");
+  INFO(again << "\n" << repeated.errors);
+  REQUIRE(repeated.exitCode == 0);
+  CHECK(Json::parse(repeated.output)["held"] == 1);
+  CHECK(Json::parse(repeated.output)["measured"] == 0);
+
+  CHECK(Json::parse(measure(store, "--set resolution=16 --plan").output)["missing"].empty());
+  CHECK(Json::parse(measure(store, "--set resolution=12 --plan").output)["missing"].size() == 4);
+}
+
+TEST_CASE("a sweep text with other pipelines, or settings that none of its pipelines has, is refused") {
+  const TemporaryDirectory directory;
+  const std::string store = (directory.path() / "results.sqlite").string();
+  checkRefused(measure(store, "--pipeline " + committedPipeline("direct_lighting")), "names its pipelines");
+  checkRefused(measure(store, "--set resolutoin=16"), "did you mean 'resolution'");
+}

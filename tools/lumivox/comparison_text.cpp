@@ -1,0 +1,98 @@
+#include "comparison_text.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "measure_options.h"
+
+namespace lumivox::command {
+namespace {
+
+std::string nameOf(const PipelineComparison& comparison, std::size_t pipeline) {
+  return std::filesystem::path(comparison.pipelines[pipeline].pipeline).stem().string();
+}
+
+std::string parametersOf(const ComparedPoint& point) {
+  std::map<std::string, std::string> parameters;
+  for (const auto& [name, value] : point.parameters) parameters[name] = value.text();
+  return parametersText(parameters);
+}
+
+std::string measuredText(const Measured& measured) {
+  return fmt::format("{} ± {:.1g}", threeDigits(measured.value), measured.uncertainty);
+}
+
+std::string timeText(const Measured& timeMs) {
+  return formatMilliseconds(timeMs.value) + " ± " + formatMilliseconds(timeMs.uncertainty);
+}
+
+std::string frontText(const PipelineComparison& comparison) {
+  std::vector<std::vector<std::string>> rows{{"Pipeline", "Parameters", "Frame ms", comparison.metric, ""}};
+  for (const ComparedPoint& point : comparison.points) {
+    std::string standing = "on the front";
+    if (point.beatenBy) {
+      const ComparedPoint& by = comparison.points[*point.beatenBy];
+      standing = fmt::format("beaten by {} {}", nameOf(comparison, by.pipeline), parametersOf(by));
+    }
+    rows.push_back({nameOf(comparison, point.pipeline), parametersOf(point), quartilesText(point.frameMs),
+                    measuredText(point.tradeOff.error), standing});
+  }
+  std::string text = textTable(rows);
+  for (const BudgetRange& range : comparison.ranges) {
+    text += fmt::format("from {} ms{}: ", formatMilliseconds(range.fromMs),
+                        range.toMs ? fmt::format(" to {} ms", formatMilliseconds(*range.toMs)) : " on");
+    for (std::size_t i = 0; i < range.best.size(); ++i)
+      text += (i == 0   ? ""
+               : i == 1 ? "; not told apart from it: "
+                        : ", ") +
+              nameOf(comparison, comparison.points[range.best[i]].pipeline);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string equalText(const PipelineComparison& comparison, const std::vector<double>& limits,
+                      const char* unit, const char* notReached, std::string (*text)(const Measured&),
+                      std::vector<ComparedCell> ComparedPipeline::*cells) {
+  std::vector<std::vector<std::string>> rows{{"Pipeline"}};
+  for (const double limit : limits) rows.front().push_back(fmt::format("{:.4g}{}", limit, unit));
+  for (std::size_t pipeline = 0; pipeline < comparison.pipelines.size(); ++pipeline) {
+    rows.push_back({nameOf(comparison, pipeline)});
+    for (const ComparedCell& cell : comparison.pipelines[pipeline].*cells) {
+      const Interpolated& reached = cell.reached;
+      rows.back().push_back(reached.reach == Reach::notMeasured ? "-"
+                            : reached.reach == Reach::notReached
+                                ? notReached
+                                : (reached.reach == Reach::atMost ? "<= " : "") + text(reached.value) +
+                                      (cell.best ? " *" : ""));
+    }
+  }
+  return textTable(rows) +
+         "* the least, and what cannot be told apart from it; <=: no less was measured; interpolated between "
+         "measured points, never beyond them\n";
+}
+
+}  // namespace
+
+std::string comparisonText(const PipelineComparison& comparison, ComparisonTable table) {
+  const std::string title = fmt::format(
+      "{}, {} against {}\n", comparison.component == "final" ? "whole picture" : comparison.component,
+      comparison.metric, comparison.truth);
+  switch (table) {
+    case ComparisonTable::front:
+      return title + frontText(comparison);
+    case ComparisonTable::equalTime:
+      return title + equalText(comparison, comparison.budgetsMs, " ms", "slower", measuredText,
+                               &ComparedPipeline::atTime);
+    case ComparisonTable::equalError:
+      break;
+  }
+  if (comparison.errors.empty())
+    return title + "all errors are the same within 0.5 %: there is nothing to interpolate between\n";
+  return title +
+         equalText(comparison, comparison.errors, "", "not reached", timeText, &ComparedPipeline::atError) +
+         "times in ms\n";
+}
+
+}  // namespace lumivox::command

@@ -1,0 +1,87 @@
+// device: what this device is and what it can do at most.
+#include <fmt/format.h>
+
+#include "command.h"
+#include "lumivox/base/file.h"
+#include "lumivox/base/log.h"
+#include "lumivox/report/device.h"
+#include "lumivox/report/report.h"
+
+namespace lumivox::command {
+namespace {
+
+struct DeviceCommand {
+  CeilingOptions options;
+  std::filesystem::path store;
+  bool json = false;
+};
+
+int device(const DeviceCommand& command, const GlobalOptions& global) {
+  CeilingOptions options = command.options;
+  options.progress = [](std::size_t done, std::size_t total, const std::string& name) {
+    logInformation("{} of {}: {}", done + 1, total, name);
+  };
+  const std::filesystem::path file = command.store.empty() ? ResultsStore::defaultFile() : command.store;
+  ResultsStore store(file);  // a place that cannot be written is told before the work
+  const auto device = global.openDevice();
+  const std::vector<DeviceCeiling> ceilings = measureCeilings(*device, options);
+  store.add(ceilings);
+
+  const gpu::DeviceInfo& info = device->info();
+  if (command.json) {
+    printJson({{"device",
+                {{"vendor", info.vendor},
+                 {"renderer", info.renderer},
+                 {"version", info.version},
+                 {"platform", info.platform},
+                 {"software", info.software},
+                 {"spirv", info.spirv},
+                 {"timer_queries_trusted", info.timerQueriesTrusted},
+                 {"timer_note", info.timerNote},
+                 {"largest_volume", info.maxTextureSize3d},
+                 {"largest_buffer_bytes", info.maxStorageBytes},
+                 {"samples", info.maxSamples},
+                 {"host", ceilings.front().host}}},
+               {"store", file.string()},
+               {"ceilings", ceilingsJson(ceilings)}});
+    return kGood;
+  }
+  std::string text = textTable(
+      {{"", ""},
+       {"Device", info.renderer + (info.software ? " (a software rasteriser)" : "")},
+       {"Vendor", info.vendor},
+       {"Driver", info.version},
+       {"Platform", info.platform},
+       {"Host", ceilings.front().host},
+       {"Shaders", device->shaderInput() == gpu::ShaderInput::spirv ? "SPIR-V" : "GLSL made from the SPIR-V"},
+       {"Timer", info.timerNote},
+       {"Largest volume", fmt::format("{} voxels a side", info.maxTextureSize3d)},
+       {"Largest buffer", formatBytes(info.maxStorageBytes)},
+       {"Samples per pixel", fmt::format("{}", info.maxSamples)}});
+  std::vector<std::vector<std::string>> rows{{"At most", "median", "quartiles", "unit"}};
+  for (const DeviceCeiling& ceiling : ceilings)
+    rows.push_back(
+        {ceiling.name, formatThousands(ceiling.rate.median),
+         formatThousands(ceiling.rate.lowerQuartile) + " .. " + formatThousands(ceiling.rate.upperQuartile),
+         ceiling.unit});
+  print(text + "\n" + textTable(rows) + file.string() + "\n");
+  return kGood;
+}
+
+}  // namespace
+
+void addDeviceCommand(Commands& commands) {
+  auto* command = commands.app.add_subcommand(
+      "device", "measures what this device can do at most, and keeps it in the results store");
+  auto all = std::make_shared<DeviceCommand>();
+  command->add_option("--store", all->store,
+                      "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)");
+  command->add_option("--repeats", all->options.repeats, "timed runs per ceiling (default 5)")
+      ->check(CLI::Range(1, 10000));
+  addRepeatable(*command, "--only", all->options.names, "measures this ceiling alone; may be repeated");
+  command->add_flag("--json", all->json, "print JSON in place of the table");
+  const GlobalOptions& global = commands.global;
+  commands.onChosen(command, [=, &global] { return device(*all, global); });
+}
+
+}  // namespace lumivox::command

@@ -1,0 +1,158 @@
+// stress: where each technique breaks.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <map>
+
+#include "command.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/log.h"
+#include "lumivox/report/report.h"
+#include "lumivox/report/stress_cells.h"
+#include "lumivox/stress/stress.h"
+#include "results_text.h"
+#include "stress_text.h"
+
+namespace lumivox::command {
+namespace {
+
+struct StressCommand {
+  StressOptions options;
+  bool json = false, list = false, worker = false;
+  std::filesystem::path from;
+};
+
+/// This program again as a worker, and the options without which a cell could not be repeated.
+std::vector<std::string> globalArguments(const GlobalOptions& global) {
+  std::vector<std::string> words;
+  const auto add = [&](const char* option, const std::string& value) {
+    words.emplace_back(option);
+    words.push_back(value);
+  };
+  for (const auto& folder : global.assets) add("--assets", folder.string());
+  for (const auto& folder : global.techniques) add("--techniques", folder.string());
+  if (global.device != "auto") add("--device", global.device);
+  if (global.shaders != "auto") add("--shaders", global.shaders);
+  if (global.strict) words.emplace_back("--strict");
+  return words;
+}
+
+std::vector<std::string> workerProgram(const GlobalOptions& global) {
+  std::vector<std::string> words{std::filesystem::read_symlink("/proc/self/exe").string()};
+  const std::vector<std::string> arguments = globalArguments(global);
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  words.insert(words.end(), {"--quiet", "stress", "--worker"});
+  return words;
+}
+
+int listCases(const StressOptions& options, TechniqueSet& techniques, bool json) {
+  const std::vector<StressJob> jobs = plannedStress(options, techniques);
+  if (json) {
+    Json list = Json::array();
+    for (const StressJob& job : jobs)
+      list.push_back({{"family", job.info.family},
+                      {"case", job.info.name},
+                      {"quick", job.info.quick},
+                      {"pipeline", job.pipeline.string()},
+                      {"technique", job.technique},
+                      {"meaning", job.info.meaning}});
+    printJson(list);
+    return kGood;
+  }
+  std::vector<std::vector<std::string>> rows{{"Family", "Case", "Quick", "Pipelines", "Meaning"}};
+  std::map<std::string, std::size_t> rowOf;
+  std::map<std::string, int> pipelines;
+  for (const StressJob& job : jobs) {
+    ++pipelines[job.info.name];
+    if (!rowOf.emplace(job.info.name, rows.size()).second) continue;
+    rows.push_back({job.info.family, job.info.name, job.info.quick ? "quick" : "", "", job.info.meaning});
+  }
+  for (const auto& [name, row] : rowOf) rows[row][3] = std::to_string(pipelines[name]);
+  print(textTable(rows) + fmt::format("{} cases, {} cells\n", rows.size() - 1, jobs.size()));
+  return kGood;
+}
+
+int tell(const StressSummary& summary, bool json) {
+  if (json)
+    print(stressCellsJson(summary.cells));
+  else
+    print(stressTable(summary.cells) + (summary.page.empty() ? "" : summary.page.string() + "\n"));
+  return summary.sound() ? kGood : kNotGood;
+}
+
+/// What a store holds, without running anything.
+int tellStored(const StressCommand& command, const GlobalOptions& global) {
+  const StressOptions& options = command.options;
+  if (!options.pipelines.empty() || !options.families.empty() || !options.cases.empty() || options.quick ||
+      !options.store.empty())
+    throw Error("stress --from shows what a store holds; of the other choices only TECHNIQUE goes with it");
+  CellFilter filter;
+  filter.technique = options.technique;
+  StressSummary summary;
+  summary.cells = newestCells(ResultsStore(command.from, ResultsStore::Mode::read).stressCells(filter));
+  if (summary.cells.empty())
+    throw Error(command.from.string() + ": the store holds no such cells of the stress battery");
+  if (!options.output.empty()) {
+    requireWritable(options.output / "index.html");
+    summary.page = writeStressPage(options.output, summary.cells, global.commandLine);
+  }
+  return tell(summary, command.json);
+}
+
+int stress(const StressCommand& command, const GlobalOptions& global) {
+  if (!command.from.empty()) return tellStored(command, global);
+  TechniqueSet techniques = global.techniqueSet();
+  StressOptions options = command.options;
+  options.program = workerProgram(global);
+  options.repeatArguments = globalArguments(global);
+  options.commandLine = global.commandLine;
+  if (command.worker) {
+    serveStress({global.deviceOptions(), global.sceneLoad(), options.program, options.repeatArguments},
+                techniques);
+    return kGood;
+  }
+  if (command.list) return listCases(options, techniques, command.json);
+  options.progress = [](const StressCell& cell, std::size_t done, std::size_t total, double secondsLeft) {
+    logInformation("{} of {}: {}, {}: {}{}", done, total,
+                   std::filesystem::path(cell.pipeline).stem().string(), cell.name, stressValueText(cell),
+                   done < total ? "; about " + durationText(secondsLeft) + " left" : std::string());
+  };
+  return tell(runStress(options, techniques), command.json);
+}
+
+}  // namespace
+
+void addStressCommand(Commands& commands) {
+  auto* command = commands.app.add_subcommand(
+      "stress",
+      "where each technique breaks: every pipeline on every extreme case, in processes of their own");
+  auto all = std::make_shared<StressCommand>();
+  StressOptions& options = all->options;
+  command->add_option("TECHNIQUE", options.technique,
+                      "only pipelines that stand for this technique (default: all)");
+  addRepeatable(*command, "--family", options.families, "only cases of this family; may be repeated");
+  addRepeatable(*command, "--case", options.cases,
+                "only this case, quick or not; may hold '*'; may be repeated");
+  addRepeatable(*command, "--pipeline", options.pipelines,
+                "pipelines' texts (default: every committed one, voxelisers too); may be repeated");
+  command->add_flag("--quick", options.quick, "the quick cases alone, at small sizes");
+  command
+      ->add_option("--time-limit", options.timeLimit,
+                   "seconds for one cell (default 60 with --quick, else 600)")
+      ->check(CLI::Range(0.1, 86400.0));
+  command->add_option("--workers", options.workers, "processes at the same time (default: one a processor)")
+      ->check(CLI::Range(1, 256));
+  command->add_option("-o,--out", options.output,
+                      "a folder for the page, its pictures and index.json (default: none)");
+  command->add_option("--store", options.store,
+                      "a results store that the cells are added to (default: none)");
+  command->add_option("--from", all->from, "show the newest cells of this results store and run nothing");
+  command->add_flag("--list", all->list, "only tell which cases there are");
+  command->add_flag("--json", all->json, "print JSON in place of the tables");
+  command->add_flag("--worker", all->worker)->group("");  // for the battery itself
+  const GlobalOptions& global = commands.global;
+  commands.onChosen(command, [=, &global] { return stress(*all, global); });
+}
+
+}  // namespace lumivox::command
