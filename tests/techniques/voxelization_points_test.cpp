@@ -37,9 +37,9 @@ Scene oneTriangle(const glm::vec3& edge1, const glm::vec3& edge2) {
 }
 
 /// A level square of `side` metres.
-Scene floorOf(float side, const Material& material = {}, float height = 0.0f) {
+Scene floorOf(float side, const Material& material = {}) {
   SceneBuilder builder;
-  builder.quad({0, height, 0}, {0, 0, side}, {side, 0, 0}, builder.material(material));
+  builder.quad({0, 0, 0}, {0, 0, side}, {side, 0, 0}, builder.material(material));
   return builder.scene;
 }
 
@@ -167,7 +167,11 @@ TEST_CASE("a surface that a mask takes away leaves no points") {
 }
 
 TEST_CASE("points outside a grid around the camera are left out, whatever size the triangle has") {
-  Scene scene = floorOf(100.0f, {}, 0.2f);  // between two faces of voxels
+  SceneBuilder builder;
+  builder.quad({0, 0, 0}, {0, 0, 100}, {100, 0, 0}, builder.lambert(0.5f));
+  // Grids count from the middle of the scene: 1.75 m below it the floor lies between two faces of voxels.
+  builder.quad({0, 3.5f, 0}, {0, 0, 1}, {1, 0, 0}, builder.lambert(0.5f));
+  Scene scene = builder.scene;
   scene.cameras.front().eye = {50, 0.5, 50};
   PassHarness harness(device(), techniques(), "voxelization", "points", scene, snapshotOf(scene, 0.0));
   harness.setParameter("around", std::string("camera"));
