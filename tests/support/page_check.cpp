@@ -26,13 +26,19 @@ constexpr const char* kProbe = R"js(
   const canvases = [...document.querySelectorAll("canvas")];
   const pixels = canvas => canvas.width * canvas.height === 0 ? new Uint32Array(0)
     : new Uint32Array(canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.buffer);
-  for (const canvas of canvases) {
-    if (!isShown(canvas)) continue;
-    ++found.canvases;
+  const isBlank = canvas => {
     const values = pixels(canvas);
     let other = 0;
     for (const value of values) other += value !== values[0];
-    if (other < 0.002 * values.length || values.length === 0) wrong(canvas, "it is blank");
+    return other < 0.002 * values.length || values.length === 0;
+  };
+  // Pictures are decoded beside the script; a busy machine takes its time.
+  for (let wait = 0; wait < 100 && canvases.some(canvas => isShown(canvas) && isBlank(canvas)); ++wait)
+    await new Promise(resolve => setTimeout(resolve, 100));
+  for (const canvas of canvases) {
+    if (!isShown(canvas)) continue;
+    ++found.canvases;
+    if (isBlank(canvas)) wrong(canvas, "it is blank");
     const chart = window.Chart && Chart.getChart(canvas);
     if (!chart) continue;
     ++found.charts;
