@@ -131,9 +131,8 @@ void checkSameFragments(const std::filesystem::path& sceneFile) {
     INFO(sceneFile.filename() << " through " << file.filename());
     const std::vector<FragmentData> pruned = fragmentsWith(scene, text, false);
     CHECK(pruned == fragmentsWith(scene, text, true));
-    // Slices see nothing of what lies along them.
-    if (scene.name != "Degenerate triangles" && scene.name != "One triangle")
-      CHECK(pruned.empty() == (scene.triangleCount() == 0));
+    // The others may miss everything in a grid so coarse: slices what lies along them, points what is small.
+    if (file.stem() == "conservative") CHECK(pruned.empty() == (scene.triangleCount() == 0));
   }
 }
 
