@@ -131,10 +131,15 @@ Child::Answer Child::receive(double seconds) {
 }
 
 std::string Child::ending() {
-  int status = 0;
-  if (!status_ && waitpid(process_, &status, 0) == process_) {
-    status_ = status;
-    kill(-process_, SIGKILL);  // what it started
+  if (!status_) {
+    // What it started ends with it, while its number is still its own.
+    siginfo_t information{};
+    while (waitid(P_PID, static_cast<id_t>(process_), &information, WEXITED | WNOWAIT) != 0 &&
+           errno == EINTR) {
+    }
+    kill(-process_, SIGKILL);
+    int status = 0;
+    if (waitpid(process_, &status, 0) == process_) status_ = status;
   }
   if (!status_) return "ended";
   if (WIFSIGNALED(*status_))
