@@ -53,7 +53,10 @@ Irradiance irradianceOf(vec4 redLight, vec4 greenLight, vec4 blueLight, vec3 nor
   vec3 mean = lobe.x * vec3(redLight.x, greenLight.x, blueLight.x);
   vec3 net = vec3(dot(redLight.yzw, lobe.yzw), dot(greenLight.yzw, lobe.yzw), dot(blueLight.yzw, lobe.yzw));
   vec3 clipped = max(-(mean + net), 0.0);
-  return Irradiance(closure != 0 ? max(sqrt(mean * mean + net * net) + net, 0.0) : mean + net, clipped);
+  // Squares of shares of the larger one: those of light that was amplified would not be finite.
+  vec3 larger = max(max(abs(mean), abs(net)), vec3(1e-30));
+  vec3 both = larger * sqrt((mean / larger) * (mean / larger) + (net / larger) * (net / larger));
+  return Irradiance(closure != 0 ? max(both + net, 0.0) : mean + net, clipped);
 }
 
 Irradiance irradianceAt(vec3 position, vec3 normal, vec3 geometricNormal) {

@@ -347,7 +347,9 @@ class UpsamplePass : public Pass {
 
   void run(PassContext& frame) override {
     const CameraView& camera = frame.snapshot().camera;
-    const int pixels = scatteredSamples->texture->description().width < camera.width ? 2 : 1;
+    // By either side: half of one pixel is one.
+    const gpu::TextureDescription& samples = scatteredSamples->texture->description();
+    const int pixels = samples.width < camera.width || samples.height < camera.height ? 2 : 1;
     const Result result(frame, camera.width, camera.height);
     const MediaBinding bound(frame, *media);
     using gpu::Sampling;
