@@ -131,8 +131,10 @@ void checkSameFragments(const std::filesystem::path& sceneFile) {
     INFO(sceneFile.filename() << " through " << file.filename());
     const std::vector<FragmentData> pruned = fragmentsWith(scene, text, false);
     CHECK(pruned == fragmentsWith(scene, text, true));
-    // The others may miss everything in a grid so coarse: slices what lies along them, points what is small.
-    if (file.stem() == "conservative") CHECK(pruned.empty() == (scene.triangleCount() == 0));
+    // In a grid so coarse slices may miss a whole model, and see nothing of what lies along them.
+    const bool slices = file.stem() == "slicing" && scene.name == "Galloping horse";
+    if (scene.name != "Degenerate triangles" && scene.name != "One triangle" && !slices)
+      CHECK(pruned.empty() == (scene.triangleCount() == 0));
   }
 }
 
