@@ -33,8 +33,10 @@ void main() {
   if (index >= fragmentCount) return;
   VoxelFragment fragment = fragments[index];
   vec3 position = (listLow + (vec3(unpackVoxel(fragment.voxel)) + unpackOffset(fragment.offset)) * listVoxel - gridLow) / cellSize;
-  vec3 normal = abs(unpackNormal(fragment.normal));
+  vec3 front = unpackNormal(fragment.normal), normal = abs(front);
   int dominant = dominantAxis(normal);
+  float slope = (normal.x + normal.y + normal.z) / normal[dominant] - 1.0;
+  uint facing = facingBits(position[dominant], front[dominant], 0.5 * slope * listVoxel / cellSize);
   uint allowed = allowedParts(unpackHalf2x16(fragment.albedoBCoverage).y);
 
   for (int axis = 0; axis < 3; ++axis) {
@@ -51,7 +53,9 @@ void main() {
       for (int cellU = cellOfPart(first.x); cellU <= cellOfPart(last.x); ++cellU) {
         face[u] = cellU;
         face[v] = cellV;
-        mark(axis, face, partsInCell(first, last, ivec2(cellU, cellV)) & allowed);
+        uint parts = partsInCell(first, last, ivec2(cellU, cellV)) & allowed;
+        if (parts != 0u && axis == dominant) parts |= facing;
+        mark(axis, face, parts);
       }
   }
 }

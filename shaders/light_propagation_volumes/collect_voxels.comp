@@ -3,6 +3,7 @@
 // denominators of the means; STEP add: the means, the covered parts and the winner of the contrast.
 #pragma lumivox axis STEP weigh add
 #include "lit_voxel.glsl"
+#include "beside_walls.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -16,6 +17,7 @@ layout(std140, binding = 0) uniform Parameters {
 };
 layout(std430, binding = 0) readonly buffer FragmentCount { uint fragmentCount; };
 layout(std430, binding = 1) readonly buffer Fragments { VoxelFragment fragments[]; };
+layout(binding = 5) uniform sampler3D closed;
 
 // Listing 4.27: contrast of a colour in 7 bits, behind it the colour in 8 bits each.
 uint packWinner(vec3 albedo) {
@@ -45,6 +47,14 @@ void add(ivec3 cell, vec3 position, vec3 normal, vec3 albedo, uint parts) {
 #endif
 }
 
+// Whether a surface with its middle in the cell `home` ends at a wall before it comes to a column along the axis.
+bool endsBefore(ivec3 home, int axis, int column) {
+  if (column == home[axis]) return false;
+  ivec3 face = home;
+  if (column > home[axis]) ++face[axis];
+  return texelFetch(closed, clamp(face, ivec3(0), resolution), 0)[axis] > 0.5;
+}
+
 void main() {
   uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
   if (index >= fragmentCount) return;
@@ -59,12 +69,22 @@ void main() {
   if (!partRange(vec2(position[u], position[v]), vec2(listVoxel / cellSize), first, last)) return;
   for (int sideOf = 0; sideOf < (twoSided != 0 ? 2 : 1); ++sideOf) {
     vec3 normal = sideOf == 0 ? front : -front;
-    ivec3 cell = cellInFront(position, normal);
+    ivec3 home = besideWalls(cellInFront(position, normal), position, axis);
     for (int cellV = cellOfPart(first.y); cellV <= cellOfPart(last.y); ++cellV)
       for (int cellU = cellOfPart(first.x); cellU <= cellOfPart(last.x); ++cellU) {
+        ivec2 column = ivec2(cellU, cellV);
+        uint parts = partsInCell(first, last, column) & allowed;
+        ivec3 cell = home;
         cell[u] = cellU;
         cell[v] = cellV;
-        add(cell, position, normal, albedo, partsInCell(first, last, ivec2(cellU, cellV)) & allowed);
+        // What lies before the true place of a wall that was moved comes before it. What lies beyond is not there: a fragment is as large as
+        // its voxel, wherever its surface ends.
+        vec3 middle = position;
+        middle[u] = 0.5 * float(max(first.x, kParts * cellU) + min(last.x, kParts * cellU + kParts - 1) + 1) / float(kParts);
+        middle[v] = 0.5 * float(max(first.y, kParts * cellV) + min(last.y, kParts * cellV + kParts - 1) + 1) / float(kParts);
+        ivec3 beside = besideWalls(cell, middle, axis);
+        if (endsBefore(home, u, beside[u]) || endsBefore(home, v, beside[v])) continue;
+        add(beside, position, normal, albedo, beside == cell ? parts : parts << kBesideParts);
       }
   }
 }

@@ -1,7 +1,10 @@
 #version 450
 // Where two surfaces meet, each ends at the true place of the other, which was moved to a plane of faces up to half a cell away: a slit
 // would stay open along every inner edge of a closed room. A surface that comes past the middle of a cell's face goes on to the surface
-// that closes the cell at that side. Done twice, so that corners of three surfaces are closed too.
+// that closes the cell at that side. Done twice, so that corners of three surfaces are closed too. Only surfaces that mostly face their
+// faces: the steps of one surface at a slant are no corners.
+#include "parts.glsl"
+
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 layout(binding = 0, r32ui) uniform readonly uimage3D partsX;
@@ -21,7 +24,7 @@ bool has(uint parts, int u, int v) { return (parts & bitAt(u, v)) != 0u; }
 
 uint filled(int axis, ivec3 face) {
   uint parts = partsOf(axis, face), result = parts;
-  if (parts == 0u || parts == 0xffffu) return parts;
+  if ((parts & kFacing) == 0u || (parts & kPartsMask) == kPartsMask) return parts;
   for (int lateral = 1; lateral <= 2; ++lateral) {
     int across = (axis + lateral) % 3;
     for (int side = 0; side < 2; ++side) {
@@ -31,7 +34,7 @@ uint filled(int axis, ivec3 face) {
       lower = upper;
       lower[axis] -= 1;
       uint ofUpper = partsOf(across, upper), ofLower = partsOf(across, lower);
-      if ((ofUpper | ofLower) == 0u) continue;
+      if (((ofUpper | ofLower) & kFacing) == 0u) continue;
       int inner = side == 1 ? 1 : 2, outer = side == 1 ? 2 : 0;  // the part before the middle, the first of the two behind it
       for (int along = 0; along < 4; ++along) {
         bool reaches = lateral == 1 ? has(parts, inner, along) : has(parts, along, inner);

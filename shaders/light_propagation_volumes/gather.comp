@@ -2,6 +2,7 @@
 // Indirect diffuse light at the visible surfaces (thesis 004 Sec. 4.3.5, Listings 4.35 and 4.36). One dispatch a grid, the coarsest
 // first; each finer one is blended over it.
 #include "cells.glsl"
+#include "beside_walls.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -15,29 +16,49 @@ layout(std140, binding = 0) uniform Parameters {
   float blend;         // width of the seam, cells
   float offset;        // of the lookup along the normal, cells
   float exponent;      // of the radiance
-  float occlusion;     // amplifier of the closed share of a face
   int first, last;     // 1 for the first and the last dispatch
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
 layout(binding = 2) uniform sampler2D gGeometricNormal;
 layout(binding = 3) uniform sampler2D gDiffuse;
-layout(binding = 4) uniform sampler3D red;
-layout(binding = 5) uniform sampler3D green;
-layout(binding = 6) uniform sampler3D blue;
-layout(binding = 7) uniform sampler3D closed;
+layout(binding = 5) uniform sampler3D red;
+layout(binding = 6) uniform sampler3D green;
+layout(binding = 7) uniform sampler3D blue;
+layout(binding = 8) uniform sampler3D closed;
 layout(binding = 0, rgba32f) uniform image2D diffuseImage;
 layout(binding = 1, rgba32f) uniform image2D clippedImage;
 
+// A lookup leaves its first cell sideways by less than half a cell, so that this cell always counts.
+const float kReach = 0.49;
 // W/(sr m^2): what an exponent makes of bright light stays finite.
 const float kMostRadiance = 1e30;
 
-// Open share of the way from a cell to its neighbour `side` along an axis.
-float openWay(ivec3 cell, int axis, int side) {
-  if (side == 0) return 1.0;
-  ivec3 face = cell;
-  if (side > 0) ++face[axis];
-  return 1.0 - clamp(occlusion * texelFetch(closed, clamp(face, ivec3(0), resolution), 0)[axis], 0.0, 1.0);
+// How far the eight cells from `low` on are open from `base`, one of them: the narrowest face of the widest way within the eight, where a
+// face that is half open counts as open. The same cells are open from each of them that is open itself, so that nothing jumps where
+// a surface goes on from one cell into the next. x is the lowest bit of a cell's number.
+float[8] openWays(ivec3 low, ivec3 base) {
+  float open[24];
+  for (int corner = 0; corner < 8; ++corner) {
+    vec3 share = texelFetch(closed, clamp(low + ivec3(corner & 1, corner >> 1 & 1, corner >> 2), ivec3(0), resolution), 0).xyz;
+    for (int axis = 0; axis < 3; ++axis) open[3 * corner + axis] = min(2.0 * (1.0 - share[axis]), 1.0);
+  }
+  ivec3 start = clamp(base - low, ivec3(0), ivec3(1));
+  float reached[8] = float[8](0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+  reached[start.x | start.y << 1 | start.z << 2] = 1.0;
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (int corner = 0; corner < 8; ++corner)
+      for (int axis = 0; axis < 3; ++axis) {
+        int other = corner ^ 1 << axis;
+        float way = min(reached[other], open[3 * max(corner, other) + axis]);
+        if (way <= reached[corner]) continue;
+        reached[corner] = way;
+        changed = true;
+      }
+  }
+  return reached;
 }
 
 // Light of intensity c . Y in a cell is a radiance: the cell shows the mean projected area 3/2 h^2 (Cauchy: a quarter of its surface). The
@@ -60,27 +81,24 @@ Irradiance irradianceOf(vec4 redLight, vec4 greenLight, vec4 blueLight, vec3 nor
 }
 
 Irradiance irradianceAt(vec3 position, vec3 normal, vec3 geometricNormal) {
-  // The surface lies on the nearest plane of faces, as it does for the light; the cell before it is where the ways begin.
-  vec3 size = abs(geometricNormal);
-  int dominant = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
+  // The surface lies on the nearest plane of faces, as it does for the light; the cell in front of it is where the ways begin.
+  int dominant = dominantAxis(geometricNormal);
   int up = geometricNormal[dominant] >= 0.0 ? 1 : -1;
-  int plane = int(floor(position[dominant] + 0.5));
-  ivec3 base = ivec3(floor(position));
-  base[dominant] = up > 0 ? plane : plane - 1;
-  base = clamp(base, ivec3(0), resolution - 1);
+  ivec3 base = clamp(besideWalls(cellInFront(position, geometricNormal), position, dominant), ivec3(0), resolution - 1);
   // A lookup one cell away along the dominant axis stays the same when the plane jumps; never behind the first centre.
-  vec3 lookup = position + geometricNormal * (offset / size[dominant]);
+  vec3 away = geometricNormal * (offset / abs(geometricNormal[dominant]));
+  vec3 lookup = clamp(position + clamp(away, vec3(-0.5), vec3(0.5)), vec3(base) - kReach, vec3(base) + 1.0 + kReach);
   float centre = float(base[dominant]) + 0.5;
-  lookup[dominant] = up > 0 ? max(lookup[dominant], centre) : min(lookup[dominant], centre);
-  // The lookup may have left the base sideways: it may do so by less than a cell.
-  lookup = clamp(lookup, vec3(base) - 0.5, vec3(base) + 1.5);
+  lookup[dominant] = position[dominant] + away[dominant];
+  lookup[dominant] = up > 0 ? clamp(lookup[dominant], centre, centre + 1.0) : clamp(lookup[dominant], centre - 1.0, centre);
 
   ivec3 low = ivec3(floor(lookup - 0.5));
   vec3 share = lookup - 0.5 - vec3(low);
+  float reached[8] = openWays(low, base);
   vec4 redSum = vec4(0.0), greenSum = vec4(0.0), blueSum = vec4(0.0);
   float weights = 0.0;
-  // Near an edge the surface may lie, sideways too, in the cell behind a wall that was moved. No light comes there: then all cells with
-  // light count, whatever lies between.
+  // Between surfaces nearer to each other than a cell the first cell may be closed all around. No light comes there: then all cells with light
+  // count, whatever lies between.
   for (int attempt = 0; attempt < 2 && redSum.x + greenSum.x + blueSum.x <= 0.0; ++attempt) {
     redSum = greenSum = blueSum = vec4(0.0);
     weights = 0.0;
@@ -90,17 +108,8 @@ Irradiance irradianceAt(vec3 position, vec3 normal, vec3 geometricNormal) {
       vec3 part = mix(1.0 - share, share, vec3(high));
       float weight = part.x * part.y * part.z;
       vec4 redLight = texelFetch(red, cell, 0), greenLight = texelFetch(green, cell, 0), blueLight = texelFetch(blue, cell, 0);
-      if (attempt == 0) {
-        // Only what can be reached without crossing a surface: sideways first, then away.
-        ivec3 way = clamp(cell - base, ivec3(-1), ivec3(1)), at = base;
-        for (int i = 1; i <= 3; ++i) {
-          int axis = (dominant + i) % 3;
-          weight *= openWay(at, axis, way[axis]);
-          at[axis] += way[axis];
-        }
-      } else if (redLight.x + greenLight.x + blueLight.x <= 0.0) {
-        weight = 0.0;
-      }
+      if (attempt == 0) weight *= reached[corner];
+      else if (redLight.x + greenLight.x + blueLight.x <= 0.0) continue;
       redSum += weight * redLight;
       greenSum += weight * greenLight;
       blueSum += weight * blueLight;

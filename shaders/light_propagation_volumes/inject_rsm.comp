@@ -3,6 +3,7 @@
 // are in a cell and how bright the brightest is; STEP add: their sums.
 #pragma lumivox axis STEP weigh add
 #include "virtual_lights.glsl"
+#include "beside_walls.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -22,7 +23,7 @@ void main() {
   if (!any(greaterThan(flux, vec3(0.0)))) return;
   vec3 normal = texelFetch(rsmNormal, texel, 0).xyz;
   vec3 position = (texelFetch(rsmPosition, texel, 0).xyz - gridLow) / cellSize;
-  int word = wordsOf(cellInFront(position, normal), resolution);
+  int word = wordsOf(besideWalls(cellInFront(position, normal), position, dominantAxis(normal)), resolution);
   if (word < 0) return;
 #if STEP == STEP_WEIGH
   // The order of the bits of numbers from 0 on is that of the numbers.

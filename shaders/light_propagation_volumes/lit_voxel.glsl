@@ -7,6 +7,7 @@
 const int kGroups = 4;
 const int kWeight = 0, kAlbedo = 1, kWinner = 4, kGroup = 5;                      // words of a voxel
 const int kGroupWeight = 0, kGroupNormal = 1, kGroupPosition = 4, kGroupParts = 7;  // words of a group
+const int kBesideParts = 16;  // first bit of the parts that lie in a neighbour, behind a wall that was moved
 const int kWordsOfGroup = 8, kWordsOfVoxel = kGroup + kGroups * kWordsOfGroup;
 layout(std430, binding = 3) buffer Voxels { uint voxels[]; };
 

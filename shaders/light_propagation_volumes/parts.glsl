@@ -1,10 +1,29 @@
-// Surfaces on the faces of cells: each face has 4 x 4 parts, one bit each.
+// Surfaces on the faces of cells: each face has 4 x 4 parts, one bit each. Above them, of the surfaces that mostly face the axis: whether
+// there is one, and, seven bits each, how far those that look down and up the axis were moved to come to lie on the face: bit k of the first
+// for a true place of k/14 to (k+1)/14 of a cell above the plane, and of the second below it. What lies between the plane and the true
+// place is in front of the surface, and yet in the cell behind it.
+#ifndef LUMIVOX_PARTS
+#define LUMIVOX_PARTS
 #include "common/voxel.glsl"
 
 const int kParts = 4;  // along a side of a face
 
 // Ordered thresholds of the parts (Bayer 1973), so that a surface with holes covers its share of each face.
 const int kThreshold[16] = int[16](0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5);
+
+const uint kPartsMask = 0xffffu;
+const int kMovedDown = 16, kMovedUp = 23;  // the first bits
+const uint kMovedMask = 0x7fu, kFacing = 1u << 30;
+const float kMovedSteps = 14.0;  // a cell
+
+// The bits above the parts, of a surface whose place along the axis that it mostly faces varies by `slant` to both sides.
+uint facingBits(float position, float normal, float slant) {
+  float beyond = position - floor(position + 0.5);
+  float moved = (normal < 0.0 ? beyond : -beyond) + slant;
+  if (moved <= 0.0) return kFacing;  // away from what is in front of it
+  int step = min(int(moved * kMovedSteps), 6);
+  return kFacing | 1u << ((normal < 0.0 ? kMovedDown : kMovedUp) + step);
+}
 
 int dominantAxis(vec3 normal) {
   vec3 size = abs(normal);
@@ -46,3 +65,4 @@ uint partsInCell(ivec2 first, ivec2 last, ivec2 cell) {
       parts |= 1u << (kParts * (v & 3) + (u & 3));
   return parts;
 }
+#endif

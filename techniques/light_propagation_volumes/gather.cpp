@@ -42,6 +42,7 @@ class GatherPass : public Pass {
       "radiance that two bands made negative, before it was mended, as positive values, W/(sr m^2)"};
 
   void run(PassContext& frame) override {
+    requireFaces(*light);
     Image result{frame.image(gpu::Format::rgba32f, "indirect diffuse radiance")};
     Image cut{frame.image(gpu::Format::rgba32f, "clipped radiance")};
     gatherShader::Constants constants;
@@ -57,7 +58,6 @@ class GatherPass : public Pass {
       parameters.blend = blend;
       parameters.offset = offset;
       parameters.exponent = exponent;
-      parameters.occlusion = 1.0f;
       parameters.first = i + 1 == light->levels.size() ? 1 : 0;
       parameters.last = i == 0 ? 1 : 0;
       frame.dispatch(frame.program(gatherShader::kProgram, {}, constants.values()),
@@ -70,6 +70,7 @@ class GatherPass : public Pass {
                       gatherShader::green(*level.coefficients[1], Sampling::linear),
                       gatherShader::blue(*level.coefficients[2], Sampling::linear),
                       gatherShader::closed(*level.closed, Sampling::nearest),
+                      gatherShader::moved(*level.moved, Sampling::nearest),
                       gatherShader::diffuseImage(*result.texture), gatherShader::clippedImage(*cut.texture)},
                      {frame.snapshot().camera.width, frame.snapshot().camera.height, 1}, kImageGroup);
     }

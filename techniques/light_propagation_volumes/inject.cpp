@@ -45,11 +45,12 @@ class Inject : public Pass {
   void run(PassContext& frame) override {
     ShGrid result;
     for (const GridPlacement& grid : placeGrids(frame.snapshot(), levels, resolution, extent)) {
-      ShGrid::Level level{grid, coefficientTextures(frame, grid.resolution, "coefficients"), nullptr};
-      level.closed = closedFaces(frame, grid);
+      ShGrid::Level level{grid, coefficientTextures(frame, grid.resolution, "coefficients"), nullptr,
+                          nullptr};
+      findFaces(frame, level);
       const gpu::BufferRef sums = frame.buffer(cellCount(grid) * kSumBytes, "virtual lights");
       sums->clear();
-      addLights(frame, grid, *sums);
+      addLights(frame, level, *sums);
       resolveShader::Parameters parameters{};
       parameters.resolution = grid.resolution;
       // A clamped cosine has the mean cosine 2/3; 0 asks for that of the default lobe.
@@ -67,7 +68,7 @@ class Inject : public Pass {
 
  protected:
   /// Adds virtual lights to the sums of the cells, and a barrier.
-  virtual void addLights(PassContext& frame, const GridPlacement& grid, const gpu::Buffer& sums) = 0;
+  virtual void addLights(PassContext& frame, const ShGrid::Level& level, const gpu::Buffer& sums) = 0;
 
   In<VoxelFragments> fragments{this, "fragments",
                                "surface samples; their voxels no larger than the finest cells"};
@@ -86,7 +87,9 @@ class Inject : public Pass {
   Out<ShGrid> light{this, "light", "virtual point lights, W/sr, and closed faces"};
 
  private:
-  gpu::TextureRef closedFaces(PassContext& frame, const GridPlacement& grid) {
+  /// The faces that surfaces close, and how far these were moved.
+  void findFaces(PassContext& frame, ShGrid::Level& level) {
+    const GridPlacement& grid = level.grid;
     if (fragments->grid.voxelSize > grid.voxelSize * 1.001f)
       frame.warn(
           fmt::format("the fragments have voxels of {} m and the cells {} m: surfaces have holes; voxelise "
@@ -120,12 +123,13 @@ class Inject : public Pass {
           faces, kCellGroup);
       std::swap(parts, filled);
     }
-    const gpu::TextureRef closed = cellTexture(frame, faces, gpu::Format::rgba8, "closed faces");
+    level.closed = cellTexture(frame, faces, gpu::Format::rgba8, "closed faces");
+    level.moved = cellTexture(frame, faces, gpu::Format::rgba8, "moved surfaces");
     frame.dispatch(frame.program(resolveClosedShader::kProgram),
                    {resolveClosedShader::partsX(*parts[0]), resolveClosedShader::partsY(*parts[1]),
-                    resolveClosedShader::partsZ(*parts[2]), resolveClosedShader::closed(*closed)},
+                    resolveClosedShader::partsZ(*parts[2]), resolveClosedShader::closed(*level.closed),
+                    resolveClosedShader::moved(*level.moved)},
                    faces, kCellGroup);
-    return closed;
   }
 };
 
@@ -133,8 +137,9 @@ class InjectRsmPass : public Inject {
   In<ReflectiveShadowMap> map{this, "map", Presence::optional,
                               "what the lights see; without it only the environment shines"};
 
-  void addLights(PassContext& frame, const GridPlacement& grid, const gpu::Buffer& sums) override {
+  void addLights(PassContext& frame, const ShGrid::Level& level, const gpu::Buffer& sums) override {
     if (!map.present() || map->lightCount == 0) return;
+    const GridPlacement& grid = level.grid;
     using gpu::Sampling;
     const gpu::TextureDescription& layers = map->flux->description();
     for (const int step : {rsmShader::Variant::stepWeigh, rsmShader::Variant::stepAdd}) {
@@ -144,7 +149,8 @@ class InjectRsmPass : public Inject {
                      {rsmShader::parameters({grid.low, grid.voxelSize, grid.resolution}),
                       rsmShader::rsmPosition(*map->position, Sampling::nearest),
                       rsmShader::rsmNormal(*map->normal, Sampling::nearest),
-                      rsmShader::rsmFlux(*map->flux, Sampling::nearest), rsmShader::sums(sums)},
+                      rsmShader::rsmFlux(*map->flux, Sampling::nearest),
+                      rsmShader::moved(*level.moved, Sampling::nearest), rsmShader::sums(sums)},
                      {layers.width, layers.height, layers.depth}, kImageGroup);
     }
   }
@@ -173,8 +179,9 @@ class InjectVoxelsPass : public Inject {
     return {};
   }
 
-  void addLights(PassContext& frame, const GridPlacement& grid, const gpu::Buffer& sums) override {
+  void addLights(PassContext& frame, const ShGrid::Level& level, const gpu::Buffer& sums) override {
     if (!shadow.present() || shadow->lightCount == 0) return;
+    const GridPlacement& grid = level.grid;
     const gpu::BufferRef voxels = frame.buffer(cellCount(grid) * kVoxelBytes, "lit voxels");
     voxels->clear();
     collectShader::Parameters collect{};
@@ -190,7 +197,9 @@ class InjectVoxelsPass : public Inject {
       frame.shaders().dispatchIndirect(
           frame.program(collectShader::kProgram, variant.key()),
           {collectShader::parameters(collect), collectShader::fragmentCount(*fragments->count),
-           collectShader::fragments(*fragments->fragments), collectShader::voxels(*voxels)},
+           collectShader::fragments(*fragments->fragments), collectShader::voxels(*voxels),
+           collectShader::moved(*level.moved, gpu::Sampling::nearest),
+           collectShader::closed(*level.closed, gpu::Sampling::nearest)},
           *fragments->count, sizeof(std::uint32_t));
       frame.device().barrier();
     }

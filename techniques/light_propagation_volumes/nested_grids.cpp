@@ -1,8 +1,11 @@
 #include "nested_grids.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "lumivox/base/error.h"
 #include "lumivox/pipeline/light_samples.h"
 
 namespace lumivox::light_propagation_volumes {
@@ -98,6 +101,14 @@ std::array<gpu::TextureRef, 3> coefficientTextures(PassContext& frame, const glm
   for (std::size_t i = 0; i < 3; ++i)
     result[i] = cellTexture(frame, resolution, gpu::Format::rgba32f, channels[i] + label);
   return result;
+}
+
+void requireFaces(const ShGrid& light) {
+  for (std::size_t i = 0; i < light.levels.size(); ++i)
+    if (!light.levels[i].closed || !light.levels[i].moved)
+      throw Error(fmt::format(
+          "level {} of the light has no closed faces or no moved surfaces; expected both, from an injection",
+          i));
 }
 
 }  // namespace lumivox::light_propagation_volumes

@@ -30,6 +30,9 @@ gpu::TextureRef cellTexture(PassContext& frame, const glm::ivec3& resolution, gp
 std::array<gpu::TextureRef, 3> coefficientTextures(PassContext& frame, const glm::ivec3& resolution,
                                                    const std::string& label);
 
+/// Refuses light that no injection pass has made: without faces nobody knows what surfaces close.
+void requireFaces(const ShGrid& light);
+
 /// Each registers the passes of its file.
 void addInject(TechniqueRegistry& registry);
 void addPropagate(TechniqueRegistry& registry);

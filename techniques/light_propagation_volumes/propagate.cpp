@@ -58,6 +58,7 @@ class PropagatePass : public Pass {
   Reads readsFrom() const override { return Reads::lights; }
 
   void run(PassContext& frame) override {
+    requireFaces(*injected);
     ShGrid total = *injected, left = *injected;
     // From the coarsest to the finest: what comes into a grid from outside is in the coarser one.
     for (std::size_t i = injected->levels.size(); i-- > 0;) {

@@ -15,6 +15,8 @@ namespace {
 constexpr double kMissed = 0.5;
 /// As good as none, and the noise of a truth of few samples.
 constexpr double kNoise = 1.02;
+/// No error of a bounded picture is a thousand times the light itself: light that grows from step to step is.
+constexpr double kGrown = 1e3;
 
 constexpr int kPixels = 48, kTruthSamples = 64;
 
@@ -60,6 +62,7 @@ std::optional<Finding> judgedBy(Bench& bench, const Shot& shot, bool isOrdinary)
       worst.detail += fmt::format("{}with the battery's own values already {:.3g}",
                                   worst.detail.empty() ? "" : ", ", usual);
   }
+  if (pictures && worst.value.value > kGrown) worst.outcome = StressOutcome::diverges;
   return worst;
 }
 

@@ -119,6 +119,9 @@ struct ShGrid {
     std::array<gpu::TextureRef, 3> coefficients;  ///< d3 rgba16f or rgba32f: Y00, Y1-1, Y10, Y11
     gpu::TextureRef closed;  ///< d3 rgba8, one voxel larger: xyz the shares of the faces to the voxels at
                              ///< lower x, y and z that surfaces close; null: all open
+    gpu::TextureRef moved;   ///< d3 rgba8, of the same faces, as bytes: how far surfaces were moved to lie on
+                             ///< them, fourteenths of a voxel: the low four bits of those that look down the
+                             ///< axis and truly lie above, the high ones the other way; null: not at all
   };
   std::vector<Level> levels;  ///< finest and smallest first
 };
