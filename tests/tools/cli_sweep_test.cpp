@@ -58,7 +58,20 @@ TEST_CASE("a sweep measures what the store lacks, and the same sweep again measu
     CHECK(run["passes"].size() == 3);
     CHECK(run["errors"].size() > 0);
     CHECK(run["peak_bytes"] > 0);
+    for (const Json& pass : run["passes"]) {
+      INFO(pass.dump());
+      CHECK(pass["work"].size() > 0);
+    }
   }
+  // What the frames took was measured without counting: the shader writes what it should, and no more.
+  const auto workOf = [&](std::size_t run, const char* pass, const char* what) {
+    for (const Json& one : measured["runs"][run]["passes"])
+      if (one["name"] == pass) return one["work"].at(what).get<double>();
+    return 0.0;
+  };
+  CHECK(workOf(0, "gbuffer", "fragments") == workOf(1, "gbuffer", "fragments"));
+  // Twice as many views of the lamp, twice as many draws.
+  CHECK(workOf(1, "shadow", "draws") > workOf(0, "shadow", "draws"));
   // The same numbers: nothing was measured anew.
   const Json again = Json::parse(sweep.run().output);
   CHECK(again["measured"] == 0);
