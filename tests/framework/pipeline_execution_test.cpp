@@ -1,4 +1,4 @@
-// Running pipelines: what is left out and why, what runs again, what memory is shared, what goes wrong.
+// Running pipelines: what is left out and why, what runs again, what memory is shared, what passes tell.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,40 +20,12 @@ const char* const kGather =
     "pass gather toy.gather { grid voxels  view view }\n"
     "output diffuse gather.diffuse\noutput glossy gather.glossy";
 
-struct Fixture {
-  std::unique_ptr<gpu::Device> device = deviceOrSkip();
-  TestTechniques techniques;
-  Scene scene = triangleScene();
-  explicit operator bool() const { return device != nullptr; }
-
-  Fixture() { addToys(techniques); }
-  PipelineExecutor executor(const std::string& body, RenderOptions options = {}) {
-    return PipelineExecutor(*device, techniques, scene, pipelineOf(body), options);
-  }
-};
-
 const LeftOut* find(const Explanation& explanation, LeftOut::Level level, const std::string& what) {
   for (const LeftOut& one : explanation.leftOut) {
     if (one.level == level && one.what.rfind(what, 0) == 0) return &one;
   }
   return nullptr;
 }
-
-float first(const FrameResult& frame, const std::string& output) {
-  return frame.outputs.at(output).at(0, 0, 0);
-}
-
-/// Throws when it is asked to.
-class Failing : public Toy {
- public:
-  using Toy::Toy;
-  Param<bool> fail{this, "fail", true, "whether it does"};
-  Out<Image> picture{this, "picture"};
-  void run(PassContext& frame) override {
-    if (fail) throw Error("the grid is on fire");
-    picture = paint(frame, 1.0f);
-  }
-};
 
 /// A grid that follows the camera in steps of a metre, but not upwards.
 class SteppedGrid : public Voxels {
@@ -63,13 +35,6 @@ class SteppedGrid : public Voxels {
   std::vector<float> readsOfCamera(const SceneSnapshot& snapshot) const override {
     return {std::floor(snapshot.camera.eye.x), std::floor(snapshot.camera.eye.z)};
   }
-};
-
-class Forgetful : public Toy {
- public:
-  using Toy::Toy;
-  Out<Image> picture{this, "picture"};
-  void run(PassContext&) override {}
 };
 
 class Warner : public Toy {
@@ -419,26 +384,6 @@ TEST_CASE("the times of the passes and the time between them make up the frame")
   CHECK(frame.betweenPassesMs < frame.frameMs);
   CHECK(passes <= frame.frameMs);
   CHECK(frame.peakBytes >= 8 * 8 * 8 * 16);
-}
-
-TEST_CASE("an error in a pass carries the pass's name, and the next frame starts afresh") {
-  Fixture f;
-  if (!f) return;
-  f.techniques.add<Failing>("toy", "failing");
-  PipelineExecutor executor = f.executor("pass bad toy.failing { }\noutput o bad.picture");
-  for (int repeat = 0; repeat < 2; ++repeat) {
-    CHECK(messageOf<Error>([&] { executor.render(0.0); }) == "pass bad: the grid is on fire");
-  }
-  PipelineExecutor good = f.executor("pass bad toy.failing { fail off }\noutput o bad.picture");
-  CHECK(first(good.render(0.0), "o") == 1.0f);
-}
-
-TEST_CASE("a pass that does not set a wanted output is an error that names both") {
-  Fixture f;
-  if (!f) return;
-  f.techniques.add<Forgetful>("toy", "forgetful");
-  PipelineExecutor executor = f.executor("pass bad toy.forgetful { }\noutput o bad.picture");
-  CHECK(messageOf<Error>([&] { executor.render(0.0); }) == "pass bad: it did not set its output 'picture'");
 }
 
 TEST_CASE("a warning of a pass is told once per run") {

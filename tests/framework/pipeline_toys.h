@@ -206,4 +206,22 @@ inline Pipeline pipelineOf(const std::string& body) {
   return Pipeline::parse("pipeline \"test\" {\n" + body + "\n}\n", "test.pipeline");
 }
 
+/// Toys on a device, if there is one.
+struct Fixture {
+  std::unique_ptr<gpu::Device> device = deviceOrSkip();
+  TestTechniques techniques;
+  Scene scene = triangleScene();
+  explicit operator bool() const { return device != nullptr; }
+
+  Fixture() { addToys(techniques); }
+  PipelineExecutor executor(const std::string& body, RenderOptions options = {}) {
+    return PipelineExecutor(*device, techniques, scene, pipelineOf(body), options);
+  }
+};
+
+/// The first value of an output's picture.
+inline float first(const FrameResult& frame, const std::string& output) {
+  return frame.outputs.at(output).at(0, 0, 0);
+}
+
 }  // namespace lumivox::test

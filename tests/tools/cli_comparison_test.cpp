@@ -1,4 +1,7 @@
 // What a store says of pipelines against each other, and what many scenes needed, on the command line.
+#include <regex>
+#include <sstream>
+
 #include "tools/cli_support.h"
 
 using namespace lumivox;
@@ -111,8 +114,38 @@ TEST_CASE("explain sets scenes against pipelines, and says which scene's model i
 
   const CommandResult text = runCommand(command);
   CHECK(contains(text.output, "3/3"));
-  CHECK(contains(text.output, "B: voxel_cone_tracing"));
+  CHECK(contains(text.output, "room                  passes"));
+  CHECK(contains(text.output, "\n  voxel_cone_tracing  "));
+  CHECK(contains(text.output, "lost                  absent"));
   CHECK(contains(text.output, "bit for bit: 2 of 2; 2 absent"));
+}
+
+TEST_CASE("the matrix of explain fits into a terminal of 100 columns, whatever pipelines are called") {
+  const Workplace place;
+  const std::string longName = std::string(90, 'x') + ".pipeline";
+  place.write(longName, kDirect);
+  place.write(
+      "smoke_alone.pipeline",
+      "pipeline \"Smoke alone\" {\n  pass gbuffer direct_lighting.gbuffer { }\n"
+      "  pass shadow direct_lighting.shadow_map { }\n"
+      "  pass particles volumetric_smoke.particles { }\n"
+      "  pass smoke volumetric_smoke.insert { particles particles.particles }\n"
+      "  pass march volumetric_smoke.march { gbuffer gbuffer  media smoke.media  shadow shadow.depth  "
+      "resolution full }\n"
+      "  output scattered march.scattered\n}\n");
+  const CommandResult result =
+      runCommand("lumivox explain -q --repeats 1 '" + place.scene() + "' '" + place.file(longName) +
+                 "' --resolution 16x16 --pipeline '" + place.file("smoke_alone.pipeline") + "'");
+  INFO(result.errors);
+  REQUIRE(result.exitCode == 0);
+  CHECK(contains(result.output, "first ms"));
+  CHECK(std::regex_search(result.output, std::regex("xx\\.\\. +3/3")));
+  CHECK(contains(result.output, "smoke_alone does not suit room: "));
+  std::istringstream lines(result.output);
+  for (std::string line; std::getline(lines, line);) {
+    INFO(line);
+    CHECK(line.size() <= 100);
+  }
 }
 
 TEST_CASE("explain of one scene and one pipeline goes without times when it is told to") {

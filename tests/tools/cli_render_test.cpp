@@ -1,4 +1,6 @@
 // render, reference, explain and shaders on real input, good and bad.
+#include <regex>
+
 #include "lumivox/base/picture.h"
 #include "tools/cli_support.h"
 
@@ -280,4 +282,41 @@ TEST_CASE(
   checkRefused(runCommand("lumivox shaders --print voxel_cone_tracing/gahter"), "gather");
   checkRefused(runCommand("lumivox shaders --print voxel_cone_tracing/gather --variant purple"), "--variant");
   checkRefused(runCommand("lumivox shaders"), "SCENE");
+}
+
+TEST_CASE(
+    "what exceeds the memory that a run may take is refused with pass, resource, sum and limit, each once") {
+  const Workplace place;
+  const std::string command = "lumivox render " + roomWith(place, "voxel_cone_tracing") +
+                              " -q --set resolution=64 -o " + quoted(place.file("a.exr")) + " --memory ";
+  // Each resource of the grid alone is smaller.
+  const CommandResult result = runCommand(command + "7MiB");
+  INFO(result.errors);
+  checkRefused(result, "of the limit of 7.0 MiB are left beside the ");
+  CHECK(contains(result.errors, "of all other textures and buffers"));
+  CHECK(std::regex_search(result.errors,
+                          std::regex("pass \\w+: (texture|buffer) '\\w+: [^']+' \\(.*\\) needs ")));
+  const std::size_t pass = result.errors.find("pass ");
+  CHECK(result.errors.find("pass ", pass + 1) == std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(place.path() / "a.exr"));
+  CHECK(runCommand(command + "1GiB").exitCode == 0);
+  checkRefused(runCommand(command + "lots"), "--memory");
+}
+
+TEST_CASE("what the driver refuses in a pass names the pass once") {
+  const Workplace place;
+  // 96 views of 4096 x 4096 texels: more than a software rasteriser takes in one texture.
+  place.write("big.pipeline",
+              "pipeline \"Big\" {\n  pass gbuffer direct_lighting.gbuffer { }\n"
+              "  pass shadow direct_lighting.shadow_map { area_size 4096  area_samples 16 }\n"
+              "  pass direct direct_lighting.shade { gbuffer gbuffer  shadow shadow.depth }\n"
+              "  output direct direct.radiance\n}\n");
+  const CommandResult result = runCommand(
+      "lumivox --device software render " + quoted((sourceDirectory() / "scenes/cornell.scene").string()) +
+      " " + quoted(place.file("big.pipeline")) + " -q --resolution 16x16 -o " + quoted(place.file("a.exr")));
+  INFO(result.errors);
+  checkRefused(result, "pass shadow: ");
+  CHECK(contains(result.errors, "'shadow: shadow depth'"));
+  const std::size_t pass = result.errors.find("pass shadow");
+  CHECK(result.errors.find("pass shadow", pass + 1) == std::string::npos);
 }

@@ -97,8 +97,9 @@ TEST_CASE("a small table is measured: ratios to its first row, a verdict for eac
   const TemporaryDirectory directory;
   const std::string page = (directory.path() / "tables.md").string();
   const std::string store = (directory.path() / "results.sqlite").string();
-  const CommandResult result = runCommand("lumivox -q reproduce " + data("room.reproduction") +
-                                          " --repeats 2 --scale 0.5 --json -o " + page + " --store " + store);
+  const CommandResult result =
+      runCommand("lumivox -q reproduce " + data("room.reproduction") +
+                 " --repeats 2 --scale 0.5 --spp 16 --json -o " + page + " --store " + store);
   INFO(result.errors);
   REQUIRE(result.exitCode == 0);
   const Json tables = Json::parse(result.output);
@@ -142,10 +143,21 @@ TEST_CASE("a small table is measured: ratios to its first row, a verdict for eac
 
   const Json runs = Json::parse(runCommand("lumivox results export --format json --store " + store).output);
   REQUIRE(runs.size() == 3);
-  CHECK(runs[0]["identity"]["truth_samples"] == 0);
-  CHECK(runs[0]["errors"].empty());
-  CHECK(runs[0]["frame"]["repeats"] == 2);
-  CHECK(contains(runs[0]["command"].get<std::string>(), "reproduce"));
+  // All that a sweep measures: errors and work too.
+  for (const Json& run : runs) {
+    INFO(run.dump());
+    CHECK(run["failure"] == "");
+    CHECK(run["identity"]["truth_samples"] == 16);
+    CHECK(run["errors"].size() > 0);
+    CHECK(run["frame"]["repeats"] == 2);
+    CHECK(run["next_frame"]["repeats"] == 2);
+    for (const Json& pass : run["passes"]) CHECK(pass["work"].size() > 0);
+    CHECK(contains(run["command"].get<std::string>(), "reproduce"));
+    CHECK(contains(run["command"].get<std::string>(), "--spp 16"));
+  }
+  CHECK(runs[0]["identity"]["kept"] == Json::array({"voxels.fragments"}));
+  CHECK(runs[2]["identity"]["kept"].empty());
+  checkRefused(runCommand("lumivox reproduce " + data("room.reproduction") + " --spp 16"), "--store");
 }
 
 TEST_CASE("the page of a reproduced table escapes what the texts say") {

@@ -45,6 +45,10 @@ TEST_CASE("a sweep measures what the store lacks, and the same sweep again measu
   const Sweep sweep;
   const CommandResult plan = sweep.run("--plan");
   CHECK(Json::parse(plan.output)["missing"].size() == 2);
+  const std::string text = runCommand("lumivox -q sweep " + kScene + " --pipeline " + sweep.pipeline +
+                                      " --store " + sweep.store + " --plan")
+                               .output;
+  CHECK(text.find("2 points are missing, 0 held already") != std::string::npos);
   const CommandResult first = sweep.run();
   INFO(first.errors);
   REQUIRE(first.exitCode == 0);
@@ -58,7 +62,19 @@ TEST_CASE("a sweep measures what the store lacks, and the same sweep again measu
     CHECK(run["passes"].size() == 3);
     CHECK(run["errors"].size() > 0);
     CHECK(run["peak_bytes"] > 0);
+    for (const Json& pass : run["passes"]) {
+      INFO(pass.dump());
+      CHECK(pass["work"].size() > 0);
+    }
   }
+  // The views of the lamp are drawn twice as often, the scene is seen as before.
+  const auto workOf = [&](std::size_t run, const char* pass, const char* what) {
+    for (const Json& one : measured["runs"][run]["passes"])
+      if (one["name"] == pass) return one["work"].at(what).get<double>();
+    return 0.0;
+  };
+  CHECK(workOf(0, "gbuffer", "fragments") == workOf(1, "gbuffer", "fragments"));
+  CHECK(workOf(1, "shadow", "draws") == 2.0 * workOf(0, "shadow", "draws"));
   // The same numbers: nothing was measured anew.
   const Json again = Json::parse(sweep.run().output);
   CHECK(again["measured"] == 0);
@@ -99,7 +115,9 @@ TEST_CASE("results are listed, exported, merged and removed from the command lin
   CHECK(list.exitCode == 0);
   CHECK(list.output.find("area_samples=2") != std::string::npos);
   CHECK(list.output.find("2 runs") != std::string::npos);
-  CHECK(runCommand("lumivox results list --scene arcade" + store).output.find("0 runs") != std::string::npos);
+  const std::string none = runCommand("lumivox results list --scene arcade" + store).output;
+  CHECK(none.find("0 runs") != std::string::npos);
+  CHECK(none.find("it has runs of the scenes cornell; of the pipelines direct") != std::string::npos);
 
   const std::string csv = runCommand("lumivox results export --set area_samples=2" + store).output;
   const auto columns = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };

@@ -20,6 +20,10 @@ void GlobalOptions::addTo(CLI::App& app) {
   app.add_option("--device", device, "auto, software, surfaceless, or the number of an EGL device");
   app.add_option("--shaders", shaders, "how programs reach the driver: spirv, glsl or auto")
       ->check(CLI::IsMember({"auto", "spirv", "glsl"}));
+  app.add_option("--memory", memory,
+                 "most memory of textures and buffers together, as 4GiB: what a smaller device would refuse "
+                 "(default: what the device has)")
+      ->transform(CLI::AsSizeValue(false));
   app.add_flag("--strict", strict, "refuse what would otherwise be dropped with a warning");
   auto* quietFlag = app.add_flag("-q,--quiet", quiet, "no progress, no messages but errors");
   app.add_flag("-v,--verbose", verbose, "more messages")->excludes(quietFlag);
@@ -46,6 +50,7 @@ gpu::DeviceOptions GlobalOptions::deviceOptions() const {
   options.shaderInput = shaders == "spirv"  ? gpu::ShaderInput::spirv
                         : shaders == "glsl" ? gpu::ShaderInput::glsl
                                             : gpu::ShaderInput::automatic;
+  options.memoryBytes = memory;
   return options;
 }
 

@@ -31,6 +31,7 @@ enum ExitCode { kGood = 0, kNotGood = 1, kBadInput = 2 };
 struct GlobalOptions {
   std::vector<std::filesystem::path> assets, techniques;
   std::string device = "auto", shaders = "auto";
+  std::uint64_t memory = 0;  ///< bytes; 0: what the device has
   bool strict = false, quiet = false, verbose = false;
   std::string commandLine;  ///< as typed
 

@@ -1,7 +1,9 @@
-// explain: what a run leaves out, why, and what that saves; over many scenes and pipelines as a matrix.
+// explain: what a run leaves out, why, and what that saves; over many scenes and pipelines as a matrix, one
+// block a scene.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include "command.h"
 #include "lumivox/base/error.h"
@@ -118,68 +120,115 @@ std::string bytesText(std::uint64_t first, std::uint64_t second) {
   return a + "/" + b;
 }
 
-/// "9/13 16/192/226 42.1/57.5 MiB": passes kept of all; variants needed, compiled, possible; memory, and
-/// with everything kept. With times: of a first frame and of a later one.
-std::string cellText(const NeededCell& cell) {
-  if (!cell.record) return cell.failed ? "failed" : "absent";
-  const PruningRecord& record = *cell.record;
-  const Explanation& explanation = record.explanation;
-  std::string text =
-      fmt::format("{}/{} {}/{}/{} {}", explanation.passesKept, explanation.passesTotal,
-                  explanation.variantsNeeded, explanation.variantsCompiled, explanation.variantsPossible,
-                  bytesText(record.prunedBytes, record.unprunedBytes));
-  if (record.prunedMs.repeats > 0)
-    text += fmt::format(" {}/{} {}/{} ms", formatMilliseconds(record.prunedMs.median),
-                        formatMilliseconds(record.unprunedMs.median),
-                        formatMilliseconds(record.nextPrunedMs.median),
-                        formatMilliseconds(record.nextUnprunedMs.median));
-  return text + (record.samePicture ? "" : " DIFFERS");
-}
-
 std::string stem(const std::string& file) {
   return std::filesystem::path(file).stem().string();
 }
 
+constexpr std::size_t kColumns = 100;  // of a terminal that this fits into
+
+std::size_t widest(const std::string& text) {
+  std::size_t most = 0, begin = 0;
+  for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', begin)) {
+    most = std::max(most, end - begin);
+    begin = end + 1;
+  }
+  return most;
+}
+
+/// The text, or as much of it as leaves room for two dots; whole characters of UTF-8.
+std::string cutTo(const std::string& text, std::size_t size) {
+  if (text.size() <= size) return text;
+  std::size_t end = size - 2;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  return text.substr(0, end) + "..";
+}
+
+/// Broken at spaces so that no line is longer than a terminal is wide, as far as words allow.
+std::string wrapped(const std::string& text) {
+  std::string result, line;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > kColumns) {
+      result += line + "\n";
+      line = " ";
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return result + line + "\n";
+}
+
+/// Name, passes kept of all, variants needed, compiled and possible, memory as it runs and with everything
+/// kept, and with times those of a first frame and of a later one.
+std::vector<std::string> cellRow(const NeededCell& cell) {
+  const std::string name = "  " + stem(cell.pipeline);
+  if (!cell.record) return {name, cell.failed ? "failed" : "absent"};
+  const PruningRecord& record = *cell.record;
+  const Explanation& explanation = record.explanation;
+  std::vector<std::string> row{name, fmt::format("{}/{}", explanation.passesKept, explanation.passesTotal),
+                               fmt::format("{}/{}/{}", explanation.variantsNeeded,
+                                           explanation.variantsCompiled, explanation.variantsPossible),
+                               bytesText(record.prunedBytes, record.unprunedBytes)};
+  if (record.prunedMs.repeats > 0) {
+    const auto both = [](const TimingStatistics& pruned, const TimingStatistics& unpruned) {
+      return formatMilliseconds(pruned.median) + "/" + formatMilliseconds(unpruned.median);
+    };
+    row.push_back(both(record.prunedMs, record.unprunedMs));
+    row.push_back(both(record.nextPrunedMs, record.nextUnprunedMs));
+  }
+  if (!record.samePicture) row.emplace_back("DIFFERS");
+  return row;
+}
+
+/// What has no place in the tables: why a cell is empty, and which pipelines do not suit.
+std::string remark(const NeededCell& cell, bool wholeScene) {
+  if (!cell.absent.empty())
+    return wrapped(fmt::format("{}: {}{}: {}", cell.failed ? "failed" : "absent", stem(cell.scene),
+                               wholeScene ? "" : ", " + stem(cell.pipeline), cell.absent));
+  if (cell.unsuited.empty()) return {};
+  return wrapped(fmt::format("{} does not suit {}: {}, which the scene does not have", stem(cell.pipeline),
+                             stem(cell.scene), cell.unsuited));
+}
+
+/// One block for each scene, with a line for each pipeline.
 std::string matrixText(const std::vector<NeededCell>& cells) {
-  // Columns have letters: the names of pipelines are longer than many cells.
-  std::vector<std::string> pipelines;
-  for (const NeededCell& cell : cells)
-    if (std::find(pipelines.begin(), pipelines.end(), cell.pipeline) == pipelines.end())
-      pipelines.push_back(cell.pipeline);
-  const auto letter = [](std::size_t index) {
-    return (index >= 26 ? std::string(1, static_cast<char>('A' + index / 26 - 1)) : std::string()) +
-           static_cast<char>('A' + index % 26);
-  };
-  std::vector<std::vector<std::string>> rows{{"Scene"}};
-  std::string legend, remarks;
-  for (std::size_t i = 0; i < pipelines.size(); ++i) {
-    rows.front().push_back(letter(i));
-    legend += letter(i) + ": " + stem(pipelines[i]) + "\n";
-  }
-  std::string scene;
-  std::size_t absent = 0, same = 0;
-  for (const NeededCell& cell : cells) {
-    if (rows.size() == 1 || cell.scene != scene) rows.push_back({stem(cell.scene)});
-    scene = cell.scene;
-    rows.back().push_back(cellText(cell));
-    absent += !cell.record;
-    same += cell.record && cell.record->samePicture;
-    if (!cell.absent.empty())
-      remarks += fmt::format("{}: {}, {}: {}\n", cell.failed ? "failed" : "absent", stem(cell.scene),
-                             stem(cell.pipeline), cell.absent);
-    else if (!cell.unsuited.empty())
-      remarks += fmt::format("{} does not suit {}: {}, which the scene does not have\n", stem(cell.pipeline),
-                             stem(cell.scene), cell.unsuited);
-  }
   const bool timed = std::any_of(cells.begin(), cells.end(), [](const NeededCell& cell) {
     return cell.record && cell.record->prunedMs.repeats > 0;
   });
-  return textTable(rows) + legend + remarks +
-         fmt::format(
-             "passes kept/all, shader variants needed/compiled/possible, memory as it runs/with everything "
-             "kept{}; same picture, bit for bit: {} of {}{}\n",
-             timed ? ", first frame as it runs/with everything kept, later frames the same" : "", same,
-             cells.size() - absent, absent == 0 ? "" : fmt::format("; {} absent", absent));
+  std::vector<std::vector<std::string>> rows;
+  std::string remarks;
+  std::size_t absent = 0, same = 0;
+  for (auto first = cells.begin(); first != cells.end();) {
+    const auto end =
+        std::find_if(first, cells.end(), [&](const NeededCell& cell) { return cell.scene != first->scene; });
+    const bool none =
+        std::all_of(first, end, [](const NeededCell& cell) { return !cell.failed && !cell.absent.empty(); });
+    if (!rows.empty()) rows.push_back({""});
+    rows.push_back({stem(first->scene)});
+    if (none)
+      rows.back().emplace_back("absent");
+    else
+      rows.back().insert(rows.back().end(), {"passes", "variants", "memory"});
+    if (!none && timed) rows.back().insert(rows.back().end(), {"first ms", "later ms"});
+    if (none) remarks += remark(*first, true);
+    for (; first != end; ++first) {
+      absent += !first->record;
+      same += first->record && first->record->samePicture;
+      if (none) continue;
+      rows.push_back(cellRow(*first));
+      remarks += remark(*first, false);
+    }
+  }
+  // Long names give way to the numbers.
+  std::vector<std::vector<std::string>> numbers = rows;
+  for (std::vector<std::string>& row : numbers) row.front().clear();
+  const std::size_t room = kColumns - std::min(3 * kColumns / 4, widest(textTable(numbers)));
+  for (std::vector<std::string>& row : rows) row.front() = cutTo(row.front(), room);
+  return textTable(rows) + remarks +
+         wrapped(fmt::format(
+             "passes: kept/all; shader variants: needed/compiled/possible; memory{}: as it runs/with everything "
+             "kept; same picture, bit for bit: {} of {}{}",
+             timed ? ", first frame, later frames" : "", same, cells.size() - absent,
+             absent == 0 ? "" : fmt::format("; {} absent", absent)));
 }
 
 Json matrixJson(const std::vector<NeededCell>& cells) {
@@ -219,8 +268,8 @@ int explain(const ExplainCommand& command, const GlobalOptions& global) {
   ReportOptions options;
   for (const std::filesystem::path& text : command.texts)
     (kindOfText(text) == TextKind::scene ? options.scenes : options.pipelines).push_back(text);
-  const bool one = options.scenes.size() == 1 && options.pipelines.size() == 1 && !command.all;
   options.pipelines.insert(options.pipelines.end(), command.pipelines.begin(), command.pipelines.end());
+  const bool one = options.scenes.size() == 1 && options.pipelines.size() == 1 && !command.all;
   if (command.all && !options.scenes.empty())
     throw Error("explain: --all takes every committed scene; name none");
   if (command.all) options.scenes = allScenes();

@@ -192,7 +192,15 @@ void addReproduceCommand(Commands& commands) {
       ->check(CLI::Range(1, 10000));
   command->add_option("--seed", all->options.seed, "of the random numbers of techniques");
   command->add_option("-o,--out", all->output, "writes the tables as a page, .html or .md");
-  command->add_option("--store", all->store, "a results store that takes the times (default: none)");
+  auto* store = command->add_option(
+      "--store", all->store,
+      "a results store that takes the set-ups: times, and errors and work, which are measured "
+      "after them (default: none)");
+  command
+      ->add_option("--spp", all->options.truthSamples,
+                   "samples per pixel of the truth of those errors (default: by the picture's size)")
+      ->check(CLI::Range(1, 1 << 24))
+      ->needs(store);
   command->add_flag("--json", all->json, "print JSON in place of the tables");
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] { return reproduce(*all, global); });

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "command.h"
 #include "comparison_text.h"
@@ -92,6 +93,20 @@ std::string cellsList(const std::vector<StressCell>& cells) {
   return cells.empty() ? std::string() : textTable(rows);
 }
 
+/// How many were chosen; when none was, what there is to choose from.
+std::string countText(const std::vector<StoredRun>& chosen, const ResultsStore& store) {
+  std::string text = fmt::format("{} runs; {}\n", chosen.size(), store.file().string());
+  if (!chosen.empty()) return text;
+  std::set<std::string> scenes, pipelines;
+  for (const StoredRun& run : store.runs()) {
+    scenes.insert(std::filesystem::path(run.point.scene).stem().string());
+    pipelines.insert(std::filesystem::path(run.point.pipeline).stem().string());
+  }
+  if (scenes.empty()) return text + "the store is empty\n";
+  return text + fmt::format("it has runs of the scenes {}; of the pipelines {}\n", fmt::join(scenes, ", "),
+                            fmt::join(pipelines, ", "));
+}
+
 int listResults(const ResultsCommand& command) {
   const ResultsStore store(command.file(), ResultsStore::Mode::read);
   if (command.stress) {
@@ -105,8 +120,7 @@ int listResults(const ResultsCommand& command) {
   if (command.json) {
     printJson(runsJson(runs));
   } else {
-    print((runs.empty() ? std::string() : runsTable(runs)) +
-          fmt::format("{} runs; {}\n", runs.size(), store.file().string()));
+    print((runs.empty() ? std::string() : runsTable(runs)) + countText(runs, store));
   }
   return kGood;
 }
@@ -153,7 +167,7 @@ int comparePipelinesOf(const ResultsCommand& command, ComparisonTable table) {
   if (command.json)
     printJson(list);
   else
-    print(text + fmt::format("{} runs; {}\n", runs.size(), store.file().string()));
+    print(text + countText(runs, store));
   return kGood;
 }
 

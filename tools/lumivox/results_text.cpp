@@ -74,6 +74,8 @@ Json identityJson(const RunIdentity& identity) {
           {"repeats", identity.repeats},
           {"subpixels", identity.subpixels},
           {"truth_samples", identity.truthSamples},
+          {"flicker_pairs", identity.flickerPairs},
+          {"kept", identity.kept},
           {"device", identity.device},
           {"driver", identity.driver},
           {"shader_input", identity.shaderInput},
@@ -165,6 +167,8 @@ Json runsJson(const std::vector<StoredRun>& runs) {
         pass["host"] = timeJson(time->second);
       if (const auto bytes = point.passBytes.find(name); bytes != point.passBytes.end())
         pass["bytes"] = bytes->second;
+      if (const auto work = point.passWork.find(name); work != point.passWork.end())
+        pass["work"] = work->second;
       passes.push_back(std::move(pass));
     }
     Json errors = Json::array();

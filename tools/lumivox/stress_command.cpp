@@ -11,6 +11,7 @@
 #include "lumivox/report/report.h"
 #include "lumivox/report/stress_cells.h"
 #include "lumivox/stress/stress.h"
+#include "measure_options.h"
 #include "results_text.h"
 #include "stress_text.h"
 
@@ -23,24 +24,10 @@ struct StressCommand {
   std::filesystem::path from;
 };
 
-/// This program again as a worker, and the options without which a cell could not be repeated.
-std::vector<std::string> globalArguments(const GlobalOptions& global) {
-  std::vector<std::string> words;
-  const auto add = [&](const char* option, const std::string& value) {
-    words.emplace_back(option);
-    words.push_back(value);
-  };
-  for (const auto& folder : global.assets) add("--assets", folder.string());
-  for (const auto& folder : global.techniques) add("--techniques", folder.string());
-  if (global.device != "auto") add("--device", global.device);
-  if (global.shaders != "auto") add("--shaders", global.shaders);
-  if (global.strict) words.emplace_back("--strict");
-  return words;
-}
-
+/// This program again as a worker.
 std::vector<std::string> workerProgram(const GlobalOptions& global) {
   std::vector<std::string> words{std::filesystem::read_symlink("/proc/self/exe").string()};
-  const std::vector<std::string> arguments = globalArguments(global);
+  const std::vector<std::string> arguments = repeatArguments(global);
   words.insert(words.end(), arguments.begin(), arguments.end());
   words.insert(words.end(), {"--quiet", "stress", "--worker"});
   return words;
@@ -105,7 +92,7 @@ int stress(const StressCommand& command, const GlobalOptions& global) {
   TechniqueSet techniques = global.techniqueSet();
   StressOptions options = command.options;
   options.program = workerProgram(global);
-  options.repeatArguments = globalArguments(global);
+  options.repeatArguments = repeatArguments(global);
   options.commandLine = global.commandLine;
   if (command.worker) {
     serveStress({global.deviceOptions(), global.sceneLoad(), options.program, options.repeatArguments},

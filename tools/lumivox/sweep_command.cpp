@@ -55,9 +55,12 @@ int sweep(const SweepCommand& command, const GlobalOptions& global) {
     for (const std::string& missing : summary.missing) text += "not measured yet: " + missing + "\n";
     for (const std::string& note : summary.notes) text += "note: " + note + "\n";
     for (const std::string& unsuited : summary.unsuited) text += "not run: " + unsuited + "\n";
-    text += fmt::format("{} measured{}, {} held already; {}\n", summary.measured,
-                        summary.failed == 0 ? "" : fmt::format(", {} of them failed", summary.failed),
-                        summary.held, file.string());
+    const std::string done =
+        options.planOnly
+            ? fmt::format("{} points are missing", summary.missing.size())
+            : fmt::format("{} measured{}", summary.measured,
+                          summary.failed == 0 ? "" : fmt::format(", {} of them failed", summary.failed));
+    text += fmt::format("{}, {} held already; {}\n", done, summary.held, file.string());
     print(text);
   }
   const bool good = std::all_of(summary.runs.begin(), summary.runs.end(), [](const StoredRun& run) {

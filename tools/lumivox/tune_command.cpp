@@ -25,7 +25,7 @@ std::string resultText(const TuneResult& result, const TuneOptions& options) {
     if (!point.onFront && result.winner != i) continue;
     rows.push_back({std::filesystem::path(point.run.point.pipeline).stem().string(),
                     parametersText(point.run.identity.parameters), quartilesText(point.run.point.frameMs),
-                    threeDigits(point.error),
+                    threeDigits(point.tradeOff.error.value),
                     result.winner == i ? "the best that fits"
                     : point.fits       ? "fits"
                                        : ""});
@@ -48,8 +48,10 @@ Json resultJson(const TuneResult& result) {
   for (const TunedPoint& point : result.seen)
     seen.push_back({{"pipeline", point.run.point.pipeline},
                     {"parameters", point.run.identity.parameters},
-                    {"time_ms", point.timeMs},
-                    {"error", point.error},
+                    {"time_ms", point.tradeOff.timeMs.value},
+                    {"time_uncertainty_ms", point.tradeOff.timeMs.uncertainty},
+                    {"error", point.tradeOff.error.value},
+                    {"error_uncertainty", point.tradeOff.error.uncertainty},
                     {"on_front", point.onFront},
                     {"fits", point.fits},
                     {"command", point.run.point.command}});
@@ -64,7 +66,6 @@ int tuneScene(const TuneCommand& command, const GlobalOptions& global) {
   options.measure = command.measure.asked(global);
   if (!command.budget.empty()) options.budgetMs = millisecondsOf("--budget", command.budget);
   if (command.hasError) options.errorLimit = command.error;
-  if (options.metric == "rmse") options.metric = "rmse_over_seeds";
   if (!command.output.empty()) requireWritable(command.output);
   ResultsStore store(options.measure.store.empty() ? ResultsStore::defaultFile() : options.measure.store);
   TechniqueSet techniques = global.techniqueSet();

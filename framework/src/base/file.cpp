@@ -159,14 +159,18 @@ void writeFileAtomically(const std::filesystem::path& path, std::string_view tex
   writeFileAtomically(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
-void requireMemory(std::uint64_t bytes, std::string_view what) {
-  std::uint64_t availableBytes = ~std::uint64_t{0};
+std::uint64_t availableMemory() {
   std::ifstream information("/proc/meminfo");
   for (std::string line; std::getline(information, line);) {
     unsigned long long kibibytes = 0;
     if (std::sscanf(line.c_str(), "MemAvailable: %llu kB", &kibibytes) == 1)
-      availableBytes = std::uint64_t{kibibytes} * 1024;
+      return std::uint64_t{kibibytes} * 1024;
   }
+  return ~std::uint64_t{0};
+}
+
+void requireMemory(std::uint64_t bytes, std::string_view what) {
+  const std::uint64_t availableBytes = availableMemory();
   if (bytes > availableBytes) {
     throw Error(fmt::format("{} needs {}, but only {} of memory are available", what, formatBytes(bytes),
                             formatBytes(availableBytes)));

@@ -26,7 +26,7 @@ Buffer::Buffer(Device& device, std::uint64_t sizeBytes, std::string label)
     glObjectLabel(GL_BUFFER, handle_, static_cast<GLsizei>(std::min<std::size_t>(label_.size(), 200)),
                   label_.c_str());
   try {
-    device_->check("allocating " + what);
+    device_->check("allocating " + what + device_->besideText());
   } catch (...) {
     glDeleteBuffers(1, &handle_);
     throw;
@@ -54,7 +54,9 @@ void Buffer::upload(std::span<const std::byte> bytes, std::uint64_t offsetBytes)
 std::vector<std::byte> Buffer::download(std::uint64_t offsetBytes, std::uint64_t sizeBytes) const {
   device_->use();
   assert(offsetBytes <= sizeBytes_);
-  std::vector<std::byte> bytes(std::min(sizeBytes, sizeBytes_ - offsetBytes));
+  const std::uint64_t count = std::min(sizeBytes, sizeBytes_ - offsetBytes);
+  DeviceState::requireHostMemory(count, label_);
+  std::vector<std::byte> bytes(count);
   if (bytes.empty()) return bytes;
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glGetNamedBufferSubData(handle_, static_cast<GLintptr>(offsetBytes), static_cast<GLsizeiptr>(bytes.size()),

@@ -226,9 +226,7 @@ void Device::beginDrawing(const RenderTargets& targets, const RasterState& raste
   if (status != GL_FRAMEBUFFER_COMPLETE || !state.driverErrors.empty()) {
     endDrawing();
     state.check("choosing what to draw to");
-    throw Error(fmt::format("{}cannot draw to these targets: {}",
-                            state.pass.empty() ? "" : "pass " + state.pass + ": ",
-                            framebufferProblem(status)));
+    throw Error(fmt::format("cannot draw to these targets: {}", framebufferProblem(status)));
   }
   glBindFramebuffer(GL_FRAMEBUFFER, state.framebuffer);
   glViewport(0, 0, size.x, size.y);

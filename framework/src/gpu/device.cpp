@@ -42,7 +42,8 @@ std::string glText(GLenum name) {
 // ---- DeviceState
 // ------------------------------------------------------------------------------------------------
 
-DeviceState::DeviceState(const DeviceOptions& options) : context(options.device) {
+DeviceState::DeviceState(const DeviceOptions& options)
+    : context(options.device), memoryBytes(options.memoryBytes) {
   currentState = this;
   info.vendor = glText(GL_VENDOR);
   info.renderer = glText(GL_RENDERER);
@@ -148,7 +149,7 @@ void DeviceState::use() {
 
 void DeviceState::check(const std::string& what) {
   if (driverErrors.empty()) return;
-  std::string text = pass.empty() ? what : fmt::format("pass {}: {}", pass, what);
+  std::string text = what;
   text += driverErrors.size() == 1 ? ": the OpenGL driver reports: " : ": the OpenGL driver reports:\n  ";
   text += fmt::format("{}", fmt::join(driverErrors, "\n  "));
   driverErrors.clear();
@@ -157,19 +158,40 @@ void DeviceState::check(const std::string& what) {
   throw Error(text);
 }
 
+/// Below this, asking the system for what is left costs more than it tells.
+constexpr std::uint64_t kNotWorthAsking = 16 << 20;
+
+void DeviceState::requireHostMemory(std::uint64_t bytes, const std::string& label) {
+  if (bytes >= kNotWorthAsking) requireMemory(bytes, "downloading " + label);
+}
+
+std::string DeviceState::besideText() const {
+  return fmt::format(" beside the {} of all other textures and buffers", formatBytes(allocatedBytes));
+}
+
 void DeviceState::requireDeviceMemory(std::uint64_t bytes, const std::string& what) {
-  constexpr std::uint64_t kNotWorthAsking = 16 << 20;
+  const auto refuse = [&](std::uint64_t available, const std::string& where) {
+    // Rounded, the two may read the same.
+    const bool alike = formatBytes(bytes) == formatBytes(available);
+    const auto text = [&](std::uint64_t count) {
+      return alike ? fmt::format("{} B", count) : formatBytes(count);
+    };
+    throw Error(fmt::format("{} needs {}, but only {} {} left{}", what, text(bytes), text(available), where,
+                            besideText()));
+  };
+  if (memoryBytes > 0 && allocatedBytes + bytes > memoryBytes)
+    refuse(memoryBytes - std::min(memoryBytes, allocatedBytes),
+           fmt::format("of the limit of {} are", formatBytes(memoryBytes)));
   if (bytes < kNotWorthAsking) return;
+  // What is held already is missing from what is available: drivers fill new resources with zeros.
   if (info.software) {
-    requireMemory(bytes, what);
+    if (const std::uint64_t available = availableMemory(); bytes > available)
+      refuse(available, "of memory are");
   } else if (epoxy_has_gl_extension("GL_NVX_gpu_memory_info")) {
     GLint availableKib = 0;
     glGetIntegerv(GL_GPU_MEMORY_INFO_CURRENT_AVAILABLE_VIDMEM_NVX, &availableKib);
     const std::uint64_t available = static_cast<std::uint64_t>(availableKib) << 10;
-    if (bytes > available) {
-      throw Error(fmt::format("{} needs {}, but {} has only {} left", what, formatBytes(bytes), info.renderer,
-                              formatBytes(available)));
-    }
+    if (bytes > available) refuse(available, fmt::format("on {} are", info.renderer));
   }
 }
 

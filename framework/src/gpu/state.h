@@ -103,10 +103,15 @@ struct DeviceState {
 
   /// Makes the context current when another Device was used last on this thread.
   void use();
-  /// Throws what the driver complained about since the last check, naming the pass and `what` was being done.
+  /// Throws what the driver complained about since the last check, naming `what` was being done.
   void check(const std::string& what);
-  /// Refuses an allocation that does not fit into what the device has left.
+  /// Refuses an allocation that does not fit into what the device has left, or into its limit together with
+  /// what is held already.
   void requireDeviceMemory(std::uint64_t bytes, const std::string& what);
+  /// Refuses to copy so many bytes of a resource to the host when they do not fit there.
+  static void requireHostMemory(std::uint64_t bytes, const std::string& label);
+  /// " beside the 1.5 GiB of all other textures and buffers"
+  std::string besideText() const;
   void allocated(std::uint64_t bytes);
   void freed(std::uint64_t bytes);
   void bind(const Program& program, std::span<const ResourceBinding> bindings);
@@ -119,6 +124,7 @@ struct DeviceState {
   DeviceInfo info;
   ShaderInput shaderInput = ShaderInput::glsl;
   DeviceLimits limits;
+  const std::uint64_t memoryBytes;  ///< limit of allocatedBytes; 0: none but the device's own
   std::string pass;
   std::vector<std::string> driverErrors;
   std::uint64_t allocatedBytes = 0, peakBytes = 0;

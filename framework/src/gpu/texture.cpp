@@ -127,7 +127,7 @@ Texture::Texture(Device& device, const TextureDescription& description, std::str
     glObjectLabel(GL_TEXTURE, handle_, static_cast<GLsizei>(std::min<std::size_t>(label_.size(), 200)),
                   label_.c_str());
   try {
-    device_->check("allocating " + describe(description_, label_));
+    device_->check("allocating " + describe(description_, label_) + device_->besideText());
   } catch (...) {
     glDeleteTextures(1, &handle_);
     throw;
@@ -152,7 +152,9 @@ void Texture::upload(int level, std::span<const std::byte> texels) {
 
 std::vector<std::byte> Texture::download(int level) const {
   device_->use();
-  std::vector<std::byte> texels(texelsOf(extentOf(description_, level)) * bytesPerTexel(description_.format));
+  const std::uint64_t bytes = texelsOf(extentOf(description_, level)) * bytesPerTexel(description_.format);
+  DeviceState::requireHostMemory(bytes, label_);
+  std::vector<std::byte> texels(bytes);
   downloadAs(handle_, description_, level, traitsOf(description_.format).type, texels.data(), texels.size());
   device_->transfers.downloaded += texels.size();
   device_->check("downloading " + label_);
@@ -184,8 +186,10 @@ void Texture::uploadFloats(int level, std::span<const float> values) {
 std::vector<float> Texture::downloadFloats(int level) const {
   device_->use();
   assert(!traitsOf(description_.format).integer);
-  std::vector<float> values(texelsOf(extentOf(description_, level)) *
-                            static_cast<std::size_t>(componentCount(description_.format)));
+  const std::size_t count =
+      texelsOf(extentOf(description_, level)) * static_cast<std::size_t>(componentCount(description_.format));
+  DeviceState::requireHostMemory(count * sizeof(float), label_);
+  std::vector<float> values(count);
   downloadAs(handle_, description_, level, GL_FLOAT, values.data(), values.size() * sizeof(float));
   device_->transfers.downloaded += values.size() * sizeof(float);
   device_->check("downloading " + label_);

@@ -1,9 +1,12 @@
 #include "pipeline/context.h"
 
+#include <fmt/format.h>
+
 #include <exception>
 #include <new>
 
 #include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
 
 namespace lumivox {
@@ -19,12 +22,14 @@ GpuScene& FrameContext::scene() {
 gpu::TextureRef FrameContext::texture(const gpu::TextureDescription& description, const std::string& label) {
   gpu::TextureRef texture = pool_.texture(description, passName_ + ": " + label);
   bytesOfRun_ += texture->sizeBytes();
+  lastResource_ = label;
   return texture;
 }
 
 gpu::BufferRef FrameContext::buffer(std::uint64_t sizeBytes, const std::string& label) {
   gpu::BufferRef buffer = pool_.buffer(sizeBytes, passName_ + ": " + label);
   bytesOfRun_ += buffer->sizeBytes();
+  lastResource_ = label;
   return buffer;
 }
 
@@ -50,6 +55,7 @@ void FrameContext::setFrame(SceneSnapshot snapshot, int frameIndex, bool geometr
 gpu::Device::Elapsed FrameContext::run(Pass& pass, const std::string& name) {
   passName_ = name;
   bytesOfRun_ = 0;
+  lastResource_.clear();
   // Errors are carried past the timer, so that it is always stopped.
   std::exception_ptr failure;
   device_.enterPass(name);
@@ -64,15 +70,22 @@ gpu::Device::Elapsed FrameContext::run(Pass& pass, const std::string& name) {
     device_.leavePass();
   } catch (...) {
     // The pass's own error came first and explains more.
-    if (!failure) throw;
+    if (!failure) failure = std::current_exception();
   }
   if (!failure) return elapsed;
+  // The one place that names the pass in an error.
   try {
     std::rethrow_exception(failure);
   } catch (const AbsentError& error) {
     throw AbsentError("pass " + name + ": " + error.what());
   } catch (const std::bad_alloc&) {
-    throw Error("pass " + name + ": out of memory");
+    // How much was asked for is not known, only what was there.
+    throw Error(fmt::format(
+        "pass {}: out of memory; {}, textures and buffers take {}, of which this pass asked for {}{}", name,
+        availableMemory() == ~std::uint64_t{0} ? std::string("how much is available is not known")
+                                               : formatBytes(availableMemory()) + " are available",
+        formatBytes(device_.allocatedBytes()), formatBytes(bytesOfRun_),
+        lastResource_.empty() ? "" : ", the last one '" + lastResource_ + "'"));
   } catch (const std::exception& error) {
     throw Error("pass " + name + ": " + error.what());
   }

@@ -56,8 +56,7 @@ class FrameContext : public PassContext {
   };
   const std::set<Reused>& reusedParts() const { return reusedParts_; }
 
-  /// Runs one pass under its name: driver errors and errors of the pass carry it. `pass` is how people know
-  /// it.
+  /// Runs one pass under its name: driver errors and errors of the pass carry it, once.
   gpu::Device::Elapsed run(Pass& pass, const std::string& name);
   /// Bytes that the last run asked the pool for.
   std::uint64_t bytesOfRun() const { return bytesOfRun_; }
@@ -73,7 +72,7 @@ class FrameContext : public PassContext {
   SceneSnapshot snapshot_;
   int frameIndex_ = 0;
   std::uint64_t seed_ = 1, bytesOfRun_ = 0;
-  std::string passName_;
+  std::string passName_, lastResource_;  ///< lastResource_: label, as this run asked the pool for it
   bool afresh_ = true, inspects_ = false;
   std::vector<std::string> notes_;
   std::set<std::string> warnings_;

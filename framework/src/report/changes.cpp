@@ -19,6 +19,7 @@ std::string pointName(const StoredRun& run) {
       fmt::format("{}, {}: {}", fs::path(run.point.scene).stem().string(),
                   fs::path(run.point.pipeline).stem().string(), report::pointText(run.point.parameters));
   if (run.identity.time != 0.0) text += fmt::format(", {} s", run.identity.time);
+  if (!run.identity.kept.empty()) text += fmt::format(", keeping {}", fmt::join(run.identity.kept, " "));
   if (run.identity.seed != 1) text += fmt::format(", seed {}", run.identity.seed);
   return text + (run.identity.camera.empty() ? "" : ", camera " + run.identity.camera);
 }

@@ -116,16 +116,17 @@ std::string pipelineStem(const StoredRun& run) {
 /// Everything that two runs must have in common to be compared in time and error.
 std::string groupKey(const StoredRun& run) {
   const RunIdentity& identity = run.identity;
-  return fmt::format("{}|{}|{}|{}x{}|{}|{}|{}|{}|{}|", identity.sceneHash, identity.camera, identity.time,
+  return fmt::format("{}|{}|{}|{}x{}|{}|{}|{}|{}|{}|{}|", identity.sceneHash, identity.camera, identity.time,
                      identity.width, identity.height, identity.subpixels, identity.device, identity.driver,
-                     identity.shaderInput, identity.host);
+                     identity.shaderInput, identity.host, fmt::join(identity.kept, " "));
 }
 
 std::string groupTitle(const StoredRun& run) {
   const RunIdentity& identity = run.identity;
-  return fmt::format("{}, camera {}{}, {}x{}, on {}", report::shortName(run.point.scene), identity.camera,
+  return fmt::format("{}, camera {}{}, {}x{}, on {}{}", report::shortName(run.point.scene), identity.camera,
                      identity.time == 0.0 ? "" : fmt::format(", {} s", identity.time), identity.width,
-                     identity.height, identity.device);
+                     identity.height, identity.device,
+                     identity.kept.empty() ? "" : fmt::format(", keeping {}", fmt::join(identity.kept, " ")));
 }
 
 std::string contentKey(const StoredRun& run) {

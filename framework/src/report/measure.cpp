@@ -244,19 +244,20 @@ void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, Poi
     }
 }
 
-void countWork(const MeasureContext& context, const Pipeline& pipeline,
-               const std::vector<DeviceCeiling>& ceilings, PointRecord& record) {
-  RenderOptions options = renderOptions(context, record.point);
+void countWork(const TimingContext& context, const Pipeline& pipeline,
+               const std::vector<DeviceCeiling>& ceilings, ReportPoint& point, const KeptOutputs& kept) {
+  RenderOptions options = renderOptions(context, point);
   options.countWork = true;
   try {
     PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
+    for (const auto& [pass, port] : kept) executor.keepOutput(pass, port);
     FrameResult frame = executor.render(context.options.time, 0, PipelineExecutor::Pictures::no);
     for (PassRecord& pass : frame.passes) {
-      record.point.passBounds[pass.name] = lowerBounds(pass.work, ceilings);
-      record.point.passWork[pass.name] = std::move(pass.work);
+      point.passBounds[pass.name] = lowerBounds(pass.work, ceilings);
+      point.passWork[pass.name] = std::move(pass.work);
     }
   } catch (const AbsentError& error) {
-    record.point.whyNotCounted = error.what();
+    point.whyNotCounted = error.what();
   }
 }
 
@@ -278,7 +279,7 @@ struct TimedPoint::State {
 };
 
 TimedPoint::TimedPoint(const TimingContext& context, const Pipeline& pipeline, ReportPoint& point,
-                       const std::vector<std::pair<std::string, std::string>>& kept)
+                       const KeptOutputs& kept)
     : state_(std::make_unique<State>(context, pipeline, point)) {
   for (const auto& [pass, port] : kept) state_->executor.keepOutput(pass, port);
   const FrameResult frame = state_->executor.render(state_->time, 0, PipelineExecutor::Pictures::no);
@@ -322,8 +323,8 @@ void TimedPoint::finish() {
   s.point.frameMs = statisticsOf(s.frameMs);
   s.point.nextFrameMs = statisticsOf(s.nextMs);
   s.point.frameworkShare = s.shares.empty() ? 0.0 : statisticsOf(s.shares).median;
-  for (auto& [name, values] : s.deviceMs) s.point.passDeviceMs[name] = statisticsOf(std::move(values));
-  for (auto& [name, values] : s.hostMs) s.point.passHostMs[name] = statisticsOf(std::move(values));
+  for (const auto& [name, values] : s.deviceMs) s.point.passDeviceMs[name] = statisticsOf(values);
+  for (const auto& [name, values] : s.hostMs) s.point.passHostMs[name] = statisticsOf(values);
 }
 
 void measureTimes(const TimingContext& context, const Pipeline& pipeline, PointRecord& record) {

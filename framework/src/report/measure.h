@@ -63,23 +63,25 @@ inline constexpr double kFlickerStep = 1.0 / 24.0;
 bool flickers(const Scene& scene, const ReportOptions& options);
 /// Fills the flicker of the errors that are there already, where the scene moves.
 void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record);
-/// Fills what the passes do, counted in a frame of its own, and what that takes at least.
-void countWork(const MeasureContext& context, const Pipeline& pipeline,
-               const std::vector<DeviceCeiling>& ceilings, PointRecord& record);
+/// Outputs, pass and port, that stay alive although no picture needs them.
+using KeptOutputs = std::vector<std::pair<std::string, std::string>>;
+/// Fills what the passes do, counted in a frame of its own, and what that takes at least: nothing without
+/// ceilings.
+void countWork(const TimingContext& context, const Pipeline& pipeline,
+               const std::vector<DeviceCeiling>& ceilings, ReportPoint& point, const KeptOutputs& kept = {});
 
 /// One point that is timed frame by frame, so that the frames of several points can take turns: a machine
 /// that drifts then biases none of them. No pictures are taken.
 class TimedPoint {
  public:
-  /// Renders one frame as warm-up: programs are linked, the pool is filled. `kept`: outputs, pass and port,
-  /// that stay alive although no picture needs them.
+  /// Renders one frame as warm-up: programs are linked, the pool is filled.
   TimedPoint(const TimingContext& context, const Pipeline& pipeline, ReportPoint& point,
-             const std::vector<std::pair<std::string, std::string>>& kept = {});
+             const KeptOutputs& kept = {});
   ~TimedPoint();
   TimedPoint(TimedPoint&&) noexcept;
   void timeFrame();      ///< every kept pass runs
   void timeNextFrame();  ///< 1/60 s after the last one
-  void finish();         ///< fills the point's times and bytes
+  void finish();         ///< fills the point's times; again after further frames
   const PipelineExecutor& executor() const;
 
  private:

@@ -123,6 +123,7 @@ void Measurer::measureBatch(std::vector<std::pair<const LoadedPipeline*, StoredR
       const MeasureContext context{{device_, techniques_, scene_, options, width_, height_}, *truth_};
       measureErrors(context, entry.first->pipeline, record);
       measureFlicker(context, entry.first->pipeline, record);
+      countWork(context, entry.first->pipeline, {}, record.point);
       entry.second.point = std::move(record.point);
     });
   }

@@ -1,4 +1,5 @@
-// Measures points of one scene into a results store: errors apart from times, the timed frames taking turns.
+// Measures points of one scene into a results store: errors and work apart from times, the timed frames
+// taking turns.
 #pragma once
 
 #include <functional>

@@ -34,7 +34,7 @@ PointRecord measurePoint(const MeasureContext& context, TechniqueSet& techniques
     measureErrors(context, loaded.pipeline, record);
     measureFlicker(context, loaded.pipeline, record);
     measureTimes(context, loaded.pipeline, record);
-    countWork(context, loaded.pipeline, ceilings, record);
+    countWork(context, loaded.pipeline, ceilings, record.point);
   } catch (const DiagnosticsError&) {
     throw;  // a wrong text is wrong at every point
   } catch (const Error& error) {

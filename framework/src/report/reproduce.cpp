@@ -8,6 +8,7 @@
 #include <deque>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
@@ -31,7 +32,7 @@ struct SetUp {
   ReportOptions options;
   int width = 0, height = 0;
   std::vector<std::size_t> rows;
-  std::vector<std::pair<std::string, std::string>> kept;
+  KeptOutputs kept;
   StoredRun run;
   std::unique_ptr<TimedPoint> timed;
   std::string failure;
@@ -40,8 +41,9 @@ struct SetUp {
 class Reproduction {
  public:
   Reproduction(gpu::Device& device, TechniqueSet& techniques, const PublishedTable& table,
-               const ReproduceOptions& options, const std::function<Scene(const fs::path&)>& loadScene)
-      : device_(device), techniques_(techniques), options_(options), loadScene_(loadScene) {
+               const ReproduceOptions& options, const std::function<Scene(const fs::path&)>& loadScene,
+               ResultsStore* store)
+      : device_(device), techniques_(techniques), options_(options), loadScene_(loadScene), store_(store) {
     result_.table = table;
     result_.device = device.info();
     result_.host = hostText();
@@ -50,11 +52,12 @@ class Reproduction {
     result_.command =
         fmt::format("lumivox reproduce {} --scale {} --repeats {} --seed {}",
                     shellQuoted(shownPath(table.file)), result_.scale, options.repeats, options.seed);
+    if (options.truthSamples > 0) result_.command += fmt::format(" --spp {}", options.truthSamples);
     for (const std::string& argument : options.repeatArguments)
       result_.command += " " + shellQuoted(argument);
   }
 
-  ReproducedTable run(ResultsStore* store) {
+  ReproducedTable run() {
     for (const PublishedRow& row : result_.table.rows) {
       MeasuredRow measured;
       measured.name = row.name;
@@ -67,9 +70,8 @@ class Reproduction {
       if (result_.table.rows[i].absent.empty()) place(i);
     for (SetUp& setUp : setUps_)
       guarded(setUp, [&] {
-        setUp.timed = std::make_unique<TimedPoint>(
-            TimingContext{device_, techniques_, *setUp.scene, setUp.options, setUp.width, setUp.height},
-            setUp.loaded.pipeline, setUp.run.point, setUp.kept);
+        setUp.timed =
+            std::make_unique<TimedPoint>(timingOf(setUp), setUp.loaded.pipeline, setUp.run.point, setUp.kept);
       });
     for (int repeat = 0; repeat < options_.repeats; ++repeat)
       for (SetUp& setUp : setUps_) guarded(setUp, [&] { setUp.timed->timeFrame(); });
@@ -85,17 +87,62 @@ class Reproduction {
       }
       result_.setUps.push_back(fmt::format("{}, {}: {}, {} x {} pixels", setUp.sceneShown, setUp.loaded.shown,
                                            pointText(setUp.planned.parameters), setUp.width, setUp.height));
-      if (store == nullptr) continue;
-      setUp.run.point.failure = setUp.failure;
-      setUp.run.created = dateText();
-      if (!store->add(setUp.run))
-        logInformation("{}: the store has times of this set-up already, which stay", setUp.loaded.shown);
     }
     result_.judged = judge(result_.rows);
+    if (store_ != nullptr) store();
     return std::move(result_);
   }
 
  private:
+  TimingContext timingOf(const SetUp& setUp) {
+    return {device_, techniques_, *setUp.scene, setUp.options, setUp.width, setUp.height};
+  }
+
+  /// What a sweep would store: the times, of later frames too, and errors and work, which are measured apart
+  /// from them. The verdict stands whether this succeeds or not.
+  void store() {
+    for (int repeat = 0; repeat < options_.repeats; ++repeat)
+      for (SetUp& setUp : setUps_) guarded(setUp, [&] { setUp.timed->timeNextFrame(); });
+    for (SetUp& setUp : setUps_) {
+      guarded(setUp, [&] { setUp.timed->finish(); });
+      setUp.timed.reset();  // its memory, which errors may need
+    }
+    for (SetUp& setUp : setUps_) store(setUp);
+  }
+
+  void store(SetUp& setUp) {
+    StoredRun& run = setUp.run;
+    for (const auto& [pass, port] : setUp.kept) run.identity.kept.push_back(pass + "." + port);
+    std::sort(run.identity.kept.begin(), run.identity.kept.end());
+    if (const auto held = store_->find(run.identity.key()); held && held->point.failure.empty()) {
+      logInformation("{}: the store has this set-up already, which stays", setUp.loaded.shown);
+      return;
+    }
+    guarded(setUp, [&] {
+      PointRecord record;
+      record.point = run.point;
+      // A pipeline that only times something makes no picture.
+      if (!setUp.loaded.pipeline.outputs.empty()) {
+        const MeasureContext context{timingOf(setUp), truthOf(setUp)};
+        measureErrors(context, setUp.loaded.pipeline, record);
+        measureFlicker(context, setUp.loaded.pipeline, record);
+      }
+      countWork(timingOf(setUp), setUp.loaded.pipeline, {}, record.point, setUp.kept);
+      run.point = std::move(record.point);
+    });
+    run.point.failure = setUp.failure;
+    run.created = dateText();
+    store_->add(run);
+  }
+
+  Truth& truthOf(const SetUp& setUp) {
+    std::unique_ptr<Truth>& truth =
+        truths_[{setUp.scene, setUp.options.camera, setUp.options.time, setUp.width, setUp.height}];
+    if (!truth)
+      truth = std::make_unique<Truth>(*setUp.scene, truthOptionsOf(setUp.options, setUp.width, setUp.height));
+    return *truth;
+  }
+
   /// One set-up that cannot be measured must not cost the others.
   template <class Work>
   void guarded(SetUp& setUp, const Work& work) {
@@ -165,14 +212,14 @@ class Reproduction {
     setUp.options.time = row.time;
     setUp.options.seed = options_.seed;
     setUp.options.repeats = options_.repeats;
-    // No picture is judged: neither seeds to compare nor positions in the pixel nor a truth.
-    setUp.options.seeds = setUp.options.subpixels = 0;
+    setUp.options.truthSamples = options_.truthSamples;
     const Camera& camera = scene.camera(row.camera);
     const PublishedTable& table = result_.table;
     setUp.width = reduced(table.width > 0 ? table.width : camera.width);
     setUp.height = reduced(table.width > 0 ? table.height : camera.height);
-    setUp.run = storedRunOf(device_, techniques_, scene, setUp.loaded, setUp.planned, setUp.options,
-                            setUp.width, setUp.height, 0, setUp.sceneShown);
+    setUp.run = storedRunOf(
+        device_, techniques_, scene, setUp.loaded, setUp.planned, setUp.options, setUp.width, setUp.height,
+        truthOptionsOf(setUp.options, setUp.width, setUp.height).samplesPerPixel, setUp.sceneShown);
     setUp.run.point.command = result_.command;
     setUps_.push_back(std::move(setUp));
     return setUps_.back();
@@ -252,6 +299,9 @@ class Reproduction {
   ReproducedTable result_;
   std::map<fs::path, std::unique_ptr<Scene>> scenes_;
   std::map<fs::path, std::string> whyAbsent_;
+  ResultsStore* store_;
+  /// By scene, camera, time and size.
+  std::map<std::tuple<const Scene*, std::string, double, int, int>, std::unique_ptr<Truth>> truths_;
   std::deque<SetUp> setUps_;  // points keep references to their records
 };
 
@@ -268,7 +318,7 @@ ReproducedTable reproduce(gpu::Device& device, TechniqueSet& techniques, const P
                        [&](const std::string& name) { return techniques.technique(name) != nullptr; });
   });
   if (complete) checkReproduction(table, techniques);
-  return Reproduction(device, techniques, table, options, loadScene).run(store);
+  return Reproduction(device, techniques, table, options, loadScene, store).run();
 }
 
 }  // namespace lumivox

@@ -73,6 +73,7 @@ std::string RunIdentity::key() const {
   for (const auto& [name, value] : parameters) hasher.add(name).add(value);
   hasher.add(camera).add(time).add(width).add(height).add(seed).add(seeds).add(repeats).add(subpixels);
   if (flickerPairs > 0) hasher.add("flicker").add(flickerPairs);
+  for (const std::string& output : kept) hasher.add("kept").add(output);
   hasher.add(truthSamples).add(device).add(driver).add(shaderInput).add(host);
   return hasher.finish().text();
 }
@@ -127,6 +128,7 @@ void ResultsStore::State::requireSchema() {
     if (isEmpty()) {
       database.execute(report::kSchema);
       database.execute(report::kSchema2);
+      database.execute(report::kSchema3);
       database.execute(fmt::format("PRAGMA user_version = {}", report::kSchemaVersion).c_str());
       database.execute(fmt::format("PRAGMA application_id = {}", report::kApplicationId).c_str());
     }
@@ -134,12 +136,14 @@ void ResultsStore::State::requireSchema() {
   }
   if (database.pragma("application_id") != report::kApplicationId) refuse("this is another kind of database");
   schema = database.pragma("user_version");
-  if (schema == 1 && mode == Mode::write) {
+  if (schema >= 1 && schema < report::kSchemaVersion && mode == Mode::write) {
     Transaction transaction(database);
-    if (database.pragma("user_version") == 1) {
-      database.execute(report::kSchema2);
-      database.execute("PRAGMA user_version = 2");
-    }
+    // Another process may have done it while this one waited.
+    schema = database.pragma("user_version");
+    if (schema < 2) database.execute(report::kSchema2);
+    if (schema < 3) database.execute(report::kSchema3);
+    if (schema < report::kSchemaVersion)
+      database.execute(fmt::format("PRAGMA user_version = {}", report::kSchemaVersion).c_str());
     transaction.commit();
     schema = database.pragma("user_version");
   }
@@ -179,6 +183,7 @@ void ResultsStore::State::insertNames(std::int64_t id, const StoredRun& run) {
   provenance.run(id, "framework", "lumivox", run.identity.framework);
   if (run.identity.flickerPairs > 0)
     provenance.run(id, "flicker", fmt::format("{} pairs", run.identity.flickerPairs), "");
+  for (const std::string& output : run.identity.kept) provenance.run(id, "kept", output, "");
   for (const auto& [name, hash] : run.identity.techniques) provenance.run(id, "technique", name, hash);
   Statement health(database, "INSERT INTO health VALUES (?,?,?)");
   int position = 0;
@@ -202,6 +207,12 @@ void ResultsStore::State::insertTimes(std::int64_t id, const ReportPoint& point)
   Statement resource(database, "INSERT INTO resources VALUES (?,?,?,?)");
   resource.run(id, "peak", "", point.peakBytes);
   for (const auto& [name, bytes] : point.passBytes) resource.run(id, "pass", name, bytes);
+}
+
+void ResultsStore::State::insertWork(std::int64_t id, const ReportPoint& point) {
+  Statement insert(database, "INSERT INTO work VALUES (?,?,?,?)");
+  for (const auto& [pass, work] : point.passWork)
+    for (const auto& [name, amount] : work) insert.run(id, pass, name, amount);
 }
 
 void ResultsStore::State::insertErrors(std::int64_t id, const ReportPoint& point) {
@@ -228,6 +239,7 @@ bool ResultsStore::State::add(const StoredRun& run) {
   const std::int64_t id = insertRun(run);
   insertNames(id, run);
   insertTimes(id, run.point);
+  insertWork(id, run.point);
   insertErrors(id, run.point);
   return true;
 }
@@ -281,6 +293,7 @@ void ResultsStore::State::readNames(StoredRun& run) const {
   for (provenance.bind(run.id); provenance.step();) {
     const std::string kind = provenance.text(0), hash = provenance.text(2);
     if (kind == "flicker") run.identity.flickerPairs = std::atoi(provenance.text(1).c_str());
+    if (kind == "kept") run.identity.kept.push_back(provenance.text(1));
     if (kind == "scene") run.identity.sceneHash = hash;
     if (kind == "pipeline") run.identity.pipelineHash = hash;
     if (kind == "framework") run.identity.framework = hash;
@@ -314,6 +327,12 @@ void ResultsStore::State::readTimes(StoredRun& run) const {
   }
 }
 
+void ResultsStore::State::readWork(StoredRun& run) const {
+  if (schema < 3) return;
+  Statement work(database, "SELECT pass, name, amount FROM work WHERE run = ?");
+  for (work.bind(run.id); work.step();) run.point.passWork[work.text(0)][work.text(1)] = work.number(2);
+}
+
 void ResultsStore::State::readErrors(StoredRun& run) const {
   Statement row(database, "SELECT * FROM errors WHERE run = ? ORDER BY position");
   Statement metric(database,
@@ -334,13 +353,18 @@ void ResultsStore::State::readErrors(StoredRun& run) const {
   }
 }
 
+void ResultsStore::State::readAll(StoredRun& run) const {
+  readTimes(run);
+  readWork(run);
+  readErrors(run);
+}
+
 std::optional<StoredRun> ResultsStore::find(const std::string& key) const {
   Statement row(state_->database, fmt::format("SELECT id, {} FROM runs WHERE key = ?", kRunColumns).c_str());
   if (!row.bind(key).step()) return std::nullopt;
   StoredRun run = state_->runAt(row);
   state_->readNames(run);
-  state_->readTimes(run);
-  state_->readErrors(run);
+  state_->readAll(run);
   return run;
 }
 
@@ -351,8 +375,7 @@ std::vector<StoredRun> ResultsStore::runs(const RunFilter& filter) const {
     StoredRun run = state_->runAt(row);
     state_->readNames(run);
     if (!matches(filter, run)) continue;
-    state_->readTimes(run);
-    state_->readErrors(run);
+    state_->readAll(run);
     result.push_back(std::move(run));
   }
   return result;

@@ -5,7 +5,7 @@
 
 namespace lumivox::report {
 
-inline constexpr std::int64_t kSchemaVersion = 2;           // PRAGMA user_version
+inline constexpr std::int64_t kSchemaVersion = 3;           // PRAGMA user_version
 inline constexpr std::int64_t kApplicationId = 0x4c4d5658;  // PRAGMA application_id: "LMVX"
 
 inline constexpr const char* kSchema = R"sql(
@@ -158,6 +158,17 @@ CREATE TABLE ceilings (
   largest REAL NOT NULL,
   repeats INTEGER NOT NULL,
   PRIMARY KEY (device, driver, shader_input, host, name)
+) STRICT, WITHOUT ROWID;
+)sql";
+
+/// What schema 3 adds to schema 2.
+inline constexpr const char* kSchema3 = R"sql(
+CREATE TABLE work (
+  run INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE,
+  pass TEXT NOT NULL,
+  name TEXT NOT NULL,
+  amount REAL NOT NULL,
+  PRIMARY KEY (run, pass, name)
 ) STRICT, WITHOUT ROWID;
 )sql";
 

@@ -25,6 +25,7 @@ struct ResultsStore::State {
   void requireSchema();
   std::int64_t insertRun(const StoredRun& run);
   void insertTimes(std::int64_t id, const ReportPoint& point);
+  void insertWork(std::int64_t id, const ReportPoint& point);
   void insertErrors(std::int64_t id, const ReportPoint& point);
   void insertNames(std::int64_t id, const StoredRun& run);
   bool add(const StoredRun& run);
@@ -32,7 +33,9 @@ struct ResultsStore::State {
   void addCeilings(const std::vector<DeviceCeiling>& ceilings);
   StoredRun runAt(const report::Statement& row) const;
   void readTimes(StoredRun& run) const;
+  void readWork(StoredRun& run) const;
   void readErrors(StoredRun& run) const;
+  void readAll(StoredRun& run) const;  ///< all but what runAt() and readNames() give
   void readNames(StoredRun& run) const;
 };
 

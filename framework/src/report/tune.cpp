@@ -18,8 +18,7 @@ namespace {
 
 using namespace report;
 
-constexpr double kSameError = 0.01;  // errors closer than this share count as equal: then time decides
-constexpr double kNearLimit = 2.0;   // points of the front beyond this many times the limit are not followed
+constexpr double kNearLimit = 2.0;  // points of the front beyond this many times the limit are not followed
 
 /// Whether a parameter of the pipeline goes to a whole number of some pass.
 bool isWhole(const Pipeline& pipeline, TechniqueSource& techniques, const std::string& name) {
@@ -82,15 +81,16 @@ class Search {
     return !usedUp_;
   }
 
-  /// Points beside those of the front that were not followed yet.
+  /// Points beside those of the front that were not followed yet. The rule of the front keeps what cannot be
+  /// told apart from the best, and a plateau of the error would use up the evaluations. So points that are
+  /// ahead of every faster one by more than the uncertainty are followed first, the rest of the front after
+  /// them.
   std::vector<WantedPoint> neighbours() {
     std::vector<std::vector<WantedPoint>> lists;
-    for (Seen& seen : seen_) {
-      if (seen.followed || !seen.point.onFront || !isNear(seen.point)) continue;
-      seen.followed = true;
-      lists.emplace_back();
-      addNeighbours(seen.wanted, lists.back());
-    }
+    for (const std::size_t index : ahead()) follow(seen_[index], lists);
+    if (total(lists) == 0)
+      for (Seen& seen : seen_)
+        if (seen.point.onFront) follow(seen, lists);
     // In turns, so that few evaluations are shared by all that is on the front.
     std::vector<WantedPoint> result;
     for (std::size_t i = 0; result.size() < total(lists); ++i)
@@ -102,12 +102,13 @@ class Search {
   TuneResult finish() {
     TuneResult result;
     result.exhausted = !usedUp_;
-    std::stable_sort(seen_.begin(), seen_.end(),
-                     [](const Seen& a, const Seen& b) { return a.point.timeMs < b.point.timeMs; });
+    std::stable_sort(seen_.begin(), seen_.end(), [](const Seen& a, const Seen& b) {
+      return a.point.tradeOff.timeMs.value < b.point.tradeOff.timeMs.value;
+    });
     const Seen* best = nullptr;
     for (Seen& seen : seen_) {
       const auto cost = [&](const Seen& one) {
-        return options_.budgetMs ? one.point.error : one.point.timeMs;
+        return options_.budgetMs ? one.point.tradeOff.error.value : one.point.tradeOff.timeMs.value;
       };
       if (seen.point.fits && seen.point.onFront && (best == nullptr || cost(seen) < cost(*best))) {
         best = &seen;
@@ -142,31 +143,45 @@ class Search {
           std::count_if(run.point.errors.begin(), run.point.errors.end(),
                         [&](const ComponentError& other) { return other.output == options_.output; }) == 1;
       if (error.bias != options_.bias && !only) continue;
-      for (const NamedMetric& metric : metricsOf(error)) {
-        if (metric.name != options_.metric || !std::isfinite(metric.measured.value)) continue;
-        TunedPoint point{run, run.point.frameMs.median, metric.measured.value, false, false};
-        point.fits =
-            options_.budgetMs ? point.timeMs <= *options_.budgetMs : point.error <= *options_.errorLimit;
-        seen_.push_back({std::move(point), wanted, false});
-      }
+      const Measured number = errorNumber(error, options_.metric);
+      if (!std::isfinite(number.value)) continue;
+      TunedPoint point{run, {medianOf(run.point.frameMs), number}, false, false};
+      point.fits = withinLimit(point.tradeOff, 1.0);
+      seen_.push_back({std::move(point), wanted, false});
     }
   }
 
-  /// Less time and no more error worth the name; or less error in the same time.
-  static bool beats(const TunedPoint& a, const TunedPoint& b) {
-    if (a.timeMs < b.timeMs) return a.error <= (1.0 + kSameError) * b.error;
-    return a.timeMs == b.timeMs && a.error < b.error;
+  std::vector<TradeOff> tradeOffs() const {
+    std::vector<TradeOff> result;
+    for (const Seen& seen : seen_) result.push_back(seen.point.tradeOff);
+    return result;
   }
 
   void markFront() {
-    for (Seen& one : seen_)
-      one.point.onFront = std::none_of(seen_.begin(), seen_.end(),
-                                       [&](const Seen& other) { return beats(other.point, one.point); });
+    const std::vector<std::optional<std::size_t>> beaten = beatenBy(tradeOffs());
+    for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i].point.onFront = !beaten[i];
   }
 
-  bool isNear(const TunedPoint& point) const {
-    return options_.budgetMs ? point.timeMs <= kNearLimit * *options_.budgetMs
-                             : point.error <= kNearLimit * *options_.errorLimit;
+  /// Of the points that none beats by value, by time, those whose error differs from that of the last one.
+  std::vector<std::size_t> ahead() const {
+    const std::vector<TradeOff> points = tradeOffs();
+    std::vector<std::size_t> result;
+    for (const std::size_t index : frontByValue(points))
+      if (result.empty() || differ(points[result.back()].error, points[index].error)) result.push_back(index);
+    return result;
+  }
+
+  void follow(Seen& seen, std::vector<std::vector<WantedPoint>>& lists) {
+    if (seen.followed || !withinLimit(seen.point.tradeOff, kNearLimit)) return;
+    seen.followed = true;
+    lists.emplace_back();
+    addNeighbours(seen.wanted, lists.back());
+  }
+
+  /// Whether a point lies within so many times the limit.
+  bool withinLimit(const TradeOff& point, double times) const {
+    return options_.budgetMs ? point.timeMs.value <= times * *options_.budgetMs
+                             : point.error.value <= times * *options_.errorLimit;
   }
 
   void addNeighbours(const WantedPoint& wanted, std::vector<WantedPoint>& result) {

@@ -28,6 +28,9 @@ void writeFileAtomically(const std::filesystem::path& path, std::string_view tex
 /// Creates the parent directories of a file that is about to be written; Error when that fails.
 void createParentDirectories(const std::filesystem::path& file);
 
+/// Bytes that this machine has available now; the largest number where the system does not tell.
+std::uint64_t availableMemory();
+
 /// Refuses (Error naming `what`, the bytes needed and the bytes available) when `bytes` do not fit into the
 /// memory that this machine has available now. Call it before a large allocation.
 void requireMemory(std::uint64_t bytes, std::string_view what);

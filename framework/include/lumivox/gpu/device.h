@@ -237,6 +237,7 @@ struct DeviceInfo {
 struct DeviceOptions {
   std::string device = "auto";  ///< "auto", "software", "surfaceless", or the index of an EGL device
   ShaderInput shaderInput = ShaderInput::automatic;
+  std::uint64_t memoryBytes = 0;  ///< textures and buffers may take so much together; 0: what the device has
 };
 
 class Device {
@@ -250,7 +251,8 @@ class Device {
   const DeviceInfo& info() const;
   ShaderInput shaderInput() const;  ///< spirv or glsl, never automatic
 
-  /// Every command between enter and leave belongs to this pass: driver errors are reported under its name.
+  /// Every command between enter and leave belongs to this pass: what the driver says is logged under its
+  /// name. Errors do not carry it; whoever runs the pass knows it.
   void enterPass(const std::string& name);
   void leavePass();  ///< throws Error for a driver error since enterPass
 

@@ -86,7 +86,7 @@ std::vector<PipelineComparison> compareComponents(const std::vector<const Report
                                                   const ComparisonLimits& limits);
 
 /// Stored runs that can be set against each other: one scene with its content, camera, time, size of the
-/// picture and positions in the pixel, one device, driver, way of shaders and host.
+/// picture and positions in the pixel, one device, driver, way of shaders and host, the same outputs kept.
 struct ComparableRuns {
   std::string title;  ///< "cornell, camera main, 128x128, on llvmpipe"
   /// The last of each point, and of each pipeline only those with the content of its last run: its text, its

@@ -57,7 +57,7 @@ struct ReportPoint {
   TimingStatistics nextFrameMs;        ///< 1/60 s later, only what changed runs
   std::map<std::string, TimingStatistics> passDeviceMs, passHostMs;
   std::map<std::string, std::uint64_t> passBytes;
-  /// What each pass does, counted in a frame of its own; not kept in the results store.
+  /// What each pass does, counted in a frame of its own.
   std::map<std::string, Work> passWork;
   /// What each pass takes at least: one bound per resource, the largest first. Empty without the ceilings of
   /// this device.

@@ -118,6 +118,7 @@ struct ReproduceOptions {
   double scale = 0.0;  ///< of picture sides and scaled parameters, above 0 to 1; 0: the table's own
   int repeats = 5;     ///< timed frames; those of all rows take turns
   std::uint64_t seed = 1;
+  int truthSamples = 0;  ///< per pixel, for the errors that go to a store; 0: truthSamplesFor()
   std::vector<std::string> repeatArguments;  ///< further options that a repeating command needs
 };
 
@@ -132,8 +133,8 @@ struct ReproducedTable {
 };
 
 /// Measures every row whose set-up is here. An absent model or technique and a pass that the scene does not
-/// need make a row not comparable. `store`: takes the times of every set-up; they carry no errors (0 samples
-/// of the truth). Throws DiagnosticsError for a wrong text.
+/// need make a row not comparable. `store`: takes every set-up as a sweep would store it: its times, and
+/// then, apart from them, its errors and the work of its passes. Throws DiagnosticsError for a wrong text.
 ReproducedTable reproduce(gpu::Device& device, TechniqueSet& techniques, const PublishedTable& table,
                           const ReproduceOptions& options,
                           const std::function<Scene(const std::filesystem::path&)>& loadScene,

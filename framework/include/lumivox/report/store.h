@@ -27,6 +27,7 @@ struct RunIdentity {
   std::uint64_t seed = 1;
   int seeds = 1, repeats = 1, subpixels = 1, truthSamples = 0;
   int flickerPairs = 0;                           ///< 0 where the scene does not move
+  std::vector<std::string> kept;                  ///< sorted outputs "pass.port" that no picture needs
   std::string device, driver, shaderInput, host;  ///< host: processor and system
 
   std::string key() const;  ///< 32 hexadecimal digits

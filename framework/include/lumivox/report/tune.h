@@ -8,26 +8,27 @@
 #include <string>
 #include <vector>
 
+#include "lumivox/report/interpolation.h"
 #include "lumivox/report/report.h"
 #include "lumivox/report/store.h"
 
 namespace lumivox {
 
 struct TuneOptions {
-  ReportOptions measure;                   ///< one scene; `output` is not used
-  std::optional<double> budgetMs;          ///< of a frame in which every kept pass runs
-  std::optional<double> errorLimit;        ///< exactly one of the two
-  std::string metric = "rmse_over_seeds";  ///< a name of metricsOf(); less is better
-  std::string output = kWholePicture;      ///< of the pipelines; those without it are left out
-  bool bias = false;                       ///< against the technique's own model, not the full truth
-  int evaluations = 60;                    ///< most points to look at, stored ones included
+  ReportOptions measure;               ///< one scene; `output` is not used
+  std::optional<double> budgetMs;      ///< of a frame in which every kept pass runs
+  std::optional<double> errorLimit;    ///< exactly one of the two
+  std::string metric = "rmse";         ///< one of errorMetrics(), as errorNumber() reads it
+  std::string output = kWholePicture;  ///< of the pipelines; those without it are left out
+  bool bias = false;                   ///< against the technique's own model, not the full truth
+  int evaluations = 60;                ///< most points to look at, stored ones included
 };
 
 /// One point that the search looked at.
 struct TunedPoint {
   StoredRun run;
-  double timeMs = 0.0, error = 0.0;
-  bool onFront = false;  ///< no other point has less time and, within 1 %, no more error
+  TradeOff tradeOff;
+  bool onFront = false;  ///< no other point beats it: the rule of all fronts, beats()
   bool fits = false;     ///< within the budget, or the error
 };
 
@@ -41,9 +42,11 @@ struct TuneResult {
 
 /// The search begins with the default and the sweeps of every suitable pipeline. Then, again and again, the
 /// neighbours of the points that are on the front and within twice the limit are measured: each declared
-/// parameter times 2, 1/2, sqrt(2) and 1/sqrt(2), at 0 where its range begins there, and at its other words.
-/// It ends when there are none left, or after `evaluations`. Throws as makeReport; Error when the limits
-/// contradict themselves or the metric or output is unknown.
+/// parameter times 2, 1/2, sqrt(2) and 1/sqrt(2), at 0 where its range begins there, and at its other words;
+/// first beside the points whose error is less than that of every faster one by more than the uncertainty.
+/// The winner has the least error by value of all points within the budget, or the least time within the
+/// error. It ends when there are none left, or after `evaluations`. Throws as makeReport; Error when the
+/// limits contradict themselves or the metric or output is unknown.
 TuneResult tune(gpu::Device& device, TechniqueSet& techniques, const TuneOptions& options,
                 ResultsStore& store, const std::function<Scene(const std::filesystem::path&)>& loadScene);
 

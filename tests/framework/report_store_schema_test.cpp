@@ -1,0 +1,149 @@
+// The schema of the results store: earlier ones, foreign files, and the guide.
+#include <sqlite3.h>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "stored_records.h"
+#include "support/support.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+void execute(const std::filesystem::path& file, const std::string& sql) {
+  sqlite3* handle = nullptr;
+  REQUIRE(sqlite3_open(file.c_str(), &handle) == SQLITE_OK);
+  REQUIRE(sqlite3_exec(handle, sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK);
+  sqlite3_close(handle);
+}
+
+/// A store as an earlier version left it.
+std::filesystem::path oldStore(const TemporaryDirectory& directory) {
+  const auto file = directory.path() / "old.sqlite";
+  execute(file, readFile(sourceDirectory() / "tests/framework/data/results_schema_1.sql"));
+  return file;
+}
+
+std::int64_t schemaOf(const std::filesystem::path& file) {
+  sqlite3* handle = nullptr;
+  REQUIRE(sqlite3_open(file.c_str(), &handle) == SQLITE_OK);
+  std::int64_t version = 0;
+  const auto read = [](void* result, int, char** values, char**) {
+    *static_cast<std::int64_t*>(result) = std::atoll(values[0]);
+    return 0;
+  };
+  REQUIRE(sqlite3_exec(handle, "PRAGMA user_version", read, &version, nullptr) == SQLITE_OK);
+  sqlite3_close(handle);
+  return version;
+}
+
+}  // namespace
+
+TEST_CASE("a store of the schema before is read as it is, and gets the new tables when it is written") {
+  const TemporaryDirectory directory;
+  const auto file = oldStore(directory);
+  {
+    const ResultsStore store(file, ResultsStore::Mode::read);
+    const std::vector<StoredRun> runs = store.runs();
+    REQUIRE(runs.size() == 1);
+    CHECK(runs[0].sceneName == "Cornell box");
+    CHECK(runs[0].identity.width == 8);
+    CHECK(runs[0].point.passOrder == std::vector<std::string>{"gbuffer", "shadow", "direct"});
+    CHECK_FALSE(runs[0].point.errors.empty());
+    CHECK(store.stressCells().empty());
+    CHECK(store.ceilings().empty());
+  }
+  CHECK(schemaOf(file) == 1);
+  // A merge reads it without touching it.
+  ResultsStore other(directory.path() / "new.sqlite");
+  CHECK(other.merge(ResultsStore(file, ResultsStore::Mode::read)).runs == 1);
+  CHECK(schemaOf(file) == 1);
+  {
+    ResultsStore store(file);
+    CHECK(store.runs().size() == 1);
+    store.add({cellNumber(1)});
+    CHECK(store.stressCells().size() == 1);
+  }
+  CHECK(schemaOf(file) == 3);
+  CHECK(ResultsStore(file, ResultsStore::Mode::read).runs().size() == 1);
+}
+
+TEST_CASE("a store without work is read as it is, and keeps work when it is written") {
+  const TemporaryDirectory directory;
+  const auto file = directory.path() / "old.sqlite";
+  {
+    ResultsStore store(file);
+    store.add(runNumber(1));
+    store.add({cellNumber(1)});
+  }
+  // As schema 2 was.
+  execute(file, "DROP TABLE work; PRAGMA user_version = 2");
+  {
+    const ResultsStore store(file, ResultsStore::Mode::read);
+    REQUIRE(store.runs().size() == 1);
+    CHECK(store.runs()[0].point.passWork.empty());
+    CHECK(store.runs()[0].point.errors.size() == 1);
+    CHECK(store.stressCells().size() == 1);
+  }
+  CHECK(schemaOf(file) == 2);
+  ResultsStore store(file);
+  CHECK(schemaOf(file) == 3);
+  CHECK(store.add(runNumber(2)));
+  const std::vector<StoredRun> runs = store.runs();
+  REQUIRE(runs.size() == 2);
+  CHECK(runs[0].point.passWork.empty());
+  CHECK(runs[1].point.passWork == runNumber(2).point.passWork);
+  CHECK(store.stressCells().size() == 1);
+}
+
+TEST_CASE("the guide names every table and column of the store") {
+  const std::string guide = readFile(sourceDirectory() / "docs/results.md");
+  const TemporaryDirectory directory;
+  const auto file = directory.path() / "results.sqlite";
+  { ResultsStore store(file); }
+  sqlite3* handle = nullptr;
+  REQUIRE(sqlite3_open(file.c_str(), &handle) == SQLITE_OK);
+  std::vector<std::string> names;
+  const auto read = [](void* result, int, char** values, char**) {
+    static_cast<std::vector<std::string>*>(result)->push_back(std::string(values[0]) + " " + values[1]);
+    return 0;
+  };
+  REQUIRE(sqlite3_exec(handle,
+                       "SELECT m.name, c.name FROM sqlite_schema m JOIN pragma_table_info(m.name) c WHERE "
+                       "m.type = 'table'",
+                       read, &names, nullptr) == SQLITE_OK);
+  sqlite3_close(handle);
+  CHECK(names.size() > 60);
+  for (const std::string& name : names) {
+    const std::string table = name.substr(0, name.find(' ')), column = name.substr(name.find(' ') + 1);
+    INFO(name);
+    CHECK(guide.find("`" + table + "`") != std::string::npos);
+    CHECK(guide.find("`" + column + "`") != std::string::npos);
+  }
+}
+
+TEST_CASE("what is no results store is refused and stays as it was") {
+  const TemporaryDirectory directory;
+  const auto text = directory.write(
+      "notes.txt", "This is no database, but long enough to look like one. " + std::string(2000, 'x'));
+  const std::string before = readFile(text);
+  CHECK(messageOf<Error>([&] { ResultsStore store(text); }).find("notes.txt") != std::string::npos);
+  CHECK(readFile(text) == before);
+  CHECK(messageOf<Error>([&] {
+          ResultsStore store(directory.path() / "absent", ResultsStore::Mode::read);
+        }).find("there is no results store") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(directory.path() / "absent"));
+
+  const auto foreign = directory.path() / "foreign.sqlite";
+  execute(foreign, "CREATE TABLE a (b); PRAGMA user_version = 1");
+  CHECK(messageOf<Error>([&] { ResultsStore store(foreign); }).find("another kind") != std::string::npos);
+
+  const auto later = directory.path() / "later.sqlite";
+  { ResultsStore store(later); }
+  execute(later, "PRAGMA user_version = 99");
+  CHECK(messageOf<Error>([&] { ResultsStore store(later); }).find("schema 99") != std::string::npos);
+
+  CHECK(messageOf<Error>([&] { ResultsStore store("/proc/results.sqlite"); }).find("/proc") !=
+        std::string::npos);
+}
