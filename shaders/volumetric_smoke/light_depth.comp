@@ -1,6 +1,7 @@
 #version 450
-// Optical depth of the media that vary between every voxel of a box and every light sample, one slab of the texture a light: what a
-// march from each sample of each ray would find, once a frame.
+// What the media that vary let through between every point of a grid and every light sample, one slab of the texture a light: what a march
+// from each sample of each ray would find, once a frame. Not the depth: between a point in thick smoke and one outside of it, half of the
+// light is a better guess than half of the depth, which lets nothing through.
 #pragma lumivox axis MEDIUM even varying
 #pragma lumivox require MEDIUM == varying
 #include "common/media.glsl"
@@ -9,12 +10,12 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 layout(std140, binding = 0) uniform Parameters {
   vec3 boxLow;  // m
-  int side;     // voxels along a side of a slab
+  int side;     // points along a side of a slab
   vec3 boxHigh; // m
   int lightCount;
   int mostSteps;
 };
-layout(binding = 0, rgba32f) uniform writeonly image3D depthImage;
+layout(binding = 0, rgba32f) uniform writeonly image3D transmittanceImage;
 
 void main() {
   ivec3 texel = ivec3(gl_GlobalInvocationID);
@@ -23,5 +24,5 @@ void main() {
   vec3 posWorld = mix(boxLow, boxHigh, share), direction;
   float reach;
   wayToLight(lights[texel.z / side], posWorld, direction, reach);
-  imageStore(depthImage, texel, vec4(varyingDepth(posWorld, direction, reach, mostSteps), 0.0));
+  imageStore(transmittanceImage, texel, vec4(exp(-varyingDepth(posWorld, direction, reach, mostSteps)), 0.0));
 }

@@ -10,6 +10,7 @@
 #define SHADOW_VIEWS
 #endif
 #include "range.glsl"
+#include "cells.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -17,16 +18,18 @@ layout(constant_id = 0) const int stepCount = 32;
 layout(constant_id = 1) const int lightSteps = 32;
 layout(constant_id = 2) const int dithered = 1;
 layout(constant_id = 3) const int phaseIsPublished = 0;
+layout(constant_id = 4) const int exactCells = 8;  // 0: densities are looked at once a step, as published
 
 layout(std140, binding = 0) uniform Parameters {
   ivec2 size;      // samples
   int lightCount;
-  int depthSide;   // voxels along a side of a slab of the light depths
-  vec3 depthLow;   // m, box of the light depths
-  vec3 depthHigh;
+  int gridSide;    // points along a side of a slab of the transmittances to the lights
+  vec3 gridLow;    // m, box of them
+  vec3 gridHigh;
+  float nearReach; // m, way from a place towards a light that is integrated before they are looked up
 };
 #if LIGHT_DEPTH == LIGHT_DEPTH_VOLUME
-layout(binding = 12) uniform sampler3D lightDepth;
+layout(binding = 12) uniform sampler3D lightTransmittance;
 #endif
 layout(binding = 0, rgba32f) uniform writeonly image2D scatteredImage;      // w: where the ray leaves the media, m
 layout(binding = 1, rgba32f) uniform writeonly image2D transmittanceImage;
@@ -47,13 +50,24 @@ vec3 depthToLight(int i, vec3 posWorld) {
   float reach;
   wayToLight(lights[i], posWorld, direction, reach);
 #if LIGHT_DEPTH == LIGHT_DEPTH_VOLUME
-  vec3 share = (posWorld - depthLow) / (depthHigh - depthLow);
-  if (all(greaterThanEqual(share, vec3(0.0))) && all(lessThanEqual(share, vec3(1.0)))) {
-    // Slabs of other lights must not be mixed in.
-    float inset = 0.5 / float(depthSide);
-    share.z = (float(i) + clamp(share.z, inset, 1.0 - inset)) / float(lightCount);
-    return evenDepth(posWorld, direction, reach) + textureLod(lightDepth, share, 0.0).rgb;
+  // The grid is too coarse for the surface of thick smoke: the way through what is near is integrated, and the rest looked up behind it.
+  vec3 depth = evenDepth(posWorld, direction, reach);
+  float way = min(nearReach, reach), reached;
+  for (int m = 0; m < mediumCount; ++m) {
+    vec2 inside = insideMedium(m, posWorld, direction, way);
+    if (isEven(m) || inside.x >= inside.y) continue;
+    depth += media[m].extinction.rgb * integralOverCells(m, posWorld, direction, inside, kAllCells, reached);
   }
+  if (way == reach) return depth;
+  vec3 share = (posWorld + direction * way - gridLow) / (gridHigh - gridLow);
+  if (any(lessThan(share, vec3(0.0))) || any(greaterThan(share, vec3(1.0))))
+    return depth + varyingDepth(posWorld + direction * way, direction, reach - way, lightSteps);
+  // Slabs of other lights must not be mixed in.
+  float inset = 0.5 / float(gridSide);
+  share.z = (float(i) + clamp(share.z, inset, 1.0 - inset)) / float(lightCount);
+  return depth - log(max(textureLod(lightTransmittance, share, 0.0).rgb, vec3(kLeastTransmittance)));
+#elif MEDIUM == MEDIUM_VARYING
+  if (exactCells > 0) return depthFrom(posWorld, direction, reach, exactCells, lightSteps);
 #endif
   return opticalDepth(posWorld, direction, reach, lightSteps);
 }
@@ -85,6 +99,22 @@ vec3 meanTransmittance(vec3 a, vec3 b) {
 }
 #endif
 
+// Length of a step inside a medium times the mean density there, m. Of media that vary: exact over the cells at the step's far end, where
+// the depths that are compared with it are taken, and by one look into the rest.
+float amountInStep(int i, vec3 direction, float near, float stride, float start) {
+  if (isEven(i)) {
+    vec2 inside = insideMedium(i, eyeWorld, direction, near + stride);
+    return max(inside.y - max(inside.x, near), 0.0);
+  }
+#if MEDIUM == MEDIUM_VARYING
+  float reached = 0.0, sum = 0.0;
+  if (exactCells > 0) sum = integralOverCells(i, eyeWorld + direction * (near + stride), -direction, vec2(0.0, stride), exactCells, reached);
+  float rest = stride - reached;
+  return rest > 0.0 ? sum + rest * densityAt(i, eyeWorld + direction * (near + start * rest)) : sum;
+#endif
+  return 0.0;
+}
+
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(texel, size))) return;
@@ -93,51 +123,51 @@ void main() {
   vec2 range = insideMedia(eyeWorld, direction, reach);
   vec3 scattered = vec3(0.0), passed = vec3(0.0);  // passed: optical depth from the eye
   float stride = max(range.y - range.x, 0.0) / float(stepCount), start = dither(texel);
-  for (int s = 0; s < stepCount && stride > 0.0; ++s) {
-    float near = range.x + float(s) * stride;
-    vec3 posWorld = eyeWorld + direction * (near + start * stride);
-    vec3 thickness = vec3(0.0);  // optical depth of the step
-    for (int i = 0; i < mediumCount; ++i) {
-      if (isEven(i)) {
-        vec2 inside = insideMedium(i, eyeWorld, direction, near + stride);
-        thickness += media[i].extinction.rgb * max(inside.y - max(inside.x, near), 0.0);
-      }
-#if MEDIUM == MEDIUM_VARYING
-      else thickness += media[i].extinction.rgb * (densityAt(i, posWorld) * stride);
-#endif
-    }
 #if LIGHTS
-    vec3 first = eyeWorld + direction * near, last = eyeWorld + direction * (near + stride);
-    for (int l = 0; l < lightCount; ++l) {
-      LightSample light = lights[l];
+  for (int l = 0; l < lightCount; ++l) {
+    LightSample light = lights[l];
+    vec3 atNear, atFar;  // depths to the light
+    bool known = false;  // that at the near end: it is that at the far end of the step before
+    passed = vec3(0.0);
+#endif
+    for (int s = 0; s < stepCount && stride > 0.0 && any(lessThan(passed, vec3(kOpaque))); ++s) {
+      float near = range.x + float(s) * stride;
+#if LIGHTS
       vec3 toLight;
       float factor;
       vec3 lit = eyeWorld + direction * placeInStep(light, direction, near, stride, start, factor);
       vec3 irradiance = factor * arrivingIrradiance(light, lit, toLight);
       vec3 scattering = vec3(0.0);  // sigma_s times phase times length
+#endif
+      vec3 thickness = vec3(0.0);  // optical depth of the step
       for (int i = 0; i < mediumCount; ++i) {
-        float share = 0.0;
-        if (isEven(i)) {
-          vec2 inside = insideMedium(i, eyeWorld, direction, near + stride);
-          share = max(inside.y - max(inside.x, near), 0.0);
-        }
-#if MEDIUM == MEDIUM_VARYING
-        else share = densityAt(i, posWorld) * stride;
-#endif
+        float amount = amountInStep(i, direction, near, stride, start);
+        if (amount <= 0.0) continue;
+        thickness += media[i].extinction.rgb * amount;
+#if LIGHTS
         float g = media[i].lowAnisotropy.w;
-        if (share <= 0.0) continue;
         float turned = phaseIsPublished != 0 ? phaseAsPublished(g, toLight, direction) : phase(g, toLight, direction);
-        scattering += media[i].scattering.rgb * (share * turned);
-      }
-      if (all(equal(scattering * irradiance, vec3(0.0)))) continue;
-      irradiance *= visibility(light, lit, toLight, toLight);
-      if (all(equal(irradiance, vec3(0.0)))) continue;
-      scattered += scattering * irradiance *
-                   meanTransmittance(passed + depthToLight(l, first), passed + thickness + depthToLight(l, last));
-    }
+        scattering += media[i].scattering.rgb * (amount * turned);
 #endif
-    passed += thickness;
+      }
+#if LIGHTS
+      if (any(notEqual(scattering * irradiance, vec3(0.0)))) irradiance *= visibility(light, lit, toLight, toLight);
+      scattering *= irradiance;
+      if (all(equal(scattering, vec3(0.0)))) {
+        known = false;
+      } else {
+        if (!known) atNear = depthToLight(l, eyeWorld + direction * near);
+        atFar = depthToLight(l, eyeWorld + direction * (near + stride));
+        scattered += scattering * meanTransmittance(passed + atNear, passed + thickness + atFar);
+        atNear = atFar;
+        known = true;
+      }
+#endif
+      passed += thickness;
+    }
+#if LIGHTS
   }
+#endif
   imageStore(scatteredImage, texel, vec4(scattered, range.x < range.y ? range.y : 0.0));
   imageStore(transmittanceImage, texel, vec4(exp(-passed), 1.0));
 }

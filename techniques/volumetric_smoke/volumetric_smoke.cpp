@@ -220,6 +220,13 @@ class MarchPass : public Pass {
                                 "grid of points, or for every step of every ray"};
   Param<int> lightResolution{
       this, "light_resolution", 32, {4, 256}, "points along each side of that grid, for each light"};
+  Param<int> cells{
+      this,
+      "cells",
+      8,
+      {0, 1024},
+      "cubes between voxels over which densities are integrated exactly, from every place of a step "
+      "towards the eye and towards the lights; 0: looked at once a step, as published"};
   Param<int> lightSteps{this, "light_steps", 32, {1, 1024}, "most steps of a march towards a light"};
   Param<std::string> start{
       this,
@@ -256,6 +263,7 @@ class MarchPass : public Pass {
     marchShader::Constants constants;
     constants.stepCount = steps;
     constants.lightSteps = lightSteps;
+    constants.exactCells = cells;
     constants.dithered = start == "dithered" ? 1 : 0;
     constants.phaseIsPublished = phase == "as_published" ? 1 : 0;
     marchShader::Parameters parameters{};
@@ -263,7 +271,7 @@ class MarchPass : public Pass {
     parameters.lightCount = variant.lights != 0 ? shadow->lightCount : 0;
 
     using gpu::Sampling;
-    gpu::TextureRef depths;
+    gpu::TextureRef transmittances;
     std::vector<gpu::ResourceBinding> bindings{marchShader::view(viewOf<marchShader::View>(camera, pixels)),
                                                marchShader::gPosition(*gbuffer->position, Sampling::nearest),
                                                marchShader::scatteredImage(*result.scattered),
@@ -272,11 +280,12 @@ class MarchPass : public Pass {
       bindings.push_back(marchShader::lights(*shadow->lights));
       bindings.push_back(marchShader::views(*shadow->views));
       bindings.push_back(marchShader::shadowDepth(*shadow->depth, Sampling::shadow));
-      if (bound.varying() && lightDepth == "volume") depths = makeDepths(frame, bound, parameters);
+      if (bound.varying() && lightDepth == "volume")
+        transmittances = makeTransmittances(frame, bound, parameters);
     }
-    if (depths) {
+    if (transmittances) {
       variant.lightDepth = marchShader::Variant::lightDepthVolume;
-      bindings.push_back(marchShader::lightDepth(*depths, Sampling::linear));
+      bindings.push_back(marchShader::lightTransmittance(*transmittances, Sampling::linear));
     }
     bindings.push_back(marchShader::parameters(parameters));
     bound.addTo(bindings);
@@ -286,14 +295,16 @@ class MarchPass : public Pass {
     transmittance = Image{result.transmittance};
   }
 
-  /// Depths for all lights side by side along z. Null where so many lights do not fit into a texture.
-  gpu::TextureRef makeDepths(PassContext& frame, const MediaBinding& bound,
-                             marchShader::Parameters& parameters) {
+  /// Those to all lights side by side along z. Null where so many lights do not fit into a texture.
+  gpu::TextureRef makeTransmittances(PassContext& frame, const MediaBinding& bound,
+                                     marchShader::Parameters& parameters) {
     const int lightCount = parameters.lightCount;
+    constexpr float kSpacings = 2.0f;
     constexpr int kFewest = 4;  // points along a side that are still a grid
     const int side = std::min<int>(lightResolution, frame.device().info().maxTextureSize3d / lightCount);
     if (side < kFewest) {
-      frame.warn("so many lights have no room in one texture of light depths; every step marches to them");
+      frame.warn(
+          "so many lights have no room in one texture of light transmittances; every step marches to them");
       return nullptr;
     }
     Bounds box;
@@ -302,11 +313,15 @@ class MarchPass : public Pass {
       box.grow(medium.bounds.low);
       box.grow(medium.bounds.high);
     }
-    parameters.depthSide = side;
-    parameters.depthLow = box.low;
-    parameters.depthHigh = box.high;
+    parameters.gridSide = side;
+    parameters.gridLow = box.low;
+    parameters.gridHigh = box.high;
+    // A place just inside a lit surface is then looked up among points that are outside.
+    const glm::vec3 spacing = (box.high - box.low) / static_cast<float>(side);
+    parameters.nearReach = cells > 0 ? kSpacings * std::max({spacing.x, spacing.y, spacing.z}) : 0.0f;
     const glm::ivec3 size(side, side, side * lightCount);
-    gpu::TextureRef depths = frame.texture(volumeOf(size, gpu::Format::rgba32f), "light depths");
+    gpu::TextureRef transmittances =
+        frame.texture(volumeOf(size, gpu::Format::rgba32f), "transmittances to the lights");
     lightDepthShader::Variant variant;
     variant.medium = lightDepthShader::Variant::mediumVarying;
     lightDepthShader::Parameters values{};
@@ -317,10 +332,10 @@ class MarchPass : public Pass {
     values.mostSteps = lightSteps;
     std::vector<gpu::ResourceBinding> bindings{lightDepthShader::parameters(values),
                                                lightDepthShader::lights(*shadow->lights),
-                                               lightDepthShader::depthImage(*depths)};
+                                               lightDepthShader::transmittanceImage(*transmittances)};
     bound.addTo(bindings);
     frame.dispatch(frame.program(lightDepthShader::kProgram, variant.key()), bindings, size, kVoxelGroup);
-    return depths;
+    return transmittances;
   }
 };
 
