@@ -2,11 +2,13 @@
 // Pre-filtering of one level from the next finer one (Crassin et al. 2011, Sec. 5; thesis 004 Sec. 4.2.1 Mipmapping).
 //
 // Along each of the three axes the children are composited front to back in each column, both ways, and the columns are averaged: what
-// looking through the coarse voxel along that axis would see. Its isotropic value is the mean of the three, weighted by the square of
-// their opacities, so that the axis which a surface faces counts most. So
+// looking through the coarse voxel along that axis would see. Its opacity is the largest of the three, that of the axis which a surface
+// faces. So
 // - a uniform medium of opacity a per voxel gets 1 - (1-a)^2: its transmittance does not depend on the level that a cone reads;
-// - a wall stays nearly opaque, while the plain mean of the thesis halves its opacity at every level and lets light escape.
-// Radiance over opacity is a mean of what is blended, whatever the weights. `average` is the published mean of the eight children.
+// - a sheet one voxel thick of opacity a keeps a at every level, while the plain mean of the thesis halves it at every level and lets
+//   light escape. So does, more slowly, any mean over the axes: along the sheet only half of the columns meet it.
+// Radiance over opacity is a mean of what is blended, over the axes weighted by the square of their opacities. `average` is the
+// published mean of the eight children.
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 layout(std140, binding = 0) uniform Parameters {
@@ -37,6 +39,16 @@ vec4 over(vec4 front, vec4 back) { return front + (1.0 - front.a) * back; }
 // The usual case, two whole children along each axis, without loops: the mean over four columns, each seen from both its ends.
 vec4 pair(vec4 a, vec4 b) { return over(a, b) + over(b, a); }
 
+// What the three axes see as one value.
+vec4 facing(vec4 x, vec4 y, vec4 z) {
+  float largest = max(x.a, max(y.a, z.a));
+  if (largest <= 0.0) return vec4(0.0);
+  vec3 weight = vec3(x.a, y.a, z.a) / largest;
+  weight *= weight;
+  vec4 sum = weight.x * x + weight.y * y + weight.z * z;
+  return sum * (largest / sum.a);
+}
+
 vec4 eightChildren(ivec3 cell) {
   vec4 child[8];
   float most = 0.0;
@@ -48,8 +60,7 @@ vec4 eightChildren(ivec3 cell) {
   vec4 x = pair(child[0], child[1]) + pair(child[2], child[3]) + pair(child[4], child[5]) + pair(child[6], child[7]);
   vec4 y = pair(child[0], child[2]) + pair(child[1], child[3]) + pair(child[4], child[6]) + pair(child[5], child[7]);
   vec4 z = pair(child[0], child[4]) + pair(child[1], child[5]) + pair(child[2], child[6]) + pair(child[3], child[7]);
-  vec3 facing = vec3(x.a * x.a, y.a * y.a, z.a * z.a);
-  return (facing.x * x + facing.y * y + facing.z * z) / (8.0 * (facing.x + facing.y + facing.z));
+  return facing(x, y, z) / 8.0;
 }
 
 // Mean over the columns along one axis, and over both ways along it.
@@ -86,23 +97,20 @@ void main() {
   vec3 ratio = vec3(fine) / vec3(coarse);
   ivec3 first = ivec3(floor(vec3(cell) * ratio)), last = min(ivec3(ceil(vec3(cell + 1) * ratio)) - 1, fine - 1);
 
+  if (average == 0) {
+    imageStore(radianceImage, cell,
+               facing(lookThrough(cell, 0, first, last, ratio), lookThrough(cell, 1, first, last, ratio),
+                      lookThrough(cell, 2, first, last, ratio)));
+    return;
+  }
   vec4 sum = vec4(0.0);
   float weight = 0.0;
-  if (average != 0) {
-    for (int z = first.z; z <= last.z; ++z)
-      for (int y = first.y; y <= last.y; ++y)
-        for (int x = first.x; x <= last.x; ++x) {
-          float part = share(cell.x, x, ratio.x) * share(cell.y, y, ratio.y) * share(cell.z, z, ratio.z);
-          sum += part * texelFetch(radianceGrid, ivec3(x, y, z), fineLevel);
-          weight += part;
-        }
-  } else {
-    for (int axis = 0; axis < 3; ++axis) {
-      vec4 seen = lookThrough(cell, axis, first, last, ratio);
-      float facing = seen.a * seen.a;
-      sum += facing * seen;
-      weight += facing;
-    }
-  }
+  for (int z = first.z; z <= last.z; ++z)
+    for (int y = first.y; y <= last.y; ++y)
+      for (int x = first.x; x <= last.x; ++x) {
+        float part = share(cell.x, x, ratio.x) * share(cell.y, y, ratio.y) * share(cell.z, z, ratio.z);
+        sum += part * texelFetch(radianceGrid, ivec3(x, y, z), fineLevel);
+        weight += part;
+      }
   imageStore(radianceImage, cell, weight > 0.0 ? sum / weight : vec4(0.0));
 }

@@ -27,8 +27,9 @@ layout(std140, binding = 0) uniform Parameters {
   float offset;       // start of a cone along the normal, in voxels
   float startShare;   // start of a cone along its axis, in voxels
   float coarsest;     // coarsest level
-  float clearance;    // largest diameter of a sample as a share of its height over the tangent plane
+  float clearance;    // largest voxels that are read as a share of their height over the tangent plane
   float unit;         // W/(sr m^2) that the value 1 of the grid stands for
+  float footprint;    // voxels that are read as a share of the cone's diameter
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
@@ -46,34 +47,43 @@ layout(binding = 1, rgba32f) uniform writeonly image2D glossyImage;
 const int kMediumSteps = 8;   // most steps through a medium that varies, within one step of a cone
 const float kOpaque = 0.999;  // what lies behind this opacity adds less than a thousandth
 
-// Radiance along a cone. The sample at distance t has the diameter of the cone there and is read from the level whose voxels have that
-// size; between the levels l and l+1 the blend is f = size / 2^l - 1. cosTheta is the cosine between the axis and the normal.
+// Where a ray enters the grid and where it leaves it, m along it; a ray that misses it leaves before it enters.
+vec2 insideGrid(vec3 origin, vec3 direction) {
+  const vec3 kLevel = vec3(1e-12);  // keeps products finite; a ray does not move along an axis by that much
+  vec3 slope = mix(direction, kLevel, lessThan(abs(direction), kLevel));
+  vec3 toLow = (gridLow - origin) / slope, toHigh = (gridLow + gridExtent - origin) / slope;
+  vec3 near = min(toLow, toHigh), far = max(toLow, toHigh);
+  return vec2(max(near.x, max(near.y, near.z)), min(far.x, min(far.y, far.z)));
+}
+
+// Radiance along a cone. The sample at distance t reads voxels of a size that goes with the cone's diameter there; between the levels l
+// and l+1 the blend is f = size / 2^l - 1. cosTheta is the cosine between the axis and the normal.
+// Deviates from Listing 4.13: voxels of half the diameter. The trilinear kernel over voxels of size s has the standard deviation
+// sqrt(1/6 + 1/12) s = s / 2 along each axis, the disc of diameter d has d / 4: a footprint of 1, as published, reads twice as wide.
 vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta) {
   vec3 radiance = vec3(0.0);
   float opacity = 0.0;
-  float distance = startShare * voxelSize;
+  vec2 inside = insideGrid(apex, direction);
+  float distance = max(startShare * voxelSize, inside.x), end = min(maxDistance, inside.y);
 #if MEDIUM != MEDIUM_NONE
-  vec3 passed = exp(-opticalDepth(apex, direction, distance, 1));  // transmittance of the media up to the sample
+  // Transmittance of the media up to the sample.
+  vec3 passed = exp(-opticalDepth(apex, direction, distance, distance > startShare * voxelSize ? kMediumSteps : 1));
 #else
   const float passed = 1.0;
 #endif
-  while (distance < maxDistance && opacity < kOpaque) {
+  while (distance < end && opacity < kOpaque) {
     // Deviates from Listing 4.13: a wide cone at a slant would reach below the tangent plane and read the surface that it starts from.
     float height = offset * voxelSize + cosTheta * distance;
-    float diameter = max(voxelSize, min(2.0 * tanHalfAngle * distance, clearance * height));
-    float stride = min(stepShare * diameter, maxDistance - distance);
+    float wanted = min(footprint * 2.0 * tanHalfAngle * distance, clearance * height);
+    // The last step ends where the grid does, so that walls there are read in full.
+    float stride = min(stepShare * max(wanted / footprint, voxelSize), end - distance);
     vec3 texcoord = (apex + direction * (distance + 0.5 * stride) - gridLow) / gridExtent;
-    if (any(lessThan(texcoord, vec3(0.0))) || any(greaterThan(texcoord, vec3(1.0)))) {
-      // Leaving the grid for good: it is convex. A start outside, at a camera far away, has to come in first.
-      vec3 outward = max(texcoord - 1.0, 0.0) - max(-texcoord, 0.0);
-      if (dot(outward, direction) >= 0.0) break;
-    }
 #if MEDIUM != MEDIUM_NONE
     vec3 sampled = apex + direction * distance;
     vec3 thickness = opticalDepth(sampled, direction, stride, kMediumSteps);
     passed *= exp(-0.5 * thickness);
 #endif
-    float size = diameter / voxelSize;
+    float size = max(wanted / voxelSize, 1.0);
     float level = min(floor(log2(size)), coarsest);
     float blend = level < coarsest ? size * exp2(-level) - 1.0 : 0.0;
     vec4 value = textureLod(radianceGrid, texcoord, level + blend);

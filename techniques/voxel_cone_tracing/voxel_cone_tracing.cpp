@@ -48,6 +48,16 @@ float largestRadiance(const Scene& scene, const SceneSnapshot& snapshot, float v
   return sum > 0.0f ? sum : 1.0f;
 }
 
+/// The size of a grid with voxels added at its high ends so that halving it leaves no odd number above the
+/// few voxels of the coarsest levels. A level that is not of half the size of the finer one has voxels that
+/// share children, and an opaque child makes both opaque: walls grow thicker from level to level.
+glm::ivec3 evenlyHalved(const glm::ivec3& size) {
+  constexpr int kCoarse = 4;  // voxels along the longest side from which on sizes may be odd
+  int multiple = 1;
+  while (2 * kCoarse * multiple <= std::max({size.x, size.y, size.z})) multiple *= 2;
+  return (size + (multiple - 1)) / multiple * multiple;
+}
+
 class InjectPass : public Pass {
   In<VoxelFragments> fragments{this, "fragments", "surface samples"};
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
@@ -67,7 +77,7 @@ class InjectPass : public Pass {
   void run(PassContext& frame) override {
     RadianceGrid result;
     result.grid = fragments->grid;
-    const glm::ivec3 size = result.grid.resolution;
+    const glm::ivec3 size = result.grid.resolution = evenlyHalved(fragments->grid.resolution);
     gpu::TextureDescription description;
     description.kind = gpu::TextureKind::d3;
     description.format = precision == "half" ? gpu::Format::rgba16f : gpu::Format::rgba32f;
@@ -78,8 +88,12 @@ class InjectPass : public Pass {
     result.radiance = frame.texture(description, "radiance grid");
     result.filledLevels = 1;
 
-    // Counts, largest values and sums: one 32-bit integer a voxel each.
+    // Counts, largest values and sums: one 32-bit integer a voxel each that fragments can lie in; reading
+    // beyond gives 0.
     gpu::TextureDescription words = description;
+    words.width = fragments->grid.resolution.x;
+    words.height = fragments->grid.resolution.y;
+    words.depth = fragments->grid.resolution.z;
     words.format = gpu::Format::r32ui;
     words.levels = 1;
     const auto zeroed = [&](const char* label) {
@@ -210,7 +224,14 @@ class GatherPass : public Pass {
       0.5f,
       {0.0f, 1e3f},
       "",
-      "largest diameter of a sample as a share of its height over the surface; as published: no limit, 1000"};
+      "largest voxels that are read as a share of their height over the surface; as published: no limit, 1000"};
+  Param<float> footprint{
+      this,
+      "footprint",
+      0.5f,
+      {0.25f, 1.0f},
+      "",
+      "voxels that are read as a share of the diameter of the cone; as published: 1, which reads twice as wide as the cone"};
   Param<float> reach{this, "reach", 0.0f, {0.0f, 1e9f}, "m", "length of a cone; 0: to the end of the grid"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
                      "indirect light reflected by the diffuse lobe"};
@@ -246,6 +267,7 @@ class GatherPass : public Pass {
     parameters.offset = offset;
     parameters.startShare = start;
     parameters.clearance = clearance;
+    parameters.footprint = footprint;
     parameters.unit = input.unit;
     parameters.coarsest = static_cast<float>(input.radiance->description().levels - 1);
 
