@@ -34,10 +34,10 @@ std::string resultText(const TuneResult& result, const TuneOptions& options) {
   const std::string limit = options.budgetMs
                                 ? fmt::format("{} ms", formatMilliseconds(*options.budgetMs))
                                 : fmt::format("{} {}", options.metric, threeDigits(*options.errorLimit));
-  text += fmt::format(
-      "{} points seen{}; limit {}; only the front is shown\n", result.seen.size(),
-      result.exhausted ? ", every neighbour of the front among them" : ", then the evaluations were used up",
-      limit);
+  text += fmt::format("{} points seen{}; limit {}; only the front is shown\n", result.seen.size(),
+                      result.exhausted ? ", every neighbour of what is ahead among them"
+                                       : ", then the evaluations were used up",
+                      limit);
   if (!result.winner) text += "nothing fits within " + limit + "\n";
   for (const std::string& unsuited : result.unsuited) text += "not run: " + unsuited + "\n";
   return text;

@@ -81,16 +81,13 @@ class Search {
     return !usedUp_;
   }
 
-  /// Points beside those of the front that were not followed yet. The rule of the front keeps what cannot be
-  /// told apart from the best, and a plateau of the error would use up the evaluations. So points that are
-  /// ahead of every faster one by more than the uncertainty are followed first, the rest of the front after
-  /// them.
+  /// Points beside those ahead and beside the best that were not followed yet. The front itself would be too
+  /// much: it holds whatever cannot be told apart from the best, and on a plateau of the error, where times
+  /// are as good as equal, that would use up the evaluations.
   std::vector<WantedPoint> neighbours() {
     std::vector<std::vector<WantedPoint>> lists;
     for (const std::size_t index : ahead()) follow(seen_[index], lists);
-    if (total(lists) == 0)
-      for (Seen& seen : seen_)
-        if (seen.point.onFront) follow(seen, lists);
+    if (const std::optional<std::size_t> index = best()) follow(seen_[*index], lists);
     // In turns, so that few evaluations are shared by all that is on the front.
     std::vector<WantedPoint> result;
     for (std::size_t i = 0; result.size() < total(lists); ++i)
@@ -105,19 +102,12 @@ class Search {
     std::stable_sort(seen_.begin(), seen_.end(), [](const Seen& a, const Seen& b) {
       return a.point.tradeOff.timeMs.value < b.point.tradeOff.timeMs.value;
     });
-    const Seen* best = nullptr;
-    for (Seen& seen : seen_) {
-      const auto cost = [&](const Seen& one) {
-        return options_.budgetMs ? one.point.tradeOff.error.value : one.point.tradeOff.timeMs.value;
-      };
-      if (seen.point.fits && seen.point.onFront && (best == nullptr || cost(seen) < cost(*best))) {
-        best = &seen;
-        result.winner = result.seen.size();
-      }
-      result.seen.push_back(seen.point);
+    for (const Seen& seen : seen_) result.seen.push_back(seen.point);
+    result.winner = best();
+    if (result.winner) {
+      const WantedPoint& winner = seen_[*result.winner].wanted;
+      result.pipelineText = textWith(winner.loaded->pipeline, winner.point.parameters);
     }
-    if (best != nullptr)
-      result.pipelineText = textWith(best->wanted.loaded->pipeline, best->wanted.point.parameters);
     return result;
   }
 
@@ -160,6 +150,18 @@ class Search {
   void markFront() {
     const std::vector<std::optional<std::size_t>> beaten = beatenBy(tradeOffs());
     for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i].point.onFront = !beaten[i];
+  }
+
+  /// Of the points that fit, the one with the least error, or the least time.
+  std::optional<std::size_t> best() const {
+    const auto cost = [&](const Seen& one) {
+      return options_.budgetMs ? one.point.tradeOff.error.value : one.point.tradeOff.timeMs.value;
+    };
+    std::optional<std::size_t> result;
+    for (std::size_t i = 0; i < seen_.size(); ++i)
+      if (seen_[i].point.fits && seen_[i].point.onFront && (!result || cost(seen_[i]) < cost(seen_[*result])))
+        result = i;
+    return result;
   }
 
   /// Of the points that none beats by value, by time, those whose error differs from that of the last one.
@@ -273,7 +275,7 @@ TuneResult tune(gpu::Device& device, TechniqueSet& techniques, const TuneOptions
   for (bool more = search.look(first); more;) {
     const std::vector<WantedPoint> next = search.neighbours();
     if (next.empty()) break;
-    logInformation("tuning: {} neighbours of the front", next.size());
+    logInformation("tuning: {} neighbours of what is ahead", next.size());
     more = search.look(next);
   }
   TuneResult result = search.finish();

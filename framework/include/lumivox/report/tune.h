@@ -36,17 +36,18 @@ struct TuneResult {
   std::vector<TunedPoint> seen;       ///< by time
   std::optional<std::size_t> winner;  ///< into seen; none when nothing fits
   std::string pipelineText;           ///< the winner's pipeline with its parameters as the defaults
-  bool exhausted = false;             ///< every neighbour of the front was looked at
+  bool exhausted = false;             ///< every neighbour of the points that are followed was looked at
   std::vector<std::string> unsuited;  ///< "pipeline: why"
 };
 
 /// The search begins with the default and the sweeps of every suitable pipeline. Then, again and again, the
-/// neighbours of the points that are on the front and within twice the limit are measured: each declared
-/// parameter times 2, 1/2, sqrt(2) and 1/sqrt(2), at 0 where its range begins there, and at its other words;
-/// first beside the points whose error is less than that of every faster one by more than the uncertainty.
-/// The winner has the least error by value of all points within the budget, or the least time within the
-/// error. It ends when there are none left, or after `evaluations`. Throws as makeReport; Error when the
-/// limits contradict themselves or the metric or output is unknown.
+/// neighbours of points within twice the limit are measured: each declared parameter times 2, 1/2, sqrt(2)
+/// and 1/sqrt(2), at 0 where its range begins there, and at its other words. Followed are the fastest point,
+/// by rising time those whose error differs from that of the last one followed (differ()), and the winner:
+/// the least error by value of all points within the budget, or the least time within the error. The front
+/// also holds what cannot be told apart from these, which is not followed. The search ends when there are
+/// none left, or after `evaluations`. Throws as makeReport; Error when the limits contradict themselves or
+/// the metric or output is unknown.
 TuneResult tune(gpu::Device& device, TechniqueSet& techniques, const TuneOptions& options,
                 ResultsStore& store, const std::function<Scene(const std::filesystem::path&)>& loadScene);
 
