@@ -52,13 +52,20 @@ struct Emitter {
   float area, weight;
 };
 
-std::vector<Emitter> emittersOf(const Scene& scene, const SceneSnapshot& snapshot) {
+/// The emissive triangles of one part of an object, which are of one material.
+struct Lamp {
   std::vector<Emitter> emitters;
+  double weight = 0.0;  ///< of all its emitters together
+};
+
+std::vector<Lamp> lampsOf(const Scene& scene, const SceneSnapshot& snapshot) {
+  std::vector<Lamp> lamps;
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const ObjectState& state = snapshot.objects[o];
     for (const Part& part : scene.objects[o].parts) {
       const Material& material = scene.materials[static_cast<std::size_t>(part.material)];
       if (!material.emissive()) continue;
+      Lamp lamp;
       for (std::uint32_t i = 0; i + 2 < part.indexCount; i += 3) {
         std::array<glm::vec3, 3> corner;
         for (std::uint32_t k = 0; k < 3; ++k) {
@@ -73,30 +80,47 @@ std::vector<Emitter> emittersOf(const Scene& scene, const SceneSnapshot& snapsho
         if (!(area > 0.0f)) continue;
         const float weight =
             area * glm::dot(material.emission, glm::vec3(0.2126f, 0.7152f, 0.0722f));  // Rec. 709 luminance
-        emitters.push_back(
+        lamp.emitters.push_back(
             {corner[0], corner[1], corner[2], cross / (2.0f * area), material.emission, area, weight});
+        lamp.weight += weight;
       }
+      if (lamp.weight > 0.0) lamps.push_back(std::move(lamp));
     }
   }
-  return emitters;
+  return lamps;
 }
 
-void addAreaLights(LightSet& set, const Scene& scene, const SceneSnapshot& snapshot, int count,
-                   int shadowSize) {
-  const std::vector<Emitter> emitters = emittersOf(scene, snapshot);
+/// One sample for each lamp and the others by their power: a dim lamp may be all that lights a place.
+std::vector<int> samplesOfLamps(const std::vector<Lamp>& lamps, int count) {
   double total = 0.0;
-  for (const Emitter& emitter : emitters) total += emitter.weight;
-  if (!(total > 0.0)) return;
+  for (const Lamp& lamp : lamps) total += lamp.weight;
+  const int shared = count - static_cast<int>(lamps.size());
+  std::vector<int> samples;
+  double sum = 0.0;
+  int given = 0;
+  for (const Lamp& lamp : lamps) {
+    sum += lamp.weight;
+    const int upToHere =
+        &lamp == &lamps.back() ? shared : static_cast<int>(std::lround(shared * (sum / total)));
+    samples.push_back(1 + upToHere - given);
+    given = upToHere;
+  }
+  return samples;
+}
+
+/// Samples of one lamp, strata of its power, as its whole light.
+void addLamp(LightSet& set, const Lamp& lamp, int count, int& sequence, const Bounds& bounds,
+             int shadowSize) {
   std::vector<double> cumulative;
   double sum = 0.0;
-  for (const Emitter& emitter : emitters) cumulative.push_back(sum += emitter.weight / total);
-  const float diagonal = glm::length(snapshot.bounds.high - snapshot.bounds.low);
+  for (const Emitter& emitter : lamp.emitters) cumulative.push_back(sum += emitter.weight / lamp.weight);
+  const float diagonal = glm::length(bounds.high - bounds.low);
   for (int i = 0; i < count; ++i) {
     const double stratum = (i + 0.5) / count;
     const auto found = std::lower_bound(cumulative.begin(), cumulative.end(), stratum);
-    const Emitter& emitter = emitters[std::min<std::size_t>(
-        static_cast<std::size_t>(found - cumulative.begin()), emitters.size() - 1)];
-    auto [u, v] = r2Point(i + 1);
+    const Emitter& emitter = lamp.emitters[std::min<std::size_t>(
+        static_cast<std::size_t>(found - cumulative.begin()), lamp.emitters.size() - 1)];
+    auto [u, v] = r2Point(++sequence);
     // Area-uniform on a triangle: fold the unit square along its diagonal.
     if (u + v > 1.0) {
       u = 1.0 - u;
@@ -105,18 +129,37 @@ void addAreaLights(LightSet& set, const Scene& scene, const SceneSnapshot& snaps
     const glm::vec3 onSurface = emitter.a + static_cast<float>(u) * (emitter.b - emitter.a) +
                                 static_cast<float>(v) * (emitter.c - emitter.a);
     const glm::vec3 position = onSurface + emitter.normal * (1e-5f * diagonal);
-    const double probability = emitter.weight / total;
-    const glm::vec3 power = emitter.radiance * static_cast<float>(emitter.area / (probability * count));
-    // A point sample stands for a patch of area A/N: nearer than its radius the inverse square law of a point
-    // does not hold for it.
-    const float patchRadius =
-        std::sqrt(static_cast<float>(emitter.area / (probability * count)) / glm::pi<float>());
+    const double probability = emitter.weight / lamp.weight;
+    const float area =
+        static_cast<float>(emitter.area / (probability * count));  // that the sample stands for
+    // Nearer than the radius of its patch the inverse square law of a point does not hold for a sample.
+    const float patchRadius = std::sqrt(area / glm::pi<float>());
     set.samples.push_back(
         {glm::vec4(position, static_cast<float>(LightSampleKind::area)),
-         glm::vec4(emitter.normal, static_cast<float>(set.views.size())), glm::vec4(power, kCubeViews),
+         glm::vec4(emitter.normal, static_cast<float>(set.views.size())),
+         glm::vec4(emitter.radiance * area, kCubeViews),
          glm::vec4(0.0f, 0.0f, texelPerMetre(glm::radians(45.0f), shadowSize), patchRadius * patchRadius)});
-    addCube(set, position, snapshot.bounds, &emitter.normal);
+    addCube(set, position, bounds, &emitter.normal);
   }
+}
+
+void addAreaLights(LightSet& set, const Scene& scene, const SceneSnapshot& snapshot, int count,
+                   int shadowSize) {
+  std::vector<Lamp> lamps = lampsOf(scene, snapshot);
+  if (lamps.empty()) return;
+  if (static_cast<int>(lamps.size()) > count) {
+    // Too many for a sample each: one lamp of all emitters, the dimmest of which may get none.
+    Lamp all;
+    for (const Lamp& lamp : lamps) {
+      all.emitters.insert(all.emitters.end(), lamp.emitters.begin(), lamp.emitters.end());
+      all.weight += lamp.weight;
+    }
+    lamps = {std::move(all)};
+  }
+  const std::vector<int> samples = samplesOfLamps(lamps, count);
+  int sequence = 0;
+  for (std::size_t i = 0; i < lamps.size(); ++i)
+    addLamp(set, lamps[i], samples[i], sequence, snapshot.bounds, shadowSize);
 }
 
 void addDirectional(LightSet& set, const LightState& light, const Bounds& bounds, int shadowSize) {
