@@ -210,8 +210,8 @@ TEST_CASE("voxelised smoke of 10^-3 to 10^5 / m, in 32 steps, scatters what a sl
   // Plane layers seen from above: at the optical depth t along the view the light has come through t r, r =
   // mu_v / mu_s the ratio of the cosines of view and light with the normal, whatever the density's profile
   // is. So L = albedo p E int_0^T exp(-t (1 + r)) dt = albedo p E (1 - exp(-T (1 + r))) / (1 + r), which is
-  // albedo p E mu_s / (mu_s + mu_v) where nothing shines through (Chandrasekhar 1960, "Radiative transfer",
-  // Sec. 47).
+  // albedo p E mu_s / (mu_s + mu_v) where nothing shines through (the
+  // first order of Chandrasekhar 1960, "Radiative transfer").
   ScatteringGrid slab = varyingMedium(
       1.0f, 0.8f, 0.3f, {-6, -6, -1.5f}, 1.0f / 16.0f, {192, 192, 20},
       [](const glm::vec3& place) { return place.z > -0.75f || place.z < -1.25f ? 0.0f : 1.0f; });
