@@ -54,6 +54,20 @@ class Forgetful : public Toy {
   void run(PassContext&) override {}
 };
 
+/// Half a picture wide.
+class Narrow : public Toy {
+ public:
+  using Toy::Toy;
+  Out<Image> picture{this, "picture"};
+  void run(PassContext& frame) override {
+    gpu::TextureDescription half;
+    half.format = gpu::Format::rgba32f;
+    half.width = frame.snapshot().camera.width / 2;
+    half.height = frame.snapshot().camera.height;
+    picture = Image{frame.texture(half, "half a picture")};
+  }
+};
+
 }  // namespace
 
 TEST_CASE("an error in a pass carries the pass's name, and the next frame starts afresh") {
@@ -121,4 +135,19 @@ TEST_CASE("a pass that does not set a wanted output is an error that names both"
   f.techniques.add<Forgetful>("toy", "forgetful");
   PipelineExecutor executor = f.executor("pass bad toy.forgetful { }\noutput o bad.picture");
   CHECK(messageOf<Error>([&] { executor.render(0.0); }) == "pass bad: it did not set its output 'picture'");
+}
+
+TEST_CASE("an output that is not of the picture's size is refused, as a picture but not as an input") {
+  Fixture f;
+  if (!f) return;
+  f.techniques.add<Narrow>("toy", "narrow");
+  RenderOptions size;
+  size.width = 8;
+  size.height = 4;
+  PipelineExecutor executor = f.executor("pass half toy.narrow { }\noutput o half.picture", size);
+  const std::string message = messageOf<Error>([&] { executor.render(0.0); });
+  CHECK_THAT(message, Contains("output 'o'") && Contains("half.picture has 4 x 4 texels; expected 8 x 4"));
+  PipelineExecutor whole =
+      f.executor("pass half toy.narrow { }\npass all toy.add { first half.picture }\noutput o all.sum", size);
+  CHECK(whole.render(0.0).outputs.at("o").width() == 8);
 }

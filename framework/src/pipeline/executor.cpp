@@ -244,6 +244,12 @@ void PipelineExecutor::State::collectPictures(FrameResult& result, Pictures pict
     const std::vector<gpu::TextureRef> textures = output.textures();
     if (textures.empty())
       throw Error(fmt::format("pass output '{}' holds no texture", graph.outputText(bound.source)));
+    const gpu::TextureDescription& size = textures.front()->description();
+    if (size.width != last->camera.width || size.height != last->camera.height)
+      throw Error(fmt::format(
+          "output '{}' of pipeline \"{}\": {} has {} x {} texels; expected {} x {}, the picture's size",
+          bound.name, pipeline.name, graph.outputText(bound.source), size.width, size.height,
+          last->camera.width, last->camera.height));
     result.outputs[bound.name] =
         pictureOf(*textures.front(), output.contributes() == Contributes::ambientOcclusion ? 1 : 3);
   }

@@ -102,8 +102,9 @@ std::string frameworkHash() {
 ResultsStore::ResultsStore(const fs::path& file, Mode mode) {
   std::error_code ignored;
   if (mode == Mode::read && !fs::exists(file, ignored))
-    throw Error(fmt::format("{}: there is no results store; expected a file that lumivox sweep has written",
-                            file.string()));
+    throw Error(
+        fmt::format("{}: there is no results store; expected a file that lumivox sweep or stress has written",
+                    file.string()));
   if (mode == Mode::write) createParentDirectories(file);
   state_ = std::make_unique<State>(file, mode);
   state_->requireSchema();

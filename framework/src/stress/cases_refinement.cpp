@@ -204,7 +204,7 @@ std::optional<Finding> refined(Bench& bench, const PipelineParameter& parameter)
       break;
     }
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-    if (taken.count() > kLongestLevel) {
+    if (taken.count() > kLongestLevel && levels.size() > 1) {
       remark = fmt::format("no larger value was tried: the last one took {:.0f} s", taken.count());
       break;
     }
