@@ -17,7 +17,6 @@ uint fullShare(uint fragments) { return uint(kFixedPoint / float(fragments) + 0.
 #ifdef AVERAGING
 layout(std140, binding = 0) uniform Averaging {
   ivec3 resolution;
-  float emissionRange;  // W/(sr m^2): the largest radiance that can be added
-  int coverageSum;      // 1: the coverages of a voxel add up, to 1 at most; 0: their mean
+  int coverageSum;  // 1: the coverages of a voxel add up, to 1 at most; 0: their mean
 };
 #endif

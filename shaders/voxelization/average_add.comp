@@ -1,6 +1,7 @@
 #version 450
 // Each fragment adds its share of the average as integers, and integer sums do not depend on the order:
 //   sum over n fragments of round(value / range * coverage * 2^31 / n),  0 <= value <= range,  which fits into 32 bits for any n.
+// The range of emission is the voxel's own.
 #pragma lumivox axis ATTRIBUTES 0 1
 #pragma lumivox axis EMISSION 0 1
 #pragma lumivox require !EMISSION || ATTRIBUTES
@@ -17,6 +18,7 @@ layout(std430, binding = 7) buffer NormalSums { int normalSums[]; };
 #endif
 #if EMISSION
 layout(std430, binding = 8) buffer EmissionSums { uint emissionSums[]; };
+layout(std430, binding = 9) readonly buffer Brightest { uint brightest[]; };
 #endif
 layout(binding = 0, r32ui) uniform readonly uimage3D slots;
 
@@ -38,7 +40,8 @@ void main() {
   }
 #endif
 #if EMISSION
-  vec3 emission = min(unpackShared(fragment.emission) / emissionRange, 1.0);
+  float range = uintBitsToFloat(brightest[slot]);
+  vec3 emission = range > 0.0 ? min(unpackShared(fragment.emission) / range, 1.0) : vec3(0.0);
   for (int c = 0; c < 3; ++c) atomicAdd(emissionSums[3u * slot + uint(c)], uint(emission[c] * weight * kFixedPoint + 0.5));
 #endif
 }

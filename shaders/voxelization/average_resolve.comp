@@ -19,6 +19,7 @@ layout(binding = 1, rgba16f) uniform writeonly image3D normalImage;
 #endif
 #if EMISSION
 layout(std430, binding = 8) readonly buffer EmissionSums { uint emissionSums[]; };
+layout(std430, binding = 9) readonly buffer Brightest { uint brightest[]; };
 layout(binding = 2, rgba32f) uniform writeonly image3D emissionImage;
 #endif
 #if OPACITY
@@ -46,6 +47,6 @@ void main() {
 #endif
 #if EMISSION
   vec3 emission = vec3(emissionSums[3u * slot], emissionSums[3u * slot + 1u], emissionSums[3u * slot + 2u]) / kFixedPoint;
-  imageStore(emissionImage, voxel, vec4(emission * (inverse * emissionRange), opacity));
+  imageStore(emissionImage, voxel, vec4(emission * inverse * uintBitsToFloat(brightest[slot]), opacity));
 #endif
 }

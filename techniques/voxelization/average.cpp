@@ -12,21 +12,9 @@ namespace {
 
 namespace claimShader = shaders::voxelization::average_claim;
 namespace numberShader = shaders::voxelization::average_number;
+namespace brightestShader = shaders::voxelization::average_brightest;
 namespace addShader = shaders::voxelization::average_add;
 namespace resolveShader = shaders::voxelization::average_resolve;
-
-/// The largest emitted radiance of a component: what the fixed-point sums must hold.
-float largestEmission(const Scene& scene) {
-  float largest = 0.0f;
-  for (const Object& object : scene.objects) {
-    for (const Part& part : object.parts) {
-      const glm::vec3& emission = scene.materials[static_cast<std::size_t>(part.material)].emission;
-      largest = std::max({largest, emission.x, emission.y, emission.z});
-    }
-  }
-  // The fragments round to half a 128th of the largest component.
-  return largest > 0.0f ? largest * (1.0f + 1.0f / 128.0f) : 1.0f;
-}
 
 class AveragePass : public Pass {
   In<VoxelFragments> fragments{this, "fragments", "surface samples"};
@@ -79,6 +67,19 @@ class AveragePass : public Pass {
     return slots;
   }
 
+  /// The largest emission of a fragment of each slot.
+  gpu::BufferRef brightestOfSlots(PassContext& frame, const Slots& slots) const {
+    gpu::BufferRef brightest = frame.buffer(slots.room * sizeof(std::uint32_t), "brightest of slots");
+    brightest->clear();
+    frame.shaders().dispatchIndirect(
+        frame.program(brightestShader::kProgram),
+        {brightestShader::fragmentCount(*fragments->count), brightestShader::fragments(*fragments->fragments),
+         brightestShader::brightest(*brightest), brightestShader::slots(*slots.numbers)},
+        *fragments->count, sizeof(std::uint32_t));
+    frame.device().barrier();
+    return brightest;
+  }
+
   void sumAndResolve(PassContext& frame) {
     const Slots slots = claimSlots(frame);
     const bool withAttributes = attributes.wanted();
@@ -89,14 +90,14 @@ class AveragePass : public Pass {
       return buffer;
     };
     const gpu::BufferRef coverage = zeroed(1, "sums of coverage");
-    gpu::BufferRef albedo, normal, emission;
+    gpu::BufferRef albedo, normal, emission, brightest;
     const GridPlacement& grid = fragments->grid;
     addShader::Variant adding;
     resolveShader::Variant resolving;
     adding.attributes = resolving.attributes = withAttributes;
     adding.emission = resolving.emission = withEmission;
     resolving.opacity = opacity.wanted();
-    const addShader::Averaging averaging{grid.resolution, largestEmission(frame.sceneDescription()),
+    const addShader::Averaging averaging{grid.resolution,
                                          fragments->coverage == VoxelFragments::Coverage::sum ? 1 : 0};
     std::vector<gpu::ResourceBinding> add{addShader::averaging(averaging),
                                           addShader::fragmentCount(*fragments->count),
@@ -122,9 +123,11 @@ class AveragePass : public Pass {
       if (withEmission) {
         result.emission = emptyVolume(frame, grid, gpu::Format::rgba32f, "mean emission");
         emission = zeroed(3, "sums of emission");
-        add.push_back(addShader::emissionSums(*emission));
-        resolve.insert(resolve.end(), {resolveShader::emissionSums(*emission),
-                                       resolveShader::emissionImage(*result.emission)});
+        brightest = brightestOfSlots(frame, slots);
+        add.insert(add.end(), {addShader::emissionSums(*emission), addShader::brightest(*brightest)});
+        resolve.insert(resolve.end(),
+                       {resolveShader::emissionSums(*emission), resolveShader::brightest(*brightest),
+                        resolveShader::emissionImage(*result.emission)});
       }
       attributes = result;
     }

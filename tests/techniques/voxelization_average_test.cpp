@@ -185,6 +185,23 @@ TEST_CASE("a hundred thousand fragments of one voxel neither overflow nor lose t
   CHECK(Averages::texel(averages.emission, {0, 0, 0}).x == Approx(2.0).epsilon(1e-3));
 }
 
+TEST_CASE("a dim crowded voxel keeps its emission in a grid with a lamp 10^12 times as bright") {
+  // Every voxel has a unit of its own: 5000 fragments of radiance 1 and half as many of 1/4 have the mean
+  // 3/4.
+  const glm::ivec3 dim(1, 2, 3), bright(6, 2, 3);
+  for (const float brightest : {0x1p0f, 0x1p20f, 0x1p40f}) {
+    std::vector<FragmentData> fragments{
+        fragment(bright, glm::vec3(0.5f), 1.0f, kUp, sharedExponent(brightest))};
+    for (int i = 0; i < 7500; ++i)
+      fragments.push_back(
+          fragment(dim, glm::vec3(0.5f), 1.0f, kUp, sharedExponent(i % 3 == 0 ? 0.25f : 1.0f)));
+    const Averages averages = averagesOf(sceneThatEmits(brightest), fragments);
+    INFO("brightest " << brightest);
+    CHECK(Averages::texel(averages.emission, dim).x == Approx(0.75).epsilon(1e-4));
+    CHECK(Averages::texel(averages.emission, bright).x == Approx(brightest).epsilon(1e-4));
+  }
+}
+
 TEST_CASE("an empty list gives empty grids, and a scene that emits nothing no emission") {
   const Averages empty = averagesOf(sceneThatEmits(1.0f), {});
   CHECK(empty.bits.empty());
@@ -263,8 +280,12 @@ TEST_CASE("the grid of cone tracing takes coverages by the rule of the list") {
     harness.setInput("fragments", listOf(fragments, rule));
     harness.setInput("shadow", shadow);
     harness.run();
-    const auto values = harness.output<RadianceGrid>("radiance").radiance->downloadFloats();
-    const glm::vec4 voxel = Averages::texel(values, cell);
+    const auto& grid = harness.output<RadianceGrid>("radiance");
+    const auto values = grid.radiance->downloadFloats();
+    const glm::ivec3 size = grid.grid.resolution;  // may be larger than the list's
+    const float* texel =
+        values.data() + 4 * static_cast<std::size_t>((cell.z * size.y + cell.y) * size.x + cell.x);
+    const glm::vec4 voxel(texel[0], texel[1], texel[2], texel[3]);
     const double opacity = rule == VoxelFragments::Coverage::sum ? 0.75 : 0.25;
     CHECK(voxel.w == Approx(opacity).epsilon(1e-4));
     CHECK(voxel.x == Approx(1.2 * opacity).epsilon(2e-3));
