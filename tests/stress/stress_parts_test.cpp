@@ -55,11 +55,15 @@ TEST_CASE("a card's table below its heading explains cases, by patterns and for 
   REQUIRE(rows.size() == 2);
   CHECK(rows[0].what == "it leaks");
   CHECK(rows[0].why == "no sides");
-  CHECK(covers(rows[0], "anything", "thin_wall"));
-  CHECK_FALSE(covers(rows[0], "anything", "thin_walls"));
-  CHECK(covers(rows[0], "points", "resolution_lowest"));
-  CHECK_FALSE(covers(rows[0], "slicing", "resolution_lowest"));
-  CHECK(covers(rows[1], "anything", "moved_far"));
+  CHECK(rowFor(rows, "anything", "thin_wall") == rows.data());
+  CHECK(rowFor(rows, "anything", "thin_walls") == nullptr);
+  CHECK(rowFor(rows, "points", "resolution_lowest") == rows.data());
+  CHECK(rowFor(rows, "slicing", "resolution_lowest") == nullptr);
+  CHECK(rowFor(rows, "anything", "moved_far") == rows.data() + 1);
+  // What speaks of one pipeline goes before what speaks of all, wherever it stands.
+  const std::vector<CardRow> both{{{"thin_wall"}, "all", ""}, {{"points/thin_*"}, "one", ""}};
+  CHECK(rowFor(both, "points", "thin_wall")->what == "one");
+  CHECK(rowFor(both, "slicing", "thin_wall")->what == "all");
   CHECK(whereItBreaks("## Where it breaks\n| case | what | why |\n").empty());
   CHECK(whereItBreaks("").empty());
 }

@@ -48,12 +48,17 @@ std::vector<CardRow> whereItBreaks(const std::string& card) {
   return rows;
 }
 
-bool covers(const CardRow& row, const std::string& pipelineStem, const std::string& caseName) {
-  return std::any_of(row.cases.begin(), row.cases.end(), [&](const std::string& pattern) {
-    const std::string subject =
-        pattern.find('/') == std::string::npos ? caseName : pipelineStem + "/" + caseName;
-    return fnmatch(pattern.c_str(), subject.c_str(), 0) == 0;
-  });
+const CardRow* rowFor(const std::vector<CardRow>& rows, const std::string& pipelineStem,
+                      const std::string& caseName) {
+  for (const bool namesPipeline : {true, false}) {
+    const std::string subject = namesPipeline ? pipelineStem + "/" + caseName : caseName;
+    for (const CardRow& row : rows)
+      for (const std::string& pattern : row.cases)
+        if ((pattern.find('/') != std::string::npos) == namesPipeline &&
+            fnmatch(pattern.c_str(), subject.c_str(), 0) == 0)
+          return &row;
+  }
+  return nullptr;
 }
 
 std::string explanationOf(const StressCell& cell, const Pipeline& pipeline, TechniqueSource& techniques) {
@@ -61,16 +66,17 @@ std::string explanationOf(const StressCell& cell, const Pipeline& pipeline, Tech
   std::vector<std::string> names = pipeline.techniques();
   std::stable_partition(names.begin(), names.end(),
                         [&](const std::string& name) { return name == cell.technique; });
+  std::vector<CardRow> rows;
   for (const std::string& name : names) {
     const Technique* technique = techniques.technique(name);
     if (technique == nullptr) continue;
     const std::filesystem::path file = technique->library.parent_path() / (name + ".md");
     std::error_code failure;
     if (!std::filesystem::exists(file, failure)) continue;
-    for (const CardRow& row : whereItBreaks(readFile(file)))
-      if (covers(row, pipeline.file.stem().string(), cell.name)) return row.what + ": " + row.why;
+    for (CardRow& row : whereItBreaks(readFile(file))) rows.push_back(std::move(row));
   }
-  return {};
+  const CardRow* row = rowFor(rows, pipeline.file.stem().string(), cell.name);
+  return row == nullptr ? std::string() : row->what + ": " + row->why;
 }
 
 }  // namespace lumivox::stress

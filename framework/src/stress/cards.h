@@ -16,10 +16,13 @@ struct CardRow {
 };
 std::vector<CardRow> whereItBreaks(const std::string& card);
 
-bool covers(const CardRow& row, const std::string& pipelineStem, const std::string& caseName);
+/// The first row that names the pipeline and the case, else the first that names the case; null when none
+/// does.
+const CardRow* rowFor(const std::vector<CardRow>& rows, const std::string& pipelineStem,
+                      const std::string& caseName);
 
-/// From the card of the technique that the pipeline stands for, else of the others that it names. Empty for a
-/// cell that needs none (only those that are biased or diverge do) and for one that no card explains.
+/// From the cards of the technique that the pipeline stands for and then of the others that it names. Empty
+/// for a cell that needs none (only those that are biased or diverge do) and for one that no card explains.
 std::string explanationOf(const StressCell& cell, const Pipeline& pipeline, TechniqueSource& techniques);
 
 }  // namespace lumivox::stress
