@@ -84,7 +84,7 @@ Irradiance irradianceAt(vec3 position, vec3 normal, vec3 geometricNormal) {
   // The surface lies on the nearest plane of faces, as it does for the light; the cell in front of it is where the ways begin.
   int dominant = dominantAxis(geometricNormal);
   int up = geometricNormal[dominant] >= 0.0 ? 1 : -1;
-  ivec3 base = clamp(besideWalls(cellInFront(position, geometricNormal), position, dominant), ivec3(0), resolution - 1);
+  ivec3 base = clamp(cellBeside(position, geometricNormal), ivec3(0), resolution - 1);
   // A lookup one cell away along the dominant axis stays the same when the plane jumps; never behind the first centre.
   vec3 away = geometricNormal * (offset / abs(geometricNormal[dominant]));
   vec3 lookup = clamp(position + clamp(away, vec3(-0.5), vec3(0.5)), vec3(base) - kReach, vec3(base) + 1.0 + kReach);

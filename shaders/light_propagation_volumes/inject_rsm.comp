@@ -23,7 +23,7 @@ void main() {
   if (!any(greaterThan(flux, vec3(0.0)))) return;
   vec3 normal = texelFetch(rsmNormal, texel, 0).xyz;
   vec3 position = (texelFetch(rsmPosition, texel, 0).xyz - gridLow) / cellSize;
-  int word = wordsOf(besideWalls(cellInFront(position, normal), position, dominantAxis(normal)), resolution);
+  int word = wordsOf(cellBeside(position, normal), resolution);
   if (word < 0) return;
 #if STEP == STEP_WEIGH
   // The order of the bits of numbers from 0 on is that of the numbers.

