@@ -64,4 +64,19 @@ inline Scene litRoom(int width, int height) {
   return builder.scene;
 }
 
+/// A floor with a patch that a spot of 1 W/sr lights and, unless `bright` is 0, another that one of that
+/// intensity does.
+inline SceneBuilder floorUnderTwoSpots(float bright) {
+  SceneBuilder builder;
+  builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.5f));
+  const auto spot = [&](float intensity, double x) {
+    Light& light = builder.light(LightKind::spot, glm::vec3(intensity), {x, 0.5, 0});
+    light.innerAngle = 0.2;
+    light.outerAngle = 0.5;
+  };
+  spot(1.0f, -0.6);
+  if (bright > 0.0f) spot(bright, 0.6);
+  return builder;
+}
+
 }  // namespace lumivox::test

@@ -139,16 +139,9 @@ TEST_CASE("what the walls of a closed room reflect starts inside of it, along it
 
 TEST_CASE("cells that a dim lamp lights keep their light beside a lamp 10^6 times as bright") {
   const auto scene = [](float bright) {
-    SceneBuilder builder;
-    builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.5f));
+    SceneBuilder builder = floorUnderTwoSpots(bright);
+    // Gives the grid its height.
     builder.quad({-1, 1, -1}, {0, 0, 0.001f}, {0.001f, 0, 0}, builder.lambert(0.0f));
-    const auto spot = [&](float intensity, double x) {
-      Light& light = builder.light(LightKind::spot, glm::vec3(intensity), {x, 0.5, 0});
-      light.innerAngle = 0.2;
-      light.outerAngle = 0.5;
-    };
-    spot(1.0f, -0.6);
-    if (bright > 0.0f) spot(bright, 0.6);
     return builder.scene;
   };
   for (const char* name : {"inject_rsm", "inject_voxels"}) {

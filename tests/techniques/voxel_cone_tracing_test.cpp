@@ -332,18 +332,7 @@ TEST_CASE(
   // Two spots that light a patch of the floor each. What the dim one lights alone is that of a scene without
   // the other. In half floats values below 6e-5 units have fewer digits: a hundredth of the largest here is
   // 4e-6 units.
-  const auto scene = [](float bright) {
-    SceneBuilder builder;
-    builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.5f));
-    const auto spot = [&](float intensity, double x) {
-      Light& light = builder.light(LightKind::spot, glm::vec3(intensity), {x, 0.5, 0});
-      light.innerAngle = 0.2;
-      light.outerAngle = 0.5;
-    };
-    spot(1.0f, -0.6);
-    if (bright > 0.0f) spot(bright, 0.6);
-    return builder.scene;
-  };
+  const auto scene = [](float bright) { return floorUnderTwoSpots(bright).scene; };
   const std::vector<float> alone = injected(scene(0.0f), 16);
   struct Run {
     const char* precision;

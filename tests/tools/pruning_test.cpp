@@ -1,5 +1,6 @@
 // The law of leaving out: it changes the cost, never the picture. Over every committed scene and pipeline.
 #include <algorithm>
+#include <optional>
 #include <regex>
 
 #include "lumivox/base/error.h"
@@ -34,6 +35,16 @@ RenderOptions smallOptions(const Pipeline& pipeline) {
   return options;
 }
 
+/// Without the models that it needs the test counts as skipped.
+std::optional<Scene> sceneIfPresent(const std::filesystem::path& file) {
+  try {
+    return loadScene(file);
+  } catch (const AbsentError& absent) {
+    skip(absent.what());
+    return std::nullopt;
+  }
+}
+
 bool changes(const Scene& scene) {
   const SceneTraits traits = SceneTraits::of(scene);
   return traits.movingGeometry || traits.movingCamera || traits.particles;
@@ -52,13 +63,9 @@ void checkSameOutputs(const FrameResult& pruned, const FrameResult& whole) {
 }
 
 void checkSamePicture(const std::filesystem::path& sceneFile) {
-  Scene scene;
-  try {
-    scene = loadScene(sceneFile);
-  } catch (const AbsentError& absent) {
-    skip(absent.what());
-    return;
-  }
+  const std::optional<Scene> loaded = sceneIfPresent(sceneFile);
+  if (!loaded) return;
+  const Scene& scene = *loaded;
   for (const auto& pipelineFile : filesIn("scenes/pipelines", ".pipeline")) {
     const Pipeline text = Pipeline::load(pipelineFile);
     if (text.outputs.empty()) continue;  // voxelisers alone, below
@@ -119,13 +126,9 @@ std::vector<FragmentData> fragmentsWith(const Scene& scene, const Pipeline& text
 }
 
 void checkSameFragments(const std::filesystem::path& sceneFile) {
-  Scene scene;
-  try {
-    scene = loadScene(sceneFile);
-  } catch (const AbsentError& absent) {
-    skip(absent.what());
-    return;
-  }
+  const std::optional<Scene> loaded = sceneIfPresent(sceneFile);
+  if (!loaded) return;
+  const Scene& scene = *loaded;
   for (const auto& file : filesIn("scenes/pipelines/voxelisers", ".pipeline")) {
     const Pipeline text = Pipeline::load(file);
     INFO(sceneFile.filename() << " through " << file.filename());
