@@ -11,6 +11,14 @@
 
 namespace lumivox::test {
 
+std::filesystem::path sourceDirectory() {
+  return LUMIVOX_SOURCE_DIRECTORY;
+}
+
+std::filesystem::path binaryDirectory() {
+  return LUMIVOX_BINARY_DIRECTORY;
+}
+
 void skip(const std::string& reason) {
   std::cout << "SKIPPED: " << reason << std::endl;
   SUCCEED("skipped");

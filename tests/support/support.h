@@ -22,12 +22,8 @@ class TemporaryDirectory {
   std::filesystem::path path_;
 };
 
-inline std::filesystem::path sourceDirectory() {
-  return LUMIVOX_SOURCE_DIRECTORY;
-}
-inline std::filesystem::path binaryDirectory() {
-  return LUMIVOX_BINARY_DIRECTORY;
-}
+std::filesystem::path sourceDirectory();
+std::filesystem::path binaryDirectory();
 
 struct CommandResult {
   int exitCode = 0;

@@ -13,8 +13,9 @@ inline gpu::Device& device() {
   return instance;
 }
 
+/// The built ones, unless LUMIVOX_TECHNIQUES names others, as tests/mutation/mutate does.
 inline TechniqueSet& techniques() {
-  static TechniqueSet instance(TechniqueSet::defaultDirectories({binaryDirectory() / "lib/techniques"}));
+  static TechniqueSet instance(TechniqueSet::defaultDirectories({}));
   return instance;
 }
 
