@@ -122,6 +122,9 @@ struct ShGrid {
     gpu::TextureRef moved;   ///< d3 rgba8, of the same faces, as bytes: how far surfaces were moved to lie on
                              ///< them, fourteenths of a voxel: the low four bits of those that look down the
                              ///< axis and truly lie above, the high ones the other way; null: not at all
+    gpu::BufferRef packed{};  ///< five words a voxel, x first (thesis Gomes 2015, Listings 4.26 to 4.29):
+                              ///< albedo over pi behind its contrast, and for each face of a tetrahedron a
+                              ///< normal behind its closeness to it; 0: no surface. null: not kept
   };
   std::vector<Level> levels;  ///< finest and smallest first
 };
