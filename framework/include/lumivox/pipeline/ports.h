@@ -67,6 +67,12 @@ struct VoxelFragments {
   GridPlacement grid;
   gpu::BufferRef fragments;  ///< array of VoxelFragment in shaders/common/voxel.glsl
   gpu::BufferRef count;      ///< words: fragments written; then x, y, z of an indirect dispatch over them
+  /// Direct light that fragments are known to reflect, since a renderer computed it where the camera sees
+  /// them (Mavridis & Papaioannou 2011, Sec. 3.2). Null: of none. Else a word for each of the first
+  /// fragments: their reflected radiance in W/(sr m^2), packed as `packShared` does, or kNotKnown; those
+  /// behind the end of the buffer are not known either.
+  gpu::BufferRef reflected;
+  static constexpr std::uint32_t kNotKnown = 0xffffffffu;
   std::uint64_t capacity = 0;
   int workGroupSize = 64;  ///< that the indirect dispatch assumes
   /// How the coverages of the fragments in one voxel make its opacity: their mean (each triangle is judged by
