@@ -129,7 +129,7 @@ struct DeviceState {
   std::vector<std::string> driverErrors;
   std::uint64_t allocatedBytes = 0, peakBytes = 0;
   Device::Transfers transfers;
-  std::array<GLuint, 7> samplers{};
+  std::array<GLuint, 8> samplers{};
   GLuint vertexArray = 0;
   GLuint elementBuffer = 0;
   GLuint framebuffer = 0;  ///< of the drawing in progress
