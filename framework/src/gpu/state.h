@@ -131,7 +131,7 @@ struct DeviceState {
   std::uint64_t allocatedBytes = 0, peakBytes = 0;
   Device::Transfers transfers;
   bool underWay = false;  ///< dispatches or draws since the last finish()
-  std::array<GLuint, 7> samplers{};
+  std::array<GLuint, 8> samplers{};
   GLuint vertexArray = 0;
   GLuint elementBuffer = 0;
   GLuint framebuffer = 0;  ///< of the drawing in progress

@@ -136,9 +136,19 @@ using TextureRef = std::shared_ptr<Texture>;
 using BufferRef = std::shared_ptr<Buffer>;
 
 /// How a texture is read. Without `repeat` or `border` the edge texel continues outside; `border` means zero
-/// outside; `shadow` compares depth (1 where reference <= stored) and filters the four results. Integer
+/// outside; `shadow` compares depth (1 where reference <= stored) and filters the four results.
+/// `linearOneMip` reads the nearest mip level alone, so that the next one may be written meanwhile. Integer
 /// formats are read with `nearest` only.
-enum class Sampling { nearest, linear, linearMips, linearMipsRepeat, linearBorder, linearMipsBorder, shadow };
+enum class Sampling {
+  nearest,
+  linear,
+  linearMips,
+  linearMipsRepeat,
+  linearBorder,
+  linearMipsBorder,
+  shadow,
+  linearOneMip
+};
 
 // ---- programs
 // -------------------------------------------------------------------------------------------------------------------
