@@ -315,25 +315,35 @@ TEST_CASE("the same seed and device give the same bits twice through reflective 
   CHECK(first.outputs.at("indirect_diffuse").values() == second.outputs.at("indirect_diffuse").values());
 }
 
-TEST_CASE(
-    "reflective shadow maps are better than no indirect light on the Cornell box and the arcade, with the right energy within 0.7 to 1.3") {
-  for (const char* name : {"cornell", "arcade"}) {
-    const Scene scene = loadScene(sourceDirectory() / "scenes" / (std::string(name) + ".scene"));
+TEST_CASE("reflective shadow maps err on the Cornell box and the arcade by what their card claims") {
+  // With 400 samples, here in fewer pixels than there: a tenth above its RMSE, as a share of that of no
+  // indirect light, and a twentieth beside its energy are allowed.
+  struct Claim {
+    const char* scene;
+    double rmse, ratio;
+  };
+  for (const Claim& claim : {Claim{"cornell", 0.23, 0.95}, {"arcade", 0.53, 0.72}}) {
+    const Scene scene = loadScene(sourceDirectory() / "scenes" / (std::string(claim.scene) + ".scene"));
     ReferenceOptions truthOptions = quietly(64, 1);
     truthOptions.width = 64;
     truthOptions.height = 36;
     truthOptions.useCache = true;
-    const Picture oneBounce = cachedReference(scene, truthOptions).layers.at("one_bounce_diffuse");
+    const LayeredPicture truth = cachedReference(scene, truthOptions);
+    const Picture &oneBounce = truth.layers.at("one_bounce_diffuse"),
+                  &variance = truth.layers.at("one_bounce_diffuse.variance");
     RenderOptions options;
     options.width = 64;
     options.height = 36;
     const Picture picture =
         renderOnce(scene, pipeline("reflective_shadow_maps"), options).outputs.at("indirect_diffuse");
-    const PictureError error = compare(picture, oneBounce), nothing = compare(Picture(64, 36, 3), oneBounce);
-    INFO(name << ": RMSE " << error.rmse.value << " against " << nothing.rmse.value << ", ratio "
-              << error.meanRatio.value);
-    CHECK(error.rmse.value < 0.8 * nothing.rmse.value);
-    CHECK(error.meanRatio.value >= 0.7);
-    CHECK(error.meanRatio.value <= 1.3);
+    const PictureError error = compare(picture, oneBounce, variance),
+                       nothing = compare(Picture(64, 36, 3), oneBounce, variance);
+    // The reference's own noise is a part of the RMSE.
+    const double rmse =
+        std::sqrt(std::max(0.0, error.rmse.value * error.rmse.value - error.noiseFloor * error.noiseFloor));
+    CAPTURE(claim.scene, rmse / nothing.rmse.value, error.noiseFloor / nothing.rmse.value,
+            error.meanRatio.value);
+    CHECK(rmse < 1.1 * claim.rmse * nothing.rmse.value);
+    CHECK(error.meanRatio.value == Approx(claim.ratio).epsilon(0.05));
   }
 }

@@ -288,16 +288,23 @@ TEST_CASE("cones see the medium: an environment seen through d metres of it is d
           Approx(std::exp(-0.5 / std::sqrt(0.5) * extinction[channel])).epsilon(0.001));
 }
 
-TEST_CASE("smoke at half resolution is that at full resolution, to a FLIP below 0.05") {
+TEST_CASE("smoke at half resolution differs from that at full by no more FLIP than the card claims") {
   const Scene scene = committed("smoke");
   const Pipeline text = pipeline("volumetric_smoke");
-  RenderOptions half = sized(128), full = sized(128);
+  RenderOptions half = sized(256), full = sized(256);
   half.wanted = full.wanted = {"scattered", "final"};
   full.parameters = text.settings({"pixels=full"});
   const FrameResult a = frameAt(scene, text, half, 3.0), b = frameAt(scene, text, full, 3.0);
-  for (const char* output : {"scattered", "final"}) {
-    CAPTURE(output);
-    CHECK(compare(a.outputs.at(output), b.outputs.at(output)).flip < 0.05);
+  // A tenth more is allowed.
+  const struct {
+    const char* output;
+    double flip;
+  } claims[] = {{"scattered", 0.015}, {"final", 0.006}};
+  for (const auto& claim : claims) {
+    const double flip = compare(a.outputs.at(claim.output), b.outputs.at(claim.output)).flip;
+    CAPTURE(claim.output, flip);
+    CHECK(flip < 1.1 * claim.flip);
+    CHECK(flip > 0.5 * claim.flip);  // half the rays are not the same
   }
 }
 
