@@ -120,6 +120,27 @@ TEST_CASE("particles on the device are those of the scene, bit for bit, at any t
   }
 }
 
+TEST_CASE("more particles than a row of work groups holds are all made and inserted, to the last one") {
+  Medium many = smokeMedium();
+  many.particles = 65535 * 64 + 1000;  // in groups of 64; OpenGL promises 65535 groups along an axis
+  const Scene scene = smokeScene(many);
+  const SceneSnapshot snapshot = snapshotOf(scene, 1.3);
+  PassHarness particles(device(), techniques(), "volumetric_smoke", "particles", scene, snapshot);
+  particles.run();
+  const Particles made = particles.output<Particles>("particles");
+  const auto offsets = made.groups.front().offsets->downloadValues<glm::vec4>();
+  const ParticleClock clock = particleClock(many, 1.3);
+  for (std::uint32_t i = 65535 * 64 - 100; i < static_cast<std::uint32_t>(many.particles); ++i)
+    REQUIRE(offsets[i] == particleAt(many, clock, i));
+  PassHarness insert(device(), techniques(), "volumetric_smoke", "insert", scene, snapshot);
+  insert.setParameter("resolution", 8);
+  insert.setParameter("deposit", std::string("counts"));
+  insert.setInput("particles", made);
+  insert.run();
+  CHECK(massOf(insert.output<ScatteringGrid>("media").media.front()) ==
+        Approx(many.particles * particleMass(many)).epsilon(1e-6));
+}
+
 TEST_CASE("inserting particles keeps their mass, in coarse and fine grids, and gives the same bits again") {
   const Scene scene = smokeScene(smokeMedium());
   const double expected = 3000 * particleMass(scene.media.front());

@@ -149,6 +149,7 @@ void DeviceState::bind(const Program& program, std::span<const ResourceBinding> 
   }
   for (const ResourceBinding& binding : bindings)
     std::visit(Binder{*this, program, binding}, binding.resource);
+  underWay = true;
 }
 
 void Device::dispatch(const Program& program, std::span<const ResourceBinding> bindings, glm::uvec3 groups) {
@@ -312,6 +313,7 @@ void Device::barrier() {
 void Device::finish() {
   state_->use();
   glFinish();
+  state_->underWay = false;
 }
 
 }  // namespace lumivox::gpu

@@ -290,6 +290,11 @@ void Device::leavePass() {
   state_->check("running");
 }
 
+void DeviceState::downloaded(std::uint64_t bytes) {
+  transfers.downloaded += bytes;
+  if (underWay) ++transfers.stalls;
+}
+
 Device::Transfers Device::transfers() const {
   return state_->transfers;
 }

@@ -112,6 +112,7 @@ struct DeviceState {
   static void requireHostMemory(std::uint64_t bytes, const std::string& label);
   /// " beside the 1.5 GiB of all other textures and buffers"
   std::string besideText() const;
+  void downloaded(std::uint64_t bytes);
   void allocated(std::uint64_t bytes);
   void freed(std::uint64_t bytes);
   void bind(const Program& program, std::span<const ResourceBinding> bindings);
@@ -129,6 +130,7 @@ struct DeviceState {
   std::vector<std::string> driverErrors;
   std::uint64_t allocatedBytes = 0, peakBytes = 0;
   Device::Transfers transfers;
+  bool underWay = false;  ///< dispatches or draws since the last finish()
   std::array<GLuint, 7> samplers{};
   GLuint vertexArray = 0;
   GLuint elementBuffer = 0;

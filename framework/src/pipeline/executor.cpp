@@ -45,6 +45,7 @@ struct PipelineExecutor::State {
 
   std::optional<PrunePlan> plan;      ///< made when the first frame or an explanation asks for it
   std::optional<SceneSnapshot> last;  ///< of the last frame
+  bool freesUnused = true;            ///< resources that a frame did not use
   bool complete = false;              ///< the last frame's results are there; otherwise every pass runs
   std::optional<int> lastFrameIndex;
   std::map<int, PassRecord> lastRun;                       ///< per pass, from the last time that it ran
@@ -217,11 +218,18 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
     }
   }
   device.finish();
+  if (!context.allHadRoom()) {
+    // What was rendered lacks something: nothing of it is kept, and the frame's time is that of both
+    // attempts.
+    context.takeNotes();
+    context.pool().endFrame();
+    return frame(SceneSnapshot(*last), frameIndex, pictures, start);
+  }
   result.frameMs = millisecondsSince(start) - scanMs;
   result.betweenPassesMs = result.frameMs - passesMs;
   result.peakBytes = device.peakBytes();
   result.notes = context.takeNotes();
-  context.pool().endFrame();
+  if (freesUnused) context.pool().endFrame();
   complete = true;
   collectPictures(result, pictures);
   return result;
@@ -311,6 +319,18 @@ shader::ShaderLibrary& PipelineExecutor::shaders() {
 void PipelineExecutor::keepOutput(const std::string& pass, const std::string& port) {
   state_->request.forced.push_back(state_->graph.find(pass, port));
   state_->plan.reset();
+}
+
+void PipelineExecutor::keepOnly(const std::string& pass, const std::string& port) {
+  State& s = *state_;
+  s.request.forced = {s.graph.find(pass, port)};
+  for (const BoundPass& bound : s.graph.passes)
+    for (OutBase* output : bound.object->outputs()) output->reset();
+  s.plan.reset();
+}
+
+void PipelineExecutor::freeUnused(bool free) {
+  state_->freesUnused = free;
 }
 
 const Pass& PipelineExecutor::pass(const std::string& name) const {

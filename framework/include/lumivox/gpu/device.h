@@ -287,6 +287,9 @@ class Device {
   /// Bytes that were moved or filled by commands that are no shader's, since the device was made.
   struct Transfers {
     std::uint64_t uploaded = 0, downloaded = 0, cleared = 0;
+    /// How often something was downloaded while dispatches or draws were under way since the last finish():
+    /// each time the host waited for all of them.
+    std::uint64_t stalls = 0;
   };
   Transfers transfers() const;
 
