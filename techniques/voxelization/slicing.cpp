@@ -22,14 +22,13 @@ class SlicingPass : public Voxeliser {
   void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) override {
     gpu::RenderTargets targets;
     targets.width = targets.height = viewSide(list.grid);
-    frame.device().beginDrawing(targets, {});
+    const gpu::Drawing drawing = frame.device().drawTo(targets, {});
     for (int axis = axes == 1 ? 2 : 0; axis < 3; ++axis) {
       for (int slice = 0; slice < list.grid.resolution[axis]; ++slice) {
         const auto depth = static_cast<float>(slice);
         drawSlice(frame, list, draws, viewAlong(list, axis, depth, depth + 1.0f));
       }
     }
-    frame.device().endDrawing();
   }
 
   static void drawSlice(PassContext& frame, const VoxelFragments& list, const Draws& draws,

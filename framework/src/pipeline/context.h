@@ -56,8 +56,9 @@ class FrameContext : public PassContext {
   };
   const std::set<Reused>& reusedParts() const { return reusedParts_; }
 
-  /// Runs one pass under its name: driver errors and errors of the pass carry it, once.
-  gpu::Device::Elapsed run(Pass& pass, const std::string& name);
+  /// Runs one pass under its name: driver errors and errors of the pass carry it, once. `fenced`: waits for
+  /// the device before and after, and takes the time between as the device's; without it that is 0.
+  gpu::Device::Elapsed run(Pass& pass, const std::string& name, bool fenced = false);
   /// Bytes that the last run asked the pool for.
   std::uint64_t bytesOfRun() const { return bytesOfRun_; }
 

@@ -63,7 +63,7 @@ void runGuarded(const Case& one, Bench& bench, StressCell& cell) {
 void describeDevice(StressCell& cell, const gpu::Device& device) {
   cell.device = device.info().renderer;
   cell.driver = device.info().version;
-  cell.shaderInput = device.shaderInput() == gpu::ShaderInput::spirv ? "spirv" : "glsl";
+  cell.shaderInput = device.programRoute();
 }
 
 StressCell cellBefore(const CellRequest& request, const std::string& family, TechniqueSource& techniques,
