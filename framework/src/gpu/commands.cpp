@@ -218,6 +218,14 @@ GLuint makeFramebuffer(DeviceState& state, const RenderTargets& targets, glm::iv
     state.check("choosing what to draw to");
     if (status != GL_FRAMEBUFFER_COMPLETE)
       throw Error(fmt::format("cannot draw to these targets: {}", framebufferProblem(status)));
+    // A device may take more samples than it is asked for, in other places (9.2.1).
+    if (targets.samples > 1) {
+      GLint samples = 0;
+      glGetNamedFramebufferParameteriv(framebuffer, GL_SAMPLES, &samples);
+      if (samples != targets.samples)
+        throw Error(fmt::format("{} samples per pixel asked for, but {} would take {}", targets.samples,
+                                state.info.renderer, samples));
+    }
   } catch (...) {
     glDeleteFramebuffers(1, &framebuffer);
     throw;
