@@ -31,7 +31,7 @@ ParameterValues valuesOf(const Json& json) {
 
 WorkerDevice workerDeviceOf(const gpu::Device& device) {
   return {device.info().renderer, device.info().version,
-          device.shaderInput() == gpu::ShaderInput::spirv ? "spirv" : "glsl", device.info().software};
+          device.programRoute(), device.info().software};
 }
 
 std::string lineOf(const WorkerDevice& ready) {
