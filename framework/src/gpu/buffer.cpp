@@ -62,7 +62,7 @@ std::vector<std::byte> Buffer::download(std::uint64_t offsetBytes, std::uint64_t
   device_->order();
   glGetNamedBufferSubData(handle_, static_cast<GLintptr>(offsetBytes), static_cast<GLsizeiptr>(bytes.size()),
                           bytes.data());
-  device_->transfers.downloaded += bytes.size();
+  device_->downloaded(bytes.size());
   device_->check("downloading " + label_);
   return bytes;
 }

@@ -275,7 +275,7 @@ void DeviceState::bind(const Program& program, std::span<const ResourceBinding> 
   uniforms.ring().reserve(room);
   for (const ResourceBinding& binding : bindings)
     std::visit(Binder{*this, program, binding}, binding.resource);
-  unordered = true;
+  unordered = underWay = true;
 }
 
 void DeviceState::order() {
@@ -394,6 +394,7 @@ void Device::barrier() {
 void Device::finish() {
   state_->use();
   glFinish();
+  state_->underWay = false;
   state_->check("running what the device was given");
 }
 

@@ -155,7 +155,7 @@ void DeviceState::makeSamplers() {
     bool compare;
   };
   // In the order of Sampling.
-  const std::array<Settings, 7> settings{{
+  const std::array<Settings, 8> settings{{
       {GL_NEAREST, GL_NEAREST, GL_CLAMP_TO_EDGE, false},
       {GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_EDGE, false},
       {GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, GL_CLAMP_TO_EDGE, false},
@@ -163,6 +163,7 @@ void DeviceState::makeSamplers() {
       {GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER, false},
       {GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER, false},
       {GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_EDGE, true},
+      {GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR, GL_CLAMP_TO_EDGE, false},
   }};
   glCreateSamplers(static_cast<GLsizei>(samplers.size()), samplers.data());
   for (std::size_t i = 0; i < samplers.size(); ++i) {
@@ -341,6 +342,11 @@ void Device::leavePass() {
     ~Leave() { state.pass.clear(); }
   } leave{*state_};
   if (state_->debug) state_->check("running");
+}
+
+void DeviceState::downloaded(std::uint64_t bytes) {
+  transfers.downloaded += bytes;
+  if (underWay) ++transfers.stalls;
 }
 
 Device::Transfers Device::transfers() const {

@@ -140,6 +140,7 @@ struct DeviceState {
   static void requireHostMemory(std::uint64_t bytes, const std::string& label);
   /// " beside the 1.5 GiB of all other textures and buffers"
   std::string besideText() const;
+  void downloaded(std::uint64_t bytes);
   void allocated(std::uint64_t bytes);
   void freed(std::uint64_t bytes);
   void bind(const Program& program, std::span<const ResourceBinding> bindings);
@@ -162,7 +163,8 @@ struct DeviceState {
   DriverMessages messages;
   std::uint64_t allocatedBytes = 0, peakBytes = 0;
   Device::Transfers transfers;
-  std::array<GLuint, 7> samplers{};
+  bool underWay = false;  ///< dispatches or draws since the last finish()
+  std::array<GLuint, 8> samplers{};
   GLuint vertexArray = 0;
   GLuint elementBuffer = 0;
   bool drawing = false;

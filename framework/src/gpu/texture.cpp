@@ -158,7 +158,7 @@ std::vector<std::byte> Texture::download(int level) const {
   DeviceState::requireHostMemory(bytes, label_);
   std::vector<std::byte> texels(bytes);
   downloadAs(handle_, description_, level, traitsOf(description_.format).type, texels.data(), texels.size());
-  device_->transfers.downloaded += texels.size();
+  device_->downloaded(texels.size());
   device_->check("downloading " + label_);
   return texels;
 }
@@ -172,7 +172,7 @@ void Texture::downloadSlices(int level, int first, int count, std::span<std::byt
   assert(texels.size() == texelsOf(slices) * bytesPerTexel(description_.format));
   downloadSlicesAs(handle_, description_, level, traitsOf(description_.format).type, first, count,
                    texels.data(), texels.size());
-  device_->transfers.downloaded += texels.size();
+  device_->downloaded(texels.size());
   device_->check("downloading " + label_);
 }
 
@@ -196,7 +196,7 @@ std::vector<float> Texture::downloadFloats(int level) const {
   DeviceState::requireHostMemory(count * sizeof(float), label_);
   std::vector<float> values(count);
   downloadAs(handle_, description_, level, GL_FLOAT, values.data(), values.size() * sizeof(float));
-  device_->transfers.downloaded += values.size() * sizeof(float);
+  device_->downloaded(values.size() * sizeof(float));
   device_->check("downloading " + label_);
   return values;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstring>
 #include <exception>
 #include <new>
 
@@ -34,6 +35,33 @@ gpu::BufferRef FrameContext::buffer(std::uint64_t sizeBytes, const std::string& 
   return buffer;
 }
 
+void FrameContext::judgeLater(gpu::BufferRef counts, std::uint64_t offsetBytes, CountJudge judge) {
+  judgements_.push_back({passName_, std::move(counts), offsetBytes, std::move(judge)});
+}
+
+bool FrameContext::allHadRoom() {
+  // Each attempt finds out what is needed by passes that had enough at their inputs: a chain of passes needs
+  // as many as it is long, and one that doubles its room no more than a word has bits.
+  constexpr int kMostAttempts = 64;
+  bool enough = true;
+  for (const Judgement& one : std::exchange(judgements_, {})) {
+    passName_ = one.pass;
+    try {
+      std::uint32_t count = 0;
+      std::memcpy(&count, one.counts->download(one.offsetBytes, sizeof(count)).data(), sizeof(count));
+      if (one.judge(*this, count)) continue;
+      enough = false;
+      if (attempts_ == kMostAttempts)
+        throw Error(fmt::format("no room for what it counts ({}) after {} attempts", count, kMostAttempts));
+    } catch (const std::exception& error) {
+      attempts_ = 0;
+      throw Error("pass " + one.pass + ": " + error.what());
+    }
+  }
+  attempts_ = enough ? 0 : attempts_ + 1;
+  return enough;
+}
+
 void FrameContext::warn(const std::string& text) {
   const std::string message = "pass " + passName_ + ": " + text;
   if (warnings_.insert(message).second) logWarning("{}", message);
@@ -48,6 +76,7 @@ void FrameContext::reused(const std::string& what, const std::string& why) {
 }
 
 void FrameContext::setFrame(SceneSnapshot snapshot, int frameIndex, bool geometryChanged) {
+  judgements_.clear();  // of a frame that an error ended
   snapshot_ = std::move(snapshot);
   frameIndex_ = frameIndex;
   if (gpuScene_ && geometryChanged) gpuScene_->update(snapshot_);

@@ -46,6 +46,7 @@ struct PipelineExecutor::State {
 
   std::optional<PrunePlan> plan;      ///< made when the first frame or an explanation asks for it
   std::optional<SceneSnapshot> last;  ///< of the last frame
+  bool freesUnused = true;            ///< resources that a frame did not use
   bool complete = false;              ///< the last frame's results are there; otherwise every pass runs
   std::optional<int> lastFrameIndex;
   std::map<int, PassRecord> lastRun;     ///< per pass, from the last time that it ran
@@ -269,11 +270,18 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
   }
   result.betweenPassesMs = millisecondsSince(start) - passesMs - scanMs;
   if (instrument != Instrument::stamps) device.finish();
+  if (!context.allHadRoom()) {
+    // What was rendered lacks something: nothing of it is kept, and the frame's time is that of both
+    // attempts.
+    context.takeNotes();
+    context.pool().endFrame();
+    return frame(SceneSnapshot(*last), frameIndex, pictures, timing, start);
+  }
   result.frameMs =
       timing == Timing::frame ? millisecondsSince(start) - scanMs : std::numeric_limits<double>::quiet_NaN();
   result.peakBytes = device.peakBytes();
   result.notes = context.takeNotes();
-  context.pool().endFrame();
+  if (freesUnused) context.pool().endFrame();
   complete = true;
   if (instrument == Instrument::fence) keepTimes(result.passes);
   if (instrument == Instrument::stamps) {
@@ -378,6 +386,18 @@ shader::ShaderLibrary& PipelineExecutor::shaders() {
 void PipelineExecutor::keepOutput(const std::string& pass, const std::string& port) {
   state_->request.forced.push_back(state_->graph.find(pass, port));
   state_->plan.reset();
+}
+
+void PipelineExecutor::keepOnly(const std::string& pass, const std::string& port) {
+  State& s = *state_;
+  s.request.forced = {s.graph.find(pass, port)};
+  for (const BoundPass& bound : s.graph.passes)
+    for (OutBase* output : bound.object->outputs()) output->reset();
+  s.plan.reset();
+}
+
+void PipelineExecutor::freeUnused(bool free) {
+  state_->freesUnused = free;
 }
 
 const Pass& PipelineExecutor::pass(const std::string& name) const {

@@ -138,9 +138,19 @@ using TextureRef = std::shared_ptr<Texture>;
 using BufferRef = std::shared_ptr<Buffer>;
 
 /// How a texture is read. Without `repeat` or `border` the edge texel continues outside; `border` means zero
-/// outside; `shadow` compares depth (1 where reference <= stored) and filters the four results. Integer
+/// outside; `shadow` compares depth (1 where reference <= stored) and filters the four results.
+/// `linearOneMip` reads the nearest mip level alone, so that the next one may be written meanwhile. Integer
 /// formats are read with `nearest` only.
-enum class Sampling { nearest, linear, linearMips, linearMipsRepeat, linearBorder, linearMipsBorder, shadow };
+enum class Sampling {
+  nearest,
+  linear,
+  linearMips,
+  linearMipsRepeat,
+  linearBorder,
+  linearMipsBorder,
+  shadow,
+  linearOneMip
+};
 
 // ---- programs
 // -------------------------------------------------------------------------------------------------------------------
@@ -344,6 +354,9 @@ class Device {
   /// Bytes that were moved or filled by commands that are no shader's, since the device was made.
   struct Transfers {
     std::uint64_t uploaded = 0, downloaded = 0, cleared = 0;
+    /// How often something was downloaded while dispatches or draws were under way since the last finish():
+    /// each time the host waited for all of them.
+    std::uint64_t stalls = 0;
   };
   Transfers transfers() const;
 

@@ -176,6 +176,11 @@ class PipelineExecutor {
   /// Keeps an output of a pass alive after each render, and its pass with it; for exporters and tests. Error
   /// for an unknown name.
   void keepOutput(const std::string& pass, const std::string& port);
+  /// The same for this output alone: those that were kept before are wanted no more.
+  void keepOnly(const std::string& pass, const std::string& port);
+  /// Resources that a frame does not use are freed at its end (true, as it begins), or stay for the next one:
+  /// for frames that want now this and now that output, and are timed.
+  void freeUnused(bool free);
   /// A pass of the pipeline with its parameters set, whether it runs or not. Error for an unknown name.
   const Pass& pass(const std::string& name) const;
   /// After the last render. Null when it was left out or given back. Error for an unknown name.
