@@ -1,9 +1,7 @@
-// What a frame costs the host: draws, and the bounds of what moves. bench_gpu [parts] [slices] [vertices]
-// [repeats]
+// What a frame costs the host: draws, and the bounds of what moves. bench_gpu [draws] [vertices] [repeats]
 //
-// The draws are those of the slicing voxelizer, which draws every part once for each slice: 150 parts along
-// three axes of 128 slices make 57,600, each of one triangle that meets few of the slices, so that the host
-// has most of the work.
+// The draws are those of the g-buffer: one for each part of the scene, each of one triangle that covers no
+// more than a pixel, so that the host has most of the work.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -84,25 +82,23 @@ int main(int argc, char** argv) {
     const auto argument = [&](int index, int otherwise) {
       return argc > index ? std::atoi(argv[index]) : otherwise;
     };
-    const int parts = argument(1, 150), slices = argument(2, 128), vertices = argument(3, 1000000),
-              repeats = std::max(argument(4, 11), 1);
+    const int draws = std::max(argument(1, 57600), 1), vertices = std::max(argument(2, 1000000), 1),
+              repeats = std::max(argument(3, 11), 1);
     gpu::Device device;
     TechniqueSet techniques(TechniqueSet::defaultDirectories({}));
-    const Scene scene = partsScene(parts);
-    const Pipeline pipeline = Pipeline::load("scenes/pipelines/voxelisers/slicing_three_axes.pipeline");
+    const Scene scene = partsScene(draws);
+    const Pipeline pipeline = Pipeline::load("scenes/pipelines/direct_lighting.pipeline");
     RenderOptions options;
     options.wantsOutputs = false;
-    options.parameters = pipeline.settings({fmt::format("resolution={}", slices)});
     PipelineExecutor executor(device, techniques, scene, pipeline, options);
-    executor.keepOutput("voxels", "fragments");
+    executor.keepOutput("gbuffer", "gbuffer");
     std::vector<double> hostMs;
     for (int repeat = -1; repeat < repeats; ++repeat) {  // one as warm-up
       executor.invalidate();
       const FrameResult frame = executor.render(0.0, 0, PipelineExecutor::Pictures::no);
       if (repeat >= 0) hostMs.push_back(frame.passes.front().hostMs);
     }
-    const double draws = 3.0 * slices * parts;
-    fmt::print("{:.0f} draws on {}: host {:.1f} ms, {:.2f} us a draw (median of {})\n", draws,
+    fmt::print("{} draws on {}: host {:.1f} ms, {:.2f} us a draw (median of {})\n", draws,
                device.info().renderer, median(hostMs), 1e3 * median(hostMs) / draws, repeats);
 
     const Scene moving = movingScene(vertices);
