@@ -117,7 +117,8 @@ void makeContent() {
   made.attributes = {made.grid, randomVolume(gpu::Format::rgba16f, size, 1, 2),
                      randomVolume(gpu::Format::rgba16f, size, 1, 3),
                      randomVolume(gpu::Format::rgba32f, size, 1, 4)};
-  made.radiance = {made.grid, randomVolume(gpu::Format::rgba32f, size, 5, 6)};
+  made.radiance.grid = made.grid;
+  made.radiance.radiance = randomVolume(gpu::Format::rgba32f, size, 5, 6);
   ShGrid::Level fine{made.grid, {}, {}, {}}, coarse{made.grid, {}, {}, {}};
   coarse.grid.voxelSize *= 2.0f;
   for (std::size_t channel = 0; channel < 3; ++channel) {
