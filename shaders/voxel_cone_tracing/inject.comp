@@ -3,6 +3,7 @@
 // fragments it has and how bright the brightest of them is, which add.comp needs for their average.
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis SHADOWS 0 1
+#pragma lumivox axis REFLECTED 0 1
 #pragma lumivox axis MEDIUM none even varying
 #pragma lumivox require !SHADOWS || LIGHTS
 #pragma lumivox require MEDIUM == none || LIGHTS
@@ -36,6 +37,10 @@ layout(std430, binding = 1) readonly buffer Fragments { VoxelFragment fragments[
 layout(std430, binding = 2) writeonly buffer Radiances { float radiances[]; };  // three of each fragment, W/(sr m^2)
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
 layout(std430, binding = 4) buffer Sums { VoxelSums sums[]; };
+#if REFLECTED
+// Direct light that fragments are known to reflect: a word for each of the first of them.
+layout(std430, binding = 7) readonly buffer Reflected { uint reflected[]; };
+#endif
 
 void main() {
   uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
@@ -45,10 +50,15 @@ void main() {
   vec2 blueCoverage = unpackHalf2x16(fragment.albedoBCoverage);
   vec3 albedo = vec3(unpackHalf2x16(fragment.albedoRg), blueCoverage.x);
   vec3 irradiance = vec3(ambient);  // thesis Fig. 66
+  int toAsk = lightCount;
+#if REFLECTED
+  uint known = index < uint(reflected.length()) ? reflected[index] : kNotKnown;
+  if (known != kNotKnown) toAsk = 0;
+#endif
 #if LIGHTS
   vec3 posWorld = gridLow + (vec3(voxel) + unpackOffset(fragment.offset)) * voxelSize;
   vec3 normal = unpackNormal(fragment.normal);
-  for (int i = 0; i < lightCount; ++i) {
+  for (int i = 0; i < toAsk; ++i) {
     LightSample light = lights[i];
     vec3 toLight;
     vec3 perpendicular = arrivingIrradiance(light, posWorld, toLight);
@@ -66,6 +76,9 @@ void main() {
   }
 #endif
   vec3 radiance = min(albedo / kPi * irradiance, mostRadiance);
+#if REFLECTED
+  if (known != kNotKnown) radiance = min(radiance + unpackShared(known), mostRadiance);  // with what the ambient term adds
+#endif
   for (int channel = 0; channel < 3; ++channel) radiances[3 * index + channel] = radiance[channel];
   uint place = sumsOf(bricks[brickOf(voxel, brickCount)], bitOf(voxel));
   atomicAdd(sums[place].fragments, 1u);

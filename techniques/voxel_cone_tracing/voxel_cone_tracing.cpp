@@ -165,6 +165,7 @@ class InjectPass : public Pass {
   void light(PassContext& frame, const Sums& sums, const gpu::Buffer& radiances, float mostRadiance) {
     injectShader::Variant variant;
     variant.lights = variant.shadows = shadow.present();
+    variant.reflected = fragments->reflected != nullptr;
     injectShader::Grid grid{};
     grid.gridLow = fragments->grid.low;
     grid.voxelSize = fragments->grid.voxelSize;
@@ -191,6 +192,7 @@ class InjectPass : public Pass {
       bindings.push_back(injectShader::views(*shadow->views));
       bindings.push_back(injectShader::shadowDepth(*shadow->depth, gpu::Sampling::shadow));
     }
+    if (fragments->reflected != nullptr) bindings.push_back(injectShader::reflected(*fragments->reflected));
     bound.addTo(bindings);
     frame.shaders().dispatchIndirect(frame.program(injectShader::kProgram, variant.key()), bindings,
                                      *fragments->count, sizeof(std::uint32_t));

@@ -67,6 +67,12 @@ struct VoxelFragments {
   GridPlacement grid;
   gpu::BufferRef fragments;  ///< array of VoxelFragment in shaders/common/voxel.glsl
   gpu::BufferRef count;      ///< words: fragments written; then x, y, z of an indirect dispatch over them
+  /// Direct light that fragments are known to reflect, since a renderer computed it where the camera sees
+  /// them (Mavridis & Papaioannou 2011, Sec. 3.2). Null: of none. Else a word for each of the first
+  /// fragments: their reflected radiance in W/(sr m^2), packed as `packShared` does, or kNotKnown; those
+  /// behind the end of the buffer are not known either.
+  gpu::BufferRef reflected;
+  static constexpr std::uint32_t kNotKnown = 0xffffffffu;
   std::uint64_t capacity = 0;
   int workGroupSize = 64;  ///< that the indirect dispatch assumes
   /// How the coverages of the fragments in one voxel make its opacity: their mean (each triangle is judged by
@@ -141,6 +147,9 @@ struct ShGrid {
     gpu::TextureRef moved;   ///< d3 rgba8, of the same faces, as bytes: how far surfaces were moved to lie on
                              ///< them, fourteenths of a voxel: the low four bits of those that look down the
                              ///< axis and truly lie above, the high ones the other way; null: not at all
+    gpu::BufferRef packed{};  ///< five words a voxel, x first (thesis Gomes 2015, Listings 4.26 to 4.29):
+                              ///< albedo over pi behind its contrast, and for each face of a tetrahedron a
+                              ///< normal behind its closeness to it; 0: no surface. null: not kept
   };
   std::vector<Level> levels;  ///< finest and smallest first
 };
