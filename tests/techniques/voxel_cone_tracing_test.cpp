@@ -453,7 +453,7 @@ TEST_CASE("the filter gives the same bits whether it follows the occupied bricks
     }
 }
 
-TEST_CASE("injection takes memory for the fragments and a seventh of a word a voxel beside its grid") {
+TEST_CASE("injection takes memory for the fragments and a fifth of a byte a voxel beside its grid") {
   // Six words of sums and three of radiance a fragment, a word a listed brick, and three words for each brick
   // of 64.
   SceneBuilder builder;
