@@ -97,6 +97,19 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("as published nothing is scattered where the shadow map has shadow") {
+  // A roof over the left half; the sun has no part to the side. Every other pixel looks to the left.
+  SceneBuilder builder = sunnyFloor(2.0f);
+  builder.quad({-2, 1, -2}, {0, 0, 4}, {2, 0, 0}, builder.lambert(0.5f));
+  const GBuffer gbuffer = surfacesAt([](int i) { return glm::vec3(i % 2 == 0 ? -1.0f : 1.0f, 0.0f, -0.5f); });
+  const ScatteringGrid fog = evenMedium(glm::vec3(1.0f), glm::vec3(1.0f), 0.0f, {-5, -5, -5}, {5, 5, 5});
+  const Picture found =
+      marchAsPublished(builder.scene, fog, gbuffer, 32, {{"cosine", "unit_vectors"}}).scattered;
+  // Beside the eye, at the roof's edge, a texel of the shadow map is half in the light.
+  for (int i = 100; i < 200; ++i)
+    CHECK(valueOf(found, i) == Approx(i % 2 == 0 ? 0.0 : 2.0 * kIsotropic).margin(0.1 * 2.0 * kIsotropic));
+}
+
 TEST_CASE(
     "as published the density sets g and the cosine is of the whole ray and the light's position, each mended alone") {
   // Half a particle everywhere: g = 1/2. The ray goes ahead, the sun is at a cosine of 0.8 with it.
