@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
 
 namespace lumivox::report {
 namespace {
@@ -16,6 +17,7 @@ constexpr int kPatienceMs = 60'000;
 }  // namespace
 
 Database::Database(const std::filesystem::path& file, bool write) : file_(file) {
+  requireRegularFile(file);
   sqlite3* handle = nullptr;
   const int flags = write ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
   const int status = sqlite3_open_v2(file.c_str(), &handle, flags, nullptr);
@@ -74,6 +76,19 @@ std::string Statement::text(int column) const {
 void Statement::bindOne(int index, const std::string& text) {
   if (sqlite3_bind_text(statement_.get(), index, text.c_str(), static_cast<int>(text.size()),
                         SQLITE_TRANSIENT) != SQLITE_OK)
+    database_.fail();
+}
+
+std::string Statement::bytes(int column) const {
+  const auto* bytes = static_cast<const char*>(sqlite3_column_blob(statement_.get(), column));
+  return bytes == nullptr
+             ? std::string()
+             : std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column)));
+}
+
+void Statement::bindOne(int index, const Blob& blob) {
+  if (sqlite3_bind_blob64(statement_.get(), index, blob.bytes.data(), blob.bytes.size(), SQLITE_TRANSIENT) !=
+      SQLITE_OK)
     database_.fail();
 }
 
