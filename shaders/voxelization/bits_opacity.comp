@@ -2,7 +2,7 @@
 // Bits as opacities.
 #include "bits.glsl"
 
-layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+layout(local_size_x = 32, local_size_y = 2) in;  // rows of a volume are what memory holds together
 
 layout(binding = 2, r8) uniform writeonly image3D opacity;
 

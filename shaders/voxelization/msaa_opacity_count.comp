@@ -1,6 +1,6 @@
 #version 450
 // Bit counts of a voxel's sides to its opacity (thesis 004 Sec. 3.5.2).
-layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+layout(local_size_x = 32, local_size_y = 2) in;  // rows of a volume are what memory holds together
 
 layout(std140, binding = 0) uniform Sides {
   int sampleCount;

@@ -59,11 +59,11 @@ class AveragePass : public Pass {
          claimShader::slots(*slots.numbers)},
         *fragments->count, kGroupsOffset);
     frame.device().barrier();
-    // A first guess: surfaces fill about as many voxels as three sides of the grid; never more than there are
-    // fragments.
+    // A first guess: surfaces fill about as many voxels as six sides of the grid, some in two layers; never
+    // more than there are fragments.
     const glm::ivec3& size = fragments->grid.resolution;
     const auto side = static_cast<std::uint64_t>(std::max({size.x, size.y, size.z}));
-    room_ = std::max(room_, inSteps(std::min(3 * side * side, fragments->capacity)));
+    room_ = std::max(room_, inSteps(std::min(8 * side * side, fragments->capacity)));
     slots.room = room_;
     finishCount(frame, *slots.count, slots.room);
     frame.judgeLater(slots.count, kWantedOffset, [this](PassContext&, std::uint32_t count) {

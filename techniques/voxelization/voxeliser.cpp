@@ -49,10 +49,10 @@ GridPlacement GridPass::placement(PassContext& frame) const {
 }
 
 std::uint64_t Voxeliser::expectedFragments(const Scene& scene, const GridPlacement&) const {
-  // Surfaces fill about as many voxels as six sides of the grid; every triangle touches at least one, mostly
-  // more.
+  // Surfaces fill about as many voxels as six sides of the grid, twice where they lie between two layers;
+  // every triangle touches at least one, mostly a few.
   const auto side = static_cast<std::uint64_t>(resolution);
-  return 6 * side * side + 2 * scene.triangleCount();
+  return 12 * side * side + 4 * scene.triangleCount();
 }
 
 GridPass::StillKey GridPass::stillKey(const PassContext& frame, const GridPlacement& grid,
