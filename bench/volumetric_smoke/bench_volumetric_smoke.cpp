@@ -67,9 +67,12 @@ int main(int argc, char** argv) {
       for (Setting& setting : settings) {
         setting.executor->invalidate();
         setting.last = setting.executor->render(
-            3.0, 0, repeat == repeats - 1 ? PipelineExecutor::Pictures::yes : PipelineExecutor::Pictures::no);
-        if (repeat < 0) continue;
-        for (const PassRecord& pass : setting.last.passes) setting.times[pass.name].push_back(pass.deviceMs);
+            3.0, 0, repeat == repeats - 1 ? PipelineExecutor::Pictures::yes : PipelineExecutor::Pictures::no,
+            PipelineExecutor::Timing::passes);
+        for (const std::vector<PassRecord>& frame : setting.executor->timedPasses()) {
+          if (repeat < 0) continue;
+          for (const PassRecord& pass : frame) setting.times[pass.name].push_back(pass.deviceMs);
+        }
       }
     }
     fmt::print("{} x {} pixels, median of {} repeats, ms, on {}\n", size, size, repeats,

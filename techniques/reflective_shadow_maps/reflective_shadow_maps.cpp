@@ -94,7 +94,7 @@ class RenderPass : public Pass {
     const renderShader::View block{view.worldToClip, light,
                                    0.5f * static_cast<float>(result.flux->description().width)};
     const bool keep = frame.keepsEverything();
-    frame.device().beginDrawing(targets, state);
+    const gpu::Drawing drawing = frame.device().drawTo(targets, state);
     const std::size_t count = view.used ? scene.draws().size() : 0;
     for (std::size_t i = 0; i < count; ++i) {
       const SceneDraw& draw = scene.draws()[i];
@@ -114,7 +114,6 @@ class RenderPass : public Pass {
            renderShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)},
           scene.indices(), draw.firstIndex, draw.indexCount);
     }
-    frame.device().endDrawing();
   }
 };
 

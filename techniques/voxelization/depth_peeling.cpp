@@ -92,7 +92,7 @@ class DepthPeelingPass : public Voxeliser {
     targets.depth = layer.depth.get();
     gpu::RasterState state;
     state.depthTest = state.depthWrite = true;
-    frame.device().beginDrawing(targets, state);
+    const gpu::Drawing drawing = frame.device().drawTo(targets, state);
     for (const SceneDraw* draw : draws) {
       peelShader::Variant variant;
       variant.textures = frame.keepsEverything() || draw->diffuseTexture != nullptr;
@@ -103,7 +103,6 @@ class DepthPeelingPass : public Voxeliser {
       frame.shaders().drawIndexed(frame.program(peelShader::kProgram, variant.key()), bindings,
                                   frame.scene().indices(), draw->firstIndex, draw->indexCount);
     }
-    frame.device().endDrawing();
     frame.device().barrier();
   }
 

@@ -79,7 +79,7 @@ class MsaaOpacityPass : public Voxeliser {
     grid.mostScale = mostScale;
     for (std::size_t i = 0; i < positions_.size(); ++i)
       grid.samples[i] = glm::vec4(positions_[i], 0.0f, 0.0f);
-    frame.device().beginDrawing(targets, {});
+    const gpu::Drawing drawing = frame.device().drawTo(targets, {});
     for (const SceneDraw* draw : draws) {
       grid.firstIndex = static_cast<int>(draw->firstIndex);
       msaaShader::Variant variant;
@@ -93,7 +93,6 @@ class MsaaOpacityPass : public Voxeliser {
       bindings.insert(bindings.end(), results.begin(), results.end());
       frame.shaders().draw(frame.program(msaaShader::kProgram, variant.key()), bindings, draw->indexCount);
     }
-    frame.device().endDrawing();
     frame.device().barrier();
   }
 
@@ -106,6 +105,7 @@ class MsaaOpacityPass : public Voxeliser {
     };
     const StillKey key = stillKey(frame, grid, still);
     if (frame.startsAfresh() || stillMasks_ == nullptr || !(key == stillMasksKey_)) {
+      stillMasks_.reset();  // before the next one is taken: the pool may give back the same
       stillMasks_ = frame.texture(volumeOf(grid, gpu::Format::r32ui), "samples of what stands still");
       stillMasks_->clear(glm::vec4(0.0f));
       mark(*stillMasks_, still);

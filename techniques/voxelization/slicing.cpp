@@ -26,7 +26,7 @@ class SlicingPass : public Voxeliser {
     targets.width = targets.height = viewSide(list.grid);
     std::vector<Bounds> bounds;
     for (const SceneDraw* draw : draws) bounds.push_back(boundsOf(frame, *draw, list.grid));
-    frame.device().beginDrawing(targets, {});
+    const gpu::Drawing drawing = frame.device().drawTo(targets, {});
     for (int axis = axes == 1 ? 2 : 0; axis < 3; ++axis) {
       for (int slice = 0; slice < list.grid.resolution[axis]; ++slice) {
         const auto low = static_cast<float>(slice), high = low + 1.0f;
@@ -36,7 +36,6 @@ class SlicingPass : public Voxeliser {
         drawSlice(frame, list, within, viewAlong(list, axis, low, high));
       }
     }
-    frame.device().endDrawing();
   }
 
   /// In voxels: what lies outside of a slice's clip planes as a whole is not drawn for it.

@@ -48,6 +48,7 @@ std::vector<std::string> repeatArguments(const GlobalOptions& global) {
   std::vector<std::string> arguments;
   if (global.device != "auto") arguments.insert(arguments.end(), {"--device", global.device});
   if (global.shaders != "auto") arguments.insert(arguments.end(), {"--shaders", global.shaders});
+  if (global.arithmetic != "exact") arguments.insert(arguments.end(), {"--arithmetic", global.arithmetic});
   if (global.memory != 0) arguments.insert(arguments.end(), {"--memory", std::to_string(global.memory)});
   for (const auto& folder : global.assets) arguments.insert(arguments.end(), {"--assets", folder.string()});
   for (const auto& folder : global.techniques)

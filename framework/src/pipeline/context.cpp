@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -81,26 +82,35 @@ void FrameContext::setFrame(SceneSnapshot snapshot, int frameIndex, bool geometr
   if (gpuScene_ && geometryChanged) gpuScene_->update(snapshot_);
 }
 
-gpu::Device::Elapsed FrameContext::run(Pass& pass, const std::string& name) {
+gpu::Device::Elapsed FrameContext::run(Pass& pass, const std::string& name, bool fenced) {
+  using Clock = std::chrono::steady_clock;
+  const auto since = [](Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  };
   passName_ = name;
   bytesOfRun_ = 0;
   lastResource_.clear();
-  // Errors are carried past the timer, so that it is always stopped.
+  gpu::Device::Elapsed elapsed{0.0, 0.0};
   std::exception_ptr failure;
+  if (fenced) device_.finish();
+  const auto start = Clock::now();
   device_.enterPass(name);
-  const gpu::Device::Elapsed elapsed = device_.time([&] {
-    try {
-      pass.run(*this);
-    } catch (...) {
-      failure = std::current_exception();
-    }
-  });
+  try {
+    pass.run(*this);
+    // What a pass wrote is there for every later one, whatever that does with it.
+    device_.barrier();
+    elapsed.hostMs = since(start);
+  } catch (...) {
+    failure = std::current_exception();
+  }
   try {
     device_.leavePass();
+    if (fenced) device_.finish();
   } catch (...) {
     // The pass's own error came first and explains more.
     if (!failure) failure = std::current_exception();
   }
+  if (fenced) elapsed.deviceMs = since(start);
   if (!failure) return elapsed;
   // The one place that names the pass in an error.
   try {

@@ -337,10 +337,10 @@ void TimedPoint::timeFrame() {
   const FrameResult frame = s.executor.render(s.time, 0, PipelineExecutor::Pictures::no);
   s.frameMs.push_back(frame.frameMs);
   if (frame.frameMs > 0.0) s.shares.push_back(frame.betweenPassesMs / frame.frameMs);
-  for (const PassRecord& pass : frame.passes) {
-    s.deviceMs[pass.name].push_back(pass.deviceMs);
-    s.hostMs[pass.name].push_back(pass.hostMs);
-  }
+  for (const PassRecord& pass : frame.passes) s.hostMs[pass.name].push_back(pass.hostMs);
+  // The passes in a frame of their own: their instruments are no part of the frame's time.
+  s.executor.invalidate();
+  s.executor.render(s.time, 0, PipelineExecutor::Pictures::no, PipelineExecutor::Timing::passes);
 }
 
 void TimedPoint::timeNextFrame() {
@@ -354,6 +354,8 @@ void TimedPoint::timeNextFrame() {
 
 void TimedPoint::finish() {
   State& s = *state_;
+  for (const std::vector<PassRecord>& frame : s.executor.timedPasses())
+    for (const PassRecord& pass : frame) s.deviceMs[pass.name].push_back(pass.deviceMs);
   s.point.frameMs = statisticsOf(s.frameMs);
   s.point.nextFrameMs = statisticsOf(s.nextMs);
   s.point.frameworkShare = s.shares.empty() ? 0.0 : statisticsOf(s.shares).median;

@@ -268,7 +268,7 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
   ReportData data;
   data.options = options;
   data.device = device.info();
-  data.shaderInput = device.shaderInput() == gpu::ShaderInput::spirv ? "SPIR-V" : "GLSL made from the SPIR-V";
+  data.shaderInput = gpu::programRouteText(device);
   data.host = hostText();
   data.date = dateText();
   data.ceilings = storedCeilings(device, options.store);

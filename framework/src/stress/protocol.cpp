@@ -30,8 +30,7 @@ ParameterValues valuesOf(const Json& json) {
 }  // namespace
 
 WorkerDevice workerDeviceOf(const gpu::Device& device) {
-  return {device.info().renderer, device.info().version,
-          device.shaderInput() == gpu::ShaderInput::spirv ? "spirv" : "glsl", device.info().software};
+  return {device.info().renderer, device.info().version, device.programRoute(), device.info().software};
 }
 
 std::string lineOf(const WorkerDevice& ready) {

@@ -320,13 +320,17 @@ class PassContext {
   /// Tells explain() of a part of the pass's work that this frame took over from an earlier one.
   virtual void reused(const std::string& what, const std::string& why) = 0;
 
-  const shader::BoundProgram& program(const shader::ProgramName& name, const shader::VariantKey& variant = {},
-                                      const std::vector<gpu::SpecialisationValue>& constants = {}) {
+  const shader::BoundProgram& program(const shader::ProgramName& name, shader::VariantKey variant = {},
+                                      std::span<const gpu::SpecialisationValue> constants = {}) {
     return shaders().program(name, variant, constants);
   }
   /// One invocation per item, in groups of `groupSize`; a barrier follows.
-  void dispatch(const shader::BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings,
+  void dispatch(const shader::BoundProgram& program, shader::ShaderLibrary::Bindings bindings,
                 glm::ivec3 items, glm::ivec3 groupSize);
+  void dispatch(const shader::BoundProgram& program, shader::ShaderLibrary::BindingList bindings,
+                glm::ivec3 items, glm::ivec3 groupSize) {
+    dispatch(program, shader::ShaderLibrary::Bindings(bindings.begin(), bindings.end()), items, groupSize);
+  }
   gpu::TextureRef image(gpu::Format format, const std::string& label);  ///< picture-sized d2 texture
 };
 
