@@ -95,10 +95,12 @@ std::string ratios(const ReproducedResult& result, const std::vector<std::string
   }
   // Each verdict once, in the order of the rows.
   std::vector<std::string> measured, published, verdicts;
+  bool asTheWhole = true;
   for (const JudgedRow& row : judged.rows) {
     measured.push_back(ratio(row.ratio));
     published.push_back(ratio(row.publishedRatio));
     if (row.verdict == Verdict::reference || (!isQuotient && measured.size() == 1)) continue;
+    asTheWhole = asTheWhole && row.verdict == result.judged.verdict;
     std::string verdict = fmt::format("*{}*", name(row.verdict));
     if (!row.why.empty()) verdict += " (" + row.why + ")";
     if (std::find(verdicts.begin(), verdicts.end(), verdict) == verdicts.end()) verdicts.push_back(verdict);
@@ -106,9 +108,7 @@ std::string ratios(const ReproducedResult& result, const std::vector<std::string
   const char* const between = isQuotient ? ", " : " : ";
   std::string text = fmt::format("{}, published {}: {}", fmt::join(measured, between),
                                  fmt::join(published, between), fmt::join(verdicts, ", "));
-  const std::string whole = name(result.judged.verdict);
-  if (verdicts.size() != 1 || verdicts.front() != "*" + whole + "*")
-    text += fmt::format("; the whole table *{}*", whole);
+  if (!asTheWhole) text += fmt::format("; the whole table *{}*", name(result.judged.verdict));
   return report::replaced(text, "|", "\\|");
 }
 
