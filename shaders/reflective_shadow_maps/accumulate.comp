@@ -21,9 +21,13 @@ void main() {
   uint index = listIndex(), first = index * kFan;
   if (first >= addends) return;
   float sum = 0.0;
+#if OF == OF_TEXELS
+  ivec3 texel = texelOf(first, width);
+#endif
   for (uint i = first; i < min(first + kFan, addends); ++i) {
 #if OF == OF_TEXELS
-    sum += luminance(texelFetch(rsmFlux, texelOf(i, width), 0).rgb);
+    sum += luminance(texelFetch(rsmFlux, texel, 0).rgb);
+    advance(texel, width);
 #else
     sum += sums[firstAddend + i];
 #endif

@@ -29,10 +29,17 @@ void main() {
     for (uint level = levels; level > 0u; --level) {
       firstOfLevel += levelSize(texels, level);
       uint child = entry * kFan, end = min(child + kFan, levelSize(texels, level - 1u));
+      ivec3 texel = texelOf(child, width);
       entry = child;
       weight = 0.0;
       for (; child < end; ++child) {
-        float here = level > 1u ? sums[firstOfLevel + child] : luminance(texelFetch(rsmFlux, texelOf(child, width), 0).rgb);
+        float here;
+        if (level > 1u) {
+          here = sums[firstOfLevel + child];
+        } else {
+          here = luminance(texelFetch(rsmFlux, texel, 0).rgb);
+          advance(texel, width);
+        }
         if (here <= 0.0) continue;
         entry = child;
         weight = here;

@@ -16,4 +16,13 @@ uint levelSize(uint texels, uint level) {
 // Layers are square.
 ivec3 texelOf(uint index, uint width) { return ivec3(index % width, index / width % width, index / width / width); }
 
+// The one after it.
+void advance(inout ivec3 texel, uint width) {
+  if (++texel.x < int(width)) return;
+  texel.x = 0;
+  if (++texel.y < int(width)) return;
+  texel.y = 0;
+  ++texel.z;
+}
+
 #endif

@@ -17,8 +17,9 @@ layout(std140, binding = 2) uniform Points {
   float pointsPerVoxel;  // above 0: as many points as the triangle has squared voxel sizes of area, times this
   uvec2 seed;
   int mostPoints;  // of one triangle
-  int regular;     // 1: in the middles of equal parts of the triangle; 0: random
 };
+// 1: points in the middles of equal parts of the triangle; 0: random. A constant, so that no thread has the code of both.
+layout(constant_id = 0) const int regular = 0;
 #include "aside.glsl"
 
 const int kPointsPerThread = 64;

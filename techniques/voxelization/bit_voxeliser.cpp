@@ -55,6 +55,7 @@ gpu::TextureRef BitVoxeliser::wordsOf(PassContext& frame, const GridPlacement& g
   const StillKey key = stillKey(frame, grid, still);
   const bool kept = !frame.startsAfresh() && still_ != nullptr && key == stillKey_;
   if (!kept) {
+    still_.reset();  // before the next one is taken: the pool may give back the same
     still_ = bitWords(frame, grid, "bits of what stands still");
     if (!still.empty()) mark(frame, grid, *still_, still);
     stillKey_ = key;

@@ -105,6 +105,7 @@ class MsaaOpacityPass : public Voxeliser {
     };
     const StillKey key = stillKey(frame, grid, still);
     if (frame.startsAfresh() || stillMasks_ == nullptr || !(key == stillMasksKey_)) {
+      stillMasks_.reset();  // before the next one is taken: the pool may give back the same
       stillMasks_ = frame.texture(volumeOf(grid, gpu::Format::r32ui), "samples of what stands still");
       stillMasks_->clear(glm::vec4(0.0f));
       mark(*stillMasks_, still);

@@ -106,6 +106,8 @@ class PointsPass : public Voxeliser {
     const gpu::Texture& diffuse =
         draw.diffuseTexture != nullptr ? *draw.diffuseTexture : scene.whiteTexture();
     const gpu::Texture& mask = draw.maskTexture != nullptr ? *draw.maskTexture : scene.whiteTexture();
+    pointsShader::Constants constants;
+    constants.regular = spread == "regular" ? 1 : 0;
     const std::uint64_t seed = frame.seed();
     const auto triangles = static_cast<int>(draw.indexCount / 3);
     const std::vector<gpu::ResourceBinding> bindings{
@@ -123,19 +125,18 @@ class PointsPass : public Voxeliser {
                               points,
                               adaptive ? density + 0.0f : 0.0f,
                               {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)},
-                              kMostPoints,
-                              spread == "regular" ? 1 : 0}),
+                              kMostPoints}),
         pointsShader::count(*list.count),
         pointsShader::fragments(*list.fragments),
         pointsShader::aside(aside.buffer()),
         pointsShader::diffuseTexture(diffuse, gpu::Sampling::linearMipsRepeat),
         pointsShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)};
     aside.clear();
-    frame.shaders().dispatch(frame.program(pointsShader::kProgram, variant.key()), bindings,
-                             workGroupsFor(static_cast<std::uint64_t>(triangles)));
+    frame.shaders().dispatch(frame.program(pointsShader::kProgram, variant.key(), constants.values()),
+                             bindings, workGroupsFor(static_cast<std::uint64_t>(triangles)));
     frame.device().barrier();
     variant.many = 1;
-    aside.workOff(frame, frame.program(pointsShader::kProgram, variant.key()), bindings);
+    aside.workOff(frame, frame.program(pointsShader::kProgram, variant.key(), constants.values()), bindings);
   }
 
   std::optional<double> largestTriangle_;  ///< m^2, once it was needed

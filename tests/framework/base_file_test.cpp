@@ -1,5 +1,9 @@
 // Whole files: atomic writes, gzip, limits.
+#include <fcntl.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -7,6 +11,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <optional>
 #include <thread>
 
 #include "lumivox/base/error.h"
@@ -41,6 +46,172 @@ std::size_t entriesIn(const std::filesystem::path& directory) {
 }
 
 }  // namespace
+
+namespace {
+
+/// Fails the test when `work` takes longer than a thing that waits for nobody may.
+template <class Work>
+void requireNoWaiting(Work&& work) {
+  constexpr unsigned kSeconds = 20;
+  alarm(kSeconds);  // a call that waits for ever ends the program, and so the test
+  work();
+  alarm(0);
+}
+
+/// A device of its own that takes everything, as /dev/null does; nothing where this user may make none.
+std::optional<std::filesystem::path> ownNullDevice(const TemporaryDirectory& directory) {
+  const auto path = directory.path() / "null";
+  if (mknod(path.c_str(), S_IFCHR | 0666, makedev(1, 3)) != 0) return std::nullopt;
+  if (const int opened = open(path.c_str(), O_WRONLY); opened >= 0) {
+    close(opened);
+    return path;
+  }
+  return std::nullopt;  // devices do not work on this file system
+}
+
+mode_t kindAt(const std::filesystem::path& path) {
+  struct stat status {};
+  REQUIRE(lstat(path.c_str(), &status) == 0);
+  return status.st_mode & S_IFMT;
+}
+
+}  // namespace
+
+TEST_CASE("what is no regular file is refused by its kind, without waiting and without reading") {
+  const TemporaryDirectory directory;
+  const auto fifo = directory.path() / "fifo";
+  REQUIRE(mkfifo(fifo.c_str(), 0600) == 0);
+  const auto socketFile = directory.path() / "socket";
+  const int server = socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  REQUIRE(socketFile.string().size() < sizeof(address.sun_path));
+  socketFile.string().copy(address.sun_path, sizeof(address.sun_path) - 1);
+  REQUIRE(bind(server, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0);
+  std::filesystem::create_symlink(fifo, directory.path() / "link to fifo");
+  requireNoWaiting([&] {
+    const auto message = [](const std::filesystem::path& path) {
+      return messageOf<Error>([&] { readFile(path); });
+    };
+    CHECK_THAT(message(fifo), Contains("fifo: is a FIFO; expected a regular file"));
+    CHECK_THAT(message(directory.path() / "link to fifo"), Contains("is a FIFO"));
+    CHECK_THAT(message("/dev/zero"), Contains("/dev/zero: is a device"));
+    CHECK_THAT(message(directory.path()), Contains("is a directory"));
+    CHECK_THAT(message(socketFile), Contains("socket"));
+    CHECK_THAT(messageOf<Error>([&] { readFileMaybeGzip("/dev/zero", kLargestModelFile); }),
+               Contains("is a device"));
+    CHECK_THAT(messageOf<Error>([&] { readFileStart(fifo, 10); }), Contains("is a FIFO"));
+    CHECK_THAT(messageOf<Error>([&] { requireRegularFile(fifo); }), Contains("is a FIFO"));
+  });
+  close(server);
+  CHECK_NOTHROW(requireRegularFile(directory.write("file", "x")));
+  CHECK_NOTHROW(requireRegularFile(directory.path() / "absent"));
+}
+
+TEST_CASE("symbolic links are read through, and a file whose size is not known is read to its end") {
+  const TemporaryDirectory directory;
+  directory.write("file", "content");
+  std::filesystem::create_symlink("file", directory.path() / "link");
+  CHECK(readFile(directory.path() / "link") == "content");
+  CHECK(readFileStart(directory.path() / "link", 4) == "cont");
+  CHECK(readFileStart(directory.path() / "link", 400) == "content");
+  CHECK_THAT(readFile("/proc/self/status"), Contains("Name:"));
+}
+
+TEST_CASE("a file larger than its kind may be is refused by its size before a byte of it is read") {
+  const TemporaryDirectory directory;
+  const auto huge = directory.write("huge.obj", "");
+  std::filesystem::resize_file(huge, std::uint64_t{40} << 30);  // all hole
+  requireNoWaiting([&] {
+    CHECK_THAT(messageOf<Error>([&] { readFile(huge, kLargestModelFile); }),
+               Contains("huge.obj") && Contains("40.0 GiB") && Contains("at most 4.0 GiB"));
+  });
+  std::filesystem::resize_file(huge, kLargestTextFile + 1);
+  CHECK_THAT(messageOf<Error>([&] { readFile(huge); }), Contains("at most 64.0 MiB"));
+}
+
+TEST_CASE("writing to a device or a FIFO writes through it and leaves it what it is") {
+  const TemporaryDirectory directory;
+  const auto before = entriesIn(directory.path());
+  if (const auto device = ownNullDevice(directory)) {
+    writeFileAtomically(*device, std::string_view("gone"));
+    CHECK(kindAt(*device) == S_IFCHR);
+    std::filesystem::create_symlink(*device, directory.path() / "link");
+    requireWritable(directory.path() / "link");
+    writeFileAtomically(directory.path() / "link", std::string_view("gone too"));
+    CHECK(kindAt(*device) == S_IFCHR);
+    CHECK(entriesIn(directory.path()) == before + 2);
+  } else if (geteuid() != 0) {
+    writeFileAtomically("/dev/null", std::string_view("gone"));  // may not be replaced, so nothing is at risk
+    CHECK(kindAt("/dev/null") == S_IFCHR);
+  }
+  CHECK_THAT(messageOf<Error>([&] { writeFileAtomically("/dev/full", std::string_view("x")); }),
+             Contains("/dev/full: cannot write") && Contains("No space"));
+
+  const auto fifo = directory.path() / "fifo";
+  REQUIRE(mkfifo(fifo.c_str(), 0600) == 0);
+  requireNoWaiting([&] {
+    CHECK_THAT(messageOf<Error>([&] { writeFileAtomically(fifo, std::string_view("x")); }),
+               Contains("FIFO that nobody reads"));
+    const int reader = open(fifo.c_str(), O_RDONLY | O_NONBLOCK);
+    writeFileAtomically(fifo, std::string_view("through"));
+    char bytes[16] = {};
+    CHECK(read(reader, bytes, sizeof(bytes)) == 7);
+    CHECK(std::string(bytes) == "through");
+    close(reader);
+  });
+  CHECK(kindAt(fifo) == S_IFIFO);
+}
+
+TEST_CASE("writing to an open file of this process goes on where that file stands") {
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "log";
+  const int opened = open(path.c_str(), O_CREAT | O_RDWR, 0600);
+  REQUIRE(write(opened, "before ", 7) == 7);
+  requireWritable(std::filesystem::path("/dev/fd") / std::to_string(opened));
+  writeFileAtomically(std::filesystem::path("/dev/fd") / std::to_string(opened),
+                      std::string_view("written "));
+  REQUIRE(write(opened, "after", 5) == 5);
+  close(opened);
+  CHECK(readFile(path) == "before written after");
+}
+
+TEST_CASE("writing to a symbolic link writes the file that it names, and the link stays") {
+  const TemporaryDirectory directory;
+  std::filesystem::create_directory(directory.path() / "other");
+  const auto file = directory.write("other/file", "old");
+  std::filesystem::create_symlink("other/file", directory.path() / "near");
+  std::filesystem::create_symlink(directory.path() / "near", directory.path() / "far");
+  writeFileAtomically(directory.path() / "far", std::string_view("new"));
+  CHECK(readFile(file) == "new");
+  CHECK(kindAt(directory.path() / "near") == S_IFLNK);
+  CHECK(kindAt(directory.path() / "far") == S_IFLNK);
+
+  std::filesystem::create_symlink("other/not yet", directory.path() / "dangling");
+  requireWritable(directory.path() / "dangling");
+  writeFileAtomically(directory.path() / "dangling", std::string_view("made"));
+  CHECK(readFile(directory.path() / "other" / "not yet") == "made");
+  CHECK(kindAt(directory.path() / "dangling") == S_IFLNK);
+
+  std::filesystem::create_symlink("no such folder/file", directory.path() / "lost");
+  CHECK_THAT(messageOf<Error>([&] { writeFileAtomically(directory.path() / "lost", std::string_view("x")); }),
+             Contains("lost"));
+  CHECK_THROWS_AS(requireWritable(directory.path() / "lost"), Error);
+  std::filesystem::create_symlink("circle", directory.path() / "circle");
+  CHECK_THAT(
+      messageOf<Error>([&] { writeFileAtomically(directory.path() / "circle", std::string_view("x")); }),
+      Contains("circle"));
+}
+
+TEST_CASE("a file that is replaced hands on who may read it") {
+  const TemporaryDirectory directory;
+  const auto file = directory.write("private", "old");
+  REQUIRE(chmod(file.c_str(), 0600) == 0);
+  writeFileAtomically(file, std::string_view("new"));
+  struct stat status {};
+  REQUIRE(stat(file.c_str(), &status) == 0);
+  CHECK((status.st_mode & 0777) == 0600);
+}
 
 TEST_CASE("a written file is read back byte for byte and replaces the earlier one") {
   const TemporaryDirectory directory;
@@ -105,10 +276,11 @@ TEST_CASE("a gzip file is unpacked, also when it has several members; another na
   const TemporaryDirectory directory;
   std::string text;
   for (int i = 0; i < 200000; ++i) text += static_cast<char>('a' + i % 1009 * i % 26);
-  REQUIRE(readFileMaybeGzip(directory.write("t.obj.gz", gzip(text))) == text);
-  REQUIRE(readFileMaybeGzip(directory.write("two.gz", gzip("first ") + gzip("second"))) == "first second");
-  REQUIRE(readFileMaybeGzip(directory.write("plain.obj", "v 0 0 0")) == "v 0 0 0");
-  REQUIRE(readFileMaybeGzip(directory.write("nothing.gz", gzip(""))).empty());
+  REQUIRE(readFileMaybeGzip(directory.write("t.obj.gz", gzip(text)), kLargestTextFile) == text);
+  REQUIRE(readFileMaybeGzip(directory.write("two.gz", gzip("first ") + gzip("second")), kLargestTextFile) ==
+          "first second");
+  REQUIRE(readFileMaybeGzip(directory.write("plain.obj", "v 0 0 0"), kLargestTextFile) == "v 0 0 0");
+  REQUIRE(readFileMaybeGzip(directory.write("nothing.gz", gzip("")), kLargestTextFile).empty());
 }
 
 TEST_CASE("a gzip file that is cut, corrupt, empty or not one at all is an error that names it") {
@@ -116,14 +288,14 @@ TEST_CASE("a gzip file that is cut, corrupt, empty or not one at all is an error
   const std::string whole = gzip("the text that was packed, long enough to have something to lose");
   for (std::size_t size = 0; size < whole.size(); ++size) {
     const auto path = directory.write("cut.gz", whole.substr(0, size));
-    REQUIRE_THAT(messageOf<Error>([&] { readFileMaybeGzip(path); }), Contains("cut.gz"));
+    REQUIRE_THAT(messageOf<Error>([&] { readFileMaybeGzip(path, kLargestTextFile); }), Contains("cut.gz"));
   }
   std::string corrupt = whole;
   corrupt[corrupt.size() - 6] = static_cast<char>(corrupt[corrupt.size() - 6] ^ 1);  // in the checksum
   const auto path = directory.write("corrupt.gz", corrupt);
-  REQUIRE_THAT(messageOf<Error>([&] { readFileMaybeGzip(path); }), Contains("corrupt"));
+  REQUIRE_THAT(messageOf<Error>([&] { readFileMaybeGzip(path, kLargestTextFile); }), Contains("corrupt"));
   const auto text = directory.write("text.gz", "v 0 0 0\n");
-  REQUIRE_THAT(messageOf<Error>([&] { readFileMaybeGzip(text); }), Contains("text.gz"));
+  REQUIRE_THAT(messageOf<Error>([&] { readFileMaybeGzip(text, kLargestTextFile); }), Contains("text.gz"));
 }
 
 TEST_CASE("a gzip file that unpacks beyond the limit is refused") {
@@ -170,4 +342,37 @@ TEST_CASE("the cache lies where the environment says") {
   } else {
     unsetenv("LUMIVOX_CACHE");
   }
+}
+
+TEST_CASE("without a home the cache is a folder of this user that nobody else may enter") {
+  const TemporaryDirectory directory;
+  std::vector<std::pair<const char*, std::optional<std::string>>> kept;
+  for (const char* name : {"LUMIVOX_CACHE", "XDG_CACHE_HOME", "HOME", "TMPDIR"}) {
+    const char* value = std::getenv(name);
+    kept.emplace_back(name, value == nullptr ? std::nullopt : std::optional<std::string>(value));
+    unsetenv(name);
+  }
+  setenv("TMPDIR", directory.path().c_str(), 1);
+  const auto modeOf = [](const std::filesystem::path& path) {
+    struct stat status {};
+    REQUIRE(stat(path.c_str(), &status) == 0);
+    return status.st_mode & 0777;
+  };
+  const auto made = cacheDirectory();
+  CHECK(made.parent_path() == directory.path());
+  CHECK_THAT(made.filename().string(), Contains(std::to_string(geteuid())));
+  CHECK(modeOf(made) == 0700);
+  // Another user may have been quicker: with a folder that is open, a link, or a folder of their own.
+  REQUIRE(chmod(made.c_str(), 0777) == 0);
+  CHECK(modeOf(cacheDirectory()) == 0700);
+  std::filesystem::remove(made);
+  std::filesystem::create_directory(directory.path() / "trap");
+  std::filesystem::create_directory_symlink(directory.path() / "trap", made);
+  CHECK_THAT(messageOf<Error>([] { cacheDirectory(); }), Contains("symbolic link"));
+  std::filesystem::remove(made);
+  std::filesystem::create_directory(made);
+  if (chown(made.c_str(), 12345, 12345) == 0)
+    CHECK_THAT(messageOf<Error>([] { cacheDirectory(); }),
+               Contains("belongs to another user") && Contains("LUMIVOX_CACHE"));
+  for (const auto& [name, value] : kept) value ? setenv(name, value->c_str(), 1) : unsetenv(name);
 }

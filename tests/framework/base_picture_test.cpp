@@ -340,6 +340,90 @@ TEST_CASE("a PNG holds the exposed, clipped sRGB values, and NaN is magenta") {
   REQUIRE_THROWS_AS(encodePng(Picture()), Error);
 }
 
+TEST_CASE(
+    "every float of a PNG becomes the byte that the sRGB curve gives it, to the last bit about each step") {
+  const auto expected = [](float linear) {
+    return static_cast<unsigned char>(std::lround(255.0f * linearToSrgb(std::clamp(linear, 0.0f, 1.0f))));
+  };
+  std::vector<float> values{0.0f,
+                            -0.0f,
+                            1.0f,
+                            2.0f,
+                            -1.0f,
+                            std::numeric_limits<float>::denorm_min(),
+                            std::numeric_limits<float>::max(),
+                            std::nextafter(1.0f, 0.0f)};
+  for (int byte = 0; byte < 255; ++byte) {
+    // The curve rounds up from byte to byte + 1 at about byte + 1/2.
+    float value = srgbToLinear((static_cast<float>(byte) + 0.5f) / 255.0f);
+    for (int i = 0; i < 40; ++i) value = std::nextafter(value, 0.0f);
+    for (int i = 0; i < 80; ++i, value = std::nextafter(value, 1.0f)) values.push_back(value);
+  }
+  for (int i = 0; i < 20000; ++i) values.push_back(static_cast<float>(i) / 20000.0f);
+  while (values.size() % 100 != 0) values.push_back(0.3f);
+  Picture picture(100, static_cast<int>(values.size() / 100), 1);
+  picture.values() = values;
+  const TemporaryDirectory directory;
+  writePng(directory.path() / "p.png", picture);
+  const BytePicture bytes = readBytePicture(directory.path() / "p.png");
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) wrong += bytes.values[3 * i] != expected(values[i]) ? 1 : 0;
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("a PNG of any size and content is read back as it was, and what repeats takes little room") {
+  const TemporaryDirectory directory;
+  const auto readBack = [&](const Picture& picture) {
+    writePng(directory.path() / "p.png", picture);
+    const BytePicture bytes = readBytePicture(directory.path() / "p.png");
+    REQUIRE(bytes.width == picture.width());
+    REQUIRE(bytes.height == picture.height());
+    for (std::size_t i = 0; i < picture.values().size(); ++i) {
+      if (bytes.values[i] != std::lround(255.0f * linearToSrgb(picture.values()[i]))) return false;
+    }
+    return true;
+  };
+  // Noise, flat, ramps along x and y and both: each is best predicted by another filter.
+  for (const auto& [width, height] : {std::pair(1, 1), std::pair(1, 9), std::pair(9, 1), std::pair(57, 31)}) {
+    for (int kind = 0; kind < 5; ++kind) {
+      CAPTURE(width, height, kind);
+      Picture picture(width, height, 3);
+      for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+          for (int c = 0; c < 3; ++c) {
+            const unsigned noise =
+                static_cast<unsigned>(x * 7919 + y * 104729 + c * 31) * 2654435769u >> 8 & 255u;
+            const float value[] = {static_cast<float>(noise) / 255.0f, 0.4f, static_cast<float>(x) / 60.0f,
+                                   static_cast<float>(y) / 40.0f, static_cast<float>(x + 2 * y) / 130.0f};
+            picture.at(x, y, c) = value[kind];
+          }
+        }
+      }
+      CHECK(readBack(picture));
+    }
+  }
+  Picture ramp(256, 256, 3);
+  for (std::size_t i = 0; i < ramp.values().size(); ++i)
+    ramp.values()[i] = static_cast<float>(i / 3 % 256) / 256.0f;
+  CHECK(encodePng(ramp).size() < 256 * 256 * 3 / 50);
+}
+
+TEST_CASE("the attributes of an EXR are told without its pixels") {
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "a.exr";
+  writeExr(path, {{{"", numbered(64, 64, 3, 0.0f)}},
+                  {{"scene", "x"}, {"a long name that takes a lot of room", "y"}}});
+  CHECK(readExrAttributes(path) == readExr(path).attributes);
+  CHECK(readExrAttributes(path).at("scene") == "x");
+  const std::string whole = readFile(path);
+  for (const std::string& bad :
+       {std::string(), whole.substr(0, 6), whole.substr(0, 60), std::string(100, 'x')}) {
+    CAPTURE(bad.size());
+    const auto file = directory.write("bad.exr", bad);
+    CHECK_THAT(messageOf<Error>([&] { readExrAttributes(file); }), Contains("bad.exr"));
+  }
+}
+
 TEST_CASE("a PNG that is cut, damaged, empty or something else is an error that names the file") {
   const TemporaryDirectory directory;
   Picture picture(20, 20, 3);

@@ -71,3 +71,94 @@ TEST_CASE("a scene without emission has no samples of area lights") {
   builder.quad({0, 0, 0}, {1, 0, 0}, {0, 0, 1}, builder.lambert(0.5f));
   CHECK(sampleLights(builder.scene, snapshotOf(builder.scene, 0.0), 16, 64).samples.empty());
 }
+
+namespace {
+
+/// A mask whose columns of texels from `firstHole` on are holes.
+SurfaceTexture columnMask(int width, int firstHole) {
+  SurfaceTexture mask;
+  mask.mask = true;
+  mask.width = width, mask.height = 4;
+  for (int i = 0; i < width * mask.height; ++i) mask.values.push_back(i % width < firstHole ? 1.0f : 0.0f);
+  return mask;
+}
+
+/// A lamp of one square metre at the height 1 that shines downwards, u along x.
+Scene maskedLamp(const SurfaceTexture& mask, float radiance) {
+  SceneBuilder builder;
+  builder.scene.textures.push_back(mask);
+  Material material;
+  material.maskTexture = 0;
+  material.emission = glm::vec3(radiance);
+  builder.quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, builder.material(material));
+  return builder.scene;
+}
+
+}  // namespace
+
+TEST_CASE("a lamp whose mask leaves a share of it gives that share of the light, from there") {
+  // Columns 0 to k-1 of n are opaque. Bilinearly between texel centres the coverage passes a half in the
+  // middle between two columns, and around the repeat at u = 0 and u = 1 too: the opaque share is k / n.
+  for (const int opaque : {1, 4, 5, 7}) {
+    constexpr int kColumns = 8;
+    const Scene scene = maskedLamp(columnMask(kColumns, opaque), 3.0f);
+    const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
+    const double share = double(opaque) / kColumns;
+    for (const int count : {1, 7, 64}) {
+      CAPTURE(opaque, count);
+      const LightSet set = sampleLights(scene, snapshot, count, 64);
+      REQUIRE(set.samples.size() == static_cast<std::size_t>(count));
+      double power = 0.0;
+      for (const LightSampleData& sample : set.samples) {
+        power += sample.power.x;
+        CHECK(sample.positionKind.x + snapshot.origin.x <= share + 1e-4);
+      }
+      CHECK(power == Approx(3.0 * share).epsilon(0.01));
+    }
+  }
+}
+
+TEST_CASE("samples of a masked lamp fill what is left of it evenly") {
+  // The mean of x over the opaque part [0, 1/2] is 1/4, its variance (1/2)^2 / 12; z knows nothing of the
+  // mask.
+  const Scene scene = maskedLamp(columnMask(8, 4), 1.0f);
+  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
+  const LightSet set = sampleLights(scene, snapshot, 1024, 64);
+  double x = 0.0, squares = 0.0, z = 0.0;
+  for (const LightSampleData& sample : set.samples) {
+    const double place = sample.positionKind.x + snapshot.origin.x;
+    x += place / 1024.0;
+    squares += place * place / 1024.0;
+    z += (sample.positionKind.z + snapshot.origin.z) / 1024.0;
+  }
+  CHECK(x == Approx(0.25).epsilon(0.02));
+  CHECK(squares - x * x == Approx(0.25 / 12.0).epsilon(0.04));
+  CHECK(z == Approx(0.5).epsilon(0.02));
+}
+
+TEST_CASE("a lamp that is all hole has no samples, beside one that is whole") {
+  Scene scene = maskedLamp(columnMask(8, 0), 5.0f);
+  CHECK(sampleLights(scene, snapshotOf(scene, 0.0), 16, 64).samples.empty());
+  scene.textures[0] = columnMask(8, 8);
+  const LightSet set = sampleLights(scene, snapshotOf(scene, 0.0), 16, 64);
+  double power = 0.0;
+  for (const LightSampleData& sample : set.samples) power += sample.power.x;
+  CHECK(set.samples.size() == 16);
+  CHECK(power == Approx(5.0).epsilon(1e-5));
+}
+
+TEST_CASE("ten thousand masked leaves that shine carry the light of their opaque halves") {
+  SceneBuilder builder;
+  builder.scene.textures.push_back(columnMask(512, 256));
+  Material material;
+  material.maskTexture = 0;
+  material.emission = glm::vec3(1.0f);
+  const int leaf = builder.material(material);
+  for (int i = 0; i < 5000; ++i)
+    builder.quad({0.1f * static_cast<float>(i), 1, 0}, {0.1f, 0, 0}, {0, 0, 0.1f}, leaf);
+  double power = 0.0;
+  for (const LightSampleData& sample :
+       sampleLights(builder.scene, snapshotOf(builder.scene, 0.0), 64, 64).samples)
+    power += sample.power.x;
+  CHECK(power == Approx(0.5 * 5000 * 0.01).epsilon(0.02));
+}

@@ -1,8 +1,18 @@
 // Truths are kept by the content of everything that they depend on.
-#include <cstdlib>
-#include <fstream>
+#include "lumivox/reference/reference_cache.h"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <functional>
+
+#include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/base/hash.h"
 #include "lumivox/base/log.h"
 #include "lumivox/reference/path_tracer.h"
 #include "support/scene_builder.h"
@@ -135,4 +145,148 @@ TEST_CASE("a damaged truth in the cache is made anew and said so") {
     CHECK_THAT(log.text(), Catch::Contains("damaged"));
     CHECK(readFile(entry) == bytes);
   }
+}
+
+namespace {
+
+/// What a stranger writes who knows how an entry is made: every statement of it is theirs, and its hash is
+/// right.
+void writeHostileEntry(const std::filesystem::path& file, LayeredPicture picture) {
+  Hasher hasher;
+  for (const auto& [name, layer] : picture.layers) {
+    hasher.add(name).add(layer.width()).add(layer.height()).add(layer.channels()).add(layer.values());
+  }
+  for (const auto& [name, value] : picture.attributes) hasher.add(name).add(value);
+  picture.attributes["content"] = hasher.finish().text();
+  writeExr(file, picture);
+}
+
+}  // namespace
+
+TEST_CASE("an entry of the cache that lies about itself is refused and made anew") {
+  const OwnCache cache;
+  const Scene scene = litRoom(12, 10);
+  ReferenceOptions options = cached();
+  options.progress = true;  // so that what it says of its bounces would be read
+  const LogCapture quiet;
+  const LayeredPicture good = cachedReference(scene, options);
+  REQUIRE(cache.entries().size() == 1);
+  const std::filesystem::path entry = cache.entries()[0];
+  const std::string bytes = readFile(entry);
+  using Change = std::pair<std::string, std::function<void(LayeredPicture&)>>;
+  const std::vector<Change> changes{
+      {"no bounces", [](LayeredPicture& p) { p.attributes.erase("bounces"); }},
+      {"bounces that are no number", [](LayeredPicture& p) { p.attributes["bounces"] = "many"; }},
+      {"bounces beyond an int", [](LayeredPicture& p) { p.attributes["bounces"] = "99999999999999999999"; }},
+      {"no scene", [](LayeredPicture& p) { p.attributes.erase("scene"); }},
+      {"another scene", [](LayeredPicture& p) { p.attributes["hash"] = "00"; }},
+      {"an absurd cut-off", [](LayeredPicture& p) { p.attributes["cut_off"] = "1e300 -4"; }},
+      {"a cut-off of words", [](LayeredPicture& p) { p.attributes["cut_off"] = "much more"; }},
+      {"no cut-off", [](LayeredPicture& p) { p.attributes.erase("cut_off"); }},
+      {"no full transport", [](LayeredPicture& p) { p.layers.erase("full"); }},
+      {"a layer too many", [](LayeredPicture& p) { p.layers["x"] = p.layers["full"]; }},
+      {"another layer", [](LayeredPicture& p) { p.layers["x"] = p.layers["full"], p.layers.erase("full"); }},
+      {"one channel", [](LayeredPicture& p) { p.layers["full"] = Picture(12, 10, 1); }},
+      {"another size",
+       [](LayeredPicture& p) {
+         for (auto& [name, layer] : p.layers) layer = Picture(3, 2, layer.channels());
+       }},
+  };
+  for (const auto& [what, change] : changes) {
+    CAPTURE(what);
+    LayeredPicture changed = good;
+    change(changed);
+    writeHostileEntry(entry, changed);
+    const LogCapture log;
+    CHECK(sameBits(good, cachedReference(scene, options)));
+    CHECK_THAT(log.text(), Catch::Contains("damaged") && Catch::Contains("made anew"));
+    CHECK(readFile(entry) == bytes);
+  }
+  // The same door lets the unchanged one through.
+  writeHostileEntry(entry, good);
+  const LogCapture log;
+  CHECK(sameBits(good, cachedReference(scene, options)));
+  CHECK_THAT(log.text(), !Catch::Contains("damaged"));
+}
+
+TEST_CASE("neither a FIFO nor a link in the cache is waited for, followed or kept") {
+  const OwnCache cache;
+  const Scene scene = litRoom(6, 6);
+  const LayeredPicture good = cachedReference(scene, cached());
+  const std::filesystem::path entry = cache.entries().at(0);
+  const TemporaryDirectory elsewhere;
+  const std::filesystem::path victim = elsewhere.write("victim", "precious");
+  for (const bool fifo : {true, false}) {
+    CAPTURE(fifo);
+    std::filesystem::remove(entry);
+    if (fifo) {
+      REQUIRE(mkfifo(entry.c_str(), 0600) == 0);
+    } else {
+      std::filesystem::create_symlink(victim, entry);
+    }
+    const LogCapture log;
+    CHECK(sameBits(good, cachedReference(scene, cached())));
+    CHECK_THAT(log.text(), Catch::Contains("made anew"));
+    CHECK(std::filesystem::is_regular_file(std::filesystem::symlink_status(entry)));
+    CHECK(readFile(victim) == "precious");
+  }
+}
+
+TEST_CASE("the cache keeps to its limit: what was not used for longest gives way") {
+  const OwnCache cache;
+  const Scene scene = litRoom(16, 16);
+  const auto withSeed = [](std::uint64_t seed) {
+    ReferenceOptions options = cached();
+    options.seed = seed;
+    return options;
+  };
+  const auto age = [&](const std::string& seed, std::time_t seconds) {  // how long ago it was used
+    for (const KeptReference& one : keptReferences()) {
+      if (one.attributes.at("seed") != seed) continue;
+      const timespec times[2] = {{std::time(nullptr) - seconds, 0}, {std::time(nullptr) - seconds, 0}};
+      REQUIRE(utimensat(AT_FDCWD, one.file.c_str(), times, 0) == 0);
+    }
+  };
+  const auto seeds = [] {
+    std::string all;
+    for (const KeptReference& one : keptReferences()) all += one.attributes.at("seed") + " ";
+    return all;
+  };
+  for (const std::uint64_t seed : {1, 2, 3}) cachedReference(scene, withSeed(seed));
+  age("1", 3000), age("2", 2000), age("3", 1000);
+  CHECK(seeds() == "3 2 1 ");
+  CHECK(keptReferences().front().attributes.at("scene") == scene.name);
+  cachedReference(scene, withSeed(1));  // taken: now the last used
+  CHECK(seeds() == "1 3 2 ");
+  const std::uint64_t each = keptReferences().front().sizeBytes;
+  setenv("LUMIVOX_CACHE_LIMIT", fmt::format("{}", 3 * each + each / 2).c_str(), 1);
+  const LogCapture log;
+  cachedReference(scene, withSeed(4));
+  CHECK(seeds() == "4 1 3 ");
+  CHECK_THAT(log.text(), Catch::Contains("gave way"));
+  setenv("LUMIVOX_CACHE_LIMIT", "a lot", 1);
+  CHECK_THAT(messageOf<Error>([] { referenceCacheLimit(); }), Catch::Contains("a lot"));
+  unsetenv("LUMIVOX_CACHE_LIMIT");
+
+  CHECK(pruneReferences(2 * each + each / 2, std::nullopt, /*dryRun=*/true).removed == 1);
+  CHECK(seeds() == "4 1 3 ");
+  CHECK(pruneReferences(~std::uint64_t{0}, std::chrono::seconds(500)).removed == 1);
+  CHECK(seeds() == "4 1 ");
+  const std::filesystem::path other = cache.directory.write("results.sqlite", "not a reference");
+  CHECK(pruneReferences(0).removed == 2);
+  CHECK(seeds().empty());
+  CHECK(std::filesystem::exists(other));
+  setenv("LUMIVOX_CACHE_LIMIT", "10", 1);  // too small for any: the picture is made, and none is kept
+  CHECK(cachedReference(scene, withSeed(5)).layers.count("full") == 1);
+  CHECK(seeds().empty());
+  unsetenv("LUMIVOX_CACHE_LIMIT");
+}
+
+TEST_CASE("sizes are read with their units") {
+  CHECK(parseBytes("1048576") == std::uint64_t{1} << 20);
+  CHECK(parseBytes("4GiB") == std::uint64_t{4} << 30);
+  CHECK(parseBytes("1.5 MiB") == std::uint64_t{3} << 19);
+  CHECK(parseBytes("500MB") == std::uint64_t{500'000'000});
+  CHECK(parseBytes("7k") == std::uint64_t{7 * 1024});
+  for (const char* bad : {"", "much", "-1", "4 PiB", "1e400", "5 GiBs", "nan"}) CHECK_FALSE(parseBytes(bad));
 }

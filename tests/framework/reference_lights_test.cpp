@@ -2,7 +2,9 @@
 // the radiance a E / pi.
 #include <array>
 
+#include "lumivox/base/random.h"
 #include "lumivox/reference/path_tracer.h"
+#include "reference/sampling.h"
 #include "support/scene_builder.h"
 #include "support/support.h"
 
@@ -204,7 +206,7 @@ TEST_CASE("masks let light and sight through their holes, and cut lamps") {
     const double irradiance =
         3.0 * polygonIrradiance({{-0.5, 1, -0.5}, {0, 1, -0.5}, {0, 1, 0.5}, {-0.5, 1, 0.5}}, {0.2, 0, 0},
                                 {0, 1, 0});
-    CHECK(floorRadiance(builder.scene, 0.2, 0.0, 200000) ==
+    CHECK(floorRadiance(builder.scene, 0.2, 0.0, 1000000) ==
           Approx(kAlbedo * irradiance / kPi).epsilon(0.005));
   }
 }
@@ -255,4 +257,23 @@ TEST_CASE("a texture of more than 256 different values keeps every one of them")
                 .margin(1e-4));
     }
   }
+}
+
+TEST_CASE("among a million weights the alias table picks each in its proportion, however small") {
+  // Every other weight is a hundred-thousandth of its neighbour. With 20 bits spent on the choice of a slot,
+  // the 12 that a single number of 32 bits leaves would take the small index in 1 of 4096 cases at least.
+  constexpr std::size_t kCount = std::size_t{1} << 20;
+  constexpr double kSmall = 1e-5;
+  std::vector<double> weights(kCount, 1.0);
+  for (std::size_t i = 0; i < kCount; i += 2) weights[i] = kSmall;
+  const reference::AliasTable table(weights);
+  RandomStream random(7, 1);
+  constexpr int kDraws = 1 << 25;
+  int small = 0;
+  for (int i = 0; i < kDraws; ++i) {
+    const std::uint32_t slot = random.bits(), choice = random.bits();
+    small += table.pick(slot, choice) % 2 == 0 ? 1 : 0;
+  }
+  const double expected = kDraws * kSmall / (1.0 + kSmall);
+  CHECK(std::abs(small - expected) < 4.0 * std::sqrt(expected));
 }

@@ -73,6 +73,41 @@ TEST_CASE("at oblique incidence the part of the Phong lobe below the horizon is 
   }
 }
 
+TEST_CASE(
+    "a Phong lobe of exponent 0 fills the hemisphere around the mirror direction and nothing beyond it") {
+  // Between two half spaces whose normals stand at an angle t, the integral of the cosine to one of them is
+  // its projection: half a disc and half an ellipse with the semi-axes 1 and cos t, pi/2 (1 + cos t). The
+  // lobe is 2/(2 pi) on it, so it reflects (1 + cos t)/2 of its albedo; the diffuse lobe all of its own.
+  for (const double angle : {0.4, 0.9, 1.3}) {
+    CAPTURE(angle);
+    const LayeredPicture picture =
+        renderReference(planeInEnvironment(0.3f, 0.7f, 0.0f, angle), quietly(1024, 1));
+    const Estimate glossy = estimateOf(picture, "one_bounce_glossy"),
+                   diffuse = estimateOf(picture, "one_bounce_diffuse");
+    CHECK(glossy.deviation < 0.003);
+    CHECK(diffuse.deviation < 0.003);
+    CHECK(std::abs(glossy.mean - 0.7 * 0.5 * (1.0 + std::cos(angle))) < 4.0 * glossy.deviation);
+    CHECK(std::abs(diffuse.mean - 0.3) < 4.0 * diffuse.deviation);
+  }
+}
+
+TEST_CASE(
+    "a Phong surface of exponent 0 reflects a point light before its mirror direction, and none behind it") {
+  for (const bool behind : {false, true}) {
+    CAPTURE(behind);
+    SceneBuilder builder;
+    builder.quad({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}, builder.phong(0.0f, 0.5f, 0.0f));
+    // Seen from +x under 1.2 rad; the mirror direction leans to -x. A light on the viewer's side under 1 rad
+    // stands 2.2 rad from it, beyond a quarter turn.
+    const glm::dvec3 toEye(std::sin(1.2), std::cos(1.2), 0.0);
+    const glm::dvec3 toLight = 2.0 * glm::dvec3((behind ? 1.0 : -1.0) * std::sin(1.0), std::cos(1.0), 0.0);
+    builder.light(LightKind::point, glm::vec3(4.0f), toLight);
+    const double radiance = referenceRadiance(builder.scene, 0.0, toEye, glm::vec3(-toEye), quietly(1)).x;
+    const double expected = behind ? 0.0 : 0.5 * 2.0 / (2.0 * kPi) * 4.0 * std::cos(1.0) / 4.0;
+    CHECK(radiance == Approx(expected).epsilon(0.001));
+  }
+}
+
 TEST_CASE("a surface whose albedos add up to one returns no more than it receives") {
   for (const float exponent : {0.0f, 2.0f, 50.0f}) {
     for (const double angle : {0.0, 0.5, 1.0, 1.5}) {

@@ -1,10 +1,15 @@
 // Models: OBJ, MTL and pictures, good and bad.
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <zlib.h>
 
+#include <chrono>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <limits>
 #include <map>
+#include <set>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -506,6 +511,106 @@ TEST_CASE("missing, empty, truncated and malformed pictures are errors that name
   CHECK_THAT(errorOf("this is no picture"), Contains("p.png"));
   const std::string png = encodePng(Picture(8, 8, 3, 0.5f));
   CHECK_THAT(errorOf(png.substr(0, png.size() / 2)), Contains("p.png"));
+}
+
+TEST_CASE("a model of many parts and materials takes time in proportion to them") {
+  // Every part has its own material: with a search through all for each, eight times as many would take 64
+  // times as long. Linear work with its logarithms stays well below half of that.
+  const auto secondsFor = [](int count) {
+    std::string obj = "mtllib m.mtl\n", mtl;
+    for (int i = 0; i < count; ++i) {
+      obj += fmt::format("v {0} 0 0\nv {0} 1 0\nv {0} 0 1\nusemtl m{0}\nf -3 -2 -1\n", i);
+      mtl += fmt::format("newmtl m{0}\nKd 0.5 0.5 0.{0}\n", i);
+    }
+    OneMesh mesh(obj, "use { mtl m1  material red }", "material red { diffuse 0.5 0 0 }");
+    mesh.directory.write("m.mtl", mtl);
+    double best = std::numeric_limits<double>::max();
+    for (int i = 0; i < 3; ++i) {
+      const auto begin = std::chrono::steady_clock::now();
+      const Scene scene = mesh.load();
+      best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+      CHECK(scene.materials.size() == static_cast<std::size_t>(count));
+    }
+    return best;
+  };
+  const double few = secondsFor(3000), many = secondsFor(24000);
+  INFO(few << " s and " << many << " s");
+  CHECK(many < 28.0 * few);
+}
+
+TEST_CASE("quads are cut along their shorter diagonal, and polygons may stand before their vertices") {
+  // Corners 1 and 3 of the first quad are the nearer ones; the second starts one corner later.
+  using Corners = std::set<std::pair<float, float>>;
+  const auto firstTriangle = [](const Scene& scene) {
+    Corners corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const glm::vec3& p = scene.positions[scene.indices[k]];
+      corners.emplace(p.x, p.y);
+    }
+    return corners;
+  };
+  CHECK(firstTriangle(OneMesh("v 0 0 0\nv 2 -1 0\nv 1 1 0\nv -1 2 0\nf 1 2 3 4\n").load()) ==
+        Corners{{0, 0}, {2, -1}, {1, 1}});
+  CHECK(firstTriangle(OneMesh("v 2 -1 0\nv 1 1 0\nv -1 2 0\nv 0 0 0\nf 1 2 3 4\n").load()) ==
+        Corners{{2, -1}, {1, 1}, {0, 0}});
+
+  // An L of six corners beside a regular pentagon, each of an object of its own, the L's vertices after its
+  // face.
+  std::string text =
+      "g corner piece\nf 1 2 3 4 5 6\nv 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\no five\n";
+  const double fifth = 0.4 * glm::pi<double>();
+  for (int k = 0; k < 5; ++k) text += fmt::format("v {} {} 5\n", std::cos(fifth * k), std::sin(fifth * k));
+  const Scene scene = OneMesh(text + "f -5 -4 -3 -2 -1\n").load();
+  REQUIRE(scene.objects.size() == 2);
+  CHECK(scene.objects[0].name == "m/corner piece");
+  CHECK(scene.objects[1].name == "m/five");
+  const auto areaOf = [&](const Object& object) {
+    double area = 0.0;
+    const Part& part = object.parts[0];
+    for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; i += 3) {
+      const auto at = [&](std::uint32_t k) { return scene.positions[scene.indices[i + k]]; };
+      const glm::vec3 cross = glm::cross(at(1) - at(0), at(2) - at(0));
+      area += 0.5 * glm::length(cross);
+      CHECK(cross.z > 0.0f);
+    }
+    return area;
+  };
+  CHECK(scene.objects[0].parts[0].indexCount == 12);
+  CHECK(areaOf(scene.objects[0]) == Approx(3.0));
+  CHECK(scene.objects[1].parts[0].indexCount == 9);
+  // n/2 sin(2 pi / n) of a regular polygon in the unit circle.
+  CHECK(areaOf(scene.objects[1]) == Approx(2.5 * std::sin(fifth)).epsilon(1e-6));
+}
+
+TEST_CASE(
+    "no file that a scene names is waited for or read without end: FIFOs and devices are refused by name") {
+  const char* obj = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
+  const std::string camera = "camera c { eye 0 0 9  target 0 0 0 }\n";
+  for (const bool device : {false, true}) {
+    for (const std::string name : {"m.obj", "m.mtl", "p.png", "d.png", "v.vdb", "i.scene"}) {
+      CAPTURE(name, device);
+      OneMesh mesh(obj, "", "include \"i.scene\"\nmedium s { file \"v.vdb\"  extinction 1 /m  albedo 0.5 }");
+      mesh.directory.write("i.scene", "camera second { eye 0 0 9  target 0 0 0 }\n");
+      mesh.directory.write("v.vdb", "no volume");
+      mesh.directory.write("m.mtl", "newmtl a\nmap_Kd p.png\nmap_d d.png\n");
+      for (const char* picture : {"p.png", "d.png"})
+        writePng(mesh.directory.path() / picture, Picture(8, 8, 3, 0.5f));
+      if (name != "v.vdb")  // what comes before the others
+        mesh.file = mesh.directory.write(
+            "a.scene", "scene \"x\" {\n" + camera + "mesh m { file \"m.obj\" }\ninclude \"i.scene\"\n}\n");
+      const auto path = mesh.directory.path() / name;
+      std::filesystem::remove(path);
+      if (device) {
+        std::filesystem::create_symlink("/dev/zero", path);
+      } else {
+        REQUIRE(mkfifo(path.c_str(), 0600) == 0);
+      }
+      constexpr unsigned kSeconds = 30;
+      alarm(kSeconds);  // a call that waits for ever ends the program, and so the test
+      CHECK_THAT(mesh.error(), Contains(name) && Contains(device ? "is a device" : "is a FIFO"));
+      alarm(0);
+    }
+  }
 }
 
 TEST_CASE("a sequence is read frame by frame with one set of faces") {

@@ -11,6 +11,7 @@
 #include "lumivox/base/file.h"
 #include "lumivox/base/hash.h"
 #include "lumivox/base/log.h"
+#include "lumivox/base/picture.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/scene/scene.h"
@@ -155,11 +156,26 @@ void shaderPack(std::string_view input) {
   });
 }
 
+void exrPicture(std::string_view input) {
+  const LogCapture silent;
+  const fs::path file = folder().write("input.exr", input);
+  taken([&] { readExrAttributes(file); });
+  taken([&] {
+    const LayeredPicture picture = readExr(file);
+    require(!picture.layers.empty(), "a picture has layers");
+    for (const auto& [name, layer] : picture.layers)
+      require(layer.width() == picture.layers.begin()->second.width() &&
+                  layer.height() == picture.layers.begin()->second.height(),
+              "the layers of a picture are of one size");
+  });
+}
+
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> all{{"scene_text", sceneText},
                                       {"pipeline_text", pipelineText},
                                       {"obj_model", objModel},
-                                      {"shader_pack", shaderPack}};
+                                      {"shader_pack", shaderPack},
+                                      {"exr_picture", exrPicture}};
   return all;
 }
 

@@ -20,6 +20,9 @@ void objModel(std::string_view input);
 /// hides nothing of what lies behind it.
 void shaderPack(std::string_view input);
 
+/// An EXR picture: what a cache of references may hold.
+void exrPicture(std::string_view input);
+
 struct Entry {
   const char* name;  ///< of its folder of seeds
   void (*run)(std::string_view input);

@@ -86,6 +86,54 @@ TEST_CASE("render of one output alone has it as the main layer, and a wrong name
   checkRefused(runCommand(command + " --output dirext"), "did you mean 'direct'");
 }
 
+TEST_CASE("a frame that cannot be written ends the render with its name, and those before it are whole") {
+  const Workplace place;
+  std::filesystem::create_directories(place.path() / "f_1.png" / "in the way");
+  const CommandResult result =
+      runCommand("lumivox render " + roomWith(place, "direct_lighting") +
+                 " -q --resolution 8x8 --frames 0..3 -o " + quoted(place.file("f_#.png")));
+  CHECK(result.exitCode == 2);
+  CHECK_THAT(result.errors, Catch::Contains("f_1.png") && Catch::Contains("cannot write"));
+  CHECK(readBytePicture(place.path() / "f_0.png").width == 8);
+  CHECK_FALSE(std::filesystem::exists(place.path() / "f_3.png"));
+  for (const auto& entry : std::filesystem::directory_iterator(place.path()))
+    CHECK(entry.path().extension() != ".new");
+}
+
+TEST_CASE("a picture is written to the file that a symbolic link names") {
+  const Workplace place;
+  std::filesystem::create_symlink("there.png", place.path() / "link.png");
+  const CommandResult result = runCommand("lumivox render " + roomWith(place, "direct_lighting") +
+                                          " -q --resolution 8x8 -o " + quoted(place.file("link.png")));
+  INFO(result.errors);
+  CHECK(result.exitCode == 0);
+  CHECK(std::filesystem::is_symlink(place.path() / "link.png"));
+  CHECK(readBytePicture(place.path() / "there.png").width == 8);
+}
+
+TEST_CASE("the cache of references is listed and pruned") {
+  const Workplace place;
+  const std::string cache = "LUMIVOX_CACHE=" + quoted(place.file("cache")) + " ";
+  const auto run = [&](const std::string& arguments) {
+    return runCommand(cache + quoted((binaryDirectory() / "bin/lumivox").string()) + " " + arguments);
+  };
+  const std::string reference = "reference " + quoted(place.scene()) + " -q --resolution 8x8 --spp 2 -o " +
+                                quoted(place.file("t.exr")) + " --seed ";
+  REQUIRE(run(reference + "1").exitCode == 0);
+  REQUIRE(run(reference + "2").exitCode == 0);
+  const CommandResult list = run("cache list");
+  INFO(list.output << list.errors);
+  CHECK(list.exitCode == 0);
+  CHECK_THAT(list.output, Catch::Contains("2 references") && Catch::Contains("8 8") &&
+                              Catch::Contains("of at most 4.0 GiB"));
+  CHECK_THAT(run("cache list --json").output, Catch::Contains("\"limit_bytes\": 4294967296"));
+  CHECK_THAT(run("cache prune --dry-run --all").output, Catch::Contains("would remove 2 references"));
+  CHECK_THAT(run("cache prune --limit 1GiB").output, Catch::Contains("removed 0 references"));
+  CHECK_THAT(run("cache prune --limit plenty").errors, Catch::Contains("plenty"));
+  CHECK_THAT(run("cache prune --all").output, Catch::Contains("removed 2 references"));
+  CHECK_THAT(run("cache list").output, Catch::Contains("0 references"));
+}
+
 TEST_CASE(
     "bad options are told before any work: parameter, range, resolution, frames, kind of picture, place") {
   const Workplace place;

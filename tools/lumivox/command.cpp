@@ -18,8 +18,7 @@ TextKind kindOfText(const std::filesystem::path& file) {
   if (file.extension() == ".pipeline") return TextKind::pipeline;
   if (file.extension() == ".sweep") return TextKind::sweep;
   if (file.extension() == ".reproduction") return TextKind::reproduction;
-  constexpr std::uint64_t kLongestText = std::uint64_t{64} << 20;
-  const dsl::Document document = dsl::parse(readFile(file, kLongestText), file);
+  const dsl::Document document = dsl::parse(readFile(file), file);
   // A pipeline may have sweeps before it.
   static const std::pair<const char*, TextKind> kBlocks[] = {{"scene", TextKind::scene},
                                                              {"pipeline", TextKind::pipeline},

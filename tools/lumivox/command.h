@@ -23,6 +23,7 @@ void addTextCommands(Commands& commands);      // check, fmt, describe
 void addListCommand(Commands& commands);       // list
 void addRenderCommand(Commands& commands);     // render
 void addReferenceCommand(Commands& commands);  // reference
+void addCacheCommand(Commands& commands);      // cache
 void addCompareCommand(Commands& commands);    // compare
 void addReportCommand(Commands& commands);     // report
 void addSweepCommand(Commands& commands);      // sweep

@@ -23,6 +23,7 @@ int run(int count, char** arguments) {
   addListCommand(commands);
   addRenderCommand(commands);
   addReferenceCommand(commands);
+  addCacheCommand(commands);
   addCompareCommand(commands);
   addReportCommand(commands);
   addSweepCommand(commands);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "command.h"
+#include "lumivox/base/background_writer.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "lumivox/base/picture.h"
@@ -29,7 +30,7 @@ Picture mainPicture(const RenderCommand& command, const FrameResult& frame) {
   return found == frame.outputs.end() ? Picture{} : found->second;
 }
 
-void writeFrame(const RenderCommand& command, const fs::path& file, const FrameResult& frame,
+void writeFrame(const RenderCommand& command, const fs::path& file, FrameResult frame,
                 const std::map<std::string, std::string>& attributes) {
   Picture main = mainPicture(command, frame);
   if (file.extension() == ".png") {
@@ -40,8 +41,8 @@ void writeFrame(const RenderCommand& command, const fs::path& file, const FrameR
   LayeredPicture layered;
   layered.attributes = attributes;
   if (command.onlyOutput.empty())
-    for (const auto& [name, picture] : frame.outputs)
-      if (!picture.empty()) layered.layers[name] = picture;
+    for (auto& [name, picture] : frame.outputs)
+      if (!picture.empty()) layered.layers[name] = std::move(picture);
   if (!main.empty()) layered.layers[""] = std::move(main);
   writeExr(file, layered);
 }
@@ -80,10 +81,11 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
   PipelineExecutor executor(*device, techniques, scene, pipeline, options);
 
   std::size_t findings = 0;
+  BackgroundWriter writer;
   Progress progress("rendering", static_cast<std::uint64_t>(last - first + 1));
   for (int frame = first; frame <= last; ++frame) {
     const double time = command.run.time + (animation ? frame / command.framesPerSecond : 0.0);
-    const FrameResult result = executor.render(time, frame);
+    FrameResult result = executor.render(time, frame);
     for (const std::string& finding : result.healthFindings)
       std::cerr << (animation ? fmt::format("frame {}: ", frame) : std::string()) << finding << "\n";
     findings += result.healthFindings.size();
@@ -91,10 +93,13 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
     const fs::path file = animation ? numberedName(command.output, frame) : command.output;
     auto attributes = provenance(global, scene, pipeline, options, *device, time);
     if (animation) attributes["lumivox.frame"] = fmt::format("{}", frame);
-    writeFrame(command, file, result, attributes);
     logInformation("{}: {:.1f} ms", file.string(), result.frameMs);
+    writer.submit([&command, file, made = std::move(result), attributes = std::move(attributes)]() mutable {
+      writeFrame(command, file, std::move(made), attributes);
+    });
     progress.advance();
   }
+  writer.finish();
   return findings == 0 ? kGood : kNotGood;
 }
 

@@ -4,15 +4,14 @@
 #include <openvdb/io/Stream.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
+#include <istream>
 #include <numeric>
 #include <streambuf>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/hash.h"
+#include "lumivox/base/memory_stream.h"
 
 namespace lumivox::vdb {
 namespace {
@@ -20,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A stream into memory that OpenVDB can go back in, to fill in where each grid lies.
-class MemoryBuffer : public std::streambuf {
+class OutputBuffer : public std::streambuf {
  public:
   std::string take() { return std::move(bytes_); }
 
@@ -65,7 +64,7 @@ class MemoryArchive : public openvdb::io::Archive {
     setCompression(COMPRESS_ACTIVE_MASK | (hasBloscCompression() ? COMPRESS_BLOSC : COMPRESS_ZIP));
   }
   std::string bytesOf(const openvdb::GridCPtrVec& grids) const {
-    MemoryBuffer buffer;
+    OutputBuffer buffer;
     std::ostream stream(&buffer);
     stream.exceptions(std::ios::failbit | std::ios::badbit);
     Archive::write(stream, grids, /*seekable=*/true);
@@ -106,10 +105,9 @@ void writeVdb(const fs::path& file, const openvdb::GridCPtrVec& grids) {
 
 std::vector<openvdb::GridBase::Ptr> readVdb(const fs::path& file) {
   openvdb::initialize();
-  if (fs::is_directory(file))
-    throw Error(fmt::format("{}: is a directory, not an OpenVDB file", file.string()));
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error(fmt::format("{}: cannot read: {}", file.string(), std::strerror(errno)));
+  const std::string bytes = readFile(file, kLargestVolumeFile);
+  lumivox::MemoryBuffer buffer(bytes);
+  std::istream stream(&buffer);
   try {
     // Without this, a stream that ends too early would be taken for zeros.
     stream.exceptions(std::ios::failbit | std::ios::badbit);

@@ -2,16 +2,23 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <linux/magic.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <iostream>
+#include <optional>
+#include <utility>
 
 #include "lumivox/base/error.h"
 
@@ -25,8 +32,8 @@ class Descriptor {
   ~Descriptor() {
     if (value_ >= 0) close(value_);
   }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
+  Descriptor& operator=(Descriptor&&) = delete;
   int get() const { return value_; }
 
  private:
@@ -37,6 +44,46 @@ class Descriptor {
   throw Error(fmt::format("{}: cannot {}: {}", path.string(), action, std::strerror(errno)));
 }
 
+const char* kindOf(mode_t mode) {
+  if (S_ISDIR(mode)) return "a directory";
+  if (S_ISCHR(mode) || S_ISBLK(mode)) return "a device";
+  if (S_ISFIFO(mode)) return "a FIFO";
+  if (S_ISSOCK(mode)) return "a socket";
+  return "no regular file";
+}
+
+/// A regular file opened for reading. Without O_NONBLOCK the call itself would wait for the writer of a FIFO;
+/// to a regular file it means nothing.
+Descriptor openRegular(const std::filesystem::path& path, struct stat& status) {
+  Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  if (file.get() < 0) fail(path, "read");
+  if (fstat(file.get(), &status) != 0) fail(path, "read");
+  if (!S_ISREG(status.st_mode)) {
+    throw Error(fmt::format("{}: is {}; expected a regular file", path.string(), kindOf(status.st_mode)));
+  }
+  return file;
+}
+
+/// Up to `most` bytes.
+std::string readSome(const Descriptor& file, std::uint64_t expected, std::uint64_t most,
+                     const std::filesystem::path& path) {
+  std::string content;
+  // A little more than the stated size, to see the end; files of the kernel state none.
+  constexpr std::uint64_t kAtLeast = 1 << 12;
+  content.resize(std::min(std::max(expected + 1, kAtLeast), most));
+  std::size_t size = 0;
+  while (size < most) {
+    if (size == content.size()) content.resize(std::min<std::uint64_t>(2 * content.size(), most));
+    const ssize_t count = read(file.get(), content.data() + size, content.size() - size);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(path, "read");
+    if (count == 0) break;
+    size += static_cast<std::size_t>(count);
+  }
+  content.resize(size);
+  return content;
+}
+
 void writeAll(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& path) {
   while (!bytes.empty()) {
     const ssize_t written = write(descriptor, bytes.data(), bytes.size());
@@ -44,8 +91,83 @@ void writeAll(int descriptor, std::span<const std::byte> bytes, const std::files
     if (written <= 0) fail(path, "write");
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
-  // The data must be on the disk before the name points to it.
+}
+
+/// The data must be on the disk before the name points to it.
+void writeToDisk(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& path) {
+  writeAll(descriptor, bytes, path);
   if (fsync(descriptor) != 0 && errno != EINVAL) fail(path, "write");
+}
+
+/// What a name to be written to stands for, once symbolic links are followed.
+struct Target {
+  std::filesystem::path path;
+  std::optional<struct stat> status;  ///< absent: there is nothing yet
+  /// A link of the kernel's table of open files (/dev/stdout, /dev/fd/3): no path, the open file itself.
+  bool isOpenFile = false;
+
+  bool isWrittenThrough() const {
+    return isOpenFile || (status && (S_ISCHR(status->st_mode) || S_ISFIFO(status->st_mode)));
+  }
+};
+
+bool isOfKernel(const std::filesystem::path& folder) {
+  struct statfs system {};
+  return statfs(folder.empty() ? "." : folder.c_str(), &system) == 0 && system.f_type == PROC_SUPER_MAGIC;
+}
+
+Target targetOf(const std::filesystem::path& path) {
+  constexpr int kMostLinks = 40;  // as many as the kernel follows
+  Target target{path, std::nullopt, false};
+  for (int links = 0;; ++links) {
+    struct stat status {};
+    if (lstat(target.path.c_str(), &status) != 0) {
+      if (errno != ENOENT) fail(path, "write");
+      return target;
+    }
+    if (!S_ISLNK(status.st_mode)) {
+      target.status = status;
+      break;
+    }
+    if (isOfKernel(target.path.parent_path())) {
+      target.isOpenFile = true;
+      return target;
+    }
+    if (links == kMostLinks)
+      throw Error(fmt::format("{}: cannot write: its symbolic links lead in a circle", path.string()));
+    std::error_code error;
+    const std::filesystem::path named = std::filesystem::read_symlink(target.path, error);
+    if (error) throw Error(fmt::format("{}: cannot write: {}", path.string(), error.message()));
+    target.path = named.is_absolute() ? named : target.path.parent_path() / named;
+  }
+  if (!S_ISREG(target.status->st_mode) && !target.isWrittenThrough()) {
+    throw Error(fmt::format("{}: cannot write: is {}; expected a file", path.string(),
+                            kindOf(target.status->st_mode)));
+  }
+  return target;
+}
+
+/// For what is no file: one of this process's own open files goes on where it stands, anything else is
+/// opened.
+void writeThrough(const Target& target, std::span<const std::byte> bytes, const std::filesystem::path& path) {
+  std::cout.flush();
+  std::fflush(stdout);
+  const std::filesystem::path table = "/proc/self/fd";
+  std::error_code error;
+  int number = -1;
+  if (target.isOpenFile && std::filesystem::equivalent(target.path.parent_path(), table, error)) {
+    const std::string name = target.path.filename().string();
+    std::from_chars(name.data(), name.data() + name.size(), number);
+  }
+  const Descriptor file(number >= 0
+                            ? fcntl(number, F_DUPFD_CLOEXEC, 0)
+                            : open(target.path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  if (file.get() < 0 && errno == ENXIO)
+    throw Error(fmt::format("{}: cannot write: is a FIFO that nobody reads", path.string()));
+  if (file.get() < 0) fail(path, "write");
+  // Only the opening must not wait.
+  if (number < 0) fcntl(file.get(), F_SETFL, fcntl(file.get(), F_GETFL) & ~O_NONBLOCK);
+  writeAll(file.get(), bytes, path);
 }
 
 /// A name beside the target that no other process or thread uses.
@@ -57,31 +179,32 @@ std::filesystem::path besideName(const std::filesystem::path& path) {
 }  // namespace
 
 std::string readFile(const std::filesystem::path& path, std::uint64_t limitBytes) {
-  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.get() < 0) fail(path, "read");
   struct stat status {};
-  if (fstat(file.get(), &status) != 0) fail(path, "read");
-  if (S_ISDIR(status.st_mode)) throw Error(fmt::format("{}: is a directory; expected a file", path.string()));
+  const Descriptor file = openRegular(path, status);
   const auto size = static_cast<std::uint64_t>(status.st_size);
   if (size > limitBytes) {
     throw Error(fmt::format("{}: is too large ({}); expected at most {}", path.string(), formatBytes(size),
                             formatBytes(limitBytes)));
   }
-  std::string content;
-  content.reserve(static_cast<std::size_t>(size) + 1);
-  char block[1 << 16];
-  for (;;) {
-    const ssize_t count = read(file.get(), block, sizeof(block));
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail(path, "read");
-    if (count == 0) break;
-    content.append(block, static_cast<std::size_t>(count));
-    if (content.size() > limitBytes) {
-      throw Error(
-          fmt::format("{}: is too large; expected at most {}", path.string(), formatBytes(limitBytes)));
-    }
+  constexpr std::uint64_t kSmall = std::uint64_t{16} << 20;  // not worth asking for the memory there is
+  if (size > kSmall) requireMemory(size, path.string());
+  std::string content = readSome(file, size, limitBytes + 1, path);
+  if (content.size() > limitBytes) {
+    throw Error(fmt::format("{}: is too large; expected at most {}", path.string(), formatBytes(limitBytes)));
   }
   return content;
+}
+
+std::string readFileStart(const std::filesystem::path& path, std::uint64_t limitBytes) {
+  struct stat status {};
+  const Descriptor file = openRegular(path, status);
+  return readSome(file, std::min(static_cast<std::uint64_t>(status.st_size), limitBytes), limitBytes, path);
+}
+
+void requireRegularFile(const std::filesystem::path& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode)) return;
+  throw Error(fmt::format("{}: is {}; expected a regular file", path.string(), kindOf(status.st_mode)));
 }
 
 std::string readFileMaybeGzip(const std::filesystem::path& path, std::uint64_t limitBytes) {
@@ -125,19 +248,43 @@ void createParentDirectories(const std::filesystem::path& file) {
   if (error) throw Error(fmt::format("{}: cannot make this directory: {}", parent.string(), error.message()));
 }
 
-void writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+void requireWritable(const std::filesystem::path& file) {
+  if (file.empty() || file.filename().empty())
+    throw Error(fmt::format("{}: not the name of a file to write", file.empty() ? "''" : file.string()));
+  createParentDirectories(file);
+  const Target target = targetOf(file);
+  if (target.isWrittenThrough()) {
+    if (access(target.path.c_str(), W_OK) != 0) fail(file, "write");
+    return;
+  }
   const std::filesystem::path parent =
-      path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  if (std::filesystem::is_directory(path))
-    throw Error(fmt::format("{}: cannot write: is a directory", path.string()));
-  const std::filesystem::path beside = besideName(path);
+      target.path.has_parent_path() ? target.path.parent_path() : std::filesystem::path(".");
+  std::error_code failure;
+  if (!std::filesystem::is_directory(parent, failure))
+    throw Error(fmt::format("{}: {} is not a directory", file.string(), parent.string()));
+  if (access(parent.c_str(), W_OK | X_OK) != 0)
+    throw Error(
+        fmt::format("{}: cannot write into {}: {}", file.string(), parent.string(), std::strerror(errno)));
+}
+
+void writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  const Target target = targetOf(path);
+  if (target.isWrittenThrough()) return writeThrough(target, bytes, path);
+  const std::filesystem::path parent =
+      target.path.has_parent_path() ? target.path.parent_path() : std::filesystem::path(".");
+  const std::filesystem::path beside = besideName(target.path);
   constexpr mode_t kMode = 0666;
+  const auto write = [&](const Descriptor& file) {
+    constexpr mode_t kPermissions = 0777;  // without set-user-identification and its kin
+    if (target.status && fchmod(file.get(), target.status->st_mode & kPermissions) != 0) fail(path, "write");
+    writeToDisk(file.get(), bytes, path);
+  };
   // An unnamed file vanishes by itself when this process is killed; only a whole one ever gets a name.
   if (const Descriptor file(open(parent.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, kMode)); file.get() >= 0) {
-    writeAll(file.get(), bytes, path);
+    write(file);
     const std::string self = fmt::format("/proc/self/fd/{}", file.get());
     if (linkat(AT_FDCWD, self.c_str(), AT_FDCWD, beside.c_str(), AT_SYMLINK_FOLLOW) == 0) {
-      if (rename(beside.c_str(), path.c_str()) == 0) return;
+      if (rename(beside.c_str(), target.path.c_str()) == 0) return;
       const int reason = errno;
       unlink(beside.c_str());
       errno = reason;
@@ -147,8 +294,8 @@ void writeFileAtomically(const std::filesystem::path& path, std::span<const std:
   const Descriptor file(open(beside.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, kMode));
   if (file.get() < 0) fail(path, "write");
   try {
-    writeAll(file.get(), bytes, path);
-    if (rename(beside.c_str(), path.c_str()) != 0) fail(path, "write");
+    write(file);
+    if (rename(beside.c_str(), target.path.c_str()) != 0) fail(path, "write");
   } catch (...) {
     unlink(beside.c_str());
     throw;
@@ -190,6 +337,7 @@ std::string formatBytes(std::uint64_t bytes) {
 
 std::filesystem::path cacheDirectory() {
   std::filesystem::path directory;
+  bool isFallback = false;
   if (const char* own = std::getenv("LUMIVOX_CACHE"); own != nullptr && *own != '\0') {
     directory = own;
   } else if (const char* shared = std::getenv("XDG_CACHE_HOME"); shared != nullptr && *shared != '\0') {
@@ -197,12 +345,24 @@ std::filesystem::path cacheDirectory() {
   } else if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') {
     directory = std::filesystem::path(home) / ".cache" / "lumivox";
   } else {
-    directory = std::filesystem::temp_directory_path() / "lumivox-cache";
+    directory = std::filesystem::temp_directory_path() / fmt::format("lumivox-cache-{}", geteuid());
+    isFallback = true;
   }
+  const auto refuse = [&](std::string_view why) {
+    throw Error(fmt::format("{}: cannot be the cache directory: {}", directory.string(), why));
+  };
   std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error)
-    throw Error(fmt::format("{}: cannot make the cache directory: {}", directory.string(), error.message()));
+  if (directory.has_parent_path()) std::filesystem::create_directories(directory.parent_path(), error);
+  constexpr mode_t kOwnerOnly = 0700;
+  if (mkdir(directory.c_str(), kOwnerOnly) != 0 && errno != EEXIST) refuse(std::strerror(errno));
+  struct stat status {};
+  if ((isFallback ? lstat : stat)(directory.c_str(), &status) != 0) refuse(std::strerror(errno));
+  if (!S_ISDIR(status.st_mode))
+    refuse(fmt::format("is {}", S_ISLNK(status.st_mode) ? "a symbolic link" : kindOf(status.st_mode)));
+  if (isFallback && status.st_uid != geteuid())
+    refuse("it belongs to another user; name a folder of your own in LUMIVOX_CACHE");
+  if (isFallback && (status.st_mode & 0077) != 0 && chmod(directory.c_str(), kOwnerOnly) != 0)
+    refuse(std::strerror(errno));
   return directory;
 }
 

@@ -1,10 +1,8 @@
-// 8-bit pictures by stb: PNG out; PNG, JPG and TGA in. stb checks neither sums nor ends, so the containers
+// 8-bit pictures in by stb: PNG, JPG and TGA. stb checks neither sums nor ends, so the containers
 // are walked here first: a damaged or truncated file must not pass for a picture.
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -13,24 +11,6 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/picture.h"
-
-namespace {
-
-/// stb's hook for the deflate step of PNG; zlib is smaller and faster than its own. The result is freed by
-/// stb.
-unsigned char* deflateForStb(unsigned char* data, int size, int* compressedSize, int quality) {
-  uLongf capacity = compressBound(static_cast<uLong>(size));
-  auto* compressed = static_cast<unsigned char*>(std::malloc(capacity));
-  if (compressed == nullptr ||
-      compress2(compressed, &capacity, data, static_cast<uLong>(size), std::min(quality, 9)) != Z_OK) {
-    std::free(compressed);
-    return nullptr;
-  }
-  *compressedSize = static_cast<int>(capacity);
-  return compressed;
-}
-
-}  // namespace
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wall"
@@ -43,11 +23,6 @@ unsigned char* deflateForStb(unsigned char* data, int size, int* compressedSize,
 #define STBI_ONLY_TGA
 #define STBI_NO_STDIO
 #include <stb/stb_image.h>
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STBI_WRITE_NO_STDIO
-#define STBIW_ZLIB_COMPRESS deflateForStb
-#include <stb/stb_image_write.h>
 #pragma GCC diagnostic pop
 
 namespace lumivox {
@@ -160,54 +135,13 @@ BytePicture decode(Bytes bytes) {
   return picture;
 }
 
-unsigned char encodeByte(float linear) {
-  constexpr float kSteps = 255.0f;
-  return static_cast<unsigned char>(std::lround(kSteps * linearToSrgb(std::clamp(linear, 0.0f, 1.0f))));
-}
-
 }  // namespace
 
-std::string encodePng(const Picture& linear, float exposure) {
-  if (linear.empty() || (linear.channels() != 1 && linear.channels() != 3)) {
-    throw Error(
-        fmt::format("a picture with {} channels cannot become a PNG; expected 1 or 3", linear.channels()));
-  }
-  constexpr int kChannels = 3;
-  const std::size_t sourceChannels = static_cast<std::size_t>(linear.channels());
-  std::vector<unsigned char> bytes(linear.pixelCount() * kChannels);
-  for (std::size_t pixel = 0; pixel < linear.pixelCount(); ++pixel) {
-    const float* source = linear.values().data() + pixel * sourceChannels;
-    unsigned char* target = bytes.data() + pixel * kChannels;
-    const bool isNan = std::any_of(source, source + sourceChannels,
-                                   [&](float value) { return std::isnan(value * exposure); });
-    for (std::size_t c = 0; c < kChannels; ++c) {
-      target[c] = isNan ? (c == 1 ? 0 : 255) : encodeByte(source[c % sourceChannels] * exposure);
-    }
-  }
-  std::string png;
-  const auto append = [](void* context, void* data, int size) {
-    static_cast<std::string*>(context)->append(static_cast<const char*>(data),
-                                               static_cast<std::size_t>(size));
-  };
-  if (stbi_write_png_to_func(append, &png, linear.width(), linear.height(), kChannels, bytes.data(),
-                             linear.width() * kChannels) == 0) {
-    throw Error(fmt::format("a PNG of {} x {} pixels could not be encoded", linear.width(), linear.height()));
-  }
-  return png;
-}
-
-void writePng(const std::filesystem::path& path, const Picture& linear, float exposure) {
-  std::string bytes;
-  try {
-    bytes = encodePng(linear, exposure);
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", path.string(), error.what()));
-  }
-  writeFileAtomically(path, bytes);
-}
-
 BytePicture readBytePicture(const std::filesystem::path& path) {
-  const std::string bytes = readFile(path);
+  return decodeBytePicture(readFile(path, kLargestPictureFile), path);
+}
+
+BytePicture decodeBytePicture(const std::string& bytes, const std::filesystem::path& path) {
   try {
     return decode(Bytes(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
   } catch (const Error& error) {

@@ -275,7 +275,7 @@ void DeviceState::bind(const Program& program, std::span<const ResourceBinding> 
   uniforms.ring().reserve(room);
   for (const ResourceBinding& binding : bindings)
     std::visit(Binder{*this, program, binding}, binding.resource);
-  unordered = underWay = true;
+  underWay = unordered = true;
 }
 
 void DeviceState::order() {

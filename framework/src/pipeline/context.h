@@ -60,6 +60,8 @@ class FrameContext : public PassContext {
   /// Runs one pass under its name: driver errors and errors of the pass carry it, once. `fenced`: waits for
   /// the device before and after, and takes the time between as the device's; without it that is 0.
   gpu::Device::Elapsed run(Pass& pass, const std::string& name, bool fenced = false);
+  /// Whether a pass of the frame has left a count to be judged.
+  bool hasCounts() const { return !judgements_.empty(); }
   /// Once the device is idle: has the counts of the frame judged. False when a pass had too little room, so
   /// that the frame has to be rendered again with setAfresh(true). Error when that does not help.
   bool allHadRoom();

@@ -269,12 +269,17 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
     }
   }
   result.betweenPassesMs = millisecondsSince(start) - passesMs - scanMs;
-  if (instrument != Instrument::stamps) device.finish();
+  // Counts are read when the device is idle; without any, frames that are stamped follow each other without a gap.
+  if (instrument != Instrument::stamps || context.hasCounts()) device.finish();
   if (!context.allHadRoom()) {
     // What was rendered lacks something: nothing of it is kept, and the frame's time is that of both
     // attempts.
     context.takeNotes();
     context.pool().endFrame();
+    if (instrument == Instrument::stamps) {
+      timers.endFrame();
+      awaited.push_back(result.passes);
+    }
     return frame(SceneSnapshot(*last), frameIndex, pictures, timing, start);
   }
   result.frameMs =

@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "lumivox/base/low_discrepancy.h"
+#include "lumivox/scene/bilinear.h"
 
 namespace lumivox {
 namespace {
@@ -46,10 +47,20 @@ void addCube(LightSet& set, const glm::vec3& eye, const Bounds& bounds, const gl
   }
 }
 
+/// A triangle that shines where its mask, if it has one, leaves it.
 struct Emitter {
   glm::vec3 a, b, c, normal;
   glm::vec3 radiance;
-  float area, weight;
+  float area;    ///< that shines, m^2
+  float weight;  ///< luminance times area
+  const SurfaceTexture* mask = nullptr;
+  std::array<glm::vec2, 3> texcoords{};
+  glm::vec2 someShiningPoint{0.0f};  ///< barycentric coordinates of b and c; set where there is a mask
+
+  bool shinesAt(const glm::vec2& point) const {
+    return mask == nullptr || !cutOut(*mask, texcoords[0] + point.x * (texcoords[1] - texcoords[0]) +
+                                                 point.y * (texcoords[2] - texcoords[0]));
+  }
 };
 
 /// The emissive triangles of one part of an object, which are of one material.
@@ -58,7 +69,52 @@ struct Lamp {
   double weight = 0.0;  ///< of all its emitters together
 };
 
+/// How many points of a mask all emitters together may look up for one set of samples: a few milliseconds.
+constexpr std::size_t kMostMaskPoints = std::size_t{1} << 19;
+constexpr std::size_t kFewestMaskPoints = 16;  // of one triangle
+
+/// The share of a masked emitter that is no hole: over the middles of equal parts of the triangle, four along
+/// every texel where `mostPoints` allows it.
+float shiningShare(Emitter& emitter, std::size_t mostPoints) {
+  const glm::vec2 size(emitter.mask->width, emitter.mask->height);
+  float longest = 0.0f;
+  for (std::size_t k = 0; k < 3; ++k)
+    longest = std::max(longest, glm::length(size * (emitter.texcoords[(k + 1) % 3] - emitter.texcoords[k])));
+  constexpr float kPartsOfTexel = 4.0f, kFewestRows = 64.0f;
+  // An odd number, so that no row of middles follows the borders of texels.
+  const auto rows = static_cast<int>(std::min(std::max(kPartsOfTexel * longest, kFewestRows),
+                                              std::sqrt(float(mostPoints)))) |
+                    1;
+  const float step = 1.0f / static_cast<float>(rows);
+  int shining = 0;
+  // Row by row the upright parts, and between them those upside down: rows^2 in all.
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < 2 * (rows - y) - 1; ++x) {
+      const float third = x % 2 == 0 ? 1.0f / 3.0f : 2.0f / 3.0f;
+      const glm::vec2 point =
+          step * glm::vec2(static_cast<float>(x / 2) + third, static_cast<float>(y) + third);
+      if (!emitter.shinesAt(point)) continue;
+      if (shining++ == 0) emitter.someShiningPoint = point;
+    }
+  }
+  return static_cast<float>(shining) * step * step;
+}
+
+/// Emissive triangles whose masks have to be looked at.
+std::size_t maskedEmitters(const Scene& scene) {
+  std::size_t count = 0;
+  for (const Object& object : scene.objects) {
+    for (const Part& part : object.parts) {
+      const Material& material = scene.materials[static_cast<std::size_t>(part.material)];
+      if (material.emissive() && material.maskTexture >= 0) count += part.indexCount / 3;
+    }
+  }
+  return count;
+}
+
 std::vector<Lamp> lampsOf(const Scene& scene, const SceneSnapshot& snapshot) {
+  const std::size_t mostPoints =
+      std::max(kFewestMaskPoints, kMostMaskPoints / std::max<std::size_t>(maskedEmitters(scene), 1));
   std::vector<Lamp> lamps;
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const ObjectState& state = snapshot.objects[o];
@@ -68,26 +124,52 @@ std::vector<Lamp> lampsOf(const Scene& scene, const SceneSnapshot& snapshot) {
       Lamp lamp;
       for (std::uint32_t i = 0; i + 2 < part.indexCount; i += 3) {
         std::array<glm::vec3, 3> corner;
+        Emitter emitter{};
         for (std::uint32_t k = 0; k < 3; ++k) {
           const std::uint32_t index = scene.indices[part.firstIndex + i + k];
           const glm::vec3 local = state.positions.empty()
                                       ? scene.positions[index]
                                       : state.positions[index - scene.objects[o].firstVertex];
           corner[k] = glm::vec3(state.toWorld * glm::vec4(local, 1.0f));
+          emitter.texcoords[k] = scene.texcoords[index];
         }
         const glm::vec3 cross = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
         const float area = 0.5f * glm::length(cross);
         if (!(area > 0.0f)) continue;
-        const float weight =
-            area * glm::dot(material.emission, glm::vec3(0.2126f, 0.7152f, 0.0722f));  // Rec. 709 luminance
-        lamp.emitters.push_back(
-            {corner[0], corner[1], corner[2], cross / (2.0f * area), material.emission, area, weight});
-        lamp.weight += weight;
+        emitter.a = corner[0], emitter.b = corner[1], emitter.c = corner[2];
+        emitter.normal = cross / (2.0f * area);
+        emitter.radiance = material.emission;
+        emitter.area = area;
+        if (material.maskTexture >= 0) {
+          emitter.mask = &scene.textures[static_cast<std::size_t>(material.maskTexture)];
+          emitter.area *= shiningShare(emitter, mostPoints);
+          if (!(emitter.area > 0.0f)) continue;
+        }
+        emitter.weight = emitter.area * glm::dot(material.emission,
+                                                 glm::vec3(0.2126f, 0.7152f, 0.0722f));  // Rec. 709 luminance
+        lamp.weight += emitter.weight;
+        lamp.emitters.push_back(emitter);
       }
       if (lamp.weight > 0.0) lamps.push_back(std::move(lamp));
     }
   }
   return lamps;
+}
+
+/// Area-uniform on what shines of a triangle, as barycentric coordinates of b and c: the next points of the
+/// sequence, the unit square folded along its diagonal, until one is no hole.
+glm::vec2 pointOn(const Emitter& emitter, int& sequence) {
+  constexpr int kMostHoles = 1000;
+  for (int tries = 0; tries < kMostHoles; ++tries) {
+    auto [u, v] = r2Point(++sequence);
+    if (u + v > 1.0) {
+      u = 1.0 - u;
+      v = 1.0 - v;
+    }
+    const glm::vec2 point(u, v);
+    if (emitter.shinesAt(point)) return point;
+  }
+  return emitter.someShiningPoint;
 }
 
 /// One sample for each lamp and the others by their power: a dim lamp may be all that lights a place.
@@ -120,14 +202,9 @@ void addLamp(LightSet& set, const Lamp& lamp, int count, int& sequence, const Bo
     const auto found = std::lower_bound(cumulative.begin(), cumulative.end(), stratum);
     const Emitter& emitter = lamp.emitters[std::min<std::size_t>(
         static_cast<std::size_t>(found - cumulative.begin()), lamp.emitters.size() - 1)];
-    auto [u, v] = r2Point(++sequence);
-    // Area-uniform on a triangle: fold the unit square along its diagonal.
-    if (u + v > 1.0) {
-      u = 1.0 - u;
-      v = 1.0 - v;
-    }
-    const glm::vec3 onSurface = emitter.a + static_cast<float>(u) * (emitter.b - emitter.a) +
-                                static_cast<float>(v) * (emitter.c - emitter.a);
+    const glm::vec2 point = pointOn(emitter, sequence);
+    const glm::vec3 onSurface =
+        emitter.a + point.x * (emitter.b - emitter.a) + point.y * (emitter.c - emitter.a);
     const glm::vec3 position = onSurface + emitter.normal * (1e-5f * diagonal);
     const double probability = emitter.weight / lamp.weight;
     const float area =

@@ -84,7 +84,7 @@ std::unique_ptr<Technique> open(const std::string& name, const fs::path& library
   auto technique = std::make_unique<Technique>();
   technique->name = name;
   technique->library = library;
-  const std::string bytes = readFile(library);
+  const std::string bytes = readFile(library, kLargestLibraryFile);
   if (const std::string defect = sharedLibraryDefect(bytes); !defect.empty()) throw Unfit(defect);
   technique->hash = hashOf(bytes);
 

@@ -8,6 +8,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
+#include "lumivox/reference/reference_cache.h"
 
 namespace lumivox {
 namespace reference {
@@ -89,31 +90,77 @@ void add(Hasher& hasher, const Medium& medium) {
   }
 }
 
-/// Of all pixels, so that damage inside an entry that still reads as a picture is noticed.
+/// Of all pixels and attributes, so that damage inside an entry that still reads as a picture is noticed.
 ContentHash contentOf(const LayeredPicture& picture) {
   Hasher hasher;
   for (const auto& [name, layer] : picture.layers) {
     hasher.add(name).add(layer.width()).add(layer.height()).add(layer.channels()).add(layer.values());
   }
+  for (const auto& [name, value] : picture.attributes) hasher.add(name).add(value);
   return hasher.finish();
 }
 
-constexpr const char* kPixelHash = "pixels";
+constexpr const char* kContentHash = "content";
 
-/// The entry, or nothing when there is none or it is damaged (which is said).
-std::optional<LayeredPicture> readEntry(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) return std::nullopt;
+/// What keeps an entry from being the wanted reference; empty when nothing does. It is believed in nothing:
+/// what it says of itself is compared with what it has to be.
+std::string defectOf(LayeredPicture& entry, const Scene& scene, const ResolvedOptions& resolved) {
+  const auto stated = entry.attributes.find(kContentHash);
+  const std::string hash = stated == entry.attributes.end() ? std::string() : stated->second;
+  entry.attributes.erase(kContentHash);
+  if (hash != contentOf(entry).text()) return "its content is not what was written";
+  for (const auto& [name, value] : provenance(scene, resolved)) {
+    const auto found = entry.attributes.find(name);
+    if (found == entry.attributes.end() || found->second != value)
+      return fmt::format("its attribute '{}' is not '{}'", name, value);
+  }
+  if (!cutOffIn(entry.attributes)) return "its attribute 'cut_off' is not two numbers";
+  std::map<std::string, int> channels{{"ambient_occlusion", 1}};
+  if (scene.media.empty()) {
+    for (const char* layer : kSurfaceLayers) channels[layer] = 3;
+  } else {
+    for (const char* layer : kMediaLayers) channels[layer] = 3;
+  }
+  if (entry.layers.size() != 2 * channels.size()) return "it has other layers";
+  for (const auto& [name, count] : channels) {
+    for (const std::string& layer : {name, name + ".variance"}) {
+      const auto found = entry.layers.find(layer);
+      if (found == entry.layers.end() || found->second.channels() != count ||
+          found->second.width() != resolved.options.width ||
+          found->second.height() != resolved.options.height)
+        return fmt::format("it has no layer '{}' of the right size", layer);
+    }
+  }
+  return {};
+}
+
+/// The entry, or nothing when there is none or it is not to be taken (which is said).
+std::optional<LayeredPicture> readEntry(const std::filesystem::path& file, const Scene& scene,
+                                        const ResolvedOptions& resolved) {
+  std::error_code failure;
+  if (!std::filesystem::exists(std::filesystem::symlink_status(file, failure))) return std::nullopt;
   try {
     LayeredPicture picture = readExr(file);
-    const auto stated = picture.attributes.find(kPixelHash);
-    if (stated != picture.attributes.end() && stated->second == contentOf(picture).text()) return picture;
-    logWarning(
-        "{}: this cached reference is damaged (its pixels are not those that were written); it is made anew",
-        file.string());
+    const std::string defect = defectOf(picture, scene, resolved);
+    if (defect.empty()) return picture;
+    logWarning("{}: this cached reference is damaged ({}); it is made anew", file.string(), defect);
   } catch (const Error& error) {
     logWarning("this cached reference is damaged and is made anew: {}", error.what());
   }
   return std::nullopt;
+}
+
+/// The folder may hold a link under this name, which is not followed: the entry is written in its place.
+void keep(const std::filesystem::path& file, const LayeredPicture& picture) {
+  std::error_code failure;
+  if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file, failure)))
+    std::filesystem::remove(file, failure);
+  writeExr(file, picture);
+  const PrunedReferences pruned = pruneReferences(referenceCacheLimit());
+  if (pruned.removed > 0) {
+    logInformation("the cache of references is full: {} not used for longest gave way ({})", pruned.removed,
+                   formatBytes(pruned.removedBytes));
+  }
 }
 
 }  // namespace
@@ -175,22 +222,22 @@ std::map<std::string, std::string> provenance(const Scene& scene, const Resolved
 LayeredPicture cachedReference(const Scene& scene, const ReferenceOptions& options) {
   using namespace reference;
   if (!options.useCache) return renderReference(scene, options);
-  const std::filesystem::path file =
-      cacheDirectory() / fmt::format("reference-{}.exr", cacheKey(scene, resolve(scene, options)).text());
-  if (std::optional<LayeredPicture> entry = readEntry(file)) {
-    entry->attributes.erase(kPixelHash);
+  const ResolvedOptions resolved = resolve(scene, options);
+  const std::filesystem::path file = cacheDirectory() / entryName(cacheKey(scene, resolved));
+  if (std::optional<LayeredPicture> entry = readEntry(file, scene, resolved)) {
+    markAsUsed(file);
     if (options.progress) warnOfCutOff(entry->attributes);
     return *std::move(entry);
   }
   LayeredPicture picture = renderReference(scene, options);
-  picture.attributes[kPixelHash] = contentOf(picture).text();
+  picture.attributes[kContentHash] = contentOf(picture).text();
   try {
-    writeExr(file, picture);
+    keep(file, picture);
   } catch (const Error& error) {
     // The picture is good; only the next call pays.
     logWarning("the reference could not be kept for later: {}", error.what());
   }
-  picture.attributes.erase(kPixelHash);
+  picture.attributes.erase(kContentHash);
   return picture;
 }
 

@@ -1,6 +1,7 @@
 // Keys and provenance of truths.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
 
@@ -11,7 +12,7 @@ namespace lumivox::reference {
 
 /// The version of the path tracer; raise it with every change that changes pictures, so that older cached
 /// truths are not taken.
-inline constexpr int kTracerVersion = 3;
+inline constexpr int kTracerVersion = 4;
 /// The same for what changes pictures of scenes with media alone.
 inline constexpr int kMediaVersion = 2;
 
@@ -20,6 +21,11 @@ ContentHash contentOf(const Scene& scene);
 
 /// Everything that the picture depends on.
 ContentHash cacheKey(const Scene& scene, const ResolvedOptions& resolved);
+
+/// Name of the entry's file.
+std::string entryName(const ContentHash& key);
+/// Notes that an entry was taken, so that it is not among the first to give way.
+void markAsUsed(const std::filesystem::path& file);
 
 std::map<std::string, std::string> provenance(const Scene& scene, const ResolvedOptions& resolved);
 

@@ -39,7 +39,7 @@ AliasTable::AliasTable(const std::vector<double>& weights) {
   slots_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     scaled[i] = weights[i] / sum * static_cast<double>(count);
-    slots_[i] = {0xffffffffu, static_cast<std::uint32_t>(i)};
+    slots_[i] = {0u, static_cast<std::uint32_t>(i)};  // its own alias: always taken
     (scaled[i] < 1.0 ? small : large).push_back(static_cast<std::uint32_t>(i));
   }
   while (!small.empty() && !large.empty()) {
@@ -111,7 +111,12 @@ LightSampler::LightSampler(RayScene& scene, const SceneSnapshot& snapshot) {
 
 LightSample LightSampler::sample(const RayScene& scene, const glm::vec3& position,
                                  RandomStream& random) const {
-  const Choice& choice = choices_[choices_.size() == 1 ? 0 : choice_.pick(random.bits())];
+  std::uint32_t chosen = 0;
+  if (choices_.size() > 1) {
+    const std::uint32_t slotBits = random.bits(), choiceBits = random.bits();
+    chosen = choice_.pick(slotBits, choiceBits);
+  }
+  const Choice& choice = choices_[chosen];
   return choice.triangle ? sampleTriangle(scene, position, choice, random) : sampleLight(choice, position);
 }
 

@@ -102,23 +102,35 @@ LayeredPicture Film::take() {
   return result;
 }
 
+std::optional<CutOff> cutOffIn(const std::map<std::string, std::string>& attributes) {
+  const auto entry = attributes.find("cut_off");
+  if (entry == attributes.end()) return std::nullopt;
+  CutOff cutOff;
+  std::istringstream words(entry->second);
+  if (!(words >> cutOff.share >> cutOff.radius) || !(words >> std::ws).eof()) return std::nullopt;
+  const bool good =
+      cutOff.share >= 0.0 && cutOff.share <= 1.0 && cutOff.radius >= 0.0 && cutOff.radius <= 1.0;
+  return good ? std::optional(cutOff) : std::nullopt;
+}
+
 void warnOfCutOff(const std::map<std::string, std::string>& attributes) {
   constexpr double kTolerable = 0.01;
-  const auto entry = attributes.find("cut_off");
-  if (entry == attributes.end()) return;
-  CutOff cutOff;
-  std::istringstream(entry->second) >> cutOff.share >> cutOff.radius;
-  if (cutOff.share <= kTolerable) return;
-  const int bounces = std::stoi(attributes.at("bounces"));
+  const std::optional<CutOff> cutOff = cutOffIn(attributes);
+  if (!cutOff || cutOff->share <= kTolerable) return;
+  const auto text = [&](const char* name) {
+    const auto found = attributes.find(name);
+    return found == attributes.end() ? std::string() : found->second;
+  };
+  int bounces = 0;
+  std::istringstream(text("bounces")) >> bounces;
   const std::string enough =
-      cutOff.radius < 1.0
-          ? fmt::format("about {} bounces leave out 1 %",
-                        bounces + static_cast<int>(std::ceil(std::log(kTolerable / cutOff.share) /
-                                                             std::log(cutOff.radius))))
+      cutOff->radius > 0.0 && cutOff->radius < 1.0
+          ? fmt::format("about {:.0f} bounces leave out 1 %",
+                        bounces + std::ceil(std::log(kTolerable / cutOff->share) / std::log(cutOff->radius)))
           : "the light hardly shrinks from bounce to bounce";
   logWarning(
       "reference of {}: paths end after {} bounces, which leaves out about {:.2g} % of the light; {} (--bounces)",
-      attributes.at("scene"), bounces, 100.0 * cutOff.share, enough);
+      text("scene"), bounces, 100.0 * cutOff->share, enough);
 }
 
 int threadsOf(int threads) {

@@ -176,8 +176,7 @@ void RayScene::filter(const RTCFilterFunctionNArguments* arguments) {
 bool RayScene::cutOut(std::uint32_t triangle, float u, float v) const {
   const Texture* mask = materials[triangles[triangle].material].maskTexture;
   if (mask == nullptr) return false;
-  return mask->read(mask->find(triangles[triangle].texcoordAt(u, v))).x <
-         0.5f;  // scene.h: coverage below 0.5 is a hole
+  return mask->read(mask->find(triangles[triangle].texcoordAt(u, v))).x < kMaskThreshold;
 }
 
 void RayScene::surfaceAt(const Hit& hit, const glm::vec3& direction, Surface& surface) const {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -223,6 +224,9 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
         });
   }
 }
+
+/// What the attributes of a reference say of it; nothing when they say nothing that can be right.
+std::optional<CutOff> cutOffIn(const std::map<std::string, std::string>& attributes);
 
 /// Says so when the limit on bounces costs more than a hundredth, by the attributes of a truth.
 void warnOfCutOff(const std::map<std::string, std::string>& attributes);

@@ -72,16 +72,18 @@ class AliasTable {
   AliasTable() = default;
   explicit AliasTable(const std::vector<double>& weights);  ///< not negative, with a positive sum
   bool empty() const { return slots_.empty(); }
-  /// One of the indices for 32 random bits.
-  std::uint32_t pick(std::uint32_t bits) const {
-    const std::uint64_t product = std::uint64_t{bits} * slots_.size();
-    const auto index = static_cast<std::uint32_t>(product >> 32);
-    return static_cast<std::uint32_t>(product) <= slots_[index].threshold ? index : slots_[index].alias;
+  /// One of the indices for two independent numbers of 32 random bits: the first chooses the slot, the second
+  /// between its two indices. (What a first number leaves below the slot would be 12 bits for a million
+  /// slots, too coarse for the choice.)
+  std::uint32_t pick(std::uint32_t slotBits, std::uint32_t choiceBits) const {
+    const auto index = static_cast<std::uint32_t>((std::uint64_t{slotBits} * slots_.size()) >> 32);
+    return choiceBits < slots_[index].threshold ? index : slots_[index].alias;
   }
 
  private:
   struct Slot {
-    std::uint32_t threshold, alias;
+    std::uint32_t threshold;  ///< second numbers below it keep the slot's own index
+    std::uint32_t alias;
   };
   std::vector<Slot> slots_;
 };

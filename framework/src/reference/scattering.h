@@ -1,6 +1,7 @@
 // Reflection at a surface: Lambert diffuse/pi plus Phong specular (n+2)/(2 pi) max(0, cos a)^n, a from the
-// mirror direction of the viewing direction (scene.h, Material). Directions below the interpolated or the
-// geometric horizon reflect nothing.
+// mirror direction of the viewing direction (scene.h, Material); with n = 0 the lobe is constant over the
+// hemisphere around that direction and 0 beyond it, as in shaders/common/brdf.glsl. Directions below the
+// interpolated or the geometric horizon reflect nothing.
 #pragma once
 
 #include <algorithm>
@@ -27,8 +28,10 @@ inline Reflectance reflectanceTowards(const Surface& surface, const glm::vec3& d
   result.lambert = cosine * (1.0f / kPi);
   result.density = result.lambert;
   if (surface.glossy) {
-    const float lobe =
-        std::pow(std::max(0.0f, glm::dot(surface.mirror, direction)), surface.exponent) * (0.5f / kPi);
+    const float mirrorCosine = glm::dot(surface.mirror, direction);
+    // Beyond the mirror hemisphere there is no lobe and nothing is sampled. Told apart by its cosine, because
+    // at the exponent 0 the power of a cosine clamped to 0 would be 1.
+    const float lobe = mirrorCosine > 0.0f ? std::pow(mirrorCosine, surface.exponent) * (0.5f / kPi) : 0.0f;
     result.glossy = ((surface.exponent + 2.0f) * lobe * cosine) * surface.specular;
     result.density = glm::mix(result.density, (surface.exponent + 1.0f) * lobe, surface.glossyProbability);
   }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
 
 namespace lumivox::report {
 namespace {
@@ -16,6 +17,7 @@ constexpr int kPatienceMs = 60'000;
 }  // namespace
 
 Database::Database(const std::filesystem::path& file, bool write) : file_(file) {
+  requireRegularFile(file);
   sqlite3* handle = nullptr;
   const int flags = write ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
   const int status = sqlite3_open_v2(file.c_str(), &handle, flags, nullptr);

@@ -1,12 +1,10 @@
 #include "report/plan.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <set>
 
 #include "lumivox/base/error.h"
@@ -163,21 +161,6 @@ std::string formatThousands(double value) {
 
 std::string formatPercent(double share) {
   return fmt::format("{:.0f} %", std::round(100.0 * share) + 0.0);  // adding a positive zero drops its sign
-}
-
-void requireWritable(const fs::path& file) {
-  if (file.empty() || file.filename().empty())
-    throw Error(fmt::format("{}: not the name of a file to write", file.empty() ? "''" : file.string()));
-  std::error_code failure;
-  if (fs::is_directory(file, failure))
-    throw Error(fmt::format("{}: is a directory; a file name is expected", file.string()));
-  createParentDirectories(file);
-  const fs::path parent = file.parent_path().empty() ? fs::path(".") : file.parent_path();
-  if (!fs::is_directory(parent, failure))
-    throw Error(fmt::format("{}: {} is not a directory", file.string(), parent.string()));
-  if (access(parent.c_str(), W_OK | X_OK) != 0)
-    throw Error(
-        fmt::format("{}: cannot write into {}: {}", file.string(), parent.string(), std::strerror(errno)));
 }
 
 }  // namespace lumivox

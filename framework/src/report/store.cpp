@@ -92,7 +92,7 @@ std::string frameworkHash() {
       Dl_info information{};
       if (dladdr(inside, &information) == 0 || information.dli_fname == nullptr)
         throw Error("the framework's own libraries cannot be found, so results cannot be told apart");
-      hasher.add(readFile(information.dli_fname));
+      hasher.add(readFile(information.dli_fname, kLargestLibraryFile));
     }
     return hasher.finish().text();
   }();

@@ -116,7 +116,18 @@ class Measurement {
       blank.triangles = scene.triangleCount();
       blank.subdivisions = subdivisions;
       add(scene, pipeline, blank, candidates);
+      // Those that alternate are all held at once.
+      constexpr std::uint64_t kMostBytes = std::uint64_t{256} << 20;
+      std::uint64_t held = 0;
+      for (const Candidate& candidate : candidates) held += candidate.record.allocatedBytes;
+      if (held > kMostBytes) time(candidates, records);
     }
+    time(candidates, records);
+  }
+
+ private:
+  /// The repeats of these, in turns; they are records then.
+  void time(std::vector<Candidate>& candidates, std::vector<VoxeliserRecord>& records) const {
     // An executor that makes now this and now that output keeps the memory of all of them meanwhile, which
     // one more frame of each takes: no timed frame waits for memory.
     for (const Candidate& candidate : candidates) {
@@ -133,9 +144,9 @@ class Measurement {
       candidate.record.frameMs = statisticsOf(std::move(candidate.frameMs));
       records.push_back(std::move(candidate.record));
     }
+    candidates.clear();
   }
 
- private:
   /// The default point and those of the sweeps, at this resolution.
   std::vector<PlannedPoint> points(const Pipeline& pipeline, int resolution) const {
     std::vector<std::string> settings = settingsFor(pipeline, options_.settings);

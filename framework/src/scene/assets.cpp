@@ -11,9 +11,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Anything but a folder: what is no regular file is refused by its kind when it is read.
 bool isFile(const fs::path& path) {
   std::error_code error;
-  return fs::is_regular_file(path, error);
+  const fs::file_status status = fs::status(path, error);
+  return fs::exists(status) && !fs::is_directory(status);
 }
 
 bool isDirectory(const fs::path& path) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <set>
 #include <tuple>
 
 #include "lumivox/base/error.h"
@@ -68,7 +69,10 @@ class Loader {
  public:
   Loader(const dsl::Document& document, const SceneDescription& description, const AssetSearch& assets,
          const SceneLoadOptions& options)
-      : document_(document), description_(description), assets_(assets), options_(options) {}
+      : document_(document), description_(description), assets_(assets), options_(options) {
+    for (const MaterialText& material : description.materials)
+      textMaterials_.emplace(material.material.name, &material);
+  }
 
   Scene run() {
     hasher_.add(document_.source);
@@ -98,9 +102,10 @@ class Loader {
     const ModelMaterial* model = nullptr;
     std::string name;
     std::optional<glm::vec3> emission;
-    auto key() const {
-      return std::tuple(text, model, emission.has_value(), emission.value_or(glm::vec3(0)).x,
-                        emission.value_or(glm::vec3(0)).y, emission.value_or(glm::vec3(0)).z);
+    using Key = std::tuple<const MaterialText*, const ModelMaterial*, bool, float, float, float>;
+    Key key() const {
+      return Key(text, model, emission.has_value(), emission.value_or(glm::vec3(0)).x,
+                 emission.value_or(glm::vec3(0)).y, emission.value_or(glm::vec3(0)).z);
     }
   };
 
@@ -122,18 +127,12 @@ class Loader {
   }
 
   int useNumber(Use use) {
-    for (std::size_t i = 0; i < uses_.size(); ++i) {
-      if (uses_[i].key() == use.key()) return static_cast<int>(i);
-    }
-    uses_.push_back(std::move(use));
-    return static_cast<int>(uses_.size() - 1);
+    const auto [entry, isNew] = useNumbers_.emplace(use.key(), static_cast<int>(uses_.size()));
+    if (isNew) uses_.push_back(std::move(use));
+    return entry->second;
   }
 
-  const MaterialText* textMaterial(const std::string& name) const {
-    const auto& all = description_.materials;
-    return &*std::find_if(all.begin(), all.end(),
-                          [&](const MaterialText& one) { return one.material.name == name; });
-  }
+  const MaterialText* textMaterial(const std::string& name) const { return textMaterials_.at(name); }
 
   void addMedium(const MediumText& text) {
     Medium medium = text.medium;
@@ -254,13 +253,15 @@ class Loader {
 
   /// Selections that select nothing are slips.
   void requireSelections(const MeshText& mesh, const Model& model) {
+    if (mesh.uses.empty() && mesh.without.empty()) return;
     std::vector<std::string> parts, mtls;
+    std::set<std::string> knownMtls;
     std::vector<std::pair<std::string, std::string>> pairs;
     for (const ModelObject& object : model.objects) {
       parts.push_back(object.name);
       for (const Part& part : object.parts) {
         const std::string& mtl = model.materials[static_cast<std::size_t>(part.material)].values.name;
-        if (std::find(mtls.begin(), mtls.end(), mtl) == mtls.end()) mtls.push_back(mtl);
+        if (knownMtls.insert(mtl).second) mtls.push_back(mtl);
         pairs.emplace_back(object.name, mtl);
       }
     }
@@ -412,6 +413,8 @@ class Loader {
   Hasher hasher_;
   std::vector<std::unique_ptr<Model>> models_;  // uses_ points into them
   std::vector<Use> uses_;
+  std::map<Use::Key, int> useNumbers_;                        // into uses_
+  std::map<std::string, const MaterialText*> textMaterials_;  // the first of each name
   std::map<std::tuple<fs::path, bool, float>, int> textures_;
   std::vector<Diagnostic> findings_;
 };

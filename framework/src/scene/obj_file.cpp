@@ -1,16 +1,18 @@
 #include "scene/obj_file.h"
 
 #include <fmt/format.h>
+#include <tiny_obj_loader.h>
 
 #include <algorithm>
-#include <cmath>
 #include <istream>
+#include <iterator>
 #include <map>
 #include <sstream>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
+#include "lumivox/base/memory_stream.h"
 
 namespace lumivox {
 namespace {
@@ -19,12 +21,6 @@ namespace fs = std::filesystem;
 
 // What a surface is where no material file says: the neutral grey of the usual scans.
 constexpr float kUnknownAlbedo = 0.8f;
-
-/// A stream over text in memory, without a copy.
-class MemoryBuffer : public std::streambuf {
- public:
-  explicit MemoryBuffer(std::string& text) { setg(text.data(), text.data(), text.data() + text.size()); }
-};
 
 glm::vec3 vectorOf(const tinyobj::real_t* values) {
   return {values[0], values[1], values[2]};
@@ -172,58 +168,97 @@ class MaterialTable {
   std::uint32_t fallback_ = 0;
 };
 
-/// Gives tinyobjloader the materials that were read before.
-class KnownMaterials : public tinyobj::MaterialReader {
- public:
-  explicit KnownMaterials(const std::map<std::string, int>& numbers) : numbers_(numbers) {}
-  bool operator()(const std::string&, std::vector<tinyobj::material_t>*, std::map<std::string, int>* numbers,
-                  std::string*, std::string*) override {
-    *numbers = numbers_;
-    return true;
-  }
-
- private:
-  const std::map<std::string, int>& numbers_;
-};
-
-std::string trimmedName(const std::string& name) {
-  const auto first = name.find_first_not_of(" \t"), last = name.find_last_not_of(" \t");
-  return first == std::string::npos ? std::string() : name.substr(first, last - first + 1);
-}
-
-/// The scan has refused every index that is out of range; were the parser to read one differently, nothing
-/// may follow it.
-void requireIndices(const ObjFile& file) {
-  const auto within = [](int index, std::size_t count) { return index < static_cast<int>(count); };
-  for (const tinyobj::index_t& corner : file.corners) {
-    if (corner.vertex_index >= 0 && within(corner.vertex_index, file.positions.size()) &&
-        within(corner.normal_index, file.normals.size()) &&
-        within(corner.texcoord_index, file.texcoords.size())) {
-      continue;
+/// Cuts polygons of more than four corners into triangles, all at once: three corners of the scan for each
+/// triangle, in the order of the polygons. tinyobjloader does it, on a text of nothing else.
+std::vector<std::uint32_t> cutPolygons(const ObjScan& scan, const fs::path& path) {
+  std::string text;
+  std::vector<std::uint32_t> cornerOfVertex;
+  for (const ObjPolygon& polygon : scan.polygons) {
+    if (polygon.corners <= 4) continue;
+    for (std::uint32_t k = 0; k < polygon.corners; ++k) {
+      cornerOfVertex.push_back(polygon.firstCorner + k);
+      const glm::dvec3 p(
+          scan.positions[static_cast<std::size_t>(scan.corners[cornerOfVertex.back()].position)]);
+      fmt::format_to(std::back_inserter(text), "v {} {} {}\n", p.x, p.y, p.z);
     }
-    throw Error(
-        fmt::format("{}: a face index cannot be read; expected plain whole numbers", file.path.string()));
+    text += 'f';
+    for (std::uint32_t k = polygon.corners; k > 0; --k) fmt::format_to(std::back_inserter(text), " -{}", k);
+    text += '\n';
   }
+  if (text.empty()) return {};
+  MemoryBuffer buffer(text);
+  std::istream stream(&buffer);
+  tinyobj::attrib_t attributes;
+  std::vector<tinyobj::shape_t> shapes;
+  std::vector<tinyobj::material_t> ignored;
+  std::string errors;
+  constexpr bool kTriangulate = true, kColours = false;
+  if (!tinyobj::LoadObj(&attributes, &shapes, &ignored, nullptr, &errors, &stream, nullptr, kTriangulate,
+                        kColours)) {
+    throw Error(fmt::format("{}: its polygons cannot be cut: {}", path.string(), errors));
+  }
+  std::vector<std::uint32_t> triangles;
+  for (const tinyobj::shape_t& shape : shapes) {
+    for (const tinyobj::index_t& index : shape.mesh.indices)
+      triangles.push_back(cornerOfVertex.at(static_cast<std::size_t>(index.vertex_index)));
+  }
+  return triangles;
 }
 
-void copyShapes(const std::vector<tinyobj::shape_t>& shapes, std::uint32_t fallbackMaterial, ObjFile& file) {
-  std::map<std::string, std::uint32_t> objectNumbers;
-  std::size_t triangles = 0;
-  for (const tinyobj::shape_t& shape : shapes) triangles += shape.mesh.material_ids.size();
+/// Triangles, and their objects and materials. `tableOfName` leads from the names of the scan to the table of
+/// materials.
+void triangulate(const ObjScan& scan, const std::vector<std::uint32_t>& tableOfName,
+                 std::uint32_t fallbackMaterial, ObjFile& file) {
+  const std::vector<std::uint32_t> cut = cutPolygons(scan, file.path);
+  std::size_t triangles = cut.size() / 3;
+  for (const ObjPolygon& polygon : scan.polygons)
+    if (polygon.corners <= 4) triangles += polygon.corners - 2;
   file.corners.reserve(3 * triangles);
   file.materials.reserve(triangles);
   file.objects.reserve(triangles);
-  for (const tinyobj::shape_t& shape : shapes) {
-    if (shape.mesh.indices.empty()) continue;
-    const std::string name = trimmedName(shape.name);
-    const auto [entry, isNew] =
-        objectNumbers.emplace(name, static_cast<std::uint32_t>(file.objectNames.size()));
-    if (isNew) file.objectNames.push_back(name);
-    file.corners.insert(file.corners.end(), shape.mesh.indices.begin(), shape.mesh.indices.end());
-    for (const int material : shape.mesh.material_ids) {
-      file.materials.push_back(material < 0 ? fallbackMaterial : static_cast<std::uint32_t>(material));
+  constexpr std::uint32_t kUnknown = ~std::uint32_t{0};
+  std::vector<std::uint32_t> objectOfName(scan.objectNames.size(), kUnknown);
+  std::map<std::string, std::uint32_t> objectNumbers;
+  const auto objectOf = [&](std::uint32_t name) {
+    if (objectOfName[name] == kUnknown) {
+      const auto [entry, isNew] =
+          objectNumbers.emplace(scan.objectNames[name], static_cast<std::uint32_t>(file.objectNames.size()));
+      if (isNew) file.objectNames.push_back(scan.objectNames[name]);
+      objectOfName[name] = entry->second;
     }
-    file.objects.resize(file.materials.size(), entry->second);
+    return objectOfName[name];
+  };
+  const auto add = [&](const ObjPolygon& polygon, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    for (const std::uint32_t corner : {a, b, c}) file.corners.push_back(scan.corners[corner]);
+    file.materials.push_back(polygon.material == ObjPolygon::kNoMaterial ? fallbackMaterial
+                                                                         : tableOfName[polygon.material]);
+    file.objects.push_back(objectOf(polygon.object));
+  };
+  const auto positionOf = [&](std::uint32_t corner) {
+    return scan.positions[static_cast<std::size_t>(scan.corners[corner].position)];
+  };
+  std::size_t next = 0;  // of the cut polygons' corners
+  for (const ObjPolygon& polygon : scan.polygons) {
+    const std::uint32_t first = polygon.firstCorner;
+    if (polygon.corners == 3) {
+      add(polygon, first, first + 1, first + 2);
+    } else if (polygon.corners == 4) {
+      // Along the shorter diagonal, as tinyobjloader does it.
+      const glm::vec3 even = positionOf(first + 2) - positionOf(first),
+                      odd = positionOf(first + 3) - positionOf(first + 1);
+      const bool alongEven =
+          even.x * even.x + even.y * even.y + even.z * even.z < odd.x * odd.x + odd.y * odd.y + odd.z * odd.z;
+      if (alongEven) {
+        add(polygon, first, first + 1, first + 2);
+        add(polygon, first, first + 2, first + 3);
+      } else {
+        add(polygon, first, first + 1, first + 3);
+        add(polygon, first + 1, first + 2, first + 3);
+      }
+    } else {
+      for (; next < cut.size() && cut[next] < first + polygon.corners; next += 3)
+        add(polygon, cut[next], cut[next + 1], cut[next + 2]);
+    }
   }
 }
 
@@ -235,7 +270,7 @@ ObjFile readObjFile(const fs::path& path, const ModelOptions& options, Hasher& h
   constexpr std::uint64_t kMemoryPerByte = 16;
   ObjFile file;
   file.path = path;
-  file.text = readFileMaybeGzip(path);
+  file.text = readFileMaybeGzip(path, kLargestModelFile);
   requireMemory(kMemoryPerByte * file.text.size(), path.string());
   hasher.add(file.text);
   file.scan = scanObj(file.text, path);
@@ -250,41 +285,16 @@ ObjFile readObjFile(const fs::path& path, const ModelOptions& options, Hasher& h
     logWarning("{}", text);
   }
   MaterialTable materials(file.path, file.scan, options, hasher);
-  KnownMaterials reader(materials.numbers());
-
-  // The scan has turned the file's own mtllib lines into comments; this one makes the parser ask for the
-  // table.
-  std::string header = "mtllib materials\n";
-  file.text.insert(0, header);
-  MemoryBuffer buffer(file.text);
-  std::istream stream(&buffer);
-  tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;
-  std::vector<tinyobj::material_t> ignored;
-  std::string errors;
-  // No text for warnings: whatever it could warn of, the scan has found before.
-  const bool good =
-      tinyobj::LoadObj(&attributes, &shapes, &ignored, nullptr, &errors, &stream, &reader, true, false);
-  if (!good) throw Error(fmt::format("{}: cannot be parsed: {}", path.string(), errors));
-  file.text.erase(0, header.size());
-
-  const auto copy = [](const std::vector<tinyobj::real_t>& values, auto& result, int components) {
-    using Vector = typename std::decay_t<decltype(result)>::value_type;
-    result.resize(values.size() / static_cast<std::size_t>(components));
-    for (std::size_t i = 0; i < result.size(); ++i) {
-      Vector v;
-      for (int k = 0; k < components; ++k) {
-        const float value = values[i * static_cast<std::size_t>(components) + static_cast<std::size_t>(k)];
-        v[k] = std::isfinite(value) ? value : 0.0f;  // the scan has counted it
-      }
-      result[i] = v;
-    }
-  };
-  copy(attributes.vertices, file.positions, 3);
-  copy(attributes.normals, file.normals, 3);
-  copy(attributes.texcoords, file.texcoords, 2);
-  copyShapes(shapes, materials.fallback(), file);
-  requireIndices(file);
+  std::vector<std::uint32_t> tableOfName;
+  for (const std::string& name : file.scan.materialNames)
+    tableOfName.push_back(static_cast<std::uint32_t>(materials.numbers().at(name)));
+  triangulate(file.scan, tableOfName, materials.fallback(), file);
+  file.positions = std::move(file.scan.positions);
+  file.normals = std::move(file.scan.normals);
+  file.texcoords = std::move(file.scan.texcoords);
+  // Only the triangles are of use from here on.
+  file.scan.corners = {};
+  file.scan.polygons = {};
   file.materialTable = std::move(materials).table();
   return file;
 }

@@ -1,8 +1,5 @@
-// An OBJ file with its MTL files, read by tinyobjloader and not yet changed: triangles as corners with their
-// three indices.
+// An OBJ file with its MTL files, not yet changed: triangles as corners with their three indices.
 #pragma once
-
-#include <tiny_obj_loader.h>
 
 #include "scene/obj_model.h"
 #include "scene/obj_scan.h"
@@ -15,10 +12,10 @@ struct ObjFile {
   ObjScan scan;
   std::vector<glm::vec3> positions, normals;
   std::vector<glm::vec2> texcoords;
-  std::vector<tinyobj::index_t> corners;  ///< three per triangle
-  std::vector<std::uint32_t> materials;   ///< per triangle, into `materialTable`
-  std::vector<std::uint32_t> objects;     ///< per triangle, into `objectNames`
-  std::vector<std::string> objectNames;   ///< each once, in the order of the file
+  std::vector<ObjCorner> corners;        ///< three per triangle
+  std::vector<std::uint32_t> materials;  ///< per triangle, into `materialTable`
+  std::vector<std::uint32_t> objects;    ///< per triangle, into `objectNames`
+  std::vector<std::string> objectNames;  ///< each once, in the order of the file
   std::vector<ModelMaterial> materialTable;
 };
 

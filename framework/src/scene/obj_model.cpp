@@ -38,8 +38,8 @@ class Cleaner {
     std::vector<std::uint32_t> kept;
     kept.reserve(file_.materials.size());
     for (std::uint32_t t = 0; t < file_.materials.size(); ++t) {
-      const tinyobj::index_t* corner = &file_.corners[3 * std::size_t{t}];
-      const auto position = [&](int k) { return static_cast<std::size_t>(corner[k].vertex_index); };
+      const ObjCorner* corner = &file_.corners[3 * std::size_t{t}];
+      const auto position = [&](int k) { return static_cast<std::size_t>(corner[k].position); };
       if (bad[position(0)] || bad[position(1)] || bad[position(2)]) {
         ++nonFinite_;
       } else if (!hasArea(file_.positions[position(0)], file_.positions[position(1)],
@@ -67,9 +67,8 @@ class Cleaner {
                       nonFinite_, scan.nonFinite.count, scan.nonFinite.firstLine));
     }
     if (flat_ > 0) {
-      const tinyobj::index_t* corner = &file_.corners[3 * std::size_t{firstFlat_}];
-      const int line =
-          lineOfFace(file_.text, corner[0].vertex_index, corner[1].vertex_index, corner[2].vertex_index);
+      const ObjCorner* corner = &file_.corners[3 * std::size_t{firstFlat_}];
+      const int line = lineOfFace(file_.text, corner[0].position, corner[1].position, corner[2].position);
       reasons.push_back(fmt::format("{} of zero area (first in line {}, object '{}')", flat_, line,
                                     file_.objectNames[file_.objects[firstFlat_]]));
     }
@@ -196,9 +195,9 @@ class Builder {
     return rank;
   }
 
-  bool hasOwnNormal(const tinyobj::index_t& corner) const {
-    if (options_.crease || corner.normal_index < 0) return false;
-    const glm::vec3& normal = file_.normals[static_cast<std::size_t>(corner.normal_index)];
+  bool hasOwnNormal(const ObjCorner& corner) const {
+    if (options_.crease || corner.normal < 0) return false;
+    const glm::vec3& normal = file_.normals[static_cast<std::size_t>(corner.normal)];
     return glm::length(glm::dvec3(normal)) > 1e-6;
   }
 
@@ -207,8 +206,8 @@ class Builder {
     triangles_.reserve(3 * kept_.size());
     for (const std::uint32_t triangle : kept_) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const tinyobj::index_t& corner = file_.corners[3 * std::size_t{triangle} + k];
-        triangles_.push_back(static_cast<std::uint32_t>(corner.vertex_index));
+        const ObjCorner& corner = file_.corners[3 * std::size_t{triangle} + k];
+        triangles_.push_back(static_cast<std::uint32_t>(corner.position));
         missing = missing || !hasOwnNormal(corner);
       }
     }
@@ -218,13 +217,13 @@ class Builder {
   }
 
   std::uint32_t vertex(VertexTable& table, std::uint32_t triangle, std::uint32_t index, std::uint32_t k) {
-    const tinyobj::index_t& corner = file_.corners[3 * std::size_t{triangle} + k];
+    const ObjCorner& corner = file_.corners[3 * std::size_t{triangle} + k];
     const std::uint32_t normal = hasOwnNormal(corner)
-                                     ? static_cast<std::uint32_t>(corner.normal_index)
+                                     ? static_cast<std::uint32_t>(corner.normal)
                                      : groups_.groupOfCorner[3 * std::size_t{index} + k] | kGenerated;
-    const VertexTable::Key key{
-        static_cast<std::uint32_t>(corner.vertex_index),
-        corner.texcoord_index < 0 ? kNone : static_cast<std::uint32_t>(corner.texcoord_index), normal};
+    const VertexTable::Key key{static_cast<std::uint32_t>(corner.position),
+                               corner.texcoord < 0 ? kNone : static_cast<std::uint32_t>(corner.texcoord),
+                               normal};
     const auto [number, isNew] = table.add(key, static_cast<std::uint32_t>(model_.positions.size()));
     if (isNew) {
       model_.positions.push_back(file_.positions[key.position]);
@@ -249,10 +248,6 @@ class Builder {
 
 /// A frame must have the faces of the first one and nothing that would have to be dropped.
 void requireSameFaces(const ObjFile& first, const ObjFile& frame) {
-  const auto same = [](const tinyobj::index_t& a, const tinyobj::index_t& b) {
-    return a.vertex_index == b.vertex_index && a.normal_index == b.normal_index &&
-           a.texcoord_index == b.texcoord_index;
-  };
   const std::string expected =
       fmt::format("the vertices and faces of {} in the same order", first.path.string());
   if (frame.positions.size() != first.positions.size()) {
@@ -260,7 +255,7 @@ void requireSameFaces(const ObjFile& first, const ObjFile& frame) {
                             frame.positions.size(), first.positions.size(), expected));
   }
   if (frame.corners.size() != first.corners.size() ||
-      !std::equal(frame.corners.begin(), frame.corners.end(), first.corners.begin(), same)) {
+      !std::equal(frame.corners.begin(), frame.corners.end(), first.corners.begin())) {
     throw Error(fmt::format("{}: has other faces; expected {}", frame.path.string(), expected));
   }
   if (frame.scan.nonFinite.count > 0) {

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string_view>
 
@@ -14,7 +15,7 @@
 namespace lumivox {
 namespace {
 
-// tinyobjloader cuts polygons ear by ear, in cubic time.
+// Polygons are cut ear by ear, in cubic time.
 constexpr std::size_t kMostCorners = 1024;
 
 bool isBlank(char c) {
@@ -122,16 +123,23 @@ void replaceBlanksInside(std::string& text, std::string_view name) {
 
 class ObjScanner {
  public:
-  ObjScanner(std::string& text, const std::filesystem::path& file) : text_(text), file_(file), lines_(text) {}
+  ObjScanner(std::string& text, const std::filesystem::path& file) : text_(text), file_(file), lines_(text) {
+    result_.objectNames.emplace_back();
+  }
 
   ObjScan run() {
     while (lines_.next()) readLine();
+    bool broken = false;
     for (const Face& face : waiting_) {
-      if (face.position > positions_ || face.texcoord > texcoords_ || face.normal > normals_) {
+      if (isBeyond(face)) {
         breakFace(face.begin, face.line);
-        --result_.faces;
+        result_.polygons[face.polygon].corners = 0;
+        broken = true;
       }
     }
+    if (broken)
+      std::erase_if(result_.polygons, [](const ObjPolygon& polygon) { return polygon.corners == 0; });
+    result_.faces = result_.polygons.size();
     return std::move(result_);
   }
 
@@ -140,7 +148,14 @@ class ObjScanner {
     std::size_t begin;
     int line;
     long position, texcoord, normal;  // the largest index of each, from 1
+    std::size_t polygon;              // its number among the polygons
   };
+
+  bool isBeyond(const Face& face) const {
+    return face.position > positions() || face.texcoord > static_cast<long>(result_.texcoords.size()) ||
+           face.normal > static_cast<long>(result_.normals.size());
+  }
+  long positions() const { return static_cast<long>(result_.positions.size()); }
 
   void comment(std::size_t at) { text_[at] = '#'; }
 
@@ -155,29 +170,46 @@ class ObjScanner {
     if (word.empty() || word.front() == '#') return;
     const auto begin = static_cast<std::size_t>(word.data() - text_.data());
     if (word == "v") {
-      if (!readNumbers(word, rest, 3))
-        result_.nonFinitePositions.push_back(static_cast<std::uint32_t>(positions_));
-      ++positions_;
+      glm::vec3 position(0.0f);
+      if (!readNumbers(word, rest, 3, position))
+        result_.nonFinitePositions.push_back(static_cast<std::uint32_t>(positions()));
+      result_.positions.push_back(position);
     } else if (word == "vn") {
-      readNumbers(word, rest, 3);
-      ++normals_;
+      glm::vec3 normal(0.0f);
+      readNumbers(word, rest, 3, normal);
+      result_.normals.push_back(normal);
     } else if (word == "vt") {
-      readNumbers(word, rest, 1);
-      ++texcoords_;
+      glm::vec3 texcoord(0.0f);
+      readNumbers(word, rest, 1, texcoord);
+      result_.texcoords.emplace_back(texcoord);
     } else if (word == "f") {
       readFace(rest, begin);
     } else if (word == "usemtl") {
       readMaterialName(nameIn(rest));
     } else if (word == "mtllib") {
       result_.materialFiles.emplace_back(nameIn(rest));
-      comment(begin);
-    } else if (word != "g" && word != "o" && word != "s") {
+    } else if (word == "g" || word == "o") {
+      // A letter alone names nothing; several groups are one object with all their names.
+      if (!rest.empty()) nameObject(word == "o" ? std::string(trimmed(rest)) : joinedWords(rest));
+    } else if (word != "s") {
       readOther(word);
-      comment(begin);
     }
   }
 
-  bool readNumbers(std::string_view statement, std::string_view rest, int required) {
+  static std::string joinedWords(std::string_view rest) {
+    std::string names;
+    for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest)) {
+      if (!names.empty()) names += ' ';
+      names += word;
+    }
+    return names;
+  }
+
+  void nameObject(std::string name) {
+    if (result_.objectNames.back() != name) result_.objectNames.push_back(std::move(name));
+  }
+
+  bool readNumbers(std::string_view statement, std::string_view rest, int required, glm::vec3& values) {
     bool finite = true;
     int count = 0;
     for (std::string_view word = takeWord(rest); !word.empty() && count < 3; word = takeWord(rest), ++count) {
@@ -188,6 +220,7 @@ class ObjScanner {
                fmt::format("'{}' in statement '{}' is no number", shown(word), statement), "numbers");
       }
       finite = finite && reading == Reading::finite;
+      values[count] = reading == Reading::finite ? static_cast<float>(value) : 0.0f;
     }
     if (count < required) {
       refuse(file_, lines_.line(), fmt::format("statement '{}' has {} numbers", statement, count),
@@ -204,26 +237,25 @@ class ObjScanner {
   }
 
   void readFace(std::string_view rest, std::size_t begin) {
-    Face face{begin, lines_.line(), 0, 0, 0};
+    Face face{begin, lines_.line(), 0, 0, 0, result_.polygons.size()};
+    const std::size_t firstCorner = result_.corners.size();
     std::size_t corners = 0;
     bool whole = true;
     for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest), ++corners) {
-      if (word.front() == '#') {  // the parser would take a comment for a corner
-        const auto from = static_cast<std::size_t>(word.data() - text_.data());
-        std::fill(text_.begin() + static_cast<std::ptrdiff_t>(from),
-                  text_.begin() + static_cast<std::ptrdiff_t>(from + word.size() + rest.size()), ' ');
-        break;
-      }
+      if (word.front() == '#') break;
       long indices[3] = {0, 0, 0};
       bool given[3] = {false, false, false};
       readCorner(word, indices, given);
-      const long counts[3] = {positions_, texcoords_, normals_};
+      const long counts[3] = {positions(), static_cast<long>(result_.texcoords.size()),
+                              static_cast<long>(result_.normals.size())};
       for (int i = 0; i < 3; ++i) {
         if (given[i]) whole = resolve(indices[i], counts[i]) && whole;
       }
       face.position = std::max(face.position, indices[0]);
       face.texcoord = std::max(face.texcoord, indices[1]);
       face.normal = std::max(face.normal, indices[2]);
+      const auto fromZero = [&](int i) { return given[i] ? static_cast<int>(indices[i] - 1) : -1; };
+      result_.corners.push_back({fromZero(0), fromZero(1), fromZero(2)});
     }
     if (corners < 3) {
       refuse(file_, lines_.line(), fmt::format("a face with {} corners", corners),
@@ -233,10 +265,15 @@ class ObjScanner {
       refuse(file_, lines_.line(), fmt::format("a face with {} corners", corners),
              fmt::format("at most {}", kMostCorners));
     }
-    if (!whole) return breakFace(begin, lines_.line());
-    ++result_.faces;
-    if (face.position > positions_ || face.texcoord > texcoords_ || face.normal > normals_)
-      waiting_.push_back(face);
+    if (!whole) {
+      result_.corners.resize(firstCorner);
+      return breakFace(begin, lines_.line());
+    }
+    if (result_.corners.size() > std::numeric_limits<std::uint32_t>::max() / 2)
+      refuse(file_, lines_.line(), "more corners of faces than can be counted", "fewer than 2^31");
+    if (isBeyond(face)) waiting_.push_back(face);
+    result_.polygons.push_back({static_cast<std::uint32_t>(firstCorner), static_cast<std::uint32_t>(corners),
+                                static_cast<std::uint32_t>(result_.objectNames.size() - 1), material_});
   }
 
   /// i, i/j, i//k or i/j/k.
@@ -276,9 +313,10 @@ class ObjScanner {
     replaceBlanksInside(text_, name);
     if (name.empty()) refuse(file_, lines_.line(), "usemtl without a name", "the name of a material");
     const std::string text(name);
-    if (text == lastMaterial_) return;
-    lastMaterial_ = text;
-    if (knownMaterials_.insert(text).second) result_.materialNames.push_back(text);
+    const auto [known, isNew] =
+        knownMaterials_.emplace(text, static_cast<std::uint32_t>(result_.materialNames.size()));
+    if (isNew) result_.materialNames.push_back(text);
+    material_ = known->second;
   }
 
   void readOther(std::string_view word) {
@@ -301,10 +339,9 @@ class ObjScanner {
   const std::filesystem::path& file_;
   Lines lines_;
   ObjScan result_;
-  long positions_ = 0, texcoords_ = 0, normals_ = 0;
-  std::vector<Face> waiting_;  // for vertices that may come later in the file
-  std::set<std::string> knownMaterials_;
-  std::string lastMaterial_;
+  std::vector<Face> waiting_;                            // for vertices that may come later in the file
+  std::map<std::string, std::uint32_t> knownMaterials_;  // into materialNames
+  std::uint32_t material_ = ObjPolygon::kNoMaterial;
 };
 
 }  // namespace

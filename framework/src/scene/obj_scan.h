@@ -1,9 +1,11 @@
-// A look over the text of an OBJ or MTL file before tinyobjloader parses it. The library takes whatever it
-// cannot read as zero; here every number and index is checked, so that nothing is wrong in silence.
+// The text of an OBJ file becomes numbers, and that of an MTL file is looked over before tinyobjloader parses
+// it. That library takes whatever it cannot read as zero; here every number and index is checked, so that
+// nothing is wrong in silence.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <set>
 #include <string>
 #include <vector>
@@ -19,9 +21,28 @@ struct LineCount {
   }
 };
 
+/// A corner of a face: indices from 0, -1 for none.
+struct ObjCorner {
+  int position = -1, texcoord = -1, normal = -1;
+  bool operator==(const ObjCorner&) const = default;
+};
+
+/// A whole face: a run of at least three corners.
+struct ObjPolygon {
+  static constexpr std::uint32_t kNoMaterial = ~std::uint32_t{0};
+  std::uint32_t firstCorner, corners;
+  std::uint32_t object;    ///< into ObjScan::objectNames
+  std::uint32_t material;  ///< into ObjScan::materialNames; kNoMaterial before the first usemtl
+};
+
 struct ObjScan {
-  std::vector<std::string> materialFiles;         ///< what follows each mtllib
-  std::vector<std::string> materialNames;         ///< of usemtl, each once, blanks inside replaced by '_'
+  std::vector<glm::vec3> positions, normals;  ///< coordinates that are not finite are 0
+  std::vector<glm::vec2> texcoords;
+  std::vector<ObjCorner> corners;
+  std::vector<ObjPolygon> polygons;        ///< in the order of the file
+  std::vector<std::string> objectNames;    ///< of every g and o, each time; the first is that of no statement
+  std::vector<std::string> materialFiles;  ///< what follows each mtllib
+  std::vector<std::string> materialNames;  ///< of usemtl, each once, blanks inside replaced by '_'
   std::vector<std::uint32_t> nonFinitePositions;  ///< indices from 0, rising
   LineCount nonFinite;                            ///< positions, normals and texture coordinates
   LineCount brokenFaces;                          ///< faces with an index that no vertex has
@@ -30,9 +51,8 @@ struct ObjScan {
   std::size_t faces = 0;  ///< whole ones
 };
 
-/// Checks an OBJ text and edits it for the parser: broken faces and statements that are not used become
-/// comments, continued lines are joined. Throws Error (file, line, what was expected) for anything that is no
-/// OBJ.
+/// Reads an OBJ text once. Broken faces become comments in it, continued lines are joined. Throws Error
+/// (file, line, what was expected) for anything that is no OBJ.
 ObjScan scanObj(std::string& text, const std::filesystem::path& file);
 
 /// The line of the first face that holds these three positions (indices from 0); 0 when there is none.

@@ -9,8 +9,9 @@ namespace lumivox {
 namespace {
 
 BytePicture read(const std::filesystem::path& file, Hasher& hasher) {
-  hasher.add(readFile(file));
-  return readBytePicture(file);
+  const std::string bytes = readFile(file, kLargestPictureFile);
+  hasher.add(bytes);
+  return decodeBytePicture(bytes, file);
 }
 
 SurfaceTexture shapedAs(const BytePicture& picture, const std::string& name, bool mask) {

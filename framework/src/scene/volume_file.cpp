@@ -30,10 +30,11 @@ VolumeReader* openReader() {
 }  // namespace
 
 DensityVolume readVolumeFile(const std::filesystem::path& file, const std::string& grid, Hasher& hasher) {
-  hasher.add(readFile(file));  // first: it refuses folders and files that cannot be read
+  const std::string bytes = readFile(file, kLargestVolumeFile);
+  hasher.add(bytes);
   static VolumeReader* const reader = openReader();
   DensityVolume volume;
-  reader(file.c_str(), grid.c_str(), volume);
+  reader(bytes, file.c_str(), grid.c_str(), volume);
   return volume;
 }
 

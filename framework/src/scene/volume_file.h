@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "lumivox/base/hash.h"
 #include "lumivox/scene/scene.h"
@@ -18,8 +19,9 @@ namespace lumivox {
 /// all), a perspective transform, or one that does not fit.
 DensityVolume readVolumeFile(const std::filesystem::path& file, const std::string& grid, Hasher& hasher);
 
-/// Name and type of the function in the library.
+/// Name and type of the function in the library: it is given the bytes of the file, and its name for
+/// messages.
 inline constexpr const char* kVolumeReaderSymbol = "lumivoxReadVolume";
-using VolumeReader = void(const char* file, const char* grid, DensityVolume& volume);
+using VolumeReader = void(std::string_view bytes, const char* file, const char* grid, DensityVolume& volume);
 
 }  // namespace lumivox

@@ -6,12 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <istream>
 #include <string>
 #include <vector>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/base/memory_stream.h"
 #include "lumivox/scene/medium.h"
 #include "scene/volume_file.h"
 
@@ -28,11 +29,12 @@ struct Refusal {
 };
 
 /// The grid with this name, or the only one.
-openvdb::GridBase::Ptr readGrid(const std::string& file, const std::string& name, Refusal& refuse) {
+openvdb::GridBase::Ptr readGrid(std::string_view bytes, const std::string& name, Refusal& refuse) {
   std::vector<std::string> names;
   openvdb::GridBase::Ptr grid;
   try {
-    std::ifstream stream(file, std::ios::binary);
+    MemoryBuffer buffer(bytes);
+    std::istream stream(&buffer);
     // OpenVDB does not look whether its stream has ended, and would go on with sizes that it never read.
     stream.exceptions(std::ios::failbit | std::ios::badbit);
     const openvdb::GridPtrVecPtr grids = openvdb::io::Stream(stream, /*delayLoad=*/false).getGrids();
@@ -157,11 +159,13 @@ void toVolume(const openvdb::FloatGrid& grid, const Refusal& refuse, DensityVolu
 }  // namespace
 }  // namespace lumivox
 
-extern "C" void lumivoxReadVolume(const char* file, const char* grid, lumivox::DensityVolume& volume);
-void lumivoxReadVolume(const char* file, const char* grid, lumivox::DensityVolume& volume) {
+extern "C" void lumivoxReadVolume(std::string_view bytes, const char* file, const char* grid,
+                                  lumivox::DensityVolume& volume);
+void lumivoxReadVolume(std::string_view bytes, const char* file, const char* grid,
+                       lumivox::DensityVolume& volume) {
   using namespace lumivox;
   openvdb::initialize();
   Refusal refuse{file, {}};
-  const openvdb::GridBase::Ptr any = readGrid(file, grid, refuse);
+  const openvdb::GridBase::Ptr any = readGrid(bytes, grid, refuse);
   toVolume(*densityGrid(any, refuse), refuse, volume);
 }

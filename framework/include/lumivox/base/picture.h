@@ -55,6 +55,8 @@ struct LayeredPicture {
 /// Reads a scanline or tiled EXR (half, float or uint channels, data window as the picture). Error names the
 /// file on anything malformed.
 LayeredPicture readExr(const std::filesystem::path& path);
+/// The text attributes of its first part alone, without its pixels.
+std::map<std::string, std::string> readExrAttributes(const std::filesystem::path& path);
 /// Writes 32-bit float ZIP-compressed scanlines, atomically.
 void writeExr(const std::filesystem::path& path, const LayeredPicture& picture);
 
@@ -71,6 +73,8 @@ struct BytePicture {
 };
 /// Reads PNG, JPG or TGA (stb). Error names the file.
 BytePicture readBytePicture(const std::filesystem::path& path);
+/// The same of a file that was read before.
+BytePicture decodeBytePicture(const std::string& bytes, const std::filesystem::path& path);
 
 /// The sRGB transfer functions (IEC 61966-2-1), value in [0,1].
 float srgbToLinear(float encoded);

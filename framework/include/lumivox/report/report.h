@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "lumivox/base/file.h"
 #include "lumivox/gpu/device.h"
 #include "lumivox/measure/metrics.h"
 #include "lumivox/pipeline/pipeline.h"
@@ -178,9 +179,5 @@ std::string formatThousands(double value);
 
 /// A share as "12 %", never "-0 %".
 std::string formatPercent(double share);
-
-/// Throws Error when a file could not be written there (folder missing and not creatable, not writable, or
-/// the path is a folder), so that this is told before the work and not after it. Creates the folders.
-void requireWritable(const std::filesystem::path& file);
 
 }  // namespace lumivox

@@ -25,8 +25,8 @@ struct SurfaceTexture {
       values;  ///< width*height*(mask ? 1 : 3); row 0 is the top of the picture (texture coordinate v = 1)
 };
 
-/// Lambert `diffuse/pi` plus Phong `specular (n+2)/(2 pi) max(0, cos a)^n`, a from the mirror direction.
-/// Two-sided.
+/// Lambert `diffuse/pi` plus Phong `specular (n+2)/(2 pi) max(0, cos a)^n`, a from the mirror direction; with
+/// n = 0 the lobe is constant where cos a > 0 and 0 elsewhere. Two-sided.
 struct Material {
   std::string name;
   glm::vec3 diffuse{0.0f};   ///< albedo; multiplied by the diffuse texture
