@@ -1,4 +1,5 @@
-// What a frame costs the host: draws, and the bounds of what moves. bench_gpu [draws] [vertices] [repeats]
+// What a frame costs the host: draws, and the bounds of what moves. bench_gpu [draws] [vertices] [repeats],
+// or bench_gpu --quick
 //
 // The draws are those of the g-buffer: one for each part of the scene, each of one triangle that covers no
 // more than a pixel, so that the host has most of the work.
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <exception>
+#include <string_view>
 
 #include "lumivox/gpu/device.h"
 #include "lumivox/pipeline/pipeline.h"
@@ -82,8 +84,10 @@ int main(int argc, char** argv) {
     const auto argument = [&](int index, int otherwise) {
       return argc > index ? std::atoi(argv[index]) : otherwise;
     };
-    const int draws = std::max(argument(1, 57600), 1), vertices = std::max(argument(2, 1000000), 1),
-              repeats = std::max(argument(3, 11), 1);
+    const bool quick = argc > 1 && std::string_view(argv[1]) == "--quick";
+    const int draws = quick ? 2000 : std::max(argument(1, 57600), 1);
+    const int vertices = quick ? 10000 : std::max(argument(2, 1000000), 1);
+    const int repeats = quick ? 1 : std::max(argument(3, 11), 1);
     gpu::Device device;
     TechniqueSet techniques(TechniqueSet::defaultDirectories({}));
     const Scene scene = partsScene(draws);
