@@ -1,11 +1,12 @@
 // Rays per second of the path tracer beside a bare Embree loop over the same rays on the same threads.
-// usage: bench_reference [scene texts] (default: scenes/cornell.scene and scenes/arcade.scene below the
-// current directory)
+// usage: bench_reference [--quick] [scene texts] (default: scenes/cornell.scene and scenes/arcade.scene below
+// the current directory). --quick: a second's work, whose figures mean nothing, for the tests.
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "lumivox/reference/path_tracer.h"
@@ -13,7 +14,8 @@
 
 int main(int argc, char** argv) {
   try {
-    std::vector<std::filesystem::path> files(argv + 1, argv + argc);
+    const bool quick = argc > 1 && std::string_view(argv[1]) == "--quick";
+    std::vector<std::filesystem::path> files(argv + (quick ? 2 : 1), argv + argc);
     if (files.empty()) files = {"scenes/cornell.scene", "scenes/arcade.scene"};
     fmt::print("{:<28} {:>9} {:>7} {:>11} {:>14} {:>14} {:>7}\n", "scene", "triangles", "threads", "rays",
                "tracer rays/s", "bare rays/s", "ratio");
@@ -23,8 +25,8 @@ int main(int argc, char** argv) {
         lumivox::ReferenceOptions options;
         // Small, because every ray is kept in memory for the bare loop; with many samples, as truths have
         // them.
-        options.width = options.height = 64;
-        options.samplesPerPixel = 64;
+        options.width = options.height = quick ? 16 : 64;
+        options.samplesPerPixel = quick ? 4 : 64;
         options.threads = threads;
         options.progress = false;
         const lumivox::TraversalSpeed speed = lumivox::measureTraversalSpeed(scene, options);

@@ -1,7 +1,7 @@
 // Exporting a radiance grid, from the device to the closed file, beside OpenVDB alone writing the same sparse
 // grids, which it has in memory already. Both alternate in one run; medians.
-// usage: bench_vdbexport [SCENE [RESOLUTION [REPEATS]]] (default: scenes/arcade.scene 256 9), in the
-// project's folder
+// usage: bench_vdbexport [--quick | SCENE [RESOLUTION [REPEATS]]] (default: scenes/arcade.scene 256 9), in
+// the project's folder. --quick: a second's work, whose figures mean nothing, for the tests.
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
 #include <unistd.h>
@@ -36,10 +36,11 @@ void printRow(const std::string& what, std::vector<double> times) {
              time.upperQuartile);
 }
 
-int run(int count, char** arguments) {
-  const std::filesystem::path sceneFile = count > 1 ? arguments[1] : "scenes/arcade.scene";
-  const std::string resolution = count > 2 ? arguments[2] : "256";
-  const int repeats = count > 3 ? std::stoi(arguments[3]) : 9;
+int run(std::vector<std::string> arguments) {
+  if (!arguments.empty() && arguments[0] == "--quick") arguments = {"scenes/cornell.scene", "32", "1"};
+  const std::filesystem::path sceneFile = arguments.empty() ? "scenes/arcade.scene" : arguments[0];
+  const std::string resolution = arguments.size() > 1 ? arguments[1] : "256";
+  const int repeats = arguments.size() > 2 ? std::stoi(arguments[2]) : 9;
 
   openvdb::initialize();
   const command::GlobalOptions global;
@@ -111,5 +112,7 @@ int run(int count, char** arguments) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  return lumivox::command::guarded("bench_vdbexport", [=] { return run(count, arguments); });
+  return lumivox::command::guarded("bench_vdbexport", [=] {
+    return run({arguments + 1, arguments + count});
+  });
 }

@@ -1,6 +1,7 @@
 // Smoke at half and at full resolution, and light depths in a volume or by marching: medians of the passes'
-// times, in turn in one run, beside the thesis' (Gomes 2015, Table 2). usage: bench_volumetric_smoke [size]
-// [repeats] (default: 256 11), from the project's folder
+// times, in turn in one run, beside the thesis' (Gomes 2015, Table 2). usage: bench_volumetric_smoke
+// [--quick | SIZE [REPEATS]] (default: 256 11), from the project's folder. --quick: seconds of work, whose
+// figures mean nothing, for the tests
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,8 +10,10 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "lumivox/base/error.h"
 #include "lumivox/measure/metrics.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/plugin/loader.h"
@@ -38,7 +41,12 @@ struct Setting {
 
 int main(int argc, char** argv) {
   try {
-    const int size = argc > 1 ? std::atoi(argv[1]) : 256, repeats = argc > 2 ? std::atoi(argv[2]) : 11;
+    const bool quick = argc > 1 && std::string_view(argv[1]) == "--quick";
+    const int size = quick ? 32 : argc > 1 ? std::atoi(argv[1]) : 256;
+    const int repeats = quick ? 1 : argc > 2 ? std::atoi(argv[2]) : 11;
+    if (size < 1 || repeats < 1)
+      throw Error(
+          "SIZE and REPEATS are numbers from 1; usage: bench_volumetric_smoke [--quick | SIZE [REPEATS]]");
     gpu::Device device;
     TechniqueSet techniques(TechniqueSet::defaultDirectories({}));
     const Scene scene = loadScene("scenes/smoke.scene");
@@ -46,10 +54,12 @@ int main(int argc, char** argv) {
     Setting settings[] = {{"half", {"pixels=half"}, {}, {}, {}},
                           {"full", {"pixels=full"}, {}, {}, {}},
                           {"half, marching to the light", {"pixels=half", "light_depth=march"}, {}, {}, {}}};
+    const std::vector<std::string> small = {"resolution=16", "smoke_resolution=16", "steps=4"};
     for (Setting& setting : settings) {
       RenderOptions options;
       options.width = options.height = size;
       options.wanted = {"scattered", "final"};
+      if (quick) setting.assignments.insert(setting.assignments.end(), small.begin(), small.end());
       options.parameters = pipeline.settings(setting.assignments);
       setting.executor = std::make_unique<PipelineExecutor>(device, techniques, scene, pipeline, options);
     }
@@ -57,9 +67,12 @@ int main(int argc, char** argv) {
       for (Setting& setting : settings) {
         setting.executor->invalidate();
         setting.last = setting.executor->render(
-            3.0, 0, repeat == repeats - 1 ? PipelineExecutor::Pictures::yes : PipelineExecutor::Pictures::no);
-        if (repeat < 0) continue;
-        for (const PassRecord& pass : setting.last.passes) setting.times[pass.name].push_back(pass.deviceMs);
+            3.0, 0, repeat == repeats - 1 ? PipelineExecutor::Pictures::yes : PipelineExecutor::Pictures::no,
+            PipelineExecutor::Timing::passes);
+        for (const std::vector<PassRecord>& frame : setting.executor->timedPasses()) {
+          if (repeat < 0) continue;
+          for (const PassRecord& pass : frame) setting.times[pass.name].push_back(pass.deviceMs);
+        }
       }
     }
     fmt::print("{} x {} pixels, median of {} repeats, ms, on {}\n", size, size, repeats,

@@ -58,4 +58,7 @@ vec3 unpackShared(uint packed) {
   return vec3(packed & 255u, packed >> 8 & 255u, packed >> 16 & 255u) * unit;
 }
 
+// In place of the direct light that a fragment is known to reflect: a reader has to light it (VoxelFragments::kNotKnown).
+const uint kNotKnown = 0xffffffffu;
+
 #endif

@@ -49,13 +49,18 @@ bool isElsewhere() {
 }
 
 void main() {
-  // Derivatives before any discard: they are undefined after it.
+  // Derivatives, and samples which choose their mip level by them, before any discard: they are undefined after it.
   vec3 geometricNormal = cross(dFdx(posWorld), dFdy(posWorld));
-  if (isElsewhere()) discard;
-#if MASKS
-  if (texture(maskTexture, texcoord).r < kMaskThreshold) discard;
-#endif
   MaterialData material = materials[materialIndex];
+  vec3 albedo = material.diffuse.rgb;
+#if TEXTURES
+  albedo *= texture(diffuseTexture, texcoord).rgb;
+#endif
+  bool isHole = false;
+#if MASKS
+  isHole = texture(maskTexture, texcoord).r < kMaskThreshold;
+#endif
+  if (isHole || isElsewhere()) discard;
   vec3 toEye = eyeWorld - posWorld;
   float size = length(geometricNormal);
   geometricNormal = size > 0.0 ? geometricNormal / size : normalize(normalWorld);
@@ -64,10 +69,6 @@ void main() {
   vec3 normal = normalize(normalWorld);
   if (dot(normal, geometricNormal) < 0.0) normal = -normal;
 
-  vec3 albedo = material.diffuse.rgb;
-#if TEXTURES
-  albedo *= texture(diffuseTexture, texcoord).rgb;
-#endif
   outPosition = vec4(posWorld, 1.0);
   outNormal = vec4(normal, gl_FrontFacing ? 1.0 : 0.0);
   outGeometricNormal = vec4(geometricNormal, 0.0);

@@ -4,6 +4,8 @@
 // surface is moved to the nearest plane of faces, and its projection covers some of the 4 x 4 parts of a face. Parts are combined by OR,
 // so that overlapping triangles do not count twice and the order does not matter.
 #include "parts.glsl"
+#define MARKS_BRICKS
+#include "bricks.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -23,9 +25,11 @@ layout(binding = 2, r32ui) uniform uimage3D partsZ;
 
 void mark(int axis, ivec3 face, uint parts) {
   if (parts == 0u || any(lessThan(face, ivec3(0))) || any(greaterThanEqual(face, resolution))) return;
-  if (axis == 0) imageAtomicOr(partsX, face, parts);
-  else if (axis == 1) imageAtomicOr(partsY, face, parts);
-  else imageAtomicOr(partsZ, face, parts);
+  uint before;
+  if (axis == 0) before = imageAtomicOr(partsX, face, parts);
+  else if (axis == 1) before = imageAtomicOr(partsY, face, parts);
+  else before = imageAtomicOr(partsZ, face, parts);
+  if (before == 0u) markBrick(face, resolution);
 }
 
 void main() {

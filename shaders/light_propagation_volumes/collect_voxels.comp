@@ -4,6 +4,10 @@
 #pragma lumivox axis STEP weigh add
 #include "lit_voxel.glsl"
 #include "beside_walls.glsl"
+#if STEP == STEP_WEIGH
+#define MARKS_BRICKS
+#include "bricks.glsl"
+#endif
 
 layout(local_size_x = 64) in;
 
@@ -21,9 +25,8 @@ layout(binding = 5) uniform sampler3D closed;
 
 // Listing 4.27: contrast of a colour in 7 bits, behind it the colour in 8 bits each.
 uint packWinner(vec3 albedo) {
-  float contrast = length(albedo.rrg - albedo.gbb) / (sqrt(2.0) + albedo.r + albedo.g + albedo.b);
   uvec3 colour = uvec3(clamp(albedo, 0.0, 1.0) * 255.0 + 0.5);
-  return 1u << 31 | uint(clamp(contrast, 0.0, 1.0) * 127.0) << 24 | colour.r << 16 | colour.g << 8 | colour.b;
+  return 1u << 31 | uint(contrastOf(albedo) * 127.0) << 24 | colour.r << 16 | colour.g << 8 | colour.b;
 }
 
 void add(ivec3 cell, vec3 position, vec3 normal, vec3 albedo, uint parts) {
@@ -32,7 +35,7 @@ void add(ivec3 cell, vec3 position, vec3 normal, vec3 albedo, uint parts) {
   int group = voxel + kGroup + groupOf(normal) * kWordsOfGroup;
   uint weight = uint(bitCount(parts));
 #if STEP == STEP_WEIGH
-  atomicAdd(voxels[voxel + kWeight], weight);
+  if (atomicAdd(voxels[voxel + kWeight], weight) == 0u) markBrick(cell, resolution);
   atomicAdd(voxels[group + kGroupWeight], weight);
 #else
   float ofVoxel = float(voxels[voxel + kWeight]) / float(weight), ofGroup = float(voxels[group + kGroupWeight]) / float(weight);

@@ -4,6 +4,7 @@
 // that closes the cell at that side. Done twice, so that corners of three surfaces are closed too. Only surfaces that mostly face their
 // faces: the steps of one surface at a slant are no corners.
 #include "parts.glsl"
+#include "bricks.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
@@ -49,7 +50,7 @@ uint filled(int axis, ivec3 face) {
 }
 
 void main() {
-  ivec3 face = ivec3(gl_GlobalInvocationID);
+  ivec3 face = listedCell();
   if (any(greaterThanEqual(face, imageSize(partsX)))) return;
   imageStore(filledX, face, uvec4(filled(0, face)));
   imageStore(filledY, face, uvec4(filled(1, face)));

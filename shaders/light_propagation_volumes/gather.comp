@@ -6,8 +6,10 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(constant_id = 0) const int published = 0;  // 1: Listing 4.35 to the letter
-layout(constant_id = 1) const int closure = 1;    // 0: what two bands make negative is cut off
+layout(constant_id = 0) const int filtered = 0;      // 1: read as Listing 4.35 does
+layout(constant_id = 1) const int closure = 1;       // 0: what two bands make negative is cut off
+layout(constant_id = 2) const int ownLobe = 0;       // 1: lobe and unit of Listing 4.35
+layout(constant_id = 3) const int radialBlend = 0;   // 1: blended as in Listing 4.36
 
 layout(std140, binding = 0) uniform Parameters {
   vec3 gridLow;        // m
@@ -17,6 +19,9 @@ layout(std140, binding = 0) uniform Parameters {
   float offset;        // of the lookup along the normal, cells
   float exponent;      // of the radiance
   int first, last;     // 1 for the first and the last dispatch
+  vec3 eye;            // m, around which the grids lie in Listing 4.36
+  float innerReach;    // m from the eye up to which this grid alone counts, there
+  float outerReach;    // m from which on only the coarser one does
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
@@ -70,7 +75,10 @@ struct Irradiance {
   vec3 clipped;  // what was negative with two bands, as a positive value
 };
 Irradiance irradianceOf(vec4 redLight, vec4 greenLight, vec4 blueLight, vec3 normal) {
-  vec4 lobe = shClampedCosine(-normal) / (kMeanProjection * cellSize * cellSize);
+  // As published: the lobe around the normal itself, so that light counts that goes away from the surface, and a face of a cell, h^2, in
+  // the place of its mean projected area.
+  vec4 lobe = ownLobe != 0 ? shClampedCosine(normal) / (cellSize * cellSize)
+                           : shClampedCosine(-normal) / (kMeanProjection * cellSize * cellSize);
   vec3 mean = lobe.x * vec3(redLight.x, greenLight.x, blueLight.x);
   vec3 net = vec3(dot(redLight.yzw, lobe.yzw), dot(greenLight.yzw, lobe.yzw), dot(blueLight.yzw, lobe.yzw));
   vec3 clipped = max(-(mean + net), 0.0);
@@ -120,10 +128,23 @@ Irradiance irradianceAt(vec3 position, vec3 normal, vec3 geometricNormal) {
   return irradianceOf(redSum / weights, greenSum / weights, blueSum / weights, normal);
 }
 
-// Listing 4.35: read with filtering half a cell away, whatever lies between.
-Irradiance publishedIrradiance(vec3 position, vec3 normal) {
-  vec3 texcoord = (position + 0.5 * normal) / vec3(resolution);
+// Listing 4.35: filtered at the surface, whatever lies between; half a cell too low along z.
+Irradiance filteredIrradiance(vec3 position, vec3 normal) {
+  vec3 texcoord = (position - vec3(0.0, 0.0, 0.5)) / vec3(resolution);
   return irradianceOf(texture(red, texcoord), texture(green, texcoord), texture(blue, texcoord), normal);
+}
+
+// How much of this grid counts against the coarser one.
+float shareOfGrid(vec3 position, vec3 posWorld) {
+  if (radialBlend != 0) {
+    // Listing 4.36: by the distance to the eye alone; the coarsest goes on for ever.
+    if (first != 0) return 1.0;
+    return clamp((outerReach - distance(posWorld, eye)) / (outerReach - innerReach), 0.0, 1.0);
+  }
+  // Cells to the border; the coarsest grid ends at it.
+  vec3 inside = min(position, vec3(resolution) - position);
+  float toBorder = min(inside.x, min(inside.y, inside.z));
+  return first != 0 ? clamp(toBorder, 0.0, 1.0) : clamp((toBorder - 1.0) / blend, 0.0, 1.0);
 }
 
 void main() {
@@ -137,14 +158,11 @@ void main() {
   }
   if (posWorld.w > 0.0) {
     vec3 position = (posWorld.xyz - gridLow) / cellSize;
-    // Cells to the border; the coarsest grid ends at it.
-    vec3 inside = min(position, vec3(resolution) - position);
-    float toBorder = min(inside.x, min(inside.y, inside.z));
-    float weight = first != 0 ? clamp(toBorder, 0.0, 1.0) : clamp((toBorder - 1.0) / blend, 0.0, 1.0);
+    float weight = shareOfGrid(position, posWorld.xyz);
     if (weight > 0.0) {
       vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
       Irradiance here;
-      if (published != 0) here = publishedIrradiance(position, normal);
+      if (filtered != 0) here = filteredIrradiance(position, normal);
       else here = irradianceAt(position, normal, texelFetch(gGeometricNormal, pixel, 0).xyz);
       irradiance = mix(irradiance, here.value, weight);
       clipped = mix(clipped, here.clipped, weight);

@@ -4,6 +4,10 @@
 #pragma lumivox axis STEP weigh add
 #include "virtual_lights.glsl"
 #include "beside_walls.glsl"
+#if STEP == STEP_WEIGH
+#define MARKS_BRICKS
+#include "bricks.glsl"
+#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -23,12 +27,13 @@ void main() {
   if (!any(greaterThan(flux, vec3(0.0)))) return;
   vec3 normal = texelFetch(rsmNormal, texel, 0).xyz;
   vec3 position = (texelFetch(rsmPosition, texel, 0).xyz - gridLow) / cellSize;
-  int word = wordsOf(cellBeside(position, normal), resolution);
+  ivec3 cell = cellBeside(position, normal);
+  int word = wordsOf(cell, resolution);
   if (word < 0) return;
 #if STEP == STEP_WEIGH
   // The order of the bits of numbers from 0 on is that of the numbers.
   atomicMax(sums[word + kBrightest], floatBitsToUint(largestOf(flux)));
-  atomicAdd(sums[word + kLights], 1u);
+  if (atomicAdd(sums[word + kLights], 1u) == 0u) markBrick(cell, resolution);
 #else
   addVirtualLight(word, flux, normal);
 #endif

@@ -4,6 +4,7 @@
 #include "common/lights.glsl"
 #include "lit_voxel.glsl"
 #include "virtual_lights.glsl"
+#include "bricks.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
@@ -28,7 +29,7 @@ vec3 irradianceFrom(LightSample light, vec3 posWorld, vec3 normal) {
 }
 
 void main() {
-  ivec3 cell = ivec3(gl_GlobalInvocationID);
+  ivec3 cell = listedCell();
   if (any(greaterThanEqual(cell, resolution))) return;
   int voxel = ((cell.z * resolution.y + cell.y) * resolution.x + cell.x) * kWordsOfVoxel;
   if (voxels[voxel + kWeight] == 0u) return;

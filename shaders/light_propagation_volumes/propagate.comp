@@ -1,16 +1,14 @@
 #version 450
 // One iteration of the propagation (Kaplanyan & Dachsbacher 2010, Sec. 4.3; thesis 004 Sec. 4.3.3), gathered from the six neighbours.
-// A work group is a brick of 4 x 4 x 4 cells. The stamp of a brick tells in which iteration light was last written to it: bricks
+// A work group is a brick of 4 x 4 x 4 cells, one to an invocation. The stamp of a brick tells in which iteration light was last written to it: bricks
 // without light in them and in their neighbours are left out. Light after n iterations has the stamp n + 1.
 #include "propagation.glsl"
 #include "crossing.glsl"
 
-layout(local_size_x = 4, local_size_y = 4) in;
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 layout(binding = 4) uniform usampler3D stamps;
 layout(binding = 6, r32ui) uniform uimage3D stampsNext;
-
-const int kBrick = 4;
 
 bool lit(ivec3 brick) {
   ivec3 bricks = textureSize(stamps, 0);
@@ -41,46 +39,40 @@ vec4 fromNeighbours(sampler3D light, ivec3 cell, ivec3 below, ivec3 above, vec3 
 }
 
 void main() {
-  ivec3 brick = ivec3(gl_WorkGroupID);
-  ivec3 first = ivec3(kBrick * brick.xy + ivec2(gl_LocalInvocationID.xy), kBrick * brick.z);
-  if (any(greaterThanEqual(first, resolution))) return;
-  int last = min(first.z + kBrick, resolution.z);
+  // All invocations of a group take the same way through this: what they read of the stamps is not written here.
+  ivec3 brick = ivec3(gl_WorkGroupID), cell = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(cell, resolution))) return;
   bool reached = lit(brick) || lit(brick - ivec3(1, 0, 0)) || lit(brick + ivec3(1, 0, 0)) || lit(brick - ivec3(0, 1, 0)) ||
                 lit(brick + ivec3(0, 1, 0)) || lit(brick - ivec3(0, 0, 1)) || lit(brick + ivec3(0, 0, 1));
   if (!reached) {
     // Light of two iterations ago may still lie here.
     if (imageLoad(stampsNext, brick).r == uint(stamp - 1)) {
-      for (ivec3 cell = first; cell.z < last; ++cell.z) {
-        imageStore(redNext, cell, vec4(0.0));
-        imageStore(greenNext, cell, vec4(0.0));
-        imageStore(blueNext, cell, vec4(0.0));
-      }
+      imageStore(redNext, cell, vec4(0.0));
+      imageStore(greenNext, cell, vec4(0.0));
+      imageStore(blueNext, cell, vec4(0.0));
     }
     return;
   }
-  bool anyLight = false;
   ivec3 end = resolution - 1;
-  for (ivec3 cell = first; cell.z < last; ++cell.z) {
-    ivec3 below = max(cell - 1, ivec3(0)), above = min(cell + 1, end);
-    vec3 openBelow = vec3(openShare(texelFetch(closed, cell, 0).x), openShare(texelFetch(closed, cell, 0).y),
-                          openShare(texelFetch(closed, cell, 0).z));
-    vec3 openAbove = vec3(openShare(texelFetch(closed, ivec3(above.x, cell.yz), 0).x),
-                          openShare(texelFetch(closed, ivec3(cell.x, above.y, cell.z), 0).y),
-                          openShare(texelFetch(closed, ivec3(cell.xy, above.z), 0).z));
-    // Beyond the border there is nothing, or the image of this cell in it: the same light, turned round.
-    vec3 turnBelow = vec3(1.0), turnAbove = vec3(1.0);
-    bvec3 firstCell = equal(cell, ivec3(0)), lastCell = equal(cell, end);
-    if (any(firstCell) || any(lastCell)) {
-      openBelow = mix(openBelow, vec3(mirrors), firstCell);
-      openAbove = mix(openAbove, vec3(mirrors), lastCell);
-      turnBelow = mix(turnBelow, vec3(-1.0), firstCell);
-      turnAbove = mix(turnAbove, vec3(-1.0), lastCell);
-    }
-    vec4 redSum = amplifier * fromNeighbours(red, cell, below, above, openBelow, openAbove, turnBelow, turnAbove);
-    vec4 greenSum = amplifier * fromNeighbours(green, cell, below, above, openBelow, openAbove, turnBelow, turnAbove);
-    vec4 blueSum = amplifier * fromNeighbours(blue, cell, below, above, openBelow, openAbove, turnBelow, turnAbove);
-    anyLight = anyLight || any(notEqual(abs(redSum) + abs(greenSum) + abs(blueSum), vec4(0.0)));
-    store(cell, redSum, greenSum, blueSum);
+  ivec3 below = max(cell - 1, ivec3(0)), above = min(cell + 1, end);
+  vec3 closedBelow = texelFetch(closed, cell, 0).xyz;
+  vec3 openBelow = vec3(openShare(closedBelow.x), openShare(closedBelow.y), openShare(closedBelow.z));
+  vec3 openAbove = vec3(openShare(texelFetch(closed, ivec3(above.x, cell.yz), 0).x),
+                        openShare(texelFetch(closed, ivec3(cell.x, above.y, cell.z), 0).y),
+                        openShare(texelFetch(closed, ivec3(cell.xy, above.z), 0).z));
+  // Beyond the border there is nothing, or the image of this cell in it: the same light, turned round.
+  vec3 turnBelow = vec3(1.0), turnAbove = vec3(1.0);
+  bvec3 firstCell = equal(cell, ivec3(0)), lastCell = equal(cell, end);
+  if (any(firstCell) || any(lastCell)) {
+    openBelow = mix(openBelow, vec3(mirrors), firstCell);
+    openAbove = mix(openAbove, vec3(mirrors), lastCell);
+    turnBelow = mix(turnBelow, vec3(-1.0), firstCell);
+    turnAbove = mix(turnAbove, vec3(-1.0), lastCell);
   }
-  if (anyLight) imageStore(stampsNext, brick, uvec4(stamp + 1));
+  vec4 redSum = amplifier * fromNeighbours(red, cell, below, above, openBelow, openAbove, turnBelow, turnAbove);
+  vec4 greenSum = amplifier * fromNeighbours(green, cell, below, above, openBelow, openAbove, turnBelow, turnAbove);
+  vec4 blueSum = amplifier * fromNeighbours(blue, cell, below, above, openBelow, openAbove, turnBelow, turnAbove);
+  store(cell, redSum, greenSum, blueSum);
+  // The same word from all that have light.
+  if (any(notEqual(abs(redSum) + abs(greenSum) + abs(blueSum), vec4(0.0)))) imageStore(stampsNext, brick, uvec4(stamp + 1));
 }

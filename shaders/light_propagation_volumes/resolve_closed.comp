@@ -1,6 +1,7 @@
 #version 450
 // Parts of faces to shares, and how far their surfaces were moved.
 #include "parts.glsl"
+#include "bricks.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
@@ -17,7 +18,7 @@ float movedByte(uint bits) {
 }
 
 void main() {
-  ivec3 face = ivec3(gl_GlobalInvocationID);
+  ivec3 face = listedCell();
   if (any(greaterThanEqual(face, imageSize(closed)))) return;
   uint x = imageLoad(partsX, face).r, y = imageLoad(partsY, face).r, z = imageLoad(partsZ, face).r;
   vec3 parts = vec3(bitCount(x & kPartsMask), bitCount(y & kPartsMask), bitCount(z & kPartsMask));

@@ -4,6 +4,7 @@
 // Deviates from thesis 004 Listing 4.31, a clamped cosine (m = 2/3): see README, "injection".
 #include "cells.glsl"
 #include "virtual_lights.glsl"
+#include "bricks.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
@@ -16,7 +17,7 @@ layout(binding = 1, rgba32f) uniform writeonly image3D green;
 layout(binding = 2, rgba32f) uniform writeonly image3D blue;
 
 void main() {
-  ivec3 cell = ivec3(gl_GlobalInvocationID);
+  ivec3 cell = listedCell();
   if (any(greaterThanEqual(cell, resolution))) return;
   int word = wordsOf(cell, resolution);
   // fluxAcross the face behind the light is 0: kCrossing0 Y0 = kCrossing1 m Y1.

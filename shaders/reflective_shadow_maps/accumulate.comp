@@ -1,22 +1,36 @@
 #version 450
-// Running sum over the rows, in their order, so that it is the same in every run.
-layout(local_size_x = 1) in;
+// A level of the tree of sums from the one below it. No sum is longer than 16 addends, so that little is lost where dim lights stand
+// beside bright ones, and all sums of a level are made at once.
+#pragma lumivox axis OF texels sums
+layout(local_size_x = 64) in;
+#include "common/list.glsl"
+#include "sum_tree.glsl"
 
 layout(std140, binding = 0) uniform Parameters {
-  int firstRow;
-  int rows;  // of this dispatch
+  uint addends;
+  uint width;         // texels along a side of a layer
+  uint firstAddend;   // in the tree
+  uint firstSum;
 };
-layout(std430, binding = 0) buffer Rows { float cumulative[]; };
+#if OF == OF_TEXELS
+layout(binding = 0) uniform sampler2DArray rsmFlux;
+#endif
+layout(std430, binding = 0) buffer Tree { float sums[]; };
 
 void main() {
-  // Summed with the lost low part carried along (Kahan 1965): the rows of dim lights count too.
-  float sum = 0.0, lost = 0.0;
-  if (firstRow > 0) sum = cumulative[firstRow - 1];
-  for (int row = firstRow; row < firstRow + rows; ++row) {
-    float addend = cumulative[row] - lost;
-    float next = sum + addend;
-    lost = (next - sum) - addend;
-    sum = next;
-    cumulative[row] = sum;
+  uint index = listIndex(), first = index * kFan;
+  if (first >= addends) return;
+  float sum = 0.0;
+#if OF == OF_TEXELS
+  ivec3 texel = texelOf(first, width);
+#endif
+  for (uint i = first; i < min(first + kFan, addends); ++i) {
+#if OF == OF_TEXELS
+    sum += luminance(texelFetch(rsmFlux, texel, 0).rgb);
+    advance(texel, width);
+#else
+    sum += sums[firstAddend + i];
+#endif
   }
+  sums[firstSum + index] = sum;
 }

@@ -15,8 +15,8 @@ layout(std140, binding = 0) uniform Parameters {
   int rows;
   int samples;    // chosen texels; with METHOD_PROJECTED of each light
   int lightCount;
-  int publishedWeights;
-  float reach;    // METHOD_PROJECTED: share of the half sphere, or of half the view, that is sampled
+  float reach;    // METHOD_PROJECTED: radius of the pattern, as a share of a half turn or of the width of the view
+  float publishedScale;  // one over the sum of the printed weights; 0: weights by the density of the pattern
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
@@ -43,28 +43,43 @@ SurfaceLight lightAt(ivec3 texel) {
 
 #if METHOD == METHOD_PROJECTED
 // Sec. 4.2: samples around the projection of the surface point into the light's view, denser near it: at the distance reach * xi1 and
-// the angle 2 pi xi2. Deviates: for lights with perspective the distance is an angle, so that a pattern crosses the faces of a cube; the
-// weight is the Jacobian of the pattern, which makes the sum right for a constant map (as published: xi1 squared, normalised).
+// the angle 2 pi xi2. The pattern lies in the plane of a directional light's view. Deviates: of lights with perspective it lies on the
+// sphere around them, where it crosses the faces of a cube, and the weight is the Jacobian of the pattern, which makes the sum right for a
+// constant map. As published the weight is xi1^2 over the sum of all xi1^2, so that the samples together stand for what the pattern
+// covers: of a view alone, the disc in its plane, of any perspective; of a cube, of which the print has no word, a cap of the sphere.
 vec3 aroundProjection(LightSample light, vec3 posWorld, vec3 normal) {
-  bool directional = int(light.positionKind.w) == kLightDirectional;
+  bool directional = int(light.positionKind.w) == kLightDirectional, published = publishedScale > 0.0;
+  bool inView = !directional && published && light.power.w == 1.0;
   int firstLayer = int(light.directionLayer.w);
+  vec2 centre = vec2(0.0);
+  if (inView) {
+    vec4 clip = views[firstLayer] * vec4(posWorld, 1.0);
+    if (clip.w <= 0.0) return vec3(0.0);  // behind the light there is no projection
+    centre = vec2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
+  }
   vec3 axis = directional ? light.directionLayer.xyz : normalize(posWorld - light.positionKind.xyz);
   vec3 helper = abs(axis.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
   vec3 tangent = normalize(cross(helper, axis)), bitangent = cross(axis, tangent);
   float largest = directional ? reach * light.shape.z * float(width) : reach * kPi;
+  // Of the disc, m^2, in texels where it lies in the view; of the cap, sr.
+  float covered = directional ? kPi * largest * largest : 2.0 * kPi * (1.0 - cos(largest));
+  if (inView) covered = kPi * reach * reach * float(width) * float(width);
   vec3 sum = vec3(0.0);
   for (int i = 0; i < samples; ++i) {
     // R2 sequence (Roberts 2018), the same for every pixel, as published.
     float xi1 = fract(0.5 + 0.7548776662466927 * float(i + 1)), xi2 = fract(0.5 + 0.5698402909980532 * float(i + 1));
     float angle = 2.0 * kPi * xi2, distance = largest * xi1;
-    vec3 side = tangent * cos(angle) + bitangent * sin(angle);
-    vec3 target = directional ? posWorld + side * distance : light.positionKind.xyz + axis * cos(distance) + side * sin(distance);
     int layer = firstLayer;
-    if (light.power.w > 1.0) layer += cubeFace(target - light.positionKind.xyz);
-    vec4 clip = views[layer] * vec4(target, 1.0);
-    if (clip.w <= 0.0) continue;
-    vec2 projected = clip.xy / clip.w;
-    vec2 texcoord = vec2(0.5 + 0.5 * projected.x, 0.5 - 0.5 * projected.y);
+    vec2 texcoord = centre + reach * xi1 * vec2(cos(angle), sin(angle));
+    if (!inView) {
+      vec3 side = tangent * cos(angle) + bitangent * sin(angle);
+      vec3 target = directional ? posWorld + side * distance : light.positionKind.xyz + axis * cos(distance) + side * sin(distance);
+      if (light.power.w > 1.0) layer += cubeFace(target - light.positionKind.xyz);
+      vec4 clip = views[layer] * vec4(target, 1.0);
+      if (clip.w <= 0.0) continue;
+      vec2 projected = clip.xy / clip.w;
+      texcoord = vec2(0.5 + 0.5 * projected.x, 0.5 - 0.5 * projected.y);
+    }
     if (any(lessThan(texcoord, vec2(0.0))) || any(greaterThanEqual(texcoord, vec2(1.0)))) continue;
     SurfaceLight patchLight = lightAt(ivec3(ivec2(texcoord * float(width)), layer));
     // Texels that one sample stands for: its part of the plane or of the sphere over that of a texel.
@@ -74,10 +89,9 @@ vec3 aroundProjection(LightSample light, vec3 posWorld, vec3 normal) {
       float secantSquared = 1.0 + dot(onPlane, onPlane);
       texelSize /= secantSquared * sqrt(secantSquared);
     }
+    if (inView) texelSize = 1.0;
     float ring = directional ? distance : sin(distance);
-    float part = 2.0 * kPi * largest * ring / float(samples);
-    // As published: xi1^2 in place of xi1; both sum to the same for the disc as a whole (3/2 from their means).
-    if (publishedWeights != 0) part = 2.0 * kPi * largest * largest * 1.5 * xi1 * xi1 / float(samples);
+    float part = published ? covered * xi1 * xi1 * publishedScale : 2.0 * kPi * largest * ring / float(samples);
     float copies = part / texelSize;
     patchLight.flux.rgb *= copies;
     patchLight.positionArea.w *= copies;

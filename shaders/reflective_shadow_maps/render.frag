@@ -33,8 +33,12 @@ layout(location = 2) out vec4 outFlux;
 const float kSmallestCosine = 0.02;
 
 void main() {
-  // Derivatives before any discard: they are undefined after it.
+  // Derivatives, and samples which choose their mip level by them, before any discard: they are undefined after it.
   vec3 geometricNormal = cross(dFdx(posWorld), dFdy(posWorld));
+  vec3 albedo = materials[materialIndex].diffuse.rgb;
+#if TEXTURES
+  albedo *= texture(diffuseTexture, texcoord).rgb;
+#endif
 #if MASKS
   if (texture(maskTexture, texcoord).r < kMaskThreshold) discard;
 #endif
@@ -56,10 +60,6 @@ void main() {
     vec3 path = light.positionKind.xyz - posWorld;
     crossSection *= dot(path, path) / (secantSquared * sqrt(secantSquared));
   }
-  vec3 albedo = materials[materialIndex].diffuse.rgb;
-#if TEXTURES
-  albedo *= texture(diffuseTexture, texcoord).rgb;
-#endif
   outPosition = vec4(posWorld, 1.0);
   outNormal = vec4(normal, crossSection / max(dot(geometricNormal, toLight), kSmallestCosine));
   // What arrives in the cross-section, whatever the slant: exact also where the patch is seen edge-on.

@@ -1,8 +1,11 @@
 #version 450
 // Thesis 004, Sec. 4.5, Listing 4.50: every particle adds its share to the voxels of the grid. Deviates from the listing: a particle is a
-// cloud, not a point, and shares out its mass among the voxels of it that are free. Integers add up to the same bits in any order.
+// cloud, not a point, and shares out its mass among the voxels of it that are free; with `counts` it is one in its voxel, as published.
+// Integers add up to the same bits in any order.
 #pragma lumivox axis SPACE 0 1
+#pragma lumivox axis DEPOSIT clouds counts
 layout(local_size_x = 64) in;
+#include "common/list.glsl"
 
 layout(std140, binding = 0) uniform Parameters {
   vec3 source;  // m
@@ -47,9 +50,13 @@ void add(ivec3 voxel, uint units) {
 }
 
 void main() {
-  uint index = gl_GlobalInvocationID.x;
+  uint index = listIndex();
   if (index >= count) return;
   vec3 centre = source + offsets[index].xyz - gridLow;
+#if DEPOSIT == DEPOSIT_COUNTS
+  ivec3 voxel = clamp(ivec3(floor(centre / voxelSize)), ivec3(0), resolution - 1);
+  if (isFree(voxel)) add(voxel, kUnits);
+#else
   ivec3 first = clamp(ivec3(floor((centre - radius) / voxelSize)), ivec3(0), resolution - 1);
   ivec3 last = clamp(ivec3(floor((centre + radius) / voxelSize)), ivec3(0), resolution - 1);
 
@@ -82,4 +89,5 @@ void main() {
         given += units;
       }
   add(densest, kUnits - given);
+#endif
 }

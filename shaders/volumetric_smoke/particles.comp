@@ -3,6 +3,7 @@
 #include "common/particles.glsl"
 
 layout(local_size_x = 64) in;
+#include "common/list.glsl"
 
 layout(std140, binding = 0) uniform Parameters {
   uint count;
@@ -17,7 +18,7 @@ layout(std140, binding = 0) uniform Parameters {
 layout(std430, binding = 0) writeonly buffer Offsets { vec4 offsets[]; };
 
 void main() {
-  uint index = gl_GlobalInvocationID.x;
+  uint index = listIndex();
   if (index >= count) return;
   offsets[index] = particleAt(index, seed, lives, share, life, spread, drift, rise);
 }

@@ -8,14 +8,29 @@
 // - a sheet one voxel thick of opacity a keeps a at every level, while the plain mean of the thesis halves it at every level and lets
 //   light escape. So does, more slowly, any mean over the axes: along the sheet only half of the columns meet it.
 // Radiance over opacity is a mean of what is blended, over the axes weighted by the square of their opacities. `average` is the
-// published mean of the eight children.
+// published mean of the eight children, over all that a coarse voxel shares in; `trilinear` is that as printed, one read between eight
+// children by the filter of the texture, which at odd sizes misses the others.
+//
+// OCCUPIED: only the coarse voxels in occupied bricks of 4 x 4 x 4 finest voxels are made; the others are 0 already. A brick has 2 x 2 x 2
+// voxels of level 1 and one of level 2.
+#pragma lumivox axis OCCUPIED 0 1
+
+#if OCCUPIED
+#include "common/voxel.glsl"
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer BrickList { uint brickList[]; };
+layout(std430, binding = 1) readonly buffer BrickCount { uint listed; };
+#else
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+#endif
+
+const int kFacing = 0, kAverage = 1, kTrilinear = 2;
+layout(constant_id = 0) const int rule = kFacing;
 
 layout(std140, binding = 0) uniform Parameters {
   ivec3 coarse;   // voxels of the level that is written
   int fineLevel;
   ivec3 fine;     // voxels of the level that is read
-  int average;    // 1: plain mean of the children
 };
 layout(binding = 0) uniform sampler3D radianceGrid;
 layout(binding = 0) uniform writeonly image3D radianceImage;  // of whatever float format the grid has
@@ -88,16 +103,28 @@ vec4 lookThrough(ivec3 cell, int axis, ivec3 first, ivec3 last, vec3 ratio) {
 }
 
 void main() {
+#if OCCUPIED
+  uint item = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  uint perBrick = fineLevel == 0 ? 8u : 1u;
+  if (item / perBrick >= listed) return;
+  ivec3 brick = unpackVoxel(brickList[item / perBrick]);
+  ivec3 cell = fineLevel == 0 ? 2 * brick + ivec3(item & 1u, item >> 1 & 1u, item >> 2 & 1u) : brick;
+#else
   ivec3 cell = ivec3(gl_GlobalInvocationID);
   if (any(greaterThanEqual(cell, coarse))) return;
-  if (average == 0 && fine == 2 * coarse) {
+#endif
+  if (rule == kTrilinear) {
+    imageStore(radianceImage, cell, textureLod(radianceGrid, (vec3(cell) + 0.5) / vec3(coarse), float(fineLevel)));
+    return;
+  }
+  if (rule == kFacing && fine == 2 * coarse) {
     imageStore(radianceImage, cell, eightChildren(cell));
     return;
   }
   vec3 ratio = vec3(fine) / vec3(coarse);
   ivec3 first = ivec3(floor(vec3(cell) * ratio)), last = min(ivec3(ceil(vec3(cell + 1) * ratio)) - 1, fine - 1);
 
-  if (average == 0) {
+  if (rule == kFacing) {
     imageStore(radianceImage, cell,
                facing(lookThrough(cell, 0, first, last, ratio), lookThrough(cell, 1, first, last, ratio),
                       lookThrough(cell, 2, first, last, ratio)));

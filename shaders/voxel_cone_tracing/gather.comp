@@ -7,6 +7,7 @@
 #pragma lumivox axis MEDIUM none even varying
 #pragma lumivox require DIFFUSE || GLOSSY
 #include "common/constants.glsl"
+#include "common/random.glsl"
 #if MEDIUM != MEDIUM_NONE
 #include "common/media.glsl"
 #endif
@@ -15,6 +16,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const int coneCount = 6;
 layout(constant_id = 1) const int publishedCones = 0;
+layout(constant_id = 2) const int asPublished = 0;
+layout(constant_id = 3) const int opacityOfFinestVoxel = 0;  // 1: what RadianceGrid::Opacity::ofFinestVoxel says
 
 layout(std140, binding = 0) uniform Parameters {
   vec3 gridLow;       // m
@@ -30,6 +33,9 @@ layout(std140, binding = 0) uniform Parameters {
   float clearance;    // largest voxels that are read as a share of their height over the tangent plane
   float unit;         // W/(sr m^2) that the value 1 of the grid stands for
   float footprint;    // voxels that are read as a share of the cone's diameter
+  float coneRatio;    // diameter of one of the five cones over its height
+  float jitter;       // most by which a cone's first step is shorter, as a share of it
+  uvec2 seed;
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
@@ -56,11 +62,19 @@ vec2 insideGrid(vec3 origin, vec3 direction) {
   return vec2(max(near.x, max(near.y, near.z)), min(far.x, min(far.y, far.z)));
 }
 
+// How far a cone's first sample is moved, [0, 1): by the pixel, the cone and the seed.
+float shiftOf(uint cone) {
+  return unitInterval(hash4(uvec4(gl_GlobalInvocationID.x | gl_GlobalInvocationID.y << 16, cone, seed)).xy).x;
+}
+
 // Radiance along a cone. The sample at distance t reads voxels of a size that goes with the cone's diameter there; between the levels l
 // and l+1 the blend is f = size / 2^l - 1. cosTheta is the cosine between the axis and the normal.
 // Deviates from Listing 4.13: voxels of half the diameter. The trilinear kernel over voxels of size s has the standard deviation
 // sqrt(1/6 + 1/12) s = s / 2 along each axis, the disc of diameter d has d / 4: a footprint of 1, as published, reads twice as wide.
-vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta) {
+//
+// A first step that is shorter moves all samples behind it (the jitter that thesis Sec. 4.2.1 names against banding) and leaves nothing out.
+vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta, uint cone) {
+  float firstShare = jitter > 0.0 ? 1.0 - jitter * shiftOf(cone) : 1.0;
   vec3 radiance = vec3(0.0);
   float opacity = 0.0;
   vec2 inside = insideGrid(apex, direction);
@@ -76,7 +90,8 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta) {
     float height = offset * voxelSize + cosTheta * distance;
     float wanted = min(footprint * 2.0 * tanHalfAngle * distance, clearance * height);
     // The last step ends where the grid does, so that walls there are read in full.
-    float stride = min(stepShare * max(wanted / footprint, voxelSize), end - distance);
+    float stride = min(stepShare * max(wanted / footprint, voxelSize), end - distance) * firstShare;
+    firstShare = 1.0;
     vec3 texcoord = (apex + direction * (distance + 0.5 * stride) - gridLow) / gridExtent;
 #if MEDIUM != MEDIUM_NONE
     vec3 sampled = apex + direction * distance;
@@ -88,12 +103,18 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta) {
     float blend = level < coarsest ? size * exp2(-level) - 1.0 : 0.0;
     vec4 value = textureLod(radianceGrid, texcoord, level + blend);
     if (value.a > 0.0) {
-      // The blend of two levels of a medium with transmittance T per voxel of the finer one is (1-f) T + f T^2: solved for T, and raised
-      // to the step in such voxels (thesis Sec. 4.2.1, opacity correction). Pre-multiplied radiance scales with the opacity; listing 4.13
-      // mixes pre-multiplied and plain radiance, which this does not.
+      // Opacity correction (thesis Sec. 4.2.1): the transmittance T of a known length is raised to the step in such lengths. Pre-multiplied
+      // radiance scales with the opacity; listing 4.13 mixes pre-multiplied and plain radiance, which this does not.
       float through = max(1.0 - value.a, 0.0);
-      float perVoxel = 2.0 * through / (1.0 - blend + sqrt((1.0 - blend) * (1.0 - blend) + 4.0 * blend * through));
-      float stepOpacity = 1.0 - pow(perVoxel, stride / (exp2(level) * voxelSize));
+      float stepOpacity;
+      if (opacityOfFinestVoxel != 0) {
+        // Plain means keep the opacity of a uniform medium at every level: it stays that of a finest voxel.
+        stepOpacity = 1.0 - pow(through, stride / voxelSize);
+      } else {
+        // The blend of two levels of a medium with transmittance T per voxel of the finer one is (1-f) T + f T^2: solved for T.
+        float perVoxel = 2.0 * through / (1.0 - blend + sqrt((1.0 - blend) * (1.0 - blend) + 4.0 * blend * through));
+        stepOpacity = 1.0 - pow(perVoxel, stride / (exp2(level) * voxelSize));
+      }
       radiance += passed * ((1.0 - opacity) * stepOpacity / value.a * value.rgb);
       opacity += (1.0 - opacity) * stepOpacity;
     }
@@ -112,20 +133,64 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta) {
   return radiance;
 }
 
+// Listing 4.13 as printed, lengths in metres in place of shares of the grid. A sample is two finest voxels wide or as wide as the cone, and
+// is taken where its step begins. The exponent of the opacity correction is half of its diameter over the first one's: with plain means that
+// is half of what a uniform medium takes. What was gathered is multiplied by the opacity anew at every step, and values that the opacity has
+// been multiplied into by it again. Environment and media, of which the listing says nothing, come in as in traceCone.
+vec3 traceConeAsPublished(vec3 apex, vec3 direction, float ratio, uint cone) {
+  float leastDiameter = 2.0 * voxelSize, distance = leastDiameter;
+  float firstDiameter = max(leastDiameter, ratio * distance);
+  if (jitter > 0.0) distance += jitter * shiftOf(cone) * (0.5 * firstDiameter);
+  float end = min(maxDistance, insideGrid(apex, direction).y);
+  vec3 radiance = vec3(0.0);
+  float opacity = 0.0;
+  while (distance <= end && opacity < 1.0) {
+    float diameter = max(leastDiameter, ratio * distance);
+    vec3 texcoord = (apex + direction * distance - gridLow) / gridExtent;
+    vec4 value = textureLod(radianceGrid, texcoord, log2(diameter / voxelSize));
+#if MEDIUM != MEDIUM_NONE
+    value.rgb *= exp(-opticalDepth(apex, direction, distance, kMediumSteps));
+#endif
+    float stepOpacity = 1.0 - pow(max(1.0 - value.a, 0.0), (diameter / 2.0) / firstDiameter);
+    radiance = radiance * opacity + (1.0 - opacity) * (stepOpacity * value.rgb);
+    opacity += stepOpacity * (1.0 - opacity);
+    distance += diameter / 2.0;
+  }
+  radiance *= unit;
+#if ENVIRONMENT
+  vec3 passed = vec3(max(1.0 - opacity, 0.0));
+#if MEDIUM != MEDIUM_NONE
+  passed *= exp(-opticalDepth(apex, direction, kNoReach, kMediumSteps));
+#endif
+  radiance += passed * environment;
+#endif
+  return radiance;
+}
+
 #if DIFFUSE
-// Mean of the arriving radiance over the hemisphere, weighted by the cosine; the weights sum to 1.
+// Mean of the arriving radiance over the hemisphere, weighted by the cosine; the weights sum to 1, but not those as published.
 vec3 gatherDiffuse(vec3 apex, vec3 normal) {
   vec3 helper = abs(normal.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
   vec3 tangent = normalize(cross(helper, normal)), bitangent = cross(normal, tangent);
-  if (publishedCones != 0) {
-    // Listing 4.12: one cone along the normal and four at 45 degrees, weighted by the cosine. Deviates: divided by the sum of the
-    // weights, 1 + 4 / sqrt 2, so that a constant environment keeps its radiance.
-    const float kTilted = 0.70710678118654752440;
-    float tanHalfAngle = tan(kPi / 6.0);
-    vec3 sum = traceCone(apex, normal, tanHalfAngle, 1.0);
+  // Listing 4.12: one cone along the normal and four at 45 degrees, weighted by the cosine.
+  if (asPublished != 0) {
+    const float kPrintedWeight = 0.707;
+    vec3 sum = traceConeAsPublished(apex, normal, coneRatio, 0u);
     for (int i = 0; i < 4; ++i) {
       vec3 side = (i & 1) == 0 ? tangent : bitangent;
-      sum += kTilted * traceCone(apex, normalize(normal + (i < 2 ? side : -side)), tanHalfAngle, kTilted);
+      vec3 direction = normalize(normal + (i < 2 ? side : -side));
+      sum += kPrintedWeight * traceConeAsPublished(apex, direction, coneRatio, uint(i + 1));
+    }
+    return sum;
+  }
+  if (publishedCones != 0) {
+    // Deviates: divided by the sum of the weights, 1 + 4 / sqrt 2, so that a constant environment keeps its radiance.
+    const float kTilted = 0.70710678118654752440;
+    float tanHalfAngle = 0.5 * coneRatio;
+    vec3 sum = traceCone(apex, normal, tanHalfAngle, 1.0, 0u);
+    for (int i = 0; i < 4; ++i) {
+      vec3 side = (i & 1) == 0 ? tangent : bitangent;
+      sum += kTilted * traceCone(apex, normalize(normal + (i < 2 ? side : -side)), tanHalfAngle, kTilted, uint(i + 1));
     }
     return sum / (1.0 + 4.0 * kTilted);
   }
@@ -138,7 +203,7 @@ vec3 gatherDiffuse(vec3 apex, vec3 normal) {
     float cosTheta = sqrt(1.0 - radiusSquared);
     vec3 direction = tangent * (radius * cos(angle)) + bitangent * (radius * sin(angle)) + normal * cosTheta;
     float cosHalfAngle = max(1.0 - 0.5 / (float(coneCount) * cosTheta), 0.5);
-    sum += traceCone(apex, direction, sqrt(1.0 - cosHalfAngle * cosHalfAngle) / cosHalfAngle, cosTheta);
+    sum += traceCone(apex, direction, sqrt(1.0 - cosHalfAngle * cosHalfAngle) / cosHalfAngle, cosTheta, uint(i));
   }
   return sum / float(coneCount);
 }
@@ -151,7 +216,8 @@ void main() {
   vec3 diffuse = vec3(0.0), glossy = vec3(0.0);
   if (position.w > 0.0) {
     vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
-    vec3 apex = position.xyz + texelFetch(gGeometricNormal, pixel, 0).xyz * (offset * voxelSize);
+    vec3 apex = position.xyz;
+    if (asPublished == 0) apex += texelFetch(gGeometricNormal, pixel, 0).xyz * (offset * voxelSize);
 #if DIFFUSE
     vec3 albedo = texelFetch(gDiffuse, pixel, 0).rgb;
     if (any(greaterThan(albedo, vec3(0.0)))) diffuse = albedo * gatherDiffuse(apex, normal);
@@ -164,7 +230,11 @@ void main() {
       // Its integral with the cosine of the surface is specular times the cosine of the mirror direction.
       float cosHalfAngle = max(1.0 - 1.0 / (specular.w + 1.0), 0.5);
       float tanHalfAngle = sqrt(1.0 - cosHalfAngle * cosHalfAngle) / cosHalfAngle;
-      glossy = specular.rgb * max(dot(mirror, normal), 0.0) * traceCone(apex, mirror, tanHalfAngle, max(dot(mirror, normal), 0.0));
+      const uint kGlossyCone = 0xffffu;
+      float cosMirror = max(dot(mirror, normal), 0.0);
+      vec3 arriving = asPublished != 0 ? traceConeAsPublished(apex, mirror, 2.0 * tanHalfAngle, kGlossyCone)
+                                       : traceCone(apex, mirror, tanHalfAngle, cosMirror, kGlossyCone);
+      glossy = specular.rgb * cosMirror * arriving;
     }
 #endif
   }

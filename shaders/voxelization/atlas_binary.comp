@@ -12,6 +12,7 @@ layout(std140, binding = 1) uniform Grid {
   vec3 gridLow;     // m
   float voxelSize;  // m
   ivec3 resolution;
+  float pointSize;  // voxels
 };
 layout(binding = 0, r32ui) uniform uimage3D words;
 #include "grid_corner.glsl"
@@ -22,10 +23,17 @@ void main() {
   int texel = texelOfThread();
   if (texel < 0) return;
   SurfacePlace place = placeOf(texel);
-  ivec3 voxel = ivec3(floor(place.corners[0] * place.weights.x + place.corners[1] * place.weights.y + place.corners[2] * place.weights.z));
-  if (any(lessThan(voxel, ivec3(0))) || any(greaterThanEqual(voxel, resolution))) return;
+  vec3 posGrid = place.corners[0] * place.weights.x + place.corners[1] * place.weights.y + place.corners[2] * place.weights.z;
+  int depth = int(floor(posGrid.z));
+  if (depth < 0 || depth >= resolution.z) return;
+  // Thesis 004 Sec. 4.4.3: a larger point closes holes of an atlas that is too small. It is a square in the picture of stacks and covers the
+  // pixels (i, j) whose centres i + 1/2 it reaches, |i + 1/2 - x| <= pointSize / 2; along the stacks it stays one voxel.
+  float reach = 0.5 * (pointSize - 1.0);
+  ivec2 low = max(ivec2(floor(posGrid.xy - reach)), ivec2(0)), high = min(ivec2(floor(posGrid.xy + reach)), resolution.xy - 1);
+  if (any(greaterThan(low, high))) return;
 #if MASKS
   if (surfaceTextureAt(place.triangle, place.corners, place.weights).coverage <= 0.0) return;
 #endif
-  imageAtomicOr(words, ivec3(voxel.xy, voxel.z >> 5), 1u << (voxel.z & 31));
+  for (int y = low.y; y <= high.y; ++y)
+    for (int x = low.x; x <= high.x; ++x) imageAtomicOr(words, ivec3(x, y, depth >> 5), 1u << (depth & 31));
 }

@@ -27,6 +27,7 @@ void main() {
   if (index >= fragmentCount) return;
   VoxelFragment fragment = fragments[index];
   uint slot = imageLoad(slots, unpackVoxel(fragment.voxel)).r - 1u;
+  if (slot >= uint(fragmentsOfSlot.length())) return;  // there was no room for its voxel: the frame is made anew
   vec2 blueCoverage = unpackHalf2x16(fragment.albedoBCoverage);
   float covered = clamp(blueCoverage.y, 0.0, 1.0), weight = covered / float(fragmentsOfSlot[slot]);
   uint full = fullShare(fragmentsOfSlot[slot]);

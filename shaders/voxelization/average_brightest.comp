@@ -13,5 +13,6 @@ void main() {
   if (index >= fragmentCount) return;
   vec3 emission = unpackShared(fragments[index].emission);
   uint slot = imageLoad(slots, unpackVoxel(fragments[index].voxel)).r - 1u;
+  if (slot >= uint(brightest.length())) return;  // there was no room for its voxel: the frame is made anew
   atomicMax(brightest[slot], floatBitsToUint(max(emission.r, max(emission.g, emission.b))));
 }

@@ -1,16 +1,13 @@
 #version 450
-// A black opaque fragment for every set voxel that has no surface sample: it blocks light and reflects none. APPEND 0 only counts them.
-#pragma lumivox axis APPEND 0 1
+// A black opaque fragment for every set voxel that has no surface sample: it blocks light and reflects none.
 #include "bits.glsl"
 #include "common/voxel.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std430, binding = 0) buffer Count { uint fragmentCount; };
-#if APPEND
 layout(std140, binding = 0) uniform Parameters { int capacity; };
 layout(std430, binding = 1) writeonly buffer Fragments { VoxelFragment fragments[]; };
-#endif
 
 void main() {
   ivec3 place = ivec3(gl_GlobalInvocationID);
@@ -18,7 +15,6 @@ void main() {
   uint bits = imageLoad(words, place).r & ~surfaceWordAt(place);
   if (bits == 0u) return;
   uint index = atomicAdd(fragmentCount, uint(bitCount(bits)));
-#if APPEND
   VoxelFragment fragment;
   fragment.offset = packOffset(vec3(0.5));
   fragment.normal = packNormal(vec3(0.0, 1.0, 0.0));
@@ -30,5 +26,4 @@ void main() {
     fragment.voxel = packVoxel(ivec3(place.xy, 32 * place.z + findLSB(bits)));
     fragments[index] = fragment;
   }
-#endif
 }

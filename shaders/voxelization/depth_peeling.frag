@@ -13,10 +13,11 @@ layout(location = 0) out uvec4 surface;  // normal, two words of albedo and cove
 layout(location = 1) out float depthInGrid;  // voxels
 
 void main() {
+  // Textures are sampled before anything is thrown away: the derivatives that choose their mip are undefined behind a discard.
+  VoxelFragment fragment = sampleView();
 #if !FIRST
   if (gl_FragCoord.z <= texelFetch(layerBefore, ivec2(gl_FragCoord.xy), 0).r) discard;
 #endif
-  VoxelFragment fragment = sampleView();
   if (fragment.albedoBCoverage >> 16 == 0u) discard;
   surface = uvec4(fragment.normal, fragment.albedoRg, fragment.albedoBCoverage, fragment.emission);
   depthInGrid = posView.z;

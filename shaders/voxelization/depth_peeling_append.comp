@@ -7,8 +7,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std430, binding = 7) buffer Count { uint fragmentCount; };
 layout(std430, binding = 8) writeonly buffer Fragments { VoxelFragment fragments[]; };
-// How many pixels of the layer show something.
-layout(std430, binding = 9) buffer Found { uint found; };
+// The last layer along each axis that shows something, counted from 1.
+layout(std430, binding = 9) buffer Deepest { uint deepest[3]; };
+layout(std140, binding = 0) uniform Layer { int layer; };
 layout(binding = 0) uniform sampler2D layerDepth;
 layout(binding = 1) uniform usampler2D layerSurface;
 layout(binding = 2) uniform sampler2D layerDepthInGrid;
@@ -16,7 +17,7 @@ layout(binding = 2) uniform sampler2D layerDepthInGrid;
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, textureSize(layerDepth, 0))) || texelFetch(layerDepth, pixel, 0).r >= 1.0) return;
-  found = 1u;
+  atomicMax(deepest[axis], uint(layer) + 1u);
   float depth = texelFetch(layerDepthInGrid, pixel, 0).r;
   ivec3 voxel = ivec3(pixel, int(floor(depth)));
   ivec3 cell = unpermute(voxel, axis);

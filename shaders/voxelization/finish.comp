@@ -1,10 +1,12 @@
 #version 450
-// Turns the number of fragments into the arguments of a dispatch over them, so that the count never travels to the host.
+// Turns a number of items into the arguments of a dispatch over them, so that no pass waits for the count to travel to the host. What there
+// was no room for is cut off; how many were wanted is kept, for the host to look at when the frame is done.
 layout(local_size_x = 1) in;
 
 layout(std430, binding = 0) buffer Count {
-  uint fragmentCount;
+  uint itemCount;
   uint groupsX, groupsY, groupsZ;
+  uint wanted;
 };
 layout(std140, binding = 0) uniform Parameters {
   int capacity;
@@ -14,8 +16,9 @@ layout(std140, binding = 0) uniform Parameters {
 const uint kMostGroups = 65535u;  // that OpenGL guarantees per axis
 
 void main() {
-  fragmentCount = min(fragmentCount, uint(capacity));
-  uint groups = (fragmentCount + uint(workGroupSize) - 1u) / uint(workGroupSize);
+  wanted = itemCount;
+  itemCount = min(itemCount, uint(capacity));
+  uint groups = (itemCount + uint(workGroupSize) - 1u) / uint(workGroupSize);
   groupsX = min(max(groups, 1u), kMostGroups);
   groupsY = max((groups + kMostGroups - 1u) / kMostGroups, 1u);
   groupsZ = 1u;

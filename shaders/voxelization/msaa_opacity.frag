@@ -3,6 +3,7 @@
 // column; their number is what the triangle covers of each.
 // TARGET list: a fragment for each voxel, with that coverage. TARGET masks: the samples themselves, as bits of the voxel's three sides; they
 // are projected into the two other planes too, and the surface is made thicker along its normal's axis there.
+// The pixels of a list may be smaller than a voxel (adaptive supersampling, Sec. 3.5.2): each adds its share of the voxel's side.
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
 #pragma lumivox axis TARGET list masks
@@ -69,7 +70,8 @@ uint sideMasks(uint covered, float depths[kMostSamples], float slice) {
 
 void main() {
   uint covered = uint(gl_SampleMaskIn[0]) & ((1u << sampleCount) - 1u);
-  ivec2 column = ivec2(gl_FragCoord.xy);
+  ivec2 pixel = ivec2(gl_FragCoord.xy), column = pixel / scale;
+  vec2 corner = vec2(pixel - column * scale);  // of the pixel in its column, in pixels
   vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   if (covered == 0u || normal.z == 0.0) discard;
   MaterialData material = materials[materialIndex];
@@ -81,7 +83,7 @@ void main() {
   float depths[kMostSamples];
   float nearest = 1e9, farthest = -1e9;
   for (int i = 0; i < sampleCount; ++i) {
-    depths[i] = corners[0].z + dot(slope, vec2(column) + samples[i].xy - corners[0].xy);
+    depths[i] = corners[0].z + dot(slope, vec2(column) + (corner + samples[i].xy) / float(scale) - corners[0].xy);
     if ((covered >> i & 1u) == 0u) continue;
     nearest = min(nearest, depths[i]);
     farthest = max(farthest, depths[i]);
@@ -96,7 +98,7 @@ void main() {
     ivec3 voxel = ivec3(column, depth);
 #if TARGET == TARGET_LIST
     VoxelFragment fragment = fragmentAt(s, voxel, dominantAxis);
-    float share = float(bitCount(inside)) / float(sampleCount);
+    float share = float(bitCount(inside)) / float(sampleCount * scale * scale);
     fragment.albedoBCoverage = packHalf2x16(vec2(blueCoverage.x, blueCoverage.y * share));
     uint index = atomicAdd(fragmentCount, 1u);
     if (index < uint(capacity)) fragments[index] = fragment;

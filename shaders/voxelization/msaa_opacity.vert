@@ -15,6 +15,18 @@ layout(location = 6) flat out int dominantAxis;
 layout(location = 7) flat out vec2 cornerTexcoords[3];
 #endif
 
+// Adaptive supersampling: a triangle that a viewport of one pixel a voxel would meet with a few samples, or none, is rasterised in one of
+// smaller pixels, until it has this many or the pixels are the smallest.
+const float kEnoughSamples = 16.0;
+
+int scaleOf(mat3 corners) {
+  vec2 e1 = corners[1].xy - corners[0].xy, e2 = corners[2].xy - corners[0].xy;
+  float samples = 0.5 * abs(e1.x * e2.y - e1.y * e2.x) * float(sampleCount);
+  int result = 1;
+  while (result < mostScale && samples * float(result * result) < kEnoughSamples) result *= 2;
+  return result;
+}
+
 void main() {
   int triangle = gl_VertexID / 3;
   TriangleCorners loaded = loadCorners(uint(firstIndex) + 3u * uint(triangle), objectIndex);
@@ -27,4 +39,5 @@ void main() {
   vec2 plane = corners[gl_VertexID - 3 * triangle].xy;
   float side = float(max(resolution.x, max(resolution.y, resolution.z)));
   gl_Position = vec4(2.0 * plane.x / side - 1.0, 1.0 - 2.0 * plane.y / side, 0.5, 1.0);
+  if (scaleOf(corners) != scale) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // another viewport's: nothing of it is drawn
 }

@@ -5,6 +5,8 @@
 #include "common/voxel.glsl"
 #include "view_axis.glsl"
 
+// Depth peeling compares depths that different programs made of the same triangle: they must be the same to the bit.
+invariant gl_Position;
 layout(location = 0) out vec3 posView;
 layout(location = 1) out vec3 normalWorld;
 #if TEXTURES || MASKS

@@ -1,7 +1,9 @@
 #version 450
 // Mavridis & Papaioannou 2011, Sec. 3.2: each pixel that sees a surface marks the voxel that the surface point lies in.
 // Deviates: the g-buffer holds positions, so that nothing has to be projected back from depth.
+// With REFLECTED a point brings the direct light along that the renderer computed there.
 #pragma lumivox axis EMISSION 0 1
+#pragma lumivox axis REFLECTED 0 1
 #include "common/voxel.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -14,6 +16,10 @@ layout(std140, binding = 0) uniform Grid {
 };
 layout(std430, binding = 0) buffer Count { uint fragmentCount; };
 layout(std430, binding = 1) writeonly buffer Fragments { VoxelFragment fragments[]; };
+#if REFLECTED
+layout(std430, binding = 2) writeonly buffer Reflected { uint reflected[]; };
+layout(binding = 4) uniform sampler2D direct;  // W/(sr m^2): what leaves the surface towards the camera without indirect light
+#endif
 layout(binding = 0) uniform sampler2D position;
 layout(binding = 1) uniform sampler2D normal;
 layout(binding = 2) uniform sampler2D diffuse;
@@ -47,4 +53,8 @@ void main() {
   fragment.albedoBCoverage = packHalf2x16(vec2(albedo.b, 1.0));
   fragment.emission = packShared(radiance);
   fragments[index] = fragment;
+#if REFLECTED
+  // What it emits itself is another's part.
+  reflected[index] = packShared(max(texelFetch(direct, pixel, 0).rgb - radiance, 0.0));
+#endif
 }

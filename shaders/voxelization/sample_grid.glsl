@@ -8,5 +8,7 @@ layout(std140, binding = 1) uniform SampleGrid {
   int capacity;     // fragments that fit into the list
   int sampleCount;
   float thickness;  // voxels
+  int scale;        // pixels along a side of a voxel, in this viewport
+  int mostScale;
   vec4 samples[kMostSamples];  // x and y inside the pixel, 0..1
 };

@@ -82,7 +82,7 @@ class GBufferPass : public Pass {
     const gbufferShader::View view{worldToClip(frame.snapshot())};
     const gbufferShader::Eye eye{frame.snapshot().camera.eye, glm::vec2(pixelsOf(frame.snapshot()))};
     GpuScene& scene = frame.scene();
-    frame.device().beginDrawing(targets, state);
+    const gpu::Drawing drawing = frame.device().drawTo(targets, state);
     for (const SceneDraw& draw : scene.draws()) {
       // A draw uses the variant that its own material needs; with --keep-everything all do everything, with
       // neutral textures.
@@ -105,7 +105,6 @@ class GBufferPass : public Pass {
            gbufferShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)},
           scene.indices(), draw.firstIndex, draw.indexCount);
     }
-    frame.device().endDrawing();
   }
 };
 
@@ -160,7 +159,7 @@ class ShadowMapPass : public Pass {
     state.depthTest = state.depthWrite = state.depthClamp = true;
     state.depthBiasSlope = 1.5f;
     state.depthBiasConstant = 2.0f;
-    frame.device().beginDrawing(targets, state);
+    const gpu::Drawing drawing = frame.device().drawTo(targets, state);
     const std::size_t count = view.used ? scene.draws().size() : 0;
     for (std::size_t i = 0; i < count; ++i) {
       const SceneDraw& draw = scene.draws()[i];
@@ -175,7 +174,6 @@ class ShadowMapPass : public Pass {
            shadowShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)},
           scene.indices(), draw.firstIndex, draw.indexCount);
     }
-    frame.device().endDrawing();
   }
 };
 

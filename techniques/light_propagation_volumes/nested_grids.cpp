@@ -103,11 +103,25 @@ std::array<gpu::TextureRef, 3> coefficientTextures(PassContext& frame, const glm
   return result;
 }
 
+const gpu::Texture& facesOrUnread(const gpu::TextureRef& faces, const ShGrid::Level& level) {
+  return faces ? *faces : *level.coefficients[0];
+}
+
 void requireFaces(const ShGrid& light) {
   for (std::size_t i = 0; i < light.levels.size(); ++i)
     if (!light.levels[i].closed || !light.levels[i].moved)
       throw Error(fmt::format(
-          "level {} of the light has no closed faces or no moved surfaces; expected both, from an injection",
+          "level {} of the light has no closed faces or no moved surfaces; expected both, from an injection "
+          "without 'as_published on'",
+          i));
+}
+
+void requirePackedVoxels(const ShGrid& light) {
+  for (std::size_t i = 0; i < light.levels.size(); ++i)
+    if (!light.levels[i].packed)
+      throw Error(fmt::format(
+          "level {} of the light has no packed voxels, whose normals occlude as published; expected an "
+          "injection by inject_voxels with 'voxels packed' or 'as_published on'",
           i));
 }
 

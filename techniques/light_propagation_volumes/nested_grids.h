@@ -30,8 +30,13 @@ gpu::TextureRef cellTexture(PassContext& frame, const glm::ivec3& resolution, gp
 std::array<gpu::TextureRef, 3> coefficientTextures(PassContext& frame, const glm::ivec3& resolution,
                                                    const std::string& label);
 
+/// For a binding whose texture is read only where there are faces: these, or any other volume in their place.
+const gpu::Texture& facesOrUnread(const gpu::TextureRef& faces, const ShGrid::Level& level);
+
 /// Refuses light that no injection pass has made: without faces nobody knows what surfaces close.
 void requireFaces(const ShGrid& light);
+/// Refuses light without the packed voxels that it was injected from.
+void requirePackedVoxels(const ShGrid& light);
 
 /// Each registers the passes of its file.
 void addInject(TechniqueRegistry& registry);

@@ -44,21 +44,44 @@ class PropagatePass : public Pass {
                             "open",
                             {"open", "mirror"},
                             "of the coarsest grid; a mirror loses no light, for checks of energy"};
-  Param<std::string> method{this,
-                            "method",
-                            "folded",
-                            {"folded", "plain"},
-                            "of computing the same; plain: face by face as in Listing 4.32, slow"};
-  Param<bool> asPublished{
-      this, "as_published", false,
-      "Listing 4.32 to the letter: cosine lobe, negative flux dropped, light also stays where it was; grows without end"};
+  Param<std::string> method{
+      this,
+      "method",
+      "folded",
+      {"folded", "plain"},
+      "of computing the same; plain: face by face as in Listing 4.32, slow, and the only one of the published transfer and occlusion"};
+  Param<std::string> transfer{
+      this,
+      "transfer",
+      "conserving",
+      {"conserving", "published"},
+      "what leaves a cell arrives; or Listing 4.32: a quarter of it, as clamped cosines, none that is negative, and the cell keeps its light: the sum grows to 5/4 and more in every iteration"};
+  Param<std::string> occlusion{
+      this,
+      "occlusion",
+      "faces",
+      {"faces", "normals"},
+      "by the closed share of faces; or, as published (Listing 4.33), by a lobe around the normal in the sending voxel that is closest to the way: needs an injection with voxels packed"};
+  Param<std::string> grids{
+      this,
+      "grids",
+      "nested",
+      {"nested", "apart"},
+      "light comes in from the next coarser grid and from the environment; or, as published, every grid is alone"};
+  Param<bool> asPublished{this, "as_published", false,
+                          "Listings 4.32 and 4.33: the printed settings of transfer, occlusion and grids"};
   Out<ShGrid> light{this, "light", "all light that passed each cell, summed over the iterations, W/sr"};
   Out<ShGrid> travelling{this, "travelling", "light that is still on its way after the last iteration, W/sr"};
 
   Reads readsFrom() const override { return Reads::lights; }
 
   void run(PassContext& frame) override {
-    requireFaces(*injected);
+    if (occludesByNormals())
+      requirePackedVoxels(*injected);
+    else
+      requireFaces(*injected);
+    // Light that comes in from outside passes the faces of the border.
+    if (!gridsApart()) requireFaces(*injected);
     ShGrid total = *injected, left = *injected;
     // From the coarsest to the finest: what comes into a grid from outside is in the coarser one.
     for (std::size_t i = injected->levels.size(); i-- > 0;) {
@@ -69,13 +92,15 @@ class PropagatePass : public Pass {
       const int last = iterate(frame, level, state, sum);
       left.levels[i].coefficients = state.light[static_cast<std::size_t>(last)];
       // Where light stays in its cell, the last state is the sum already.
-      total.levels[i].coefficients = asPublished ? left.levels[i].coefficients : sum;
+      total.levels[i].coefficients = publishedTransfer() ? left.levels[i].coefficients : sum;
     }
     light = total;
     travelling = left;
   }
 
-  bool cosineLobe() const { return asPublished || lobe == "cosine"; }
+  bool publishedTransfer() const { return asPublished || transfer == "published"; }
+  bool occludesByNormals() const { return asPublished || occlusion == "normals"; }
+  bool gridsApart() const { return asPublished || grids == "apart"; }
 
   Travelling start(PassContext& frame, const ShGrid::Level& level, const ShGrid::Level* outside,
                    const Channels& sum) {
@@ -93,19 +118,20 @@ class PropagatePass : public Pass {
     parameters.resolution = resolution;
     parameters.occlusion = occlusionAmplifier;
     using gpu::Sampling;
-    std::vector<gpu::ResourceBinding> bindings{startShader::red(*level.coefficients[0], Sampling::nearest),
-                                               startShader::green(*level.coefficients[1], Sampling::nearest),
-                                               startShader::blue(*level.coefficients[2], Sampling::nearest),
-                                               startShader::closed(*level.closed, Sampling::nearest),
-                                               startShader::redNext(*result.light[0][0]),
-                                               startShader::greenNext(*result.light[0][1]),
-                                               startShader::blueNext(*result.light[0][2]),
-                                               startShader::redTotal(*sum[0]),
-                                               startShader::greenTotal(*sum[1]),
-                                               startShader::blueTotal(*sum[2]),
-                                               startShader::stampsNext(*result.stamps[0])};
+    std::vector<gpu::ResourceBinding> bindings{
+        startShader::red(*level.coefficients[0], Sampling::nearest),
+        startShader::green(*level.coefficients[1], Sampling::nearest),
+        startShader::blue(*level.coefficients[2], Sampling::nearest),
+        startShader::closed(facesOrUnread(level.closed, level), Sampling::nearest),
+        startShader::redNext(*result.light[0][0]),
+        startShader::greenNext(*result.light[0][1]),
+        startShader::blueNext(*result.light[0][2]),
+        startShader::redTotal(*sum[0]),
+        startShader::greenTotal(*sum[1]),
+        startShader::blueTotal(*sum[2]),
+        startShader::stampsNext(*result.stamps[0])};
     const float cell = level.grid.voxelSize;
-    if (outside != nullptr) {
+    if (outside != nullptr && !gridsApart()) {
       variant.outside = startShader::Variant::outsideGrid;
       const glm::vec3 size = glm::vec3(outside->grid.resolution) * outside->grid.voxelSize;
       // The same radiance passes cells in proportion to their faces.
@@ -115,14 +141,14 @@ class PropagatePass : public Pass {
       bindings.push_back(startShader::redOutside(*outside->coefficients[0], Sampling::linear));
       bindings.push_back(startShader::greenOutside(*outside->coefficients[1], Sampling::linear));
       bindings.push_back(startShader::blueOutside(*outside->coefficients[2], Sampling::linear));
-    } else if (frame.traits().environment && border == "open") {
+    } else if (outside == nullptr && frame.traits().environment && border == "open" && !gridsApart()) {
       variant.outside = startShader::Variant::outsideEnvironment;
       parameters.environment =
           glm::vec4(frame.sceneDescription().environment * (kMeanProjection * cell * cell), 0.0f);
     }
     bindings.push_back(startShader::parameters(parameters));
     startShader::Constants constants;
-    constants.cosineLobe = cosineLobe() ? 1 : 0;
+    constants.cosineLobe = lobe == "cosine" ? 1 : 0;
     frame.dispatch(frame.program(startShader::kProgram, variant.key(), constants.values()), bindings,
                    resolution, kCellGroup);
     return result;
@@ -130,13 +156,15 @@ class PropagatePass : public Pass {
 
   /// Which of the two sets holds the light after the last iteration.
   int iterate(PassContext& frame, const ShGrid::Level& level, const Travelling& state, const Channels& sum) {
-    const bool plain = asPublished || method == "plain";
+    const bool plain = publishedTransfer() || occludesByNormals() || method == "plain";
+    plainShader::Variant variant;
+    if (occludesByNormals()) variant.occlusion = plainShader::Variant::occlusionNormals;
     foldedShader::Constants foldedConstants;
     plainShader::Constants plainConstants;
-    foldedConstants.cosineLobe = plainConstants.cosineLobe = cosineLobe() ? 1 : 0;
-    plainConstants.publishedSum = asPublished ? 1 : 0;
+    foldedConstants.cosineLobe = plainConstants.cosineLobe = lobe == "cosine" ? 1 : 0;
+    plainConstants.publishedTransfer = publishedTransfer() ? 1 : 0;
     const shader::BoundProgram& program =
-        plain ? frame.program(plainShader::kProgram, {}, plainConstants.values())
+        plain ? frame.program(plainShader::kProgram, variant.key(), plainConstants.values())
               : frame.program(foldedShader::kProgram, {}, foldedConstants.values());
     foldedShader::Parameters parameters{};
     parameters.resolution = level.grid.resolution;
@@ -148,14 +176,14 @@ class PropagatePass : public Pass {
       const auto now = static_cast<std::size_t>(i % 2), next = 1 - now;
       parameters.stamp = i + 1;
       // What the last iteration brings has not passed its cell yet: it is still travelling.
-      parameters.addToTotal = i + 1 < iterations && !asPublished ? 1 : 0;
+      parameters.addToTotal = i + 1 < iterations && !publishedTransfer() ? 1 : 0;
       const Channels &from = state.light[now], &to = state.light[next];
-      const std::vector<gpu::ResourceBinding> bindings{
+      std::vector<gpu::ResourceBinding> bindings{
           foldedShader::parameters(parameters),
           foldedShader::red(*from[0], Sampling::nearest),
           foldedShader::green(*from[1], Sampling::nearest),
           foldedShader::blue(*from[2], Sampling::nearest),
-          foldedShader::closed(*level.closed, Sampling::nearest),
+          foldedShader::closed(facesOrUnread(level.closed, level), Sampling::nearest),
           foldedShader::stamps(*state.stamps[now], Sampling::nearest),
           foldedShader::redNext(*to[0]),
           foldedShader::greenNext(*to[1]),
@@ -164,7 +192,7 @@ class PropagatePass : public Pass {
           foldedShader::greenTotal(*sum[1]),
           foldedShader::blueTotal(*sum[2]),
           foldedShader::stampsNext(*state.stamps[next])};
-      // The folded shader walks along z inside a brick.
+      if (occludesByNormals()) bindings.push_back(plainShader::words(*level.packed));
       const glm::ivec3 bricks = (level.grid.resolution + kBrick - 1) / kBrick;
       frame.shaders().dispatch(program, bindings, glm::uvec3(bricks));
       frame.device().barrier();

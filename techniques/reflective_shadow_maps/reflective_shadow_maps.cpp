@@ -1,9 +1,11 @@
 // Reflective shadow maps: Dachsbacher & Stamminger 2005, "Reflective shadow maps"; thesis Gomes 2015,
 // Sec. 2.2. What every light sees, as a source of one-bounce light, and gathering from it without visibility.
 #include <algorithm>
+#include <cmath>
 
 #include "lumivox/pipeline/gpu_scene.h"
 #include "lumivox/pipeline/light_samples.h"
+#include "lumivox/pipeline/list_dispatch.h"
 #include "lumivox/plugin/technique.h"
 #include "reflective_shadow_maps_shaders.h"
 
@@ -11,7 +13,6 @@ namespace lumivox::reflective_shadow_maps {
 namespace {
 
 namespace renderShader = shaders::reflective_shadow_maps::render;
-namespace rowShader = shaders::reflective_shadow_maps::row;
 namespace accumulateShader = shaders::reflective_shadow_maps::accumulate;
 namespace chooseShader = shaders::reflective_shadow_maps::choose;
 namespace gatherShader = shaders::reflective_shadow_maps::gather;
@@ -20,6 +21,7 @@ constexpr glm::ivec3 kImageGroup{8, 8, 1};
 constexpr glm::ivec3 kListGroup{64, 1, 1};
 // Turns of all loops of an invocation together: software drivers cut them off, without a word, at 65535.
 constexpr int kLoopLimit = 60000;
+constexpr std::uint32_t kFan = 16;                                 // kFan in sum_tree.glsl
 constexpr std::size_t kSurfaceLightBytes = 3 * sizeof(glm::vec4);  // SurfaceLight in shaders/common/rsm.glsl
 
 class RenderPass : public Pass {
@@ -92,7 +94,7 @@ class RenderPass : public Pass {
     const renderShader::View block{view.worldToClip, light,
                                    0.5f * static_cast<float>(result.flux->description().width)};
     const bool keep = frame.keepsEverything();
-    frame.device().beginDrawing(targets, state);
+    const gpu::Drawing drawing = frame.device().drawTo(targets, state);
     const std::size_t count = view.used ? scene.draws().size() : 0;
     for (std::size_t i = 0; i < count; ++i) {
       const SceneDraw& draw = scene.draws()[i];
@@ -112,9 +114,19 @@ class RenderPass : public Pass {
            renderShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)},
           scene.indices(), draw.firstIndex, draw.indexCount);
     }
-    frame.device().endDrawing();
   }
 };
+
+/// One over the sum of the printed weights, the squares of the pattern's distances (gather.comp).
+float publishedScale(int samples) {
+  double sum = 0.0;
+  for (int i = 0; i < samples; ++i) {
+    double whole = 0.0;
+    const double distance = std::modf(0.5 + 0.7548776662466927 * (i + 1), &whole);
+    sum += distance * distance;
+  }
+  return static_cast<float>(1.0 / sum);
+}
 
 class GatherPass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
@@ -137,13 +149,13 @@ class GatherPass : public Pass {
       1.0f,
       {0.01f, 1.0f},
       "",
-      "with 'projected': radius of the pattern as a share of the half turn around a light, or of a directional light's view"};
+      "with 'projected': radius of the pattern as a share of the half turn around a light, or of the width of the view of a directional light, with 'published' of a spot light too"};
   Param<std::string> weights{
       this,
       "weights",
       "exact",
       {"exact", "published"},
-      "with 'projected': weight of a sample by the density of the pattern, or the printed square of its distance"};
+      "with 'projected': weight of a sample by the density of the pattern, or the printed square of its distance over the sum of these squares"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
                      "indirect light reflected by the diffuse lobe, without occlusion, W/(sr m^2)"};
 
@@ -163,13 +175,12 @@ class GatherPass : public Pass {
     parameters.width = map->flux->description().width;
     parameters.lightCount = map->lightCount;
     parameters.samples = samples;
-    parameters.publishedWeights = weights == "published" ? 1 : 0;
     parameters.reach = reach;
     gatherShader::Variant variant;
     gpu::BufferRef chosen;
     if (method == "flux") {
       variant.method = gatherShader::Variant::methodChosen;
-      chosen = choose(frame, parameters.width, parameters.width * map->layerCount);
+      chosen = choose(frame, parameters.width, map->layerCount);
       bindings.push_back(gatherShader::chosen(*chosen));
     } else {
       variant.method =
@@ -180,6 +191,7 @@ class GatherPass : public Pass {
       bindings.push_back(gatherShader::lights(*map->lights));
       bindings.push_back(gatherShader::views(*map->views));
       parameters.samples = std::max(samples / map->lightCount, 1);
+      parameters.publishedScale = weights == "published" ? publishedScale(parameters.samples) : 0.0f;
     }
     const auto add = [&] {
       std::vector<gpu::ResourceBinding> all = bindings;
@@ -200,31 +212,40 @@ class GatherPass : public Pass {
     diffuse = result;
   }
 
-  /// Texels in proportion to their flux, as SurfaceLight.
-  gpu::BufferRef choose(PassContext& frame, int width, int rows) {
-    const int count = samples;
-    const gpu::BufferRef cumulative =
-        frame.buffer(static_cast<std::uint64_t>(rows) * sizeof(float), "importance of rows");
-    const gpu::BufferRef chosen =
-        frame.buffer(static_cast<std::uint64_t>(count) * kSurfaceLightBytes, "chosen texels");
+  /// Texels in proportion to their flux, as SurfaceLight, by a tree of sums (sum_tree.glsl).
+  gpu::BufferRef choose(PassContext& frame, int width, int layers) {
+    const auto count = static_cast<std::uint32_t>(static_cast<int>(samples));
+    const auto side = static_cast<std::uint32_t>(width);
+    // From the texels to the root.
+    std::vector<std::uint32_t> sizes{side * side * static_cast<std::uint32_t>(layers)};
+    std::uint32_t total = 0;
+    do {
+      sizes.push_back((sizes.back() + kFan - 1) / kFan);
+      total += sizes.back();
+    } while (sizes.back() > 1);
+    const gpu::BufferRef tree = frame.buffer(total * sizeof(float), "sums of flux");
+    const gpu::BufferRef chosen = frame.buffer(count * kSurfaceLightBytes, "chosen texels");
     using gpu::Sampling;
-    frame.dispatch(frame.program(rowShader::kProgram),
-                   {rowShader::parameters({width, rows}), rowShader::rsmFlux(*map->flux, Sampling::nearest),
-                    rowShader::rows(*cumulative)},
-                   {rows, 1, 1}, kListGroup);
-    for (int first = 0; first < rows; first += kLoopLimit) {
-      frame.dispatch(frame.program(accumulateShader::kProgram),
-                     {accumulateShader::parameters({first, std::min(kLoopLimit, rows - first)}),
-                      accumulateShader::rows(*cumulative)},
-                     {1, 1, 1}, {1, 1, 1});
+    std::uint32_t firstOfAddends = 0, firstOfSums = total;
+    for (std::size_t level = 1; level < sizes.size(); ++level) {
+      firstOfSums -= sizes[level];
+      accumulateShader::Variant variant;
+      variant.of = level == 1 ? accumulateShader::Variant::ofTexels : accumulateShader::Variant::ofSums;
+      frame.dispatch(
+          frame.program(accumulateShader::kProgram, variant.key()),
+          {accumulateShader::parameters({sizes[level - 1], side, firstOfAddends, firstOfSums}),
+           accumulateShader::rsmFlux(*map->flux, Sampling::nearest), accumulateShader::tree(*tree)},
+          listItems(sizes[level], kListGroup.x), kListGroup);
+      firstOfAddends = firstOfSums;
     }
+    const auto levels = static_cast<std::uint32_t>(sizes.size() - 1);
     frame.dispatch(frame.program(chooseShader::kProgram),
-                   {chooseShader::parameters({width, rows, count}),
+                   {chooseShader::parameters({sizes.front(), side, levels, count}),
                     chooseShader::rsmPosition(*map->position, Sampling::nearest),
                     chooseShader::rsmNormal(*map->normal, Sampling::nearest),
-                    chooseShader::rsmFlux(*map->flux, Sampling::nearest), chooseShader::rows(*cumulative),
+                    chooseShader::rsmFlux(*map->flux, Sampling::nearest), chooseShader::tree(*tree),
                     chooseShader::chosen(*chosen)},
-                   {count, 1, 1}, kListGroup);
+                   {static_cast<int>(count), 1, 1}, kListGroup);
     return chosen;
   }
 };

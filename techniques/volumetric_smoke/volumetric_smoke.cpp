@@ -1,6 +1,8 @@
 // Light in participating media on a voxel grid: thesis Gomes 2015, Sec. 2.5 and 4.5, after Vos 2014,
 // "Volumetric light effects in Killzone: Shadow Fall". Particles, insertion into the grid, dithered ray
 // marching, bilateral upsampling.
+#include "volumetric_smoke.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,8 +10,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/pipeline/grid_placement.h"
-#include "lumivox/pipeline/media.h"
-#include "lumivox/plugin/technique.h"
+#include "lumivox/pipeline/list_dispatch.h"
 #include "volumetric_smoke_shaders.h"
 
 namespace lumivox::volumetric_smoke {
@@ -24,7 +25,6 @@ namespace upsampleShader = shaders::volumetric_smoke::upsample;
 
 constexpr glm::ivec3 kParticleGroup{64, 1, 1};  // local sizes of the shaders
 constexpr glm::ivec3 kVoxelGroup{4, 4, 4};
-constexpr glm::ivec3 kImageGroup{8, 8, 1};
 
 constexpr double kUnitsPerParticle = 16777216.0;  // kUnits in insert.comp
 
@@ -66,7 +66,8 @@ class ParticlesPass : public Pass {
           frame.buffer(static_cast<std::uint64_t>(medium.particles) * sizeof(glm::vec4), "particles");
       frame.dispatch(frame.program(particlesShader::kProgram),
                      {particlesShader::parameters(parameters), particlesShader::offsets(*group.offsets)},
-                     {medium.particles, 1, 1}, kParticleGroup);
+                     listItems(static_cast<std::uint64_t>(medium.particles), kParticleGroup.x),
+                     kParticleGroup);
       result.groups.push_back(std::move(group));
     }
     particles = result;
@@ -84,6 +85,12 @@ class InsertPass : public Pass {
                         64,
                         {8, kLargestGrid},
                         "voxels along the longest side of the box that holds all particles of a medium"};
+  Param<std::string> deposit{
+      this,
+      "deposit",
+      "clouds",
+      {"clouds", "counts"},
+      "a particle as the cloud that it is, or all of it in the one voxel that holds its middle, as published"};
   Out<ScatteringGrid> media{this, "media", "density, extinction and scattering of every medium"};
 
   Reads readsFrom() const override { return Reads::geometry; }
@@ -153,6 +160,8 @@ class InsertPass : public Pass {
     parameters.radius = std::max(static_cast<float>(medium.radius), voxelSize);
     insertShader::Variant variant;
     variant.space = space.present();
+    variant.deposit =
+        deposit == "counts" ? insertShader::Variant::depositCounts : insertShader::Variant::depositClouds;
     std::vector<gpu::ResourceBinding> bindings{insertShader::offsets(*group.offsets),
                                                insertShader::lowWords(*low), insertShader::highWords(*high)};
     if (variant.space) {
@@ -161,8 +170,8 @@ class InsertPass : public Pass {
       bindings.push_back(insertShader::occupancy(*space->opacity, gpu::Sampling::nearest));
     }
     bindings.push_back(insertShader::parameters(parameters));
-    frame.dispatch(frame.program(insertShader::kProgram, variant.key()), bindings, {group.count, 1, 1},
-                   kParticleGroup);
+    frame.dispatch(frame.program(insertShader::kProgram, variant.key()), bindings,
+                   listItems(static_cast<std::uint64_t>(group.count), kParticleGroup.x), kParticleGroup);
 
     result.density = frame.texture(volumeOf(size, gpu::Format::r32f), "density of particles");
     const double voxelVolume = std::pow(static_cast<double>(voxelSize), 3.0);
@@ -174,31 +183,6 @@ class InsertPass : public Pass {
   }
 
   std::map<const DensityVolume*, gpu::TextureRef> volumes_;
-};
-
-/// Block View of range.glsl. Its mirrors in the shaders' headers have the same members.
-template <class View>
-View viewOf(const CameraView& camera, int pixelsPerSample) {
-  View view{};
-  view.eyeWorld = camera.eye;
-  view.pixelsPerSample = pixelsPerSample;
-  view.cornerDirection = camera.direction(0.0f, 0.0f);
-  view.perColumn = camera.direction(1.0f, 0.0f) - view.cornerDirection;
-  view.perRow = camera.direction(0.0f, 1.0f) - view.cornerDirection;
-  return view;
-}
-
-/// Two images: scattered radiance and transmittance.
-struct Result {
-  gpu::TextureRef scattered, transmittance;
-  Result(PassContext& frame, int width, int height) {
-    gpu::TextureDescription description;
-    description.format = gpu::Format::rgba32f;
-    description.width = width;
-    description.height = height;
-    scattered = frame.texture(description, "scattered radiance");
-    transmittance = frame.texture(description, "transmittance");
-  }
 };
 
 class MarchPass : public Pass {
@@ -253,7 +237,7 @@ class MarchPass : public Pass {
   void run(PassContext& frame) override {
     const CameraView& camera = frame.snapshot().camera;
     const int pixels = resolution == "half" ? 2 : 1;
-    const glm::ivec2 size((camera.width + pixels - 1) / pixels, (camera.height + pixels - 1) / pixels);
+    const glm::ivec2 size = samplesOf(camera, pixels);
     const Result result(frame, size.x, size.y);
     const MediaBinding bound(frame, *media);
 
@@ -395,5 +379,6 @@ LUMIVOX_TECHNIQUE(registry) {
   registry.add<InsertPass>("insert", "Media as densities in grids (thesis Listing 4.50)");
   registry.add<MarchPass>("march",
                           "Single scattering and transmittance along rays (thesis Listings 4.51-4.53)");
+  addMarchAsPublished(registry);
   registry.add<UpsamplePass>("upsample", "Bilateral upsampling of the march (thesis Sec. 4.5)");
 }

@@ -14,13 +14,16 @@
 namespace lumivox::voxel_cone_tracing {
 namespace {
 
+namespace markShader = shaders::voxel_cone_tracing::mark;
+namespace claimShader = shaders::voxel_cone_tracing::claim;
+namespace argumentsShader = shaders::voxel_cone_tracing::arguments;
 namespace injectShader = shaders::voxel_cone_tracing::inject;
 namespace addShader = shaders::voxel_cone_tracing::add;
 namespace resolveShader = shaders::voxel_cone_tracing::resolve;
 namespace filterShader = shaders::voxel_cone_tracing::filter;
 namespace gatherShader = shaders::voxel_cone_tracing::gather;
 
-constexpr glm::ivec3 kVoxelGroup{4, 4, 4};  // local size of the passes over voxels
+constexpr glm::ivec3 kVoxelGroup{4, 4, 4};  // local size of the passes over voxels, and of that over bricks
 constexpr glm::ivec3 kImageGroup{8, 8, 1};
 constexpr float kLargestHalf = 32768.0f;  // half floats end at 65504; filtering adds nothing to the largest
 
@@ -66,6 +69,16 @@ class InjectPass : public Pass {
                            "media between lights and surfaces, which dim the light on its way"};
   Param<int> mediumSteps{
       this, "medium_steps", 16, {1, 1024}, "most steps through a medium that varies, towards a light"};
+  Param<bool> storeMedia{
+      this, "store_media", false,
+      "the media lie in the voxels beside the surfaces and scatter light there, evenly to all sides, so that one set of cones sees both and 'gather' takes no media of its own (thesis Sec. 4.5)"};
+  Param<float> ambient{
+      this,
+      "ambient",
+      0.0f,
+      {0.0f, 1e9f},
+      "",
+      "irradiance that all surfaces receive besides that of the lights, W/m^2: cones then see what no light reaches (thesis Fig. 66)"};
   Param<bool> twoSided{this, "two_sided", true,
                        "light on the back of a triangle counts; off, as published: only on the front"};
   Param<std::string> precision{
@@ -73,6 +86,12 @@ class InjectPass : public Pass {
   Out<RadianceGrid> radiance{this, "radiance", "reflected radiance and opacity; the finest level only"};
 
   Reads readsFrom() const override { return Reads::lights | Reads::materials; }
+
+  /// Room for the sums of occupied voxels, and where they lie (bricks.glsl).
+  struct Sums {
+    glm::ivec3 brickCount{0};
+    gpu::BufferRef bricks, voxels;
+  };
 
   void run(PassContext& frame) override {
     RadianceGrid result;
@@ -88,54 +107,65 @@ class InjectPass : public Pass {
     result.radiance = frame.texture(description, "radiance grid");
     result.filledLevels = 1;
 
-    // Counts, largest values and sums: one 32-bit integer a voxel each that fragments can lie in; reading
-    // beyond gives 0.
-    gpu::TextureDescription words = description;
-    words.width = fragments->grid.resolution.x;
-    words.height = fragments->grid.resolution.y;
-    words.depth = fragments->grid.resolution.z;
-    words.format = gpu::Format::r32ui;
-    words.levels = 1;
-    const auto zeroed = [&](const char* label) {
-      gpu::TextureRef texture = frame.texture(words, label);
-      texture->clear(glm::vec4(0.0f));
-      return texture;
-    };
-    const gpu::TextureRef counts = zeroed("fragments per voxel"),
-                          brightest = zeroed("brightest fragment per voxel");
-    const gpu::TextureRef red = zeroed("sum of red"), green = zeroed("sum of green"),
-                          blue = zeroed("sum of blue"), coverage = zeroed("sum of coverage");
+    const Sums sums = claimSums(frame, size, result.occupied);
     const gpu::BufferRef radiances =
         frame.buffer(std::max<std::uint64_t>(fragments->capacity, 1) * 3 * sizeof(float),
                      "reflected radiance per fragment");
-    const float range = largestRadiance(frame.sceneDescription(), frame.snapshot(), result.grid.voxelSize);
+    const float range = largestRadiance(frame.sceneDescription(), frame.snapshot(), result.grid.voxelSize) +
+                        ambient / glm::pi<float>();
     if (precision == "half") result.unit = range / kLargestHalf;
 
-    light(frame, *counts, *brightest, *radiances, range);
+    light(frame, sums, *radiances, range);
     frame.shaders().dispatchIndirect(
         frame.program(addShader::kProgram),
-        {addShader::fragmentCount(*fragments->count), addShader::fragments(*fragments->fragments),
-         addShader::radiances(*radiances), addShader::counts(*counts), addShader::brightest(*brightest),
-         addShader::sumRed(*red), addShader::sumGreen(*green), addShader::sumBlue(*blue),
-         addShader::sumCoverage(*coverage)},
+        {addShader::size({sums.brickCount}), addShader::fragmentCount(*fragments->count),
+         addShader::fragments(*fragments->fragments), addShader::radiances(*radiances),
+         addShader::bricks(*sums.bricks), addShader::sums(*sums.voxels)},
         *fragments->count, sizeof(std::uint32_t));
     frame.device().barrier();
-    frame.dispatch(
-        frame.program(resolveShader::kProgram),
-        {resolveShader::parameters(
-             {size, result.unit, fragments->coverage == VoxelFragments::Coverage::sum ? 1 : 0}),
-         resolveShader::counts(*counts), resolveShader::brightest(*brightest), resolveShader::sumRed(*red),
-         resolveShader::sumGreen(*green), resolveShader::sumBlue(*blue),
-         resolveShader::sumCoverage(*coverage), resolveShader::radianceImage(*result.radiance)},
-        size, kVoxelGroup);
+    resolve(frame, sums, range, result);
     radiance = result;
   }
 
+  /// Finds the occupied bricks, and gives every occupied voxel its place among the sums. There are no more of
+  /// them than fragments, so that nothing that happens on the device need be known here.
+  Sums claimSums(PassContext& frame, const glm::ivec3& size, OccupiedBricks& occupied) const {
+    constexpr std::uint64_t kWord = sizeof(std::uint32_t);
+    constexpr std::uint64_t kBrickBytes = 3 * kWord, kVoxelBytes = 6 * kWord;  // Brick, VoxelSums
+    const auto volume = [](const glm::ivec3& extent) {
+      return static_cast<std::uint64_t>(extent.x) * static_cast<std::uint64_t>(extent.y) *
+             static_cast<std::uint64_t>(extent.z);
+    };
+    Sums sums;
+    sums.brickCount = (size + (OccupiedBricks::kSide - 1)) / OccupiedBricks::kSide;
+    const std::uint64_t most = std::max<std::uint64_t>(fragments->capacity, 1);
+    sums.bricks = frame.buffer(volume(sums.brickCount) * kBrickBytes, "occupied voxels of bricks");
+    sums.voxels = frame.buffer(std::min(most, volume(size)) * kVoxelBytes, "sums of voxels");
+    occupied.bricks = frame.buffer(std::min(most, volume(sums.brickCount)) * kWord, "occupied bricks");
+    occupied.count = frame.buffer(OccupiedBricks::argumentsBytes(3), "occupied brick count");
+    const gpu::BufferRef totals = frame.buffer(2 * kWord, "claimed bricks and voxels");
+    for (const gpu::BufferRef& zeroed : {sums.bricks, sums.voxels, totals}) zeroed->clear();
+    frame.shaders().dispatchIndirect(
+        frame.program(markShader::kProgram),
+        {markShader::size({sums.brickCount}), markShader::fragmentCount(*fragments->count),
+         markShader::fragments(*fragments->fragments), markShader::bricks(*sums.bricks)},
+        *fragments->count, kWord);
+    frame.device().barrier();
+    frame.dispatch(frame.program(claimShader::kProgram),
+                   {claimShader::size({sums.brickCount}), claimShader::bricks(*sums.bricks),
+                    claimShader::brickList(*occupied.bricks), claimShader::brickTotals(*totals)},
+                   sums.brickCount, kVoxelGroup);
+    frame.dispatch(frame.program(argumentsShader::kProgram),
+                   {argumentsShader::brickTotals(*totals), argumentsShader::brickCount(*occupied.count)},
+                   {1, 1, 1}, {1, 1, 1});
+    return sums;
+  }
+
   /// What each fragment reflects, and of each voxel the number and the brightest of its fragments.
-  void light(PassContext& frame, const gpu::Texture& counts, const gpu::Texture& brightest,
-             const gpu::Buffer& radiances, float mostRadiance) {
+  void light(PassContext& frame, const Sums& sums, const gpu::Buffer& radiances, float mostRadiance) {
     injectShader::Variant variant;
     variant.lights = variant.shadows = shadow.present();
+    variant.reflected = fragments->reflected != nullptr;
     injectShader::Grid grid{};
     grid.gridLow = fragments->grid.low;
     grid.voxelSize = fragments->grid.voxelSize;
@@ -143,6 +173,8 @@ class InjectPass : public Pass {
     grid.mostRadiance = mostRadiance;
     grid.twoSided = twoSided ? 1 : 0;
     grid.mediumSteps = mediumSteps;
+    grid.brickCount = sums.brickCount;
+    grid.ambient = ambient;
     MediaBinding bound;
     if (variant.lights != 0 && media.present()) {
       bound = MediaBinding(frame, *media);
@@ -153,17 +185,61 @@ class InjectPass : public Pass {
                                                injectShader::fragmentCount(*fragments->count),
                                                injectShader::fragments(*fragments->fragments),
                                                injectShader::radiances(radiances),
-                                               injectShader::counts(counts),
-                                               injectShader::brightest(brightest)};
+                                               injectShader::bricks(*sums.bricks),
+                                               injectShader::sums(*sums.voxels)};
     if (shadow.present()) {
       bindings.push_back(injectShader::lights(*shadow->lights));
       bindings.push_back(injectShader::views(*shadow->views));
       bindings.push_back(injectShader::shadowDepth(*shadow->depth, gpu::Sampling::shadow));
     }
+    if (fragments->reflected != nullptr) bindings.push_back(injectShader::reflected(*fragments->reflected));
     bound.addTo(bindings);
     frame.shaders().dispatchIndirect(frame.program(injectShader::kProgram, variant.key()), bindings,
                                      *fragments->count, sizeof(std::uint32_t));
     frame.device().barrier();
+  }
+
+  /// The finest level from the sums: of the occupied bricks alone, or of all voxels where media lie in them.
+  void resolve(PassContext& frame, const Sums& sums, float mostRadiance, RadianceGrid& result) {
+    resolveShader::Parameters parameters{};
+    parameters.brickCount = sums.brickCount;
+    parameters.unit = result.unit;
+    parameters.resolution = result.grid.resolution;
+    parameters.coverageSum = fragments->coverage == VoxelFragments::Coverage::sum ? 1 : 0;
+    parameters.gridLow = result.grid.low;
+    parameters.voxelSize = result.grid.voxelSize;
+    parameters.mediumSteps = mediumSteps;
+    parameters.mostRadiance = mostRadiance;
+    std::vector<gpu::ResourceBinding> bindings{resolveShader::bricks(*sums.bricks),
+                                               resolveShader::sums(*sums.voxels),
+                                               resolveShader::radianceImage(*result.radiance)};
+    if (!(storeMedia && media.present())) {
+      result.radiance->clear(glm::vec4(0.0f), 0);
+      bindings.push_back(resolveShader::parameters(parameters));
+      bindings.push_back(resolveShader::brickList(*result.occupied.bricks));
+      bindings.push_back(resolveShader::brickCount(*result.occupied.count));
+      frame.shaders().dispatchIndirect(frame.program(resolveShader::kProgram, resolveShader::Variant{}.key()),
+                                       bindings, *result.occupied.count, OccupiedBricks::argumentsBytes(0));
+      frame.device().barrier();
+      return;
+    }
+    result.holdsMedia = true;
+    result.occupied = {};
+    const MediaBinding bound(frame, *media);
+    resolveShader::Variant variant;
+    variant.medium =
+        bound.varying() ? resolveShader::Variant::mediumVarying : resolveShader::Variant::mediumEven;
+    if (shadow.present()) {
+      variant.lights = 1;
+      parameters.lightCount = shadow->lightCount;
+      bindings.push_back(resolveShader::lights(*shadow->lights));
+      bindings.push_back(resolveShader::views(*shadow->views));
+      bindings.push_back(resolveShader::shadowDepth(*shadow->depth, gpu::Sampling::shadow));
+    }
+    bindings.push_back(resolveShader::parameters(parameters));
+    bound.addTo(bindings);
+    frame.dispatch(frame.program(resolveShader::kProgram, variant.key()), bindings, result.grid.resolution,
+                   kVoxelGroup);
   }
 };
 
@@ -173,8 +249,8 @@ class FilterPass : public Pass {
       this,
       "opacity",
       "facing",
-      {"facing", "average"},
-      "how children make a parent: seen through along the axis that they face, or, as published, their plain mean"};
+      {"facing", "average", "trilinear"},
+      "how children make a parent: seen through along the axis that they face; their plain mean; or that mean as published, in one read by the texture's filter, which misses children where sizes are odd"};
   Out<RadianceGrid> mips{this, "mips", "the same grid with one level per halving"};
 
   void run(PassContext& frame) override {
@@ -185,20 +261,45 @@ class FilterPass : public Pass {
           glm::ivec3(description.width >> level, description.height >> level, description.depth >> level),
           glm::ivec3(1));
     };
+    filterShader::Constants constants;
+    constants.rule = opacity == "facing" ? 0 : opacity == "average" ? 1 : 2;
+    const gpu::Sampling sampling =
+        opacity == "trilinear" ? gpu::Sampling::linearOneMip : gpu::Sampling::nearest;
+    // Whether the voxels of a level are those of the bricks: down to one a brick, where bricks are halved
+    // evenly.
+    const auto followsBricks = [&](int level) {
+      const int side = OccupiedBricks::kSide;
+      return radiance->occupied.bricks != nullptr && (side >> level) >= 1 &&
+             levelSize(0) % side == glm::ivec3(0);
+    };
     for (int level = 1; level < description.levels; ++level) {
       filterShader::Parameters parameters{};
       parameters.coarse = levelSize(level);
       parameters.fineLevel = level - 1;
       parameters.fine = levelSize(level - 1);
-      parameters.average = opacity == "average" ? 1 : 0;
-      frame.dispatch(
-          frame.program(filterShader::kProgram),
-          {filterShader::parameters(parameters), filterShader::radianceGrid(texture, gpu::Sampling::nearest),
-           filterShader::radianceImage(texture, level)},
-          parameters.coarse, kVoxelGroup);
+      std::vector<gpu::ResourceBinding> bindings{filterShader::parameters(parameters),
+                                                 filterShader::radianceGrid(texture, sampling),
+                                                 filterShader::radianceImage(texture, level)};
+      if (!followsBricks(level)) {
+        frame.dispatch(
+            frame.program(filterShader::kProgram, filterShader::Variant{}.key(), constants.values()),
+            bindings, parameters.coarse, kVoxelGroup);
+        continue;
+      }
+      filterShader::Variant variant;
+      variant.occupied = 1;
+      bindings.push_back(filterShader::brickList(*radiance->occupied.bricks));
+      bindings.push_back(filterShader::brickCount(*radiance->occupied.count));
+      radiance->radiance->clear(glm::vec4(0.0f), level);
+      frame.shaders().dispatchIndirect(
+          frame.program(filterShader::kProgram, variant.key(), constants.values()), bindings,
+          *radiance->occupied.count, OccupiedBricks::argumentsBytes(level));
+      frame.device().barrier();
     }
     RadianceGrid filtered = *radiance;
     filtered.filledLevels = description.levels;
+    filtered.opacity =
+        opacity == "facing" ? RadianceGrid::Opacity::ofVoxel : RadianceGrid::Opacity::ofFinestVoxel;
     mips = filtered;
   }
 };
@@ -215,6 +316,15 @@ class GatherPass : public Pass {
       "cosine",
       {"cosine", "published"},
       "cones of equal weight distributed as the cosine, or one upright and four at 45 degrees"};
+  Param<float> coneRatio{this,
+                         "cone_ratio",
+                         1.15470053837925152902f,  // 2 tan 30 degrees
+                         {0.01f, 8.0f},
+                         "",
+                         "diameter of one of those five over its height; no number is published"};
+  Param<bool> asPublished{
+      this, "as_published", false,
+      "Listings 4.12 and 4.13 to the letter: the five cones with the weights 1 and 0.707, not normalised, from two voxels on by samples of two voxels and more; 'cones', 'distribution', 'step', 'offset', 'start', 'clearance' and 'footprint' have no say"};
   Param<float> step{this, "step", 0.5f, {0.05f, 2.0f}, "", "step along a cone as a share of its diameter"};
   Param<float> offset{this, "offset", 1.0f, {0.0f, 8.0f}, "", "start of a cone along the normal, in voxels"};
   Param<float> start{this, "start", 1.0f, {0.0f, 8.0f}, "", "start of a cone along its axis, in voxels"};
@@ -233,6 +343,13 @@ class GatherPass : public Pass {
       "",
       "voxels that are read as a share of the diameter of the cone; as published: 1, which reads twice as wide as the cone"};
   Param<float> reach{this, "reach", 0.0f, {0.0f, 1e9f}, "m", "length of a cone; 0: to the end of the grid"};
+  Param<float> jitter{
+      this,
+      "jitter",
+      0.0f,
+      {0.0f, 1.0f},
+      "",
+      "most by which a cone's first step is shorter, as a share of it, by chance for each pixel and cone: noise in place of bands"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
                      "indirect light reflected by the diffuse lobe"};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::glossyMaterial,
@@ -242,6 +359,9 @@ class GatherPass : public Pass {
 
   void run(PassContext& frame) override {
     const RadianceGrid& input = *grid;
+    if (input.holdsMedia && media.present())
+      throw Error(
+          "voxel_cone_tracing.gather: the voxels of 'grid' hold the media already, and 'media' would dim what the cones see once more; expected 'media' to be left out, or 'store_media off' in voxel_cone_tracing.inject");
     gatherShader::Variant variant;
     variant.diffuse = diffuse.wanted();
     variant.glossy = glossy.wanted() && gbuffer->specular != nullptr;
@@ -255,6 +375,8 @@ class GatherPass : public Pass {
     gatherShader::Constants constants;
     constants.coneCount = cones;
     constants.publishedCones = distribution == "published" ? 1 : 0;
+    constants.asPublished = asPublished ? 1 : 0;
+    constants.opacityOfFinestVoxel = input.opacity == RadianceGrid::Opacity::ofFinestVoxel ? 1 : 0;
     gatherShader::Parameters parameters{};
     parameters.gridLow = input.grid.low;
     parameters.voxelSize = input.grid.voxelSize;
@@ -270,6 +392,10 @@ class GatherPass : public Pass {
     parameters.footprint = footprint;
     parameters.unit = input.unit;
     parameters.coarsest = static_cast<float>(input.radiance->description().levels - 1);
+    parameters.coneRatio = coneRatio;
+    parameters.jitter = jitter;
+    parameters.seed = {static_cast<std::uint32_t>(frame.seed()),
+                       static_cast<std::uint32_t>(frame.seed() >> 32)};
 
     using gpu::Sampling;
     std::vector<gpu::ResourceBinding> bindings{

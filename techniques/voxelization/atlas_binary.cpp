@@ -13,6 +13,15 @@ class AtlasBinaryPass : public BitVoxeliser {
   Param<float> texelsPerVoxel{this, "texels_per_voxel",    kTexelsPerVoxel, kTexelsPerVoxelRange,
                               "",   kTexelsPerVoxelMeaning};
 
+  Param<float> pointSize{
+      this,
+      "point_size",
+      1.0f,
+      {1.0f, 16.0f},
+      "",
+      "side of a texel's point across the stacks, in voxels; above 1 it closes holes of an atlas "
+      "with too few texels, and thickens what stands along the stacks"};
+
   void mark(PassContext& frame, const GridPlacement& grid, const gpu::Texture& words,
             const Draws& draws) override {
     atlas_.update(frame, static_cast<double>(grid.voxelSize) / static_cast<double>(texelsPerVoxel));
@@ -28,7 +37,7 @@ class AtlasBinaryPass : public BitVoxeliser {
           {binaryShader::positions(scene.positions()), binaryShader::texcoords(scene.texcoords()),
            binaryShader::objects(scene.objects()), binaryShader::indices(scene.indices()),
            binaryShader::draw({draw->object, draw->material}),
-           binaryShader::grid({grid.low, grid.voxelSize, grid.resolution}),
+           binaryShader::grid({grid.low, grid.voxelSize, grid.resolution, pointSize}),
            binaryShader::texels({static_cast<int>(texels.firstTexel), static_cast<int>(texels.texelCount)}),
            binaryShader::texelTriangles(atlas_.triangles()), binaryShader::texelPlaces(atlas_.places()),
            binaryShader::words(words), binaryShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)},

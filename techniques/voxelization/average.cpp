@@ -31,8 +31,12 @@ class AveragePass : public Pass {
   struct Slots {
     gpu::TextureRef numbers;  ///< per voxel: its slot from 1 on, or 0
     gpu::BufferRef count, voxels, fragments;
-    std::uint64_t used = 0, room = 0;
+    std::uint64_t room = 0;
   };
+
+  std::uint64_t room_ = 0;  ///< slots that there is room for: a guess, or what earlier frames needed
+
+  static std::uint64_t inSteps(std::uint64_t slots) { return (slots / kSlotStep + 1) * kSlotStep; }
 
   static gpu::TextureRef emptyVolume(PassContext& frame, const GridPlacement& grid, gpu::Format format,
                                      const char* label) {
@@ -41,10 +45,10 @@ class AveragePass : public Pass {
     return texture;
   }
 
-  Slots claimSlots(PassContext& frame) const {
+  Slots claimSlots(PassContext& frame) {
     Slots slots;
     slots.numbers = emptyVolume(frame, fragments->grid, gpu::Format::r32ui, "slots of voxels");
-    slots.count = frame.buffer(sizeof(std::uint32_t), "slot count");
+    slots.count = countBuffer(frame, "slot count");
     slots.count->clear();
     slots.voxels = frame.buffer(std::max<std::uint64_t>(fragments->capacity, 1) * sizeof(std::uint32_t),
                                 "voxels of slots");
@@ -53,16 +57,26 @@ class AveragePass : public Pass {
         {claimShader::fragmentCount(*fragments->count), claimShader::fragments(*fragments->fragments),
          claimShader::slotCount(*slots.count), claimShader::slotVoxels(*slots.voxels),
          claimShader::slots(*slots.numbers)},
-        *fragments->count, sizeof(std::uint32_t));
+        *fragments->count, kGroupsOffset);
     frame.device().barrier();
-    slots.used = slots.count->downloadValues<std::uint32_t>().at(0);
-    slots.room = (slots.used / kSlotStep + 1) * kSlotStep;
+    // A first guess: surfaces fill about as many voxels as three sides of the grid; never more than there are
+    // fragments.
+    const glm::ivec3& size = fragments->grid.resolution;
+    const auto side = static_cast<std::uint64_t>(std::max({size.x, size.y, size.z}));
+    room_ = std::max(room_, inSteps(std::min(3 * side * side, fragments->capacity)));
+    slots.room = room_;
+    finishCount(frame, *slots.count, slots.room);
+    frame.judgeLater(slots.count, kWantedOffset, [this](PassContext&, std::uint32_t count) {
+      if (count <= room_) return true;
+      room_ = inSteps(count);
+      return false;
+    });
     slots.fragments = frame.buffer(slots.room * sizeof(std::uint32_t), "fragments of slots");
-    frame.shaders().dispatch(
+    frame.shaders().dispatchIndirect(
         frame.program(numberShader::kProgram),
         {numberShader::slotCount(*slots.count), numberShader::slotVoxels(*slots.voxels),
          numberShader::fragmentsOfSlot(*slots.fragments), numberShader::slots(*slots.numbers)},
-        workGroupsFor(slots.used));
+        *slots.count, kGroupsOffset);
     frame.device().barrier();
     return slots;
   }
@@ -75,7 +89,7 @@ class AveragePass : public Pass {
         frame.program(brightestShader::kProgram),
         {brightestShader::fragmentCount(*fragments->count), brightestShader::fragments(*fragments->fragments),
          brightestShader::brightest(*brightest), brightestShader::slots(*slots.numbers)},
-        *fragments->count, sizeof(std::uint32_t));
+        *fragments->count, kGroupsOffset);
     frame.device().barrier();
     return brightest;
   }
@@ -139,10 +153,10 @@ class AveragePass : public Pass {
       opacity = result;
     }
     frame.shaders().dispatchIndirect(frame.program(addShader::kProgram, adding.key()), add, *fragments->count,
-                                     sizeof(std::uint32_t));
+                                     kGroupsOffset);
     frame.device().barrier();
-    frame.shaders().dispatch(frame.program(resolveShader::kProgram, resolving.key()), resolve,
-                             workGroupsFor(slots.used));
+    frame.shaders().dispatchIndirect(frame.program(resolveShader::kProgram, resolving.key()), resolve,
+                                     *slots.count, kGroupsOffset);
     frame.device().barrier();
   }
 

@@ -55,6 +55,7 @@ gpu::TextureRef BitVoxeliser::wordsOf(PassContext& frame, const GridPlacement& g
   const StillKey key = stillKey(frame, grid, still);
   const bool kept = !frame.startsAfresh() && still_ != nullptr && key == stillKey_;
   if (!kept) {
+    still_.reset();  // before the next one is taken: the pool may give back the same
     still_ = bitWords(frame, grid, "bits of what stands still");
     if (!still.empty()) mark(frame, grid, *still_, still);
     stillKey_ = key;
@@ -127,27 +128,26 @@ OccupancyGrid BitVoxeliser::opacityOf(PassContext& frame, const GridPlacement& g
   return result;
 }
 
-VoxelFragments BitVoxeliser::fragmentsOf(PassContext& frame, const GridPlacement& grid,
-                                         const Words& words) const {
-  // How many there are is known only to the device: they are counted first, then written.
-  const auto runOver = [&](const VoxelFragments& list, int append) {
-    fragmentShader::Variant variant;
-    variant.append = append;
-    variant.surface = words.surface != nullptr;
-    frame.dispatch(frame.program(fragmentShader::kProgram, variant.key()),
-                   {fragmentShader::parameters({static_cast<int>(list.capacity)}),
-                    fragmentShader::words(*words.voxels), fragmentShader::surfaceWords(surfaceOf(words)),
-                    fragmentShader::count(*list.count), fragmentShader::fragments(*list.fragments)},
-                   wordCount(grid), fragmentShader::kGroupSize);
-  };
-  const VoxelFragments counted = listBehind(frame, grid, nullptr, 0);
-  runOver(counted, 0);
-  std::uint32_t count = 0;
-  const std::vector<std::byte> word = counted.count->download(0, sizeof(count));
-  std::memcpy(&count, word.data(), sizeof(count));
-  const VoxelFragments list = listBehind(frame, grid, surface(), count);
-  runOver(list, 1);
+VoxelFragments BitVoxeliser::fragmentsOf(PassContext& frame, const GridPlacement& grid, const Words& words) {
+  // A first guess: surfaces fill about as many voxels as six sides of the grid.
+  const auto side =
+      static_cast<std::uint64_t>(std::max({grid.resolution.x, grid.resolution.y, grid.resolution.z}));
+  if (room_ == 0) room_ = 6 * side * side;
+  const VoxelFragments list = listBehind(frame, grid, surface(), room_);
+  frame.dispatch(
+      frame.program(fragmentShader::kProgram, fragmentShader::Variant{words.surface != nullptr}.key()),
+      {fragmentShader::parameters({static_cast<int>(list.capacity)}), fragmentShader::words(*words.voxels),
+       fragmentShader::surfaceWords(surfaceOf(words)), fragmentShader::count(*list.count),
+       fragmentShader::fragments(*list.fragments)},
+      wordCount(grid), fragmentShader::kGroupSize);
   finishList(frame, list);
+  frame.judgeLater(
+      list.count, kWantedOffset,
+      [this, room = room_, base = list.capacity - room_](PassContext& done, std::uint32_t count) {
+        const bool fits = count <= base + room;
+        if (!fits) room_ = roomFor(count - base, done.traits().movingGeometry);
+        return fits;
+      });
   return list;
 }
 

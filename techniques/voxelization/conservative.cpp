@@ -76,7 +76,7 @@ class ConservativePass : public Voxeliser {
     gpu::RenderTargets targets;
     targets.width = targets.height =
         std::max({list.grid.resolution.x, list.grid.resolution.y, list.grid.resolution.z});
-    frame.device().beginDrawing(targets, {});
+    const gpu::Drawing drawing = frame.device().drawTo(targets, {});
     rasterShader::Grid grid{};
     grid.gridLow = list.grid.low;
     grid.voxelSize = list.grid.voxelSize;
@@ -103,7 +103,6 @@ class ConservativePass : public Voxeliser {
            rasterShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)},
           draw->indexCount);
     }
-    frame.device().endDrawing();
   }
 
   void compute(PassContext& frame, const VoxelFragments& list, const Draws& draws) {

@@ -2,6 +2,8 @@
 // voxel.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "orthogonal_view.h"
 
 namespace lumivox::voxelization {
@@ -29,32 +31,58 @@ class DepthPeelingPass : public Voxeliser {
             texture(gpu::Format::r32f, "depth in voxels of a layer")};
   }
 
+  /// Layers that are peeled along each axis: as many as earlier frames found and one more, which must turn
+  /// out empty; of what stands still and of what moves.
+  struct Plan {
+    static constexpr int kFirst = 4;
+    std::array<int, 3> peeled{kFirst, kFirst, kFirst};
+    std::array<int, 3> deepest{};  ///< layer that showed something, counted from 1
+  };
+
   void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) override {
     const int side = viewSide(list.grid);
     const std::array<Layer, 2> pair{makeLayer(frame, side), makeLayer(frame, side)};
-    const gpu::BufferRef found = frame.buffer(sizeof(std::uint32_t), "whether a layer shows something");
+    const gpu::BufferRef deepest = frame.buffer(3 * sizeof(std::uint32_t), "deepest layer along each axis");
+    deepest->clear();
+    Plan& plan = draws.front()->moving ? moving_ : still_;
     for (int axis = 0; axis < 3; ++axis) {
       const OrthogonalView view = viewAlong(list, axis, 0.0f, static_cast<float>(list.grid.resolution[axis]));
-      for (int index = 0;; ++index) {
+      int& peeled = plan.peeled[static_cast<std::size_t>(axis)];
+      peeled = std::min<int>(peeled, layers);
+      for (int index = 0; index < peeled; ++index) {
         const Layer &now = pair[static_cast<std::size_t>(index % 2)],
                     &before = pair[static_cast<std::size_t>((index + 1) % 2)];
         peel(frame, view, draws, now, index == 0 ? nullptr : before.depth.get());
-        found->clear();
-        frame.dispatch(frame.program(appendShader::kProgram),
-                       {appendShader::view(view), appendShader::found(*found),
-                        appendShader::count(*list.count), appendShader::fragments(*list.fragments),
-                        appendShader::layerDepth(*now.depth, gpu::Sampling::nearest),
-                        appendShader::layerSurface(*now.surface, gpu::Sampling::nearest),
-                        appendShader::layerDepthInGrid(*now.depthInGrid, gpu::Sampling::nearest)},
-                       {side, side, 1}, appendShader::kGroupSize);
-        if (found->downloadValues<std::uint32_t>().at(0) == 0) break;
-        if (index + 1 == layers) {
-          frame.warn(fmt::format("peeled {} layers along {}, as many as asked for; there may be more",
-                                 index + 1, "xyz"[axis]));
-          break;
-        }
+        frame.dispatch(
+            frame.program(appendShader::kProgram),
+            {appendShader::view(view), appendShader::layer({index}), appendShader::deepest(*deepest),
+             appendShader::count(*list.count), appendShader::fragments(*list.fragments),
+             appendShader::layerDepth(*now.depth, gpu::Sampling::nearest),
+             appendShader::layerSurface(*now.surface, gpu::Sampling::nearest),
+             appendShader::layerDepthInGrid(*now.depthInGrid, gpu::Sampling::nearest)},
+            {side, side, 1}, appendShader::kGroupSize);
       }
+      frame.judgeLater(deepest, static_cast<std::uint64_t>(axis) * sizeof(std::uint32_t),
+                       [this, &plan, axis](PassContext& done, std::uint32_t count) {
+                         return wereAll(done, plan, axis, static_cast<int>(count));
+                       });
     }
+  }
+
+  /// Whether the layers along an axis were all of them; `count` of them showed something.
+  bool wereAll(PassContext& frame, Plan& plan, int axis, int count) const {
+    int &peeled = plan.peeled[static_cast<std::size_t>(axis)],
+        &deepest = plan.deepest[static_cast<std::size_t>(axis)];
+    if (count == peeled && peeled < layers) {
+      peeled *= 2;
+      return false;
+    }
+    if (count == layers)
+      frame.warn(fmt::format("peeled {} layers along {}, as many as asked for; there may be more", count,
+                             "xyz"[axis]));
+    deepest = std::max(deepest, count);
+    peeled = deepest + 1;
+    return true;
   }
 
   static void peel(PassContext& frame, const OrthogonalView& view, const Draws& draws, const Layer& layer,
@@ -64,7 +92,7 @@ class DepthPeelingPass : public Voxeliser {
     targets.depth = layer.depth.get();
     gpu::RasterState state;
     state.depthTest = state.depthWrite = true;
-    frame.device().beginDrawing(targets, state);
+    const gpu::Drawing drawing = frame.device().drawTo(targets, state);
     for (const SceneDraw* draw : draws) {
       peelShader::Variant variant;
       variant.textures = frame.keepsEverything() || draw->diffuseTexture != nullptr;
@@ -75,9 +103,10 @@ class DepthPeelingPass : public Voxeliser {
       frame.shaders().drawIndexed(frame.program(peelShader::kProgram, variant.key()), bindings,
                                   frame.scene().indices(), draw->firstIndex, draw->indexCount);
     }
-    frame.device().endDrawing();
     frame.device().barrier();
   }
+
+  Plan still_, moving_;
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 namespace lumivox::voxelization {
 
 namespace copyShader = shaders::voxelization::copy;
+namespace countShader = shaders::voxelization::copy_count;
 namespace finishShader = shaders::voxelization::finish;
 
 glm::uvec3 workGroupsFor(std::uint64_t items) {
@@ -20,21 +21,43 @@ glm::uvec3 workGroupsFor(std::uint64_t items) {
   return {static_cast<std::uint32_t>(std::min(groups, kMostGroups)), static_cast<std::uint32_t>(rows), 1u};
 }
 
+namespace {
+
+void requireListable(std::uint64_t fragments) {
+  if (fragments > 0x7fffffffu) throw Error(fmt::format("{} fragments do not fit into one list", fragments));
+}
+
+}  // namespace
+
+gpu::BufferRef countBuffer(PassContext& frame, const char* label) {
+  return frame.buffer(kWantedOffset + sizeof(std::uint32_t), label);
+}
+
+void copyCount(PassContext& frame, const gpu::Buffer& from, const gpu::Buffer& to) {
+  frame.dispatch(frame.program(countShader::kProgram), {countShader::from(from), countShader::to(to)},
+                 {1, 1, 1}, {1, 1, 1});
+}
+
+std::uint64_t roomFor(std::uint64_t wanted, bool moves) {
+  requireListable(wanted);
+  return moves ? wanted + wanted / 8 : wanted;
+}
+
 VoxelFragments listBehind(PassContext& frame, const GridPlacement& grid, const VoxelFragments* base,
                           std::uint64_t more) {
   VoxelFragments list;
   list.grid = grid;
   list.workGroupSize = kWorkGroupSize;
   list.capacity = more + (base != nullptr ? base->capacity : 0);
-  if (list.capacity > 0x7fffffffu)
-    throw Error(fmt::format("{} fragments do not fit into one list", list.capacity));
-  list.count = frame.buffer(4 * sizeof(std::uint32_t), "voxel fragment count");
+  requireListable(list.capacity);
+  list.count = countBuffer(frame, "voxel fragment count");
   list.fragments = frame.buffer(std::max<std::uint64_t>(list.capacity, 1) * VoxelFragments::kFragmentBytes,
                                 "voxel fragments");
   list.count->clear();
   if (base == nullptr) return list;
   assert(base->workGroupSize == kWorkGroupSize);
   list.coverage = base->coverage;
+  list.reflected = base->reflected;  // of the first fragments, which are the same
   frame.shaders().dispatchIndirect(
       frame.program(copyShader::kProgram),
       {copyShader::baseCount(*base->count), copyShader::baseFragments(*base->fragments),
@@ -44,11 +67,15 @@ VoxelFragments listBehind(PassContext& frame, const GridPlacement& grid, const V
   return list;
 }
 
+void finishCount(PassContext& frame, const gpu::Buffer& count, std::uint64_t room) {
+  frame.dispatch(
+      frame.program(finishShader::kProgram),
+      {finishShader::count(count), finishShader::parameters({static_cast<int>(room), kWorkGroupSize})},
+      {1, 1, 1}, {1, 1, 1});
+}
+
 void finishList(PassContext& frame, const VoxelFragments& list) {
-  frame.dispatch(frame.program(finishShader::kProgram),
-                 {finishShader::count(*list.count),
-                  finishShader::parameters({static_cast<int>(list.capacity), kWorkGroupSize})},
-                 {1, 1, 1}, {1, 1, 1});
+  finishCount(frame, *list.count, list.capacity);
 }
 
 }  // namespace lumivox::voxelization

@@ -19,6 +19,13 @@ class MsaaOpacityPass : public Voxeliser {
   Param<float> thickness{this, "thickness",
                          0.5f, {0.0f, 1.0f},
                          "",   "how thick a surface is seen from the side, in voxels; 0: as thin as it is"};
+  Param<int> supersampling{
+      this,
+      "supersampling",
+      1,
+      {1, 16},
+      "most pixels along a voxel for triangles that few samples meet, so that the coverage of small things does "
+      "not change by leaps as they move; the largest power of two that is no more; 1: none"};
   Out<OccupancyGrid> opacity{this, "opacity", "of the most opaque side of each voxel"};
   Out<OccupancyGrid> opacityX{this, "opacity_x", "seen along x"};
   Out<OccupancyGrid> opacityY{this, "opacity_y", "seen along y"};
@@ -44,15 +51,22 @@ class MsaaOpacityPass : public Voxeliser {
   VoxelFragments::Coverage coverage() const override { return VoxelFragments::Coverage::sum; }
 
   void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) override {
-    rasterise(frame, list.grid, draws, static_cast<int>(list.capacity), msaaShader::Variant::targetList,
-              {msaaShader::count(*list.count), msaaShader::fragments(*list.fragments)});
+    // Viewports of different sizes, of which each triangle is drawn in one. Deviates from thesis 004
+    // Sec. 3.5.2, where a geometry stage chooses the viewport: here the vertex stage of each viewport leaves
+    // out what is not its own.
+    int mostScale = 1;
+    while (2 * mostScale <= supersampling) mostScale *= 2;
+    for (int scale = 1; scale <= mostScale; scale *= 2)
+      rasterise(frame, list.grid, draws, static_cast<int>(list.capacity), msaaShader::Variant::targetList,
+                {msaaShader::count(*list.count), msaaShader::fragments(*list.fragments)}, scale, mostScale);
   }
 
   void rasterise(PassContext& frame, const GridPlacement& placement, const Draws& draws, int capacity,
-                 int target, const std::vector<gpu::ResourceBinding>& results) const {
+                 int target, const std::vector<gpu::ResourceBinding>& results, int scale = 1,
+                 int mostScale = 1) const {
     GpuScene& scene = frame.scene();
     gpu::RenderTargets targets;
-    targets.width = targets.height = viewSide(placement);
+    targets.width = targets.height = scale * viewSide(placement);
     targets.samples = sampleCount_;
     msaaShader::SampleGrid grid{};
     grid.gridLow = placement.low;
@@ -61,9 +75,11 @@ class MsaaOpacityPass : public Voxeliser {
     grid.capacity = capacity;
     grid.sampleCount = sampleCount_;
     grid.thickness = thickness;
+    grid.scale = scale;
+    grid.mostScale = mostScale;
     for (std::size_t i = 0; i < positions_.size(); ++i)
       grid.samples[i] = glm::vec4(positions_[i], 0.0f, 0.0f);
-    frame.device().beginDrawing(targets, {});
+    const gpu::Drawing drawing = frame.device().drawTo(targets, {});
     for (const SceneDraw* draw : draws) {
       grid.firstIndex = static_cast<int>(draw->firstIndex);
       msaaShader::Variant variant;
@@ -77,7 +93,6 @@ class MsaaOpacityPass : public Voxeliser {
       bindings.insert(bindings.end(), results.begin(), results.end());
       frame.shaders().draw(frame.program(msaaShader::kProgram, variant.key()), bindings, draw->indexCount);
     }
-    frame.device().endDrawing();
     frame.device().barrier();
   }
 
@@ -90,6 +105,7 @@ class MsaaOpacityPass : public Voxeliser {
     };
     const StillKey key = stillKey(frame, grid, still);
     if (frame.startsAfresh() || stillMasks_ == nullptr || !(key == stillMasksKey_)) {
+      stillMasks_.reset();  // before the next one is taken: the pool may give back the same
       stillMasks_ = frame.texture(volumeOf(grid, gpu::Format::r32ui), "samples of what stands still");
       stillMasks_->clear(glm::vec4(0.0f));
       mark(*stillMasks_, still);
@@ -107,7 +123,7 @@ class MsaaOpacityPass : public Voxeliser {
   }
 
   void countSides(PassContext& frame) {
-    const GridPlacement& grid = fragments.value().grid;
+    const GridPlacement grid = placement(frame);
     const gpu::TextureRef masks = sideMasks(frame, grid);
     const std::array<Out<OccupancyGrid>*, 4> outputs{&opacityX, &opacityY, &opacityZ, &opacity};
     for (int side = 0; side < 4; ++side) {

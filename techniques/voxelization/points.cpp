@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "aside.h"
@@ -22,30 +23,59 @@ class PointsPass : public Voxeliser {
   Param<float> density{
       this, "density", 8.0f, {0.001f, 1000.0f}, "", "adaptive: points per squared voxel size of area"};
 
+  Param<std::string> spread{
+      this,
+      "spread",
+      "random",
+      {"random", "regular"},
+      "random points; or the middles of equal parts of the triangle, of which there are "
+      "the next square number"};
+
   // Of one triangle; a grid around a camera may see a small part of a huge one.
   static constexpr int kMostPoints = 1 << 24;
 
-  std::uint64_t expectedFragments(const Scene& scene) const override {
-    if (!adaptive)
-      return std::max<std::uint64_t>(scene.triangleCount() * static_cast<std::uint64_t>(points), 1);
-    // Surfaces fill about as many voxels as six sides of the grid, twice.
-    const double area = 12.0 * resolution * resolution;
-    return static_cast<std::uint64_t>(area * static_cast<double>(density)) + scene.triangleCount() + 1;
+  std::uint64_t expectedFragments(const Scene& scene, const GridPlacement& grid) const override {
+    if (adaptive) return expectedOfArea(scene, static_cast<double>(grid.voxelSize));
+    const auto each = static_cast<std::uint64_t>(points);
+    std::uint64_t side = 1;
+    while (side * side < each) ++side;
+    return scene.triangleCount() * (spread == "regular" ? side * side : each);
   }
 
-  /// The largest triangle of the scene at rest, m^2.
-  static double largestTriangle(const Scene& scene) {
-    double largest = 0.0;
-    for (const Object& object : scene.objects)
+  /// As many as the scene's triangles ask for, or as a grid that is a small part of it may hold.
+  std::uint64_t expectedOfArea(const Scene& scene, double voxelSize) const {
+    double all = 0.0;
+    forEachArea(scene, [&](double area) {
+      const double asked = std::ceil(static_cast<double>(density) * area / (voxelSize * voxelSize));
+      all += std::clamp(asked, 1.0, double{kMostPoints});
+    });
+    // A part in 64 for squares, and for areas that the device rounds otherwise.
+    all *= spread == "regular" ? 1.5 : 1.0 + 1.0 / 64.0;
+    // Surfaces fill about as many voxels as six sides of the grid, twice.
+    const double held = 12.0 * resolution * resolution * static_cast<double>(density) +
+                        static_cast<double>(scene.triangleCount());
+    return static_cast<std::uint64_t>(around == "scene" ? all : std::min(all, held));
+  }
+
+  /// Of every triangle of the scene at rest, m^2.
+  template <class Work>
+  static void forEachArea(const Scene& scene, const Work& work) {
+    for (const Object& object : scene.objects) {
+      const glm::dmat3 linear(object.placement);
       for (const Part& part : object.parts)
         for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; i += 3) {
           const auto corner = [&](std::uint32_t k) {
             return glm::dvec3(scene.positions[scene.indices[i + k]]);
           };
-          const glm::dmat3 linear(object.placement);
-          largest = std::max(largest, 0.5 * glm::length(glm::cross(linear * (corner(1) - corner(0)),
-                                                                   linear * (corner(2) - corner(0)))));
+          work(0.5 *
+               glm::length(glm::cross(linear * (corner(1) - corner(0)), linear * (corner(2) - corner(0)))));
         }
+    }
+  }
+
+  static double largestTriangle(const Scene& scene) {
+    double largest = 0.0;
+    forEachArea(scene, [&](double area) { largest = std::max(largest, area); });
     return largest;
   }
 
@@ -76,6 +106,8 @@ class PointsPass : public Voxeliser {
     const gpu::Texture& diffuse =
         draw.diffuseTexture != nullptr ? *draw.diffuseTexture : scene.whiteTexture();
     const gpu::Texture& mask = draw.maskTexture != nullptr ? *draw.maskTexture : scene.whiteTexture();
+    pointsShader::Constants constants;
+    constants.regular = spread == "regular" ? 1 : 0;
     const std::uint64_t seed = frame.seed();
     const auto triangles = static_cast<int>(draw.indexCount / 3);
     const std::vector<gpu::ResourceBinding> bindings{
@@ -100,11 +132,11 @@ class PointsPass : public Voxeliser {
         pointsShader::diffuseTexture(diffuse, gpu::Sampling::linearMipsRepeat),
         pointsShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)};
     aside.clear();
-    frame.shaders().dispatch(frame.program(pointsShader::kProgram, variant.key()), bindings,
-                             workGroupsFor(static_cast<std::uint64_t>(triangles)));
+    frame.shaders().dispatch(frame.program(pointsShader::kProgram, variant.key(), constants.values()),
+                             bindings, workGroupsFor(static_cast<std::uint64_t>(triangles)));
     frame.device().barrier();
     variant.many = 1;
-    aside.workOff(frame, frame.program(pointsShader::kProgram, variant.key()), bindings);
+    aside.workOff(frame, frame.program(pointsShader::kProgram, variant.key(), constants.values()), bindings);
   }
 
   std::optional<double> largestTriangle_;  ///< m^2, once it was needed

@@ -1,5 +1,10 @@
 // What the camera sees becomes voxels (Mavridis & Papaioannou 2011, Sec. 3.2).
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "fragment_list.h"
+#include "lumivox/base/error.h"
 #include "voxelization_shaders.h"
 
 namespace lumivox::voxelization {
@@ -11,17 +16,22 @@ class ReprojectPass : public GridPass {
   In<GBuffer> gbuffer{this, "gbuffer", "what the camera sees"};
   In<VoxelFragments> base{this, "fragments", Presence::optional,
                           "voxels to which those that the camera sees are added; the grid is theirs then"};
+  // Sec. 3.2: the points bring the direct light along that the deferred renderer has computed.
+  In<Image> direct{this, "direct", Presence::optional,
+                   "direct light at the visible surfaces: their fragments reflect it, and what injects light "
+                   "need not light them again; without it that lights them like all others"};
   Out<VoxelFragments> fragments{this, "fragments", "surface samples: first those of the input"};
 
   Reads readsFrom() const override { return readsSurface(); }
 
   void run(PassContext& frame) override {
     const gpu::TextureDescription& picture = gbuffer->position->description();
-    const VoxelFragments list = listBehind(
+    VoxelFragments list = listBehind(
         frame, base.present() ? base->grid : placement(frame), base.present() ? &*base : nullptr,
         std::uint64_t{static_cast<unsigned>(picture.width)} * static_cast<unsigned>(picture.height));
     reprojectShader::Variant variant;
     variant.emission = gbuffer->emission != nullptr;
+    variant.reflected = direct.present();
     std::vector<gpu::ResourceBinding> bindings{
         reprojectShader::grid(
             {list.grid.low, list.grid.voxelSize, list.grid.resolution, static_cast<int>(list.capacity)}),
@@ -32,10 +42,29 @@ class ReprojectPass : public GridPass {
         reprojectShader::diffuse(*gbuffer->diffuse, gpu::Sampling::nearest)};
     if (gbuffer->emission != nullptr)
       bindings.push_back(reprojectShader::emission(*gbuffer->emission, gpu::Sampling::nearest));
+    if (direct.present()) {
+      requireFits(list, picture);
+      list.reflected = frame.buffer(std::max<std::uint64_t>(list.capacity, 1) * sizeof(std::uint32_t),
+                                    "direct light that fragments reflect");
+      list.reflected->clear(VoxelFragments::kNotKnown);
+      bindings.push_back(reprojectShader::reflected(*list.reflected));
+      bindings.push_back(reprojectShader::direct(*direct->texture, gpu::Sampling::nearest));
+    }
     frame.dispatch(frame.program(reprojectShader::kProgram, variant.key()), bindings,
                    {picture.width, picture.height, 1}, reprojectShader::kGroupSize);
     finishList(frame, list);
     fragments = list;
+  }
+
+  void requireFits(const VoxelFragments& list, const gpu::TextureDescription& picture) const {
+    const gpu::TextureDescription& light = direct->texture->description();
+    if (light.width != picture.width || light.height != picture.height)
+      throw Error(fmt::format("input 'direct' has {} x {} texels; expected {} x {}, those of the g-buffer",
+                              light.width, light.height, picture.width, picture.height));
+    if (list.reflected != nullptr)
+      throw Error(
+          "input 'fragments' brings direct light along already; expected input 'direct' at one "
+          "reprojection only");
   }
 };
 

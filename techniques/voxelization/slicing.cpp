@@ -1,5 +1,7 @@
 // Fang et al. 2000, "Hardware accelerated voxelization": one pass of the whole scene per slice of the grid,
 // between two clip planes.
+#include <map>
+
 #include "orthogonal_view.h"
 
 namespace lumivox::voxelization {
@@ -22,14 +24,31 @@ class SlicingPass : public Voxeliser {
   void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) override {
     gpu::RenderTargets targets;
     targets.width = targets.height = viewSide(list.grid);
-    frame.device().beginDrawing(targets, {});
+    std::vector<Bounds> bounds;
+    for (const SceneDraw* draw : draws) bounds.push_back(boundsOf(frame, *draw, list.grid));
+    const gpu::Drawing drawing = frame.device().drawTo(targets, {});
     for (int axis = axes == 1 ? 2 : 0; axis < 3; ++axis) {
       for (int slice = 0; slice < list.grid.resolution[axis]; ++slice) {
-        const auto depth = static_cast<float>(slice);
-        drawSlice(frame, list, draws, viewAlong(list, axis, depth, depth + 1.0f));
+        const auto low = static_cast<float>(slice), high = low + 1.0f;
+        Draws within;
+        for (std::size_t i = 0; i < draws.size(); ++i)
+          if (!(bounds[i].high[axis] < low) && !(bounds[i].low[axis] > high)) within.push_back(draws[i]);
+        drawSlice(frame, list, within, viewAlong(list, axis, low, high));
       }
     }
-    frame.device().endDrawing();
+  }
+
+  /// In voxels: what lies outside of a slice's clip planes as a whole is not drawn for it.
+  Bounds boundsOf(PassContext& frame, const SceneDraw& draw, const GridPlacement& grid) {
+    const ObjectState& state = frame.snapshot().objects[static_cast<std::size_t>(draw.object)];
+    if (!state.positions.empty()) return {glm::vec3(-1e30f), glm::vec3(1e30f)};  // it deforms
+    const auto [known, isNew] = atRest_.try_emplace(draw.firstIndex);
+    if (isNew) {
+      const Scene& scene = frame.sceneDescription();
+      for (std::uint32_t i = draw.firstIndex; i < draw.firstIndex + draw.indexCount; ++i)
+        known->second.grow(scene.positions[scene.indices[i]]);
+    }
+    return boundsInGrid(known->second, state.toWorld, grid);
   }
 
   static void drawSlice(PassContext& frame, const VoxelFragments& list, const Draws& draws,
@@ -45,6 +64,8 @@ class SlicingPass : public Voxeliser {
                                   frame.scene().indices(), draw->firstIndex, draw->indexCount);
     }
   }
+
+  std::map<std::uint32_t, Bounds> atRest_;  ///< of draws, by first index; object space
 };
 
 }  // namespace

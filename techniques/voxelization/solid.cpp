@@ -30,17 +30,10 @@ struct Columns {
 };
 
 Columns columnsOf(const Bounds& bounds, const glm::mat4& toWorld, const GridPlacement& grid) {
-  Bounds inGrid;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 local((corner & 1) != 0 ? bounds.high.x : bounds.low.x,
-                          (corner & 2) != 0 ? bounds.high.y : bounds.low.y,
-                          (corner & 4) != 0 ? bounds.high.z : bounds.low.z);
-    inGrid.grow((glm::vec3(toWorld * glm::vec4(local, 1.0f)) - grid.low) / grid.voxelSize);
-  }
+  const Bounds inGrid = boundsInGrid(bounds, toWorld, grid);
   const glm::vec2 most(grid.resolution);
-  // A voxel more on every side: the device's arithmetic may round otherwise.
-  const glm::ivec2 low(glm::clamp(glm::floor(glm::vec2(inGrid.low)) - 1.0f, glm::vec2(0.0f), most));
-  const glm::ivec2 high(glm::clamp(glm::ceil(glm::vec2(inGrid.high)) + 1.0f, glm::vec2(0.0f), most));
+  const glm::ivec2 low(glm::clamp(glm::floor(glm::vec2(inGrid.low)), glm::vec2(0.0f), most));
+  const glm::ivec2 high(glm::clamp(glm::ceil(glm::vec2(inGrid.high)), glm::vec2(0.0f), most));
   return {low, high - low};
 }
 

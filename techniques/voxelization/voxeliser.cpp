@@ -19,6 +19,19 @@ gpu::TextureDescription volumeOf(const GridPlacement& grid, gpu::Format format) 
   return description;
 }
 
+Bounds boundsInGrid(const Bounds& bounds, const glm::mat4& toWorld, const GridPlacement& grid) {
+  Bounds inGrid;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 local((corner & 1) != 0 ? bounds.high.x : bounds.low.x,
+                          (corner & 2) != 0 ? bounds.high.y : bounds.low.y,
+                          (corner & 4) != 0 ? bounds.high.z : bounds.low.z);
+    inGrid.grow((glm::vec3(toWorld * glm::vec4(local, 1.0f)) - grid.low) / grid.voxelSize);
+  }
+  inGrid.low -= 1.0f;
+  inGrid.high += 1.0f;
+  return inGrid;
+}
+
 Reads GridPass::readsSurface() const {
   const Reads surface = Reads::geometry | Reads::materials;
   return around == "camera" ? surface | Reads::camera : surface;
@@ -35,11 +48,11 @@ GridPlacement GridPass::placement(PassContext& frame) const {
   return placeGrid(snapshot.gridBounds, resolution);
 }
 
-std::uint64_t Voxeliser::expectedFragments(const Scene& scene) const {
+std::uint64_t Voxeliser::expectedFragments(const Scene& scene, const GridPlacement&) const {
   // Surfaces fill about as many voxels as six sides of the grid; every triangle touches at least one, mostly
-  // a few.
+  // more.
   const auto side = static_cast<std::uint64_t>(resolution);
-  return 12 * side * side + 4 * scene.triangleCount();
+  return 6 * side * side + 2 * scene.triangleCount();
 }
 
 GridPass::StillKey GridPass::stillKey(const PassContext& frame, const GridPlacement& grid,
@@ -51,57 +64,51 @@ GridPass::StillKey GridPass::stillKey(const PassContext& frame, const GridPlacem
   return key;
 }
 
-/// Appends behind the first `first` fragments; returns how many there are then, or would be.
-std::uint32_t Voxeliser::appendFrom(PassContext& frame, const Draws& draws, std::uint32_t first) {
-  if (draws.empty()) return first;
-  list_.count->uploadValues(std::span<const std::uint32_t>(&first, 1));
-  append(frame, list_, draws);
-  frame.device().barrier();
-  std::uint32_t count = 0;
-  const std::vector<std::byte> word = list_.count->download(0, sizeof(count));
-  std::memcpy(&count, word.data(), sizeof(count));
-  return count;
-}
-
 void Voxeliser::run(PassContext& frame) {
+  if (!fragments.wanted()) {
+    list_ = {};
+    stillCount_.reset();
+    return;
+  }
   Draws still, moving;
   for (const SceneDraw& draw : frame.scene().draws()) (draw.moving ? moving : still).push_back(&draw);
   const GridPlacement grid = placement(frame);
   const StillKey key = stillKey(frame, grid, still);
-  bool stillKept = !frame.startsAfresh() && list_.fragments != nullptr && key == stillKey_;
+  const bool stillKept = !frame.startsAfresh() && list_.fragments != nullptr && key == stillKey_;
   list_.grid = grid;
   list_.workGroupSize = kWorkGroupSize;
   list_.coverage = coverage();
   // A reader of an earlier frame may still hold the old count.
-  list_.count = frame.buffer(4 * sizeof(std::uint32_t), "voxel fragment count");
-  // A list that was too small is made anew with the size that it turned out to need; a frame like the last
-  // one fits at once. A first guess is no reason to ask for more than one buffer can have.
-  std::uint64_t capacity = list_.capacity;
-  if (!stillKept) {
+  list_.count = countBuffer(frame, "voxel fragment count");
+  if (stillKept) {
+    copyCount(frame, *stillCount_, *list_.count);
+  } else {
+    // A first guess is no reason to ask for more than one buffer can have.
     const std::uint64_t most = frame.device().info().maxStorageBytes / VoxelFragments::kFragmentBytes;
-    capacity = std::max(capacity, std::min(expectedFragments(frame.sceneDescription()), most));
+    if (room_ == 0)
+      room_ = std::max<std::uint64_t>(std::min(expectedFragments(frame.sceneDescription(), grid), most), 1);
+    list_.fragments.reset();  // before the next one is taken: the pool may give back the same
+    list_.fragments = frame.buffer(room_ * VoxelFragments::kFragmentBytes, "voxel fragments");
+    list_.capacity = room_;
+    list_.count->clear();
+    if (!still.empty()) append(frame, list_, still);
+    frame.device().barrier();
+    stillCount_ = countBuffer(frame, "count of what stands still");
+    copyCount(frame, *list_.count, *stillCount_);
+    stillKey_ = key;
   }
-  std::uint32_t count = 0;
-  for (;;) {
-    if (!stillKept) {
-      list_.fragments.reset();  // before the next one is taken: the pool may give back the same
-      list_.fragments = frame.buffer(capacity * VoxelFragments::kFragmentBytes, "voxel fragments");
-      list_.capacity = capacity;
-      stillCount_ = appendFrom(frame, still, 0);
-    }
-    // Of a list that is too small already, the size of the rest is still wanted.
-    count = appendFrom(frame, moving, stillCount_);
-    if (count <= list_.capacity) break;
-    if (count > 0x7fffffffu) throw Error(fmt::format("{} fragments do not fit into one list", count));
-    capacity = count;
-    stillKept = false;
-  }
-  stillKey_ = key;
   if (stillKept && !still.empty())
     frame.reused("fragments of what stands still", "static geometry is voxelised once");
-
-  list_.count->uploadValues(std::span<const std::uint32_t>(&count, 1));
+  if (!moving.empty()) append(frame, list_, moving);
+  frame.device().barrier();
   finishList(frame, list_);
+  // Where nothing moves, the next list from nothing will be as long as this one.
+  const bool repeats = moving.empty() && around == "scene";
+  frame.judgeLater(list_.count, kWantedOffset, [this, repeats](PassContext&, std::uint32_t count) {
+    const bool fits = count <= list_.capacity;
+    if (!fits || repeats) room_ = std::max<std::uint64_t>(roomFor(count, !repeats), 1);
+    return fits;
+  });
   fragments = list_;
 }
 

@@ -16,6 +16,10 @@ inline constexpr int kWorkGroupSize = 64;  // of the passes that read a list of 
 /// One texel a voxel.
 gpu::TextureDescription volumeOf(const GridPlacement& grid, gpu::Format format);
 
+/// Bounds of what lies within `bounds` in object space, in voxels; a voxel more on every side, since the
+/// device's arithmetic may round otherwise.
+Bounds boundsInGrid(const Bounds& bounds, const glm::mat4& toWorld, const GridPlacement& grid);
+
 /// What all passes have that make a grid of their own.
 class GridPass : public Pass {
  public:
@@ -60,17 +64,16 @@ class Voxeliser : public GridPass {
   virtual void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) = 0;
   /// How the coverages of one voxel's fragments are combined.
   virtual VoxelFragments::Coverage coverage() const { return VoxelFragments::Coverage::mean; }
-  /// A first guess at the number of fragments; a list that was too small is made anew.
-  virtual std::uint64_t expectedFragments(const Scene& scene) const;
+  /// A first guess at the number of fragments; a frame whose list was too small is made anew.
+  virtual std::uint64_t expectedFragments(const Scene& scene, const GridPlacement& grid) const;
 
   Out<VoxelFragments> fragments{this, "fragments", "surface samples"};
 
  private:
-  std::uint32_t appendFrom(PassContext& frame, const Draws& draws, std::uint32_t first);
-
-  VoxelFragments list_;           ///< kept between frames, so that the fragments of still geometry stay
-  std::uint32_t stillCount_ = 0;  ///< fragments of still geometry, at the beginning of the list
+  VoxelFragments list_;        ///< kept between frames, so that the fragments of still geometry stay
+  gpu::BufferRef stillCount_;  ///< how many of them there are, at the beginning of the list
   StillKey stillKey_;
+  std::uint64_t room_ = 0;  ///< fragments that the list is made for: a guess, or what earlier frames needed
 };
 
 /// Each registers the pass of its file.

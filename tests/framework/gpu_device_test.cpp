@@ -212,9 +212,10 @@ TEST_CASE("the device time of a pass agrees with a clock around a finished devic
     })"}});
   const Texture target(device(), picture(Format::r32f, 128, 128), "target");
   const auto draw = [&] {
-    device().beginDrawing({{{&target}}}, {});
-    device().draw(busy, Bindings{uniform(0, Depth{})}, 3);
-    device().endDrawing();
+    {
+      const Drawing drawing = device().drawTo({{{&target}}}, {});
+      device().draw(busy, Bindings{uniform(0, Depth{})}, 3);
+    }
   };
   device().time(draw);
   device().finish();
@@ -226,6 +227,84 @@ TEST_CASE("the device time of a pass agrees with a clock around a finished devic
   CHECK(elapsed.deviceMs <= clockMs * 1.25);
   CHECK(elapsed.deviceMs >= clockMs * 0.5);
   CHECK(elapsed.hostMs <= clockMs);
+}
+
+TEST_CASE("parts of frames are timed in order, and are read only when later frames are under way") {
+  const Program busy = computeProgram("busy", R"(
+    layout(local_size_x = 64) in;
+    layout(std140, binding = 0) uniform Block { uint rounds; };
+    layout(std430, binding = 0) buffer Words { uint words[]; };
+    void main() {
+      uint state = gl_GlobalInvocationID.x + 1u;
+      for (uint i = 0u; i < rounds; ++i) state = state * 1664525u + 1013904223u;
+      words[gl_GlobalInvocationID.x] = state;
+    })");
+  struct Rounds {
+    std::uint32_t rounds;
+    std::uint32_t unused[3] = {};
+  };
+  const Buffer words(device(), 4096 * 4, "words");
+  const auto work = [&](std::uint32_t rounds) {
+    device().dispatch(busy, Bindings{uniform(0, Rounds{rounds}), storage(0, words)}, {64, 1, 1});
+    device().barrier();
+  };
+  work(1);
+  constexpr std::size_t kUnderWay = 3;
+  PassTimers timers(device(), kUnderWay);
+  std::vector<PassTimers::Frame> known;
+  for (int frame = 0; frame < 6; ++frame) {
+    timers.beginFrame();
+    // A frame that an error leaves is forgotten.
+    if (frame == 2) {
+      timers.begin();
+      timers.beginFrame();
+    }
+    for (int part = 0; part <= frame; ++part) {
+      timers.begin();
+      if (part == frame) work(1000);
+      timers.end();
+    }
+    timers.endFrame();
+    for (PassTimers::Frame& one : timers.take()) known.push_back(std::move(one));
+    CHECK(known.size() == static_cast<std::size_t>(std::max(0, frame + 1 - static_cast<int>(kUnderWay))));
+  }
+  for (PassTimers::Frame& one : timers.takeAll()) known.push_back(std::move(one));
+  REQUIRE(known.size() == 6);
+  // Frame n has n + 1 parts: each frame's times are its own.
+  for (std::size_t frame = 0; frame < 6; ++frame) {
+    REQUIRE(known[frame].size() == frame + 1);
+    for (const double ms : known[frame]) CHECK(ms >= 0.0);
+    CHECK(known[frame].back() > 0.0);
+  }
+  CHECK(timers.takeAll().empty());
+}
+
+TEST_CASE("without a debug context an error of the driver is told when the device is waited for") {
+  DeviceOptions options{"auto", ShaderInput::glsl};
+  REQUIRE(options.debugContext);  // of tests
+  options.debugContext = false;
+  Device plain(options);
+  const std::string text = "#version 450 core\n" + kWholeTarget;
+  const std::vector<StageCode> codes{{Stage::vertex, {}, text}};
+  const Program raster(plain, "raster", codes, {});
+  plain.enterPass("gather");
+  plain.dispatch(raster, Bindings{uniform(0, Depth{})}, {1, 1, 1});  // it has no compute stage
+  CHECK_NOTHROW(plain.leavePass());                                  // asking here would wait for the driver
+  CHECK_THAT(messageOf<Error>([&] { plain.finish(); }),
+             Catch::Contains("GL_INVALID_OPERATION") && Catch::Contains("--debug-context"));
+  CHECK_NOTHROW(plain.finish());
+}
+
+TEST_CASE("a command whose uniform blocks do not fit together is refused with their size") {
+  const Program idle = computeProgram("idle", "layout(local_size_x = 1) in; void main() {}");
+  std::vector<std::byte> block(16384);
+  Bindings blocks;
+  for (std::uint32_t i = 0; i < 80; ++i)
+    blocks.push_back({"Block", i, ResourceBinding::Uniform{BlockBytes(std::span<const std::byte>(block))}});
+  CHECK_THAT(messageOf<Error>([&] {
+               device().dispatch(idle, blocks, {1, 1, 1});
+             }),
+             Catch::Contains("1310720 bytes together"));
 }
 
 TEST_CASE("a device is chosen by word or index, and a wrong choice says what there is") {

@@ -28,9 +28,10 @@ TEST_CASE("row 0 is the top of the picture in raster and in compute passes alike
     void main() { imageStore(rows, ivec2(gl_GlobalInvocationID.xy), vec4(1.0 - (gl_GlobalInvocationID.y + 0.5) / 2.0, gl_GlobalInvocationID.y + 0.5, 0.0, 0.0)); })");
   const Texture drawn(device(), picture(Format::rg32f, 1, 4), "drawn"),
       computed(device(), picture(Format::rg32f, 1, 4), "computed");
-  device().beginDrawing({{{&drawn}}}, {});
-  device().draw(raster, Bindings{uniform(0, Depth{})}, 3);
-  device().endDrawing();
+  {
+    const Drawing drawing = device().drawTo({{{&drawn}}}, {});
+    device().draw(raster, Bindings{uniform(0, Depth{})}, 3);
+  }
   device().dispatch(compute, Bindings{image(0, computed)}, {1, 4, 1});
   device().barrier();
   // Four rows in clip space from +1 (top) to -1: centres 0.75, 0.25, -0.25, -0.75; fragment coordinates count
@@ -46,9 +47,10 @@ TEST_CASE("a triangle that is counter-clockwise with y up shows its front") {
     layout(location = 0) out float front;
     void main() { front = gl_FrontFacing ? 1.0 : 2.0; })"}});
   const Texture target(device(), picture(Format::r32f, 2, 2), "facing");
-  device().beginDrawing({{{&target}}}, {});
-  device().draw(facing, Bindings{uniform(0, Depth{})}, 3);  // (-1,-1), (3,-1), (-1,3): counter-clockwise
-  device().endDrawing();
+  {
+    const Drawing drawing = device().drawTo({{{&target}}}, {});
+    device().draw(facing, Bindings{uniform(0, Depth{})}, 3);  // (-1,-1), (3,-1), (-1,3): counter-clockwise
+  }
   CHECK(target.downloadFloats()[0] == 1.0f);
 }
 
@@ -66,9 +68,10 @@ TEST_CASE("indexed draws pull their attributes by the index") {
   positions.uploadValues(std::span<const float>(corners));
   indices.uploadValues(std::span<const std::uint32_t>(triangle));
   const Texture target(device(), picture(Format::r32f, 4, 4), "covered");
-  device().beginDrawing({{{&target}}}, {});
-  device().drawIndexed(pulling, Bindings{storage(4, positions)}, indices, 3, 3);
-  device().endDrawing();
+  {
+    const Drawing drawing = device().drawTo({{{&target}}}, {});
+    device().drawIndexed(pulling, Bindings{storage(4, positions)}, indices, 3, 3);
+  }
   const auto covered = target.downloadFloats();
   CHECK(covered[1] == 1.0f);  // row 0: the top
   CHECK(covered[2] == 1.0f);
@@ -83,9 +86,10 @@ TEST_CASE("the nearer surface wins the depth test, and clamped depth keeps what 
   const Texture target(device(), picture(Format::r32f, 1, 1), "target"),
       depth(device(), picture(Format::depth32f, 1, 1), "depth");
   const auto draw = [&](std::vector<float> depths, RasterState state) {
-    device().beginDrawing({{{&target}}, &depth}, state);
-    for (const float z : depths) device().draw(shading, Bindings{uniform(0, Depth{z})}, 3);
-    device().endDrawing();
+    {
+      const Drawing drawing = device().drawTo({{{&target}}, &depth}, state);
+      for (const float z : depths) device().draw(shading, Bindings{uniform(0, Depth{z})}, 3);
+    }
   };
   draw({0.25f, 0.75f}, {.depthTest = true, .depthWrite = true});
   CHECK(target.downloadFloats()[0] == 0.25f);
@@ -126,13 +130,15 @@ TEST_CASE("drawing reaches all layers by a geometry shader, and one layer alone"
     layout(location = 0) out float value;
     void main() { value = 9.0; })"}});
   const Texture layers(device(), {TextureKind::d2Array, Format::r32f, 2, 2, 3, 1}, "layers");
-  device().beginDrawing({{{&layers}}}, {});
-  device().draw(layering, Bindings{uniform(0, Depth{})}, 3);
-  device().endDrawing();
+  {
+    const Drawing drawing = device().drawTo({{{&layers}}}, {});
+    device().draw(layering, Bindings{uniform(0, Depth{})}, 3);
+  }
   CHECK(layers.downloadFloats() == std::vector<float>{1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3});
-  device().beginDrawing({.colours = {{&layers, 1}}, .clear = false}, {});
-  device().draw(flat, Bindings{uniform(0, Depth{})}, 3);
-  device().endDrawing();
+  {
+    const Drawing drawing = device().drawTo({.colours = {{&layers, 1}}, .clear = false}, {});
+    device().draw(flat, Bindings{uniform(0, Depth{})}, 3);
+  }
   CHECK(layers.downloadFloats() == std::vector<float>{1, 1, 1, 1, 9, 9, 9, 9, 3, 3, 3, 3});
 }
 
@@ -142,9 +148,10 @@ TEST_CASE("drawing without any target runs one fragment per pixel of the given s
     void main() { atomicAdd(count, 1u); })"}});
   Buffer count(device(), 4, "count");
   count.clear();
-  device().beginDrawing({.width = 48, .height = 31}, {});
-  device().draw(counting, Bindings{uniform(0, Depth{}), storage(0, count)}, 3);
-  device().endDrawing();
+  {
+    const Drawing drawing = device().drawTo({.width = 48, .height = 31}, {});
+    device().draw(counting, Bindings{uniform(0, Depth{}), storage(0, count)}, 3);
+  }
   device().barrier();
   CHECK(count.downloadValues<std::uint32_t>()[0] == 48 * 31);
 }
@@ -153,11 +160,43 @@ TEST_CASE("targets that cannot be drawn to together are an error, after which dr
   const Texture layers(device(), {TextureKind::d2Array, Format::r32f, 2, 2, 3, 1}, "layers"),
       flat(device(), picture(Format::r32f, 2, 2), "flat");
   CHECK_THAT(test::messageOf<Error>([&] {
-               device().beginDrawing({{{&layers}, {&flat}}}, {});
+               const Drawing drawing = device().drawTo({{{&layers}, {&flat}}}, {});
              }),
              Catch::Contains("layer"));
-  CHECK_NOTHROW(device().beginDrawing({{{&flat}}}, {}));
-  device().endDrawing();
+  CHECK_NOTHROW([&] { const Drawing drawing = device().drawTo({{{&flat}}}, {}); }());
+}
+
+TEST_CASE("a drawing that an error leaves is over, and the next one begins") {
+  const Texture target(device(), picture(Format::r32f, 2, 2), "target");
+  const Program filling = program("filling", {{Stage::vertex, kWholeTarget}, {Stage::fragment, R"(
+    layout(location = 0) out float value;
+    void main() { value = 3.0; })"}});
+  CHECK_THROWS_AS(
+      [&] {
+        const Drawing drawing = device().drawTo({{{&target}}}, {});
+        throw Error("a texture of this draw does not fit");
+      }(),
+      Error);
+  {
+    const Drawing drawing = device().drawTo({{{&target}}}, {});
+    device().draw(filling, Bindings{uniform(0, Depth{})}, 3);
+  }
+  CHECK(target.downloadFloats()[3] == 3.0f);
+}
+
+TEST_CASE("a texture that took the name of a deleted target is drawn to, and at its own size") {
+  const Program filling = program("filling", {{Stage::vertex, kWholeTarget}, {Stage::fragment, R"(
+    layout(location = 0) out float value;
+    void main() { value = gl_FragCoord.x; })"}});
+  for (const int side : {2, 5, 3}) {
+    const Texture target(device(), picture(Format::r32f, side, side), "short-lived");
+    for (int repeat = 0; repeat < 2; ++repeat) {  // the second finds the framebuffer of the first
+      const Drawing drawing = device().drawTo({{{&target}}}, {});
+      device().draw(filling, Bindings{uniform(0, Depth{})}, 3);
+    }
+    const std::vector<float> values = target.downloadFloats();
+    CHECK(values.back() == static_cast<float>(side) - 0.5f);
+  }
 }
 
 TEST_CASE("an empty framebuffer of several samples tells which of them a triangle covers") {
@@ -174,9 +213,10 @@ TEST_CASE("an empty framebuffer of several samples tells which of them a triangl
   RenderTargets targets;
   targets.width = targets.height = 8;
   targets.samples = samples;
-  device().beginDrawing(targets, {});
-  device().draw(counting, Bindings{storage(0, masks)}, 3);
-  device().endDrawing();
+  {
+    const Drawing drawing = device().drawTo(targets, {});
+    device().draw(counting, Bindings{storage(0, masks)}, 3);
+  }
   device().barrier();
   const auto values = masks.downloadValues<std::uint32_t>();
   const std::vector<glm::vec2> positions = device().samplePositions(samples);
@@ -198,6 +238,7 @@ TEST_CASE("more samples than the device has are refused with the number that it 
   RenderTargets targets;
   targets.width = targets.height = 4;
   targets.samples = device().info().maxSamples + 1;
-  const std::string message = test::messageOf<Error>([&] { device().beginDrawing(targets, {}); });
+  const std::string message =
+      test::messageOf<Error>([&] { const Drawing drawing = device().drawTo(targets, {}); });
   CHECK_THAT(message, Catch::Matchers::Contains(std::to_string(device().info().maxSamples)));
 }

@@ -112,6 +112,63 @@ TEST_CASE("a value that is not finite in one seed does not count in any") {
   CHECK(parts.noise.value == Approx(kNoise).epsilon(0.02));
 }
 
+TEST_CASE("a pixel that is not finite in one channel of one seed counts in no number of any seed") {
+  std::vector<Picture> seeds = seedsOf(3, kTruth + kBias, kNoise);
+  // The channels beside the broken one hold what would rule every number.
+  seeds[1].at(5, 5, 0) = std::numeric_limits<float>::quiet_NaN();
+  for (Picture& seed : seeds) seed.at(5, 5, 1) = 1e4f;
+  std::vector<Picture> clean = seeds;
+  Picture cleanTruth = truth();
+  for (Picture& seed : clean)
+    for (int c = 0; c < 3; ++c) seed.at(5, 5, c) = cleanTruth.at(5, 5, c);
+  const SeedsError error = compareSeeds(seeds, truth(), truthVariance());
+  const SeedsError without = compareSeeds(clean, cleanTruth, truthVariance());
+  const double values = kSize * kSize;
+  CHECK(error.mean.nonFinitePicture == 1);
+  CHECK(error.mean.rmse.value == Approx(without.mean.rmse.value * std::sqrt(values / (values - 1.0))));
+  CHECK(error.mean.flip < 2.0 * without.mean.flip);
+  CHECK(std::isnan(error.flipMap.at(5, 5, 0)));
+  const ErrorParts parts = errorParts(seeds, truth(), truthVariance());
+  CHECK(parts.noise.value == Approx(kNoise).epsilon(0.02));
+  CHECK(parts.bias.value < 2.0 * kBias);
+}
+
+TEST_CASE(
+    "every number over seeds is the mean of each seed's own, and the spread is added to the truth's noise") {
+  const std::vector<Picture> seeds = seedsOf(4, kTruth + kBias, kNoise);
+  const SeedsError all = compareSeeds(seeds, truth(), truthVariance());
+  std::vector<PictureError> each;
+  for (const Picture& seed : seeds) each.push_back(compare(seed, truth(), truthVariance()));
+  const auto check = [&](const char* name, const auto& value, const auto& uncertainty) {
+    INFO(name);
+    std::vector<double> values;
+    for (const PictureError& one : each) values.push_back(value(one));
+    const Measured over = meanOverSeeds(values);
+    CHECK(over.uncertainty > 0.0);
+    CHECK(value(all.mean) == over.value);
+    CHECK(uncertainty(all.mean) == Approx(std::hypot(uncertainty(each.front()), over.uncertainty)));
+  };
+  for (const auto& [name, number] :
+       {std::pair{"rmse", &PictureError::rmse}, std::pair{"relative MSE", &PictureError::relativeMse},
+        std::pair{"mean ratio", &PictureError::meanRatio}, std::pair{"bias", &PictureError::bias}})
+    check(
+        name, [number = number](const PictureError& e) { return (e.*number).value; },
+        [number = number](const PictureError& e) { return (e.*number).uncertainty; });
+  check(
+      "percentile", [](const PictureError& e) { return e.percentile95; },
+      [](const PictureError& e) { return e.percentile95Uncertainty; });
+  check(
+      "ssim", [](const PictureError& e) { return e.ssim; },
+      [](const PictureError& e) { return e.ssimUncertainty; });
+  check(
+      "flip", [](const PictureError& e) { return e.flip; },
+      [](const PictureError& e) { return e.flipUncertainty; });
+  check(
+      "flip ldr", [](const PictureError& e) { return e.flipLdr; },
+      [](const PictureError& e) { return e.flipLdrUncertainty; });
+  CHECK(all.flipMap.values() == flipHdr(seeds.front(), truth()).values());
+}
+
 TEST_CASE("a static picture does not flicker, and frames with noise of their own flicker by sqrt(2) sigma") {
   const std::vector<Picture> truths{truth(), noisy(kTruth, kTruthNoise, 2), noisy(kTruth, kTruthNoise, 3)};
   const std::vector<Picture> variances(3, truthVariance());

@@ -10,10 +10,9 @@ using namespace lumivox::test;
 
 TEST_CASE("a change is significant beyond three standard uncertainties of the difference") {
   StoredRun before = runNumber(6), after = runNumber(6);
-  before.point.errors[0].error.rmse.uncertainty = after.point.errors[0].error.rmse.uncertainty = 0.01;
-  before.point.errors[0].rmseOverSeeds = {1.0, 0.0};
+  before.point.errors[0].error.rmse = {1.0, 0.01};
   const auto change = [&](double rmse) {
-    after.point.errors[0].rmseOverSeeds = {rmse, 0.0};
+    after.point.errors[0].error.rmse = {rmse, 0.01};
     const RunComparison comparison = compareResults({before}, {after});
     for (const RunChange& one : comparison.changes)
       if (one.quantity == "indirect_diffuse rmse against one_bounce_diffuse") return one;
@@ -42,6 +41,67 @@ TEST_CASE("a time changed when its median moved beyond its spread and by a twent
   CHECK(frame(11.5, 0.6745).significant);
   CHECK_FALSE(frame(10.4, 0.001).significant);
   CHECK(frame(9.4, 0.001).better);
+}
+
+namespace {
+
+const RunChange& changeOf(const RunComparison& comparison, const std::string& quantity) {
+  for (const RunChange& one : comparison.changes)
+    if (one.quantity == quantity) return one;
+  throw std::runtime_error("not compared: " + quantity);
+}
+
+}  // namespace
+
+TEST_CASE("a time of fewer than three frames proves nothing, however far it moved") {
+  StoredRun before = runNumber(6), after = runNumber(6);
+  const auto frame = [&](int repeats) {
+    before.point.frameMs = {10.0, 10.0, 10.0, 10.0, 10.0, 25};
+    after.point.frameMs = {20.0, 20.0, 20.0, 20.0, 20.0, repeats};
+    return changeOf(compareResults({before}, {after}), "frame ms");
+  };
+  for (const int repeats : {1, 2}) {
+    CHECK_FALSE(frame(repeats).significant);
+    CHECK(frame(repeats).undecided);
+  }
+  CHECK(frame(3).significant);
+  CHECK_FALSE(frame(3).undecided);
+}
+
+TEST_CASE("an error of fewer than three seeds proves nothing unless there are no random numbers") {
+  StoredRun before = runNumber(6), after = runNumber(6);
+  const auto flip = [&](int seeds, bool deterministic) {
+    after.point.errors[0].error.flip = 0.5;
+    after.point.errors[0].seeds = seeds;
+    after.point.errors[0].deterministic = deterministic;
+    return changeOf(compareResults({before}, {after}), "indirect_diffuse flip against one_bounce_diffuse");
+  };
+  CHECK(flip(2, false).undecided);
+  CHECK_FALSE(flip(2, false).significant);
+  CHECK(flip(3, false).significant);
+  CHECK(flip(2, true).significant);
+  // Of an older store: the RMSE is of all seeds, the others of the first alone.
+  after.point.errors[0].everyMetricPerSeed = false;
+  CHECK(flip(3, false).undecided);
+  CHECK_FALSE(changeOf(compareResults({before}, {after}), "indirect_diffuse rmse against one_bounce_diffuse")
+                  .undecided);
+}
+
+TEST_CASE("times must be further apart than those of the same point measured twice") {
+  StoredRun before = runNumber(6), after = runNumber(6);
+  before.point.frameMs = {10.0, 10.0, 10.0, 10.0, 10.0, 25};
+  after.point.frameMs = {11.0, 11.0, 11.0, 11.0, 11.0, 25};
+  const auto control = [](double ms, double again) {
+    return RepeatedControl{"2026-01-31 12:00:00 UTC", {ms, 0.0}, {1.0, 0.0}, {again, 0.0}, {1.0, 0.0}};
+  };
+  CHECK(changeOf(compareResults({before}, {after}, timeFloorOf({})), "frame ms").significant);
+  const TimeFloor quiet = timeFloorOf({control(8.0, 8.2), control(5.0, 4.8)});
+  CHECK(quiet.controls == 2);
+  CHECK(quiet.frame == Approx(5.0 / 4.8 - 1.0));
+  CHECK(changeOf(compareResults({before}, {after}, quiet), "frame ms").significant);
+  const TimeFloor restless = timeFloorOf({control(8.0, 9.6), control(5.0, 4.8)});
+  CHECK(restless.frame == Approx(0.2));
+  CHECK_FALSE(changeOf(compareResults({before}, {after}, restless), "frame ms").significant);
 }
 
 TEST_CASE("points are matched by what they are called, and what cannot be compared is named") {

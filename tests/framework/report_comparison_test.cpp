@@ -25,8 +25,8 @@ ReportPoint pointOf(const std::string& pipeline, double samples, double timeMs, 
     error.component = "final";
     error.bias = bias;
     error.truth = bias ? "one_bounce" : "full";
-    error.rmseOverSeeds = {bias ? 0.5 * rmse : rmse, 0.0};
-    error.error.rmse = {rmse, 0.01 * rmse};
+    error.error.rmse = {bias ? 0.5 * rmse : rmse, 0.01 * rmse};
+    error.seeds = 3;
     error.error.flip = rmse;
     point.errors.push_back(error);
   }

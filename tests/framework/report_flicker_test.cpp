@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "lumivox/base/random.h"
+#include "lumivox/report/store.h"
 #include "pipeline_toys.h"
 #include "report/measure.h"
 #include "report/slopes.h"
@@ -153,6 +154,55 @@ TEST_CASE("the report tells a technique's noise from its bias") {
   }
 }
 
+TEST_CASE("every metric is a mean over the seeds, and its uncertainty holds their spread") {
+  const ReportOptions options = quickOptions();
+  const report::PointRecord record = measured("patterned", shiningRoom(false), options);
+  for (const ComponentError& error : record.point.errors) {
+    INFO(error.output << " against " << error.truth);
+    CHECK(error.seeds == options.seeds);
+    CHECK(error.enoughSeeds());
+    // The truth is 1 everywhere and has no noise. A picture's mean is 1.02 with the standard deviation
+    // sigma / sqrt(24 x 16 x 3), the mean over six of them is known to that / sqrt(6), and its estimate from
+    // six to a factor of 1.6 either way (chi-squared with five degrees of freedom, 95 %: 0.41 to 1.6).
+    const double deviation = kSigma / std::sqrt(24.0 * 16.0 * 3.0 * options.seeds);
+    CHECK(std::abs(error.error.meanRatio.value - 1.02) < 4.0 * deviation);
+    CHECK(error.error.meanRatio.uncertainty > 0.3 * deviation);
+    CHECK(error.error.meanRatio.uncertainty < 1.8 * deviation);
+    // Noise and bias together: sqrt(0.05^2 + 0.02^2).
+    CHECK(error.error.rmse.value == Approx(std::hypot(kSigma, 0.02f)).epsilon(0.02));
+    for (const char* metric : {"rmse", "relative_mse", "bias", "percentile95", "ssim", "flip", "flip_ldr"})
+      for (const NamedMetric& one : metricsOf(error))
+        if (one.name == metric) {
+          INFO(metric);
+          CHECK(one.measured.uncertainty > 0.0);
+          CHECK(one.measured.uncertainty <
+                0.1 * std::abs(one.measured.value - (one.name == "ssim" ? 1.0 : 0.0)));
+        }
+  }
+  // Two seeds with noise are too few for any claim; without random numbers they are enough.
+  ReportOptions two = options;
+  two.seeds = 2;
+  for (const ComponentError& error : measured("patterned", shiningRoom(false), two).point.errors) {
+    CHECK_FALSE(error.enoughSeeds());
+    for (const NamedMetric& one : metricsOf(error))
+      if (one.name == "flip") CHECK_FALSE(one.measured.enoughRepeats);
+  }
+  for (const ComponentError& error : measured("still", shiningRoom(false), two).point.errors)
+    CHECK(error.enoughSeeds());
+}
+
+TEST_CASE("flicker is a mean over the seeds, and its uncertainty holds their spread") {
+  const ReportOptions options = quickOptions();
+  const report::PointRecord record = measured("restless", shiningRoom(true), options);
+  for (const ComponentError& error : record.point.errors) {
+    // 3 pairs of 24 x 16 x 3 values that differ by sqrt(2) sigma: one seed's RMS is known to about
+    // 1/sqrt(2 x 3456) = 1.2 %, a little less well as pairs share frames; the mean of six to half a percent.
+    CHECK(error.flicker.value == Approx(std::sqrt(2.0) * kSigma).epsilon(0.02));
+    CHECK(error.flicker.uncertainty > 1e-3 * error.flicker.value);
+    CHECK(error.flicker.uncertainty < 2e-2 * error.flicker.value);
+  }
+}
+
 TEST_CASE("slopes are found per pipeline and parameter, with the others fixed, for errors, noise and time") {
   report::SceneRecord scene;
   for (const double cones : {4.0, 8.0})
@@ -165,7 +215,7 @@ TEST_CASE("slopes are found per pipeline and parameter, with the others fixed, f
       error.output = "indirect";
       error.error.noiseFloor = 0.01;
       const double rmse = 8.0 / cones / resolution;
-      error.rmseOverSeeds.value = std::hypot(rmse, error.error.noiseFloor);
+      error.error.rmse.value = std::hypot(rmse, error.error.noiseFloor);
       error.parts.noise.value = 1.0 / std::sqrt(resolution);
       record.point.errors = {error};
       record.point.frameMs = statisticsOf({0.001 * resolution * resolution});
@@ -229,5 +279,6 @@ TEST_CASE(
   const double few = noiseWith(8), many = noiseWith(512);
   INFO(few << ", " << many);
   CHECK(few > 1.5 * many);
-  CHECK(many >= 0.0);
+  // 64 times as many points: strata shrink errors in proportion at the most, and independent points by 8.
+  CHECK(many > few / 64.0);
 }

@@ -145,6 +145,24 @@ TEST_CASE("a point is beaten when another is as good in both and clearly better 
   CHECK_FALSE(beats(here, here));
 }
 
+TEST_CASE("of too few repeats nothing is beaten, and a machine's mood is no difference") {
+  const TradeOff here = at(10.0, 0.1, 0.1, 0.001);
+  TradeOff quick = at(5.0, 0.1, 0.1, 0.001);
+  CHECK(beats(quick, here));
+  CHECK_FALSE(beats(quick, here, 0.6));  // the same point was found 60 % apart
+  quick.timeMs.enoughRepeats = false;
+  CHECK_FALSE(beats(quick, here));
+  TradeOff right = at(10.0, 0.05, 0.1, 0.001);
+  CHECK(beats(right, here));
+  right.error.enoughRepeats = false;
+  CHECK_FALSE(beats(right, here));
+  // What is interpolated from it is as undecided.
+  CHECK_FALSE(errorAtTime({at(5.0, 0.2), right}, {0, 1}, 7.0).value.enoughRepeats);
+  CHECK(errorAtTime({at(5.0, 0.2), here}, {0, 1}, 7.0).value.enoughRepeats);
+  CHECK_FALSE(medianOf(statisticsOf({1.0, 2.0})).enoughRepeats);
+  CHECK(medianOf(statisticsOf({1.0, 2.0, 3.0})).enoughRepeats);
+}
+
 TEST_CASE("two points within their uncertainties are both on the front") {
   const TradeOff here = at(10.0, 0.1, 0.1, 0.01);
   CHECK_FALSE(beats(at(9.9, 0.099, 0.1, 0.01), here));

@@ -108,13 +108,10 @@ TEST_CASE("the whole picture is the output called final, else the sum of what is
   CHECK(compositePicture(FrameResult{}).empty());
 }
 
-TEST_CASE("the noise of the truth and the spread over seeds add in quadrature") {
+TEST_CASE("an error is told as its share of leaving the light out, where there is light") {
   ComponentError error;
-  error.rmseOverSeeds = {0.5, 0.03};
   error.error.rmse = {0.5, 0.04};
   error.errorOfNothing.rmse = {2.0, 0.0};
-  CHECK(error.rmse().value == 0.5);
-  CHECK(error.rmse().uncertainty == Approx(0.05));
   CHECK(error.ratioToNothing() == Approx(0.25));
   error.errorOfNothing.rmse = {0.0, 0.0};
   CHECK(std::isnan(error.ratioToNothing()));

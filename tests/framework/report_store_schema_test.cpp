@@ -18,6 +18,11 @@ void execute(const std::filesystem::path& file, const std::string& sql) {
   sqlite3_close(handle);
 }
 
+/// What schema 3 lacks.
+const std::string kWithout4 =
+    "DROP TABLE notes; DROP TABLE pictures; DROP TABLE controls; DROP TABLE claims; "
+    "ALTER TABLE errors DROP COLUMN per_seed; ";
+
 /// A store as an earlier version left it.
 std::filesystem::path oldStore(const TemporaryDirectory& directory) {
   const auto file = directory.path() / "old.sqlite";
@@ -50,7 +55,13 @@ TEST_CASE("a store of the schema before is read as it is, and gets the new table
     CHECK(runs[0].sceneName == "Cornell box");
     CHECK(runs[0].identity.width == 8);
     CHECK(runs[0].point.passOrder == std::vector<std::string>{"gbuffer", "shadow", "direct"});
-    CHECK_FALSE(runs[0].point.errors.empty());
+    REQUIRE_FALSE(runs[0].point.errors.empty());
+    // Its RMSE is over the seeds, the other numbers are of the first seed alone.
+    CHECK_FALSE(runs[0].point.errors[0].everyMetricPerSeed);
+    CHECK(runs[0].point.notes.empty());
+    CHECK(store.pictures(runs[0].identity.key()).empty());
+    CHECK(store.controls(runs[0].identity).empty());
+    CHECK_FALSE(store.claimedByOther(runs[0].identity.key()));
     CHECK(store.stressCells().empty());
     CHECK(store.ceilings().empty());
   }
@@ -65,8 +76,45 @@ TEST_CASE("a store of the schema before is read as it is, and gets the new table
     store.add({cellNumber(1)});
     CHECK(store.stressCells().size() == 1);
   }
-  CHECK(schemaOf(file) == 3);
+  CHECK(schemaOf(file) == 4);
   CHECK(ResultsStore(file, ResultsStore::Mode::read).runs().size() == 1);
+}
+
+TEST_CASE("the RMSE of a store of schema 3 is that over the seeds with both uncertainties") {
+  const TemporaryDirectory directory;
+  const auto file = directory.path() / "old.sqlite";
+  StoredRun run = runNumber(1);
+  run.point.errors[0].deterministic = false;
+  run.point.errors[0].seeds = 5;
+  {
+    ResultsStore store(file);
+    store.add(run);
+  }
+  // As schema 3 was: the first seed's RMSE with the truth's noise, and beside it mean and spread over seeds.
+  execute(file, kWithout4 +
+                    "UPDATE metrics SET value = 7, uncertainty = 0.03 WHERE name = 'rmse';"
+                    "INSERT INTO metrics VALUES (1, 0, 'rmse_over_seeds', 8, 0.04, 1);"
+                    "PRAGMA user_version = 3");
+  const auto check = [](const StoredRun& found) {
+    const ComponentError& error = found.point.errors.at(0);
+    CHECK(error.error.rmse.value == 8.0);
+    CHECK(error.error.rmse.uncertainty == Approx(0.05));
+    for (const NamedMetric& metric : metricsOf(error)) {
+      INFO(metric.name);
+      if (metric.name == "rmse") CHECK(metric.measured.enoughRepeats);
+      if (metric.name == "flip") CHECK_FALSE(metric.measured.enoughRepeats);
+    }
+  };
+  check(ResultsStore(file, ResultsStore::Mode::read).runs().at(0));
+  CHECK(schemaOf(file) == 3);
+  ResultsStore merged(directory.path() / "new.sqlite");
+  merged.merge(ResultsStore(file, ResultsStore::Mode::read));
+  check(merged.runs().at(0));
+  ResultsStore upgraded(file);
+  CHECK(schemaOf(file) == 4);
+  check(upgraded.runs().at(0));
+  upgraded.add(runNumber(2));
+  CHECK(upgraded.runs().at(1).point.errors.at(0).everyMetricPerSeed);
 }
 
 TEST_CASE("a store without work is read as it is, and keeps work when it is written") {
@@ -78,7 +126,7 @@ TEST_CASE("a store without work is read as it is, and keeps work when it is writ
     store.add({cellNumber(1)});
   }
   // As schema 2 was.
-  execute(file, "DROP TABLE work; PRAGMA user_version = 2");
+  execute(file, kWithout4 + "DROP TABLE work; PRAGMA user_version = 2");
   {
     const ResultsStore store(file, ResultsStore::Mode::read);
     REQUIRE(store.runs().size() == 1);
@@ -88,7 +136,7 @@ TEST_CASE("a store without work is read as it is, and keeps work when it is writ
   }
   CHECK(schemaOf(file) == 2);
   ResultsStore store(file);
-  CHECK(schemaOf(file) == 3);
+  CHECK(schemaOf(file) == 4);
   CHECK(store.add(runNumber(2)));
   const std::vector<StoredRun> runs = store.runs();
   REQUIRE(runs.size() == 2);

@@ -1,4 +1,5 @@
 // Runs in the results store: written, found, chosen, merged, whatever happens meanwhile.
+#include <signal.h>
 #include <sqlite3.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -177,6 +178,155 @@ TEST_CASE("a process that is killed while it writes leaves a whole store") {
       CHECK(run.point.healthFindings.size() == 1);
     }
   }
+}
+
+TEST_CASE("what passes say and the pictures of a run come back, and go with it") {
+  const TemporaryDirectory directory;
+  const auto file = directory.path() / "results.sqlite";
+  StoredRun run = runNumber(1);
+  run.point.notes = {"6 of 8 layers were used", "a second note"};
+  const std::string png("\x89PNG\0\xff", 6);
+  ResultsStore store(file);
+  CHECK(
+      store.add(run, {{"direct", "direct", "", 0.0, png}, {"direct", "direct", "one_bounce", 0.25, "map"}}));
+  const std::string key = run.identity.key();
+  CHECK(store.find(key)->point.notes == run.point.notes);
+  const std::vector<StoredPicture> pictures = store.pictures(key);
+  REQUIRE(pictures.size() == 2);
+  CHECK(pictures[0].png == png);
+  CHECK(pictures[0].truth.empty());
+  CHECK(pictures[1].truth == "one_bounce");
+  CHECK(pictures[1].flip == 0.25);
+  RunFilter filter;
+  filter.scene = "cornell";
+  CHECK(store.remove(filter) == 1);
+  CHECK(store.pictures(key).empty());
+}
+
+TEST_CASE("times that were measured twice are kept with their run, the last twenty of a device") {
+  const TemporaryDirectory directory;
+  ResultsStore store(directory.path() / "results.sqlite");
+  const StoredRun run = runNumber(1);
+  store.add(run);
+  StoredRun elsewhere = runNumber(2);
+  elsewhere.identity.device = "another device";
+  store.add(elsewhere);
+  store.addControl(run.identity.key(), {12.0, 11.5, 12.5, 11.0, 13.0, 5}, {4.2, 4.1, 4.3, 4.0, 4.4, 5});
+  store.addControl(elsewhere.identity.key(), {99.0, 99.0, 99.0, 99.0, 99.0, 5}, {});
+  const std::vector<RepeatedControl> controls = store.controls(run.identity);
+  REQUIRE(controls.size() == 1);
+  CHECK(controls[0].frameMs.value == 10.0);
+  CHECK(controls[0].frameMsAgain.value == 12.0);
+  CHECK(controls[0].nextFrameMs.value == 4.0);
+  CHECK(controls[0].nextFrameMsAgain.value == 4.2);
+  const TimeFloor floor = timeFloorOf(controls);
+  CHECK(floor.frame == Approx(0.2));
+  CHECK(floor.nextFrame == Approx(0.05));
+  // A run that is not there has none.
+  store.addControl("absent", {1.0, 1.0, 1.0, 1.0, 1.0, 5}, {});
+  CHECK(store.controls(run.identity).size() == 1);
+  for (int i = 10; i < 10 + 2 * ResultsStore::kControls; ++i) {
+    store.add(runNumber(i));
+    store.addControl(runNumber(i).identity.key(), {10.1, 10.0, 10.2, 10.0, 10.2, 5}, {});
+  }
+  CHECK(store.controls(run.identity).size() == ResultsStore::kControls);
+}
+
+namespace {
+
+/// A process that claims a point and stays until it is told to go.
+class Claimant {
+ public:
+  Claimant(const std::filesystem::path& file, const std::string& key) {
+    int ready[2];
+    REQUIRE(pipe(ready) == 0);
+    process_ = fork();
+    REQUIRE(process_ >= 0);
+    if (process_ == 0) {
+      const bool got = ResultsStore(file).claim({key}).front();
+      const char answer = got ? 'y' : 'n';
+      if (write(ready[1], &answer, 1) != 1) _exit(1);
+      for (;;) pause();
+    }
+    char answer = 0;
+    REQUIRE(read(ready[0], &answer, 1) == 1);
+    claimed = answer == 'y';
+    close(ready[0]);
+    close(ready[1]);
+  }
+  ~Claimant() { end(); }
+  void end() {
+    if (process_ <= 0) return;
+    kill(process_, SIGKILL);
+    waitpid(process_, nullptr, 0);
+    process_ = -1;
+  }
+  int process() const { return process_; }
+  bool claimed = false;
+
+ private:
+  pid_t process_ = -1;
+};
+
+void execute(const std::filesystem::path& file, const char* sql) {
+  sqlite3* handle = nullptr;
+  REQUIRE(sqlite3_open(file.c_str(), &handle) == SQLITE_OK);
+  REQUIRE(sqlite3_exec(handle, sql, nullptr, nullptr, nullptr) == SQLITE_OK);
+  sqlite3_close(handle);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a point that another process is at is not claimed, until it is stored or given up or that one dies") {
+  const TemporaryDirectory directory;
+  const auto file = directory.path() / "results.sqlite";
+  ResultsStore store(file);
+  const std::string key = runNumber(1).identity.key();
+  {
+    Claimant other(file, key);
+    CHECK(other.claimed);
+    CHECK(store.claim({key, "free"}) == std::vector<bool>{false, true});
+    REQUIRE(store.claimedByOther(key));
+    CHECK(store.claimedByOther(key)->process == other.process());
+    CHECK_FALSE(store.claimedByOther("free"));
+    // One's own claim is renewed; others cannot have it.
+    CHECK(store.claim({"free"}).front());
+    CHECK_FALSE(Claimant(file, "free").claimed);
+    store.release({"free", key});  // only one's own
+    CHECK(Claimant(file, "free").claimed);
+    CHECK_FALSE(store.claim({key}).front());
+    // Its time runs out.
+    execute(file, "UPDATE claims SET expires = 1");
+    CHECK(store.claim({key}).front());
+    store.release({key});
+  }
+  {
+    Claimant other(file, key);
+    CHECK_FALSE(store.claim({key}).front());
+    other.end();
+    CHECK_FALSE(store.claimedByOther(key));
+    CHECK(store.claim({key}).front());
+    store.release({key});
+  }
+  {
+    // Another process has its number by now.
+    Claimant other(file, key);
+    execute(file, "UPDATE claims SET started = started + 1");
+    CHECK(store.claim({key}).front());
+    store.release({key});
+  }
+  {
+    // On another machine its number means nothing: only its time tells.
+    Claimant other(file, key);
+    execute(file, "UPDATE claims SET machine = 'elsewhere'");
+    other.end();
+    CHECK_FALSE(store.claim({key}).front());
+    execute(file, "UPDATE claims SET expires = 1");
+    CHECK(store.claim({key}).front());
+  }
+  store.add(runNumber(1));
+  CHECK(Claimant(file, key).claimed);
 }
 
 TEST_CASE("filters choose runs by scene, pipeline, parameter, device, day, number and state") {

@@ -127,3 +127,84 @@ TEST_CASE("a row whose time is zero was not measured") {
   CHECK(table.rows[1].verdict == Verdict::notComparable);
   CHECK_THAT(table.rows[1].why, Contains("not measured"));
 }
+
+TEST_CASE("a row over another one is judged by their quotient, and stands in no order with other rows") {
+  // Published 6 over 2, measured 2.6 times: within 3 / 1.5 and 3 * 1.5.
+  MeasuredRow base = row("base", 2.0, 5.0), quotient = row("quotient", 6.0, 13.0);
+  quotient.over = "base";
+  const JudgedTable table = judge({row("a", 1.0, 1.0), base, quotient});
+  CHECK(table.rows[2].publishedRatio == Approx(3.0));
+  CHECK(table.rows[2].ratio == Approx(2.6));
+  CHECK(table.rows[2].verdict == Verdict::reproduced);
+  // What stands in for the published set-up below makes the quotient one that stands in, too.
+  base.whyNot = "another model";
+  const JudgedTable substitute = judge({base, quotient});
+  CHECK(substitute.rows[1].ratio == Approx(2.6));
+  CHECK(substitute.rows[1].verdict == Verdict::notComparable);
+  CHECK(substitute.rows[1].why == "another model");
+  // Without it there is nothing to divide by.
+  const JudgedTable none = judge({absent("base", 2.0), quotient});
+  CHECK(none.rows[1].verdict == Verdict::notComparable);
+  CHECK(std::isnan(none.rows[1].ratio));
+  CHECK_THAT(none.rows[1].why, Contains("'base' was not measured"));
+  // Published above, measured below: two rows of their own would break the table.
+  MeasuredRow low = row("low", 9.0, 0.5);
+  low.over = "a";
+  CHECK_THAT(judge({row("a", 1.0, 1.0), row("b", 1.2, 1.2), low}).why, !Contains("other order"));
+}
+
+namespace {
+
+/// Points at 1, 2, 4 and 8 that grow as x^p, each with quartiles `spread` to both sides of its median.
+MeasuredCurve curve(Growth growth, double power, double spread = 0.0) {
+  MeasuredCurve result;
+  result.name = "curve";
+  result.over = "resolution";
+  result.growth = growth;
+  for (const double x : {1.0, 2.0, 4.0, 8.0}) {
+    MeasuredPoint point;
+    static_cast<MeasuredSetUp&>(point) = row("", 1.0, std::pow(x, power), spread);
+    point.x = x;
+    result.points.push_back(point);
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("a curve is judged by its exponent: below one, above one, or in proportion within the factor") {
+  CHECK(judgeGrowth(curve(Growth::sublinear, 0.9)).exponent.value == Approx(0.9));
+  CHECK(judgeGrowth(curve(Growth::sublinear, 0.9)).verdict == Verdict::reproduced);
+  CHECK(judgeGrowth(curve(Growth::sublinear, 1.1)).verdict == Verdict::notReproduced);
+  CHECK(judgeGrowth(curve(Growth::superlinear, 1.1)).verdict == Verdict::reproduced);
+  CHECK(judgeGrowth(curve(Growth::superlinear, 0.9)).verdict == Verdict::notReproduced);
+  // Over a factor of 8 in x a factor of 1.5 is an exponent of log 1.5 / log 8 = 0.195.
+  CHECK(judgeGrowth(curve(Growth::linear, 1.19)).verdict == Verdict::reproduced);
+  CHECK(judgeGrowth(curve(Growth::linear, 0.81)).verdict == Verdict::reproduced);
+  CHECK(judgeGrowth(curve(Growth::linear, 1.2)).verdict == Verdict::notReproduced);
+  CHECK(judgeGrowth(curve(Growth::linear, 0.8)).verdict == Verdict::notReproduced);
+  CHECK(judgeGrowth(curve(Growth::unsaid, 1.0)).verdict == Verdict::notComparable);
+}
+
+// A median of 5 with quartiles 30 % apart to both sides is uncertain by 0.831 * 0.3 = 25 %. In logarithms the
+// sum of (ln x - mean)^2 is (0.693)^2 * 5 = 2.40, so that the slope is uncertain by 0.25 / sqrt(2.40) = 0.16.
+TEST_CASE("a curve whose uncertain exponent reaches across one allows no verdict") {
+  const JudgedCurve judged = judgeGrowth(curve(Growth::sublinear, 0.9, 0.3));
+  CHECK(judged.exponent.uncertainty == Approx(0.161).epsilon(0.02));
+  CHECK(judged.verdict == Verdict::notComparable);
+  CHECK_THAT(judged.why, Contains("reaches across the limit"));
+  CHECK(judgeGrowth(curve(Growth::sublinear, 0.5, 0.3)).verdict == Verdict::reproduced);
+}
+
+TEST_CASE("a curve of two points, or with a point that stands in for another, allows no verdict") {
+  MeasuredCurve few = curve(Growth::linear, 1.0);
+  few.points.resize(2);
+  CHECK(judgeGrowth(few).verdict == Verdict::notComparable);
+  CHECK(std::isnan(judgeGrowth(few).exponent.value));
+  CHECK_THAT(judgeGrowth(few).why, Contains("three points"));
+  MeasuredCurve substitute = curve(Growth::linear, 1.0);
+  substitute.points[2].whyNot = "another model";
+  CHECK(judgeGrowth(substitute).verdict == Verdict::notComparable);
+  CHECK(judgeGrowth(substitute).exponent.value == Approx(1.0));
+  CHECK(judgeGrowth(substitute).why == "another model");
+}

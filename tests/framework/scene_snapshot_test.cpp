@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "lumivox/base/error.h"
+#include "lumivox/base/random.h"
 #include "lumivox/scene/scene.h"
 #include "support/support.h"
 
@@ -91,6 +92,46 @@ TEST_CASE("rigid motion turns about its pivot and moves along its velocity") {
   // The bounds follow: corners (0,0), (2,0), (0,2) turn to (2,0), (2,2), (0,0), shifted by 6.
   near(snapshot.bounds.low + glm::vec3(snapshot.origin), {6, 0, 0}, 1e-5f);
   near(snapshot.bounds.high + glm::vec3(snapshot.origin), {8, 2, 0}, 1e-5f);
+}
+
+TEST_CASE("the bounds of what moves are those of all its vertices, bit for bit") {
+  // More vertices than are looked at together, in no order, in order, and with one far vertex in the last
+  // place.
+  for (const int arrangement : {0, 1, 2}) {
+    CAPTURE(arrangement);
+    constexpr std::uint32_t kVertices = 10007;
+    Scene scene = triangle();
+    scene.positions.clear();
+    RandomStream random(7, 0);
+    for (std::uint32_t i = 0; i < kVertices; ++i) {
+      const float along = arrangement == 1 ? static_cast<float>(i) / kVertices : random.uniform();
+      scene.positions.emplace_back(along, random.uniform() - 0.3f, 1e-3f * random.uniform());
+    }
+    if (arrangement == 2) scene.positions.back() = {1.5f, -0.9f, 0.4f};
+    scene.normals.assign(kVertices, {0, 0, 1});
+    scene.texcoords.assign(kVertices, {0, 0});
+    Object& object = scene.objects.front();
+    object.vertexCount = kVertices;
+    object.motion = RigidMotion{};
+    object.motion->axis = glm::normalize(glm::dvec3(1, 2, -0.5));
+    object.motion->angularSpeed = 0.7;
+    object.motion->velocity = {0.1, -3.0, 0.2};
+    object.motion->pivot = {0.3, 0.1, -2.0};
+    constexpr double kTime = 1.3;
+    const SceneSnapshot snapshot = snapshotOf(scene, kTime);
+    glm::dmat4 toWorld =
+        glm::translate(glm::dmat4(1.0), object.motion->pivot + object.motion->velocity * kTime);
+    toWorld = glm::rotate(toWorld, 0.7 * kTime, object.motion->axis);
+    toWorld = glm::translate(toWorld, -object.motion->pivot) * object.placement;
+    glm::dvec3 low(1e300), high(-1e300);
+    for (const glm::vec3& position : scene.positions) {
+      const glm::dvec3 point(toWorld * glm::dvec4(glm::dvec3(position), 1.0));
+      low = glm::min(low, point);
+      high = glm::max(high, point);
+    }
+    CHECK(snapshot.bounds.low == glm::vec3(low - snapshot.origin));
+    CHECK(snapshot.bounds.high == glm::vec3(high - snapshot.origin));
+  }
 }
 
 TEST_CASE("the origin does not depend on the time") {

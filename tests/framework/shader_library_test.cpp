@@ -1,8 +1,10 @@
 #include <lumivox/base/error.h>
 #include <lumivox/shader/library.h>
 
+#include <array>
 #include <cmath>
 
+#include "shader/arithmetic.h"
 #include "support/support.h"
 #include "test_shaders_shaders.h"
 
@@ -56,12 +58,13 @@ std::vector<float> triangle(Laboratory& laboratory, const code::triangle::Varian
   shadow.clear(glm::vec4(1.0f));
   const Texture target(laboratory.device, {TextureKind::d2, Format::rgba32f, 32, 32, 1, 1}, "target");
   const auto& program = laboratory.library.program(triangle::kProgram, variant.key());
-  laboratory.device.beginDrawing({{{&target}}}, {});
-  laboratory.library.draw(program,
-                          {triangle::corners(corners), triangle::waves(someWaves()),
-                           triangle::shadowMap(shadow, Sampling::shadow)},
-                          3);
-  laboratory.device.endDrawing();
+  {
+    const Drawing drawing = laboratory.device.drawTo({{{&target}}}, {});
+    laboratory.library.draw(program,
+                            {triangle::corners(corners), triangle::waves(someWaves()),
+                             triangle::shadowMap(shadow, Sampling::shadow)},
+                            3);
+  }
   return target.downloadFloats();
 }
 
@@ -116,6 +119,56 @@ TEST_CASE("a variant computes what its axis values say") {
         Approx(2 * x * x));
 }
 
+TEST_CASE("fast arithmetic takes the marks that forbid contraction, and nothing else") {
+  constexpr std::uint32_t kMark = (3u << 16) | 71u,
+                          kNoContraction = 42;  // OpDecorate, SPIR-V 1.0, 3.20 and 3.32.3
+  const auto marks = [&](const std::vector<std::uint32_t>& words) {
+    std::size_t count = 0;
+    for (std::size_t at = 5; at < words.size(); at += words[at] >> 16)
+      count += words[at] == kMark && words[at + 2] == kNoContraction ? 1 : 0;
+    return count;
+  };
+  std::size_t all = 0;
+  for (const shader::PackedCode& code : shader::readShaderPack(packFile()).codes) {
+    const std::vector<std::uint32_t> fast = shader::withoutContractionMarks(code.spirv);
+    CHECK(marks(fast) == 0);
+    CHECK(fast.size() + 3 * marks(code.spirv) == code.spirv.size());
+    all += marks(code.spirv);
+    const std::string text = shader::withoutContractionMarks(code.glsl);
+    CHECK(text.find("precise ") == std::string::npos);
+    std::string without = code.glsl;
+    for (std::size_t at = 0; (at = without.find("precise ", at)) != std::string::npos;) without.erase(at, 8);
+    CHECK(text == without);
+  }
+  CHECK(all > 10);
+  CHECK(shader::withoutContractionMarks("imprecise x; precise float y;") == "imprecise x; float y;");
+}
+
+TEST_CASE("fast arithmetic computes the same to rounding, by both routes, and the record says so") {
+  for (const ShaderInput route : {ShaderInput::spirv, ShaderInput::glsl}) {
+    if (route == ShaderInput::spirv && lacksSpirv()) continue;
+    Laboratory exact(route);
+    DeviceOptions options{"auto", route};
+    options.arithmetic = Arithmetic::fast;
+    Device device(options);
+    CHECK(device.programRoute() == exact.device.programRoute() + " fast");
+    CHECK_THAT(programRouteText(device), Catch::Contains("fast arithmetic"));
+    shader::ShaderLibrary library(device);
+    library.addPack(shader::readShaderPack(packFile()));
+    namespace values = code::values;
+    const code::Waves waves = someWaves();
+    const values::Variant variant{.shape = values::Variant::shapeSquare};
+    Buffer results(device, 65 * sizeof(glm::vec4), "results");
+    library.dispatch(library.program(values::kProgram, variant.key()),
+                     {values::waves(waves), values::results(results)}, {2, 1, 1});
+    device.barrier();
+    const auto fast = results.downloadValues<glm::vec4>(), slow = ::values(exact, variant, {}, waves);
+    for (std::size_t i = 1; i < slow.size(); ++i) {
+      for (int c = 0; c < 4; ++c) CHECK(fast[i][c] == Approx(slow[i][c]).epsilon(1e-3).margin(1e-3));
+    }
+  }
+}
+
 TEST_CASE("SPIR-V and GLSL give the same bits") {
   if (lacksSpirv()) return;
   Laboratory spirv(ShaderInput::spirv), glsl(ShaderInput::glsl);
@@ -140,9 +193,10 @@ TEST_CASE("a raster program of three stages draws to layers") {
     if (route == ShaderInput::spirv && lacksSpirv()) continue;
     Laboratory laboratory(route);
     const Texture layers(laboratory.device, {TextureKind::d2Array, Format::r32f, 1, 1, 2, 1}, "layers");
-    laboratory.device.beginDrawing({{{&layers}}}, {});
-    laboratory.library.draw(laboratory.library.program(code::layers::kProgram, {}), {}, 3);
-    laboratory.device.endDrawing();
+    {
+      const Drawing drawing = laboratory.device.drawTo({{{&layers}}}, {});
+      laboratory.library.draw(laboratory.library.program(code::layers::kProgram, {}), {}, 3);
+    }
     CHECK(layers.downloadFloats() == std::vector<float>{1.0f, 2.0f});
   }
 }
@@ -219,7 +273,7 @@ TEST_CASE("an unknown technique, program or excluded variant is an error that sa
              }),
              Catch::Contains("'value'") && Catch::Contains("values"));
   CHECK_THAT(test::messageOf<Error>([&] {
-               library.program(code::values::kProgram, {{1, 0}});
+               library.program(code::values::kProgram, std::array{1, 0});
              }),
              Catch::Contains("DOUBLED=1 SHAPE=linear") && Catch::Contains("exclude"));
   CHECK_THAT(test::messageOf<Error>([&] { library.program(code::values::kProgram, {}); }),
@@ -230,10 +284,11 @@ TEST_CASE("an unknown technique, program or excluded variant is an error that sa
 TEST_CASE("a program is linked once per variant and constants, and its use is recorded") {
   Laboratory laboratory;
   auto& library = laboratory.library;
-  const auto& first = library.program(code::values::kProgram, {{0, 0}});
-  CHECK(&library.program(code::values::kProgram, {{0, 0}}) == &first);
-  CHECK(&library.program(code::values::kProgram, {{0, 0}}, {{0, 9}}) != &first);
-  library.program(code::values::kProgram, {{1, 1}});
+  const auto& first = library.program(code::values::kProgram, std::array{0, 0});
+  CHECK(&library.program(code::values::kProgram, std::array{0, 0}) == &first);
+  CHECK(&library.program(code::values::kProgram, std::array{0, 0}, std::array{SpecialisationValue{0, 9}}) !=
+        &first);
+  library.program(code::values::kProgram, std::array{1, 1});
   const auto usage = library.usage().at("test_shaders/values");
   CHECK(usage.possible == 6);
   CHECK(usage.compiled == 4);  // DOUBLED = 1 only with SHAPE = square

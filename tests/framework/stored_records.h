@@ -20,7 +20,6 @@ inline ComponentError errorOf(double rmse) {
   error.error.flip = 0.125;
   error.error.flipUncertainty = 0.001;
   error.error.nonFinitePicture = 7;
-  error.rmseOverSeeds = {rmse, 0.0};
   error.seeds = 2;
   error.deterministic = true;
   error.parts.bias = {0.5 * rmse, 0.02};

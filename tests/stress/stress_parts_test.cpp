@@ -2,8 +2,12 @@
 // of passes, processes.
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
+#include <sstream>
 
 #include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/report/stress_cells.h"
 #include "lumivox/stress/stress.h"
 #include "stress/cards.h"
 #include "stress/child.h"
@@ -66,6 +70,115 @@ TEST_CASE("a card's table below its heading explains cases, by patterns and for 
   CHECK(rowFor(both, "slicing", "thin_wall")->what == "all");
   CHECK(whereItBreaks("## Where it breaks\n| case | what | why |\n").empty());
   CHECK(whereItBreaks("").empty());
+}
+
+namespace {
+
+/// A program that answers every request with the same cell, and does as it is told otherwise.
+class FalseWorkers {
+ public:
+  /// `script` is run by a shell for each line; $START is the number of the worker, from 1 on.
+  explicit FalseWorkers(const std::string& onStart, const std::string& script, bool software = true) {
+    StressCell cell;
+    cell.device = "a device";
+    cell.outcome = StressOutcome::stable;
+    cell.detail = "answered";
+    directory_.write("cell.json", stressCellJson(cell) + "\n");
+    directory_.write("ready.json", lineOf(WorkerDevice{"a device", "a driver", "spirv", software}) + "\n");
+    const std::string here = directory_.path().string();
+    directory_.write("worker.sh", "echo \"$*\" >> '" + here + "/starts'\nSTART=$(wc -l < '" + here +
+                                      "/starts')\n" + "answer() { cat '" + here + "/cell.json'; }\n" +
+                                      onStart + "\ncat '" + here + "/ready.json'\nwhile read -r line; do\n" +
+                                      script + "\ndone\n");
+    options.program = {"/bin/sh", (directory_.path() / "worker.sh").string()};
+    options.quick = true;
+    options.pipelines = {sourceDirectory() / "scenes/pipelines/direct_lighting.pipeline"};
+    options.families = {"light"};
+    options.store = directory_.path() / "cells.sqlite";
+  }
+  std::vector<StressCell> run() { return runStress(options, techniques()).cells; }
+  std::vector<StressCell> stored() const {
+    return ResultsStore(options.store, ResultsStore::Mode::read).stressCells();
+  }
+  std::vector<std::string> starts() const {
+    std::vector<std::string> lines;
+    std::istringstream stream(readFile(directory_.path() / "starts"));
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+  }
+  StressOptions options;
+
+ private:
+  TemporaryDirectory directory_;
+};
+
+std::ptrdiff_t brokenOf(const std::vector<StressCell>& cells) {
+  return std::count_if(cells.begin(), cells.end(),
+                       [](const StressCell& cell) { return cell.outcome == StressOutcome::broken; });
+}
+
+}  // namespace
+
+TEST_CASE("a worker that is lost is one broken cell, and so is one that does not start in its place") {
+  FalseWorkers workers("if [ $START -eq 2 ]; then echo 'no device' >&2; exit 3; fi",
+                       "if [ $START -eq 1 ]; then exit 4; fi; answer");
+  workers.options.workers = 1;
+  const std::vector<StressCell> cells = workers.run();
+  REQUIRE(cells.size() > 3);
+  CHECK(brokenOf(cells) == 2);
+  CHECK(cells[0].detail.find("its process ended with exit code 4") != std::string::npos);
+  CHECK(cells[0].device == "a device");
+  CHECK(cells[1].detail.find("exit code 3: no device") != std::string::npos);
+  CHECK(cells[2].detail == "answered");
+}
+
+TEST_CASE("a worker that answers nonsense is one broken cell") {
+  FalseWorkers workers("", "if [ $START -eq 1 ]; then echo nonsense; else answer; fi");
+  workers.options.workers = 1;
+  const std::vector<StressCell> cells = workers.run();
+  CHECK(brokenOf(cells) == 1);
+  CHECK(cells[0].detail.find("answered what is no cell") != std::string::npos);
+}
+
+TEST_CASE("when workers no longer start, what was not run says so and takes no stored cell's place") {
+  FalseWorkers workers("if [ $START -gt 1 ]; then exit 3; fi", "exit 4");
+  workers.options.workers = 1;
+  const std::vector<StressCell> cells = workers.run();
+  REQUIRE(cells.size() > 6);
+  CHECK(brokenOf(cells) == static_cast<std::ptrdiff_t>(cells.size()));
+  CHECK(workers.starts().size() == 4);
+  CHECK(cells.back().detail.find("not run: the last 3 workers did not start") != std::string::npos);
+  CHECK(workers.stored().size() == 4);
+}
+
+TEST_CASE("without a single worker there is no battery") {
+  FalseWorkers workers("echo 'no device at all' >&2; exit 3", "answer");
+  CHECK(messageOf<Error>([&] { workers.run(); }).find("no device at all") != std::string::npos);
+}
+
+TEST_CASE("one graphics device bears one worker, and several share the memory") {
+  FalseWorkers device("", "answer", false);
+  device.run();
+  // Where there are several processors, the first worker has told that there is one device, and gives way.
+  const std::vector<std::string> alone = device.starts();
+  REQUIRE(alone.size() <= 2);
+  CHECK(alone.back().empty());
+
+  for (const bool software : {true, false}) {
+    FalseWorkers several("", "answer", software);
+    several.options.workers = 3;
+    several.options.memoryBytes = 9000;
+    several.run();
+    const std::vector<std::string> starts = several.starts();
+    REQUIRE_FALSE(starts.empty());
+    CHECK(starts.size() <= 3);
+    for (const std::string& words : starts) CHECK(words == "--worker-memory 3000");
+  }
+  FalseWorkers one("", "answer");
+  one.options.workers = 1;
+  one.options.memoryBytes = 9000;
+  one.run();
+  CHECK(one.starts() == std::vector<std::string>{""});
 }
 
 TEST_CASE("parameters of passes that a text leaves free are found and set") {

@@ -1,5 +1,6 @@
-#define CATCH_CONFIG_MAIN
+#define CATCH_CONFIG_RUNNER
 #include <catch2/catch.hpp>
+#include <cstdlib>
 
 #if defined(__SANITIZE_ADDRESS__)
 // OpenVDB loses the nodes that it had read when a file turns out to be damaged.
@@ -8,3 +9,9 @@ extern "C" const char* __lsan_default_suppressions() {
   return "leak:openvdb::";
 }
 #endif
+
+int main(int count, char** arguments) {
+  // Every test, and every program that a test starts, hears at once what the driver finds wrong.
+  setenv("LUMIVOX_DEBUG_CONTEXT", "1", 0);
+  return Catch::Session().run(count, arguments);
+}

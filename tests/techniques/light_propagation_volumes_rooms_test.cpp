@@ -1,17 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "support/scene_builder.h"
-#include "support/techniques.h"
+#include "support/light_cells.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
 
 namespace {
-
-const double kY0 = 0.5 / std::sqrt(kPi);
-
-using Cells = std::vector<float>;  ///< four coefficients a cell: Y00, Y1-1, Y10, Y11
 
 /// One grid of 32 cells before the propagation, from surface samples with this many voxels along a side.
 ShGrid injected(const Scene& scene, const std::string& pass, int voxelResolution = 0) {
@@ -39,12 +34,6 @@ ShGrid injected(const Scene& scene, const std::string& pass, int voxelResolution
 /// The red coefficients.
 Cells injectedLight(const Scene& scene, const std::string& pass) {
   return injected(scene, pass).levels[0].coefficients[0]->downloadFloats(0);
-}
-
-double energy(const Cells& cells) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < cells.size(); i += 4) sum += cells[i] / kY0;  // integral over the sphere
-  return sum;
 }
 
 /// A closed box, anywhere in a larger grid.

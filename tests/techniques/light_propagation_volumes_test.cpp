@@ -2,118 +2,15 @@
 #include <cmath>
 #include <random>
 
+#include "lumivox/base/file.h"
 #include "lumivox/measure/metrics.h"
 #include "lumivox/reference/path_tracer.h"
-#include "support/scene_builder.h"
-#include "support/techniques.h"
+#include "support/light_cells.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
 
 namespace {
-
-const double kY0 = 0.5 / std::sqrt(kPi), kY1 = std::sqrt(0.75 / kPi);
-const double kFarFace = 4.0 * std::atan(1.0 / (3.0 * std::sqrt(11.0)));  // of a cube at distance 3/2, sr
-const double kSideFace = (2.0 * kPi / 3.0 - kFarFace) / 4.0;  // five faces are a sixth of the sphere
-/// Flux across a face of what a cell holds: across0 c0 + across1 c1.
-const double kAcross0 = 2.0 * kPi / 3.0 * kY0, kAcross1 = (kFarFace + 8.0 / std::sqrt(5.0) * kSideFace) * kY1;
-
-using Cells = std::vector<float>;  ///< four coefficients a cell: Y00, Y1-1, Y10, Y11
-
-std::size_t at(int n, int x, int y, int z) {
-  return static_cast<std::size_t>(4 * ((z * n + y) * n + x));
-}
-
-gpu::TextureRef volume(int n, gpu::Format format) {
-  gpu::TextureDescription description;
-  description.kind = gpu::TextureKind::d3;
-  description.format = format;
-  description.width = description.height = description.depth = n;
-  auto texture = std::make_shared<gpu::Texture>(device(), description, "test cells");
-  texture->clear(glm::vec4(0.0f));
-  return texture;
-}
-
-/// A grid of [-1,1]^3 with the same light in all channels; `closed` gives xyz shares of (n+1)^3 faces.
-ShGrid gridOf(int n, const Cells& cells, const std::vector<float>& closed = {}) {
-  ShGrid::Level level;
-  level.grid = {glm::vec3(-1.0f), 2.0f / static_cast<float>(n), glm::ivec3(n)};
-  for (gpu::TextureRef& texture : level.coefficients) {
-    texture = volume(n, gpu::Format::rgba32f);
-    texture->uploadFloats(0, cells);
-  }
-  level.closed = volume(n + 1, gpu::Format::rgba8);
-  level.moved = volume(n + 1, gpu::Format::rgba8);
-  if (!closed.empty()) {
-    std::vector<std::byte> bytes;
-    for (const float share : closed)
-      bytes.push_back(static_cast<std::byte>(static_cast<int>(share * 255.0f + 0.5f)));
-    level.closed->upload(0, bytes);
-  }
-  return {{level}};
-}
-
-/// A virtual light of flux 1: c0 = Y0, c1 = m Y1 along the direction.
-void addLight(Cells& cells, int n, const glm::ivec3& cell, const glm::vec3& direction, double meanCosine) {
-  const std::size_t first = at(n, cell.x, cell.y, cell.z);
-  cells[first] += static_cast<float>(kY0);
-  cells[first + 1] += static_cast<float>(meanCosine * kY1) * direction.y;
-  cells[first + 2] += static_cast<float>(meanCosine * kY1) * direction.z;
-  cells[first + 3] += static_cast<float>(meanCosine * kY1) * direction.x;
-}
-
-/// Nothing leaves backwards at this mean cosine.
-double forwardCosine() {
-  return kAcross0 * kY0 / (kAcross1 * kY1);
-}
-
-Cells empty(int n) {
-  return Cells(at(n, 0, 0, n), 0.0f);
-}
-
-double energy(const Cells& cells) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < cells.size(); i += 4) sum += cells[i] / kY0;  // integral over the sphere
-  return sum;
-}
-double norm(const Cells& cells) {
-  double sum = 0.0;
-  for (const float value : cells) sum += static_cast<double>(value) * value;
-  return std::sqrt(sum);
-}
-
-SceneBuilder emptyScene(float environment = 0.0f) {
-  SceneBuilder builder;
-  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);
-  builder.scene.environment = glm::vec3(environment);
-  return builder;
-}
-
-/// The pass with its parameters; numbers and words.
-class Propagation {
- public:
-  explicit Propagation(const Scene& scene)
-      : harness_(device(), techniques(), "light_propagation_volumes", "propagate", scene,
-                 snapshotOf(scene, 0.0)) {}
-  Propagation& set(const char* name, double value) {
-    harness_.setParameter(name, value);
-    return *this;
-  }
-  Propagation& set(const char* name, const char* word) {
-    harness_.setParameter(name, std::string(word));
-    return *this;
-  }
-  Propagation& run(const ShGrid& light) {
-    harness_.setInput("light", light);
-    harness_.run();
-    return *this;
-  }
-  ShGrid grid(const char* port) { return harness_.output<ShGrid>(port); }
-  Cells cells(const char* port) { return grid(port).levels[0].coefficients[0]->downloadFloats(0); }
-
- private:
-  PassHarness harness_;
-};
 
 Cells randomLight(int n, unsigned seed) {
   std::mt19937 random(seed);
@@ -414,41 +311,39 @@ TEST_CASE("nested grids hold the same radiance on both sides of their seam") {
   }
 }
 
-TEST_CASE("the printed sum grows with every iteration, the default never does", "[slow]") {
-  constexpr int n = 9;
-  Cells cells = empty(n);
-  addLight(cells, n, {4, 4, 4}, {0, 1, 0}, 2.0 / 3.0);
-  const SceneBuilder builder = emptyScene();
-  Propagation published(builder.scene);
-  published.set("as_published", "on").set("border", "mirror").set("iterations", 8).run(gridOf(n, cells));
-  CHECK(energy(published.cells("light")) > 256.0);  // doubled eight times, and what was negative dropped
-}
-
-TEST_CASE("light on a grid moved by half a cell differs by less than two per cent") {
-  // Moving the scene against a grid that lies on whole cells of the world is moving the grid.
-  constexpr int resolution = 16;
-  const auto meanOf = [&](float cells) {
-    Scene scene = litRoom(24, 24);
-    glm::vec3 low(1e9f), high(-1e9f);
-    for (const glm::vec3& position : scene.positions) {
-      low = glm::min(low, position);
-      high = glm::max(high, position);
-    }
-    const glm::vec3 size = high - low;
-    const float cell = std::max({size.x, size.y, size.z}) / (resolution - 3);
-    for (glm::vec3& position : scene.positions) position += cells * cell;
-    scene.cameras.front().eye += static_cast<double>(cells * cell);
-    scene.cameras.front().target += static_cast<double>(cells * cell);
-    const Picture picture =
-        indirect(scene, "light_propagation_volumes", {"levels=1", "resolution=16", "iterations=48"}, 24, 24);
+TEST_CASE("light on a grid moved by parts of a cell changes as far as its card says") {
+  // Grids lie on whole cells from the middle of the scene: a black speck far outside, which moves that by a
+  // part of a cell, moves the grid against the room. The cells have a thirteenth of its side.
+  constexpr double kCell = 1.0 / 13.0;
+  std::string words = readFile(sourceDirectory() / "scenes/pipelines/light_propagation_volumes.pipeline");
+  const std::string levels = "levels $levels";
+  words.replace(words.find(levels), levels.size(), levels + "\n    extent " + std::to_string(32.0 * kCell));
+  const Pipeline text = Pipeline::parse(words, sourceDirectory() / "scenes/pipelines/moved.pipeline");
+  const auto meanOf = [&](double cells) {
+    SceneBuilder builder;
+    builder.scene = litRoom(24, 24);
+    // In the room: the grid lies around the eye.
+    builder.look({0.5, 0.5, 0.95}, {0.5, 0.5, 0}, {0, 1, 0}, 1.2, 24, 24);
+    const auto far = static_cast<float>(2.0 + 2.0 * cells * kCell);
+    builder.quad(glm::vec3(far), {-0.001f, 0, 0}, {0, -0.001f, 0}, builder.lambert(0.0f));
+    RenderOptions options;
+    options.width = options.height = 24;
+    options.parameters = text.settings({"levels=1", "resolution=32", "iterations=48"});
+    const Picture picture = renderOnce(builder.scene, text, options).outputs.at("indirect_diffuse");
     double sum = 0.0;
     for (const float value : picture.values()) sum += value;
     return sum / static_cast<double>(picture.values().size());
   };
-  const double base = meanOf(0.0f);
-  const double moved = meanOf(0.5f);
-  INFO(moved / base);
-  CHECK(moved == Approx(base).epsilon(0.02));
+  const double base = meanOf(0.0);
+  REQUIRE(base > 0.0);
+  bool moved = false;
+  for (const double cells : {0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875}) {
+    const double there = meanOf(cells);
+    moved = moved || there != base;
+    INFO(cells << " cells: " << there / base);
+    CHECK(there == Approx(base).epsilon(0.2));
+  }
+  CHECK(moved);  // a grid that did not move would give the same bits
 }
 
 TEST_CASE("no negative radiance reaches a picture, and what two bands made negative is told") {
@@ -499,23 +394,32 @@ TEST_CASE("without glossy materials there is no reflection grid, with them there
 }
 
 TEST_CASE(
-    "light propagation volumes are better than no indirect light on the Cornell box and the arcade, with the right energy within 0.7 to 1.3") {
-  for (const char* name : {"cornell", "arcade"}) {
-    const Scene scene = loadScene(sourceDirectory() / "scenes" / (std::string(name) + ".scene"));
+    "light propagation volumes on the Cornell box and the arcade are as near to the reference as their card says") {
+  // Of the RMSE of leaving the light out, measured at this size: 0.426 and 0.421; 0.670 and 0.780. Picture
+  // and reference are the same bits every time; the margin of 5 % is for other drivers' rounding and filters.
+  struct Limit {
+    const char *scene, *text;
+    double error;
+  };
+  for (const Limit& limit : {Limit{"cornell", "light_propagation_volumes", 0.447},
+                             Limit{"cornell", "light_propagation_volumes_voxels", 0.442},
+                             Limit{"arcade", "light_propagation_volumes", 0.704},
+                             Limit{"arcade", "light_propagation_volumes_voxels", 0.819}}) {
+    const std::string name = limit.scene;
+    const char* text = limit.text;
+    const Scene scene = loadScene(sourceDirectory() / "scenes" / (name + ".scene"));
     ReferenceOptions truthOptions = quietly(64, 1);
     truthOptions.width = 64;
     truthOptions.height = 36;
     truthOptions.useCache = true;
     const Picture oneBounce = cachedReference(scene, truthOptions).layers.at("one_bounce_diffuse");
-    for (const char* text : {"light_propagation_volumes", "light_propagation_volumes_voxels"}) {
-      const PictureError error = compare(indirect(scene, text, {}, 64, 36), oneBounce),
-                         nothing = compare(Picture(64, 36, 3), oneBounce);
-      INFO(name << " through " << text << ": RMSE " << error.rmse.value << " against " << nothing.rmse.value
-                << ", ratio " << error.meanRatio.value);
-      CHECK(error.rmse.value < 0.8 * nothing.rmse.value);
-      CHECK(error.meanRatio.value >= 0.7);
-      CHECK(error.meanRatio.value <= 1.3);
-    }
+    const PictureError error = compare(indirect(scene, text, {}, 64, 36), oneBounce),
+                       nothing = compare(Picture(64, 36, 3), oneBounce);
+    INFO(name << " through " << text << ": RMSE " << error.rmse.value << " against " << nothing.rmse.value
+              << ", ratio " << error.meanRatio.value);
+    CHECK(error.rmse.value < limit.error * nothing.rmse.value);
+    CHECK(error.meanRatio.value >= 0.95);
+    CHECK(error.meanRatio.value <= (name == "cornell" ? 1.15 : 1.3));
   }
 }
 

@@ -1,6 +1,8 @@
 #include <cmath>
+#include <optional>
 
 #include "lumivox/measure/metrics.h"
+#include "lumivox/pipeline/light_samples.h"
 #include "lumivox/reference/path_tracer.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
@@ -156,6 +158,140 @@ TEST_CASE("a texel lights a surface on its axis as a disc of its area does") {
   }
 }
 
+TEST_CASE(
+    "the pattern around the projection stands for the view, the disc or the cap of the sphere that it covers, by its density and as published") {
+  // All texels are given one place a metre above the surface, facing it, so that the irradiance is their flux
+  // over pi, whichever of them are taken. Their flux is the size of a texel, on the plane or on the sphere,
+  // so that the sum is the size of what the pattern stands for.
+  constexpr int kSide = 128;
+  // As published the weights are xi1^2, of which a square view of half its pattern's radius, seen from its
+  // middle, holds the mean of rho^3 over the angle, rho = 1/2 sec: (sqrt 2 + ln(1 + sqrt 2)) / (4 pi).
+  const double insideView = (std::sqrt(2.0) + std::log(1.0 + std::sqrt(2.0))) / (4.0 * kPi);
+  struct Kind {
+    const char* name;
+    std::optional<LightKind> kind;  ///< none: emissive triangles
+  };
+  for (const Kind& kind : {Kind{"directional", LightKind::directional},
+                           {"spot", LightKind::spot},
+                           {"point", LightKind::point},
+                           {"area", std::nullopt}}) {
+    SceneBuilder builder = closedBox(0.5f);
+    builder.look({0, 0, 0.9}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);
+    if (!kind.kind) {
+      builder.quad({-0.1f, 0.6f, -0.1f}, {0.2f, 0, 0}, {0, 0, 0.2f}, builder.lambert(0.0f, 10.0f));
+    } else {
+      Light& light = builder.light(*kind.kind, glm::vec3(1.0f), {0, 0.6, 0}, {0, -1, 0});
+      if (kind.kind == LightKind::spot) light.innerAngle = light.outerAngle = 0.6f;
+    }
+    PassHarness lights(device(), techniques(), "reflective_shadow_maps", "render", builder.scene,
+                       snapshotOf(builder.scene, 0.0));
+    lights.setParameter("size", kSide);
+    lights.setParameter("area_size", kSide);
+    lights.setParameter("area_samples", 1);
+    lights.run();
+    ReflectiveShadowMap map = lights.output<ReflectiveShadowMap>("map");
+    REQUIRE(map.lightCount == 1);
+    const double texel = map.lights->downloadValues<LightSampleData>().front().shape.z;
+    const double width = texel * kSide;  // of the view: m, or on the plane one metre away
+    const gpu::TextureDescription description = map.flux->description();
+    map.position = std::make_shared<gpu::Texture>(device(), description, "places");
+    map.normal = std::make_shared<gpu::Texture>(device(), description, "normals");
+    map.flux = std::make_shared<gpu::Texture>(device(), description, "sizes");
+    map.position->clear({0, 1, 0, 1});
+    map.normal->clear({0, -1, 0, 0});
+    for (const bool published : {false, true}) {
+      const bool inView = published && kind.kind == LightKind::spot;
+      std::vector<float> sizes;
+      for (int i = 0; i < kSide * kSide * map.layerCount; ++i) {
+        const double u = (i % kSide + 0.5) * texel - 0.5 * width,
+                     v = (i / kSide % kSide + 0.5) * texel - 0.5 * width;
+        const double size = kind.kind == LightKind::directional ? texel * texel
+                            : inView                            ? 1.0
+                                     : texel * texel / std::pow(1.0 + u * u + v * v, 1.5);
+        sizes.insert(sizes.end(), {float(size), float(size), float(size), 0.0f});
+      }
+      map.flux->uploadFloats(0, sizes);
+      for (const float reach : {0.125f, 0.25f, 1.0f}) {
+        const double side = inView ? kSide : width, tangent = 0.5 * width,
+                     disc = kPi * std::pow(reach * side, 2);
+        double expected = 2.0 * kPi * (1.0 - std::cos(reach * kPi));
+        if (kind.kind == LightKind::directional || inView) {
+          expected = disc;
+          if (reach == 1.0f) expected = published ? disc * insideView : side * side;
+        } else if (kind.kind == LightKind::spot) {
+          // A square of the tangent t to either side: 4 asin(t^2 / (1 + t^2)), here wider than the first cap
+          // alone.
+          if (reach == 0.25f) continue;
+          if (reach == 1.0f) expected = 4.0 * std::asin(tangent * tangent / (1.0 + tangent * tangent));
+        }
+        PassHarness harness(device(), techniques(), "reflective_shadow_maps", "gather", builder.scene,
+                            snapshotOf(builder.scene, 0.0));
+        harness.setInput("gbuffer", surfacePoints({0, 0, 0}, {0, 1, 0}));
+        harness.setInput("map", map);
+        harness.setParameter("method", std::string("projected"));
+        harness.setParameter("weights", std::string(published ? "published" : "exact"));
+        harness.setParameter("reach", reach);
+        harness.setParameter("samples", 4000);
+        harness.run();
+        const double found = pictureOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
+        CAPTURE(kind.name, published, reach, found / expected);
+        CHECK(found == Approx(expected).epsilon(0.02));
+      }
+    }
+  }
+}
+
+TEST_CASE(
+    "texels chosen by flux carry all of it, and the share of it that lies in any part of the map, however dim beside another light") {
+  // Texels in the middle of the list face a surface a metre away and the others look aside, so that the
+  // irradiance is what of the flux they carry, over pi. Two ends of the part: an error of a sample at either.
+  SceneBuilder builder;
+  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);
+  constexpr int kSamples = 2000;
+  for (const glm::ivec2 size : {glm::ivec2(1, 1), {5, 1}, {16, 1}, {33, 2}, {64, 6}, {256, 12}})
+    for (const bool bright : {false, true}) {
+      const int count = size.x * size.x * size.y, from = count * 3 / 10,
+                to = std::max(count * 8 / 10, from + 1);
+      gpu::TextureDescription description;
+      description.kind = gpu::TextureKind::d2Array;
+      description.format = gpu::Format::rgba32f;
+      description.width = description.height = size.x;
+      description.depth = size.y;
+      std::vector<float> fluxes, normals;
+      double all = 0.0, facing = 0.0;
+      for (int i = 0; i < count; ++i) {
+        // A fifth of the rows is black; one texel outside of the part may outshine all others.
+        float flux = i / size.x % 5 == 4 ? 0.0f : static_cast<float>(1 + i % 101 * 37 % 101);
+        if (bright && i == count / 10) flux = 50.0f * static_cast<float>(count);
+        const bool inPart = i >= from && i < to;
+        all += flux;
+        if (inPart) facing += flux;
+        fluxes.insert(fluxes.end(), {flux, flux, flux, 0.0f});
+        normals.insert(normals.end(), {0.0f, inPart ? -1.0f : 1.0f, 0.0f, 0.0f});
+      }
+      ReflectiveShadowMap map;
+      for (gpu::TextureRef* texture : {&map.position, &map.normal, &map.flux})
+        *texture = std::make_shared<gpu::Texture>(device(), description, "test map");
+      map.position->clear({0, 1, 0, 1});
+      map.normal->uploadFloats(0, normals);
+      map.flux->uploadFloats(0, fluxes);
+      map.lights = std::make_shared<gpu::Buffer>(device(), 64, "lights");
+      map.views = std::make_shared<gpu::Buffer>(device(), 64, "views");
+      map.lightCount = 1;
+      map.layerCount = size.y;
+      PassHarness harness(device(), techniques(), "reflective_shadow_maps", "gather", builder.scene,
+                          snapshotOf(builder.scene, 0.0));
+      harness.setInput("gbuffer", surfacePoints({0, 0, 0}, {0, 1, 0}));
+      harness.setInput("map", map);
+      harness.setParameter("method", std::string("flux"));
+      harness.setParameter("samples", kSamples);
+      harness.run();
+      const double found = pictureOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
+      CAPTURE(size.x, size.y, bright, found / all, facing / all);
+      CHECK(std::abs(found - facing) <= (2.0 / kSamples + 1e-5) * all);
+    }
+}
+
 TEST_CASE("gathering chosen texels converges to gathering all of them, by flux and by projection") {
   const Scene scene = litRoom(16, 16);
   const ReflectiveShadowMap map = render(scene, 32).value;
@@ -179,25 +315,35 @@ TEST_CASE("the same seed and device give the same bits twice through reflective 
   CHECK(first.outputs.at("indirect_diffuse").values() == second.outputs.at("indirect_diffuse").values());
 }
 
-TEST_CASE(
-    "reflective shadow maps are better than no indirect light on the Cornell box and the arcade, with the right energy within 0.7 to 1.3") {
-  for (const char* name : {"cornell", "arcade"}) {
-    const Scene scene = loadScene(sourceDirectory() / "scenes" / (std::string(name) + ".scene"));
+TEST_CASE("reflective shadow maps err on the Cornell box and the arcade by what their card claims") {
+  // With 400 samples, here in fewer pixels than there: a tenth above its RMSE, as a share of that of no
+  // indirect light, and a twentieth beside its energy are allowed.
+  struct Claim {
+    const char* scene;
+    double rmse, ratio;
+  };
+  for (const Claim& claim : {Claim{"cornell", 0.23, 0.95}, {"arcade", 0.53, 0.72}}) {
+    const Scene scene = loadScene(sourceDirectory() / "scenes" / (std::string(claim.scene) + ".scene"));
     ReferenceOptions truthOptions = quietly(64, 1);
     truthOptions.width = 64;
     truthOptions.height = 36;
     truthOptions.useCache = true;
-    const Picture oneBounce = cachedReference(scene, truthOptions).layers.at("one_bounce_diffuse");
+    const LayeredPicture truth = cachedReference(scene, truthOptions);
+    const Picture &oneBounce = truth.layers.at("one_bounce_diffuse"),
+                  &variance = truth.layers.at("one_bounce_diffuse.variance");
     RenderOptions options;
     options.width = 64;
     options.height = 36;
     const Picture picture =
         renderOnce(scene, pipeline("reflective_shadow_maps"), options).outputs.at("indirect_diffuse");
-    const PictureError error = compare(picture, oneBounce), nothing = compare(Picture(64, 36, 3), oneBounce);
-    INFO(name << ": RMSE " << error.rmse.value << " against " << nothing.rmse.value << ", ratio "
-              << error.meanRatio.value);
-    CHECK(error.rmse.value < 0.8 * nothing.rmse.value);
-    CHECK(error.meanRatio.value >= 0.7);
-    CHECK(error.meanRatio.value <= 1.3);
+    const PictureError error = compare(picture, oneBounce, variance),
+                       nothing = compare(Picture(64, 36, 3), oneBounce, variance);
+    // The reference's own noise is a part of the RMSE.
+    const double rmse =
+        std::sqrt(std::max(0.0, error.rmse.value * error.rmse.value - error.noiseFloor * error.noiseFloor));
+    CAPTURE(claim.scene, rmse / nothing.rmse.value, error.noiseFloor / nothing.rmse.value,
+            error.meanRatio.value);
+    CHECK(rmse < 1.1 * claim.rmse * nothing.rmse.value);
+    CHECK(error.meanRatio.value == Approx(claim.ratio).epsilon(0.05));
   }
 }

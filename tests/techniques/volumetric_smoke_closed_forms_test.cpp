@@ -157,3 +157,41 @@ TEST_CASE("single scattering of a point light along a ray is its integral within
     }
   }
 }
+
+TEST_CASE("a point light inside smoke that varies is its integral, marching to it and from the volume") {
+  // Density 1/2 + y / 5 in voxels, which trilinear interpolation keeps. Along the ray, at y = 0, it is 1/2;
+  // along the way from (0, 0, -t) to the light at height h it is on average that at h / 2. So L = int sigma_s
+  // / 2 p I / r^2 exp(-sigma_t (t / 2 + (1/2 + h / 10) r)) dt, by Simpson's rule.
+  constexpr double kHeight = 0.4;
+  SceneBuilder builder;
+  builder.scene = emptyScene();
+  builder.light(LightKind::point, glm::vec3(10.0f), {0, kHeight, -2});
+  const GBuffer gbuffer = surfacesAt([](int) { return glm::vec3(0, 0, -3.5f); });
+  struct Way {
+    const char* depth;
+    int points;
+    double tolerance;
+  };
+  // Between the points of the volume, over 8 m, the peak of the transmittance at the light is cut off.
+  for (const Way& way : {Way{"march", 32, 0.01}, {"volume", 32, 0.06}, {"volume", 64, 0.02}})
+    for (const float g : {0.0f, 0.7f})
+      for (const float extinction : {0.5f, 3.0f}) {
+        const ScatteringGrid smoke = varyingMedium(
+            extinction, 0.9f, g, glm::vec3(-4), 0.125f, glm::ivec3(64),
+            [](const glm::vec3& place) { return 0.5f + 0.2f * std::clamp(place.y, -2.0f, 2.0f); });
+        constexpr int kPieces = 4000;
+        double sum = 0.0;
+        for (int i = 0; i <= kPieces; ++i) {
+          const double t = 3.5 * i / kPieces, along = 2.0 - t, r = std::hypot(along, kHeight);
+          const double weight = i == 0 || i == kPieces ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
+          sum += weight * henyeyGreenstein(g, along / r) / (r * r) *
+                 std::exp(-double(extinction) * (0.5 * t + (0.5 + 0.1 * kHeight) * r));
+        }
+        const double expected = double(extinction) * 0.5 * 0.9 * 10.0 * sum * 3.5 / kPieces / 3.0;
+        const Picture found = march(builder.scene, smoke, gbuffer, 128, {{"light_depth", way.depth}},
+                                    {{"light_resolution", way.points}})
+                                  .scattered;
+        CAPTURE(way.depth, way.points, g, extinction, expected);
+        CHECK(valueOf(found, kPixels * 9 + 5) == Approx(expected).epsilon(way.tolerance));
+      }
+}

@@ -120,6 +120,27 @@ TEST_CASE("particles on the device are those of the scene, bit for bit, at any t
   }
 }
 
+TEST_CASE("more particles than a row of work groups holds are all made and inserted, to the last one") {
+  Medium many = smokeMedium();
+  many.particles = 65535 * 64 + 1000;  // in groups of 64; OpenGL promises 65535 groups along an axis
+  const Scene scene = smokeScene(many);
+  const SceneSnapshot snapshot = snapshotOf(scene, 1.3);
+  PassHarness particles(device(), techniques(), "volumetric_smoke", "particles", scene, snapshot);
+  particles.run();
+  const Particles made = particles.output<Particles>("particles");
+  const auto offsets = made.groups.front().offsets->downloadValues<glm::vec4>();
+  const ParticleClock clock = particleClock(many, 1.3);
+  for (std::uint32_t i = 65535 * 64 - 100; i < static_cast<std::uint32_t>(many.particles); ++i)
+    REQUIRE(offsets[i] == particleAt(many, clock, i));
+  PassHarness insert(device(), techniques(), "volumetric_smoke", "insert", scene, snapshot);
+  insert.setParameter("resolution", 8);
+  insert.setParameter("deposit", std::string("counts"));
+  insert.setInput("particles", made);
+  insert.run();
+  CHECK(massOf(insert.output<ScatteringGrid>("media").media.front()) ==
+        Approx(many.particles * particleMass(many)).epsilon(1e-6));
+}
+
 TEST_CASE("inserting particles keeps their mass, in coarse and fine grids, and gives the same bits again") {
   const Scene scene = smokeScene(smokeMedium());
   const double expected = 3000 * particleMass(scene.media.front());
@@ -267,16 +288,23 @@ TEST_CASE("cones see the medium: an environment seen through d metres of it is d
           Approx(std::exp(-0.5 / std::sqrt(0.5) * extinction[channel])).epsilon(0.001));
 }
 
-TEST_CASE("smoke at half resolution is that at full resolution, to a FLIP below 0.05") {
+TEST_CASE("smoke at half resolution differs from that at full by no more FLIP than the card claims") {
   const Scene scene = committed("smoke");
   const Pipeline text = pipeline("volumetric_smoke");
-  RenderOptions half = sized(128), full = sized(128);
+  RenderOptions half = sized(256), full = sized(256);
   half.wanted = full.wanted = {"scattered", "final"};
   full.parameters = text.settings({"pixels=full"});
   const FrameResult a = frameAt(scene, text, half, 3.0), b = frameAt(scene, text, full, 3.0);
-  for (const char* output : {"scattered", "final"}) {
-    CAPTURE(output);
-    CHECK(compare(a.outputs.at(output), b.outputs.at(output)).flip < 0.05);
+  // A tenth more is allowed.
+  const struct {
+    const char* output;
+    double flip;
+  } claims[] = {{"scattered", 0.015}, {"final", 0.006}};
+  for (const auto& claim : claims) {
+    const double flip = compare(a.outputs.at(claim.output), b.outputs.at(claim.output)).flip;
+    CAPTURE(claim.output, flip);
+    CHECK(flip < 1.1 * claim.flip);
+    CHECK(flip > 0.5 * claim.flip);  // half the rays are not the same
   }
 }
 

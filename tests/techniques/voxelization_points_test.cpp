@@ -1,4 +1,5 @@
 // Random points on triangles, and what the camera sees, as voxels.
+#include <algorithm>
 #include <cmath>
 
 #include "support/scene_builder.h"
@@ -108,6 +109,53 @@ TEST_CASE("each triangle gets exactly N points, and more points only add to them
   CHECK(many.fragments.size() == 300 * scene.triangleCount());
   CHECK(std::includes(many.fragments.begin(), many.fragments.end(), few.fragments.begin(),
                       few.fragments.end()));
+}
+
+TEST_CASE("regular points are the middles of the equal parts of a triangle, the next square number of them") {
+  // 7 points ask for 9: each edge in 3 parts. The parts' middles, in units of a third of the edges: two
+  // thirds of a row further for those that point to the first corner, one third for the others. Their mean is
+  // the triangle's middle, and of the 9 parts none holds two.
+  const Scene scene = oneTriangle({3, 0, 0}, {0, 3, 0});  // (0,0), (3,0), (3,3): parts of edge 1
+  PassHarness harness(device(), techniques(), "voxelization", "points", scene, snapshotOf(scene, 0.0));
+  harness.setParameter("resolution", 200);
+  harness.setParameter("points", 7);
+  harness.setParameter("spread", "regular");
+  harness.run();
+  const Voxels voxels = voxelsOf(harness.output<VoxelFragments>("fragments"));
+  std::multiset<std::pair<long, long>> found, expected;
+  for (const FragmentData& fragment : voxels.fragments) {
+    const glm::dvec3 posWorld = fragment.position() * static_cast<double>(voxels.grid.voxelSize) +
+                                glm::dvec3(voxels.grid.low) + glm::dvec3(snapshotOf(scene, 0.0).origin);
+    found.insert(
+        {std::lround(300.0 * posWorld.x), std::lround(300.0 * posWorld.y)});  // hundredths of a third
+  }
+  // First corner (0,0); a row is a step in x. Towards it: x = row + 2/3, y = i + 1/3; away: x = row + 1/3,
+  // y = i + 2/3.
+  for (int row = 0; row < 3; ++row) {
+    for (int i = 0; i <= row; ++i) expected.insert({100 * (3 * row + 2), 100 * (3 * i + 1)});
+    for (int i = 0; i < row; ++i) expected.insert({100 * (3 * row + 1), 100 * (3 * i + 2)});
+  }
+  CHECK(found == expected);
+}
+
+TEST_CASE(
+    "regular points leave no voxel of a plane out from two on a voxel on, where random ones miss some") {
+  // Parts of a voxel's half: their middles are at most 0.75 voxels apart, so that every voxel holds one.
+  const Scene scene = floorOf(1.0f);
+  const auto inner = [&](const char* spread) {
+    PassHarness harness(device(), techniques(), "voxelization", "points", scene, snapshotOf(scene, 0.0));
+    harness.setParameter("resolution", 64);
+    harness.setParameter("adaptive", "on");
+    harness.setParameter("density", 2.2);
+    harness.setParameter("spread", spread);
+    harness.run();
+    std::set<Cell> cells;
+    for (const Cell& cell : voxelsOf(harness.output<VoxelFragments>("fragments")).occupied)
+      if (cell[0] >= 2 && cell[0] < 62 && cell[2] >= 2 && cell[2] < 62) cells.insert({cell[0], 0, cell[2]});
+    return cells.size();
+  };
+  CHECK(inner("regular") == 3600);
+  CHECK(inner("random") < 3400);
 }
 
 TEST_CASE("adaptive points follow the area, and a plane's voxel is missed with probability exp(-density)") {
@@ -308,4 +356,151 @@ TEST_CASE("leaving out nothing gives the same points and the same seen voxels to
     executor->render(0.0, 0, PipelineExecutor::Pictures::no);
   }
   CHECK(fragmentsOf(listOf(pruned, "both")) == fragmentsOf(listOf(whole, "both")));
+}
+
+namespace {
+
+/// Direct light that comes along with fragments, in the order of the list.
+std::vector<std::uint32_t> reflectedBy(const VoxelFragments& list) {
+  REQUIRE(list.reflected != nullptr);
+  std::vector<std::uint32_t> words = list.reflected->downloadValues<std::uint32_t>();
+  words.resize(list.count->downloadValues<std::uint32_t>()[0]);
+  return words;
+}
+
+glm::vec3 unpackedRadiance(std::uint32_t word) {
+  FragmentData fragment{};
+  fragment.emission = word;
+  return fragment.emittedRadiance();
+}
+
+/// The lit room without its glossy box: all that it reflects is diffuse.
+Scene diffuseRoom(int width, int height) {
+  Scene scene = litRoom(width, height);
+  for (Material& material : scene.materials) material.specular = glm::vec3(0.0f);
+  return scene;
+}
+
+const char* const kLit = R"(pipeline "lit" {
+  pass gbuffer direct_lighting.gbuffer { }
+  pass shadow direct_lighting.shadow_map { size 256 }
+  pass direct direct_lighting.shade { gbuffer gbuffer shadow shadow.depth }
+  pass points voxelization.points { resolution 16 points 3 }
+  pass known voxelization.reproject { gbuffer gbuffer fragments points.fragments direct direct.radiance }
+  pass seen voxelization.reproject { gbuffer gbuffer resolution 16 direct direct.radiance }
+  pass unlit voxelization.reproject { gbuffer gbuffer resolution 16 }
+  pass from_picture voxel_cone_tracing.inject { fragments seen.fragments shadow shadow.depth precision float }
+  pass from_lights voxel_cone_tracing.inject { fragments unlit.fragments shadow shadow.depth precision float }
+  output direct direct.radiance
+})";
+
+}  // namespace
+
+TEST_CASE("points of the picture bring the direct light along that was computed there, and no others do") {
+  const Scene scene = diffuseRoom(48, 40);
+  const Pipeline pipeline = Pipeline::parse(kLit, "lit.pipeline");
+  PipelineExecutor executor(device(), techniques(), scene, pipeline, {});
+  for (const char* pass : {"points", "known", "seen"}) executor.keepOutput(pass, "fragments");
+  executor.keepOutput("gbuffer", "gbuffer");
+  const FrameResult frame = executor.render(0.0);
+  const std::vector<std::uint32_t> known = reflectedBy(listOf(executor, "known"));
+  const std::size_t points = listOf(executor, "points").count->downloadValues<std::uint32_t>()[0];
+  REQUIRE(known.size() > points + 500);
+  for (std::size_t i = 0; i < points; ++i) CHECK(known[i] == VoxelFragments::kNotKnown);
+  // All pixels: what they show without what they emit. A packed radiance is right to 1/256 of its largest
+  // component.
+  const Picture& direct = frame.outputs.at("direct");
+  const GBuffer& gbuffer = static_cast<const Out<GBuffer>&>(*executor.output("gbuffer", "gbuffer")).value();
+  const std::vector<float> positions = gbuffer.position->downloadFloats(),
+                           emission = gbuffer.emission->downloadFloats();
+  std::vector<float> expected, found;
+  for (int y = 0; y < direct.height(); ++y)
+    for (int x = 0; x < direct.width(); ++x) {
+      const std::size_t texel = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(direct.width()) +
+                                     static_cast<std::size_t>(x));
+      if (positions[texel + 3] != 0.0f) expected.push_back(direct.at(x, y, 0) - emission[texel]);
+    }
+  for (std::size_t i = points; i < known.size(); ++i) {
+    REQUIRE(known[i] != VoxelFragments::kNotKnown);
+    found.push_back(unpackedRadiance(known[i]).r);
+  }
+  std::sort(expected.begin(), expected.end());
+  std::sort(found.begin(), found.end());
+  REQUIRE(found.size() == expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i)
+    CHECK(found[i] == Approx(expected[i]).epsilon(0.01).margin(0.002));
+  CHECK(found.back() > 0.3f);
+}
+
+TEST_CASE("light that came along by reprojection is the light that the voxels would have been given anew") {
+  // Both light the same points of the same diffuse surfaces: one with the picture's light, the other with the
+  // lights and their shadow maps once more, from places rounded to 1/1023 of a voxel.
+  const Scene scene = diffuseRoom(64, 64);
+  const Pipeline pipeline = Pipeline::parse(kLit, "lit.pipeline");
+  PipelineExecutor executor(device(), techniques(), scene, pipeline, {});
+  for (const char* pass : {"from_picture", "from_lights"}) executor.keepOutput(pass, "radiance");
+  executor.render(0.0, 0, PipelineExecutor::Pictures::no);
+  const auto sumOf = [&](const char* pass) {
+    const auto& grid = static_cast<const Out<RadianceGrid>&>(*executor.output(pass, "radiance")).value();
+    const std::vector<float> values = grid.radiance->downloadFloats();
+    glm::dvec4 sum(0.0);
+    for (std::size_t i = 0; i < values.size(); i += 4)
+      sum += glm::dvec4(values[i], values[i + 1], values[i + 2], values[i + 3]) *
+             glm::dvec4(glm::dvec3(grid.unit), 1.0);
+    return sum;
+  };
+  const glm::dvec4 picture = sumOf("from_picture"), lights = sumOf("from_lights");
+  CHECK(lights.r > 10.0);
+  for (int channel = 0; channel < 3; ++channel)
+    CHECK(picture[channel] == Approx(lights[channel]).epsilon(0.03));
+  CHECK(picture.a == lights.a);
+}
+
+TEST_CASE("a fragment whose direct light is known reflects just that, whatever shines on it") {
+  SceneBuilder builder;
+  builder.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, builder.lambert(0.5f));
+  builder.light(LightKind::point, glm::vec3(1e4f), {0, 0, 2});
+  builder.look({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 0.9, 64, 64);
+  const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
+  PassHarness camera(device(), techniques(), "direct_lighting", "gbuffer", builder.scene, snapshot);
+  camera.run();
+  const GBuffer gbuffer = camera.output<GBuffer>("gbuffer");
+  gpu::TextureDescription description;
+  description.format = gpu::Format::rgba32f;
+  description.width = description.height = 64;
+  const auto painted = std::make_shared<gpu::Texture>(device(), description, "light");
+  painted->clear(glm::vec4(7.0f, 3.5f, 1.75f, 1.0f));  // what eight bits hold exactly
+  PassHarness reproject(device(), techniques(), "voxelization", "reproject", builder.scene, snapshot);
+  reproject.setParameter("resolution", 8);
+  reproject.setInput("gbuffer", gbuffer);
+  reproject.setInput("direct", Image{painted});
+  reproject.run();
+  const VoxelFragments list = reproject.output<VoxelFragments>("fragments");
+  PassHarness shadows(device(), techniques(), "direct_lighting", "shadow_map", builder.scene, snapshot);
+  shadows.run();
+  PassHarness inject(device(), techniques(), "voxel_cone_tracing", "inject", builder.scene, snapshot);
+  inject.setParameter("precision", "float");
+  inject.setInput("fragments", list);
+  inject.setInput("shadow", shadows.output<ShadowMap>("depth"));
+  inject.run();
+  const auto& grid = inject.output<RadianceGrid>("radiance");
+  const std::vector<float> values = grid.radiance->downloadFloats();
+  int occupied = 0;
+  for (std::size_t i = 0; i < values.size(); i += 4) {
+    if (values[i + 3] == 0.0f) continue;
+    ++occupied;
+    CHECK(values[i] * grid.unit / values[i + 3] == Approx(7.0).epsilon(1e-4));
+    CHECK(values[i + 1] * grid.unit / values[i + 3] == Approx(3.5).epsilon(1e-4));
+    CHECK(values[i + 2] * grid.unit / values[i + 3] == Approx(1.75).epsilon(1e-4));
+  }
+  CHECK(occupied == 36);
+  // A list that brings light along is not given light a second time.
+  reproject.setInput("fragments", list);
+  CHECK_THROWS_WITH(reproject.run(), Catch::Matchers::Contains("brings direct light along already"));
+  // A picture of another size has no light for these pixels.
+  description.width = 32;
+  PassHarness wrong(device(), techniques(), "voxelization", "reproject", builder.scene, snapshot);
+  wrong.setInput("gbuffer", gbuffer);
+  wrong.setInput("direct", Image{std::make_shared<gpu::Texture>(device(), description, "light")});
+  CHECK_THROWS_WITH(wrong.run(), Catch::Matchers::Contains("expected 64 x 64"));
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "support/scene_builder.h"
 #include "support/techniques.h"
@@ -180,19 +181,132 @@ TEST_CASE("the coverages of a wall made of many triangles add up to one in every
   }
 }
 
-TEST_CASE("a wall that half fills its voxels is half opaque, as fine as the samples tell") {
-  // 2 m over 14 voxels; a strip of three and a half of them.
+TEST_CASE("a strip is as opaque in the voxel where it begins as the samples that it covers there") {
+  // 14 voxels over 2 m; the strip begins within voxel 4, at `start` of its width, and ends with voxel 7. A
+  // sample is covered when its x is beyond the start; the grid holds opacities in steps of 1/255.
+  const int count = std::min(8, device().info().maxSamples);
+  const std::vector<glm::vec2> samples = device().samplePositions(count);
+  std::set<float> told;
+  for (const float start : {0.06f, 0.3f, 0.5f, 0.69f, 0.94f}) {
+    INFO("from " << start << " with " << count << " samples");
+    SceneBuilder builder;
+    const int grey = builder.lambert(0.5f);
+    builder.box({-1, -1, -1}, {1, 1, 1}, grey, false);
+    builder.quad({-1.0f + (3.0f + start) / 7.0f, -0.5f, 0.02f}, {(4.0f - start) / 7.0f, 0, 0}, {0, 1, 0},
+                 grey);
+    const auto harness = harnessOf(builder.scene, "msaa_opacity", 16);
+    const auto opacities = harness->output<OccupancyGrid>("opacity_z").opacity->downloadFloats();
+    const auto at = [&](int x) { return opacities[static_cast<std::size_t>((8 * 16 + 8) * 16 + x)]; };
+    const auto covered = std::count_if(samples.begin(), samples.end(),
+                                       [&](const glm::vec2& sample) { return sample.x > start; });
+    const float share = static_cast<float>(covered) / static_cast<float>(count);
+    CHECK(at(4) == Approx(std::round(share * 255.0f) / 255.0f).margin(1e-6));
+    told.insert(at(4));
+    for (int x = 2; x < 14; ++x)
+      if (x != 4) CHECK(at(x) == (x >= 5 && x <= 7 ? 1.0f : 0.0f));
+  }
+  CHECK(told.size() >= 3);
+}
+
+namespace {
+
+/// The coverages of a square of `side` voxels across z, added up, in a grid of voxels of 1 m around the
+/// camera.
+double coverageOfSquare(const glm::dvec2& low, double side, int supersampling) {
   SceneBuilder builder;
-  const int grey = builder.lambert(0.5f);
-  builder.box({-1, -1, -1}, {1, 1, 1}, grey, false);
-  builder.quad({-0.5f, -0.5f, 0.02f}, {3.5f / 7.0f, 0, 0}, {0, 1, 0}, grey);
-  const auto harness = harnessOf(builder.scene, "msaa_opacity", 16);
-  const auto opacities = harness->output<OccupancyGrid>("opacity_z").opacity->downloadFloats();
+  const auto length = static_cast<float>(side);
+  builder.quad({static_cast<float>(low.x), static_cast<float>(low.y), 0.5f}, {length, 0, 0}, {0, length, 0},
+               builder.lambert(0.5f, 1.0f));
+  // Far outside of the grid: they keep the origin of positions at zero, wherever the square is.
+  for (const float end : {-100.0f, 100.0f})
+    builder.quad(glm::vec3(end), {-0.005f * end, 0, 0}, {0, -0.005f * end, 0}, 0);
+  builder.look({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 0.7, 8, 8);
+  PassHarness harness(device(), techniques(), "voxelization", "msaa_opacity", builder.scene,
+                      snapshotOf(builder.scene, 0.0));
+  harness.setParameter("resolution", 8);
+  harness.setParameter("around", "camera");
+  harness.setParameter("extent", 8.0);
+  harness.setParameter("supersampling", supersampling);
+  harness.run();
   double sum = 0.0;
-  for (int x = 2; x < 14; ++x) sum += opacities[static_cast<std::size_t>((8 * 16 + 8) * 16 + x)];
-  // Rows of samples share out the width: the mean over the strip's end is its fraction, to one column of
-  // samples.
-  CHECK(sum == Approx(3.5).margin(0.5));
+  for (const FragmentData& fragment : fragmentsOf(harness.output<VoxelFragments>("fragments"))) {
+    sum += fragment.coverage();
+    CHECK(fragment.emittedRadiance() == glm::vec3(1.0f));
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("adaptive supersampling counts the samples of smaller pixels, as many as a small triangle needs") {
+  // Each half of a square of 0.4 voxels has 0.08 of a voxel's side. 8 x 8 pixels of 4 or 8 samples put at
+  // least 16 of them there (20, 41), 4 x 4 do not (5, 10). What the square covers are the samples within it,
+  // each a share of 1 / (64 n); of those within a hundredth of a pixel of its border, corners are rounded to
+  // 1/256 of a pixel.
+  const int count = std::min(8, device().info().maxSamples);
+  const std::vector<glm::vec2> samples = device().samplePositions(count);
+  constexpr double kSide = 0.4;
+  constexpr int kScale = 8;
+  for (int step = 0; step < 12; ++step) {
+    const glm::dvec2 low(0.05 + 0.113 * step, -0.3 + 0.071 * step);
+    int inside = 0, open = 0;
+    for (int y = -2 * kScale; y < 3 * kScale; ++y)
+      for (int x = -2 * kScale; x < 3 * kScale; ++x)
+        for (const glm::vec2& sample : samples) {
+          const glm::dvec2 at = (glm::dvec2(x, y) + glm::dvec2(sample)) / double{kScale} - low;
+          const double depth = std::min(std::min(at.x, kSide - at.x), std::min(at.y, kSide - at.y)) * kScale;
+          inside += depth > 0.0;
+          open += std::abs(depth) < 0.01;
+        }
+    const double share = 1.0 / (kScale * kScale * count);
+    INFO("step " << step << ": " << inside << " samples, " << open << " at the border");
+    CHECK(coverageOfSquare(low, kSide, 8) == Approx(inside * share).margin(open * share + 1e-6));
+    // More pixels than are needed are not taken.
+    CHECK(coverageOfSquare(low, kSide, 16) == coverageOfSquare(low, kSide, 8));
+  }
+}
+
+TEST_CASE(
+    "the light of a small square that moves through a voxel pops without supersampling and stays with it") {
+  // Thesis Gomes 2015, Fig. 56. The square has 0.16 of a voxel's side: four samples a pixel tell quarters of
+  // it.
+  constexpr double kSide = 0.4;
+  double least[2] = {1e9, 1e9}, most[2] = {0, 0}, sum[2] = {0, 0};
+  constexpr int kSteps = 40;
+  for (int step = 0; step < kSteps; ++step)
+    for (const int with : {0, 1}) {
+      const double coverage = coverageOfSquare({0.021 * step, 0.3 + 0.013 * step}, kSide, with == 1 ? 16 : 1);
+      least[with] = std::min(least[with], coverage);
+      most[with] = std::max(most[with], coverage);
+      sum[with] += coverage / kSteps;
+    }
+  CHECK(most[0] - least[0] >= kSide * kSide);
+  CHECK(most[1] - least[1] < 0.4 * kSide * kSide);
+  CHECK(sum[1] == Approx(kSide * kSide).epsilon(0.05));
+}
+
+TEST_CASE(
+    "supersampling leaves what is large alone, to the bit, and the coverages of small triangles add up") {
+  const Scene large = wall(2);
+  CHECK(voxelise(large, "msaa_opacity", 16).fragments ==
+        voxelise(large, "msaa_opacity", 16, Numbers{{"supersampling", 8.0}}).fragments);
+  // A sphere of triangles much smaller than a voxel. Each adds its area as seen along the axis that it faces
+  // most: area * max(|n.x|, |n.y|, |n.z|), over the sphere 4 pi r^2 times the mean of that factor.
+  const Scene fine = sphere(1.0f, 60);
+  double mean = 0.0;
+  constexpr int kPoints = 200000;
+  for (int i = 0; i < kPoints; ++i) {
+    const double z = -1.0 + 2.0 * (i + 0.5) / kPoints, phi = 2.399963229728653 * i,
+                 r = std::sqrt(1.0 - z * z);
+    mean += std::max({std::abs(r * std::cos(phi)), std::abs(r * std::sin(phi)), std::abs(z)}) / kPoints;
+  }
+  // 14 voxels over 2 m.
+  const double expected = 4.0 * kPi * 49.0 * mean;
+  double sum = 0.0;
+  for (const FragmentData& fragment :
+       voxelise(fine, "msaa_opacity", 16, Numbers{{"supersampling", 16.0}}).fragments)
+    sum += fragment.coverage();
+  CHECK(sum == Approx(expected).epsilon(0.005));
 }
 
 TEST_CASE("a thin wall is opaque across, and from the side as thick as asked for") {

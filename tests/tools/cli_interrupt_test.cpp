@@ -1,59 +1,10 @@
 // An interrupted command leaves the earlier result readable and no half file.
-#include <fcntl.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <chrono>
-#include <thread>
-
 #include "lumivox/base/picture.h"
 #include "tools/cli_support.h"
+#include "tools/started.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
-
-namespace {
-
-/// A command in a process of its own that can be sent a signal.
-class Started {
- public:
-  explicit Started(std::vector<std::string> arguments) {
-    const std::string program = (binaryDirectory() / "bin/lumivox").string();
-    pid_ = fork();
-    if (pid_ != 0) return;
-    const int nowhere = open("/dev/null", O_RDWR);
-    for (const int descriptor : {0, 1, 2}) dup2(nowhere, descriptor);
-    std::vector<char*> pointers{const_cast<char*>(program.c_str())};
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    pointers.push_back(nullptr);
-    execv(program.c_str(), pointers.data());
-    _exit(127);
-  }
-  ~Started() {
-    if (!ended_) {
-      kill(pid_, SIGKILL);
-      wait();
-    }
-  }
-  void signalAfter(std::chrono::milliseconds delay, int signal) {
-    std::this_thread::sleep_for(delay);
-    kill(pid_, signal);
-  }
-  /// The status as waitpid gives it.
-  int wait() {
-    int status = 0;
-    waitpid(pid_, &status, 0);
-    ended_ = true;
-    return status;
-  }
-
- private:
-  pid_t pid_ = -1;
-  bool ended_ = false;
-};
-
-}  // namespace
 
 TEST_CASE(
     "a reference that is killed or interrupted leaves the earlier picture readable and nothing "

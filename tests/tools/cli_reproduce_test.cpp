@@ -1,6 +1,8 @@
-// Published tables: read, checked, measured on a small one, written.
+// Published tables and figures: read, checked, measured on small ones, written, kept, quoted.
 #include <set>
+#include <sstream>
 
+#include "lumivox/base/picture.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/report/reproduce.h"
 #include "tools/cli_support.h"
@@ -39,7 +41,7 @@ TEST_CASE("check tells everything that is wrong in a published table, each at it
   const CommandResult references = runCommand("lumivox check " + data("wrong_references.reproduction"));
   checkRefused(references, "wrong_references.reproduction:4:9: there is no file");
   for (const char* finding :
-       {"wrong_references.reproduction:6:11: no row's pipeline has a parameter 'resolution'",
+       {"wrong_references.reproduction:6:11: no pipeline here has a parameter 'resolution'",
         "wrong_references.reproduction:7:9: pipeline \"Direct lighting\" has no parameter 'shadow_sise'",
         "did you mean 'shadow_size'",
         "wrong_references.reproduction:7:24: this value does not fit the parameter 'area_samples'",
@@ -53,7 +55,41 @@ TEST_CASE("check tells everything that is wrong in a published table, each at it
   }
 }
 
-TEST_CASE("the committed tables pass check, stand in the canonical layout and have names of their own") {
+TEST_CASE("check tells everything that is wrong in a published figure, each at its place") {
+  const CommandResult shapes = runCommand("lumivox check " + data("wrong_shapes.reproduction"));
+  checkRefused(shapes, "wrong_shapes.reproduction:4:11: 0 of property 'columns' is out of range");
+  for (const char* finding :
+       {"wrong_shapes.reproduction:5:3: block 'curve \"a\"' lacks the property 'over'",
+        "wrong_shapes.reproduction:5:22: unknown value 'sideways' of property 'growth'",
+        "wrong_shapes.reproduction:5:3: block 'curve \"a\"' lacks a block 'point'",
+        "wrong_shapes.reproduction:6:52: 9 of property 'subdivisions' is out of range",
+        "wrong_shapes.reproduction:7:21: unknown value 'everything' of property 'reference'",
+        "wrong_shapes.reproduction:8:15: unknown property 'published'"}) {
+    INFO(finding << "\n" << shapes.errors);
+    CHECK(contains(shapes.errors, finding));
+  }
+  const CommandResult references = runCommand("lumivox check " + data("wrong_figure.reproduction"));
+  checkRefused(references, "wrong_figure.reproduction:8:3: there are two of name 'a'");
+  for (const char* finding :
+       {"wrong_figure.reproduction:9:31: there is no row 'aa'", "did you mean 'a'",
+        "wrong_figure.reproduction:10:31: row 'c' cannot be divided by 'c'",
+        "wrong_figure.reproduction:11:31: row 'd' cannot be divided by 'a'",
+        "wrong_figure.reproduction:13:10: pipeline \"Volumetric smoke\" has no parameter 'resolutions'",
+        "did you mean 'resolution'", "wrong_figure.reproduction:18:10: the parameter 'pixels' is a word",
+        "wrong_figure.reproduction:23:5: this point measures something else",
+        "wrong_figure.reproduction:25:22: this names no output of a pass",
+        "wrong_figure.reproduction:26:3: there are two of name 'p'",
+        "wrong_figure.reproduction:26:21: pipeline \"Volumetric smoke\" has no parameter 'stepz'",
+        "wrong_figure.reproduction:27:37: there is no file"}) {
+    INFO(finding << "\n" << references.errors);
+    CHECK(contains(references.errors, finding));
+  }
+  checkRefused(runCommand("lumivox check " + data("empty.reproduction")),
+               "empty.reproduction:1:1: reproduction 'empty' has nothing to reproduce");
+}
+
+TEST_CASE(
+    "the committed tables and figures pass check, stand in the canonical layout and have names of their own") {
   std::set<std::string> names;
   const fs::path folder = sourceDirectory() / "scenes/reproductions";
   for (const auto& entry : fs::directory_iterator(folder)) {
@@ -66,7 +102,7 @@ TEST_CASE("the committed tables pass check, stand in the canonical layout and ha
     INFO(result.errors);
     CHECK(result.exitCode == 0);
     if (entry.path().extension() != ".reproduction") continue;
-    const std::string id = PublishedTable::load(entry.path()).id;
+    const std::string id = PublishedResult::load(entry.path()).id;
     CHECK(names.insert(id).second);
     // The file is called as the table, in the house's way.
     std::string stem = id;
@@ -75,8 +111,32 @@ TEST_CASE("the committed tables pass check, stand in the canonical layout and ha
   }
   const Json list = Json::parse(runCommand("lumivox reproduce --list --json").output);
   CHECK(list.size() == names.size());
-  for (const char* id : {"000-table-1", "001-voxelisation-binary", "001-voxelisation-multi-valued",
-                         "004-table-1", "004-table-2", "004-table-3", "004-table-4"})
+  for (const char* id : {"000-table-1",
+                         "000-figure-4",
+                         "001-multi-valued-over-binary",
+                         "004-figure-18",
+                         "004-figure-19",
+                         "004-figure-20",
+                         "004-figure-21",
+                         "004-figure-61",
+                         "004-figure-62",
+                         "004-figure-63",
+                         "004-figure-65",
+                         "004-figure-66",
+                         "004-figure-75",
+                         "004-figure-76",
+                         "004-figure-77",
+                         "004-figure-82",
+                         "004-figure-83",
+                         "004-figure-84",
+                         "004-figure-85",
+                         "004-figure-86",
+                         "001-voxelisation-binary",
+                         "001-voxelisation-multi-valued",
+                         "004-table-1",
+                         "004-table-2",
+                         "004-table-3",
+                         "004-table-4"})
     CHECK(names.count(id) == 1);
 }
 
@@ -88,9 +148,12 @@ TEST_CASE("a table that is not there is refused with the nearest name, and so ar
   checkRefused(runCommand("lumivox reproduce " + data("room.reproduction") + " --scale 3"), "--scale");
 }
 
-TEST_CASE("describe knows the words of published tables") {
+TEST_CASE("describe knows the words of published tables and figures") {
   CHECK(contains(runCommand("lumivox describe reproduction").output, "lumivox reproduce ID"));
   CHECK(contains(runCommand("lumivox describe software_scale").output, "software rasteriser"));
+  CHECK(contains(runCommand("lumivox describe panel").output, "one picture of a figure"));
+  CHECK(contains(runCommand("lumivox describe growth").output, "sublinear, linear, superlinear"));
+  CHECK(contains(runCommand("lumivox describe reference").output, "path-traced"));
 }
 
 TEST_CASE("a small table is measured: ratios to its first row, a verdict for each, a page and a store") {
@@ -182,4 +245,153 @@ TEST_CASE("the page of a reproduced table escapes what the texts say") {
   CHECK(contains(html, "a &lt; b"));
   CHECK(contains(html, "&lt;script&gt;alert(1)&lt;/script&gt; &amp; more"));
   CHECK_FALSE(contains(html, "<script>alert"));
+}
+
+TEST_CASE(
+    "a small figure is made: a sheet of its panels, curves with a verdict, and reasons for what is absent") {
+  const TemporaryDirectory directory;
+  const fs::path figures = directory.path() / "figures", page = directory.path() / "page.html";
+  const CommandResult result =
+      runCommand("lumivox -q reproduce " + data("figure.reproduction") +
+                 " --repeats 1 --spp 4 --json --figures " + figures.string() + " -o " + page.string());
+  INFO(result.errors);
+  REQUIRE(result.exitCode == 0);
+  const Json figure = Json::parse(result.output).at(0);
+  // Voxels that a surface touches grow as the square of the voxels along a side.
+  const Json& curve = figure["curves"][0];
+  CHECK(curve["verdict"] == "reproduced");
+  CHECK(curve["exponent"].get<double>() == Approx(2.0).margin(0.35));
+  CHECK(curve["points"][2]["x"] == 32);
+  // What is split covers the same voxels; a voxel that it shares has one fragment of each triangle.
+  const Json& split = figure["curves"][1];
+  const double triangles = split["points"][0]["x"];
+  CHECK(split["points"][1]["x"] == 4 * triangles);
+  CHECK(split["points"][2]["x"] == 16 * triangles);
+  CHECK(split["exponent"].get<double>() > 0.0);
+  CHECK(split["exponent"].get<double>() < 0.5);
+  CHECK(split["why"] == "the paper does not say how it grows");
+  CHECK(figure["curves"][2]["verdict"] == "not comparable");
+  CHECK(figure["curves"][2]["why"] == "it was sold");
+
+  const Json& panels = figure["panels"];
+  REQUIRE(panels.size() == 6);
+  const double whole = panels[0]["mean_luminance"], indirect = panels[1]["mean_luminance"],
+               reference = panels[2]["mean_luminance"];
+  CHECK(whole > indirect);
+  CHECK(indirect == Approx(reference).epsilon(0.5));
+  CHECK(panels[0]["why_not"] == "");
+  CHECK(contains(panels[3]["why_not"].get<std::string>(), "march.scattered was left out"));
+  CHECK(contains(panels[4]["why_not"].get<std::string>(), "lost.obj"));
+  CHECK(panels[5]["why_not"] == "it was sold");
+  for (const Json& panel : panels) CHECK(panel["failed"] == false);
+  // A software rasteriser gets no smaller picture without software_scale.
+  const BytePicture sheet = readBytePicture(figures / "figure.png");
+  CHECK(sheet.width == 3 * (160 + 6) + 6);
+  CHECK(contains(readFile(figures / "figure.csv"), "\"light by voxels\",resolution,32,fragments,"));
+  CHECK(contains(readFile(figures / "figure.svg"), "<svg"));
+  const std::string html = readFile(page);
+  CHECK(contains(html, "src=\"data:image/png;base64,"));
+  CHECK(contains(html, "<svg"));
+  // Under one exposure the indirect light alone is darker than all light, in the middle of their panels: the
+  // 64 x 48 pixels fill 160 x 120.
+  const auto meanOf = [&](int left, int top) {
+    double sum = 0.0;
+    for (int y = top; y < top + 120; ++y)
+      for (int x = left; x < left + 160; ++x)
+        sum += sheet.values[static_cast<std::size_t>((y * sheet.width + x) * sheet.channels)];
+    return sum / (120 * 160);
+  };
+  CHECK(meanOf(6, 28) > meanOf(172, 28));
+  CHECK(meanOf(172, 28) > 0.0);
+}
+
+TEST_CASE(
+    "kept results take the place of older ones, and the cards that quote them are written and checked") {
+  const TemporaryDirectory directory;
+  // A project of one table, with one card and a guide.
+  const auto inProject = [&](const std::string& arguments) {
+    return runCommand("cd " + directory.path().string() + " && " +
+                      (binaryDirectory() / "bin/lumivox").string() + " -q reproduce " + arguments);
+  };
+  for (const char* folder : {"scenes/pipelines", "scenes/reproductions", "techniques/one", "docs/benchmarks"})
+    fs::create_directories(directory.path() / folder);
+  std::string text = readFile(data("room.reproduction"));
+  for (std::size_t at; (at = text.find("../../../../scenes")) != std::string::npos;)
+    text.replace(at, 18, (sourceDirectory() / "scenes").string());
+  text = text.substr(0, text.find("  row \"a model of others\"")) + "}\n";
+  directory.write("scenes/reproductions/room.reproduction", text);
+  directory.write("techniques/one/README.md",
+                  "a <!-- reproduced ratios room; voxels; voxels, 64 --><!-- end --> z\n");
+  const std::string kept = "docs/benchmarks/reproductions.json";
+  const CommandResult first = inProject("--repeats 1 --scale 0.5 --record " + kept + " --cards");
+  INFO(first.errors);
+  REQUIRE(first.exitCode == 0);
+  const std::string card = readFile(directory.path() / "techniques/one/README.md");
+  CHECK(contains(card, "a <!-- reproduced ratios room; voxels; voxels, 64 -->1 : "));
+  CHECK(contains(card, ", published 1 : 4.5: *reproduced*"));
+  CHECK(contains(readFile(directory.path() / "docs/benchmarks/reproductions.md"), "## room: "));
+  CHECK(inProject("--cards --check").exitCode == 0);
+  // Measured again, there is still one of it.
+  REQUIRE(inProject("room --repeats 2 --scale 0.25 --record " + kept).exitCode == 0);
+  const Json again = Json::parse(readFile(directory.path() / kept));
+  REQUIRE(again["results"].size() == 1);
+  CHECK(again["results"][0]["scale"] == 0.25);
+  CHECK(again["results"][0]["repeats"] == 2);
+
+  const auto changed = inProject("--cards --check");
+  CHECK(changed.exitCode == 1);
+  CHECK(contains(changed.errors, "reproductions.md:"));
+  const std::string untouched = readFile(directory.path() / "docs/benchmarks/reproductions.md");
+  CHECK(contains(untouched, "--scale 0.5"));
+  REQUIRE(inProject("--cards").exitCode == 0);
+  REQUIRE(inProject("--cards --check").exitCode == 0);
+
+  // Somebody betters a figure by hand.
+  const std::string honest = readFile(directory.path() / "techniques/one/README.md");
+  std::string flattering = honest;
+  flattering.replace(flattering.find("-->1 : ") + 7, 1, "9");
+  directory.write("techniques/one/README.md", flattering);
+  const auto flattered = inProject("--cards --check");
+  CHECK(flattered.exitCode == 1);
+  CHECK(contains(flattered.errors, "techniques/one/README.md:1: this is not what was measured"));
+  CHECK(readFile(directory.path() / "techniques/one/README.md") == flattering);
+  REQUIRE(inProject("--cards").exitCode == 0);
+  CHECK(readFile(directory.path() / "techniques/one/README.md") == honest);
+
+  // A published number is mended, and what was measured by the old one is told.
+  std::string mended = text;
+  mended.replace(mended.find("published 45"), 12, "published 46");
+  directory.write("scenes/reproductions/room.reproduction", mended);
+  const auto stale = inProject("--cards --check");
+  CHECK(stale.exitCode == 1);
+  CHECK(contains(stale.errors, "row 'voxels, 64' is kept with 45 as published, the text has 46"));
+
+  // A damaged file is refused before anything is measured, and stays as it is.
+  directory.write(kept, "{");
+  const auto damaged = inProject("room --record " + kept);
+  checkRefused(damaged, "reproductions.json");
+  CHECK(readFile(directory.path() / kept) == "{");
+}
+
+TEST_CASE("what the cards and guides quote of published tables and figures is what was measured") {
+  const CommandResult result =
+      runCommand("cd " + sourceDirectory().string() + " && " + (binaryDirectory() / "bin/lumivox").string() +
+                 " reproduce --cards --check");
+  INFO(result.errors);
+  CHECK(result.exitCode == 0);
+}
+
+TEST_CASE("a card that speaks of a reproduced table has its figures from the kept results") {
+  std::size_t quoted = 0;
+  for (const auto& entry : fs::directory_iterator(sourceDirectory() / "techniques")) {
+    if (!fs::exists(entry.path() / "README.md")) continue;
+    std::istringstream card(readFile(entry.path() / "README.md"));
+    for (std::string line; std::getline(card, line);) {
+      if (!contains(line, "lumivox reproduce ")) continue;
+      INFO(entry.path() << "\n" << line);
+      ++quoted;
+      CHECK(contains(line, "<!-- reproduced "));
+    }
+  }
+  CHECK(quoted >= 8);
 }

@@ -300,6 +300,53 @@ TEST_CASE("a binding that C++ could not serve is an error at its declaration") {
              Catch::Contains("'a' and 'b' are both sampled texture 0"));
 }
 
+TEST_CASE(
+    "a sample by derivatives after a discard is an error, also in a function and in a later turn of a loop") {
+  const auto write = [](Project& project, const std::string& functions, const std::string& body) {
+    project.write(
+        "a.vert",
+        "layout(location = 0) out vec2 place;\nvoid main() { place = vec2(gl_VertexID); gl_Position = "
+        "vec4(0); }\n");
+    project.write(
+        "a.frag",
+        "layout(binding = 0) uniform sampler2D albedo;\nlayout(binding = 1) uniform sampler2D mask;\n"
+        "layout(location = 0) in vec2 place;\nlayout(location = 0) out vec4 result;\n" +
+            functions + "\nvoid main() {\n  result = vec4(0);\n" + body + "}\n");
+  };
+  const std::string hole = "if (textureLod(mask, place, 0.0).r < 0.5) discard;\n";
+  const std::string sample = "result += texture(albedo, place);\n";
+  const std::string cut = "void cut() { " + hole + " }";
+  const std::string look = "vec4 look() { return texture(albedo, place); }";
+  const struct {
+    std::string functions, body;
+  } bad[] = {
+      {"", hole + sample},
+      {cut, "cut();\n" + sample},
+      {look, hole + "result = look();\n"},
+      {"", "for (int i = 0; i < 3; ++i) {\n" + sample + "if (result.a + float(i) > place.x) discard;\n}\n"}};
+  for (const auto& one : bad) {
+    CAPTURE(one.functions, one.body);
+    Project project;
+    write(project, one.functions, one.body);
+    CHECK_THAT(project.errors(),
+               Catch::Contains("a.frag:1: error: 'albedo' is sampled by derivatives after a discard"));
+  }
+  Project derivative;
+  write(derivative, "", hole + "result.x = dFdx(place.x);\n");
+  CHECK_THAT(derivative.errors(), Catch::Contains("a derivative is taken after a discard"));
+  const std::string good[] = {
+      sample + hole, hole + "result += textureLod(albedo, place, 1.0);\n",
+      hole + "result += texelFetch(albedo, ivec2(place), 0);\n",
+      "vec2 step = dFdx(place);\n" + hole + "result += textureGrad(albedo, place, step, step);\n",
+      "for (int i = 0; i < 3; ++i) result += texture(albedo, place * float(i));\n" + hole};
+  for (const std::string& body : good) {
+    CAPTURE(body);
+    Project project;
+    write(project, "", body);
+    project.pack();
+  }
+}
+
 TEST_CASE("stages and variants that contradict one another are errors") {
   const std::string vertex =
       "layout(location = 0) out vec2 uv;\nvoid main() { uv = vec2(0.0); gl_Position = vec4(0.0); }\n";

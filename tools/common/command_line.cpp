@@ -20,6 +20,14 @@ void GlobalOptions::addTo(CLI::App& app) {
   app.add_option("--device", device, "auto, software, surfaceless, or the number of an EGL device");
   app.add_option("--shaders", shaders, "how programs reach the driver: spirv, glsl or auto")
       ->check(CLI::IsMember({"auto", "spirv", "glsl"}));
+  app.add_option(
+         "--arithmetic", arithmetic,
+         "exact: the same bits on every driver; fast: sums and products fused and reordered as a driver likes, "
+         "as a renderer ships them, for times")
+      ->check(CLI::IsMember({"exact", "fast"}));
+  app.add_flag("--debug-context", debugContext,
+               "the driver explains each error at the command that made it; slower (default: whether "
+               "$LUMIVOX_DEBUG_CONTEXT is set)");
   app.add_option("--memory", memory,
                  "most memory of textures and buffers together, as 4GiB: what a smaller device would refuse "
                  "(default: what the device has)")
@@ -51,6 +59,8 @@ gpu::DeviceOptions GlobalOptions::deviceOptions() const {
                         : shaders == "glsl" ? gpu::ShaderInput::glsl
                                             : gpu::ShaderInput::automatic;
   options.memoryBytes = memory;
+  if (arithmetic == "fast") options.arithmetic = gpu::Arithmetic::fast;
+  if (debugContext) options.debugContext = true;
   return options;
 }
 
@@ -211,7 +221,7 @@ std::map<std::string, std::string> provenance(const GlobalOptions& global, const
           {"lumivox.camera", scene.camera(options.camera).name},
           {"lumivox.device", device.info().renderer},
           {"lumivox.driver", device.info().version},
-          {"lumivox.shaders", device.shaderInput() == gpu::ShaderInput::spirv ? "spirv" : "glsl"}};
+          {"lumivox.shaders", device.programRoute()}};
 }
 
 std::string textTable(const std::vector<std::vector<std::string>>& rows) {

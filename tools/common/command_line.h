@@ -30,9 +30,9 @@ enum ExitCode { kGood = 0, kNotGood = 1, kBadInput = 2 };
 /// Options that every command knows.
 struct GlobalOptions {
   std::vector<std::filesystem::path> assets, techniques;
-  std::string device = "auto", shaders = "auto";
+  std::string device = "auto", shaders = "auto", arithmetic = "exact";
   std::uint64_t memory = 0;  ///< bytes; 0: what the device has
-  bool strict = false, quiet = false, verbose = false;
+  bool debugContext = false, strict = false, quiet = false, verbose = false;
   std::string commandLine;  ///< as typed
 
   void addTo(CLI::App& app);

@@ -31,6 +31,8 @@ std::string frontText(const PipelineComparison& comparison) {
   std::vector<std::vector<std::string>> rows{{"Pipeline", "Parameters", "Frame ms", comparison.metric, ""}};
   for (const ComparedPoint& point : comparison.points) {
     std::string standing = "on the front";
+    if (!point.tradeOff.timeMs.enoughRepeats || !point.tradeOff.error.enoughRepeats)
+      standing += ", undecided";
     if (point.beatenBy) {
       const ComparedPoint& by = comparison.points[*point.beatenBy];
       standing = fmt::format("beaten by {} {}", nameOf(comparison, by.pipeline), parametersOf(by));
@@ -73,9 +75,30 @@ std::string equalText(const PipelineComparison& comparison, const std::vector<do
          "measured points, never beyond them\n";
 }
 
+/// What the claims rest on.
+std::string basisText(const PipelineComparison& comparison) {
+  std::string text =
+      fmt::format("times count as different beyond {:.1f} %{}\n", 100.0 * comparison.timeShare,
+                  comparison.controls == 0 ? ", no point was timed twice here"
+                                           : fmt::format(" ({} points timed twice)", comparison.controls));
+  if (comparison.undecided > 0)
+    text += fmt::format(
+        "{} of {} points have fewer than {} timed frames or seeds: whether they are better is undecided\n",
+        comparison.undecided, comparison.points.size(), kLeastRepeats);
+  return text;
+}
+
+std::string tableText(const PipelineComparison& comparison, ComparisonTable table);
+
 }  // namespace
 
 std::string comparisonText(const PipelineComparison& comparison, ComparisonTable table) {
+  return tableText(comparison, table) + basisText(comparison);
+}
+
+namespace {
+
+std::string tableText(const PipelineComparison& comparison, ComparisonTable table) {
   const std::string title = fmt::format(
       "{}, {} against {}\n", comparison.component == "final" ? "whole picture" : comparison.component,
       comparison.metric, comparison.truth);
@@ -94,5 +117,7 @@ std::string comparisonText(const PipelineComparison& comparison, ComparisonTable
          equalText(comparison, comparison.errors, "", "not reached", timeText, &ComparedPipeline::atError) +
          "times in ms\n";
 }
+
+}  // namespace
 
 }  // namespace lumivox::command

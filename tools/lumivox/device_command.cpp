@@ -46,18 +46,17 @@ int device(const DeviceCommand& command, const GlobalOptions& global) {
                {"ceilings", ceilingsJson(ceilings)}});
     return kGood;
   }
-  std::string text = textTable(
-      {{"", ""},
-       {"Device", info.renderer + (info.software ? " (a software rasteriser)" : "")},
-       {"Vendor", info.vendor},
-       {"Driver", info.version},
-       {"Platform", info.platform},
-       {"Host", ceilings.front().host},
-       {"Shaders", device->shaderInput() == gpu::ShaderInput::spirv ? "SPIR-V" : "GLSL made from the SPIR-V"},
-       {"Timer", info.timerNote},
-       {"Largest volume", fmt::format("{} voxels a side", info.maxTextureSize3d)},
-       {"Largest buffer", formatBytes(info.maxStorageBytes)},
-       {"Samples per pixel", fmt::format("{}", info.maxSamples)}});
+  std::string text = textTable({{"", ""},
+                                {"Device", info.renderer + (info.software ? " (a software rasteriser)" : "")},
+                                {"Vendor", info.vendor},
+                                {"Driver", info.version},
+                                {"Platform", info.platform},
+                                {"Host", ceilings.front().host},
+                                {"Shaders", gpu::programRouteText(*device)},
+                                {"Timer", info.timerNote},
+                                {"Largest volume", fmt::format("{} voxels a side", info.maxTextureSize3d)},
+                                {"Largest buffer", formatBytes(info.maxStorageBytes)},
+                                {"Samples per pixel", fmt::format("{}", info.maxSamples)}});
   std::vector<std::vector<std::string>> rows{{"At most", "median", "quartiles", "unit"}};
   for (const DeviceCeiling& ceiling : ceilings)
     rows.push_back(

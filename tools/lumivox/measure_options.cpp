@@ -23,7 +23,7 @@ void MeasureOptions::addTo(CLI::App& app, const std::string& store, const std::s
       ->check(CLI::Range(1, 4096));
   app.add_option("--repeats", options.repeats, "timed frames per point (default 5)")
       ->check(CLI::Range(1, 10000));
-  app.add_option("--seeds", options.seeds, "seeds per point (default 2)")->check(CLI::Range(1, 10000));
+  app.add_option("--seeds", options.seeds, "seeds per point (default 3)")->check(CLI::Range(1, 10000));
   app.add_option("--flicker-frames", options.flickerPairs,
                  "pairs of frames 1/24 s apart for the flicker of scenes that move (default 4; 0: none)")
       ->check(CLI::Range(0, 1000));
@@ -48,6 +48,7 @@ std::vector<std::string> repeatArguments(const GlobalOptions& global) {
   std::vector<std::string> arguments;
   if (global.device != "auto") arguments.insert(arguments.end(), {"--device", global.device});
   if (global.shaders != "auto") arguments.insert(arguments.end(), {"--shaders", global.shaders});
+  if (global.arithmetic != "exact") arguments.insert(arguments.end(), {"--arithmetic", global.arithmetic});
   if (global.memory != 0) arguments.insert(arguments.end(), {"--memory", std::to_string(global.memory)});
   for (const auto& folder : global.assets) arguments.insert(arguments.end(), {"--assets", folder.string()});
   for (const auto& folder : global.techniques)
@@ -101,7 +102,7 @@ const ComponentError* errorOf(const ReportPoint& point, const std::string& outpu
 
 std::string rmseText(const ComponentError* error) {
   if (error == nullptr) return "";
-  const Measured rmse = error->rmse();
+  const Measured rmse = error->error.rmse;
   const double ratio = error->ratioToNothing();
   return fmt::format("{:.3g} ± {:.1g}", rmse.value, rmse.uncertainty) +
          (ratio == ratio ? fmt::format(" ({:.2f})", ratio) : std::string());

@@ -60,6 +60,9 @@ void printSummary(const ReportSummary& summary) {
         formatMilliseconds(pruning.unprunedMs.median), formatPercent(pruning.savedShareNext()),
         formatMilliseconds(pruning.nextUnprunedMs.median - pruning.nextPrunedMs.median),
         formatMilliseconds(pruning.nextUnprunedMs.median), pruning.samePicture ? "yes" : "NO");
+  if (summary.takenUp > 0)
+    text += fmt::format("{} of {} points were taken up from an interrupted report\n", summary.takenUp,
+                        summary.points.size());
   for (const std::string& unsuited : summary.unsuited) text += "not run: " + unsuited + "\n";
   print(text);
 }

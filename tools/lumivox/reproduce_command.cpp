@@ -1,12 +1,16 @@
-// reproduce: tables of papers, measured here and compared.
+// reproduce: tables and figures of papers, measured here and compared; results that are kept, and the cards
+// that quote them.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iostream>
 
 #include "command.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
+#include "lumivox/base/picture.h"
+#include "lumivox/report/report.h"
 #include "lumivox/report/reproduce.h"
 #include "measure_options.h"
 #include "results_text.h"
@@ -19,38 +23,38 @@ namespace fs = std::filesystem;
 struct ReproduceCommand {
   ReproduceOptions options;
   std::vector<std::string> names;
-  fs::path output, store;
-  bool list = false, json = false;
+  fs::path output, store, record, figures = "out/reproductions";
+  bool list = false, json = false, cards = false, check = false;
 };
 
-std::vector<PublishedTable> committedTables() {
-  std::vector<PublishedTable> tables;
-  for (const fs::path& file : committedReproductions()) tables.push_back(PublishedTable::load(file));
+std::vector<PublishedResult> committedTables() {
+  std::vector<PublishedResult> tables;
+  for (const fs::path& file : committedReproductions()) tables.push_back(PublishedResult::load(file));
   if (tables.empty())
     throw AbsentError(
-        "no published tables here: no *.reproduction in a folder scenes/reproductions in this folder or above, nor "
+        "no published tables or figures here: no *.reproduction in a folder scenes/reproductions in this folder or above, nor "
         "beside the program; name a file");
   return tables;
 }
 
-/// The tables of these names, or of these files; all committed ones without a name.
-std::vector<PublishedTable> chosenTables(const std::vector<std::string>& names) {
+/// The results of these names, or of these files; all committed ones without a name.
+std::vector<PublishedResult> chosenTables(const std::vector<std::string>& names) {
   if (names.empty()) return committedTables();
-  std::vector<PublishedTable> chosen;
-  std::optional<std::vector<PublishedTable>> committed;
+  std::vector<PublishedResult> chosen;
+  std::optional<std::vector<PublishedResult>> committed;
   for (const std::string& name : names) {
     if (fs::path(name).extension() == ".reproduction") {
-      chosen.push_back(PublishedTable::load(name));
+      chosen.push_back(PublishedResult::load(name));
       continue;
     }
     if (!committed) committed = committedTables();
     std::vector<std::string> known;
-    for (const PublishedTable& table : *committed) known.push_back(table.id);
+    for (const PublishedResult& table : *committed) known.push_back(table.id);
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end()) {
       const std::string nearest = nearestWord(name, known);
       throw Error(fmt::format(
-          "no published table is called '{}'; expected one of {}, or a file .reproduction{}", name,
+          "no published table or figure is called '{}'; expected one of {}, or a file .reproduction{}", name,
           fmt::join(known, ", "), nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
     }
     chosen.push_back((*committed)[static_cast<std::size_t>(found - known.begin())]);
@@ -59,20 +63,25 @@ std::vector<PublishedTable> chosenTables(const std::vector<std::string>& names) 
 }
 
 int list(const ReproduceCommand& command) {
-  const std::vector<PublishedTable> tables = chosenTables(command.names);
+  const std::vector<PublishedResult> results = chosenTables(command.names);
   Json json = Json::array();
-  std::vector<std::vector<std::string>> rows{{"Table", "Rows", "Measured", "Title", "Paper"}};
-  for (const PublishedTable& table : tables) {
-    const auto measured = std::count_if(table.rows.begin(), table.rows.end(),
-                                        [](const PublishedRow& row) { return row.absent.empty(); });
-    json.push_back({{"id", table.id},
-                    {"title", table.title},
-                    {"paper", table.paper},
-                    {"file", table.file.string()},
-                    {"rows", table.rows.size()},
+  std::vector<std::vector<std::string>> rows{
+      {"Name", "Rows", "Curves", "Panels", "Measured", "Title", "Paper"}};
+  for (const PublishedResult& result : results) {
+    const std::vector<const PublishedSetUp*> setUps = result.setUps();
+    const auto measured = std::count_if(setUps.begin(), setUps.end(),
+                                        [](const PublishedSetUp* one) { return one->absent.empty(); });
+    json.push_back({{"id", result.id},
+                    {"title", result.title},
+                    {"paper", result.paper},
+                    {"file", result.file.string()},
+                    {"rows", result.rows.size()},
+                    {"curves", result.curves.size()},
+                    {"panels", result.panels.size()},
                     {"measured", measured}});
-    rows.push_back(
-        {table.id, std::to_string(table.rows.size()), std::to_string(measured), table.title, table.paper});
+    rows.push_back({result.id, std::to_string(result.rows.size()), std::to_string(result.curves.size()),
+                    std::to_string(result.panels.size()), std::to_string(measured), result.title,
+                    result.paper});
   }
   if (command.json)
     printJson(json);
@@ -81,127 +90,219 @@ int list(const ReproduceCommand& command) {
   return kGood;
 }
 
-Json rowJson(const PublishedRow& row, const MeasuredRow& measured, const JudgedRow& judged) {
-  Json json{{"row", row.name},
-            {"measures", name(row.quantity)},
-            {"unit", unit(row.quantity)},
-            {"published", row.published},
-            {"published_ratio", jsonNumber(judged.publishedRatio)},
-            {"ratio", jsonNumber(judged.ratio)},
-            {"ratio_low", jsonNumber(judged.lowRatio)},
-            {"ratio_high", jsonNumber(judged.highRatio)},
-            {"verdict", name(judged.verdict)},
-            {"why", judged.why},
-            {"failed", measured.failed}};
-  if (const auto& time = measured.measured)
-    // Frame rates as times of frames: what is compared.
-    json["measured"] = {{"median", time->median},
-                        {"lower_quartile", time->lowerQuartile},
-                        {"upper_quartile", time->upperQuartile},
-                        {"repeats", time->repeats}};
-  return json;
+std::string resultText(const ReproducedResult& result, const std::vector<fs::path>& files) {
+  std::string text =
+      fmt::format("{}: {} ({})\n", result.published.id, result.published.title, result.published.paper);
+  if (!result.rows.empty()) {
+    std::vector<std::vector<std::string>> rows{reproductionHeadings()};
+    for (std::string& heading : rows.front())
+      heading.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(heading.front())));
+    for (std::size_t i = 0; i < result.rows.size(); ++i)
+      rows.push_back(reproductionCells(result.rows[i], result.judged.rows[i]));
+    text += textTable(rows);
+  }
+  for (std::size_t i = 0; i < result.curves.size(); ++i)
+    text +=
+        fmt::format("{}: {}\n", result.curves[i].name, curveText(result.curves[i], result.judgedCurves[i]));
+  for (const ShownPanel& panel : result.panels)
+    if (!panel.whyNot.empty()) text += fmt::format("{}: {}\n", panel.name, panel.whyNot);
+  for (const fs::path& file : files) text += "Written: " + file.string() + "\n";
+  for (const std::string& note : reproductionNotes(result)) text += note + "\n";
+  const std::string verdict = verdictText(result);
+  return verdict.empty() ? text : text + verdict + "\n";
 }
 
-Json tableJson(const ReproducedTable& table) {
-  Json rows = Json::array();
-  for (std::size_t i = 0; i < table.rows.size(); ++i)
-    rows.push_back(rowJson(table.table.rows[i], table.rows[i], table.judged.rows[i]));
-  return {{"id", table.table.id},
-          {"title", table.table.title},
-          {"paper", table.table.paper},
-          {"published_on", table.table.device},
-          {"device", table.device.renderer},
-          {"driver", table.device.version},
-          {"software", table.device.software},
-          {"host", table.host},
-          {"date", table.date},
-          {"scale", table.scale},
-          {"verdict", name(table.judged.verdict)},
-          {"why", table.judged.why},
-          {"rows", rows},
-          {"set_ups", table.setUps},
-          {"differences", table.table.differences},
-          {"command", table.command}};
+/// The sheet and the curves of a figure; nothing for a table.
+std::vector<fs::path> writeFigures(const fs::path& folder, const ReproducedResult& result) {
+  std::vector<fs::path> files;
+  const auto add = [&](const char* extension, const std::string& content) {
+    files.push_back(folder / (result.published.id + extension));
+    writeFileAtomically(files.back(), content);
+  };
+  if (!result.panels.empty()) add(".png", encodePng(contactSheet(result)));
+  if (!result.curves.empty()) {
+    add(".csv", curvesAsCsv(result));
+    add(".svg", curvesAsSvg(result));
+  }
+  return files;
 }
 
-std::string tableText(const ReproducedTable& table) {
-  std::vector<std::vector<std::string>> rows{
-      {"Row", "Published", "Measured", "Published ratio", "Measured ratio", "Verdict"}};
-  for (std::size_t i = 0; i < table.rows.size(); ++i)
-    rows.push_back(reproductionCells(table.table.rows[i], table.rows[i], table.judged.rows[i]));
-  std::string text = fmt::format("{}: {} ({})\n", table.table.id, table.table.title, table.table.paper);
-  text += textTable(rows);
-  for (const std::string& note : reproductionNotes(table)) text += note + "\n";
-  return text + verdictText(table) + "\n";
+// ---- what is kept, and who quotes it
+
+/// The project's folder: that of the committed scenes.
+fs::path projectFolder() {
+  const auto scenes = committedScenes();
+  if (!scenes)
+    throw AbsentError(
+        "no project here: no folder scenes with pipelines in this folder or above, nor beside the program");
+  return scenes->parent_path();
 }
 
-void write(const fs::path& output, const std::vector<ReproducedTable>& tables) {
+/// Those that were measured take the place of what the file has of them; the rest of it stays.
+void record(const fs::path& file, const std::vector<ReproducedResult>& measured) {
+  std::vector<ReproducedResult> kept;
+  if (fs::exists(file)) kept = readReproductions(file);
+  for (const ReproducedResult& result : measured) {
+    const auto known = std::find_if(kept.begin(), kept.end(), [&](const ReproducedResult& one) {
+      return one.published.id == result.published.id;
+    });
+    if (known == kept.end())
+      kept.push_back(result);
+    else
+      *known = result;
+  }
+  std::sort(kept.begin(), kept.end(), [](const ReproducedResult& a, const ReproducedResult& b) {
+    return a.published.id < b.published.id;
+  });
+  writeFileAtomically(file, reproductionsAsJson(kept));
+}
+
+/// The first line in which two texts differ.
+std::size_t firstDifference(const std::string& one, const std::string& other) {
+  const auto place = std::mismatch(one.begin(), one.end(), other.begin(), other.end()).first;
+  return 1 + static_cast<std::size_t>(std::count(one.begin(), place, '\n'));
+}
+
+/// Writes the page of kept results and every passage of the cards and guides that quotes them, or, only
+/// checking, tells where one differs.
+int writeCards(const ReproduceCommand& command) {
+  const fs::path project = projectFolder(), page = project / "docs/benchmarks/reproductions.md";
+  const std::vector<ReproducedResult> results = readReproductions(
+      command.record.empty() ? project / "docs/benchmarks/reproductions.json" : command.record);
+  std::vector<std::pair<fs::path, std::string>> texts{{page, reproductionsAsMarkdown(results)}};
+  std::vector<fs::path> quoting;
+  for (const char* folder : {"techniques", "docs"})
+    if (fs::is_directory(project / folder))
+      for (const auto& entry : fs::recursive_directory_iterator(project / folder))
+        if (entry.path().extension() == ".md" && entry.path() != page) quoting.push_back(entry.path());
+  std::sort(quoting.begin(), quoting.end());
+  for (const fs::path& file : quoting)
+    texts.emplace_back(file, withReproducedPassages(readFile(file), file, results));
+
+  bool good = true;
+  const auto complain = [&](const std::string& what) {
+    std::cerr << "lumivox: " << what << "\n";
+    good = false;
+  };
+  for (const std::string& stale : staleReproductions(results, committedTables()))
+    complain(stale + "; measure it again with --record");
+  for (const auto& [file, text] : texts) {
+    const std::string is = fs::exists(file) ? readFile(file) : std::string();
+    if (is == text) continue;
+    if (command.check) {
+      complain(fmt::format("{}:{}: this is not what was measured; lumivox reproduce --cards writes it",
+                           file.string(), firstDifference(is, text)));
+    } else {
+      writeFileAtomically(file, text);
+      logInformation("{}: written", file.string());
+    }
+  }
+  return good ? kGood : kNotGood;
+}
+
+void write(const fs::path& output, const std::vector<ReproducedResult>& results) {
   writeFileAtomically(
-      output, output.extension() == ".md" ? reproductionsAsMarkdown(tables) : reproductionsAsHtml(tables));
+      output, output.extension() == ".md" ? reproductionsAsMarkdown(results) : reproductionsAsHtml(results));
 }
 
-int reproduce(const ReproduceCommand& command, const GlobalOptions& global) {
-  if (command.list) return list(command);
+int measure(const ReproduceCommand& command, const GlobalOptions& global) {
   if (!command.output.empty()) {
     if (command.output.extension() != ".md" && command.output.extension() != ".html")
-      throw Error(fmt::format("{}: the tables are written as .html or .md", command.output.string()));
+      throw Error(fmt::format("{}: the results are written as .html or .md", command.output.string()));
     requireWritable(command.output);
   }
-  const std::vector<PublishedTable> chosen = chosenTables(command.names);
+  if (!command.record.empty()) {
+    requireWritable(command.record);
+    if (fs::exists(command.record)) readReproductions(command.record);  // before the work, not after it
+  }
+  const std::vector<PublishedResult> chosen = chosenTables(command.names);
+  const bool traces = std::any_of(chosen.begin(), chosen.end(), [](const PublishedResult& result) {
+    return std::any_of(result.panels.begin(), result.panels.end(),
+                       [](const PublishedPanel& panel) { return !panel.reference.empty(); });
+  });
+  if (command.options.truthSamples > 0 && command.store.empty() && !traces)
+    throw Error(
+        "--spp: nothing is path traced here; expected --store, or a figure with a panel of the reference");
+  for (const PublishedResult& result : chosen)
+    if (!result.panels.empty() || !result.curves.empty()) {
+      requireWritable(command.figures / (result.id + ".png"));
+      break;
+    }
   ReproduceOptions options = command.options;
   options.repeatArguments = repeatArguments(global);
   std::optional<ResultsStore> store;
   if (!command.store.empty()) store.emplace(command.store);
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();
-  std::vector<ReproducedTable> tables;
-  Json json = Json::array();
+  std::vector<ReproducedResult> results;
   bool failed = false;
-  for (const PublishedTable& table : chosen) {
-    logInformation("{}: {}", table.id, table.title);
-    tables.push_back(lumivox::reproduce(
-        *device, techniques, table, options, [&](const fs::path& file) { return global.loadScene(file); },
+  for (const PublishedResult& result : chosen) {
+    logInformation("{}: {}", result.id, result.title);
+    results.push_back(lumivox::reproduce(
+        *device, techniques, result, options, [&](const fs::path& file) { return global.loadScene(file); },
         store ? &*store : nullptr));
-    for (const MeasuredRow& row : tables.back().rows) failed = failed || row.failed;
-    if (command.json)
-      json.push_back(tableJson(tables.back()));
-    else
-      print(tableText(tables.back()) + "\n");
+    failed = failed || results.back().failed();
+    const std::vector<fs::path> files = writeFigures(command.figures, results.back());
+    // Kept one by one: what was measured stays when the next one is interrupted.
+    if (!command.record.empty()) record(command.record, {results.back()});
+    if (!command.json) print(resultText(results.back(), files) + "\n");
   }
-  if (command.json) printJson(json);
-  if (!command.output.empty()) write(command.output, tables);
+  if (command.json) printJson(Json::parse(reproductionsAsJson(results)).at("results"));
+  if (!command.output.empty()) write(command.output, results);
   return failed ? kNotGood : kGood;
+}
+
+int reproduce(const ReproduceCommand& command, const GlobalOptions& global) {
+  if (command.list) return list(command);
+  int code = kGood;
+  // Cards alone are written, and checked, without measuring anything.
+  const bool onlyCards = command.check || (command.cards && command.record.empty() && command.names.empty());
+  if (!onlyCards) code = measure(command, global);
+  return command.cards ? std::max(code, writeCards(command)) : code;
 }
 
 }  // namespace
 
 void addReproduceCommand(Commands& commands) {
   auto* command = commands.app.add_subcommand(
-      "reproduce", "measures the set-ups of published tables and compares the numbers as ratios");
+      "reproduce",
+      "measures the set-ups of published tables and figures, compares numbers as ratios, and makes the pictures");
   auto all = std::make_shared<ReproduceCommand>();
-  command->add_option("TABLE", all->names,
-                      "names of tables, or texts .reproduction (default: all committed ones)");
-  command->add_flag("--list", all->list, "only list the tables");
+  command->add_option("NAME", all->names,
+                      "names of tables and figures, or texts .reproduction (default: all committed ones)");
+  command->add_flag("--list", all->list, "only list them");
   command
       ->add_option(
           "--scale", all->options.scale,
-          "reduces picture sides and grids by this factor (default: 1, or what the table says for a software "
+          "reduces picture sides and grids by this factor (default: 1, or what the text says for a software "
           "rasteriser)")
       ->check(CLI::Range(1.0 / 64, 1.0));
   command->add_option("--repeats", all->options.repeats, "timed frames of each set-up (default 5)")
       ->check(CLI::Range(1, 10000));
   command->add_option("--seed", all->options.seed, "of the random numbers of techniques");
-  command->add_option("-o,--out", all->output, "writes the tables as a page, .html or .md");
-  auto* store = command->add_option(
+  command->add_option("-o,--out", all->output, "writes the results as a page, .html or .md");
+  command->add_option("--figures", all->figures,
+                      "folder for sheets (.png) and curves (.csv, .svg) (default: out/reproductions)");
+  auto* recordOption = command->add_option(
+      "--record", all->record,
+      "a file .json that keeps the results: those that were measured take the place of what it has of them");
+  auto* cards = command->add_flag(
+      "--cards", all->cards,
+      "writes docs/benchmarks/reproductions.md and what cards and guides quote from the kept results; alone, from "
+      "docs/benchmarks/reproductions.json and without measuring");
+  command->add_flag("--check", all->check, "with --cards: writes nothing, and tells what would change")
+      ->needs(cards);
+  command->add_option(
       "--store", all->store,
       "a results store that takes the set-ups: times, and errors and work, which are measured "
       "after them (default: none)");
   command
-      ->add_option("--spp", all->options.truthSamples,
-                   "samples per pixel of the truth of those errors (default: by the picture's size)")
-      ->check(CLI::Range(1, 1 << 24))
-      ->needs(store);
-  command->add_flag("--json", all->json, "print JSON in place of the tables");
+      ->add_option(
+          "--spp", all->options.truthSamples,
+          "samples per pixel of the reference, of those errors and of panels (default: by the picture's size)")
+      ->check(CLI::Range(1, 1 << 24));
+  command->add_flag("--json", all->json, "print JSON in place of text");
+  recordOption->excludes("--list");
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] { return reproduce(*all, global); });
 }

@@ -150,6 +150,7 @@ int comparePipelinesOf(const ResultsCommand& command, ComparisonTable table) {
   for (const ComparableRuns& group : comparableRuns(runs)) {
     std::vector<const ReportPoint*> points;
     for (const StoredRun* run : group.runs) points.push_back(&run->point);
+    if (!group.runs.empty()) limits.floor = timeFloorOf(store.controls(group.runs.front()->identity));
     const PipelineComparison comparison =
         comparePipelines(points, component, command.against == "bias", command.metric, limits);
     text +=
@@ -240,10 +241,31 @@ int removeResults(const ResultsCommand& command) {
   return kGood;
 }
 
+/// Whether A or B of compare-runs is a store; else it is the number of a run in --store.
+bool isStore(const std::string& text) {
+  return text.find_first_not_of("0123456789") != std::string::npos;
+}
+
+std::filesystem::path storeOf(const std::string& text, const ResultsCommand& command) {
+  return isStore(text) ? std::filesystem::path(text) : command.file();
+}
+
+/// What times of the same thing differ by on the machines of a store's runs.
+TimeFloor floorOf(const std::filesystem::path& file) {
+  const ResultsStore store(file, ResultsStore::Mode::read);
+  TimeFloor floor;
+  std::set<std::vector<std::string>> seen;
+  for (const StoredRun& run : store.runs()) {
+    const RunIdentity& where = run.identity;
+    if (seen.insert({where.device, where.driver, where.shaderInput, where.host}).second)
+      floor = larger(floor, timeFloorOf(store.controls(where)));
+  }
+  return floor;
+}
+
 /// The runs that A or B of compare-runs stands for: a store, or one run of --store.
 std::vector<StoredRun> runsOf(const std::string& text, const ResultsCommand& command) {
-  if (text.find_first_not_of("0123456789") != std::string::npos)
-    return ResultsStore(text, ResultsStore::Mode::read).runs(command.asked());
+  if (isStore(text)) return ResultsStore(text, ResultsStore::Mode::read).runs(command.asked());
   const ResultsStore store(command.file(), ResultsStore::Mode::read);
   RunFilter filter;
   filter.ids = {std::strtoll(text.c_str(), nullptr, 10)};
@@ -254,7 +276,7 @@ std::vector<StoredRun> runsOf(const std::string& text, const ResultsCommand& com
   return runs;
 }
 
-Json changesJson(const RunComparison& comparison) {
+Json changesJson(const RunComparison& comparison, const TimeFloor& floor) {
   Json list = Json::array();
   for (const RunChange& change : comparison.changes)
     list.push_back({{"point", change.point},
@@ -265,8 +287,11 @@ Json changesJson(const RunComparison& comparison) {
                     {"after_uncertainty", change.after.uncertainty},
                     {"sigmas", change.sigmas},
                     {"significant", change.significant},
+                    {"undecided", change.undecided},
                     {"better", change.better}});
   return {{"compared", comparison.compared},
+          {"least_time_share", std::max(kSignificantTimeShare, floor.frame)},
+          {"controls", floor.controls},
           {"only_before", comparison.onlyBefore},
           {"only_after", comparison.onlyAfter},
           {"incomparable", comparison.incomparable},
@@ -274,9 +299,11 @@ Json changesJson(const RunComparison& comparison) {
 }
 
 int compareRuns(const ResultsCommand& command, const std::string& before, const std::string& after) {
-  const RunComparison comparison = compareResults(runsOf(before, command), runsOf(after, command));
+  const std::filesystem::path first = storeOf(before, command), second = storeOf(after, command);
+  const TimeFloor floor = first == second ? floorOf(first) : larger(floorOf(first), floorOf(second));
+  const RunComparison comparison = compareResults(runsOf(before, command), runsOf(after, command), floor);
   if (command.json) {
-    printJson(changesJson(comparison));
+    printJson(changesJson(comparison, floor));
     return kGood;
   }
   std::string text;
@@ -297,15 +324,27 @@ int compareRuns(const ResultsCommand& command, const std::string& before, const 
                     fmt::format("{:.3g} ± {:.1g}", change.after.value, change.after.uncertainty),
                     std::isnan(share) ? std::string("-") : fmt::format("{:+.1f} %", 100.0 * share),
                     std::isinf(change.sigmas) ? std::string("exact") : fmt::format("{:.1f}", change.sigmas),
-                    !change.significant ? "not significant"
-                    : change.better     ? "better"
-                                        : "worse"});
+                    change.undecided      ? "undecided"
+                    : !change.significant ? "not significant"
+                    : change.better       ? "better"
+                                          : "worse"});
   }
   closePoint(point);
   const auto significant = std::count_if(comparison.changes.begin(), comparison.changes.end(),
                                          [](const RunChange& change) { return change.significant; });
   text += fmt::format("{} points compared, {} of {} quantities changed significantly\n", comparison.compared,
                       significant, comparison.changes.size());
+  const auto undecided = std::count_if(comparison.changes.begin(), comparison.changes.end(),
+                                       [](const RunChange& change) { return change.undecided; });
+  if (undecided > 0)
+    text += fmt::format("{} of {} quantities are undecided: fewer than {} timed frames or seeds\n", undecided,
+                        comparison.changes.size(), kLeastRepeats);
+  text +=
+      floor.controls > 0
+          ? fmt::format("times count as changed beyond {:.1f} %: {} points were timed twice\n",
+                        100.0 * std::max(kSignificantTimeShare, floor.frame), floor.controls)
+          : fmt::format("times count as changed beyond {:.0f} %: no point was timed twice on this machine\n",
+                        100.0 * kSignificantTimeShare);
   for (const std::string& one : comparison.onlyBefore) text += "only before: " + one + "\n";
   for (const std::string& one : comparison.onlyAfter) text += "only after: " + one + "\n";
   for (const std::string& one : comparison.incomparable) text += "not compared: " + one + "\n";

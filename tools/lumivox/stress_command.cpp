@@ -21,6 +21,7 @@ namespace {
 struct StressCommand {
   StressOptions options;
   bool json = false, list = false, worker = false;
+  std::uint64_t workerMemory = 0;
   std::filesystem::path from;
 };
 
@@ -94,9 +95,15 @@ int stress(const StressCommand& command, const GlobalOptions& global) {
   options.program = workerProgram(global);
   options.repeatArguments = repeatArguments(global);
   options.commandLine = global.commandLine;
+  options.memoryBytes = global.memory;
   if (command.worker) {
-    serveStress({global.deviceOptions(), global.sceneLoad(), options.program, options.repeatArguments},
-                techniques);
+    gpu::DeviceOptions device = global.deviceOptions();
+    if (command.workerMemory > 0) {
+      device.memoryBytes = command.workerMemory;
+      options.program.insert(options.program.end(),
+                             {"--worker-memory", std::to_string(command.workerMemory)});
+    }
+    serveStress({device, global.sceneLoad(), options.program, options.repeatArguments}, techniques);
     return kGood;
   }
   if (command.list) return listCases(options, techniques, command.json);
@@ -128,7 +135,9 @@ void addStressCommand(Commands& commands) {
       ->add_option("--time-limit", options.timeLimit,
                    "seconds for one cell (default 60 with --quick, else 600)")
       ->check(CLI::Range(0.1, 86400.0));
-  command->add_option("--workers", options.workers, "processes at the same time (default: one a processor)")
+  command
+      ->add_option("--workers", options.workers,
+                   "processes at the same time (default: one a processor on a software rasteriser, else one)")
       ->check(CLI::Range(1, 256));
   command->add_option("-o,--out", options.output,
                       "a folder for the page, its pictures and index.json (default: none)");
@@ -138,6 +147,7 @@ void addStressCommand(Commands& commands) {
   command->add_flag("--list", all->list, "only tell which cases there are");
   command->add_flag("--json", all->json, "print JSON in place of the tables");
   command->add_flag("--worker", all->worker)->group("");  // for the battery itself
+  command->add_option("--worker-memory", all->workerMemory)->group("");
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] { return stress(*all, global); });
 }

@@ -55,7 +55,7 @@ CheckedFile checkFile(const fs::path& file, const GlobalOptions& global, Techniq
         break;
       }
       case TextKind::reproduction:
-        checkReproduction(PublishedTable::load(file), techniques);
+        checkReproduction(PublishedResult::load(file), techniques);
         break;
     }
   } catch (const DiagnosticsError& error) {

@@ -18,7 +18,7 @@ namespace lumivox::shaderpack {
 namespace {
 
 // Counts up whenever this program makes something else of the same source.
-constexpr int kArtifactVersion = 4;
+constexpr int kArtifactVersion = 5;
 
 // Line numbers follow from "#line N "file"" directives, which need this extension.
 constexpr const char* kPreamble =
@@ -178,8 +178,10 @@ void startCompiler() {
 Artifact compileStage(const StageSource& source) {
   Artifact artifact;
   const std::vector<std::uint32_t> declared = toSpirv(source, artifact.warnings);
+  requireDerivativesBeforeDiscard(declared, source);
   artifact.spirv = optimise(lowerToPlainArithmetic(declared), source);
   validate(artifact.spirv, source);
+  requireDerivativesBeforeDiscard(artifact.spirv, source);  // the optimiser moves code
   artifact.glsl = toGlsl(artifact.spirv, source);
   reflect(declared, artifact.spirv, source, artifact);
   return artifact;

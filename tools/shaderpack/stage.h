@@ -74,6 +74,10 @@ void reflect(const std::vector<std::uint32_t>& declared, const std::vector<std::
 /// Matrix products, normalize and asin as sums and products in one order; see lower.cpp.
 std::vector<std::uint32_t> lowerToPlainArithmetic(const std::vector<std::uint32_t>& words);
 
+/// Throws Error where a fragment shader needs derivatives, or samples with a mip level that follows from
+/// them, after a discard.
+void requireDerivativesBeforeDiscard(const std::vector<std::uint32_t>& words, const StageSource& source);
+
 /// For the cache. Nothing comes back for bytes that are not a whole artifact.
 std::string serialise(const Artifact& artifact);
 std::optional<Artifact> deserialise(std::string_view bytes);

@@ -45,10 +45,11 @@ void Buffer::upload(std::span<const std::byte> bytes, std::uint64_t offsetBytes)
   if (bytes.empty()) return;
   device_->use();
   assert(offsetBytes + bytes.size() <= sizeBytes_);
+  device_->order();
   glNamedBufferSubData(handle_, static_cast<GLintptr>(offsetBytes), static_cast<GLsizeiptr>(bytes.size()),
                        bytes.data());
   device_->transfers.uploaded += bytes.size();
-  device_->check("uploading to " + label_);
+  device_->checkTold("uploading to " + label_);
 }
 
 std::vector<std::byte> Buffer::download(std::uint64_t offsetBytes, std::uint64_t sizeBytes) const {
@@ -58,16 +59,17 @@ std::vector<std::byte> Buffer::download(std::uint64_t offsetBytes, std::uint64_t
   DeviceState::requireHostMemory(count, label_);
   std::vector<std::byte> bytes(count);
   if (bytes.empty()) return bytes;
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  device_->order();
   glGetNamedBufferSubData(handle_, static_cast<GLintptr>(offsetBytes), static_cast<GLsizeiptr>(bytes.size()),
                           bytes.data());
-  device_->transfers.downloaded += bytes.size();
+  device_->downloaded(bytes.size());
   device_->check("downloading " + label_);
   return bytes;
 }
 
 void Buffer::clear(std::uint32_t word) {
   device_->use();
+  device_->order();
   const std::uint64_t whole = sizeBytes_ / 4 * 4;
   if (whole > 0) {
     glClearNamedBufferSubData(handle_, GL_R32UI, 0, static_cast<GLsizeiptr>(whole), GL_RED_INTEGER,
@@ -79,7 +81,7 @@ void Buffer::clear(std::uint32_t word) {
                          &word);
   }
   device_->transfers.cleared += sizeBytes_;
-  device_->check("clearing " + label_);
+  device_->checkTold("clearing " + label_);
 }
 
 }  // namespace lumivox::gpu

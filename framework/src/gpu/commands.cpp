@@ -1,7 +1,9 @@
 // Dispatches and draws: what is bound, what is drawn to.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "gpu/state.h"
 #include "lumivox/base/error.h"
@@ -64,7 +66,7 @@ struct Binder {
   }
 
   void operator()(const ResourceBinding::Uniform& uniform) const {
-    assert(!uniform.bytes.empty());
+    assert(uniform.bytes.size() > 0);
     checkUnit(state.cache.uniforms.size(), "uniform block");
     if (uniform.bytes.size() > static_cast<std::size_t>(state.limits.uniformBlockBytes)) {
       throw Error(fmt::format("{}: uniform block '{}' has {} bytes, but {} allows {}", program.name(),
@@ -72,12 +74,17 @@ struct Binder {
                               state.limits.uniformBlockBytes));
     }
     auto& bound = state.cache.uniforms[slot.binding];
-    if (bound.segmentSerial == state.uniforms.segmentSerial() && bound.bytes == uniform.bytes) return;
-    const GLintptr offset = state.uniforms.write(uniform.bytes);
-    bound.bytes = uniform.bytes;
-    bound.segmentSerial = state.uniforms.segmentSerial();
-    glBindBufferRange(GL_UNIFORM_BUFFER, slot.binding, state.uniforms.buffer(), offset,
-                      static_cast<GLsizeiptr>(uniform.bytes.size()));
+    const std::span<const std::byte> bytes = uniform.bytes.bytes();
+    if (bound.segmentSerial == state.uniforms.ring().segmentSerial() &&
+        std::equal(bytes.begin(), bytes.end(), bound.bytes.begin(), bound.bytes.end()))
+      return;
+    const GLintptr offset = state.uniforms.write(bytes);
+    bound.bytes.assign(bytes.begin(), bytes.end());
+    bound.segmentSerial = state.uniforms.ring().segmentSerial();
+    // Drivers round the size of a block up to whole vec4; the ring has the room.
+    const std::size_t whole = (bytes.size() + 15) / 16 * 16;
+    glBindBufferRange(GL_UNIFORM_BUFFER, slot.binding, state.uniforms.handle(), offset,
+                      static_cast<GLsizeiptr>(whole));
   }
 };
 
@@ -140,15 +147,139 @@ void clearTargets(GLuint framebuffer, const RenderTargets& targets) {
   }
 }
 
+std::uint64_t clearedBytes(const RenderTargets& targets) {
+  std::uint64_t bytes = 0;
+  const auto count = [&](const Texture* texture, int layer) {
+    if (texture == nullptr) return;
+    const TextureDescription& d = texture->description();
+    bytes += bytesPerTexel(d.format) * static_cast<std::uint64_t>(d.width) *
+             static_cast<std::uint64_t>(d.height) * static_cast<std::uint64_t>(layer >= 0 ? 1 : d.depth);
+  };
+  for (const ColourTarget& colour : targets.colours) count(colour.texture, colour.layer);
+  count(targets.depth, targets.depthLayer);
+  return bytes;
+}
+
+/// What all targets have in common, or the size that is given where there are none.
+glm::ivec2 sizeOf(const RenderTargets& targets) {
+  if (targets.colours.empty() && targets.depth == nullptr) return {targets.width, targets.height};
+  glm::ivec2 size(0);
+  const auto narrow = [&](const Texture* texture) {
+    if (texture == nullptr) return;
+    const glm::ivec2 own(texture->description().width, texture->description().height);
+    size = size == glm::ivec2(0) ? own : glm::min(size, own);
+  };
+  for (const ColourTarget& colour : targets.colours) narrow(colour.texture);
+  narrow(targets.depth);
+  return size;
+}
+
+void keyOf(const RenderTargets& targets, glm::ivec2 size, FramebufferKey& key) {
+  key.clear();
+  const auto add = [&](const Texture* texture, int layer) {
+    key.push_back(texture == nullptr ? 0 : texture->handle());
+    key.push_back(layer);
+  };
+  for (const ColourTarget& colour : targets.colours) add(colour.texture, colour.layer);
+  add(targets.depth, targets.depthLayer);
+  if (targets.colours.empty() && targets.depth == nullptr)
+    key.insert(key.end(), {size.x, size.y, targets.samples});
+}
+
+GLuint makeFramebuffer(DeviceState& state, const RenderTargets& targets, glm::ivec2 size) {
+  GLuint framebuffer = 0;
+  glCreateFramebuffers(1, &framebuffer);
+  std::vector<GLenum> drawBuffers;
+  for (const ColourTarget& colour : targets.colours) {
+    if (colour.texture == nullptr) {
+      drawBuffers.push_back(GL_NONE);
+      continue;
+    }
+    const GLenum point = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(drawBuffers.size());
+    attach(framebuffer, point, *colour.texture, colour.layer);
+    drawBuffers.push_back(point);
+  }
+  if (targets.depth != nullptr) attach(framebuffer, GL_DEPTH_ATTACHMENT, *targets.depth, targets.depthLayer);
+  if (drawBuffers.empty()) {
+    glNamedFramebufferDrawBuffer(framebuffer, GL_NONE);
+  } else {
+    glNamedFramebufferDrawBuffers(framebuffer, static_cast<GLsizei>(drawBuffers.size()), drawBuffers.data());
+  }
+  if (drawBuffers.empty() && targets.depth == nullptr) {
+    glNamedFramebufferParameteri(framebuffer, GL_FRAMEBUFFER_DEFAULT_WIDTH, size.x);
+    glNamedFramebufferParameteri(framebuffer, GL_FRAMEBUFFER_DEFAULT_HEIGHT, size.y);
+    if (targets.samples > 1) {
+      glNamedFramebufferParameteri(framebuffer, GL_FRAMEBUFFER_DEFAULT_SAMPLES, targets.samples);
+      glNamedFramebufferParameteri(framebuffer, GL_FRAMEBUFFER_DEFAULT_FIXED_SAMPLE_LOCATIONS, GL_TRUE);
+    }
+  }
+  const GLenum status = glCheckNamedFramebufferStatus(framebuffer, GL_DRAW_FRAMEBUFFER);
+  try {
+    state.check("choosing what to draw to");
+    if (status != GL_FRAMEBUFFER_COMPLETE)
+      throw Error(fmt::format("cannot draw to these targets: {}", framebufferProblem(status)));
+    // A device may take more samples than it is asked for, in other places (9.2.1).
+    if (targets.samples > 1) {
+      GLint samples = 0;
+      glGetNamedFramebufferParameteriv(framebuffer, GL_SAMPLES, &samples);
+      if (samples != targets.samples)
+        throw Error(fmt::format("{} samples per pixel asked for, but {} would take {}", targets.samples,
+                                state.info.renderer, samples));
+    }
+  } catch (...) {
+    glDeleteFramebuffers(1, &framebuffer);
+    throw;
+  }
+  return framebuffer;
+}
+
 }  // namespace
+
+GLuint FramebufferCache::get(const FramebufferKey& key, const std::function<GLuint()>& make) {
+  if (const auto found = framebuffers_.find(key); found != framebuffers_.end()) return found->second;
+  constexpr std::size_t kMost = 4096;  // some for each layer of the largest arrays
+  if (framebuffers_.size() >= kMost) clear();
+  return framebuffers_.emplace(key, make()).first->second;
+}
+
+void FramebufferCache::forget(GLuint texture) {
+  std::erase_if(framebuffers_, [texture](const auto& one) {
+    const auto& [key, framebuffer] = one;
+    // Handles are at the even places, and none of a framebuffer without targets has more than 0 and a size.
+    bool uses = false;
+    for (std::size_t i = 0; i < key.size(); i += 2) uses = uses || key[i] == std::int64_t{texture};
+    if (uses) glDeleteFramebuffers(1, &framebuffer);
+    return uses;
+  });
+}
+
+void FramebufferCache::clear() {
+  for (const auto& [key, framebuffer] : framebuffers_) glDeleteFramebuffers(1, &framebuffer);
+  framebuffers_.clear();
+}
 
 void DeviceState::bind(const Program& program, std::span<const ResourceBinding> bindings) {
   if (cache.program != program.handle()) {
     cache.program = program.handle();
     glUseProgram(cache.program);
   }
+  // Room for all of them first: a block that was bound already lies in the segment that may have to be left.
+  std::size_t room = 0;
+  for (const ResourceBinding& binding : bindings) {
+    if (const auto* uniform = std::get_if<ResourceBinding::Uniform>(&binding.resource))
+      room += uniforms.ring().roomFor(uniform->bytes.size());
+  }
+  if (room > uniforms.ring().segmentBytes())
+    throw Error(fmt::format("{}: its uniform blocks have {} bytes together, but a command has room for {}",
+                            program.name(), room, uniforms.ring().segmentBytes()));
+  uniforms.ring().reserve(room);
   for (const ResourceBinding& binding : bindings)
     std::visit(Binder{*this, program, binding}, binding.resource);
+  underWay = unordered = true;
+}
+
+void DeviceState::order() {
+  if (std::exchange(unordered, false)) glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
 void Device::dispatch(const Program& program, std::span<const ResourceBinding> bindings, glm::uvec3 groups) {
@@ -163,7 +294,7 @@ void Device::dispatch(const Program& program, std::span<const ResourceBinding> b
   }
   state.bind(program, bindings);
   glDispatchCompute(groups.x, groups.y, groups.z);
-  if (!state.driverErrors.empty()) state.check("dispatching " + program.name());
+  if (state.messages.hasErrors()) state.check("dispatching " + program.name());
 }
 
 void Device::dispatchIndirect(const Program& program, std::span<const ResourceBinding> bindings,
@@ -174,75 +305,28 @@ void Device::dispatchIndirect(const Program& program, std::span<const ResourceBi
   state.bind(program, bindings);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, arguments.handle());
   glDispatchComputeIndirect(static_cast<GLintptr>(offsetBytes));
-  if (!state.driverErrors.empty()) state.check("dispatching " + program.name());
+  if (state.messages.hasErrors()) state.check("dispatching " + program.name());
 }
 
-void Device::beginDrawing(const RenderTargets& targets, const RasterState& raster) {
+Drawing Device::drawTo(const RenderTargets& targets, const RasterState& raster) {
   DeviceState& state = *state_;
   state.use();
-  assert(!state.drawing && "beginDrawing without endDrawing");
+  assert(!state.drawing && "one drawing at a time");
   assert(targets.samples == 1 || (targets.colours.empty() && targets.depth == nullptr));
   if (targets.samples < 1 || targets.samples > state.info.maxSamples) refuseSamples(state, targets.samples);
-  glm::ivec2 size(targets.width, targets.height);
-  const auto narrow = [&](const Texture& texture) {
-    const TextureDescription& d = texture.description();
-    size =
-        size == glm::ivec2(0) ? glm::ivec2(d.width, d.height) : glm::min(size, glm::ivec2(d.width, d.height));
-  };
-  if (!targets.colours.empty() || targets.depth != nullptr) size = glm::ivec2(0);
-
-  glCreateFramebuffers(1, &state.framebuffer);
-  std::vector<GLenum> drawBuffers;
-  for (const ColourTarget& colour : targets.colours) {
-    if (colour.texture == nullptr) {
-      drawBuffers.push_back(GL_NONE);
-      continue;
-    }
-    const GLenum point = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(drawBuffers.size());
-    attach(state.framebuffer, point, *colour.texture, colour.layer);
-    narrow(*colour.texture);
-    drawBuffers.push_back(point);
-  }
-  if (targets.depth != nullptr) {
-    attach(state.framebuffer, GL_DEPTH_ATTACHMENT, *targets.depth, targets.depthLayer);
-    narrow(*targets.depth);
-  }
-  if (drawBuffers.empty()) {
-    glNamedFramebufferDrawBuffer(state.framebuffer, GL_NONE);
-  } else {
-    glNamedFramebufferDrawBuffers(state.framebuffer, static_cast<GLsizei>(drawBuffers.size()),
-                                  drawBuffers.data());
-  }
-  if (drawBuffers.empty() && targets.depth == nullptr) {
-    glNamedFramebufferParameteri(state.framebuffer, GL_FRAMEBUFFER_DEFAULT_WIDTH, size.x);
-    glNamedFramebufferParameteri(state.framebuffer, GL_FRAMEBUFFER_DEFAULT_HEIGHT, size.y);
-    if (targets.samples > 1) {
-      glNamedFramebufferParameteri(state.framebuffer, GL_FRAMEBUFFER_DEFAULT_SAMPLES, targets.samples);
-      glNamedFramebufferParameteri(state.framebuffer, GL_FRAMEBUFFER_DEFAULT_FIXED_SAMPLE_LOCATIONS, GL_TRUE);
-    }
-  }
+  const glm::ivec2 size = sizeOf(targets);
+  keyOf(targets, size, state.framebufferKey);
+  const GLuint framebuffer =
+      state.framebuffers.get(state.framebufferKey, [&] { return makeFramebuffer(state, targets, size); });
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   state.drawing = true;
-  const GLenum status = glCheckNamedFramebufferStatus(state.framebuffer, GL_DRAW_FRAMEBUFFER);
-  if (status != GL_FRAMEBUFFER_COMPLETE || !state.driverErrors.empty()) {
-    endDrawing();
-    state.check("choosing what to draw to");
-    throw Error(fmt::format("cannot draw to these targets: {}", framebufferProblem(status)));
-  }
-  glBindFramebuffer(GL_FRAMEBUFFER, state.framebuffer);
   glViewport(0, 0, size.x, size.y);
   if (targets.clear) {
-    clearTargets(state.framebuffer, targets);
-    const auto count = [&](const Texture* texture, int layer) {
-      if (texture == nullptr) return;
-      const TextureDescription& d = texture->description();
-      state.transfers.cleared += bytesPerTexel(d.format) * static_cast<std::uint64_t>(d.width) *
-                                 static_cast<std::uint64_t>(d.height) *
-                                 static_cast<std::uint64_t>(layer >= 0 ? 1 : d.depth);
-    };
-    for (const ColourTarget& colour : targets.colours) count(colour.texture, colour.layer);
-    count(targets.depth, targets.depthLayer);
+    clearTargets(framebuffer, targets);
+    state.transfers.cleared += clearedBytes(targets);
   }
   setRasterState(raster);
+  return Drawing(state_);
 }
 
 void Device::drawIndexed(const Program& program, std::span<const ResourceBinding> bindings,
@@ -258,7 +342,7 @@ void Device::drawIndexed(const Program& program, std::span<const ResourceBinding
   }
   glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(indexCount), GL_UNSIGNED_INT,
                  reinterpret_cast<const void*>(std::uintptr_t{firstIndex} * 4));
-  if (!state.driverErrors.empty()) state.check("drawing " + program.name());
+  if (state.messages.hasErrors()) state.check("drawing " + program.name());
 }
 
 void Device::draw(const Program& program, std::span<const ResourceBinding> bindings,
@@ -268,17 +352,15 @@ void Device::draw(const Program& program, std::span<const ResourceBinding> bindi
   assert(state.drawing);
   state.bind(program, bindings);
   glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(vertexCount));
-  if (!state.driverErrors.empty()) state.check("drawing " + program.name());
+  if (state.messages.hasErrors()) state.check("drawing " + program.name());
 }
 
-void Device::endDrawing() {
-  DeviceState& state = *state_;
-  state.use();
-  assert(state.drawing);
-  state.drawing = false;
+Drawing::~Drawing() {
+  device_->use();
+  assert(device_->drawing);
+  device_->drawing = false;
+  // So that no later command finds its textures attached.
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glDeleteFramebuffers(1, &state.framebuffer);
-  state.framebuffer = 0;
 }
 
 std::vector<glm::vec2> Device::samplePositions(int samples) {
@@ -306,12 +388,14 @@ std::vector<glm::vec2> Device::samplePositions(int samples) {
 
 void Device::barrier() {
   state_->use();
-  glMemoryBarrier(GL_ALL_BARRIER_BITS);
+  state_->order();
 }
 
 void Device::finish() {
   state_->use();
   glFinish();
+  state_->underWay = false;
+  state_->check("running what the device was given");
 }
 
 }  // namespace lumivox::gpu

@@ -111,7 +111,7 @@ bool Context::tryDisplay(void* display, const std::string& platform, std::string
                                       EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                       EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                       EGL_CONTEXT_OPENGL_DEBUG,
-                                      EGL_TRUE,
+                                      debug_ ? EGL_TRUE : EGL_FALSE,
                                       EGL_NONE};
   EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, contextAttributes);
   if (context == EGL_NO_CONTEXT) return fail("no OpenGL 4.5 core context, " + eglErrorName());
@@ -126,7 +126,7 @@ bool Context::tryDisplay(void* display, const std::string& platform, std::string
   return true;
 }
 
-Context::Context(const std::string& request) {
+Context::Context(const std::string& request, bool debug) : debug_(debug) {
   // epoxy ends the process when this library is missing; ask first.
   void* library = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL);
   if (library == nullptr)

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdlib>
 
+#include "gpu/requirements.h"
 #include "gpu/state.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
-#include "lumivox/base/log.h"
 
 namespace lumivox::gpu {
 namespace {
@@ -14,21 +15,37 @@ namespace {
 // The state whose context is current on this thread.
 thread_local DeviceState* currentState = nullptr;
 
-constexpr std::size_t kKeptDriverErrors = 8;
-
-void onDriverMessage(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* message,
-                     const void* user) {
+void onDriverMessage(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
+                     const GLchar* message, const void* user) {
+  using Kind = DriverMessages::Kind;
+  using Severity = DriverMessages::Severity;
   auto& state = *static_cast<DeviceState*>(const_cast<void*>(user));
-  std::string text =
-      length >= 0 ? std::string(message, static_cast<std::size_t>(length)) : std::string(message);
-  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
-  if (type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) {
-    // Exceptions may not pass through the driver: DeviceState::check throws.
-    if (state.driverErrors.size() < kKeptDriverErrors) state.driverErrors.push_back(std::move(text));
-  } else if (severity == GL_DEBUG_SEVERITY_HIGH) {
-    logWarning("the OpenGL driver says{}: {}", state.pass.empty() ? "" : " in pass " + state.pass, text);
-  } else if (severity != GL_DEBUG_SEVERITY_NOTIFICATION) {
-    logDetails("the OpenGL driver says{}: {}", state.pass.empty() ? "" : " in pass " + state.pass, text);
+  const Kind kind = type == GL_DEBUG_TYPE_ERROR                ? Kind::error
+                    : type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR ? Kind::undefinedBehaviour
+                                                               : Kind::advice;
+  const Severity weight = severity == GL_DEBUG_SEVERITY_HIGH           ? Severity::high
+                          : severity == GL_DEBUG_SEVERITY_NOTIFICATION ? Severity::notification
+                                                                       : Severity::low;
+  state.messages.hear(
+      kind, weight, source, id,
+      length >= 0 ? std::string(message, static_cast<std::size_t>(length)) : std::string(message),
+      state.pass);
+}
+
+const char* errorName(GLenum error) {
+  switch (error) {
+    case GL_INVALID_ENUM:
+      return "GL_INVALID_ENUM";
+    case GL_INVALID_VALUE:
+      return "GL_INVALID_VALUE";
+    case GL_INVALID_OPERATION:
+      return "GL_INVALID_OPERATION";
+    case GL_INVALID_FRAMEBUFFER_OPERATION:
+      return "GL_INVALID_FRAMEBUFFER_OPERATION";
+    case GL_OUT_OF_MEMORY:
+      return "GL_OUT_OF_MEMORY";
+    default:
+      return "an unknown error";
   }
 }
 
@@ -43,7 +60,10 @@ std::string glText(GLenum name) {
 // ------------------------------------------------------------------------------------------------
 
 DeviceState::DeviceState(const DeviceOptions& options)
-    : context(options.device), memoryBytes(options.memoryBytes) {
+    : context(options.device, options.debugContext),
+      memoryBytes(options.memoryBytes),
+      debug(options.debugContext),
+      arithmetic(options.arithmetic) {
   currentState = this;
   info.vendor = glText(GL_VENDOR);
   info.renderer = glText(GL_RENDERER);
@@ -58,9 +78,8 @@ DeviceState::DeviceState(const DeviceOptions& options)
   shaderInput = options.shaderInput != ShaderInput::automatic ? options.shaderInput
                 : info.spirv                                  ? ShaderInput::spirv
                                                               : ShaderInput::glsl;
-  glEnable(GL_DEBUG_OUTPUT);
-  glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-  glDebugMessageCallback(onDriverMessage, this);
+  requireLimits();
+  if (debug) listen();
   readLimits();
 
   glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
@@ -80,12 +99,30 @@ DeviceState::DeviceState(const DeviceOptions& options)
 
 DeviceState::~DeviceState() {
   use();
-  glDebugMessageCallback(nullptr, nullptr);
+  if (debug) glDebugMessageCallback(nullptr, nullptr);
+  framebuffers.clear();
   glDeleteQueries(2, timestampQueries.data());
   uniforms.destroy();
   glDeleteSamplers(static_cast<GLsizei>(samplers.size()), samplers.data());
   glDeleteVertexArrays(1, &vertexArray);
   currentState = nullptr;
+}
+
+void DeviceState::listen() {
+  glEnable(GL_DEBUG_OUTPUT);
+  glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+  glDebugMessageCallback(onDriverMessage, this);
+}
+
+void DeviceState::requireLimits() const {
+  const std::string unmet = unmetRequirements([](const Requirement& one) {
+    GLint64 value = 0;
+    glGetInteger64v(one.limit, &value);
+    return static_cast<std::int64_t>(value);
+  });
+  if (!unmet.empty())
+    throw AbsentError(
+        fmt::format("{} ({}) has less than Lumivox needs:\n{}", info.renderer, info.platform, unmet));
 }
 
 void DeviceState::readLimits() {
@@ -118,7 +155,7 @@ void DeviceState::makeSamplers() {
     bool compare;
   };
   // In the order of Sampling.
-  const std::array<Settings, 7> settings{{
+  const std::array<Settings, 8> settings{{
       {GL_NEAREST, GL_NEAREST, GL_CLAMP_TO_EDGE, false},
       {GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_EDGE, false},
       {GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, GL_CLAMP_TO_EDGE, false},
@@ -126,6 +163,7 @@ void DeviceState::makeSamplers() {
       {GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER, false},
       {GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, GL_CLAMP_TO_BORDER, false},
       {GL_LINEAR, GL_LINEAR, GL_CLAMP_TO_EDGE, true},
+      {GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR, GL_CLAMP_TO_EDGE, false},
   }};
   glCreateSamplers(static_cast<GLsizei>(samplers.size()), samplers.data());
   for (std::size_t i = 0; i < samplers.size(); ++i) {
@@ -148,14 +186,14 @@ void DeviceState::use() {
 }
 
 void DeviceState::check(const std::string& what) {
-  if (driverErrors.empty()) return;
-  std::string text = what;
-  text += driverErrors.size() == 1 ? ": the OpenGL driver reports: " : ": the OpenGL driver reports:\n  ";
-  text += fmt::format("{}", fmt::join(driverErrors, "\n  "));
-  driverErrors.clear();
-  while (glGetError() != GL_NO_ERROR) {
-  }
-  throw Error(text);
+  // A debug context has told of it already, and says more.
+  GLenum error = glGetError();
+  if (error != GL_NO_ERROR && !messages.hasErrors())
+    messages.addError(fmt::format("{}{}", errorName(error),
+                                  debug ? "" : " (with --debug-context it tells the pass and the reason)"));
+  // A lost context repeats its error for ever.
+  for (int i = 0; i < 16 && error != GL_NO_ERROR; ++i) error = glGetError();
+  if (messages.hasErrors()) throw Error(messages.takeErrors(what));
 }
 
 /// Below this, asking the system for what is left costs more than it tells.
@@ -216,19 +254,23 @@ void DeviceState::forgetBindings() {
   elementBuffer = kNothing;
 }
 
-// ---- UniformRing
-// --------------------------------------------------------------------------------------------------
+// ---- UniformBuffer
+// ------------------------------------------------------------------------------------------------
 
-void UniformRing::create(std::size_t alignment) {
-  alignment_ = std::max<std::size_t>(alignment, 16);
+void UniformBuffer::create(std::size_t alignment) {
+  // Room for the blocks of some thousand draws in a segment, and for many times the largest block that OpenGL
+  // promises, 16 KiB.
+  constexpr std::size_t kSegmentBytes = 1 << 20;
+  ring_.emplace(*this, kSegmentBytes, std::max<std::size_t>(alignment, 16));
   glCreateBuffers(1, &buffer_);
   constexpr GLbitfield kFlags = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-  glNamedBufferStorage(buffer_, kSegmentBytes * kSegments, nullptr, kFlags);
-  mapped_ = static_cast<std::byte*>(glMapNamedBufferRange(buffer_, 0, kSegmentBytes * kSegments, kFlags));
+  constexpr std::size_t kBytes = kSegmentBytes * UniformRing::kSegments;
+  glNamedBufferStorage(buffer_, kBytes, nullptr, kFlags);
+  mapped_ = static_cast<std::byte*>(glMapNamedBufferRange(buffer_, 0, kBytes, kFlags));
   if (mapped_ == nullptr) throw Error("the OpenGL driver cannot map a uniform buffer");
 }
 
-void UniformRing::destroy() {
+void UniformBuffer::destroy() {
   for (GLsync fence : fences_) {
     if (fence != nullptr) glDeleteSync(fence);
   }
@@ -236,24 +278,21 @@ void UniformRing::destroy() {
   glDeleteBuffers(1, &buffer_);
 }
 
-GLintptr UniformRing::write(std::span<const std::byte> block) {
-  assert(block.size() <= kSegmentBytes);
-  std::size_t offset = (head_ + alignment_ - 1) / alignment_ * alignment_;
-  const std::size_t segment = segmentSerial_ % kSegments;
-  if (offset + block.size() > (segment + 1) * kSegmentBytes) {
-    fences_[segment] = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-    ++segmentSerial_;
-    const std::size_t next = segmentSerial_ % kSegments;
-    if (fences_[next] != nullptr) {
-      glClientWaitSync(fences_[next], GL_SYNC_FLUSH_COMMANDS_BIT, GL_TIMEOUT_IGNORED);
-      glDeleteSync(fences_[next]);
-      fences_[next] = nullptr;
-    }
-    offset = next * kSegmentBytes;
-  }
+GLintptr UniformBuffer::write(std::span<const std::byte> block) {
+  const std::size_t offset = ring_->place(block.size());
   std::memcpy(mapped_ + offset, block.data(), block.size());
-  head_ = offset + block.size();
   return static_cast<GLintptr>(offset);
+}
+
+void UniformBuffer::insert(std::size_t segment) {
+  fences_[segment] = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+}
+
+void UniformBuffer::wait(std::size_t segment) {
+  if (fences_[segment] == nullptr) return;
+  glClientWaitSync(fences_[segment], GL_SYNC_FLUSH_COMMANDS_BIT, GL_TIMEOUT_IGNORED);
+  glDeleteSync(fences_[segment]);
+  fences_[segment] = nullptr;
 }
 
 // ---- Device
@@ -271,6 +310,25 @@ ShaderInput Device::shaderInput() const {
   return state_->shaderInput;
 }
 
+Arithmetic Device::arithmetic() const {
+  return state_->arithmetic;
+}
+
+std::string Device::programRoute() const {
+  return std::string(state_->shaderInput == ShaderInput::spirv ? "spirv" : "glsl") +
+         (state_->arithmetic == Arithmetic::fast ? " fast" : "");
+}
+
+std::string programRouteText(const Device& device) {
+  return std::string(device.shaderInput() == ShaderInput::spirv ? "SPIR-V" : "GLSL made from the SPIR-V") +
+         (device.arithmetic() == Arithmetic::fast ? ", fast arithmetic" : "");
+}
+
+bool DeviceOptions::debugContextAsked() {
+  const char* asked = std::getenv("LUMIVOX_DEBUG_CONTEXT");
+  return asked != nullptr && *asked != '\0' && std::string_view(asked) != "0";
+}
+
 void Device::enterPass(const std::string& name) {
   state_->use();
   state_->pass = name;
@@ -278,16 +336,17 @@ void Device::enterPass(const std::string& name) {
 
 void Device::leavePass() {
   state_->use();
-  const GLenum error = glGetError();
-  if (error != GL_NO_ERROR && state_->driverErrors.empty()) {
-    state_->driverErrors.push_back(fmt::format("OpenGL error 0x{:04x}", error));
-  }
   // Also when the check throws, what follows is no longer this pass.
   struct Leave {
     DeviceState& state;
     ~Leave() { state.pass.clear(); }
   } leave{*state_};
-  state_->check("running");
+  if (state_->debug) state_->check("running");
+}
+
+void DeviceState::downloaded(std::uint64_t bytes) {
+  transfers.downloaded += bytes;
+  if (underWay) ++transfers.stalls;
 }
 
 Device::Transfers Device::transfers() const {

@@ -141,9 +141,8 @@ Program::Program(Device& device, std::string name, std::span<const StageCode> st
   const auto release = [&] {
     for (const GLuint shader : shaders) glDeleteShader(shader);
     // The driver's messages about a failed shader repeat its log.
-    device_->driverErrors.clear();
-    while (glGetError() != GL_NO_ERROR) {
-    }
+    device_->messages.forgetErrors();
+    glGetError();
   };
   const auto fail = [&](const std::string& what) {
     release();

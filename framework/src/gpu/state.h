@@ -5,11 +5,14 @@
 #include <epoxy/gl.h>
 
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "gpu/driver_messages.h"
+#include "gpu/uniform_ring.h"
 #include "lumivox/gpu/device.h"
 
 namespace lumivox::gpu {
@@ -30,7 +33,7 @@ const FormatTraits& traitsOf(Format format);
 class Context {
  public:
   /// AbsentError when nothing on this machine meets the request; Error when the request makes no sense.
-  explicit Context(const std::string& request);
+  Context(const std::string& request, bool debug);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
@@ -40,6 +43,7 @@ class Context {
  private:
   bool tryDisplay(void* display, const std::string& platform, std::string& failures);
 
+  bool debug_;
   void* display_ = nullptr;
   void* context_ = nullptr;
   std::string platform_;
@@ -47,26 +51,45 @@ class Context {
 /// Whether the current context draws on the processor.
 bool isSoftwareRenderer(const std::string& renderer);
 
-/// Uniform blocks of draws in flight. A segment is written again only after the device has read it.
-class UniformRing {
+/// The buffer behind a UniformRing.
+class UniformBuffer : public UniformRing::Fences {
  public:
+  UniformBuffer() = default;
+  UniformBuffer(const UniformBuffer&) = delete;
+  UniformBuffer& operator=(const UniformBuffer&) = delete;
   void create(std::size_t alignment);
   void destroy();
-  /// Copies the block into the ring; its offset there.
+  UniformRing& ring() { return *ring_; }
+  /// Copies a block to the next place in the ring; its offset.
   GLintptr write(std::span<const std::byte> block);
-  GLuint buffer() const { return buffer_; }
-  /// Changes whenever the ring moves on to another segment; offsets of the current segment stay valid.
-  std::uint64_t segmentSerial() const { return segmentSerial_; }
+  GLuint handle() const { return buffer_; }
 
  private:
-  static constexpr std::size_t kSegmentBytes =
-      256 << 10;  // at least four times the largest block that OpenGL guarantees, 16 KiB
-  static constexpr std::size_t kSegments = 4;
+  void insert(std::size_t segment) override;
+  void wait(std::size_t segment) override;
+
   GLuint buffer_ = 0;
   std::byte* mapped_ = nullptr;
-  std::size_t alignment_ = 256, head_ = 0;
-  std::uint64_t segmentSerial_ = 0;
-  std::array<GLsync, kSegments> fences_{};
+  std::optional<UniformRing> ring_;
+  std::array<GLsync, UniformRing::kSegments> fences_{};
+};
+
+/// What a framebuffer draws to: handle and layer of each colour target and of depth, and the size and samples
+/// of one without targets. Words, so that it is compared as a whole.
+using FramebufferKey = std::vector<std::int64_t>;
+
+/// Framebuffers that were made and checked before.
+class FramebufferCache {
+ public:
+  /// The framebuffer of this key; `make` makes and checks it where there is none.
+  GLuint get(const FramebufferKey& key, const std::function<GLuint()>& make);
+  /// A texture dies: no framebuffer may keep it, nor be taken for one with the next texture of its name.
+  void forget(GLuint texture);
+  void clear();
+  std::size_t size() const { return framebuffers_.size(); }
+
+ private:
+  std::map<FramebufferKey, GLuint> framebuffers_;
 };
 
 /// What is bound now, so that a draw binds only what differs from the one before.
@@ -80,7 +103,7 @@ struct BindingCache {
   };
   struct Uniform {
     std::vector<std::byte> bytes;
-    std::uint64_t segmentSerial = 0;
+    std::uint64_t segmentSerial = 0;  ///< of the ring, when they were written
   };
   GLuint program = 0;
   std::vector<Sampled> sampled;
@@ -103,8 +126,13 @@ struct DeviceState {
 
   /// Makes the context current when another Device was used last on this thread.
   void use();
-  /// Throws what the driver complained about since the last check, naming `what` was being done.
+  /// Throws what the driver complained about since the last check, naming `what` was being done. Without a
+  /// debug context it must ask for that, for which a driver that works on another thread is waited for.
   void check(const std::string& what);
+  /// The same for what it told of its own accord, which costs nothing: for every draw.
+  void checkTold(const std::string& what) {
+    if (messages.hasErrors()) check(what);
+  }
   /// Refuses an allocation that does not fit into what the device has left, or into its limit together with
   /// what is held already.
   void requireDeviceMemory(std::uint64_t bytes, const std::string& what);
@@ -112,9 +140,13 @@ struct DeviceState {
   static void requireHostMemory(std::uint64_t bytes, const std::string& label);
   /// " beside the 1.5 GiB of all other textures and buffers"
   std::string besideText() const;
+  void downloaded(std::uint64_t bytes);
   void allocated(std::uint64_t bytes);
   void freed(std::uint64_t bytes);
   void bind(const Program& program, std::span<const ResourceBinding> bindings);
+  /// Before a command that moves or fills: makes what shaders wrote visible to it, unless a barrier did so
+  /// already.
+  void order();
   /// Deleting a resource unbinds it and frees its name for reuse: what the cache remembers is void.
   void forgetBindings();
   /// Compares timer queries with the fenced clock, once.
@@ -126,21 +158,28 @@ struct DeviceState {
   DeviceLimits limits;
   const std::uint64_t memoryBytes;  ///< limit of allocatedBytes; 0: none but the device's own
   std::string pass;
-  std::vector<std::string> driverErrors;
+  const bool debug;  ///< a debug context
+  const Arithmetic arithmetic;
+  DriverMessages messages;
   std::uint64_t allocatedBytes = 0, peakBytes = 0;
   Device::Transfers transfers;
-  std::array<GLuint, 7> samplers{};
+  bool underWay = false;  ///< dispatches or draws since the last finish()
+  std::array<GLuint, 8> samplers{};
   GLuint vertexArray = 0;
   GLuint elementBuffer = 0;
-  GLuint framebuffer = 0;  ///< of the drawing in progress
   bool drawing = false;
-  UniformRing uniforms;
+  bool unordered = false;  ///< shaders ran since the last barrier, and may have written
+  FramebufferCache framebuffers;
+  FramebufferKey framebufferKey;  ///< of the last drawing; a member for its memory
+  UniformBuffer uniforms;
   BindingCache cache;
   bool timersChecked = false;
   std::array<GLuint, 2> timestampQueries{};
 
  private:
   void readLimits();
+  void requireLimits() const;  ///< AbsentError naming every limit that is too low
+  void listen();               ///< to what the driver says
   void makeSamplers();
 };
 

@@ -91,7 +91,6 @@ void uploadAs(GLuint handle, const TextureDescription& d, int level, GLenum type
 
 void downloadSlicesAs(GLuint handle, const TextureDescription& d, int level, GLenum type, int first,
                       int count, void* data, std::size_t sizeBytes) {
-  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
   const Extent e = extentOf(d, level);
   // The size argument of OpenGL has 31 bits: slice by slice where all together are more.
   const std::size_t slice = sizeBytes / static_cast<std::size_t>(count);
@@ -137,6 +136,7 @@ Texture::Texture(Device& device, const TextureDescription& description, std::str
 
 Texture::~Texture() {
   device_->use();
+  device_->framebuffers.forget(handle_);
   glDeleteTextures(1, &handle_);
   device_->forgetBindings();
   device_->freed(sizeBytes());
@@ -144,60 +144,66 @@ Texture::~Texture() {
 
 void Texture::upload(int level, std::span<const std::byte> texels) {
   device_->use();
+  device_->order();
   assert(texels.size() == texelsOf(extentOf(description_, level)) * bytesPerTexel(description_.format));
   uploadAs(handle_, description_, level, traitsOf(description_.format).type, texels.data());
   device_->transfers.uploaded += texels.size();
-  device_->check("uploading to " + label_);
+  device_->checkTold("uploading to " + label_);
 }
 
 std::vector<std::byte> Texture::download(int level) const {
   device_->use();
+  device_->order();
   const std::uint64_t bytes = texelsOf(extentOf(description_, level)) * bytesPerTexel(description_.format);
   DeviceState::requireHostMemory(bytes, label_);
   std::vector<std::byte> texels(bytes);
   downloadAs(handle_, description_, level, traitsOf(description_.format).type, texels.data(), texels.size());
-  device_->transfers.downloaded += texels.size();
+  device_->downloaded(texels.size());
   device_->check("downloading " + label_);
   return texels;
 }
 
 void Texture::downloadSlices(int level, int first, int count, std::span<std::byte> texels) const {
   device_->use();
+  device_->order();
   Extent slices = extentOf(description_, level);
   assert(first >= 0 && count > 0 && first + count <= slices.depth);
   slices.depth = count;
   assert(texels.size() == texelsOf(slices) * bytesPerTexel(description_.format));
   downloadSlicesAs(handle_, description_, level, traitsOf(description_.format).type, first, count,
                    texels.data(), texels.size());
-  device_->transfers.downloaded += texels.size();
+  device_->downloaded(texels.size());
   device_->check("downloading " + label_);
 }
 
 void Texture::uploadFloats(int level, std::span<const float> values) {
   device_->use();
+  device_->order();
   assert(!traitsOf(description_.format).integer);
   assert(values.size() == texelsOf(extentOf(description_, level)) *
                               static_cast<std::size_t>(componentCount(description_.format)));
   uploadAs(handle_, description_, level, GL_FLOAT, values.data());
   device_->transfers.uploaded += values.size_bytes();
-  device_->check("uploading to " + label_);
+  device_->checkTold("uploading to " + label_);
 }
 
 std::vector<float> Texture::downloadFloats(int level) const {
   device_->use();
+  device_->order();
   assert(!traitsOf(description_.format).integer);
   const std::size_t count =
       texelsOf(extentOf(description_, level)) * static_cast<std::size_t>(componentCount(description_.format));
   DeviceState::requireHostMemory(count * sizeof(float), label_);
   std::vector<float> values(count);
   downloadAs(handle_, description_, level, GL_FLOAT, values.data(), values.size() * sizeof(float));
-  device_->transfers.downloaded += values.size() * sizeof(float);
+  device_->downloaded(values.size() * sizeof(float));
   device_->check("downloading " + label_);
   return values;
 }
 
 void Texture::clear(const glm::vec4& value, int level) {
   device_->use();
+  device_->order();
   const FormatTraits& traits = traitsOf(description_.format);
   for (int i = level < 0 ? 0 : level; i < (level < 0 ? description_.levels : level + 1); ++i) {
     device_->transfers.cleared += texelsOf(extentOf(description_, i)) * bytesPerTexel(description_.format);
@@ -210,13 +216,14 @@ void Texture::clear(const glm::vec4& value, int level) {
       glClearTexImage(handle_, i, traits.external, GL_FLOAT, &value[0]);
     }
   }
-  device_->check("clearing " + label_);
+  device_->checkTold("clearing " + label_);
 }
 
 void Texture::generateLevels() {
   device_->use();
+  device_->order();
   glGenerateTextureMipmap(handle_);
-  device_->check("making the mip levels of " + label_);
+  device_->checkTold("making the mip levels of " + label_);
 }
 
 }  // namespace lumivox::gpu

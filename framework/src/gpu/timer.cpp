@@ -5,6 +5,7 @@
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "gpu/state.h"
 
@@ -206,6 +207,89 @@ Device::Elapsed Device::time(const std::function<void()>& work) {
   glGetQueryObjectui64v(queries[0], GL_QUERY_RESULT, &begin);
   glGetQueryObjectui64v(queries[1], GL_QUERY_RESULT, &end);
   return {hostMs, static_cast<double>(end - begin) * 1e-6};
+}
+
+// ---- PassTimers
+// ---------------------------------------------------------------------------------------------------
+
+struct PassTimers::State {
+  std::shared_ptr<DeviceState> device;
+  struct Slot {
+    std::vector<GLuint> queries;  ///< two for each part, kept for the next frame
+    std::size_t parts = 0;
+    bool pending = false;  ///< its times have not been read
+  };
+  std::vector<Slot> ring;
+  std::size_t next = 0;  ///< slot of the frame under way
+  std::vector<Frame> known;
+
+  void read(Slot& slot) {
+    if (!std::exchange(slot.pending, false)) return;
+    Frame frame;
+    for (std::size_t part = 0; part < slot.parts; ++part) {
+      GLuint64 begin = 0, end = 0;
+      glGetQueryObjectui64v(slot.queries[2 * part], GL_QUERY_RESULT, &begin);
+      glGetQueryObjectui64v(slot.queries[2 * part + 1], GL_QUERY_RESULT, &end);
+      frame.push_back(static_cast<double>(end - begin) * 1e-6);
+    }
+    known.push_back(std::move(frame));
+  }
+};
+
+PassTimers::PassTimers(Device& device, std::size_t framesUnderWay)
+    : state_(new State{device.state(), std::vector<State::Slot>(framesUnderWay), 0, {}}) {
+  assert(framesUnderWay > 0);
+}
+
+PassTimers::~PassTimers() {
+  state_->device->use();
+  for (State::Slot& slot : state_->ring)
+    glDeleteQueries(static_cast<GLsizei>(slot.queries.size()), slot.queries.data());
+}
+
+void PassTimers::beginFrame() {
+  State& s = *state_;
+  s.device->use();
+  State::Slot& slot = s.ring[s.next];
+  s.read(slot);
+  slot.parts = 0;
+}
+
+void PassTimers::begin() {
+  State& s = *state_;
+  s.device->use();
+  State::Slot& slot = s.ring[s.next];
+  if (slot.queries.size() < 2 * (slot.parts + 1)) {
+    slot.queries.resize(2 * (slot.parts + 1));
+    glCreateQueries(GL_TIMESTAMP, 2, &slot.queries[2 * slot.parts]);
+  }
+  glQueryCounter(slot.queries[2 * slot.parts], GL_TIMESTAMP);
+}
+
+void PassTimers::end() {
+  State& s = *state_;
+  s.device->use();
+  State::Slot& slot = s.ring[s.next];
+  glQueryCounter(slot.queries[2 * slot.parts + 1], GL_TIMESTAMP);
+  ++slot.parts;
+}
+
+void PassTimers::endFrame() {
+  State& s = *state_;
+  s.ring[s.next].pending = true;
+  s.next = (s.next + 1) % s.ring.size();
+}
+
+std::vector<PassTimers::Frame> PassTimers::take() {
+  return std::exchange(state_->known, {});
+}
+
+std::vector<PassTimers::Frame> PassTimers::takeAll() {
+  State& s = *state_;
+  s.device->use();
+  // The oldest first: the slots behind the next one to be written.
+  for (std::size_t i = 0; i < s.ring.size(); ++i) s.read(s.ring[(s.next + i) % s.ring.size()]);
+  return take();
 }
 
 }  // namespace lumivox::gpu

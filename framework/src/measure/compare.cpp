@@ -21,6 +21,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/random.h"
@@ -164,11 +165,17 @@ Picture scaled(Picture picture, float factor) {
   return picture;
 }
 
-Perceived perceivedDifference(const ComparablePair& pair, float exposure, const std::vector<double>& stops) {
+/// FLIP maps of one pair.
+struct FlipPair {
+  const Picture &hdr, &ldr;
+};
+
+Perceived perceivedDifference(const ComparablePair& pair, const Picture& truth, float exposure,
+                              const FlipPair& flip) {
   std::vector<double> differences;
   for (std::size_t pixel = 0; pixel < pair.counts.size(); ++pixel) {
     if (pair.counts[pixel] != 0)
-      differences.push_back(std::abs(luminanceAt(pair.picture, pixel) - luminanceAt(pair.truth, pixel)));
+      differences.push_back(std::abs(luminanceAt(pair.picture, pixel) - luminanceAt(truth, pixel)));
   }
   const auto meanOf = [&](const Picture& map, bool windowsInside) {
     enum { sum, count, sums };
@@ -183,11 +190,9 @@ Perceived perceivedDifference(const ComparablePair& pair, float exposure, const 
   };
   Perceived result;
   result.percentile95 = quantileOf(differences, 0.95);
-  result.ssim = meanOf(ssimMap(displayed(pair.picture, exposure), displayed(pair.truth, exposure)), true);
-  result.flip = meanOf(flipHdrOf(pair.picture, pair.truth, kDefaultPixelsPerDegree, stops), false);
-  result.flipLdr =
-      meanOf(flipLdrOf(scaled(pair.picture, exposure), scaled(pair.truth, exposure), kDefaultPixelsPerDegree),
-             false);
+  result.ssim = meanOf(ssimMap(displayed(pair.picture, exposure), displayed(truth, exposure)), true);
+  result.flip = meanOf(flip.hdr, false);
+  result.flipLdr = meanOf(flip.ldr, false);
   return result;
 }
 
@@ -209,34 +214,100 @@ Picture withNoiseDoubled(const Picture& truth, const Picture& deviations) {
   return noisy;
 }
 
-}  // namespace
-
-PictureError compare(const Picture& picture, const Picture& truth, const Picture& truthVariance) {
-  ComparablePair pair = comparable(picture, truth);
-  const Picture deviations = deviationsOf(truthVariance, truth, pair);
-  PictureError result;
-  result.nonFinitePicture = pair.nonFinitePicture;
-  result.nonFiniteTruth = pair.nonFiniteTruth;
-  compareValues(pair, deviations, result);
-
-  const float exposure = displayExposure(truth);
-  const std::vector<double> stops = flipExposures(pair.truth);
-  const Perceived measured = perceivedDifference(pair, exposure, stops);
+/// What the truth's noise may have moved in the metrics that have no simple derivative: doubling it moves
+/// them about as far as the noise that is there already did.
+void addPerceived(PictureError& result, const Perceived& measured, const Perceived* moved) {
   result.percentile95 = measured.percentile95;
   result.ssim = measured.ssim;
   result.flip = measured.flip;
   result.flipLdr = measured.flipLdr;
-  if (deviations.empty()) return result;
+  if (moved == nullptr) return;
+  result.percentile95Uncertainty = std::abs(moved->percentile95 - measured.percentile95);
+  result.ssimUncertainty = std::abs(moved->ssim - measured.ssim);
+  result.flipUncertainty = std::abs(moved->flip - measured.flip);
+  result.flipLdrUncertainty = std::abs(moved->flipLdr - measured.flipLdr);
+}
 
-  // These have no simple derivative. Doubling the noise moves them about as far as the noise that is there
-  // already did.
-  pair.truth = withNoiseDoubled(pair.truth, deviations);
-  const Perceived moved = perceivedDifference(pair, exposure, stops);
-  result.percentile95Uncertainty = std::abs(moved.percentile95 - measured.percentile95);
-  result.ssimUncertainty = std::abs(moved.ssim - measured.ssim);
-  result.flipUncertainty = std::abs(moved.flip - measured.flip);
-  result.flipLdrUncertainty = std::abs(moved.flipLdr - measured.flipLdr);
+/// Mean over the pictures; to the uncertainty, which is the truth's noise, their spread is added.
+PictureError meanOver(const std::vector<PictureError>& each) {
+  PictureError mean = each.front();
+  const auto merge = [&](double& value, double& uncertainty, const auto& numberOf) {
+    std::vector<double> values;
+    for (const PictureError& one : each) values.push_back(numberOf(one));
+    const Measured over = meanOverSeeds(values);
+    value = over.value;
+    uncertainty = std::hypot(uncertainty, over.uncertainty);
+  };
+  const auto measured = [&](Measured PictureError::*number) {
+    merge((mean.*number).value, (mean.*number).uncertainty,
+          [&](const PictureError& one) { return (one.*number).value; });
+  };
+  const auto plain = [&](double PictureError::*number, double PictureError::*uncertainty) {
+    merge(mean.*number, mean.*uncertainty, [&](const PictureError& one) { return one.*number; });
+  };
+  measured(&PictureError::rmse);
+  measured(&PictureError::relativeMse);
+  measured(&PictureError::meanRatio);
+  measured(&PictureError::bias);
+  plain(&PictureError::percentile95, &PictureError::percentile95Uncertainty);
+  plain(&PictureError::ssim, &PictureError::ssimUncertainty);
+  plain(&PictureError::flip, &PictureError::flipUncertainty);
+  plain(&PictureError::flipLdr, &PictureError::flipLdrUncertainty);
+  for (const PictureError& one : each)
+    mean.nonFinitePicture = std::max(mean.nonFinitePicture, one.nonFinitePicture);
+  return mean;
+}
+
+std::vector<const Picture*> pointersTo(const std::vector<Picture>& pictures) {
+  std::vector<const Picture*> pointers;
+  for (const Picture& picture : pictures) pointers.push_back(&picture);
+  return pointers;
+}
+
+}  // namespace
+
+SeedsError compareSeeds(std::span<const Picture> seeds, const Picture& truth, const Picture& truthVariance) {
+  const std::vector<ComparablePair> pairs = comparable(seeds, truth);
+  const Picture& expected = pairs.front().truth;
+  const Picture deviations = deviationsOf(truthVariance, truth, pairs.front());
+  const float exposure = displayExposure(truth);
+  const bool noisy = !deviations.empty();
+  const Picture other = noisy ? withNoiseDoubled(expected, deviations) : Picture();
+  const Picture shownOther = scaled(other, exposure);
+
+  std::vector<Picture> shown;
+  std::vector<const Picture*> pictures;
+  for (const ComparablePair& pair : pairs) {
+    pictures.push_back(&pair.picture);
+    shown.push_back(scaled(pair.picture, exposure));
+  }
+  FlipMaps hdr = flipHdrMaps(pictures, expected, noisy ? &other : nullptr, kDefaultPixelsPerDegree,
+                             flipExposures(expected));
+  const FlipMaps ldr = flipLdrMaps(pointersTo(shown), scaled(expected, exposure),
+                                   noisy ? &shownOther : nullptr, kDefaultPixelsPerDegree);
+
+  SeedsError result;
+  std::vector<PictureError> each;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    PictureError& one = each.emplace_back();
+    one.nonFinitePicture = pairs[i].nonFinitePicture;
+    one.nonFiniteTruth = pairs[i].nonFiniteTruth;
+    compareValues(pairs[i], deviations, one);
+    const Perceived measured =
+        perceivedDifference(pairs[i], expected, exposure, {hdr.ofPictures[i], ldr.ofPictures[i]});
+    const bool first = i == 0 && noisy;
+    const Perceived moved =
+        first ? perceivedDifference(pairs[i], other, exposure, {hdr.againstOther, ldr.againstOther})
+              : Perceived{};
+    addPerceived(one, measured, first ? &moved : nullptr);
+  }
+  result.mean = meanOver(each);
+  result.flipMap = withBadPixelsMarked(std::move(hdr.ofPictures.front()), pairs.front().counts);
   return result;
+}
+
+PictureError compare(const Picture& picture, const Picture& truth, const Picture& truthVariance) {
+  return compareSeeds(std::span(&picture, 1), truth, truthVariance).mean;
 }
 
 double flicker(const Picture& frame0, const Picture& frame1, const Picture& truth0, const Picture& truth1) {

@@ -214,27 +214,42 @@ double flipOf(const Percept& picture, const Percept& truth, std::size_t pixel) {
   return std::clamp(std::pow(colour, 1.0 - feature), 0.0, 1.0);
 }
 
+/// What the eye makes of a picture as the display shows it.
 template <class Tone>
-Picture flipWith(const Picture& picture, const Picture& truth, const Filters& filters, const Tone& tone) {
-  const int width = truth.width(), height = truth.height();
-  const auto reader = [&](const Picture& source) {
-    return [&source, &tone, channels = static_cast<std::size_t>(source.channels())](std::size_t pixel) {
-      const float* values = source.values().data() + pixel * channels;
-      if (channels == 1) return dvec3(tone(values[0]));
-      return dvec3(tone(values[0]), tone(values[1]), tone(values[2]));
-    };
-  };
-  const Percept seen = perceive(width, height, filters, reader(picture));
-  const Percept expected = perceive(width, height, filters, reader(truth));
-  Picture map(width, height, 1);
-  tbb::parallel_for(0, height, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      const std::size_t pixel =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-      map.values()[pixel] = static_cast<float>(flipOf(seen, expected, pixel));
-    }
+Percept perceiveWith(const Picture& source, const Filters& filters, const Tone& tone) {
+  const auto channels = static_cast<std::size_t>(source.channels());
+  return perceive(source.width(), source.height(), filters, [&](std::size_t pixel) {
+    const float* values = source.values().data() + pixel * channels;
+    if (channels == 1) return dvec3(tone(values[0]));
+    return dvec3(tone(values[0]), tone(values[1]), tone(values[2]));
   });
-  return map;
+}
+
+/// Raises each pixel of a map to the difference of the percepts where that is larger.
+void raise(Picture& map, const Percept& seen, const Percept& expected) {
+  const auto width = static_cast<std::size_t>(map.width());
+  tbb::parallel_for(std::size_t{0}, static_cast<std::size_t>(map.height()), [&](std::size_t y) {
+    for (std::size_t pixel = y * width; pixel < (y + 1) * width; ++pixel)
+      map.values()[pixel] = std::max(map.values()[pixel], static_cast<float>(flipOf(seen, expected, pixel)));
+  });
+}
+
+template <class Tone>
+void raiseMaps(FlipMaps& maps, std::span<const Picture* const> pictures, const Picture& truth,
+               const Picture* other, const Filters& filters, const Tone& tone) {
+  const Percept expected = perceiveWith(truth, filters, tone);
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const Percept seen = perceiveWith(*pictures[i], filters, tone);
+    raise(maps.ofPictures[i], seen, expected);
+    if (i == 0 && other != nullptr) raise(maps.againstOther, seen, perceiveWith(*other, filters, tone));
+  }
+}
+
+FlipMaps blankMaps(std::span<const Picture* const> pictures, const Picture& truth, const Picture* other) {
+  FlipMaps maps;
+  maps.ofPictures.assign(pictures.size(), Picture(truth.width(), truth.height(), 1));
+  if (other != nullptr) maps.againstOther = Picture(truth.width(), truth.height(), 1);
+  return maps;
 }
 
 void requireViewing(double pixelsPerDegree) {
@@ -243,13 +258,6 @@ void requireViewing(double pixelsPerDegree) {
     throw Error(fmt::format(
         "FLIP cannot be taken at {} pixels per degree; expected above 0 and at most 10000", pixelsPerDegree));
   }
-}
-
-Picture withBadPixelsMarked(Picture map, const std::vector<unsigned char>& counts) {
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (counts[i] == 0) map.values()[i] = std::numeric_limits<float>::quiet_NaN();
-  }
-  return map;
 }
 
 // ---- HDR-FLIP
@@ -278,6 +286,13 @@ struct ToneCurve {
 
 }  // namespace
 
+Picture withBadPixelsMarked(Picture map, const std::vector<unsigned char>& counts) {
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] == 0) map.values()[i] = std::numeric_limits<float>::quiet_NaN();
+  }
+  return map;
+}
+
 std::vector<double> flipExposures(const Picture& truth) {
   // The shortest exposure maps the brightest luminance, the longest the median one, to 0.85 of the display's
   // white.
@@ -305,24 +320,36 @@ std::vector<double> flipExposures(const Picture& truth) {
   return stops;
 }
 
-Picture flipLdrOf(const Picture& picture, const Picture& truth, double pixelsPerDegree) {
+FlipMaps flipLdrMaps(std::span<const Picture* const> pictures, const Picture& truth, const Picture* other,
+                     double pixelsPerDegree) {
   const auto clip = [](float value) { return std::clamp(static_cast<double>(value), 0.0, 1.0); };
-  return flipWith(picture, truth, Filters(pixelsPerDegree), clip);
+  FlipMaps maps = blankMaps(pictures, truth, other);
+  raiseMaps(maps, pictures, truth, other, Filters(pixelsPerDegree), clip);
+  return maps;
+}
+
+FlipMaps flipHdrMaps(std::span<const Picture* const> pictures, const Picture& truth, const Picture* other,
+                     double pixelsPerDegree, const std::vector<double>& stops) {
+  const Filters filters(pixelsPerDegree);
+  FlipMaps maps = blankMaps(pictures, truth, other);
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    if (i > 0 && stops[i] == stops[i - 1]) continue;
+    const double exposure = std::exp2(stops[i]);
+    raiseMaps(maps, pictures, truth, other, filters,
+              [&](float value) { return ToneCurve::apply(exposure * value); });
+  }
+  return maps;
+}
+
+Picture flipLdrOf(const Picture& picture, const Picture& truth, double pixelsPerDegree) {
+  const Picture* const one[] = {&picture};
+  return std::move(flipLdrMaps(one, truth, nullptr, pixelsPerDegree).ofPictures.front());
 }
 
 Picture flipHdrOf(const Picture& picture, const Picture& truth, double pixelsPerDegree,
                   const std::vector<double>& stops) {
-  const Filters filters(pixelsPerDegree);
-  Picture largest(truth.width(), truth.height(), 1);
-  for (std::size_t i = 0; i < stops.size(); ++i) {
-    if (i > 0 && stops[i] == stops[i - 1]) continue;
-    const double exposure = std::exp2(stops[i]);
-    const Picture map =
-        flipWith(picture, truth, filters, [&](float value) { return ToneCurve::apply(exposure * value); });
-    std::transform(map.values().begin(), map.values().end(), largest.values().begin(),
-                   largest.values().begin(), [](float a, float b) { return std::max(a, b); });
-  }
-  return largest;
+  const Picture* const one[] = {&picture};
+  return std::move(flipHdrMaps(one, truth, nullptr, pixelsPerDegree, stops).ofPictures.front());
 }
 
 Picture flipLdr(const Picture& linearPicture, const Picture& linearTruth, double pixelsPerDegree) {

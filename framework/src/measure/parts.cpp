@@ -37,7 +37,7 @@ void requireShape(const Picture& one, const Picture& other, const char* what) {
                             one.height(), one.channels(), other.width(), other.height(), other.channels()));
 }
 
-/// Sums over the values that are finite everywhere.
+/// Sums over the pixels that are finite in the truth and in every picture.
 struct Sums {
   double bias = 0.0, noise = 0.0, truth = 0.0;  ///< of the squares
   double byTruth = 0.0;                         ///< variance of `bias` through the truth's noise
@@ -51,6 +51,10 @@ Sums sumsOver(const std::vector<const Picture*>& seeds, const Picture& truth, co
   const int channels = radianceChannels(truth, "a truth");
   Sums sums;
   for (std::size_t pixel = 0; pixel < truth.pixelCount(); ++pixel) {
+    if (!finiteAt(truth, pixel, channels) ||
+        !std::all_of(seeds.begin(), seeds.end(),
+                     [&](const Picture* seed) { return finiteAt(*seed, pixel, channels); }))
+      continue;
     double deviation = 0.0;  // of the pixel's part of `bias`: the channels err together
     for (std::size_t i = pixel * stride(truth);
          i < pixel * stride(truth) + static_cast<std::size_t>(channels); ++i) {
@@ -62,7 +66,6 @@ Sums sumsOver(const std::vector<const Picture*>& seeds, const Picture& truth, co
       }
       const double own = seeds.size() > 1 ? squares / (n - 1.0) : 0.0;
       const double difference = mean - static_cast<double>(truth.values()[i]), v = varianceAt(variance, i);
-      if (!std::isfinite(squares) || !std::isfinite(difference)) continue;
       sums.bias += difference * difference - own / n - v;
       sums.noise += own;
       sums.truth += v;

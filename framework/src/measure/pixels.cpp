@@ -28,38 +28,54 @@ double luminanceAt(const Picture& picture, std::size_t pixel) {
   return sum;
 }
 
+bool finiteAt(const Picture& picture, std::size_t pixel, int radianceChannels) {
+  const float* values = picture.values().data() + pixel * static_cast<std::size_t>(picture.channels());
+  return std::all_of(values, values + radianceChannels, [](float value) { return std::isfinite(value); });
+}
+
 ComparablePair comparable(const Picture& picture, const Picture& truth) {
-  if (!picture.sameShape(truth)) {
-    throw Error(
-        fmt::format("pictures of different shapes cannot be compared: {} x {} pixels with {} channels "
-                    "against a truth of {} x {} with {}",
-                    picture.width(), picture.height(), picture.channels(), truth.width(), truth.height(),
-                    truth.channels()));
-  }
-  if (picture.empty()) throw Error("empty pictures cannot be compared");
-  const auto channels = static_cast<std::size_t>(radianceChannels(truth, "the truth"));
-  const auto stride = static_cast<std::size_t>(truth.channels());
-  ComparablePair pair;
-  pair.picture = Picture(truth.width(), truth.height(), static_cast<int>(channels));
-  pair.truth = pair.picture;
-  pair.counts.assign(truth.pixelCount(), 1);
-  const auto finite = [](float value) { return std::isfinite(value); };
+  return std::move(comparable(std::span(&picture, 1), truth).front());
+}
+
+std::vector<ComparablePair> comparable(std::span<const Picture> pictures, const Picture& truth) {
+  if (pictures.empty()) throw Error("at least one picture is needed to compare with a truth");
+  for (const Picture& picture : pictures)
+    if (!picture.sameShape(truth))
+      throw Error(
+          fmt::format("pictures of different shapes cannot be compared: {} x {} pixels with {} channels "
+                      "against a truth of {} x {} with {}",
+                      picture.width(), picture.height(), picture.channels(), truth.width(), truth.height(),
+                      truth.channels()));
+  if (truth.empty()) throw Error("empty pictures cannot be compared");
+  const int channels = radianceChannels(truth, "the truth");
+  const auto count = static_cast<std::size_t>(channels), stride = static_cast<std::size_t>(truth.channels());
+  ComparablePair blank;
+  blank.picture = Picture(truth.width(), truth.height(), channels);
+  blank.truth = blank.picture;
+  blank.counts.assign(truth.pixelCount(), 1);
+  std::vector<ComparablePair> pairs(pictures.size(), blank);
   for (std::size_t pixel = 0; pixel < truth.pixelCount(); ++pixel) {
-    const float* a = picture.values().data() + pixel * stride;
-    const float* t = truth.values().data() + pixel * stride;
-    const bool goodPicture = std::all_of(a, a + channels, finite),
-               goodTruth = std::all_of(t, t + channels, finite);
-    pair.nonFinitePicture += goodPicture ? 0 : 1;
-    pair.nonFiniteTruth += goodTruth ? 0 : 1;
-    pair.counts[pixel] = goodPicture && goodTruth ? 1 : 0;
-    float* pictureOut = pair.picture.values().data() + pixel * channels;
-    float* truthOut = pair.truth.values().data() + pixel * channels;
-    if (goodPicture) std::copy_n(a, channels, pictureOut);
-    if (goodTruth) std::copy_n(t, channels, truthOut);
-    if (!goodPicture && goodTruth) std::copy_n(t, channels, pictureOut);
-    if (goodPicture && !goodTruth) std::copy_n(a, channels, truthOut);
+    const bool goodTruth = finiteAt(truth, pixel, channels);
+    // Where the pixel does not count, all have the same: the truth's value, else that of a picture that has
+    // one.
+    const float* common = goodTruth ? truth.values().data() + pixel * stride : nullptr;
+    bool allGood = goodTruth;
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+      const bool good = finiteAt(pictures[i], pixel, channels);
+      pairs[i].nonFinitePicture += good ? 0 : 1;
+      pairs[i].nonFiniteTruth += goodTruth ? 0 : 1;
+      if (good && common == nullptr) common = pictures[i].values().data() + pixel * stride;
+      allGood = allGood && good;
+    }
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+      pairs[i].counts[pixel] = allGood ? 1 : 0;
+      if (common == nullptr) continue;
+      const float* own = allGood ? pictures[i].values().data() + pixel * stride : common;
+      std::copy_n(own, count, pairs[i].picture.values().data() + pixel * count);
+      std::copy_n(common, count, pairs[i].truth.values().data() + pixel * count);
+    }
   }
-  return pair;
+  return pairs;
 }
 
 Picture luminance(const Picture& rgb) {

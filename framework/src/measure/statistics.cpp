@@ -68,7 +68,8 @@ Measured medianOf(const TimingStatistics& statistics) {
   constexpr double kMedianOverMean = 1.2533;  // sqrt(pi/2)
   const double sigma = (statistics.upperQuartile - statistics.lowerQuartile) / kQuartilesApart;
   return {statistics.median,
-          statistics.repeats > 0 ? kMedianOverMean * sigma / std::sqrt(statistics.repeats) : 0.0};
+          statistics.repeats > 0 ? kMedianOverMean * sigma / std::sqrt(statistics.repeats) : 0.0,
+          statistics.repeats >= kLeastRepeats};
 }
 
 Measured meanOverSeeds(const std::vector<double>& values) {

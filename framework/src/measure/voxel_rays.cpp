@@ -1,4 +1,4 @@
-// Straight rays through two sets of voxels at once.
+// Straight rays through the voxels of a truth, and what closes the surfaces that they cross.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
@@ -17,9 +17,7 @@ struct Ray {
   glm::dvec3 origin, direction;  ///< in voxels; the direction has unit length
 };
 
-struct Crossings {
-  std::uint64_t all = 0, holes = 0;
-};
+using Closers = RayCrossings::Closers;
 
 /// The part of a ray within the grid; empty when first >= last.
 std::pair<double, double> withinGrid(const Ray& ray, const glm::ivec3& resolution) {
@@ -38,42 +36,40 @@ std::pair<double, double> withinGrid(const Ray& ray, const glm::ivec3& resolutio
   return {first, last};
 }
 
-/// What one ray meets, in order: parts of the ray from `enter` to `leave`.
-struct Interval {
+/// A voxel that a ray meets: its part of the ray from `enter` to `leave`.
+struct MetVoxel {
   double enter, leave;
+  std::uint64_t bit;
+  bool possible, certain;
 };
-struct Met {
-  std::vector<Interval> runs;      ///< of consecutive possible voxels, with a certain one among them
-  std::vector<Interval> occupied;  ///< single voxels
-  bool inRun = false;              ///< the last voxel was possible
-  bool isCertain = false;          ///< and one of its run is certain
-  Interval current{0.0, 0.0};
 
-  void voxel(const Interval& part, bool possible, bool certain, bool isOccupied) {
-    if (isOccupied) occupied.push_back(part);
-    if (!possible) return endRun();
-    if (!inRun) current = part;
-    current.leave = part.leave;
-    isCertain = isCertain || certain;
-    inRun = true;
-  }
-  void endRun() {
-    if (inRun && isCertain) runs.push_back(current);
-    inRun = isCertain = false;
-  }
-  void addTo(Crossings& crossings) const {
-    auto near = occupied.begin();
-    for (const Interval& run : runs) {
-      while (near != occupied.end() && near->leave < run.enter - kHoleReach) ++near;
-      ++crossings.all;
-      if (near == occupied.end() || near->enter > run.leave + kHoleReach) ++crossings.holes;
+/// The crossings of one ray: its runs of consecutive possible voxels with a certain one among them, and of
+/// each run the voxels no farther from it than kHoleReach.
+void addCrossings(const std::vector<MetVoxel>& met, Closers& closers) {
+  std::size_t near = 0;
+  for (std::size_t first = 0; first < met.size();) {
+    if (!met[first].possible) {
+      ++first;
+      continue;
     }
+    std::size_t end = first;
+    bool certain = false;
+    for (; end < met.size() && met[end].possible; ++end) certain |= met[end].certain;
+    if (certain) {
+      const double low = met[first].enter - kHoleReach, high = met[end - 1].leave + kHoleReach;
+      while (met[near].leave < low) ++near;
+      for (std::size_t i = near; i < met.size() && met[i].enter <= high; ++i)
+        closers.voxels.push_back(met[i].bit);
+      closers.ends.push_back(closers.voxels.size());
+    }
+    first = end;
   }
-};
+}
 
 /// Amanatides & Woo 1987, "A fast voxel traversal algorithm for ray tracing".
-void walk(const Ray& ray, const VoxelSet& occupied, const VoxelTruth& truth, Crossings& crossings) {
+void walk(const Ray& ray, const VoxelTruth& truth, std::vector<MetVoxel>& met, Closers& closers) {
   const VoxelSet& possible = truth.possible;
+  met.clear();
   const auto [first, last] = withinGrid(ray, possible.resolution());
   if (!(first < last)) return;
   const glm::ivec3 most = possible.resolution() - 1;
@@ -87,19 +83,17 @@ void walk(const Ray& ray, const VoxelSet& occupied, const VoxelTruth& truth, Cro
     stride[axis] = 1.0 / std::abs(ray.direction[axis]);
     next[axis] = (voxel[axis] + (step[axis] > 0 ? 1 : 0) - ray.origin[axis]) / ray.direction[axis];
   }
-  Met met;
   double enter = first;
   while (possible.inside(voxel)) {
     const int axis = next.x <= next.y && next.x <= next.z ? 0 : next.y <= next.z ? 1 : 2;
     const double leave = std::min(next[axis], last);
-    met.voxel({enter, leave}, possible.contains(voxel), truth.certain.contains(voxel),
-              occupied.contains(voxel));
+    const std::uint64_t bit = possible.bitOf(voxel);
+    met.push_back({enter, leave, bit, possible.containsBit(bit), truth.certain.containsBit(bit)});
     enter = leave;
     voxel[axis] += step[axis];
     next[axis] += stride[axis];
   }
-  met.endRun();
-  met.addTo(crossings);
+  addCrossings(met, closers);
 }
 
 /// Evenly over the lines that meet the grid's bounding sphere: directions over the sphere, places over the
@@ -118,18 +112,22 @@ Ray obliqueRay(int index, const glm::ivec3& resolution) {
 }
 
 template <class RayOf>
-Crossings crossingsOf(std::int64_t rays, const VoxelSet& occupied, const VoxelTruth& truth,
-                      const RayOf& rayOf) {
+void addRays(std::int64_t rays, const VoxelTruth& truth, Closers& all, const RayOf& rayOf) {
   constexpr std::int64_t kGrain = 256;  // rays that one task takes at a time
-  return tbb::parallel_reduce(
-      tbb::blocked_range<std::int64_t>(0, rays, kGrain), Crossings{},
-      [&](const auto& range, Crossings sum) {
-        for (std::int64_t i = range.begin(); i != range.end(); ++i) walk(rayOf(i), occupied, truth, sum);
-        return sum;
+  Closers found = tbb::parallel_reduce(
+      tbb::blocked_range<std::int64_t>(0, rays, kGrain), Closers{},
+      [&](const auto& range, Closers closers) {
+        std::vector<MetVoxel> met;
+        for (std::int64_t i = range.begin(); i != range.end(); ++i) walk(rayOf(i), truth, met, closers);
+        return closers;
       },
-      [](const Crossings& a, const Crossings& b) {
-        return Crossings{a.all + b.all, a.holes + b.holes};
+      [](Closers a, const Closers& b) {
+        for (const std::uint64_t end : b.ends) a.ends.push_back(a.voxels.size() + end);
+        a.voxels.insert(a.voxels.end(), b.voxels.begin(), b.voxels.end());
+        return a;
       });
+  for (const std::uint64_t end : found.ends) all.ends.push_back(all.voxels.size() + end);
+  all.voxels.insert(all.voxels.end(), found.voxels.begin(), found.voxels.end());
 }
 
 double share(std::uint64_t part, std::uint64_t whole) {
@@ -145,32 +143,44 @@ double RayHoles::obliqueShare() const {
   return share(obliqueHoles, obliqueCrossings);
 }
 
-RayHoles rayHoles(const VoxelSet& occupied, const VoxelTruth& truth, int raysPerKind) {
-  measure::requireSameResolution(occupied, truth.certain);
-  measure::requireSameResolution(occupied, truth.possible);
-  const glm::ivec3& resolution = truth.possible.resolution();
-  RayHoles holes;
+RayCrossings::RayCrossings(const VoxelTruth& truth, int raysPerKind)
+    : resolution_(truth.possible.resolution()) {
+  measure::requireSameResolution(truth.certain, truth.possible);
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const std::int64_t columns = static_cast<std::int64_t>(resolution[u]) * resolution[v];
+    const std::int64_t columns = static_cast<std::int64_t>(resolution_[u]) * resolution_[v];
     const std::int64_t rays = std::min<std::int64_t>(columns, raysPerKind);
-    const Crossings crossings = crossingsOf(rays, occupied, truth, [&](std::int64_t index) {
+    addRays(rays, truth, axis_, [&](std::int64_t index) {
       const std::int64_t column = index * columns / rays;
       Ray ray{glm::dvec3(0.0), glm::dvec3(0.0)};
       ray.direction[axis] = 1.0;
-      ray.origin[u] = static_cast<double>(column % resolution[u]) + 0.5;
-      ray.origin[v] = static_cast<double>(column / resolution[u]) + 0.5;
+      ray.origin[u] = static_cast<double>(column % resolution_[u]) + 0.5;
+      ray.origin[v] = static_cast<double>(column / resolution_[u]) + 0.5;
       return ray;
     });
-    holes.axisCrossings += crossings.all;
-    holes.axisHoles += crossings.holes;
   }
-  const Crossings oblique = crossingsOf(raysPerKind, occupied, truth, [&](std::int64_t index) {
-    return obliqueRay(static_cast<int>(index), resolution);
-  });
-  holes.obliqueCrossings = oblique.all;
-  holes.obliqueHoles = oblique.holes;
-  return holes;
+  addRays(raysPerKind, truth, oblique_,
+          [&](std::int64_t index) { return obliqueRay(static_cast<int>(index), resolution_); });
+}
+
+std::uint64_t RayCrossings::Closers::holes(const VoxelSet& occupied) const {
+  std::uint64_t count = 0, first = 0;
+  for (const std::uint64_t end : ends) {
+    bool closed = false;
+    for (; first < end && !closed; ++first) closed = occupied.containsBit(voxels[first]);
+    count += !closed;
+    first = end;
+  }
+  return count;
+}
+
+RayHoles RayCrossings::holes(const VoxelSet& occupied) const {
+  if (occupied.resolution() != resolution_) measure::refuseResolutions(occupied.resolution(), resolution_);
+  return {axis_.ends.size(), axis_.holes(occupied), oblique_.ends.size(), oblique_.holes(occupied)};
+}
+
+RayHoles rayHoles(const VoxelSet& occupied, const VoxelTruth& truth, int raysPerKind) {
+  return RayCrossings(truth, raysPerKind).holes(occupied);
 }
 
 }  // namespace lumivox

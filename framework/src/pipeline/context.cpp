@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <cstring>
 #include <exception>
 #include <new>
 
@@ -33,6 +35,33 @@ gpu::BufferRef FrameContext::buffer(std::uint64_t sizeBytes, const std::string& 
   return buffer;
 }
 
+void FrameContext::judgeLater(gpu::BufferRef counts, std::uint64_t offsetBytes, CountJudge judge) {
+  judgements_.push_back({passName_, std::move(counts), offsetBytes, std::move(judge)});
+}
+
+bool FrameContext::allHadRoom() {
+  // Each attempt finds out what is needed by passes that had enough at their inputs: a chain of passes needs
+  // as many as it is long, and one that doubles its room no more than a word has bits.
+  constexpr int kMostAttempts = 64;
+  bool enough = true;
+  for (const Judgement& one : std::exchange(judgements_, {})) {
+    passName_ = one.pass;
+    try {
+      std::uint32_t count = 0;
+      std::memcpy(&count, one.counts->download(one.offsetBytes, sizeof(count)).data(), sizeof(count));
+      if (one.judge(*this, count)) continue;
+      enough = false;
+      if (attempts_ == kMostAttempts)
+        throw Error(fmt::format("no room for what it counts ({}) after {} attempts", count, kMostAttempts));
+    } catch (const std::exception& error) {
+      attempts_ = 0;
+      throw Error("pass " + one.pass + ": " + error.what());
+    }
+  }
+  attempts_ = enough ? 0 : attempts_ + 1;
+  return enough;
+}
+
 void FrameContext::warn(const std::string& text) {
   const std::string message = "pass " + passName_ + ": " + text;
   if (warnings_.insert(message).second) logWarning("{}", message);
@@ -47,31 +76,41 @@ void FrameContext::reused(const std::string& what, const std::string& why) {
 }
 
 void FrameContext::setFrame(SceneSnapshot snapshot, int frameIndex, bool geometryChanged) {
+  judgements_.clear();  // of a frame that an error ended
   snapshot_ = std::move(snapshot);
   frameIndex_ = frameIndex;
   if (gpuScene_ && geometryChanged) gpuScene_->update(snapshot_);
 }
 
-gpu::Device::Elapsed FrameContext::run(Pass& pass, const std::string& name) {
+gpu::Device::Elapsed FrameContext::run(Pass& pass, const std::string& name, bool fenced) {
+  using Clock = std::chrono::steady_clock;
+  const auto since = [](Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  };
   passName_ = name;
   bytesOfRun_ = 0;
   lastResource_.clear();
-  // Errors are carried past the timer, so that it is always stopped.
+  gpu::Device::Elapsed elapsed{0.0, 0.0};
   std::exception_ptr failure;
+  if (fenced) device_.finish();
+  const auto start = Clock::now();
   device_.enterPass(name);
-  const gpu::Device::Elapsed elapsed = device_.time([&] {
-    try {
-      pass.run(*this);
-    } catch (...) {
-      failure = std::current_exception();
-    }
-  });
+  try {
+    pass.run(*this);
+    // What a pass wrote is there for every later one, whatever that does with it.
+    device_.barrier();
+    elapsed.hostMs = since(start);
+  } catch (...) {
+    failure = std::current_exception();
+  }
   try {
     device_.leavePass();
+    if (fenced) device_.finish();
   } catch (...) {
     // The pass's own error came first and explains more.
     if (!failure) failure = std::current_exception();
   }
+  if (fenced) elapsed.deviceMs = since(start);
   if (!failure) return elapsed;
   // The one place that names the pass in an error.
   try {

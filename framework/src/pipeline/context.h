@@ -35,6 +35,7 @@ class FrameContext : public PassContext {
   std::uint64_t seed() const override { return seed_; }
   gpu::TextureRef texture(const gpu::TextureDescription& description, const std::string& label) override;
   gpu::BufferRef buffer(std::uint64_t sizeBytes, const std::string& label) override;
+  void judgeLater(gpu::BufferRef counts, std::uint64_t offsetBytes, CountJudge judge) override;
   void warn(const std::string& text) override;
   bool startsAfresh() const override { return keepsEverything_ || afresh_; }
   void reused(const std::string& what, const std::string& why) override;
@@ -56,8 +57,14 @@ class FrameContext : public PassContext {
   };
   const std::set<Reused>& reusedParts() const { return reusedParts_; }
 
-  /// Runs one pass under its name: driver errors and errors of the pass carry it, once.
-  gpu::Device::Elapsed run(Pass& pass, const std::string& name);
+  /// Runs one pass under its name: driver errors and errors of the pass carry it, once. `fenced`: waits for
+  /// the device before and after, and takes the time between as the device's; without it that is 0.
+  gpu::Device::Elapsed run(Pass& pass, const std::string& name, bool fenced = false);
+  /// Whether a pass of the frame has left a count to be judged.
+  bool hasCounts() const { return !judgements_.empty(); }
+  /// Once the device is idle: has the counts of the frame judged. False when a pass had too little room, so
+  /// that the frame has to be rendered again with setAfresh(true). Error when that does not help.
+  bool allHadRoom();
   /// Bytes that the last run asked the pool for.
   std::uint64_t bytesOfRun() const { return bytesOfRun_; }
 
@@ -74,6 +81,14 @@ class FrameContext : public PassContext {
   std::uint64_t seed_ = 1, bytesOfRun_ = 0;
   std::string passName_, lastResource_;  ///< lastResource_: label, as this run asked the pool for it
   bool afresh_ = true, inspects_ = false;
+  struct Judgement {
+    std::string pass;
+    gpu::BufferRef counts;
+    std::uint64_t offsetBytes;
+    CountJudge judge;
+  };
+  std::vector<Judgement> judgements_;  ///< of this frame
+  int attempts_ = 0;                   ///< at this frame that had too little room
   std::vector<std::string> notes_;
   std::set<std::string> warnings_;
   std::set<Reused> reusedParts_;

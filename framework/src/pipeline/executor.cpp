@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -45,18 +46,31 @@ struct PipelineExecutor::State {
 
   std::optional<PrunePlan> plan;      ///< made when the first frame or an explanation asks for it
   std::optional<SceneSnapshot> last;  ///< of the last frame
+  bool freesUnused = true;            ///< resources that a frame did not use
   bool complete = false;              ///< the last frame's results are there; otherwise every pass runs
   std::optional<int> lastFrameIndex;
-  std::map<int, PassRecord> lastRun;                       ///< per pass, from the last time that it ran
+  std::map<int, PassRecord> lastRun;     ///< per pass, from the last time that it ran
+  std::map<std::string, double> lastMs;  ///< device time of passes, from the last time that it was measured
   std::map<std::size_t, std::vector<float>> lastOfCamera;  ///< Pass::readsOfCamera(), the same
+  gpu::PassTimers timers;
+  /// Passes of the frames whose times are not read yet, and of those whose are and that nobody took.
+  std::vector<std::vector<PassRecord>> awaited, timed;
 
   State(gpu::Device& gpuDevice, TechniqueSource& source, const Scene& sceneToRender, const Pipeline& text,
         const RenderOptions& renderOptions);
   const PrunePlan& planned();
   std::vector<bool> passesToRun(Reads changed, const SceneSnapshot& snapshot);
   bool readsWhatChanged(std::size_t pass, Reads changed, const SceneSnapshot& snapshot) const;
-  void runPass(std::size_t index, FrameResult& result);
-  FrameResult frame(SceneSnapshot snapshot, int frameIndex, Pictures pictures, Clock::time_point start);
+  /// How the passes of a frame are timed: not at all, by waiting around each, or by the device's time stamps.
+  enum class Instrument { none, fence, stamps };
+  Instrument instrumentOf(Timing timing) const;
+  void keepTimes(std::vector<PassRecord> passes);
+  void readTimes(const std::vector<gpu::PassTimers::Frame>& frames);
+  void runPass(std::size_t index, Instrument instrument, FrameResult& result);
+  /// Before a frame, the snapshot of its time included: what its time starts from.
+  Clock::time_point startFrame(Instrument instrument);
+  FrameResult frame(SceneSnapshot snapshot, int frameIndex, Pictures pictures, Timing timing,
+                    Clock::time_point start);
   void collectPictures(FrameResult& result, Pictures pictures);
 };
 
@@ -68,7 +82,8 @@ PipelineExecutor::State::State(gpu::Device& gpuDevice, TechniqueSource& source, 
       pipeline(text),
       options(renderOptions),
       graph(bindPipeline(pipeline, source, renderOptions.parameters)),
-      context(gpuDevice, sceneToRender, renderOptions.keepEverything) {
+      context(gpuDevice, sceneToRender, renderOptions.keepEverything),
+      timers(gpuDevice) {
   scene.camera(options.camera);
   for (const BoundOutput& output : graph.outputs) outputNames.push_back(output.name);
   for (const std::string& wanted : options.wanted) {
@@ -147,11 +162,46 @@ std::vector<bool> PipelineExecutor::State::passesToRun(Reads changed, const Scen
   return runs;
 }
 
-void PipelineExecutor::State::runPass(std::size_t index, FrameResult& result) {
+PipelineExecutor::State::Instrument PipelineExecutor::State::instrumentOf(Timing timing) const {
+  if (timing == Timing::frame) return Instrument::none;
+  return device.info().timerQueriesTrusted ? Instrument::stamps : Instrument::fence;
+}
+
+Clock::time_point PipelineExecutor::State::startFrame(Instrument instrument) {
+  // Frames whose passes the device times follow each other without a gap, so that it never waits for the
+  // host.
+  if (instrument != Instrument::stamps) device.finish();
+  device.resetPeak();
+  return Clock::now();
+}
+
+void PipelineExecutor::State::keepTimes(std::vector<PassRecord> passes) {
+  for (const PassRecord& pass : passes) {
+    if (pass.ran) lastMs[pass.name] = pass.deviceMs;
+  }
+  timed.push_back(std::move(passes));
+}
+
+void PipelineExecutor::State::readTimes(const std::vector<gpu::PassTimers::Frame>& frames) {
+  for (const gpu::PassTimers::Frame& frame : frames) {
+    std::vector<PassRecord> passes = std::move(awaited.front());
+    awaited.erase(awaited.begin());
+    auto time = frame.begin();
+    for (PassRecord& pass : passes) {
+      if (pass.ran) pass.deviceMs = *time++;
+    }
+    keepTimes(std::move(passes));
+  }
+}
+
+void PipelineExecutor::State::runPass(std::size_t index, Instrument instrument, FrameResult& result) {
   const BoundPass& bound = graph.passes[index];
   PassRecord record{bound.name, bound.technique, bound.pass};
   if (options.countWork) context.shaders().takeWork();  // what was done between the passes
-  const gpu::Device::Elapsed elapsed = context.run(*bound.object, bound.name);
+  if (instrument == Instrument::stamps) timers.begin();
+  const gpu::Device::Elapsed elapsed =
+      context.run(*bound.object, bound.name, instrument == Instrument::fence);
+  if (instrument == Instrument::stamps) timers.end();
   if (options.countWork) record.work = context.shaders().takeWork();
   record.hostMs = elapsed.hostMs;
   record.deviceMs = elapsed.deviceMs;
@@ -172,8 +222,10 @@ void PipelineExecutor::State::runPass(std::size_t index, FrameResult& result) {
 }
 
 FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameIndex, Pictures pictures,
-                                           Clock::time_point start) {
+                                           Timing timing, Clock::time_point start) {
   planned();
+  const Instrument instrument = instrumentOf(timing);
+  if (instrument == Instrument::stamps) timers.beginFrame();
   FrameResult result;
   Reads changed = last ? whatChanged(scene, *last, snapshot) : Reads::geometry;
   if (lastFrameIndex && *lastFrameIndex != frameIndex) changed = changed | Reads::time;
@@ -196,7 +248,7 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
     const BoundPass& bound = graph.passes[index];
     if (runs[index]) {
       const auto passStart = Clock::now();
-      runPass(index, result);
+      runPass(index, instrument, result);
       passesMs += millisecondsSince(passStart);
       if (options.health) {
         const auto scanStart = Clock::now();
@@ -216,13 +268,32 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
       if (!output.keep && output.lastReader == static_cast<int>(position)) graph.output(source).reset();
     }
   }
-  device.finish();
-  result.frameMs = millisecondsSince(start) - scanMs;
-  result.betweenPassesMs = result.frameMs - passesMs;
+  result.betweenPassesMs = millisecondsSince(start) - passesMs - scanMs;
+  // Counts are read when the device is idle; without any, frames that are stamped follow each other without a gap.
+  if (instrument != Instrument::stamps || context.hasCounts()) device.finish();
+  if (!context.allHadRoom()) {
+    // What was rendered lacks something: nothing of it is kept, and the frame's time is that of both
+    // attempts.
+    context.takeNotes();
+    context.pool().endFrame();
+    if (instrument == Instrument::stamps) {
+      timers.endFrame();
+      awaited.push_back(result.passes);
+    }
+    return frame(SceneSnapshot(*last), frameIndex, pictures, timing, start);
+  }
+  result.frameMs =
+      timing == Timing::frame ? millisecondsSince(start) - scanMs : std::numeric_limits<double>::quiet_NaN();
   result.peakBytes = device.peakBytes();
   result.notes = context.takeNotes();
-  context.pool().endFrame();
+  if (freesUnused) context.pool().endFrame();
   complete = true;
+  if (instrument == Instrument::fence) keepTimes(result.passes);
+  if (instrument == Instrument::stamps) {
+    timers.endFrame();
+    awaited.push_back(result.passes);
+    readTimes(timers.take());
+  }
   collectPictures(result, pictures);
   return result;
 }
@@ -263,20 +334,26 @@ PipelineExecutor::PipelineExecutor(gpu::Device& device, TechniqueSource& techniq
 
 PipelineExecutor::~PipelineExecutor() = default;
 
-FrameResult PipelineExecutor::render(double time, int frameIndex, Pictures pictures) {
+FrameResult PipelineExecutor::render(double time, int frameIndex, Pictures pictures, Timing timing) {
   State& s = *state_;
-  s.device.finish();
-  s.device.resetPeak();
-  const auto start = Clock::now();
+  const auto start = s.startFrame(s.instrumentOf(timing));
   return s.frame(snapshotOf(s.scene, time, s.options.camera, s.options.width, s.options.height), frameIndex,
-                 pictures, start);
+                 pictures, timing, start);
 }
 
-FrameResult PipelineExecutor::render(const SceneSnapshot& snapshot, int frameIndex, Pictures pictures) {
+FrameResult PipelineExecutor::render(const SceneSnapshot& snapshot, int frameIndex, Pictures pictures,
+                                     Timing timing) {
   State& s = *state_;
-  s.device.finish();
-  s.device.resetPeak();
-  return s.frame(snapshot, frameIndex, pictures, Clock::now());
+  return s.frame(snapshot, frameIndex, pictures, timing, s.startFrame(s.instrumentOf(timing)));
+}
+
+std::vector<std::vector<PassRecord>> PipelineExecutor::timedPasses() {
+  State& s = *state_;
+  if (!s.awaited.empty()) {
+    s.device.finish();  // tells what the driver found wrong meanwhile
+    s.readTimes(s.timers.takeAll());
+  }
+  return std::exchange(s.timed, {});
 }
 
 void PipelineExecutor::invalidate() {
@@ -293,7 +370,10 @@ Explanation PipelineExecutor::explain() const {
                    s.context.shaders().packs(),
                    s.context.reusedParts(),
                    {}};
-  for (const auto& [index, record] : s.lastRun) run.passMs[index] = record.deviceMs;
+  s.readTimes(s.timers.takeAll());
+  for (const auto& [index, record] : s.lastRun) {
+    if (const auto ms = s.lastMs.find(record.name); ms != s.lastMs.end()) run.passMs[index] = ms->second;
+  }
   run.keepEverything = s.options.keepEverything;
   run.poolBytes = s.context.pool().bytes();
   run.sharedBytes = s.context.pool().sharedBytes();
@@ -311,6 +391,18 @@ shader::ShaderLibrary& PipelineExecutor::shaders() {
 void PipelineExecutor::keepOutput(const std::string& pass, const std::string& port) {
   state_->request.forced.push_back(state_->graph.find(pass, port));
   state_->plan.reset();
+}
+
+void PipelineExecutor::keepOnly(const std::string& pass, const std::string& port) {
+  State& s = *state_;
+  s.request.forced = {s.graph.find(pass, port)};
+  for (const BoundPass& bound : s.graph.passes)
+    for (OutBase* output : bound.object->outputs()) output->reset();
+  s.plan.reset();
+}
+
+void PipelineExecutor::freeUnused(bool free) {
+  state_->freesUnused = free;
 }
 
 const Pass& PipelineExecutor::pass(const std::string& name) const {

@@ -106,11 +106,14 @@ void PassHarness::run(std::uint64_t seed) {
   }
   if (const std::string contradiction = state_->pass->checkParameters(); !contradiction.empty())
     throw Error(contradiction);
-  for (OutBase* output : state_->pass->outputs()) output->reset();
-  state_->context.pool().beginFrame();
   state_->context.setSeed(seed);
-  state_->context.run(*state_->pass, state_->name);
-  state_->context.pool().endFrame();
+  do {
+    for (OutBase* output : state_->pass->outputs()) output->reset();
+    state_->context.pool().beginFrame();
+    state_->context.run(*state_->pass, state_->name);
+    state_->context.pool().endFrame();
+    state_->context.device().finish();
+  } while (!state_->context.allHadRoom());
 }
 
 PassContext& PassHarness::context() {

@@ -139,9 +139,8 @@ std::vector<gpu::TextureRef> texturesOf(const ScatteringGrid& grid) {
 
 // ---- context -------------------------------------------------------------------------------------------
 
-void PassContext::dispatch(const shader::BoundProgram& program,
-                           const std::vector<gpu::ResourceBinding>& bindings, glm::ivec3 items,
-                           glm::ivec3 groupSize) {
+void PassContext::dispatch(const shader::BoundProgram& program, shader::ShaderLibrary::Bindings bindings,
+                           glm::ivec3 items, glm::ivec3 groupSize) {
   assert(groupSize.x > 0 && groupSize.y > 0 && groupSize.z > 0);
   if (items.x <= 0 || items.y <= 0 || items.z <= 0) return;
   shaders().dispatch(program, bindings, glm::uvec3((items + groupSize - 1) / groupSize));

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "lumivox/report/interpolation.h"
+#include "lumivox/report/comparison.h"
 #include "report/choice.h"
 
 namespace lumivox {
@@ -26,6 +27,8 @@ std::string pointName(const StoredRun& run) {
 
 class Comparison {
  public:
+  explicit Comparison(const TimeFloor& floor) : floor_(floor) {}
+
   void compare(const std::string& point, const StoredRun& before, const StoredRun& after) {
     point_ = point;
     if (!before.point.failure.empty() || !after.point.failure.empty()) {
@@ -51,11 +54,11 @@ class Comparison {
       return;
     }
     if (a.width != b.width || a.height != b.height) return;  // told with the errors
-    addTime("frame ms", before.point.frameMs, after.point.frameMs);
-    addTime("next frame ms", before.point.nextFrameMs, after.point.nextFrameMs);
+    addTime("frame ms", before.point.frameMs, after.point.frameMs, floor_.frame);
+    addTime("next frame ms", before.point.nextFrameMs, after.point.nextFrameMs, floor_.nextFrame);
     for (const auto& [pass, time] : before.point.passDeviceMs)
       if (const auto other = after.point.passDeviceMs.find(pass); other != after.point.passDeviceMs.end())
-        addTime("pass " + pass + " ms", time, other->second);
+        addTime("pass " + pass + " ms", time, other->second, floor_.frame);
     add("peak bytes", {static_cast<double>(before.point.peakBytes), 0.0},
         {static_cast<double>(after.point.peakBytes), 0.0}, true, 0.0);
   }
@@ -75,30 +78,32 @@ class Comparison {
   void compareError(const ComponentError& before, const ComponentError& after) {
     const std::string what = before.output + " {} against " + before.truth;
     const auto named = [&](const char* metric) { return fmt::format(fmt::runtime(what), metric); };
-    add(named("rmse"), before.rmse(), after.rmse(), true, 0.0);
-    add(named("flip"), {before.error.flip, before.error.flipUncertainty},
-        {after.error.flip, after.error.flipUncertainty}, true, 0.0);
-    const Measured &x = before.error.meanRatio, &y = after.error.meanRatio;
+    for (const char* metric : {"rmse", "flip"})
+      add(named(metric), errorNumber(before, metric), errorNumber(after, metric), true, 0.0);
+    const Measured x = errorNumber(before, "mean_ratio"), y = errorNumber(after, "mean_ratio");
     if (!std::isnan(x.value) && !std::isnan(y.value))
       add(named("mean ratio"), x, y,
           std::abs(y.value - 1.0) < std::abs(x.value - 1.0) ? y.value < x.value : y.value > x.value, 0.0);
   }
 
-  void addTime(const std::string& quantity, const TimingStatistics& before, const TimingStatistics& after) {
+  void addTime(const std::string& quantity, const TimingStatistics& before, const TimingStatistics& after,
+               double floor) {
     if (before.repeats > 0 && after.repeats > 0)
-      add(quantity, medianOf(before), medianOf(after), true, kSignificantTimeShare);
+      add(quantity, medianOf(before), medianOf(after), true, std::max(kSignificantTimeShare, floor));
   }
 
   void add(const std::string& quantity, const Measured& before, const Measured& after, bool lessIsBetter,
            double leastShare) {
-    RunChange change{point_, quantity, before, after, 0.0, false, false};
+    RunChange change{point_, quantity, before, after, 0.0, false, false, false};
     const double difference = after.value - before.value;
     change.sigmas = sigmasApart(before, after);
     change.significant = differ(before, after, leastShare);
+    change.undecided = !decidable(before, after);
     change.better = lessIsBetter ? difference < 0.0 : difference > 0.0;
     result.changes.push_back(std::move(change));
   }
 
+  const TimeFloor floor_;
   std::string point_;
 };
 
@@ -110,8 +115,9 @@ std::map<std::string, const StoredRun*> lastOfEach(const std::vector<StoredRun>&
 
 }  // namespace
 
-RunComparison compareResults(const std::vector<StoredRun>& before, const std::vector<StoredRun>& after) {
-  Comparison comparison;
+RunComparison compareResults(const std::vector<StoredRun>& before, const std::vector<StoredRun>& after,
+                             const TimeFloor& floor) {
+  Comparison comparison(floor);
   if (before.size() == 1 && after.size() == 1) {
     const std::string a = pointName(before.front()), b = pointName(after.front());
     comparison.compare(a == b ? a : a + " -> " + b, before.front(), after.front());

@@ -161,8 +161,7 @@ StoredRun storedRunOf(gpu::Device& device, TechniqueSource& techniques, const Sc
 }
 
 DeviceIdentity identityOf(const gpu::Device& device) {
-  return {device.info().renderer, device.info().version,
-          device.shaderInput() == gpu::ShaderInput::spirv ? "spirv" : "glsl", hostText()};
+  return {device.info().renderer, device.info().version, device.programRoute(), hostText()};
 }
 
 std::string hostText() {

@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 /// Cells of one column: the least, and those that cannot be told apart from it.
 void markBest(std::vector<ComparedPipeline>& pipelines, std::size_t column,
-              std::vector<ComparedCell> ComparedPipeline::*table) {
+              std::vector<ComparedCell> ComparedPipeline::*table, double leastShare) {
   const auto reached = [](const ComparedCell& cell) {
     return cell.reached.reach == Reach::interpolated || cell.reached.reach == Reach::atMost;
   };
@@ -32,7 +32,7 @@ void markBest(std::vector<ComparedPipeline>& pipelines, std::size_t column,
   }
   for (ComparedPipeline& pipeline : pipelines) {
     ComparedCell& cell = (pipeline.*table)[column];
-    cell.best = reached(cell) && !differ(least->reached.value, cell.reached.value);
+    cell.best = reached(cell) && !differ(least->reached.value, cell.reached.value, leastShare);
   }
 }
 
@@ -55,9 +55,9 @@ void fillTables(PipelineComparison& comparison, const std::vector<TradeOff>& tra
       pipeline.atError.push_back({timeAtError(tradeOffs, pipeline.front, error)});
   }
   for (std::size_t column = 0; column < comparison.budgetsMs.size(); ++column)
-    markBest(comparison.pipelines, column, &ComparedPipeline::atTime);
+    markBest(comparison.pipelines, column, &ComparedPipeline::atTime, 0.0);
   for (std::size_t column = 0; column < comparison.errors.size(); ++column)
-    markBest(comparison.pipelines, column, &ComparedPipeline::atError);
+    markBest(comparison.pipelines, column, &ComparedPipeline::atError, comparison.timeShare);
 }
 
 /// The points of the front within a budget that give the least error, one per pipeline.
@@ -171,6 +171,7 @@ Json pointJson(const PipelineComparison& comparison, const ComparedPoint& point)
           {"error",
            {{"value", numberJson(point.tradeOff.error.value)},
             {"uncertainty", numberJson(point.tradeOff.error.uncertainty)}}},
+          {"undecided", !point.tradeOff.timeMs.enoughRepeats || !point.tradeOff.error.enoughRepeats},
           {"on_front", !point.beatenBy},
           {"beaten_by", point.beatenBy ? Json(*point.beatenBy) : Json(nullptr)}};
 }
@@ -215,7 +216,6 @@ void requireErrorMetric(const std::string& metric) {
 }
 
 Measured errorNumber(const ComponentError& error, const std::string& metric) {
-  if (metric == "rmse") return error.rmse();
   for (const NamedMetric& one : metricsOf(error))
     if (one.name == metric) return one.measured;
   return {std::numeric_limits<double>::quiet_NaN(), 0.0};
@@ -253,7 +253,11 @@ PipelineComparison comparePipelines(const std::vector<const ReportPoint*>& point
                      return a.tradeOff.timeMs.value < b.tradeOff.timeMs.value;
                    });
   const std::vector<TradeOff> tradeOffs = tradeOffsOf(comparison.points);
-  const std::vector<std::optional<std::size_t>> beaten = beatenBy(tradeOffs);
+  comparison.timeShare = std::max(kSignificantTimeShare, limits.floor.frame);
+  comparison.controls = limits.floor.controls;
+  for (const TradeOff& one : tradeOffs)
+    comparison.undecided += one.timeMs.enoughRepeats && one.error.enoughRepeats ? 0 : 1;
+  const std::vector<std::optional<std::size_t>> beaten = beatenBy(tradeOffs, comparison.timeShare);
   for (std::size_t i = 0; i < beaten.size(); ++i) comparison.points[i].beatenBy = beaten[i];
   comparison.front = frontByValue(tradeOffs);
   comparison.budgetsMs = limitsOr(limits.budgetsMs, rangeOf(tradeOffs, &TradeOff::timeMs));
@@ -320,6 +324,9 @@ nlohmann::ordered_json toJson(const PipelineComparison& comparison) {
                {"against", comparison.bias ? "bias" : "misses"},
                {"truth", comparison.truth},
                {"metric", comparison.metric},
+               {"least_time_share", comparison.timeShare},
+               {"controls", comparison.controls},
+               {"undecided", comparison.undecided},
                {"front", comparison.front}};
   json["points"] = Json::array();
   for (const ComparedPoint& point : comparison.points) json["points"].push_back(pointJson(comparison, point));

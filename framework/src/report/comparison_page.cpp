@@ -198,6 +198,31 @@ std::string componentTables(std::size_t sceneIndex, const SceneRecord& scene, co
          html + "</details>\n";
 }
 
+/// What the claims of a scene's fronts rest on.
+std::string basisOf(const SceneRecord& scene) {
+  if (scene.comparisons.empty()) return {};
+  const PipelineComparison& one = scene.comparisons.front();
+  std::string text = fmt::format(" Times count as different beyond {:.1f} %", 100.0 * one.timeShare);
+  text += one.controls == 0
+              ? ", since no point was timed twice here."
+              : fmt::format(
+                    ": so far apart, at most, lay the times of {} points that were timed twice, "
+                    "and at least 5 %.",
+                    one.controls);
+  std::size_t undecided = 0, points = 0;
+  for (const PipelineComparison& comparison : scene.comparisons)
+    if (comparison.undecided > undecided) {
+      undecided = comparison.undecided;
+      points = comparison.points.size();
+    }
+  if (undecided > 0)
+    text += fmt::format(
+        " Of {} of {} points there are fewer than {} timed frames or seeds: whether they are better "
+        "or worse is undecided, and they neither beat nor are beaten.",
+        undecided, points, kLeastRepeats);
+  return text;
+}
+
 }  // namespace
 
 std::string comparisonSection(std::size_t sceneIndex, const SceneRecord& scene) {
@@ -211,11 +236,12 @@ std::string comparisonSection(std::size_t sceneIndex, const SceneRecord& scene) 
       "<h3>Error against run time</h3>\n<p class=\"caption\">All pipelines at all points of their sweeps. "
       "Bars: quartiles of the frame time; one standard uncertainty of the error, of the truth's noise and "
       "the spread over seeds together. Filled points are on the front of all: no other point is as good in "
-      "both time and error and better in one by more than three standard uncertainties (and 5 % of a time), "
+      "both time and error and better in one by more than three standard uncertainties, "
       "so points within their uncertainties are both on it. The grey steps bound all points by their values "
       "alone. Coloured lines join the points of one pipeline that none of its own beats: the tables "
       "interpolate along them. The dashed grey line is the error of leaving the component out. Down and to "
-      "the left is better.</p>\n<p>" +
+      "the left is better." +
+      basisOf(scene) + "</p>\n<p>" +
       (some([](const PipelineComparison&) { return true; })
            ? chooser("metric", sceneIndex, "Measure", kMetricTitles)
            : std::string()) +

@@ -51,10 +51,10 @@ Json toJson(const ComponentError& record) {
           {"component", record.component},
           {"truth", record.truth},
           {"kind", record.bias ? "bias" : "miss"},
-          {"rmse", toJson(record.rmse())},
-          {"rmse_over_seeds", toJson(record.rmseOverSeeds)},
+          {"rmse", toJson(record.error.rmse)},
           {"seeds", record.seeds},
           {"deterministic", record.deterministic},
+          {"enough_seeds", record.enoughSeeds()},
           {"rms_bias", toJson(record.parts.bias)},
           {"picture_noise", number(record.noiseRmse)},
           {"rms_noise", toJson(record.parts.noise)},
@@ -64,9 +64,13 @@ Json toJson(const ComponentError& record) {
           {"mean_ratio", toJson(error.meanRatio)},
           {"mean_difference", toJson(error.bias)},
           {"percentile_95", number(error.percentile95)},
+          {"percentile_95_uncertainty", number(error.percentile95Uncertainty)},
           {"ssim", number(error.ssim)},
+          {"ssim_uncertainty", number(error.ssimUncertainty)},
           {"flip_hdr", number(error.flip)},
+          {"flip_hdr_uncertainty", number(error.flipUncertainty)},
           {"flip_ldr", number(error.flipLdr)},
+          {"flip_ldr_uncertainty", number(error.flipLdrUncertainty)},
           {"non_finite_picture", error.nonFinitePicture},
           {"non_finite_truth", error.nonFiniteTruth},
           {"rmse_of_nothing", number(record.errorOfNothing.rmse.value)},
@@ -86,12 +90,19 @@ Json toJson(const PointRecord& record) {
   json["framework_share"] = number(point.frameworkShare);
   json["peak_bytes"] = point.peakBytes;
   Json passes = Json::array();
-  for (const std::string& pass : point.passOrder)
+  // A point that failed has no numbers, and one of an older store may lack some.
+  const auto timeOf = [](const std::map<std::string, TimingStatistics>& times, const std::string& pass) {
+    const auto found = times.find(pass);
+    return found == times.end() ? Json(nullptr) : toJson(found->second);
+  };
+  for (const std::string& pass : point.passOrder) {
+    const auto bytes = point.passBytes.find(pass);
     passes.push_back({{"pass", pass},
-                      {"device_ms", toJson(point.passDeviceMs.at(pass))},
-                      {"host_ms", toJson(point.passHostMs.at(pass))},
-                      {"bytes", point.passBytes.at(pass)},
+                      {"device_ms", timeOf(point.passDeviceMs, pass)},
+                      {"host_ms", timeOf(point.passHostMs, pass)},
+                      {"bytes", bytes == point.passBytes.end() ? Json(nullptr) : Json(bytes->second)},
                       {"limit", limitJson(point, pass)}});
+  }
   json["passes"] = std::move(passes);
   Json errors = Json::array();
   for (const ComponentError& error : point.errors) errors.push_back(toJson(error));
@@ -213,7 +224,7 @@ CsvRow csvRow(const SceneRecord& scene, const PointRecord& record, const Compone
   row.add("component", error.component);
   row.add("truth", error.truth);
   row.add("kind", error.output.empty() ? "" : error.bias ? "bias" : "miss");
-  row.add("rmse", error.rmse());
+  row.add("rmse", error.error.rmse);
   row.add("seeds", static_cast<std::uint64_t>(error.seeds));
   row.add("picture_noise", error.noiseRmse);
   row.add("rms_bias", error.parts.bias);
@@ -223,10 +234,11 @@ CsvRow csvRow(const SceneRecord& scene, const PointRecord& record, const Compone
   row.add("relative_mse", error.error.relativeMse);
   row.add("mean_ratio", error.error.meanRatio);
   row.add("mean_difference", error.error.bias);
-  row.add("percentile_95", error.error.percentile95);
-  row.add("ssim", error.error.ssim);
-  row.add("flip_hdr", error.error.flip);
-  row.add("flip_ldr", error.error.flipLdr);
+  const PictureError& e = error.error;
+  row.add("percentile_95", Measured{e.percentile95, e.percentile95Uncertainty});
+  row.add("ssim", Measured{e.ssim, e.ssimUncertainty});
+  row.add("flip_hdr", Measured{e.flip, e.flipUncertainty});
+  row.add("flip_ldr", Measured{e.flipLdr, e.flipLdrUncertainty});
   row.add("non_finite_picture", error.error.nonFinitePicture);
   row.add("non_finite_truth", error.error.nonFiniteTruth);
   row.add("rmse_of_nothing", error.errorOfNothing.rmse.value);

@@ -79,6 +79,19 @@ void Statement::bindOne(int index, const std::string& text) {
     database_.fail();
 }
 
+std::string Statement::bytes(int column) const {
+  const auto* bytes = static_cast<const char*>(sqlite3_column_blob(statement_.get(), column));
+  return bytes == nullptr
+             ? std::string()
+             : std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column)));
+}
+
+void Statement::bindOne(int index, const Blob& blob) {
+  if (sqlite3_bind_blob64(statement_.get(), index, blob.bytes.data(), blob.bytes.size(), SQLITE_TRANSIENT) !=
+      SQLITE_OK)
+    database_.fail();
+}
+
 void Statement::bindOne(int index, double number) {
   const int status = std::isnan(number) ? sqlite3_bind_null(statement_.get(), index)
                                         : sqlite3_bind_double(statement_.get(), index, number);

@@ -14,6 +14,11 @@ namespace lumivox::report {
 
 class Database;
 
+/// Bytes that are no text.
+struct Blob {
+  const std::string& bytes;
+};
+
 /// A prepared statement. Bind all values in order, then step through the rows.
 class Statement {
  public:
@@ -40,8 +45,10 @@ class Statement {
   /// NaN has no place in SQLite and is stored as NULL.
   double number(int column) const;
   std::string text(int column) const;
+  std::string bytes(int column) const;
 
  private:
+  void bindOne(int index, const Blob& blob);
   void bindOne(int index, const std::string& text);
   void bindOne(int index, const char* text) { bindOne(index, std::string(text)); }
   void bindOne(int index, double number);

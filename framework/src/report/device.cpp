@@ -14,6 +14,7 @@
 #include "lumivox/base/log.h"
 #include "report/choice.h"
 #include "report/device_kernels.h"
+#include "report/process.h"
 
 namespace lumivox {
 
@@ -134,6 +135,7 @@ std::vector<DeviceCeiling> measureCeilings(gpu::Device& device, const CeilingOpt
   std::vector<DeviceCeiling> ceilings;
   for (const KernelEntry* entry : chosen) {
     if (options.progress) options.progress(ceilings.size(), chosen.size(), entry->name);
+    const report::MachineLock alone(report::MachineLock::For::timing);
     const Kernel kernel = entry->make(library);
     if (const std::string wrong = kernel.wrong(); !wrong.empty())
       throw Error(

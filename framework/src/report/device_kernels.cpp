@@ -340,10 +340,9 @@ Kernel fillKernel(shader::ShaderLibrary& library, int shape, std::uint32_t trian
   const auto target = texture(device, TextureKind::d2, Format::rgba16f, kTargetSize);
   const auto* program = &library.program(code::fill::kProgram, code::fill::Variant{.shape = shape}.key());
   const auto run = [=, &library, &device](std::uint32_t rounds) {
-    device.beginDrawing({.colours = {{target.get()}}, .clear = false}, {});
+    const gpu::Drawing drawing = device.drawTo({.colours = {{target.get()}}, .clear = false}, {});
     for (std::uint32_t i = 0; i < rounds; ++i)
       library.draw(*program, {code::fill::parameters({.side = kTargetSize})}, 3 * triangles);
-    device.endDrawing();
   };
   const auto wrong = [=]() -> std::string {
     target->clear(glm::vec4(0.0f));

@@ -5,8 +5,6 @@
 #include <limits>
 #include <numeric>
 
-#include "lumivox/report/changes.h"
-
 namespace lumivox {
 namespace {
 
@@ -14,6 +12,7 @@ namespace {
 struct Segment {
   double x1, x2, y1, y2;
   double ux1, ux2, uy1, uy2;
+  bool enoughRepeats;
 };
 
 double relative(const Measured& measured) {
@@ -21,9 +20,15 @@ double relative(const Measured& measured) {
 }
 
 Segment segmentOf(const TradeOff& a, const TradeOff& b) {
-  return {std::log(a.timeMs.value), std::log(b.timeMs.value), std::log(a.error.value),
-          std::log(b.error.value),  relative(a.timeMs),       relative(b.timeMs),
-          relative(a.error),        relative(b.error)};
+  return {std::log(a.timeMs.value),
+          std::log(b.timeMs.value),
+          std::log(a.error.value),
+          std::log(b.error.value),
+          relative(a.timeMs),
+          relative(b.timeMs),
+          relative(a.error),
+          relative(b.error),
+          decidable(a.timeMs, b.timeMs) && decidable(a.error, b.error)};
 }
 
 /// The part of the uncertainty that comes through the slope, no more than the segment's whole step.
@@ -70,21 +75,25 @@ double sigmasApart(const Measured& a, const Measured& b) {
   return uncertainty > 0.0 ? difference / uncertainty : std::numeric_limits<double>::infinity();
 }
 
+bool decidable(const Measured& a, const Measured& b) {
+  return a.enoughRepeats && b.enoughRepeats;
+}
+
 bool differ(const Measured& a, const Measured& b, double leastShare) {
-  return sigmasApart(a, b) > kSignificantSigmas &&
+  return decidable(a, b) && sigmasApart(a, b) > kSignificantSigmas &&
          std::abs(a.value - b.value) > leastShare * std::abs(a.value);
 }
 
-bool beats(const TradeOff& a, const TradeOff& b) {
+bool beats(const TradeOff& a, const TradeOff& b, double timeShare) {
   if (a.timeMs.value > b.timeMs.value || a.error.value > b.error.value) return false;
-  return differ(b.timeMs, a.timeMs, kSignificantTimeShare) || differ(b.error, a.error);
+  return differ(b.timeMs, a.timeMs, timeShare) || differ(b.error, a.error);
 }
 
-std::vector<std::optional<std::size_t>> beatenBy(const std::vector<TradeOff>& points) {
+std::vector<std::optional<std::size_t>> beatenBy(const std::vector<TradeOff>& points, double timeShare) {
   std::vector<std::optional<std::size_t>> result(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
     for (std::size_t j = 0; j < points.size(); ++j)
-      if (beats(points[j], points[i]) &&
+      if (beats(points[j], points[i], timeShare) &&
           (!result[i] || points[j].error.value < points[*result[i]].error.value))
         result[i] = j;
   return result;
@@ -105,7 +114,7 @@ Interpolated errorAtTime(const std::vector<TradeOff>& points, const std::vector<
   const double value = std::exp((1.0 - w) * s.y1 + w * s.y2);
   const double u = std::hypot((1.0 - w) * s.uy1 + w * s.uy2,
                               throughSlope(slope, std::hypot((1.0 - w) * s.ux1, w * s.ux2), s.y2 - s.y1));
-  return {Reach::interpolated, {value, value * u}, front[right - 1], front[right]};
+  return {Reach::interpolated, {value, value * u, s.enoughRepeats}, front[right - 1], front[right]};
 }
 
 Interpolated timeAtError(const std::vector<TradeOff>& points, const std::vector<std::size_t>& front,
@@ -123,7 +132,7 @@ Interpolated timeAtError(const std::vector<TradeOff>& points, const std::vector<
   const double value = std::exp((1.0 - w) * s.x1 + w * s.x2);
   const double u = std::hypot(std::hypot((1.0 - w) * s.ux1, w * s.ux2),
                               throughSlope(slope, (1.0 - w) * s.uy1 + w * s.uy2, s.x2 - s.x1));
-  return {Reach::interpolated, {value, value * u}, front[right - 1], front[right]};
+  return {Reach::interpolated, {value, value * u, s.enoughRepeats}, front[right - 1], front[right]};
 }
 
 std::vector<double> roundNumbers(double low, double high) {

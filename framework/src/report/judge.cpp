@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lumivox/measure/power_law.h"
 #include "lumivox/report/changes.h"
 #include "lumivox/report/reproduce.h"
 
@@ -32,9 +33,15 @@ bool usable(const MeasuredRow& row) {
   return row.measured && row.measured->median > 0.0;
 }
 
-/// What a row is divided by: the first comparable one of its measure, else the first that was measured at
-/// all.
-const MeasuredRow* referenceOf(const std::vector<MeasuredRow>& rows, PublishedQuantity quantity) {
+/// What a row is divided by: the one that it names, else the first comparable one of its measure, else the
+/// first that was measured at all.
+const MeasuredRow* referenceOf(const std::vector<MeasuredRow>& rows, const MeasuredRow& divided) {
+  if (!divided.over.empty()) {
+    for (const MeasuredRow& row : rows)
+      if (row.name == divided.over) return usable(row) ? &row : nullptr;
+    return nullptr;
+  }
+  const PublishedQuantity quantity = divided.quantity;
   for (const bool strict : {true, false})
     for (const MeasuredRow& row : rows)
       if (sameMeasure(row.quantity, quantity) && usable(row) && (!strict || row.whyNot.empty())) return &row;
@@ -43,9 +50,15 @@ const MeasuredRow* referenceOf(const std::vector<MeasuredRow>& rows, PublishedQu
 
 JudgedRow judgeRow(const MeasuredRow& row, const MeasuredRow* reference) {
   JudgedRow judged{Verdict::notComparable, kNothing, kNothing, kNothing, kNothing, row.whyNot};
+  // What is divided by something that stands in for another is no more comparable than that.
+  if (judged.why.empty() && !row.over.empty() && reference != nullptr) judged.why = reference->whyNot;
   if (reference != nullptr) judged.publishedRatio = comparable(row) / comparable(*reference);
   if (!usable(row)) {
     if (judged.why.empty()) judged.why = "it was not measured";
+    return judged;
+  }
+  if (reference == nullptr) {
+    if (judged.why.empty()) judged.why = fmt::format("'{}' was not measured", row.over);
     return judged;
   }
   if (reference == &row) {
@@ -59,7 +72,7 @@ JudgedRow judgeRow(const MeasuredRow& row, const MeasuredRow* reference) {
       kReproducedSigmas * std::hypot(above.uncertainty / above.value, below.uncertainty / below.value);
   judged.lowRatio = judged.ratio * std::max(0.0, 1.0 - reach);
   judged.highRatio = judged.ratio * (1.0 + reach);
-  if (!row.whyNot.empty()) return judged;
+  if (!judged.why.empty()) return judged;
   const double least = judged.publishedRatio / kReproducedFactor,
                most = judged.publishedRatio * kReproducedFactor;
   if (judged.lowRatio >= least && judged.highRatio <= most)
@@ -73,12 +86,12 @@ JudgedRow judgeRow(const MeasuredRow& row, const MeasuredRow* reference) {
 }
 
 /// Two comparable rows that stand in the other order than published by more than their uncertainty; empty:
-/// none.
+/// none. Rows that are divided by one of their own are a comparison apart.
 std::string brokenOrder(const std::vector<MeasuredRow>& rows) {
   for (const MeasuredRow& one : rows)
     for (const MeasuredRow& other : rows) {
       if (!sameMeasure(one.quantity, other.quantity) || !one.whyNot.empty() || !other.whyNot.empty() ||
-          !usable(one) || !usable(other))
+          !usable(one) || !usable(other) || !one.over.empty() || !other.over.empty())
         continue;
       const Measured first = medianOf(*one.measured), second = medianOf(*other.measured);
       const double apart = kReproducedSigmas * std::hypot(first.uncertainty, second.uncertainty);
@@ -118,6 +131,20 @@ const char* unit(PublishedQuantity quantity) {
   return "";
 }
 
+const char* name(Growth growth) {
+  switch (growth) {
+    case Growth::unsaid:
+      return "unsaid";
+    case Growth::sublinear:
+      return "sublinear";
+    case Growth::linear:
+      return "linear";
+    case Growth::superlinear:
+      return "superlinear";
+  }
+  return "";
+}
+
 const char* name(Verdict verdict) {
   switch (verdict) {
     case Verdict::reference:
@@ -136,7 +163,7 @@ JudgedTable judge(const std::vector<MeasuredRow>& rows) {
   JudgedTable table;
   std::size_t reproduced = 0, missed = 0;
   for (const MeasuredRow& row : rows) {
-    table.rows.push_back(judgeRow(row, referenceOf(rows, row.quantity)));
+    table.rows.push_back(judgeRow(row, referenceOf(rows, row)));
     reproduced += table.rows.back().verdict == Verdict::reproduced ? 1u : 0u;
     missed += table.rows.back().verdict == Verdict::notReproduced ? 1u : 0u;
   }
@@ -153,6 +180,46 @@ JudgedTable judge(const std::vector<MeasuredRow>& rows) {
     table.why = "no row but the reference can be compared";
   }
   return table;
+}
+
+JudgedCurve judgeGrowth(const MeasuredCurve& curve) {
+  JudgedCurve judged;
+  std::vector<PowerLawPoint> points;
+  for (const MeasuredPoint& point : curve.points) {
+    if (judged.why.empty()) judged.why = point.whyNot;
+    if (point.measured && point.x > 0.0) points.push_back({point.x, medianOf(*point.measured)});
+  }
+  const PowerLaw law = fitPowerLaw(points);
+  judged.exponent = law.slope;
+  if (!std::isfinite(law.slope.value)) {
+    if (judged.why.empty()) judged.why = "a growth takes three points of different x at least";
+    return judged;
+  }
+  if (!judged.why.empty()) return judged;
+  if (curve.growth == Growth::unsaid) {
+    judged.why = "the paper does not say how it grows";
+    return judged;
+  }
+  const auto [first, last] = std::minmax_element(
+      points.begin(), points.end(), [](const PowerLawPoint& a, const PowerLawPoint& b) { return a.x < b.x; });
+  const double low = law.slope.value - kReproducedSigmas * law.slope.uncertainty,
+               high = law.slope.value + kReproducedSigmas * law.slope.uncertainty;
+  // (last / first)^p within the factor of last / first.
+  const double band = std::log(kReproducedFactor) / std::log(last->x / first->x);
+  const double least = curve.growth == Growth::superlinear ? 1.0
+                       : curve.growth == Growth::linear    ? 1.0 - band
+                                                           : -std::numeric_limits<double>::infinity(),
+               most = curve.growth == Growth::sublinear ? 1.0
+                      : curve.growth == Growth::linear  ? 1.0 + band
+                                                        : std::numeric_limits<double>::infinity();
+  if (low >= least && high <= most)
+    judged.verdict = Verdict::reproduced;
+  else if (high < least || low > most)
+    judged.verdict = Verdict::notReproduced;
+  else
+    judged.why =
+        fmt::format("the uncertainty of the exponent reaches across the limit, {:.3g} to {:.3g}", low, high);
+  return judged;
 }
 
 }  // namespace lumivox

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
+#include <span>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
@@ -14,12 +16,8 @@
 
 namespace lumivox {
 
-Measured ComponentError::rmse() const {
-  return {rmseOverSeeds.value, std::hypot(error.rmse.uncertainty, rmseOverSeeds.uncertainty)};
-}
-
 double ComponentError::ratioToNothing() const {
-  return errorOfNothing.rmse.value > 0.0 ? rmseOverSeeds.value / errorOfNothing.rmse.value
+  return errorOfNothing.rmse.value > 0.0 ? error.rmse.value / errorOfNothing.rmse.value
                                          : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -68,59 +66,37 @@ void collectOutputs(std::vector<Judged>& judged, const PipelineExecutor& executo
   collect(judged, kWholePicture, Contributes::final, std::move(whole));
 }
 
-/// RMSE over the values that are finite in both, as `compare` counts them.
-double rmseOf(const Picture& picture, const Picture& truth) {
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < picture.values().size(); ++i) {
-    const double difference = static_cast<double>(picture.values()[i]) - truth.values()[i];
-    if (!std::isfinite(difference)) continue;
-    sum += difference * difference;
-    ++count;
-  }
-  return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count));
-}
-
-/// Root of the mean unbiased variance of a value over the seeds: the picture's own noise.
-double noiseOver(const std::vector<Picture>& seeds) {
-  if (seeds.size() < 2) return 0.0;
-  double sum = 0.0;
-  std::size_t values = 0;
-  for (std::size_t i = 0; i < seeds.front().values().size(); ++i) {
-    double mean = 0.0, squares = 0.0;
-    for (const Picture& seed : seeds) mean += seed.values()[i];
-    mean /= static_cast<double>(seeds.size());
-    for (const Picture& seed : seeds) squares += (seed.values()[i] - mean) * (seed.values()[i] - mean);
-    if (!std::isfinite(squares)) continue;
-    sum += squares / static_cast<double>(seeds.size() - 1);
-    ++values;
-  }
-  return values == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(values));
-}
-
 bool sameValues(const Picture& a, const Picture& b) {
   return a.sameShape(b) &&
          std::equal(a.values().begin(), a.values().end(), b.values().begin(),
                     [](float x, float y) { return x == y || (std::isnan(x) && std::isnan(y)); });
 }
 
-ComponentError errorAgainst(const Judged& judged, Truth& truth, const std::string& layer, bool bias) {
+bool sameInEverySeed(const Judged& judged) {
+  return judged.seeds.size() > 1 &&
+         std::all_of(judged.seeds.begin() + 1, judged.seeds.end(),
+                     [&](const Picture& seed) { return sameValues(judged.seeds.front(), seed); });
+}
+
+/// `flipMap` becomes that of the first seed.
+ComponentError errorAgainst(const Judged& judged, Truth& truth, const std::string& layer, bool bias,
+                            Picture& flipMap) {
   const TruthLayer& reference = *truth.layer(layer);
   ComponentError record;
   record.output = judged.output;
   record.component = name(judged.component);
   record.truth = layer;
   record.bias = bias;
-  record.error = compare(judged.seeds.front(), reference.mean, reference.variance);
   record.seeds = static_cast<int>(judged.seeds.size());
-  record.noiseRmse = noiseOver(judged.seeds);
-  record.deterministic = judged.seeds.size() > 1 && record.noiseRmse == 0.0;
+  record.deterministic = sameInEverySeed(judged);
+  // Seeds that are the same bits are one picture.
+  SeedsError error =
+      compareSeeds(std::span(judged.seeds).first(record.deterministic ? 1 : judged.seeds.size()),
+                   reference.mean, reference.variance);
+  record.error = error.mean;
+  flipMap = std::move(error.flipMap);
   record.parts = errorParts(judged.seeds, reference.mean, reference.variance, record.deterministic);
-  std::vector<double> rmses{record.error.rmse.value};
-  for (std::size_t seed = 1; seed < judged.seeds.size(); ++seed)
-    rmses.push_back(rmseOf(judged.seeds[seed], reference.mean));
-  record.rmseOverSeeds =
-      record.deterministic || rmses.size() == 1 ? Measured{rmses.front(), 0.0} : meanOverSeeds(rmses);
+  record.noiseRmse = judged.seeds.size() > 1 ? record.parts.noise.value : 0.0;
   record.errorOfNothing = truth.errorOfNothing(layer);
   return record;
 }
@@ -130,6 +106,32 @@ SceneSnapshot snapshotAt(const MeasureContext& context, const RenderOptions& opt
 }
 
 }  // namespace
+
+void fail(ReportPoint& point, const std::string& why) {
+  ReportPoint empty;
+  empty.scene = point.scene;
+  empty.pipeline = point.pipeline;
+  empty.sweep = point.sweep;
+  empty.parameters = point.parameters;
+  empty.command = point.command;
+  empty.failure = why;
+  point = std::move(empty);
+}
+
+std::string whyFailed(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const DiagnosticsError&) {
+    throw;
+  } catch (const Error& error) {
+    return error.what();
+  } catch (const std::bad_alloc&) {
+    return "out of memory, without a word about what was too large";
+  } catch (const std::exception& error) {
+    return fmt::format("an error that nobody foresaw: {}", error.what());
+  }
+  return {};
+}
 
 FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& centre, int positions,
                            int frameIndex) {
@@ -211,37 +213,69 @@ void measureErrors(const MeasureContext& context, const Pipeline& pipeline, Poin
             "output '{}' has {} x {} pixels of {} channels, but its truth '{}' has {} x {} of {}", one.output,
             one.seeds.front().width(), one.seeds.front().height(), one.seeds.front().channels(), layer,
             reference->mean.width(), reference->mean.height(), reference->mean.channels()));
-      ComponentError error = errorAgainst(one, context.truth, layer, bias);
-      pictures.against.push_back(
-          {layer, encodePng(falseColour(flipHdr(one.seeds.front(), reference->mean))), error.error.flip});
+      Picture flipMap;
+      ComponentError error = errorAgainst(one, context.truth, layer, bias, flipMap);
+      pictures.against.push_back({layer, encodePng(falseColour(flipMap)), error.error.flip});
       record.point.errors.push_back(std::move(error));
     }
     record.pictures.push_back(std::move(pictures));
   }
 }
 
-void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
-  if (record.point.errors.empty() || !flickers(context.scene, context.options)) return;
-  RenderOptions options = renderOptions(context, record.point);
+namespace {
+
+/// The frames of an animation with one seed, in place of seeds.
+std::vector<Judged> sequenceOf(const MeasureContext& context, const Pipeline& pipeline,
+                               const ReportPoint& point, int seed) {
+  RenderOptions options = renderOptions(context, point);
+  options.seed += static_cast<std::uint64_t>(seed);
   options.interactive = true;
   PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
-  std::vector<Judged> judged;  // with frames in place of seeds
+  std::vector<Judged> judged;
   for (int frame = 0; frame <= context.options.flickerPairs; ++frame)
     collectOutputs(
         judged, executor,
         renderFiltered(executor, snapshotAt(context, options, context.options.time + frame * kFlickerStep),
                        context.options.subpixels, frame));
-  for (ComponentError& error : record.point.errors)
-    for (const Judged& one : judged) {
-      if (one.output != error.output) continue;
-      std::vector<Picture> means, variances;
-      for (int frame = 0; frame <= context.options.flickerPairs; ++frame) {
-        const TruthLayer& layer = *context.truth.later(context.scene, frame).layer(error.truth);
-        means.push_back(layer.mean);
-        variances.push_back(layer.variance);
-      }
-      error.flicker = flicker(one.seeds, means, variances);
+  return judged;
+}
+
+Measured flickerAgainst(const MeasureContext& context, const std::vector<Picture>& frames,
+                        const std::string& truth) {
+  std::vector<Picture> means, variances;
+  for (int frame = 0; frame <= context.options.flickerPairs; ++frame) {
+    const TruthLayer& layer = *context.truth.later(context.scene, frame).layer(truth);
+    means.push_back(layer.mean);
+    variances.push_back(layer.variance);
+  }
+  return flicker(frames, means, variances);
+}
+
+}  // namespace
+
+void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
+  if (record.point.errors.empty() || !flickers(context.scene, context.options)) return;
+  int seeds = 0;  // as many as differ
+  for (const ComponentError& error : record.point.errors)
+    seeds = std::max(seeds, error.deterministic ? 1 : error.seeds);
+  std::vector<std::vector<Measured>> flickers(record.point.errors.size());  // of each error, by seed
+  for (int seed = 0; seed < seeds; ++seed) {
+    const std::vector<Judged> judged = sequenceOf(context, pipeline, record.point, seed);
+    for (std::size_t i = 0; i < flickers.size(); ++i) {
+      const ComponentError& error = record.point.errors[i];
+      for (const Judged& one : judged)
+        if (one.output == error.output && (seed == 0 || !error.deterministic))
+          flickers[i].push_back(flickerAgainst(context, one.seeds, error.truth));
     }
+  }
+  for (std::size_t i = 0; i < flickers.size(); ++i) {
+    if (flickers[i].empty()) continue;
+    std::vector<double> values;
+    for (const Measured& one : flickers[i]) values.push_back(one.value);
+    const Measured over = meanOverSeeds(values);
+    record.point.errors[i].flicker = {over.value,
+                                      std::hypot(flickers[i].front().uncertainty, over.uncertainty)};
+  }
 }
 
 void countWork(const TimingContext& context, const Pipeline& pipeline,
@@ -303,10 +337,10 @@ void TimedPoint::timeFrame() {
   const FrameResult frame = s.executor.render(s.time, 0, PipelineExecutor::Pictures::no);
   s.frameMs.push_back(frame.frameMs);
   if (frame.frameMs > 0.0) s.shares.push_back(frame.betweenPassesMs / frame.frameMs);
-  for (const PassRecord& pass : frame.passes) {
-    s.deviceMs[pass.name].push_back(pass.deviceMs);
-    s.hostMs[pass.name].push_back(pass.hostMs);
-  }
+  for (const PassRecord& pass : frame.passes) s.hostMs[pass.name].push_back(pass.hostMs);
+  // The passes in a frame of their own: their instruments are no part of the frame's time.
+  s.executor.invalidate();
+  s.executor.render(s.time, 0, PipelineExecutor::Pictures::no, PipelineExecutor::Timing::passes);
 }
 
 void TimedPoint::timeNextFrame() {
@@ -320,6 +354,8 @@ void TimedPoint::timeNextFrame() {
 
 void TimedPoint::finish() {
   State& s = *state_;
+  for (const std::vector<PassRecord>& frame : s.executor.timedPasses())
+    for (const PassRecord& pass : frame) s.deviceMs[pass.name].push_back(pass.deviceMs);
   s.point.frameMs = statisticsOf(s.frameMs);
   s.point.nextFrameMs = statisticsOf(s.nextMs);
   s.point.frameworkShare = s.shares.empty() ? 0.0 : statisticsOf(s.shares).median;

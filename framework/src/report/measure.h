@@ -2,6 +2,7 @@
 // time.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -37,6 +38,11 @@ class Truth {
   std::map<std::string, PictureError> nothing_;
   double seconds_ = 0.0;
 };
+
+/// Empties a point of its numbers, which are none, and says why.
+void fail(ReportPoint& point, const std::string& why);
+/// Does it, and says what went wrong; empty: nothing. A wrong text is wrong at every point and goes on up.
+std::string whyFailed(const std::function<void()>& work);
 
 struct TimingContext {
   gpu::Device& device;

@@ -31,10 +31,16 @@ class Measurer {
   std::string key(const WantedPoint& point) const;
   std::string text(const WantedPoint& point) const;
 
-  /// Measures the points together and stores them; gives them back as they are in the store now. `done` is
-  /// told after each batch how many points it had.
+  /// Measures the points together and stores them; gives them back as they are in the store now. Points that
+  /// another process measures are left to it, and waited for at the end. `done` is told after each batch how
+  /// many points were measured here and how many by others.
   std::vector<StoredRun> measure(const std::vector<WantedPoint>& points,
-                                 const std::function<void(std::size_t)>& done = {});
+                                 const std::function<void(std::size_t, std::size_t)>& done = {});
+  /// Times the first of these points that the store holds once more, as many as are timed together, in the
+  /// same way: what differs is the machine's mood.
+  void control(const std::vector<WantedPoint>& points);
+  /// What the controls in the store say of this device.
+  TimeFloor floor() const;
   /// Those that the store holds are taken from it, the others are measured.
   std::vector<StoredRun> fetch(const std::vector<WantedPoint>& points);
 
@@ -44,7 +50,13 @@ class Measurer {
   StoredRun open(const WantedPoint& point) const;
   /// The options of one run: of its seeds.
   ReportOptions optionsOf(const RunIdentity& identity) const;
-  void measureBatch(std::vector<std::pair<const LoadedPipeline*, StoredRun>>& batch);
+  using Batch = std::vector<std::pair<const LoadedPipeline*, StoredRun>>;
+  /// Points that this process may measure now, at most a batch; takes them, and what others have stored
+  /// meanwhile, out of `pending`.
+  Batch claimed(std::vector<WantedPoint>& pending, std::size_t& byOthers);
+  void measureBatch(Batch& batch);
+  void timeTogether(Batch& batch);
+  std::string waitingText(const std::vector<WantedPoint>& pending) const;
 
   gpu::Device& device_;
   TechniqueSet& techniques_;

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "lumivox/base/file.h"
-#include "lumivox/report/changes.h"
+#include "lumivox/report/interpolation.h"
 #include "report/page_parts.h"
 
 namespace lumivox::report {
@@ -14,6 +14,9 @@ namespace {
 /// What leaving out saved of a time, where that is more than the spread of the repeats.
 std::string savedMs(const TimingStatistics& pruned, const TimingStatistics& unpruned) {
   const Measured before = medianOf(unpruned), after = medianOf(pruned);
+  if (!decidable(before, after))
+    return fmt::format("undecided with fewer than {} repeats, of {} ms", kLeastRepeats,
+                       formatMilliseconds(before.value));
   if (!differ(before, after, kSignificantTimeShare))
     return fmt::format("not measurable, of {} ms", formatMilliseconds(before.value));
   return fmt::format("{} of {} ms", formatMilliseconds(before.value - after.value),

@@ -24,7 +24,7 @@ std::string partsTable(const SceneRecord& scene, bool defaults, bool moves) {
       if (!defaults) cells.push_back(escaped(parametersText(record.point.parameters)));
       cells.push_back(error.output == kWholePicture ? "whole picture" : escaped(error.output));
       cells.push_back(escaped(error.truth));
-      cells.push_back(withUncertainty(error.rmse()));
+      cells.push_back(withUncertainty(error.error.rmse));
       cells.push_back(error.seeds < 2 ? "one seed" : withUncertainty(error.parts.bias));
       cells.push_back(error.seeds < 2       ? "one seed"
                       : error.deterministic ? "none"

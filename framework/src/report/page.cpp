@@ -59,7 +59,7 @@ std::string summaryTable(const ReportData& data) {
       table.row(
           {escaped(scene.name.empty() ? scene.file : scene.name), escaped(shortName(record.point.pipeline)),
            escaped(parametersText(record.point.parameters)), withQuartiles(record.point.frameMs),
-           error ? withUncertainty(error->rmse()) : "-", error ? number(error->error.flip) : "-",
+           error ? withUncertainty(error->error.rmse) : "-", error ? number(error->error.flip) : "-",
            error ? withUncertainty(error->error.meanRatio) : "-", saved, front[i] ? "on the front" : "",
            healthText(record)},
           rowKind(record));
@@ -97,10 +97,13 @@ std::string errorTable(const SceneRecord& scene) {
            oneTruth     ? "error"
            : error.bias ? "bias"
                         : "misses",
-           withUncertainty(error.rmse()), number(error.ratioToNothing()),
+           withUncertainty(error.error.rmse), number(error.ratioToNothing()),
            withUncertainty(error.error.meanRatio), withUncertainty(error.error.bias),
-           withUncertainty(error.error.relativeMse), number(error.error.percentile95),
-           number(error.error.ssim), number(error.error.flip), number(error.error.flipLdr),
+           withUncertainty(error.error.relativeMse),
+           withUncertainty({error.error.percentile95, error.error.percentile95Uncertainty}),
+           withUncertainty({error.error.ssim, error.error.ssimUncertainty}),
+           withUncertainty({error.error.flip, error.error.flipUncertainty}),
+           withUncertainty({error.error.flipLdr, error.error.flipLdrUncertainty}),
            number(error.error.noiseFloor),
            error.seeds < 2       ? "one seed"
            : error.deterministic ? "none"

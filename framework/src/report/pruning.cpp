@@ -22,17 +22,27 @@ bool sameBits(const FrameResult& a, const FrameResult& b) {
   return true;
 }
 
-/// Times of several frames of one executor.
+/// Times of several frames of one executor, in each of which every pass runs: of the frame, and apart from
+/// that, since their instruments cost time, of its passes.
 struct Series {
-  std::vector<double> frameMs;
-  std::map<std::string, std::vector<double>> passMs;
+  PipelineExecutor& executor;
+  double time;  ///< s
+  std::vector<double> frameMs{};
 
-  void add(const FrameResult& frame) {
-    frameMs.push_back(frame.frameMs);
-    for (const PassRecord& pass : frame.passes)
-      if (pass.ran) passMs[pass.name].push_back(pass.deviceMs);
+  void add() {
+    using Timing = PipelineExecutor::Timing;
+    for (const Timing timing : {Timing::frame, Timing::passes}) {
+      executor.invalidate();
+      const FrameResult frame = executor.render(time, 0, PipelineExecutor::Pictures::no, timing);
+      if (timing == Timing::frame) frameMs.push_back(frame.frameMs);
+    }
   }
   std::map<std::string, TimingStatistics> passStatistics() const {
+    std::map<std::string, std::vector<double>> passMs;
+    for (const std::vector<PassRecord>& frame : executor.timedPasses()) {
+      for (const PassRecord& pass : frame)
+        if (pass.ran) passMs[pass.name].push_back(pass.deviceMs);
+    }
     std::map<std::string, TimingStatistics> statistics;
     for (const auto& [name, values] : passMs) statistics[name] = statisticsOf(values);
     return statistics;
@@ -75,12 +85,10 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
     }
   }
   // Alternately, so that a machine that grows slower or faster meanwhile does so for both.
-  Series prunedSeries, unprunedSeries;
+  Series prunedSeries{pruned, time}, unprunedSeries{unpruned, time};
   for (int repeat = 0; repeat < repeats; ++repeat) {
-    pruned.invalidate();
-    prunedSeries.add(pruned.render(time, 0, PipelineExecutor::Pictures::no));
-    unpruned.invalidate();
-    unprunedSeries.add(unpruned.render(time, 0, PipelineExecutor::Pictures::no));
+    prunedSeries.add();
+    unprunedSeries.add();
   }
   record.explanation = pruned.explain();  // here: the memory is that of a whole frame
   record.prunedBytes = record.explanation.poolBytes;

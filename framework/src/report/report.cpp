@@ -14,46 +14,149 @@
 #include "report/choice.h"
 #include "report/measure.h"
 #include "report/plan.h"
+#include "report/process.h"
 
 namespace lumivox {
 namespace {
 
 using namespace report;
 
-PointRecord measurePoint(const MeasureContext& context, TechniqueSet& techniques,
-                         const LoadedPipeline& loaded, const PlannedPoint& planned,
-                         const std::string& sceneShown, int samples,
-                         const std::vector<DeviceCeiling>& ceilings, ResultsStore* store) {
-  StoredRun run = storedRunOf(context.device, techniques, context.scene, loaded, planned, context.options,
-                              context.width, context.height, samples, sceneShown);
-  PointRecord record;
-  record.isDefault = planned.isDefault;
-  record.point = run.point;
-  logInformation("{}, {}: {}", sceneShown, loaded.shown, pointText(planned.parameters));
-  try {
-    measureErrors(context, loaded.pipeline, record);
-    measureFlicker(context, loaded.pipeline, record);
-    measureTimes(context, loaded.pipeline, record);
-    countWork(context, loaded.pipeline, ceilings, record.point);
-  } catch (const DiagnosticsError&) {
-    throw;  // a wrong text is wrong at every point
-  } catch (const Error& error) {
-    // One point that does not fit into memory, say, must not cost the others.
-    record.point.failure = error.what();
-    logWarning("{}, {}, {}: {}", sceneShown, loaded.shown, pointText(planned.parameters), error.what());
+std::vector<StoredPicture> storedPictures(const std::vector<OutputPictures>& outputs) {
+  std::vector<StoredPicture> stored;
+  for (const OutputPictures& one : outputs) {
+    stored.push_back({one.output, one.component, {}, 0.0, one.picture});
+    for (const OutputPictures::Against& map : one.against)
+      stored.push_back({one.output, one.component, map.truth, map.flip, map.flipMap});
   }
-  if (store != nullptr) {
-    run.created = dateText();
+  return stored;
+}
+
+std::vector<OutputPictures> outputPictures(std::vector<StoredPicture> stored) {
+  std::vector<OutputPictures> outputs;
+  for (StoredPicture& one : stored) {
+    if (one.truth.empty())
+      outputs.push_back({std::move(one.output), std::move(one.component), std::move(one.png), {}});
+    else if (!outputs.empty())
+      outputs.back().against.push_back({std::move(one.truth), std::move(one.png), one.flip});
+  }
+  return outputs;
+}
+
+/// Measures the points of a report, and keeps each as soon as it is there.
+class ReportPoints {
+ public:
+  ReportPoints(TechniqueSet& techniques, const std::vector<DeviceCeiling>& ceilings, ResultsStore& checkpoint,
+               ResultsStore* store)
+      : techniques_(techniques), ceilings_(ceilings), checkpoint_(checkpoint), store_(store) {}
+
+  /// From the checkpoint where an interrupted report has left it there. Without a truth it fails with the
+  /// reason for that.
+  PointRecord point(const MeasureContext& context, const LoadedPipeline& loaded, const PlannedPoint& planned,
+                    const std::string& sceneShown, int samples) {
+    StoredRun run = runOf(context, loaded, planned, sceneShown, samples);
+    PointRecord record;
+    record.isDefault = planned.isDefault;
+    record.point = run.point;
+    const std::string text =
+        fmt::format("{}, {}: {}", sceneShown, loaded.shown, pointText(planned.parameters));
+    if (std::optional<StoredRun> kept = checkpoint_.find(run.identity.key());
+        kept && kept->point.failure.empty()) {
+      logInformation("{}: taken up from {}", text, checkpoint_.file().string());
+      ++takenUp_;
+      takeUp(record, std::move(*kept));
+    } else {
+      logInformation("{}", text);
+      if (const std::string why = whyFailed([&] { measure(context, loaded, record); }); !why.empty()) {
+        fail(record.point, why);
+        record.pictures.clear();
+        logWarning("{}: {}", text, why);
+      }
+      run.created = dateText();
+      run.point = record.point;
+      checkpoint_.add(run, storedPictures(record.pictures));
+    }
+    run.created = run.created.empty() ? dateText() : run.created;
     run.point = record.point;
-    store->add(run);
+    if (store_ != nullptr) store_->add(run);
+    return record;
   }
-  return record;
+
+  /// A point whose truth could not be made.
+  static PointRecord failed(const StoredRun& run, bool isDefault, const std::string& why) {
+    PointRecord record;
+    record.isDefault = isDefault;
+    record.point = run.point;
+    fail(record.point, why);
+    return record;
+  }
+
+  StoredRun runOf(const TimingContext& context, const LoadedPipeline& loaded, const PlannedPoint& planned,
+                  const std::string& sceneShown, int samples) const {
+    return storedRunOf(context.device, techniques_, context.scene, loaded, planned, context.options,
+                       context.width, context.height, samples, sceneShown);
+  }
+
+  /// Times a point of this report once more, and tells how far apart times of the same thing are here.
+  TimeFloor control(const TimingContext& context, const LoadedPipeline& loaded, const PlannedPoint& planned,
+                    const std::string& sceneShown, int samples) {
+    const StoredRun run = runOf(context, loaded, planned, sceneShown, samples);
+    PointRecord again;
+    again.point = run.point;
+    const std::string why = whyFailed([&] {
+      const MachineLock alone(MachineLock::For::timing);
+      measureTimes(context, loaded.pipeline, again);
+    });
+    if (!why.empty()) logWarning("{}, {}: it could not be timed twice: {}", sceneShown, loaded.shown, why);
+    for (ResultsStore* store : {&checkpoint_, store_})
+      if (store != nullptr && why.empty())
+        store->addControl(run.identity.key(), again.point.frameMs, again.point.nextFrameMs);
+    // The store of the user holds those of the checkpoint too.
+    return timeFloorOf((store_ != nullptr ? *store_ : checkpoint_).controls(run.identity));
+  }
+
+  std::size_t takenUp() const { return takenUp_; }
+
+ private:
+  void measure(const MeasureContext& context, const LoadedPipeline& loaded, PointRecord& record) {
+    {
+      const MachineLock working(MachineLock::For::work);
+      measureErrors(context, loaded.pipeline, record);
+      measureFlicker(context, loaded.pipeline, record);
+      countWork(context, loaded.pipeline, ceilings_, record.point);
+    }
+    const MachineLock alone(MachineLock::For::timing);
+    measureTimes(context, loaded.pipeline, record);
+  }
+
+  void takeUp(PointRecord& record, StoredRun kept) const {
+    const std::string command = record.point.command;
+    const std::string scene = record.point.scene, pipeline = record.point.pipeline;
+    record.point = std::move(kept.point);
+    record.point.scene = scene;
+    record.point.pipeline = pipeline;
+    record.point.command = command;
+    for (const auto& [pass, work] : record.point.passWork)
+      record.point.passBounds[pass] = lowerBounds(work, ceilings_);
+    if (record.point.passWork.empty())
+      record.point.whyNotCounted = "nothing was counted before the report was interrupted";
+    record.pictures = outputPictures(checkpoint_.pictures(kept.identity.key()));
+  }
+
+  TechniqueSet& techniques_;
+  const std::vector<DeviceCeiling>& ceilings_;
+  ResultsStore& checkpoint_;
+  ResultsStore* store_;
+  std::size_t takenUp_ = 0;
+};
+
+/// Where points stay until the page is written.
+std::filesystem::path checkpointFile(const std::filesystem::path& page) {
+  return std::filesystem::path(page).replace_extension(".unfinished.sqlite");
 }
 
 SceneRecord measureScene(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
                          const Scene& scene, const std::vector<const LoadedPipeline*>& pipelines,
-                         const std::string& shown, const std::vector<DeviceCeiling>& ceilings,
-                         ResultsStore* store) {
+                         const std::string& shown, ReportPoints& points) {
   SceneRecord record;
   record.file = shown;
   record.name = scene.name;
@@ -65,19 +168,37 @@ SceneRecord measureScene(gpu::Device& device, TechniqueSet& techniques, const Re
   const ReferenceOptions truthOptions = truthOptionsOf(options, record.width, record.height);
   logInformation("{}: truth at {} x {}, {} samples per pixel", shown, record.width, record.height,
                  truthOptions.samplesPerPixel);
-  Truth truth(scene, truthOptions);
   record.truthSamples = truthOptions.samplesPerPixel;
+  const TimingContext timing{device, techniques, scene, options, record.width, record.height};
+  std::optional<Truth> made;
+  const std::string whyNoTruth = whyFailed([&] {
+    const MachineLock working(MachineLock::For::work);
+    made.emplace(scene, truthOptions);
+  });
+  if (!made) {
+    logWarning("{}: its truth could not be made: {}", shown, whyNoTruth);
+    for (const LoadedPipeline* loaded : pipelines)
+      for (const PlannedPoint& planned :
+           plannedPoints(loaded->pipeline, loaded->settings, options.openSweeps))
+        record.points.push_back(
+            ReportPoints::failed(points.runOf(timing, *loaded, planned, shown, record.truthSamples),
+                                 planned.isDefault, "the scene's truth could not be made: " + whyNoTruth));
+    return record;
+  }
+  Truth& truth = *made;
   record.truthSeconds = truth.seconds();
   record.truthAttributes = truth.layers().attributes;
 
-  const MeasureContext context{{device, techniques, scene, options, record.width, record.height}, truth};
+  const MeasureContext context{timing, truth};
+  std::optional<std::pair<const LoadedPipeline*, PlannedPoint>> first;
   for (const LoadedPipeline* loaded : pipelines) {
     bool defaultWorks = true;
     for (const PlannedPoint& planned :
          plannedPoints(loaded->pipeline, loaded->settings, options.openSweeps)) {
-      record.points.push_back(measurePoint(context, techniques, *loaded, planned, shown,
-                                           truthOptions.samplesPerPixel, ceilings, store));
-      if (planned.isDefault) defaultWorks = record.points.back().point.failure.empty();
+      record.points.push_back(points.point(context, *loaded, planned, shown, record.truthSamples));
+      const bool works = record.points.back().point.failure.empty();
+      if (works && !first) first.emplace(loaded, planned);
+      if (planned.isDefault) defaultWorks = works;
     }
     if (!defaultWorks) continue;
     RenderOptions renderOptions;
@@ -87,24 +208,26 @@ SceneRecord measureScene(gpu::Device& device, TechniqueSet& techniques, const Re
     renderOptions.width = record.width;
     renderOptions.height = record.height;
     logInformation("{}, {}: with and without leaving out", shown, loaded->shown);
-    try {
+    const std::string why = whyFailed([&] {
+      const MachineLock alone(MachineLock::For::timing);
       PruningRecord pruning = measurePruning(device, techniques, scene, loaded->pipeline, renderOptions,
                                              options.time, options.repeats);
       pruning.scene = shown;
       pruning.pipeline = loaded->shown;
       record.pruning.push_back(std::move(pruning));
-    } catch (const Error& error) {
-      logWarning("{}, {}: the unpruned pipeline could not be measured: {}", shown, loaded->shown,
-                 error.what());
-    }
+    });
+    if (!why.empty())
+      logWarning("{}, {}: the unpruned pipeline could not be measured: {}", shown, loaded->shown, why);
   }
 
   std::set<std::string> used;
   for (const PointRecord& point : record.points)
     for (const ComponentError& error : point.point.errors) used.insert(error.truth);
   record.truths = truthRecords(truth, used);
+  const TimeFloor floor =
+      first ? points.control(timing, *first->first, first->second, shown, record.truthSamples) : TimeFloor{};
   record.comparisons = compareComponents(pointsOf(record), {std::begin(kPageMetrics), std::end(kPageMetrics)},
-                                         {options.equalTimesMs, options.equalErrors});
+                                         {options.equalTimesMs, options.equalErrors, floor});
   return record;
 }
 
@@ -145,7 +268,7 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
   ReportData data;
   data.options = options;
   data.device = device.info();
-  data.shaderInput = device.shaderInput() == gpu::ShaderInput::spirv ? "SPIR-V" : "GLSL made from the SPIR-V";
+  data.shaderInput = gpu::programRouteText(device);
   data.host = hostText();
   data.date = dateText();
   data.ceilings = storedCeilings(device, options.store);
@@ -162,11 +285,12 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
     pipelines.push_back(choice.forScene(scenes.back(), unsuited.back()));
   }
 
+  ResultsStore checkpoint(checkpointFile(summary.page));
+  ReportPoints points(techniques, data.ceilings, checkpoint, store ? &*store : nullptr);
   std::set<std::string> pipelineFiles, techniqueNames;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     data.scenes.push_back(measureScene(device, techniques, options, scenes[i], pipelines[i],
-                                       shownPath(options.scenes[i]), data.ceilings,
-                                       store ? &*store : nullptr));
+                                       shownPath(options.scenes[i]), points));
     data.scenes.back().unsuited = unsuited[i];
     if (options.voxelResolution > 0) {
       const std::vector<VoxeliserRecord> voxels =
@@ -190,6 +314,12 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
                       toJson(data).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   writeFileAtomically(summary.csv, toCsv(data));
   writeFileAtomically(summary.page, toHtml(data, library));
+  // What was measured is in the report now.
+  std::error_code failure;
+  if (!std::filesystem::remove(checkpoint.file(), failure))
+    logWarning("{}: it is of no more use, and cannot be removed: {}", checkpoint.file().string(),
+               failure.message());
+  summary.takenUp = points.takenUp();
 
   for (SceneRecord& scene : data.scenes) {
     for (PointRecord& point : scene.points) {

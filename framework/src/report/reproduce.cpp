@@ -1,4 +1,4 @@
-// Measuring the set-ups of a published table.
+// Measuring the set-ups of a published table or figure, and rendering the panels of a figure.
 #include "lumivox/report/reproduce.h"
 
 #include <fmt/format.h>
@@ -6,12 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <map>
-#include <set>
 #include <tuple>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
+#include "lumivox/pipeline/ports.h"
 #include "lumivox/report/voxelisers.h"
 #include "report/choice.h"
 #include "report/measure.h"
@@ -23,7 +24,7 @@ namespace {
 using namespace report;
 namespace fs = std::filesystem;
 
-/// One set-up with the rows that it answers.
+/// One set-up with the rows and points that it answers.
 struct SetUp {
   const Scene* scene = nullptr;
   std::string sceneShown;
@@ -31,7 +32,8 @@ struct SetUp {
   PlannedPoint planned;
   ReportOptions options;
   int width = 0, height = 0;
-  std::vector<std::size_t> rows;
+  int subdivisions = 0;
+  std::vector<std::pair<const PublishedSetUp*, MeasuredSetUp*>> answers;
   KeptOutputs kept;
   StoredRun run;
   std::unique_ptr<TimedPoint> timed;
@@ -40,34 +42,53 @@ struct SetUp {
 
 class Reproduction {
  public:
-  Reproduction(gpu::Device& device, TechniqueSet& techniques, const PublishedTable& table,
+  Reproduction(gpu::Device& device, TechniqueSet& techniques, const PublishedResult& published,
                const ReproduceOptions& options, const std::function<Scene(const fs::path&)>& loadScene,
                ResultsStore* store)
       : device_(device), techniques_(techniques), options_(options), loadScene_(loadScene), store_(store) {
-    result_.table = table;
+    result_.published = published;
     result_.device = device.info();
     result_.host = hostText();
     result_.date = dateText();
-    result_.scale = options.scale > 0.0 ? options.scale : device.info().software ? table.softwareScale : 1.0;
+    result_.repeats = options.repeats;
+    result_.scale = options.scale > 0.0      ? options.scale
+                    : device.info().software ? published.softwareScale
+                                             : 1.0;
     result_.command =
         fmt::format("lumivox reproduce {} --scale {} --repeats {} --seed {}",
-                    shellQuoted(shownPath(table.file)), result_.scale, options.repeats, options.seed);
+                    shellQuoted(shownPath(published.file)), result_.scale, options.repeats, options.seed);
     if (options.truthSamples > 0) result_.command += fmt::format(" --spp {}", options.truthSamples);
     for (const std::string& argument : options.repeatArguments)
       result_.command += " " + shellQuoted(argument);
   }
 
-  ReproducedTable run() {
-    for (const PublishedRow& row : result_.table.rows) {
+  ReproducedResult run() {
+    for (const PublishedRow& row : result_.published.rows) {
       MeasuredRow measured;
       measured.name = row.name;
       measured.quantity = row.quantity;
       measured.published = row.published;
-      measured.whyNot = row.absent.empty() ? row.substitute : row.absent;
+      measured.over = row.over;
       result_.rows.push_back(std::move(measured));
     }
-    for (std::size_t i = 0; i < result_.rows.size(); ++i)
-      if (result_.table.rows[i].absent.empty()) place(i);
+    for (const PublishedCurve& curve : result_.published.curves)
+      result_.curves.push_back({curve.name, curve.over, curve.points.front().quantity, curve.growth,
+                                std::vector<MeasuredPoint>(curve.points.size())});
+    // What is measured stays where it is from here on.
+    for (std::size_t i = 0; i < result_.rows.size(); ++i) place(result_.published.rows[i], result_.rows[i]);
+    for (std::size_t i = 0; i < result_.curves.size(); ++i) placeCurve(i);
+    time();
+    for (const MeasuredCurve& curve : result_.curves) result_.judgedCurves.push_back(judgeGrowth(curve));
+    result_.judged = judge(result_.rows);
+    if (store_ != nullptr) store();
+    setUps_.clear();  // their memory, which pictures may need
+    for (const PublishedPanel& panel : result_.published.panels) result_.panels.push_back(show(panel));
+    expose();
+    return std::move(result_);
+  }
+
+ private:
+  void time() {
     for (SetUp& setUp : setUps_)
       guarded(setUp, [&] {
         setUp.timed =
@@ -78,22 +99,25 @@ class Reproduction {
     for (SetUp& setUp : setUps_) {
       guarded(setUp, [&] {
         setUp.timed->finish();
-        for (const std::size_t row : setUp.rows) readOff(setUp, row);
+        for (const auto& [published, measured] : setUp.answers) readOff(setUp, *published, *measured);
       });
-      for (const std::size_t row : setUp.rows) {
+      for (const auto& [published, measured] : setUp.answers) {
         if (setUp.failure.empty()) continue;
-        result_.rows[row].whyNot = setUp.failure;
-        result_.rows[row].failed = true;
+        measured->whyNot = setUp.failure;
+        measured->failed = true;
       }
-      result_.setUps.push_back(fmt::format("{}, {}: {}, {} x {} pixels", setUp.sceneShown, setUp.loaded.shown,
-                                           pointText(setUp.planned.parameters), setUp.width, setUp.height));
+      result_.setUps.push_back(shownSetUp(setUp));
     }
-    result_.judged = judge(result_.rows);
-    if (store_ != nullptr) store();
-    return std::move(result_);
   }
 
- private:
+  static std::string shownSetUp(const SetUp& setUp) {
+    return fmt::format("{}{}, {}: {}, {} x {} pixels", setUp.sceneShown,
+                       setUp.subdivisions == 0 ? std::string()
+                                               : fmt::format(" with every triangle split into four, {} times",
+                                                             setUp.subdivisions),
+                       setUp.loaded.shown, pointText(setUp.planned.parameters), setUp.width, setUp.height);
+  }
+
   TimingContext timingOf(const SetUp& setUp) {
     return {device_, techniques_, *setUp.scene, setUp.options, setUp.width, setUp.height};
   }
@@ -107,7 +131,9 @@ class Reproduction {
       guarded(setUp, [&] { setUp.timed->finish(); });
       setUp.timed.reset();  // its memory, which errors may need
     }
-    for (SetUp& setUp : setUps_) store(setUp);
+    // A scene that was made finer here is none that a sweep could name.
+    for (SetUp& setUp : setUps_)
+      if (setUp.subdivisions == 0) store(setUp);
   }
 
   void store(SetUp& setUp) {
@@ -153,82 +179,121 @@ class Reproduction {
       throw;  // a wrong text
     } catch (const Error& error) {
       setUp.failure = error.what();
-      logWarning("{}: {}: {}", result_.table.id, setUp.loaded.shown, error.what());
+      logWarning("{}: {}: {}", result_.published.id, setUp.loaded.shown, error.what());
     }
   }
 
   /// The scene, read once; null, and why, when its model is not on this machine.
-  const Scene* sceneOf(const fs::path& file, std::string& whyNot) {
-    const auto [known, isNew] = scenes_.emplace(file, nullptr);
+  const Scene* sceneOf(const PublishedSetUp& published, std::string& whyNot) {
+    const auto [known, isNew] = scenes_.emplace(std::pair(published.scene, published.subdivisions), nullptr);
     if (isNew) {
       try {
-        known->second = std::make_unique<Scene>(loadScene_(file));
+        Scene scene = loadScene_(published.scene);
+        for (int times = 0; times < published.subdivisions; ++times) scene = subdivided(scene);
+        known->second = std::make_unique<Scene>(std::move(scene));
       } catch (const AbsentError& error) {
-        whyAbsent_[file] = error.what();
+        whyAbsent_[published.scene] = error.what();
       }
     }
-    if (!known->second) whyNot = whyAbsent_[file];
+    if (!known->second) whyNot = whyAbsent_[published.scene];
     return known->second.get();
   }
 
-  /// Finds the set-up of a row, or makes it.
-  void place(std::size_t index) {
-    const PublishedRow& row = result_.table.rows[index];
-    MeasuredRow& measured = result_.rows[index];
-    std::string obstacle;
-    for (const std::string& technique : row.pipeline->techniques())
-      if (techniques_.technique(technique) == nullptr)
-        obstacle = fmt::format("the technique '{}' is not here", technique);
-    const Scene* scene = obstacle.empty() ? sceneOf(row.scene, obstacle) : nullptr;
-    if (scene == nullptr) {
-      measured.whyNot = obstacle;
-      return;
-    }
-    SetUp& setUp = setUpOf(row, *scene);
-    setUp.rows.push_back(index);
-    const std::pair<std::string, std::string> output(row.pass, row.port);
-    if (!row.pass.empty() && std::find(setUp.kept.begin(), setUp.kept.end(), output) == setUp.kept.end())
+  /// The scene of a set-up all of whose parts are here, else null and why not.
+  const Scene* sceneWithAll(const PublishedSetUp& published, std::string& whyNot) {
+    if (published.pipeline)
+      for (const std::string& technique : published.pipeline->techniques())
+        if (techniques_.technique(technique) == nullptr) {
+          whyNot = fmt::format("the technique '{}' is not here", technique);
+          return nullptr;
+        }
+    return sceneOf(published, whyNot);
+  }
+
+  void place(const PublishedSetUp& published, MeasuredSetUp& measured) {
+    measured.whyNot = published.absent.empty() ? published.substitute : published.absent;
+    if (!published.absent.empty()) return;
+    const Scene* scene = sceneWithAll(published, measured.whyNot);
+    if (scene == nullptr) return;
+    SetUp& setUp = setUpOf(published, *scene);
+    setUp.answers.emplace_back(&published, &measured);
+    const std::pair<std::string, std::string> output(published.pass, published.port);
+    if (!published.pass.empty() &&
+        std::find(setUp.kept.begin(), setUp.kept.end(), output) == setUp.kept.end())
       setUp.kept.push_back(output);
   }
 
-  SetUp& setUpOf(const PublishedRow& row, const Scene& scene) {
+  void placeCurve(std::size_t index) {
+    const PublishedCurve& curve = result_.published.curves[index];
+    for (std::size_t i = 0; i < curve.points.size(); ++i) {
+      const PublishedSetUp& published = curve.points[i];
+      MeasuredPoint& point = result_.curves[index].points[i];
+      place(published, point);
+      std::string whyNot;
+      if (curve.over != "triangles") {
+        point.x = published.pipeline ? parametersOf(published).at(curve.over).number
+                                     : std::numeric_limits<double>::quiet_NaN();
+      } else if (const Scene* scene = published.absent.empty() ? sceneOf(published, whyNot) : nullptr) {
+        point.x = static_cast<double>(scene->triangleCount());
+      } else {
+        point.x = std::numeric_limits<double>::quiet_NaN();
+      }
+    }
+  }
+
+  /// All parameters of the pipeline, reduced.
+  ParameterValues parametersOf(const PublishedSetUp& published) const {
     ParameterValues parameters;
-    for (const PipelineParameter& parameter : row.pipeline->parameters)
+    for (const PipelineParameter& parameter : published.pipeline->parameters)
       parameters[parameter.name] = parameter.value;
-    for (const auto& [name, value] : row.settings) parameters[name] = value;
-    for (const PipelineParameter& parameter : row.pipeline->parameters)
+    for (const auto& [name, value] : published.settings) parameters[name] = value;
+    for (const PipelineParameter& parameter : published.pipeline->parameters)
       reduce(parameter, parameters[parameter.name]);
+    return parameters;
+  }
+
+  SetUp& setUpOf(const PublishedSetUp& published, const Scene& scene) {
+    const ParameterValues parameters = parametersOf(published);
     for (SetUp& known : setUps_)
-      if (known.scene == &scene && known.loaded.pipeline.file == row.pipeline->file &&
+      if (known.scene == &scene && known.loaded.pipeline.file == published.pipeline->file &&
           pointText(known.planned.parameters) == pointText(parameters) &&
-          known.options.camera == row.camera && known.options.time == row.time)
+          known.options.camera == published.camera && known.options.time == published.time)
         return known;
+    setUps_.push_back(newSetUp(published, scene, parameters));
+    return setUps_.back();
+  }
+
+  SetUp newSetUp(const PublishedSetUp& published, const Scene& scene, const ParameterValues& parameters) {
     SetUp setUp;
     setUp.scene = &scene;
+    setUp.subdivisions = published.subdivisions;
     setUp.sceneShown = shownPath(scene.file);
-    setUp.loaded = {*row.pipeline, shownPath(row.pipeline->file), {}};
+    setUp.loaded = {*published.pipeline, shownPath(published.pipeline->file), {}};
     setUp.planned.parameters = parameters;
-    setUp.options.camera = row.camera;
-    setUp.options.time = row.time;
-    setUp.options.seed = options_.seed;
     setUp.options.repeats = options_.repeats;
+    std::tie(setUp.width, setUp.height) = sizeOf(published, scene);
+    setUp.options.camera = published.camera;
+    setUp.options.time = published.time;
+    setUp.options.seed = options_.seed;
     setUp.options.truthSamples = options_.truthSamples;
-    const Camera& camera = scene.camera(row.camera);
-    const PublishedTable& table = result_.table;
-    setUp.width = reduced(table.width > 0 ? table.width : camera.width);
-    setUp.height = reduced(table.width > 0 ? table.height : camera.height);
     setUp.run = storedRunOf(
         device_, techniques_, scene, setUp.loaded, setUp.planned, setUp.options, setUp.width, setUp.height,
         truthOptionsOf(setUp.options, setUp.width, setUp.height).samplesPerPixel, setUp.sceneShown);
     setUp.run.point.command = result_.command;
-    setUps_.push_back(std::move(setUp));
-    return setUps_.back();
+    return setUp;
+  }
+
+  std::pair<int, int> sizeOf(const PublishedSetUp& published, const Scene& scene) const {
+    const Camera& camera = scene.camera(published.camera);
+    const PublishedResult& whole = result_.published;
+    return {reduced(whole.width > 0 ? whole.width : camera.width),
+            reduced(whole.width > 0 ? whole.height : camera.height)};
   }
 
   int reduced(int size) const { return std::max(1, static_cast<int>(std::lround(size * result_.scale))); }
 
   void reduce(const PipelineParameter& parameter, ParameterValue& value) const {
-    const std::vector<std::string>& scaled = result_.table.scaled;
+    const std::vector<std::string>& scaled = result_.published.scaled;
     if (result_.scale == 1.0 || !value.word.empty() ||
         std::find(scaled.begin(), scaled.end(), parameter.name) == scaled.end())
       return;
@@ -236,9 +301,7 @@ class Reproduction {
     if (parameter.low) value.number = std::clamp(value.number, *parameter.low, *parameter.high);
   }
 
-  void readOff(SetUp& setUp, std::size_t index) {
-    const PublishedRow& row = result_.table.rows[index];
-    MeasuredRow& measured = result_.rows[index];
+  void readOff(SetUp& setUp, const PublishedSetUp& row, MeasuredSetUp& measured) {
     const ReportPoint& point = setUp.run.point;
     for (const std::string& pass : row.passes) {
       if (std::find(point.passOrder.begin(), point.passOrder.end(), pass) != point.passOrder.end()) continue;
@@ -283,7 +346,7 @@ class Reproduction {
     return sum;
   }
 
-  double fragmentsOf(const SetUp& setUp, const PublishedRow& row) const {
+  double fragmentsOf(const SetUp& setUp, const PublishedSetUp& row) const {
     const OutBase* output = setUp.timed->executor().output(row.pass, row.port);
     const std::optional<OccupiedVoxels> voxels = output == nullptr ? std::nullopt : occupiedVoxels(*output);
     if (!voxels || voxels->fragments == 0)
@@ -292,12 +355,106 @@ class Reproduction {
     return static_cast<double>(voxels->fragments);
   }
 
+  // ---- pictures
+
+  ShownPanel show(const PublishedPanel& panel) {
+    ShownPanel shown;
+    shown.name = panel.name;
+    shown.whyNot = panel.absent.empty() ? panel.substitute : panel.absent;
+    shown.meanLuminance = std::numeric_limits<double>::quiet_NaN();
+    const Scene* scene = panel.absent.empty() ? sceneWithAll(panel, shown.whyNot) : nullptr;
+    if (scene == nullptr) return shown;
+    try {
+      shown.picture = panel.reference.empty() ? rendered(panel, *scene, shown) : traced(panel, *scene, shown);
+    } catch (const DiagnosticsError&) {
+      throw;  // a wrong text
+    } catch (const Error& error) {
+      shown.whyNot = error.what();
+      shown.failed = true;
+      logWarning("{}: {}: {}", result_.published.id, panel.name, error.what());
+    }
+    if (!shown.picture.empty()) {
+      const Picture bright = luminance(shown.picture);
+      const Health health = scanHealth(bright.values().data(), bright.values().size(), 1);
+      shown.meanLuminance =
+          health.sum / static_cast<double>(bright.pixelCount() - health.nan - health.infinite);
+    }
+    return shown;
+  }
+
+  Picture rendered(const PublishedPanel& panel, const Scene& scene, ShownPanel& shown) {
+    const SetUp setUp = newSetUp(panel, scene, parametersOf(panel));
+    RenderOptions options;
+    options.parameters = setUp.planned.parameters;
+    options.camera = panel.camera;
+    options.width = setUp.width;
+    options.height = setUp.height;
+    options.seed = options_.seed;
+    options.wantsOutputs = panel.pass.empty();
+    PipelineExecutor executor(device_, techniques_, scene, setUp.loaded.pipeline, options);
+    if (!panel.pass.empty()) executor.keepOutput(panel.pass, panel.port);
+    const std::string set = shownSetUp(setUp);
+    if (std::find(result_.setUps.begin(), result_.setUps.end(), set) == result_.setUps.end())
+      result_.setUps.push_back(set);
+    if (panel.pass.empty()) {
+      Picture whole = compositePicture(executor.render(panel.time));
+      if (whole.empty())
+        throw Error(
+            fmt::format("{}: pipeline \"{}\" makes no picture; expected an output PASS.PORT of the panel",
+                        panel.place.text(), setUp.loaded.pipeline.name));
+      return whole;
+    }
+    executor.render(panel.time, 0, PipelineExecutor::Pictures::no);
+    const OutBase* output = executor.output(panel.pass, panel.port);
+    if (output == nullptr || !output->hasValue()) {
+      shown.whyNot = fmt::format("{}.{} was left out", panel.pass, panel.port);
+      for (const LeftOut& leftOut : executor.explain().leftOut)
+        if (leftOut.pass == panel.pass) shown.whyNot += ": " + leftOut.why;
+      return {};
+    }
+    const auto* image = dynamic_cast<const Out<Image>*>(output);
+    if (image == nullptr)
+      throw Error(fmt::format("{}: {}.{} is no picture", panel.place.text(), panel.pass, panel.port));
+    const gpu::Texture& texture = *image->value().texture;
+    return pictureOf(texture, gpu::componentCount(texture.description().format) < 3 ? 1 : 3);
+  }
+
+  Picture traced(const PublishedPanel& panel, const Scene& scene, ShownPanel& shown) {
+    SetUp setUp;
+    setUp.scene = &scene;
+    std::tie(setUp.width, setUp.height) = sizeOf(panel, scene);
+    setUp.options.camera = panel.camera;
+    setUp.options.time = panel.time;
+    setUp.options.seed = options_.seed;
+    setUp.options.truthSamples = options_.truthSamples;
+    result_.setUps.push_back(fmt::format(
+        "{}, path-traced reference ({}): {} samples a pixel, {} x {} pixels", shownPath(scene.file),
+        panel.reference, truthOptionsOf(setUp.options, setUp.width, setUp.height).samplesPerPixel,
+        setUp.width, setUp.height));
+    const TruthLayer* layer = truthOf(setUp).layer(panel.reference);
+    if (layer == nullptr) {
+      shown.whyNot = fmt::format("the reference of this scene has no layer {}", panel.reference);
+      return {};
+    }
+    return layer->mean;
+  }
+
+  /// One exposure for all panels: the brightest of them keeps its lights.
+  void expose() {
+    result_.exposure = 1.0;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const ShownPanel& panel : result_.panels)
+      if (!panel.picture.empty() && panel.meanLuminance > 0.0)
+        smallest = std::min(smallest, static_cast<double>(displayExposure(panel.picture)));
+    if (std::isfinite(smallest)) result_.exposure = smallest;
+  }
+
   gpu::Device& device_;
   TechniqueSet& techniques_;
   const ReproduceOptions& options_;
   const std::function<Scene(const fs::path&)>& loadScene_;
-  ReproducedTable result_;
-  std::map<fs::path, std::unique_ptr<Scene>> scenes_;
+  ReproducedResult result_;
+  std::map<std::pair<fs::path, int>, std::unique_ptr<Scene>> scenes_;  // by file and subdivisions
   std::map<fs::path, std::string> whyAbsent_;
   ResultsStore* store_;
   /// By scene, camera, time and size.
@@ -307,18 +464,27 @@ class Reproduction {
 
 }  // namespace
 
-ReproducedTable reproduce(gpu::Device& device, TechniqueSet& techniques, const PublishedTable& table,
-                          const ReproduceOptions& options,
-                          const std::function<Scene(const fs::path&)>& loadScene, ResultsStore* store) {
-  // Tables whose techniques are all here are checked whole; the others as far as they go.
-  const bool complete = std::all_of(table.rows.begin(), table.rows.end(), [&](const PublishedRow& row) {
-    if (!row.pipeline) return true;
-    const std::vector<std::string> needed = row.pipeline->techniques();
+bool ReproducedResult::failed() const {
+  const auto bad = [](const auto& one) { return one.failed; };
+  return std::any_of(rows.begin(), rows.end(), bad) || std::any_of(panels.begin(), panels.end(), bad) ||
+         std::any_of(curves.begin(), curves.end(), [&](const MeasuredCurve& curve) {
+           return std::any_of(curve.points.begin(), curve.points.end(), bad);
+         });
+}
+
+ReproducedResult reproduce(gpu::Device& device, TechniqueSet& techniques, const PublishedResult& published,
+                           const ReproduceOptions& options,
+                           const std::function<Scene(const fs::path&)>& loadScene, ResultsStore* store) {
+  // Texts whose techniques are all here are checked whole; the others as far as they go.
+  const std::vector<const PublishedSetUp*> setUps = published.setUps();
+  const bool complete = std::all_of(setUps.begin(), setUps.end(), [&](const PublishedSetUp* one) {
+    if (!one->pipeline) return true;
+    const std::vector<std::string> needed = one->pipeline->techniques();
     return std::all_of(needed.begin(), needed.end(),
                        [&](const std::string& name) { return techniques.technique(name) != nullptr; });
   });
-  if (complete) checkReproduction(table, techniques);
-  return Reproduction(device, techniques, table, options, loadScene, store).run();
+  if (complete) checkReproduction(published, techniques);
+  return Reproduction(device, techniques, published, options, loadScene, store).run();
 }
 
 }  // namespace lumivox

@@ -1,8 +1,11 @@
-// Reading the texts of published tables.
+// Reading the texts of published tables and figures.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
+#include <set>
+#include <tuple>
+#include <utility>
 
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
@@ -36,7 +39,13 @@ PropertySpecification required(PropertySpecification specification) {
   return specification;
 }
 
-/// What a table says for all of its rows and a row for itself.
+constexpr double kMostSubdivisions = 6;  // 4096 triangles of one
+/// What the path tracer keeps apart (reference/path_tracer.h).
+constexpr const char* kReferenceLayers[] = {
+    "direct", "one_bounce_diffuse", "one_bounce_glossy", "one_bounce", "indirect_diffuse", "indirect_glossy",
+    "full",   "ambient_occlusion",  "scattered_single",  "scattered"};
+
+/// What a text says for all of its rows, points and panels, and each of them for itself.
 std::vector<PropertySpecification> setUpProperties() {
   PropertySpecification measures = property(
       "measures", PropertyType::word,
@@ -48,50 +57,109 @@ std::vector<PropertySpecification> setUpProperties() {
   time.dimension = dsl::kTime;
   time.low = 0.0;
   time.defaultText = "0 s";
+  PropertySpecification subdivisions =
+      property("subdivisions", PropertyType::integer,
+               "how often every triangle of the scene is split into four before");
+  subdivisions.low = 0;
+  subdivisions.high = kMostSubdivisions;
+  subdivisions.defaultText = "0";
   return {
       property("scene", PropertyType::text, "file of the scene, beside the text"),
       property("pipeline", PropertyType::text, "file of the pipeline, beside the text"),
       property("camera", PropertyType::name, "of the scene; without it the first"),
       time,
+      subdivisions,
       measures,
       property("passes", PropertyType::list,
                "whose times or bytes are added up; without them the whole frame"),
-      property("output", PropertyType::output,
-               "an output that is kept, for passes that no picture needs, and whose fragments are counted"),
+      property(
+          "output", PropertyType::output,
+          "an output that is kept, for passes that no picture needs; whose fragments are counted; whose picture "
+          "a panel shows, in place of the pipeline's whole picture"),
       property("absent", PropertyType::text,
-               "why there is nothing to measure here: the row is not comparable"),
+               "why there is nothing to measure or to show here: not comparable"),
       property("substitute", PropertyType::text,
                "what stands in for a published set-up that is unknown or not here: measured, but not "
                "comparable")};
 }
 
-BlockSpecification makeSpecification() {
+BlockSpecification setSpecification() {
   BlockSpecification set;
   set.word = "set";
   set.repeatable = false;
   set.open = true;
-  set.meaning = "parameters of the pipeline, each with its value; a row's come over those of the table";
+  set.meaning =
+      "parameters of the pipeline, each with its value; those of a row, point or panel come over those of a curve, and "
+      "these over those of the whole text";
+  return set;
+}
 
-  BlockSpecification row;
-  row.word = "row";
-  row.name = dsl::HeaderUse::required;
-  row.required = true;
-  row.meaning = "one published number. What it does not say itself the table says.";
+/// A part of a text with what it says of its set-up itself.
+BlockSpecification partSpecification(const char* word, dsl::HeaderUse name, const char* meaning,
+                                     std::vector<PropertySpecification> properties,
+                                     std::vector<BlockSpecification> blocks = {}) {
+  BlockSpecification part;
+  part.word = word;
+  part.name = name;
+  part.meaning = meaning;
+  part.properties = std::move(properties);
+  for (PropertySpecification& one : setUpProperties()) part.properties.push_back(std::move(one));
+  part.blocks = {setSpecification()};
+  for (BlockSpecification& block : blocks) part.blocks.push_back(std::move(block));
+  return part;
+}
+
+BlockSpecification rowSpecification() {
   PropertySpecification published =
       required(property("published", PropertyType::number, "the number, in the unit of `measures`"));
   published.low = 1e-9;
-  row.properties = {published};
-  for (PropertySpecification& one : setUpProperties()) row.properties.push_back(std::move(one));
-  row.blocks = {set};
+  return partSpecification(
+      "row", dsl::HeaderUse::required,
+      "one published number. What it does not say itself the whole text says.",
+      {published,
+       property("over", PropertyType::text,
+                "name of the row that this one is divided by; without it the first one that is comparable")});
+}
 
-  BlockSpecification table;
-  table.word = "reproduction";
-  table.name = dsl::HeaderUse::required;
-  table.repeatable = false;
-  table.required = true;
-  table.meaning =
-      "`reproduction \"ID\" { ... }`: one table of a paper. `lumivox reproduce ID` measures its rows and compares them "
-      "as ratios to the first row.";
+BlockSpecification curveSpecification() {
+  PropertySpecification growth =
+      property("growth", PropertyType::word,
+               "what the paper says of how the curve grows; without it there is no verdict");
+  for (const Growth one : {Growth::sublinear, Growth::linear, Growth::superlinear})
+    growth.choices.push_back(name(one));
+  BlockSpecification point = partSpecification(
+      "point", dsl::HeaderUse::none,
+      "one point of the curve. What it does not say itself the curve says, and the whole text.", {});
+  point.required = true;
+  return partSpecification(
+      "curve", dsl::HeaderUse::required,
+      "one curve of a figure: what is measured over what changes from point to point",
+      {required(property("over", PropertyType::name,
+                         "the horizontal axis: triangles (of the scene), or a parameter of the pipeline")),
+       growth},
+      {point});
+}
+
+BlockSpecification panelSpecification() {
+  PropertySpecification reference =
+      property("reference", PropertyType::word,
+               "layer of the path-traced reference that is shown in place of a pipeline");
+  for (const char* layer : kReferenceLayers) reference.choices.push_back(layer);
+  return partSpecification("panel", dsl::HeaderUse::required,
+                           "one picture of a figure. What it does not say itself the whole text says.",
+                           {reference});
+}
+
+BlockSpecification makeSpecification() {
+  BlockSpecification result;
+  result.word = "reproduction";
+  result.name = dsl::HeaderUse::required;
+  result.repeatable = false;
+  result.required = true;
+  result.meaning =
+      "`reproduction \"ID\" { ... }`: one table or figure of a paper. `lumivox reproduce ID` measures its rows and compares "
+      "them as ratios to the first row, measures its curves and how they grow, and shows its panels on one sheet under one "
+      "exposure.";
   PropertySpecification picture =
       property("picture", PropertyType::resolution,
                "width and height of the published picture; without it the camera's");
@@ -108,40 +176,45 @@ BlockSpecification makeSpecification() {
       "differs", PropertyType::text,
       "how the set-up differs from the published one, or what is not known of it, without changing the verdict");
   differs.repeatable = true;
-  table.properties = {
-      required(property("title", PropertyType::text, "what the table shows")),
-      required(property("paper", PropertyType::text, "authors, year, number of the table")),
+  PropertySpecification columns =
+      property("columns", PropertyType::integer, "of the sheet of panels; without it as square as it goes");
+  columns.low = 1;
+  columns.high = 64;
+  result.properties = {
+      required(property("title", PropertyType::text, "what the table or figure shows")),
+      required(property("paper", PropertyType::text, "authors, year, number of the table or figure")),
       property("device", PropertyType::text, "on which the published numbers were measured"),
       picture,
       property("scaled", PropertyType::list,
                "parameters that a reduced set-up makes smaller with the picture: voxels along a side"),
       softwareScale,
-      differs};
-  for (PropertySpecification& one : setUpProperties()) table.properties.push_back(std::move(one));
-  table.blocks = {set, row};
-  return table;
+      differs,
+      columns};
+  for (PropertySpecification& one : setUpProperties()) result.properties.push_back(std::move(one));
+  result.blocks = {setSpecification(), rowSpecification(), curveSpecification(), panelSpecification()};
+  return result;
 }
 
-const BlockSpecification& tableSpecification() {
+const BlockSpecification& resultSpecification() {
   return reproductionSpecifications().front();
 }
 
-/// What is known of the set-up so far: the table's, then the row's over it.
+/// What is known of the set-up so far: the text's, a curve's over it, then the row's, point's or panel's.
 struct SetUp {
   const dsl::Property* scene = nullptr;
   const dsl::Property* pipeline = nullptr;
   const dsl::Property* passes = nullptr;
   const dsl::Property* output = nullptr;
   std::string camera, absent, substitute;
-  double time = 0.0;
+  double time = 0.0, subdivisions = 0.0;
   PublishedQuantity quantity = PublishedQuantity::time;
   std::vector<const dsl::Property*> settings;
 };
 
-class TableReader : TextFindings {
+class ResultReader : TextFindings {
  public:
-  TableReader(PublishedTable& table, const dsl::Document& document, std::vector<Diagnostic>& findings)
-      : TextFindings(document, findings), table_(table) {}
+  ResultReader(PublishedResult& result, const dsl::Document& document, std::vector<Diagnostic>& findings)
+      : TextFindings(document, findings), result_(result) {}
 
   void read() {
     dsl::check(document_, reproductionSpecifications(), findings_);
@@ -150,20 +223,28 @@ class TableReader : TextFindings {
       if (item.block && item.block->word == "reproduction" && main == nullptr) main = item.block.get();
     // What the tables refuse has no meaning to read.
     if (main == nullptr || !findings_.empty()) return;
-    const dsl::CheckedBlock block(*main, tableSpecification());
-    table_.id = block.name();
-    table_.title = block.text("title", "");
-    table_.paper = block.text("paper", "");
-    table_.device = block.text("device", "");
+    const dsl::CheckedBlock block(*main, resultSpecification());
+    result_.id = block.name();
+    result_.title = block.text("title", "");
+    result_.paper = block.text("paper", "");
+    result_.device = block.text("device", "");
     if (const auto picture = block.numbers("picture", {}); picture.size() == 2) {
-      table_.width = static_cast<int>(picture[0]);
-      table_.height = static_cast<int>(picture[1]);
+      result_.width = static_cast<int>(picture[0]);
+      result_.height = static_cast<int>(picture[1]);
     }
-    table_.softwareScale = block.number("software_scale", 1.0);
+    result_.softwareScale = block.number("software_scale", 1.0);
+    result_.columns = static_cast<int>(block.number("columns", 0.0));
     for (const dsl::Property* one : block.findAll("differs"))
-      table_.differences.push_back(one->values.front().text);
+      result_.differences.push_back(one->values.front().text);
     const SetUp common = setUp(block, {});
     for (const dsl::Block* row : block.blocks("row")) readRow(*row, common);
+    readOver(block.blocks("row"));
+    for (const dsl::Block* curve : block.blocks("curve")) readCurve(*curve, common);
+    for (const dsl::Block* panel : block.blocks("panel")) readPanel(*panel, common);
+    if (result_.setUps().empty())
+      report(main->place, main->word, fmt::format("reproduction '{}' has nothing to reproduce", result_.id),
+             "a row, a curve or a panel");
+    for (const char* part : {"row", "curve", "panel"}) requireOwnNames(block, part);
     if (const dsl::Property* scaled = block.find("scaled")) readScaled(*scaled);
   }
 
@@ -177,6 +258,7 @@ class TableReader : TextFindings {
     result.absent = block.text("absent", result.absent);
     result.substitute = block.text("substitute", result.substitute);
     result.time = block.number("time", result.time);
+    result.subdivisions = block.number("subdivisions", result.subdivisions);
     for (const PublishedQuantity quantity : kQuantities)
       if (block.text("measures", "") == name(quantity)) result.quantity = quantity;
     for (const dsl::Block* set : block.blocks("set"))
@@ -185,57 +267,147 @@ class TableReader : TextFindings {
     return result;
   }
 
-  void readRow(const dsl::Block& block, const SetUp& common) {
-    static const BlockSpecification& specification = tableSpecification().blocks.at(1);
-    const dsl::CheckedBlock checked(block, specification);
-    const SetUp setting = setUp(checked, common);
-    PublishedRow row;
-    row.name = checked.name();
-    row.place = block.place;
-    row.published = checked.number("published", 0.0);
-    row.quantity = setting.quantity;
-    row.camera = setting.camera;
-    row.time = setting.time;
-    row.absent = setting.absent;
-    row.substitute = setting.substitute;
-    if (row.absent.empty()) readSetUp(block, setting, row);
-    table_.rows.push_back(std::move(row));
+  void requireOwnNames(const dsl::CheckedBlock& whole, const char* word) {
+    std::set<std::string> names;
+    for (const dsl::Block* block : whole.blocks(word)) {
+      const std::string name = dsl::CheckedBlock(*block, part(word)).name();
+      if (!names.insert(name).second)
+        report(block->place, block->word, fmt::format("there are two of name '{}'", name),
+               fmt::format("a name of its own for each {}", word));
+    }
   }
 
-  void readSetUp(const dsl::Block& block, const SetUp& setting, PublishedRow& row) {
+  static const BlockSpecification& part(const std::string& word) {
+    for (const BlockSpecification& one : resultSpecification().blocks)
+      if (one.word == word) return one;
+    return resultSpecification().blocks.front();
+  }
+
+  void readRow(const dsl::Block& block, const SetUp& common) {
+    const dsl::CheckedBlock checked(block, part("row"));
+    PublishedRow row;
+    row.name = checked.name();
+    row.published = checked.number("published", 0.0);
+    row.over = checked.text("over", "");
+    readSetUp(block, setUp(checked, common), fmt::format("row '{}'", row.name), row);
+    result_.rows.push_back(std::move(row));
+  }
+
+  /// What a row is divided by stands in the same text, measures the same, and is divided by nothing itself.
+  void readOver(const std::vector<const dsl::Block*>& blocks) {
+    std::vector<std::string> names;
+    for (const PublishedRow& row : result_.rows) names.push_back(row.name);
+    for (std::size_t i = 0; i < result_.rows.size(); ++i) {
+      const PublishedRow& row = result_.rows[i];
+      if (row.over.empty()) continue;
+      const auto found = std::find(names.begin(), names.end(), row.over);
+      const PublishedRow* other =
+          found == names.end() ? nullptr : &result_.rows[static_cast<std::size_t>(found - names.begin())];
+      const dsl::Property& property = *dsl::CheckedBlock(*blocks[i], part("row")).find("over");
+      const dsl::Value& value = property.values.front();
+      if (other == nullptr)
+        report(value.place, value.length, fmt::format("there is no row '{}'", row.over),
+               "the name of another row", nearestWord(row.over, names));
+      else if (other == &row || !other->over.empty() || other->quantity != row.quantity)
+        report(value.place, value.length,
+               fmt::format("row '{}' cannot be divided by '{}'", row.name, row.over),
+               "another row that measures the same and is over none");
+    }
+  }
+
+  void readCurve(const dsl::Block& block, const SetUp& common) {
+    const BlockSpecification& specification = part("curve");
+    const dsl::CheckedBlock checked(block, specification);
+    const SetUp shared = setUp(checked, common);
+    PublishedCurve curve;
+    curve.name = checked.name();
+    curve.place = block.place;
+    curve.over = checked.text("over", "");
+    for (const Growth growth : {Growth::sublinear, Growth::linear, Growth::superlinear})
+      if (checked.text("growth", "") == name(growth)) curve.growth = growth;
+    for (const dsl::Block* point : checked.blocks("point")) {
+      const dsl::CheckedBlock inside(*point, specification.blocks.at(1));
+      PublishedSetUp one;
+      readSetUp(*point, setUp(inside, shared), fmt::format("a point of curve '{}'", curve.name), one);
+      if (one.quantity != shared.quantity)
+        report(point->place, point->word, "this point measures something else than its curve",
+               fmt::format("{}, as the others", name(shared.quantity)));
+      requireAxis(*checked.find("over"), curve.over, one);
+      curve.points.push_back(std::move(one));
+    }
+    result_.curves.push_back(std::move(curve));
+  }
+
+  void requireAxis(const dsl::Property& property, const std::string& over, const PublishedSetUp& point) {
+    if (over == "triangles" || !point.pipeline) return;
+    const dsl::Value& value = property.values.front();
+    std::vector<std::string> names = parameterNames(*point.pipeline);
+    if (const PipelineParameter* parameter = findParameter(*point.pipeline, over)) {
+      const auto set = point.settings.find(over);
+      if ((set == point.settings.end() ? parameter->value : set->second).word.empty()) return;
+      return reportOnce(value.place, value.length, fmt::format("the parameter '{}' is a word", over),
+                        "triangles, or a parameter that is a number");
+    }
+    names.push_back("triangles");
+    reportOnce(value.place, value.length,
+               fmt::format("pipeline \"{}\" has no parameter '{}'", point.pipeline->name, over),
+               oneOf(names, ""), nearestWord(over, names));
+  }
+
+  void readPanel(const dsl::Block& block, const SetUp& common) {
+    const dsl::CheckedBlock checked(block, part("panel"));
+    SetUp setting = setUp(checked, common);
+    PublishedPanel panel;
+    panel.name = checked.name();
+    panel.reference = checked.text("reference", "");
+    if (!panel.reference.empty()) setting.pipeline = setting.passes = setting.output = nullptr;
+    readSetUp(block, setting, fmt::format("panel '{}'", panel.name), panel, panel.reference.empty());
+    result_.panels.push_back(std::move(panel));
+  }
+
+  void readSetUp(const dsl::Block& block, const SetUp& setting, const std::string& what,
+                 PublishedSetUp& target, bool needsPipeline = true) {
+    target.place = block.place;
+    target.quantity = setting.quantity;
+    target.camera = setting.camera;
+    target.time = setting.time;
+    target.subdivisions = static_cast<int>(setting.subdivisions);
+    target.absent = setting.absent;
+    target.substitute = setting.substitute;
+    if (!target.absent.empty()) return;
     for (const auto& [word, found] :
          {std::pair("scene", setting.scene), std::pair("pipeline", setting.pipeline)})
-      if (found == nullptr)
-        report(block.place, block.word, fmt::format("row '{}' has no {}", row.name, word),
-               fmt::format("{} \"...\" in the row or in the table, or why it is absent", word));
-    if (setting.scene != nullptr) row.scene = fileOf(*setting.scene);
+      if (found == nullptr && (needsPipeline || word == std::string("scene")))
+        report(block.place, block.word, fmt::format("{} has no {}", what, word),
+               fmt::format("{} \"...\" here or for the whole text, or why it is absent", word));
+    if (setting.scene != nullptr) target.scene = fileOf(*setting.scene);
     if (setting.pipeline == nullptr) return;
-    row.pipeline = pipelineOf(*setting.pipeline);
-    if (!row.pipeline) return;
-    for (const dsl::Property* one : setting.settings) readSetting(*one, *row.pipeline, row.settings);
-    if (row.quantity == PublishedQuantity::frameRate) {
+    target.pipeline = pipelineOf(*setting.pipeline);
+    if (!target.pipeline) return;
+    for (const dsl::Property* one : setting.settings) readSetting(*one, *target.pipeline, target.settings);
+    if (target.quantity == PublishedQuantity::frameRate) {
       for (const dsl::Item& item : block.items)
         if (item.property && item.property->word == "passes")
           report(item.property->place, item.property->word, "a frame rate is that of the frame",
                  "measures time, or no passes");
     } else if (setting.passes != nullptr) {
       for (const dsl::Value& value : setting.passes->values.front().items) {
-        requirePass(value, value.text, *row.pipeline);
-        row.passes.push_back(value.text);
+        requirePass(value, value.text, *target.pipeline);
+        target.passes.push_back(value.text);
       }
     }
     if (setting.output != nullptr) {
       const dsl::Value& value = setting.output->values.front();
       if (const auto parts = splitDotted(value)) {
-        std::tie(row.pass, row.port) = *parts;
-        requirePass(value, row.pass, *row.pipeline);
+        std::tie(target.pass, target.port) = *parts;
+        requirePass(value, target.pass, *target.pipeline);
       } else {
         report(value.place, value.length, "this names no output of a pass", "pass.port");
       }
     }
-    if (row.quantity == PublishedQuantity::fragments && row.pass.empty())
-      report(block.place, block.word,
-             fmt::format("row '{}' does not say whose fragments are counted", row.name), "output pass.port");
+    if (target.quantity == PublishedQuantity::fragments && target.pass.empty())
+      report(block.place, block.word, fmt::format("{} does not say whose fragments are counted", what),
+             "output pass.port");
   }
 
   fs::path fileOf(const dsl::Property& property) {
@@ -300,18 +472,19 @@ class TableReader : TextFindings {
   }
 
   void readScaled(const dsl::Property& property) {
+    const std::vector<const PublishedSetUp*> setUps = std::as_const(result_).setUps();
     for (const dsl::Value& value : property.values.front().items) {
-      table_.scaled.push_back(value.text);
-      const bool known = std::any_of(table_.rows.begin(), table_.rows.end(), [&](const PublishedRow& row) {
-        return row.pipeline && findParameter(*row.pipeline, value.text) != nullptr;
+      result_.scaled.push_back(value.text);
+      const bool known = std::any_of(setUps.begin(), setUps.end(), [&](const PublishedSetUp* one) {
+        return one->pipeline && findParameter(*one->pipeline, value.text) != nullptr;
       });
       if (!known)
-        report(value.place, value.length, fmt::format("no row's pipeline has a parameter '{}'", value.text),
+        report(value.place, value.length, fmt::format("no pipeline here has a parameter '{}'", value.text),
                "a parameter that counts voxels or pixels along a side");
     }
   }
 
-  PublishedTable& table_;
+  PublishedResult& result_;
   std::map<fs::path, std::shared_ptr<const Pipeline>> known_;
 };
 
@@ -322,24 +495,33 @@ const std::vector<BlockSpecification>& reproductionSpecifications() {
   return specifications;
 }
 
-PublishedTable PublishedTable::load(const fs::path& file) {
-  PublishedTable table;
-  table.file = file;
-  table.document = std::make_shared<const dsl::Document>(dsl::parseFile(file));
-  std::vector<Diagnostic> findings = table.document->findings;
-  TableReader(table, *table.document, findings).read();
+PublishedResult PublishedResult::load(const fs::path& file) {
+  PublishedResult result;
+  result.file = file;
+  result.document = std::make_shared<const dsl::Document>(dsl::parseFile(file));
+  std::vector<Diagnostic> findings = result.document->findings;
+  ResultReader(result, *result.document, findings).read();
   throwOrLog(std::move(findings));
-  return table;
+  return result;
 }
 
-void checkReproduction(const PublishedTable& table, TechniqueSource& techniques) {
-  std::map<std::string, Pipeline> swept;  // each pipeline with the settings of its rows as sweeps
-  for (const PublishedRow& row : table.rows) {
-    if (!row.pipeline) continue;
-    Pipeline& pipeline = swept.emplace(row.pipeline->file.string(), *row.pipeline).first->second;
+std::vector<const PublishedSetUp*> PublishedResult::setUps() const {
+  std::vector<const PublishedSetUp*> all;
+  for (const PublishedRow& row : rows) all.push_back(&row);
+  for (const PublishedCurve& curve : curves)
+    for (const PublishedSetUp& point : curve.points) all.push_back(&point);
+  for (const PublishedPanel& panel : panels) all.push_back(&panel);
+  return all;
+}
+
+void checkReproduction(const PublishedResult& result, TechniqueSource& techniques) {
+  std::map<std::string, Pipeline> swept;  // each pipeline with the settings of its set-ups as sweeps
+  for (const PublishedSetUp* one : result.setUps()) {
+    if (!one->pipeline) continue;
+    Pipeline& pipeline = swept.emplace(one->pipeline->file.string(), *one->pipeline).first->second;
     Sweep settings;
-    settings.name = row.name;
-    for (const auto& [name, value] : row.settings) settings.axes.push_back({name, {value}});
+    settings.name = one->place.text();
+    for (const auto& [name, value] : one->settings) settings.axes.push_back({name, {value}});
     pipeline.sweeps.push_back(std::move(settings));
   }
   std::vector<Diagnostic> findings;

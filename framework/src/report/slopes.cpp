@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 /// The RMSE that the truth's noise does not explain. Its square is the difference of two squares.
 Measured withoutTruthNoise(const ComponentError& error) {
-  const Measured rmse = error.rmse();
+  const Measured rmse = error.error.rmse;
   const double square = rmse.value * rmse.value - error.error.noiseFloor * error.error.noiseFloor;
   if (!(square > 0.0)) return {0.0, 0.0};
   return {std::sqrt(square), rmse.value / std::sqrt(square) * rmse.uncertainty};

@@ -130,6 +130,7 @@ void ResultsStore::State::requireSchema() {
       database.execute(report::kSchema);
       database.execute(report::kSchema2);
       database.execute(report::kSchema3);
+      database.execute(report::kSchema4);
       database.execute(fmt::format("PRAGMA user_version = {}", report::kSchemaVersion).c_str());
       database.execute(fmt::format("PRAGMA application_id = {}", report::kApplicationId).c_str());
     }
@@ -143,6 +144,7 @@ void ResultsStore::State::requireSchema() {
     schema = database.pragma("user_version");
     if (schema < 2) database.execute(report::kSchema2);
     if (schema < 3) database.execute(report::kSchema3);
+    if (schema < 4) database.execute(report::kSchema4);
     if (schema < report::kSchemaVersion)
       database.execute(fmt::format("PRAGMA user_version = {}", report::kSchemaVersion).c_str());
     transaction.commit();
@@ -189,6 +191,9 @@ void ResultsStore::State::insertNames(std::int64_t id, const StoredRun& run) {
   Statement health(database, "INSERT INTO health VALUES (?,?,?)");
   int position = 0;
   for (const std::string& finding : run.point.healthFindings) health.run(id, position++, finding);
+  Statement note(database, "INSERT INTO notes VALUES (?,?,?)");
+  position = 0;
+  for (const std::string& text : run.point.notes) note.run(id, position++, text);
 }
 
 void ResultsStore::State::insertTimes(std::int64_t id, const ReportPoint& point) {
@@ -217,12 +222,12 @@ void ResultsStore::State::insertWork(std::int64_t id, const ReportPoint& point) 
 }
 
 void ResultsStore::State::insertErrors(std::int64_t id, const ReportPoint& point) {
-  Statement insert(database, "INSERT INTO errors VALUES (?,?,?,?,?,?,?,?,?)");
+  Statement insert(database, "INSERT INTO errors VALUES (?,?,?,?,?,?,?,?,?,?)");
   Statement insertMetric(database, "INSERT INTO metrics VALUES (?,?,?,?,?,?)");
   int position = 0;
   for (const ComponentError& error : point.errors) {
     insert.run(id, position, error.output, error.component, error.truth, error.bias ? "bias" : "misses",
-               error.seeds, error.deterministic, error.noiseRmse);
+               error.seeds, error.deterministic, error.noiseRmse, error.everyMetricPerSeed);
     for (const NamedMetric& metric : metricsOf(error))
       insertMetric.run(id, position, metric.name, metric.measured.value, metric.measured.uncertainty,
                        metric.ofNothing);
@@ -231,7 +236,8 @@ void ResultsStore::State::insertErrors(std::int64_t id, const ReportPoint& point
 }
 
 /// Inside a transaction.
-bool ResultsStore::State::add(const StoredRun& run) {
+bool ResultsStore::State::add(const StoredRun& run, const std::vector<StoredPicture>& pictures) {
+  Statement(database, "DELETE FROM claims WHERE key = ?").run(run.identity.key());
   // A failure may have had causes that are gone; it gives way to a result.
   if (run.point.failure.empty())
     Statement(database, "DELETE FROM runs WHERE key = ? AND failure <> ''").run(run.identity.key());
@@ -242,12 +248,17 @@ bool ResultsStore::State::add(const StoredRun& run) {
   insertTimes(id, run.point);
   insertWork(id, run.point);
   insertErrors(id, run.point);
+  Statement insert(database, "INSERT INTO pictures VALUES (?,?,?,?,?,?,?)");
+  int position = 0;
+  for (const StoredPicture& picture : pictures)
+    insert.run(id, position++, picture.output, picture.component, picture.truth, picture.flip,
+               report::Blob{picture.png});
   return true;
 }
 
-bool ResultsStore::add(const StoredRun& run) {
+bool ResultsStore::add(const StoredRun& run, const std::vector<StoredPicture>& pictures) {
   Transaction transaction(state_->database);
-  const bool added = state_->add(run);
+  const bool added = state_->add(run, pictures);
   transaction.commit();
   return added;
 }
@@ -302,6 +313,9 @@ void ResultsStore::State::readNames(StoredRun& run) const {
   }
   Statement health(database, "SELECT finding FROM health WHERE run = ? ORDER BY position");
   for (health.bind(run.id); health.step();) run.point.healthFindings.push_back(health.text(0));
+  if (schema < 4) return;
+  Statement note(database, "SELECT note FROM notes WHERE run = ? ORDER BY position");
+  for (note.bind(run.id); note.step();) run.point.notes.push_back(note.text(0));
 }
 
 void ResultsStore::State::readTimes(StoredRun& run) const {
@@ -337,7 +351,8 @@ void ResultsStore::State::readWork(StoredRun& run) const {
 void ResultsStore::State::readErrors(StoredRun& run) const {
   Statement row(database, "SELECT * FROM errors WHERE run = ? ORDER BY position");
   Statement metric(database,
-                   "SELECT name, value, uncertainty, of_nothing FROM metrics WHERE run = ? AND position = ?");
+                   "SELECT name, value, uncertainty, of_nothing FROM metrics WHERE run = ? AND position = ? "
+                   "ORDER BY name");
   for (row.bind(run.id); row.step();) {
     ComponentError error;
     error.output = row.text(2);
@@ -347,6 +362,7 @@ void ResultsStore::State::readErrors(StoredRun& run) const {
     error.seeds = static_cast<int>(row.integer(6));
     error.deterministic = row.integer(7) != 0;
     error.noiseRmse = row.number(8);
+    error.everyMetricPerSeed = schema >= 4 && row.integer(9) != 0;
     // A metric of a later version is passed over.
     for (metric.bind(run.id, row.integer(1)); metric.step();)
       setMetric(error, {metric.text(0), {metric.number(1), metric.number(2)}, metric.number(3)});
@@ -380,6 +396,18 @@ std::vector<StoredRun> ResultsStore::runs(const RunFilter& filter) const {
     result.push_back(std::move(run));
   }
   return result;
+}
+
+std::vector<StoredPicture> ResultsStore::pictures(const std::string& key) const {
+  std::vector<StoredPicture> pictures;
+  if (state_->schema < 4) return pictures;
+  Statement row(
+      state_->database,
+      "SELECT p.output, p.component, p.truth, p.flip, p.png FROM pictures p JOIN runs r ON r.id = p.run "
+      "WHERE r.key = ? ORDER BY p.position");
+  for (row.bind(key); row.step();)
+    pictures.push_back({row.text(0), row.text(1), row.text(2), row.number(3), row.bytes(4)});
+  return pictures;
 }
 
 std::size_t ResultsStore::remove(const RunFilter& filter) {

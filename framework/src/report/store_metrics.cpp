@@ -29,7 +29,6 @@ std::vector<NamedMetric> metricsOf(const ComponentError& error) {
   visitMetrics(error, [&](const char* name, double value, const double* uncertainty, double ofNothing) {
     metrics.push_back({name, {value, *uncertainty}, ofNothing});
   });
-  metrics.push_back({"rmse_over_seeds", error.rmseOverSeeds, error.errorOfNothing.rmse.value});
   const double floorOfNothing = error.errorOfNothing.noiseFloor,
                rmseOfNothing = error.errorOfNothing.rmse.value;
   const double biasOfNothing =
@@ -37,6 +36,9 @@ std::vector<NamedMetric> metricsOf(const ComponentError& error) {
   metrics.push_back({"rms_bias", error.parts.bias, biasOfNothing});
   metrics.push_back({"rms_noise", error.parts.noise, 0.0});
   metrics.push_back({"flicker", error.flicker, std::numeric_limits<double>::quiet_NaN()});
+  for (NamedMetric& metric : metrics)
+    metric.measured.enoughRepeats = error.enoughSeeds() && (error.deterministic || error.everyMetricPerSeed ||
+                                                            metric.name == std::string("rmse"));
   metrics.push_back({"noise_floor", {error.error.noiseFloor, 0.0}, error.errorOfNothing.noiseFloor});
   metrics.push_back({"non_finite_picture", {static_cast<double>(error.error.nonFinitePicture), 0.0}, 0.0});
   metrics.push_back({"non_finite_truth", {static_cast<double>(error.error.nonFiniteTruth), 0.0}, 0.0});
@@ -54,7 +56,10 @@ bool setMetric(ComponentError& error, const NamedMetric& metric) {
   });
   if (known) return true;
   if (metric.name == "rmse_over_seeds") {
-    error.rmseOverSeeds = metric.measured;
+    // Stores of schema 3 and before: mean and standard error over the seeds beside the RMSE of the first one,
+    // whose uncertainty is the truth's noise.
+    error.error.rmse = {metric.measured.value,
+                        std::hypot(error.error.rmse.uncertainty, metric.measured.uncertainty)};
   } else if (metric.name == "rms_bias") {
     error.parts.bias = metric.measured;
   } else if (metric.name == "rms_noise") {

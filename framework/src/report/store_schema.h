@@ -5,7 +5,7 @@
 
 namespace lumivox::report {
 
-inline constexpr std::int64_t kSchemaVersion = 3;           // PRAGMA user_version
+inline constexpr std::int64_t kSchemaVersion = 4;           // PRAGMA user_version
 inline constexpr std::int64_t kApplicationId = 0x4c4d5658;  // PRAGMA application_id: "LMVX"
 
 inline constexpr const char* kSchema = R"sql(
@@ -169,6 +169,45 @@ CREATE TABLE work (
   name TEXT NOT NULL,
   amount REAL NOT NULL,
   PRIMARY KEY (run, pass, name)
+) STRICT, WITHOUT ROWID;
+)sql";
+
+/// What schema 4 adds to schema 3.
+inline constexpr const char* kSchema4 = R"sql(
+ALTER TABLE errors ADD COLUMN per_seed INTEGER NOT NULL DEFAULT 0;
+CREATE TABLE notes (
+  run INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE,
+  position INTEGER NOT NULL,
+  note TEXT NOT NULL,
+  PRIMARY KEY (run, position)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE pictures (
+  run INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE,
+  position INTEGER NOT NULL,
+  output TEXT NOT NULL,
+  component TEXT NOT NULL,
+  truth TEXT NOT NULL,
+  flip REAL,
+  png BLOB NOT NULL,
+  PRIMARY KEY (run, position)
+) STRICT;
+CREATE TABLE controls (
+  run INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE,
+  created TEXT NOT NULL,
+  what TEXT NOT NULL,
+  median_ms REAL NOT NULL,
+  lower_quartile_ms REAL NOT NULL,
+  upper_quartile_ms REAL NOT NULL,
+  repeats INTEGER NOT NULL,
+  PRIMARY KEY (run, created, what)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE claims (
+  key TEXT PRIMARY KEY,
+  machine TEXT NOT NULL,
+  process INTEGER NOT NULL,
+  started INTEGER NOT NULL,
+  command TEXT NOT NULL,
+  expires INTEGER NOT NULL
 ) STRICT, WITHOUT ROWID;
 )sql";
 

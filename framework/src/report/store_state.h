@@ -28,7 +28,7 @@ struct ResultsStore::State {
   void insertWork(std::int64_t id, const ReportPoint& point);
   void insertErrors(std::int64_t id, const ReportPoint& point);
   void insertNames(std::int64_t id, const StoredRun& run);
-  bool add(const StoredRun& run);
+  bool add(const StoredRun& run, const std::vector<StoredPicture>& pictures = {});
   void addCells(const std::vector<StressCell>& cells);
   void addCeilings(const std::vector<DeviceCeiling>& ceilings);
   StoredRun runAt(const report::Statement& row) const;

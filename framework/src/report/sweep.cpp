@@ -133,18 +133,25 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
   const std::size_t total = plan.findMissing(summary);
 
   const auto start = std::chrono::steady_clock::now();
-  const auto done = [&](std::size_t points) {
-    summary.measured += points;
+  std::size_t finished = 0;
+  const auto done = [&](std::size_t measured, std::size_t byOthers) {
+    summary.measured += measured;
+    summary.held += byOthers;
+    finished += measured + byOthers;
     if (!options.progress) return;
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const auto left = static_cast<double>(total - summary.measured);
-    options.progress(summary.measured, total, seconds / static_cast<double>(summary.measured) * left);
+    const auto left = static_cast<double>(total - finished);
+    options.progress(finished, total, seconds / static_cast<double>(finished) * left);
   };
+  ScenePlan* first = nullptr;
   for (ScenePlan& scene : plan.scenes()) {
     if (options.planOnly) break;
+    if (first == nullptr && !scene.missing.empty()) first = &scene;
     for (const StoredRun& run : scene.measurer->measure(scene.missing, done))
       summary.failed += run.point.failure.empty() ? 0 : 1;
   }
+  // What was timed first is timed again at the end: how far apart times of the same thing are here.
+  if (first != nullptr && summary.measured > 0) first->measurer->control(first->missing);
   for (const std::string& key : summary.keys)
     if (std::optional<StoredRun> stored = store.find(key)) summary.runs.push_back(std::move(*stored));
   return summary;

@@ -148,7 +148,8 @@ class Search {
   }
 
   void markFront() {
-    const std::vector<std::optional<std::size_t>> beaten = beatenBy(tradeOffs());
+    const std::vector<std::optional<std::size_t>> beaten =
+        beatenBy(tradeOffs(), std::max(kSignificantTimeShare, measurer_.floor().frame));
     for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i].point.onFront = !beaten[i];
   }
 
@@ -164,12 +165,15 @@ class Search {
     return result;
   }
 
-  /// Of the points that none beats by value, by time, those whose error differs from that of the last one.
+  /// Of the points that none beats by value, by time, those whose error differs from that of the last one, or
+  /// of which too little is known to say so.
   std::vector<std::size_t> ahead() const {
     const std::vector<TradeOff> points = tradeOffs();
     std::vector<std::size_t> result;
     for (const std::size_t index : frontByValue(points))
-      if (result.empty() || differ(points[result.back()].error, points[index].error)) result.push_back(index);
+      if (result.empty() || !decidable(points[result.back()].error, points[index].error) ||
+          differ(points[result.back()].error, points[index].error))
+        result.push_back(index);
     return result;
   }
 

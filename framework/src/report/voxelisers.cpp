@@ -82,11 +82,20 @@ bool isRead(const Pipeline& pipeline, const std::string& pass, const std::string
   return false;
 }
 
-/// One output of one voxeliser that is being measured.
+/// One output of one voxeliser that is being measured. Outputs of the same voxeliser at the same point share
+/// an executor.
 struct Candidate {
   VoxeliserRecord record;
-  std::unique_ptr<PipelineExecutor> executor;
+  std::shared_ptr<PipelineExecutor> executor;
+  std::string pass, port;
   std::vector<double> frameMs;
+
+  /// A frame in which this output is made from nothing.
+  FrameResult render(double time, bool shared) const {
+    if (shared) executor->keepOnly(pass, port);
+    executor->invalidate();
+    return executor->render(time, 0, PipelineExecutor::Pictures::no);
+  }
 };
 
 class Measurement {
@@ -107,21 +116,37 @@ class Measurement {
       blank.triangles = scene.triangleCount();
       blank.subdivisions = subdivisions;
       add(scene, pipeline, blank, candidates);
+      // Those that alternate are all held at once.
+      constexpr std::uint64_t kMostBytes = std::uint64_t{256} << 20;
+      std::uint64_t held = 0;
+      for (const Candidate& candidate : candidates) held += candidate.record.allocatedBytes;
+      if (held > kMostBytes) time(candidates, records);
+    }
+    time(candidates, records);
+  }
+
+ private:
+  /// The repeats of these, in turns; they are records then.
+  void time(std::vector<Candidate>& candidates, std::vector<VoxeliserRecord>& records) const {
+    // An executor that makes now this and now that output keeps the memory of all of them meanwhile, which
+    // one more frame of each takes: no timed frame waits for memory.
+    for (const Candidate& candidate : candidates) {
+      if (!candidate.executor || candidate.executor.use_count() == 1) continue;
+      candidate.executor->freeUnused(false);
+      candidate.render(options_.time, true);
     }
     for (int repeat = 0; repeat < options_.repeats; ++repeat)
-      for (Candidate& candidate : candidates) {
-        if (!candidate.executor) continue;
-        candidate.executor->invalidate();
-        candidate.frameMs.push_back(
-            candidate.executor->render(options_.time, 0, PipelineExecutor::Pictures::no).frameMs);
-      }
+      for (Candidate& candidate : candidates)
+        if (candidate.executor)
+          candidate.frameMs.push_back(
+              candidate.render(options_.time, candidate.executor.use_count() > 1).frameMs);
     for (Candidate& candidate : candidates) {
       candidate.record.frameMs = statisticsOf(std::move(candidate.frameMs));
       records.push_back(std::move(candidate.record));
     }
+    candidates.clear();
   }
 
- private:
   /// The default point and those of the sweeps, at this resolution.
   std::vector<PlannedPoint> points(const Pipeline& pipeline, int resolution) const {
     std::vector<std::string> settings = settingsFor(pipeline, options_.settings);
@@ -144,7 +169,7 @@ class Measurement {
            std::vector<Candidate>& candidates) {
     const auto skip = [&](const std::string& why) {
       logWarning("{}: {}", blank.pipeline, why);
-      candidates.push_back({blank, nullptr, {}});
+      candidates.push_back({blank, nullptr, {}, {}, {}});
       candidates.back().record.whyNot = why;
     };
     if (!std::any_of(pipeline.parameters.begin(), pipeline.parameters.end(),
@@ -169,16 +194,16 @@ class Measurement {
   bool addPoint(const Scene& scene, const Pipeline& pipeline, const VoxeliserRecord& blank,
                 std::vector<Candidate>& candidates) {
     const RenderOptions render = renderOptions(blank.parameters);
-    const PipelineExecutor probe(device_, techniques_, scene, pipeline, render);
+    const auto executor = std::make_shared<PipelineExecutor>(device_, techniques_, scene, pipeline, render);
     bool any = false;
     for (const PassText& pass : pipeline.passes)
-      for (const OutBase* output : probe.pass(pass.name).outputs()) {
+      for (const OutBase* output : executor->pass(pass.name).outputs()) {
         if (!holdsVoxels(output->portKind()) || isRead(pipeline, pass.name, output->name())) continue;
         any = true;
-        candidates.push_back({blank, nullptr, {}});
+        candidates.push_back({blank, nullptr, pass.name, output->name(), {}});
         candidates.back().record.output = pass.name + "." + output->name();
         candidates.back().record.kind = output->portKind();
-        start(scene, pipeline, render, pass.name, output->name(), candidates.back());
+        start(scene, executor, candidates.back());
       }
     return any;
   }
@@ -189,8 +214,7 @@ class Measurement {
   }
 
   /// Renders the warm-up frame and judges its voxels.
-  void start(const Scene& scene, const Pipeline& pipeline, const RenderOptions& render,
-             const std::string& pass, const std::string& port, Candidate& candidate) {
+  void start(const Scene& scene, const std::shared_ptr<PipelineExecutor>& executor, Candidate& candidate) {
     VoxeliserRecord& record = candidate.record;
     const auto giveUp = [&](const std::string& why) {
       logWarning("{}: {}: {}", record.pipeline, record.output, why);
@@ -198,10 +222,10 @@ class Measurement {
     };
     logInformation("{}, {}, resolution {}", record.scene, record.pipeline, record.resolution);
     try {
-      auto executor = std::make_unique<PipelineExecutor>(device_, techniques_, scene, pipeline, render);
-      executor->keepOutput(pass, port);
+      executor->keepOnly(candidate.pass, candidate.port);
+      executor->invalidate();
       executor->render(options_.time, 0, PipelineExecutor::Pictures::no);
-      const OutBase* output = executor->output(pass, port);
+      const OutBase* output = executor->output(candidate.pass, candidate.port);
       if (output == nullptr) return giveUp("the scene does not have what it needs");
       const auto found = occupiedVoxels(*output);
       record.grid = found->grid;
@@ -209,12 +233,12 @@ class Measurement {
       record.bytes = found->bytes;
       record.occupied = found->voxels.count();
       record.allocatedBytes = executor->explain().poolBytes;
-      const VoxelTruth& truth = truthFor(scene, found->grid);
-      record.truth = truth.certain.count();
-      record.undecided = truth.possible.count() - record.truth;
-      record.error = compareVoxels(found->voxels, truth);
-      record.holes = rayHoles(found->voxels, truth);
-      candidate.executor = std::move(executor);
+      const Reference& truth = truthFor(scene, found->grid);
+      record.truth = truth.voxels.certain.count();
+      record.undecided = truth.voxels.possible.count() - record.truth;
+      record.error = compareVoxels(found->voxels, truth.voxels);
+      record.holes = truth.crossings.holes(found->voxels);
+      candidate.executor = executor;
     } catch (const DiagnosticsError&) {
       throw;
     } catch (const Error& error) {
@@ -222,19 +246,28 @@ class Measurement {
     }
   }
 
-  const VoxelTruth& truthFor(const Scene& scene, const GridPlacement& grid) {
-    for (const auto& [placement, truth] : truths_)
-      if (placement == grid) return truth;
+  /// What is right in one grid.
+  struct Reference {
+    GridPlacement grid;
+    VoxelTruth voxels;
+    RayCrossings crossings;
+  };
+
+  const Reference& truthFor(const Scene& scene, const GridPlacement& grid) {
+    for (const Reference& one : truths_)
+      if (one.grid == grid) return one;
     const SceneSnapshot snapshot =
         snapshotOf(scene, options_.time, options_.camera, options_.width, options_.height);
-    truths_.emplace_back(grid, trueVoxels(scene, snapshot, grid));
-    return truths_.back().second;
+    VoxelTruth voxels = trueVoxels(scene, snapshot, grid);
+    RayCrossings crossings(voxels);
+    truths_.push_back({grid, std::move(voxels), std::move(crossings)});
+    return truths_.back();
   }
 
   gpu::Device& device_;
   TechniqueSource& techniques_;
   const VoxeliserOptions& options_;
-  std::vector<std::pair<GridPlacement, VoxelTruth>> truths_;  ///< of the scene and time at hand
+  std::vector<Reference> truths_;  ///< of the scene and time at hand
 };
 
 void requireGood(const VoxeliserOptions& options) {

@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "lumivox/base/error.h"
 #include "lumivox/scene/scene.h"
@@ -24,12 +26,73 @@ struct WideBounds {
   }
 };
 
-template <class Positions>
-void grow(WideBounds& bounds, const glm::dmat4& toWorld, const Positions& positions, std::size_t first,
-          std::size_t count) {
-  for (std::size_t i = first; i < first + count; ++i) {
-    bounds.grow(glm::dvec3(toWorld * glm::dvec4(glm::dvec3(positions[i]), 1.0)));
+/// Smallest and largest coordinates of so many points, each kept four times so that four points are taken at
+/// once.
+struct BlockBounds {
+  std::array<float, 12> low, high;
+
+  explicit BlockBounds(std::span<const glm::vec3> points) {
+    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+    low.fill(std::numeric_limits<float>::infinity());
+    high.fill(-std::numeric_limits<float>::infinity());
+    const float* value = &points.front().x;
+    const std::size_t whole = points.size() / 4 * 4;
+    for (std::size_t i = 0; i < whole; i += 4, value += 12) {
+      for (std::size_t k = 0; k < 12; ++k) low[k] = value[k] < low[k] ? value[k] : low[k];
+      for (std::size_t k = 0; k < 12; ++k) high[k] = value[k] > high[k] ? value[k] : high[k];
+    }
+    for (std::size_t i = 3 * whole; i < 3 * points.size(); ++i, ++value) {
+      low[i % 3] = std::min(low[i % 3], *value);
+      high[i % 3] = std::max(high[i % 3], *value);
+    }
   }
+  double lowest(std::size_t axis) const {
+    return std::min({low[axis], low[axis + 3], low[axis + 6], low[axis + 9]});
+  }
+  double highest(std::size_t axis) const {
+    return std::max({high[axis], high[axis + 3], high[axis + 6], high[axis + 9]});
+  }
+
+  /// Whether no point of the block can lie outside of `bounds` once it is transformed, by however it is
+  /// rounded.
+  bool within(const WideBounds& bounds, const glm::dmat4& toWorld) const {
+    if (bounds.empty()) return false;
+    // A point's coordinate is a sum of four products: less than eight roundings of their absolute values.
+    constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+    for (int row = 0; row < 3; ++row) {
+      double least = toWorld[3][row], most = toWorld[3][row], size = std::abs(toWorld[3][row]);
+      for (int column = 0; column < 3; ++column) {
+        const auto axis = static_cast<std::size_t>(column);
+        const double a = toWorld[column][row] * lowest(axis), b = toWorld[column][row] * highest(axis);
+        least += std::min(a, b);
+        most += std::max(a, b);
+        size += std::max(std::abs(a), std::abs(b));
+      }
+      if (!(least - kRounding * size >= bounds.low[row] && most + kRounding * size <= bounds.high[row]))
+        return false;
+    }
+    return true;
+  }
+};
+
+/// Grows the bounds by the transformed points, every frame for what moves. Blocks of points whose own box
+/// lies inside of the bounds so far are not transformed, which leaves the result the same to the last bit.
+void grow(WideBounds& bounds, const glm::dmat4& toWorld, std::span<const glm::vec3> points) {
+  constexpr std::size_t kBlock = 256;
+  const auto growByBlock = [&](std::size_t first) {
+    const std::span<const glm::vec3> block = points.subspan(first, std::min(kBlock, points.size() - first));
+    if (BlockBounds(block).within(bounds, toWorld)) return;
+    for (const glm::vec3& point : block)
+      bounds.grow(glm::dvec3(toWorld * glm::dvec4(glm::dvec3(point), 1.0)));
+  };
+  // Some blocks from all over the object first: where vertices come in an order, each next block would lie
+  // beyond the last one.
+  for (std::size_t first = 0; first < points.size(); first += 16 * kBlock) growByBlock(first);
+  for (std::size_t first = 0; first < points.size(); first += kBlock) growByBlock(first);
+}
+
+std::span<const glm::vec3> verticesOf(const Scene& scene, const Object& object) {
+  return std::span(scene.positions).subspan(object.firstVertex, object.vertexCount);
 }
 
 /// The bounds of an object that neither moves nor deforms, or of one before its motion.
@@ -40,7 +103,7 @@ WideBounds placedBounds(const Scene& scene, const Object& object) {
     bounds.low = object.placedBounds->first;
     bounds.high = object.placedBounds->second;
   } else {
-    grow(bounds, object.placement, scene.positions, object.firstVertex, object.vertexCount);
+    grow(bounds, object.placement, verticesOf(scene, object));
   }
   return bounds;
 }
@@ -279,9 +342,9 @@ SceneSnapshot snapshotOf(const Scene& scene, double time, const std::string& cam
     if (object.sequence) deform(*object.sequence, time, state);
     if (object.parts.empty()) continue;
     if (object.sequence) {
-      grow(bounds, toWorld, state.positions, 0, state.positions.size());
+      grow(bounds, toWorld, state.positions);
     } else if (object.motion) {
-      grow(bounds, toWorld, scene.positions, object.firstVertex, object.vertexCount);
+      grow(bounds, toWorld, verticesOf(scene, object));
     } else {
       const WideBounds placed = placedBounds(scene, object);
       bounds.grow(placed.low);

@@ -24,6 +24,7 @@ const char* filterOf(const ResourceBinding::Sampled& sampled, TextureAccess::Kin
       return "nearest";
     case gpu::Sampling::linear:
     case gpu::Sampling::linearBorder:
+    case gpu::Sampling::linearOneMip:
       return "linear";
     case gpu::Sampling::linearMips:
     case gpu::Sampling::linearMipsRepeat:

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lumivox/base/error.h"
+#include "shader/arithmetic.h"
 #include "shader/counting.h"
 
 namespace lumivox::shader {
@@ -87,11 +88,41 @@ struct Mismatch {
   }
 };
 
+/// What a program is asked for by, without a copy of anything.
+struct ProgramRequest {
+  std::string_view technique, program;
+  std::span<const int> values;
+  std::span<const gpu::SpecialisationValue> constants;
+};
+
 struct ProgramKey {
   std::string technique, program;
   std::vector<int> values;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> constants;
-  auto operator<=>(const ProgramKey&) const = default;
+  std::vector<gpu::SpecialisationValue> constants;
+  ProgramRequest request() const { return {technique, program, values, constants}; }
+};
+
+/// Order of programs; asked with a request, it finds a key without making one.
+struct ProgramOrder {
+  using is_transparent = void;
+  static const ProgramRequest& requestOf(const ProgramRequest& request) { return request; }
+  static ProgramRequest requestOf(const ProgramKey& key) { return key.request(); }
+
+  static std::strong_ordering compare(const ProgramRequest& a, const ProgramRequest& b) {
+    if (const auto order = a.program <=> b.program; order != 0) return order;
+    if (const auto order = a.technique <=> b.technique; order != 0) return order;
+    if (const auto order = std::lexicographical_compare_three_way(a.values.begin(), a.values.end(),
+                                                                  b.values.begin(), b.values.end());
+        order != 0)
+      return order;
+    return std::lexicographical_compare_three_way(
+        a.constants.begin(), a.constants.end(), b.constants.begin(), b.constants.end(),
+        [](const auto& x, const auto& y) { return std::tie(x.id, x.bits) <=> std::tie(y.id, y.bits); });
+  }
+  template <class A, class B>
+  bool operator()(const A& a, const B& b) const {
+    return compare(requestOf(a), requestOf(b)) < 0;
+  }
 };
 
 }  // namespace
@@ -99,7 +130,8 @@ struct ProgramKey {
 struct ShaderLibrary::State {
   gpu::Device& device;
   std::map<std::string, ShaderPack> packs;
-  std::map<ProgramKey, BoundProgram> programs;
+  std::map<ProgramKey, BoundProgram, ProgramOrder> programs;
+  std::vector<ResourceBinding> selected;  ///< of the command being given; a member for its memory
   bool counts = false;
   Work work;
   gpu::Device::Transfers transfers, own;  ///< when work was taken last; of counting itself since then
@@ -114,7 +146,8 @@ struct ShaderLibrary::State {
   }
 };
 
-ShaderLibrary::ShaderLibrary(gpu::Device& device) : state_(new State{device, {}, {}, false, {}, {}, {}}) {}
+ShaderLibrary::ShaderLibrary(gpu::Device& device)
+    : state_(new State{device, {}, {}, {}, false, {}, {}, {}}) {}
 ShaderLibrary::~ShaderLibrary() = default;
 
 void ShaderLibrary::addPack(ShaderPack pack) {
@@ -124,30 +157,37 @@ void ShaderLibrary::addPack(ShaderPack pack) {
   }
 }
 
-const BoundProgram& ShaderLibrary::program(const ProgramName& name, const VariantKey& variant,
-                                           const std::vector<gpu::SpecialisationValue>& constants) {
-  ProgramKey key{name.technique, name.program, variant.values, {}};
-  for (const gpu::SpecialisationValue& constant : constants)
-    key.constants.emplace_back(constant.id, constant.bits);
-  std::sort(key.constants.begin(), key.constants.end());
-  if (const auto found = state_->programs.find(key); found != state_->programs.end()) return found->second;
+const BoundProgram& ShaderLibrary::program(const ProgramName& name, VariantKey variant,
+                                           std::span<const gpu::SpecialisationValue> constants) {
+  const ProgramRequest request{name.technique, name.program, variant, constants};
+  if (const auto known = state_->programs.find(request); known != state_->programs.end())
+    return known->second;
 
   const auto pack = state_->packs.find(name.technique);
   if (pack == state_->packs.end())
     throw Error(fmt::format("the shaders of technique {} are not loaded", name.technique));
   const PackedProgram& packed = pack->second.program(name.program);
+  const std::vector<int> values(variant.begin(), variant.end());
   const PackedVariant* found = packed.find(variant);
   if (found == nullptr) {
     throw Error(fmt::format("shader program {}/{} has no variant {}: {}", name.technique, name.program,
-                            variant.values.empty() ? "without axis values" : packed.text(variant.values),
-                            variant.values.size() != packed.axes.size()
+                            values.empty() ? "without axis values" : packed.text(values),
+                            values.size() != packed.axes.size()
                                 ? fmt::format("it has {} axes", packed.axes.size())
                                 : "its constraints exclude it"));
   }
   std::vector<gpu::StageCode> stages;
+  // Codes that are not the pack's own; where they lie must not change.
+  std::vector<std::pair<std::vector<std::uint32_t>, std::string>> fast;
+  fast.reserve(found->stages.size());
   for (const PackedStage& stage : found->stages) {
     const PackedCode& code = pack->second.codes[stage.code];
-    stages.push_back({stage.stage, code.spirv, code.glsl});
+    if (state_->device.arithmetic() == gpu::Arithmetic::fast) {
+      fast.emplace_back(withoutContractionMarks(code.spirv), withoutContractionMarks(code.glsl));
+      stages.push_back({stage.stage, fast.back().first, fast.back().second});
+    } else {
+      stages.push_back({stage.stage, code.spirv, code.glsl});
+    }
   }
   std::shared_ptr<CountingProgram> counting;
   if (state_->counts) {
@@ -155,20 +195,29 @@ const BoundProgram& ShaderLibrary::program(const ProgramName& name, const Varian
     stages = counting->stages();
   }
   std::string label = fmt::format("{}/{}", name.technique, name.program);
-  if (!variant.values.empty()) label += " [" + packed.text(variant.values) + "]";
+  if (!values.empty()) label += " [" + packed.text(values) + "]";
   BoundProgram bound{std::make_unique<gpu::Program>(state_->device, std::move(label), stages, constants),
                      &packed, found, std::move(counting)};
+  ProgramKey key{name.technique, name.program, values, {constants.begin(), constants.end()}};
   return state_->programs.emplace(std::move(key), std::move(bound)).first->second;
 }
 
 std::vector<ResourceBinding> ShaderLibrary::select(const BoundProgram& program,
                                                    const std::vector<ResourceBinding>& bindings) {
   std::vector<ResourceBinding> selected;
-  selected.reserve(program.variant->bindingsUsed.size());
+  selectInto(selected, program, bindings);
+  return selected;
+}
+
+void ShaderLibrary::selectInto(std::vector<ResourceBinding>& selected, const BoundProgram& program,
+                               Bindings bindings) {
+  selected.clear();
   for (const std::uint32_t index : program.variant->bindingsUsed) {
     const PackedBinding& expected = program.packed->bindings[index];
+    // The number is compared first: names of others are not looked at.
     const auto given = std::find_if(bindings.begin(), bindings.end(), [&](const ResourceBinding& binding) {
-      return kindOf(binding) == expected.kind && expected.name == binding.name;
+      return binding.binding == expected.binding && kindOf(binding) == expected.kind &&
+             expected.name == binding.name;
     });
     const auto refuse = [&](const std::string& why) {
       throw Error(fmt::format("shader program {}: {} '{}' (binding {}): {}", programName(program),
@@ -182,14 +231,13 @@ std::vector<ResourceBinding> ShaderLibrary::select(const BoundProgram& program,
       selected.push_back(*given);
     }
   }
-  return selected;
 }
 
 /// Runs a program with what it binds; a counting one with its counters too.
 template <class Run>
-void ShaderLibrary::run(const BoundProgram& program, const std::vector<ResourceBinding>& bindings,
-                        Run&& run) {
-  std::vector<ResourceBinding> selected = select(program, bindings);
+void ShaderLibrary::run(const BoundProgram& program, Bindings bindings, Run&& run) {
+  std::vector<ResourceBinding>& selected = state_->selected;
+  selectInto(selected, program, bindings);
   if (!program.counting) {
     run(selected);
     return;
@@ -201,31 +249,27 @@ void ShaderLibrary::run(const BoundProgram& program, const std::vector<ResourceB
   state_->apart([&] { add(state_->work, program.counting->take(own)); });
 }
 
-void ShaderLibrary::dispatch(const BoundProgram& program, const std::vector<ResourceBinding>& bindings,
-                             glm::uvec3 groups) {
+void ShaderLibrary::dispatch(const BoundProgram& program, Bindings bindings, glm::uvec3 groups) {
   run(program, bindings,
       [&](const auto& selected) { state_->device.dispatch(*program.program, selected, groups); });
 }
 
-void ShaderLibrary::dispatchIndirect(const BoundProgram& program,
-                                     const std::vector<ResourceBinding>& bindings,
+void ShaderLibrary::dispatchIndirect(const BoundProgram& program, Bindings bindings,
                                      const gpu::Buffer& arguments, std::uint64_t offsetBytes) {
   run(program, bindings, [&](const auto& selected) {
     state_->device.dispatchIndirect(*program.program, selected, arguments, offsetBytes);
   });
 }
 
-void ShaderLibrary::drawIndexed(const BoundProgram& program, const std::vector<ResourceBinding>& bindings,
-                                const gpu::Buffer& indices, std::uint32_t firstIndex,
-                                std::uint32_t indexCount) {
+void ShaderLibrary::drawIndexed(const BoundProgram& program, Bindings bindings, const gpu::Buffer& indices,
+                                std::uint32_t firstIndex, std::uint32_t indexCount) {
   run(program, bindings, [&](const auto& selected) {
     state_->device.drawIndexed(*program.program, selected, indices, firstIndex, indexCount);
   });
   if (state_->counts) state_->work["triangles"] += indexCount / 3;
 }
 
-void ShaderLibrary::draw(const BoundProgram& program, const std::vector<ResourceBinding>& bindings,
-                         std::uint32_t vertexCount) {
+void ShaderLibrary::draw(const BoundProgram& program, Bindings bindings, std::uint32_t vertexCount) {
   run(program, bindings,
       [&](const auto& selected) { state_->device.draw(*program.program, selected, vertexCount); });
   if (state_->counts) state_->work["triangles"] += vertexCount / 3;

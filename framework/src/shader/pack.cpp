@@ -157,9 +157,10 @@ const char* name(BindingKind kind) {
   return "";
 }
 
-const PackedVariant* PackedProgram::find(const VariantKey& key) const {
-  const auto found = std::find_if(variants.begin(), variants.end(),
-                                  [&](const auto& variant) { return variant.values == key.values; });
+const PackedVariant* PackedProgram::find(VariantKey key) const {
+  const auto found = std::find_if(variants.begin(), variants.end(), [&](const auto& variant) {
+    return std::ranges::equal(variant.values, key);
+  });
   return found == variants.end() ? nullptr : &*found;
 }
 

@@ -2,12 +2,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <mutex>
 #include <thread>
 
 #include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/base/log.h"
 #include "lumivox/report/report.h"
 #include "lumivox/report/stress_cells.h"
 #include "report/choice.h"
@@ -26,11 +29,14 @@ constexpr double kQuickLimit = 60.0, kFullLimit = 600.0;
 /// A worker opens a device before it is ready.
 constexpr double kStartLimit = 60.0;  // s
 
+/// Starts of workers that may fail one after the other before no more is tried.
+constexpr int kFailedStarts = 3;
+
 class Battery {
  public:
-  Battery(const StressOptions& options, TechniqueSource& techniques)
+  Battery(const StressOptions& options, TechniqueSource& techniques, ResultsStore* store)
       : options_(options),
-        techniques_(techniques),
+        store_(store),
         jobs_(plannedStress(options, techniques)),
         cells_(jobs_.size()),
         limit_(options.timeLimit > 0.0 ? options.timeLimit
@@ -46,28 +52,26 @@ class Battery {
 
   std::vector<StressCell> run() {
     if (options_.program.empty()) throw Error("a stress battery needs a program that serves as its workers");
+    if (jobs_.empty()) return {};
+    // The first worker tells what device there is, and so how many of them it bears.
+    workers_ = processorsWanted();
+    std::unique_ptr<Child> first = firstWorker();
+    if (!device_.software && options_.workers == 0 && workers_ > 1) {
+      logInformation("{} is one device: one worker", device_.device);
+      workers_ = 1;
+      first.reset();
+      first = firstWorker();  // with all of the memory
+    }
     std::vector<std::thread> threads;
-    for (std::size_t i = 0; i < workerCount(); ++i) threads.emplace_back([this] { work(); });
+    for (std::size_t i = 0; i < workers_; ++i)
+      threads.emplace_back(
+          [this, child = i == 0 ? first.release() : nullptr] { work(std::unique_ptr<Child>(child)); });
     for (std::thread& thread : threads) thread.join();
     if (failure_) std::rethrow_exception(failure_);
-    nameDevices();
     return std::move(cells_);
   }
 
  private:
-  /// A worker that died could not say what its device is; the others have the same.
-  void nameDevices() {
-    const auto known = std::find_if(cells_.begin(), cells_.end(),
-                                    [](const StressCell& cell) { return !cell.device.empty(); });
-    if (known == cells_.end()) return;
-    for (StressCell& cell : cells_)
-      if (cell.device.empty()) {
-        cell.device = known->device;
-        cell.driver = known->driver;
-        cell.shaderInput = known->shaderInput;
-      }
-  }
-
   CellRequest requestFor(const StressJob& job) const {
     CellRequest request{job.pipeline, job.info.name, options_.quick, {}};
     if (!options_.output.empty())
@@ -76,7 +80,7 @@ class Battery {
     return request;
   }
 
-  std::size_t workerCount() const {
+  std::size_t processorsWanted() const {
     const std::size_t wanted = options_.workers > 0 ? static_cast<std::size_t>(options_.workers)
                                                     : std::max(1u, std::thread::hardware_concurrency());
     return std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(1, jobs_.size()));
@@ -85,8 +89,19 @@ class Battery {
   /// Several workers share the processors: a software rasteriser with a thread for each would only get in its
   /// own way.
   std::vector<std::string> environment() const {
-    if (workerCount() == 1 || std::getenv("LP_NUM_THREADS") != nullptr) return {};
+    if (workers_ == 1 || std::getenv("LP_NUM_THREADS") != nullptr) return {};
     return {"LP_NUM_THREADS=1"};
+  }
+
+  /// They share the memory too: what one takes, the others lack.
+  std::vector<std::string> program() const {
+    std::vector<std::string> words = options_.program;
+    const std::uint64_t all = options_.memoryBytes > 0 ? options_.memoryBytes
+                              : device_.software       ? memoryAtStart_
+                                                       : 0;
+    if (workers_ > 1 && all > 0)
+      words.insert(words.end(), {"--worker-memory", std::to_string(all / workers_)});
+    return words;
   }
 
   /// The next job, pipeline by pipeline; past the end: none.
@@ -95,13 +110,13 @@ class Battery {
     return failure_ ? jobs_.size() : next_++;
   }
 
-  void work() {
+  void work(std::unique_ptr<Child> child) {
     try {
-      std::unique_ptr<Child> child;
       for (std::size_t job = take(); job < jobs_.size(); job = take()) {
-        if (child == nullptr) child = readyWorker();
+        if (child == nullptr) child = nextWorker(job);
+        if (child == nullptr) continue;
         if (!ask(*child, job)) child.reset();
-        finished(job);
+        finished(job, true);
       }
     } catch (...) {
       const std::lock_guard lock(mutex_);
@@ -109,15 +124,49 @@ class Battery {
     }
   }
 
-  /// Error when a worker cannot even start: every other one would fail as well.
-  std::unique_ptr<Child> readyWorker() const {
-    auto child = std::make_unique<Child>(options_.program, environment());
+  /// A worker and what it says of its device. Error when it does not start.
+  std::pair<std::unique_ptr<Child>, WorkerDevice> startWorker() const {
+    auto child = std::make_unique<Child>(program(), environment());
     const Child::Answer answer = child->receive(kStartLimit);
-    if (answer.state == Child::State::answered && answer.line == kReady) return child;
-    throw Error(
-        answer.state == Child::State::silent
-            ? fmt::format("a worker of the stress battery was not ready within {:g} s", kStartLimit)
-            : fmt::format("a worker of the stress battery {}: {}", child->ending(), child->lastWords()));
+    if (answer.state == Child::State::answered)
+      if (std::optional<WorkerDevice> ready = readyFrom(answer.line)) return {std::move(child), *ready};
+    if (answer.state == Child::State::silent)
+      throw Error(fmt::format("a worker of the stress battery was not ready within {:g} s", kStartLimit));
+    if (answer.state == Child::State::answered)
+      throw Error(
+          fmt::format("a worker of the stress battery said '{}' in place of being ready", answer.line));
+    throw Error(fmt::format("a worker of the stress battery {}: {}", child->ending(), child->lastWords()));
+  }
+
+  /// When not even the first one starts, there is no battery.
+  std::unique_ptr<Child> firstWorker() {
+    auto [child, device] = startWorker();
+    device_ = device;
+    for (StressCell& cell : cells_) describeDevice(cell, device_);
+    return std::move(child);
+  }
+
+  /// In the place of one that was lost; null: it could not be started, which is one broken cell. After
+  /// kFailedStarts in a row no more is tried, and what is left was not run.
+  std::unique_ptr<Child> nextWorker(std::size_t job) {
+    StressCell& cell = cells_[job];
+    cell.outcome = StressOutcome::broken;
+    if (failedStarts_ >= kFailedStarts) {
+      cell.detail = fmt::format("not run: the last {} workers did not start", kFailedStarts);
+      finished(job, false);
+      return nullptr;
+    }
+    try {
+      std::unique_ptr<Child> child = startWorker().first;
+      failedStarts_ = 0;
+      return child;
+    } catch (const Error& error) {
+      ++failedStarts_;
+      cell.detail = error.what();
+      logWarning("{}", error.what());
+      finished(job, true);
+      return nullptr;
+    }
   }
 
   /// False: the worker is of no further use.
@@ -127,23 +176,30 @@ class Battery {
     child.send(lineOf(requests_[job]));
     const auto start = Clock::now();
     const Child::Answer answer = child.receive(limit_);
+    std::string what;
     if (answer.state == Child::State::answered) {
-      cell = stressCellFrom(answer.line);
-      return true;
+      try {
+        cell = stressCellFrom(answer.line);
+        return true;
+      } catch (const Error& error) {
+        what = fmt::format("its process answered what is no cell: {}", error.what());
+      }
+    } else if (answer.state == Child::State::silent) {
+      what = fmt::format("no answer within {:g} s; its process was ended", limit_);
+    } else {
+      const std::string words = child.lastWords();
+      what = "its process " + child.ending() + (words.empty() ? "" : ": " + words);
     }
     cell.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     cell.outcome = StressOutcome::broken;
-    if (answer.state == Child::State::silent) {
-      cell.detail = fmt::format("no answer within {:g} s; its process was ended", limit_);
-    } else {
-      const std::string words = child.lastWords();
-      cell.detail = "its process " + child.ending() + (words.empty() ? "" : ": " + words);
-    }
+    cell.detail = what;
     return false;
   }
 
-  void finished(std::size_t job) {
+  /// A cell that was run is kept at once: whatever ends the battery costs no more than those under way.
+  void finished(std::size_t job, bool wasRun) {
     const std::lock_guard lock(mutex_);
+    if (store_ != nullptr && wasRun) store_->add(std::vector<StressCell>{cells_[job]});
     ++done_;
     const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
     if (options_.progress)
@@ -152,12 +208,16 @@ class Battery {
   }
 
   const StressOptions& options_;
-  TechniqueSource& techniques_;
+  ResultsStore* store_;
   const std::vector<StressJob> jobs_;
   std::vector<CellRequest> requests_;
   std::vector<StressCell> cells_;
   const double limit_;
   const Clock::time_point start_ = Clock::now();
+  const std::uint64_t memoryAtStart_ = availableMemory();
+  std::size_t workers_ = 1;
+  WorkerDevice device_{{}, {}, {}, true};
+  std::atomic<int> failedStarts_ = 0;
   std::mutex mutex_;
   std::size_t next_ = 0, done_ = 0;
   std::exception_ptr failure_;
@@ -175,8 +235,7 @@ StressSummary runStress(const StressOptions& options, TechniqueSource& technique
   std::optional<ResultsStore> store;
   if (!options.store.empty()) store.emplace(options.store);
   StressSummary summary;
-  summary.cells = Battery(options, techniques).run();
-  if (store) store->add(summary.cells);
+  summary.cells = Battery(options, techniques, store ? &*store : nullptr).run();
   if (!options.output.empty())
     summary.page = writeStressPage(options.output, summary.cells, options.commandLine);
   return summary;

@@ -14,7 +14,7 @@ std::uint64_t askForContent(const Ground& ground, const ContentRequest& request,
   Child child(ground.program, environment);
   child.send(lineOf(request));
   Child::Answer answer = child.receive(kPatience);
-  if (answer.state == Child::State::answered && answer.line == kReady) answer = child.receive(kPatience);
+  if (answer.state == Child::State::answered && readyFrom(answer.line)) answer = child.receive(kPatience);
   if (answer.state == Child::State::silent)
     throw std::runtime_error(fmt::format("another process gave no answer within {} s", kPatience));
   if (answer.state == Child::State::ended)

@@ -29,6 +29,28 @@ ParameterValues valuesOf(const Json& json) {
 
 }  // namespace
 
+WorkerDevice workerDeviceOf(const gpu::Device& device) {
+  return {device.info().renderer, device.info().version, device.programRoute(), device.info().software};
+}
+
+std::string lineOf(const WorkerDevice& ready) {
+  return Json{{"ready", ready.device},
+              {"driver", ready.driver},
+              {"shader_input", ready.shaderInput},
+              {"software", ready.software}}
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::optional<WorkerDevice> readyFrom(const std::string& line) {
+  const Json json = Json::parse(line, nullptr, false);
+  if (!json.is_object() || !json.contains("ready")) return std::nullopt;
+  try {
+    return WorkerDevice{json.at("ready"), json.at("driver"), json.at("shader_input"), json.at("software")};
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  }
+}
+
 std::string lineOf(const CellRequest& request) {
   return Json{{"cell", request.name},
               {"pipeline", request.pipeline.string()},

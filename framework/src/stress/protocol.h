@@ -3,14 +3,23 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
+#include "lumivox/gpu/device.h"
 #include "stress/cases.h"
 
 namespace lumivox::stress {
 
 /// What a worker says when its device is open, before anything is asked.
-inline constexpr const char* kReady = "ready";
+struct WorkerDevice {
+  std::string device, driver, shaderInput;  ///< as in StressCell
+  bool software = false;                    ///< rasterises on the processors
+};
+WorkerDevice workerDeviceOf(const gpu::Device& device);
+std::string lineOf(const WorkerDevice& ready);
+/// Nullopt for a line that says anything else.
+std::optional<WorkerDevice> readyFrom(const std::string& line);
 
 /// One cell to be run.
 struct CellRequest {

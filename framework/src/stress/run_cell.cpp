@@ -60,10 +60,10 @@ void runGuarded(const Case& one, Bench& bench, StressCell& cell) {
 
 }  // namespace
 
-void describeDevice(StressCell& cell, const gpu::Device& device) {
-  cell.device = device.info().renderer;
-  cell.driver = device.info().version;
-  cell.shaderInput = device.shaderInput() == gpu::ShaderInput::spirv ? "spirv" : "glsl";
+void describeDevice(StressCell& cell, const WorkerDevice& device) {
+  cell.device = device.device;
+  cell.driver = device.driver;
+  cell.shaderInput = device.shaderInput;
 }
 
 StressCell cellBefore(const CellRequest& request, const std::string& family, TechniqueSource& techniques,
@@ -97,7 +97,7 @@ StressCell runCell(Ground& ground, const CellRequest& request,
     throw Error(fmt::format("{}: there is no stress case '{}' for this pipeline", request.pipeline.string(),
                             request.name));
   StressCell cell = cellBefore(request, one->info.family, ground.techniques, repeatArguments);
-  describeDevice(cell, ground.device);
+  describeDevice(cell, workerDeviceOf(ground.device));
   ground.quick = request.quick;
   PipelineBench bench(ground, pipeline);
   const auto start = std::chrono::steady_clock::now();

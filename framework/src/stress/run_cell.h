@@ -17,6 +17,6 @@ StressCell runCell(Ground& ground, const CellRequest& request,
                    const std::vector<std::string>& repeatArguments);
 
 /// What the device is called in results.
-void describeDevice(StressCell& cell, const gpu::Device& device);
+void describeDevice(StressCell& cell, const WorkerDevice& device);
 
 }  // namespace lumivox::stress

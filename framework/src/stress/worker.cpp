@@ -63,7 +63,7 @@ void serveStress(const StressWorker& worker, TechniqueSource& techniques) {
   if (!scenes) throw Error("no project with scenes is around here; stress cases are made from its scenes");
   gpu::Device device(worker.device);
   Ground ground{device, worker.device, techniques, worker.sceneLoad, *scenes, worker.program, false};
-  answers.write(kReady);
+  answers.write(lineOf(workerDeviceOf(device)));
   for (std::string line; std::getline(std::cin, line);) {
     const AnyRequest request = requestOf(line);
     answers.write(request.cell ? stressCellJson(runCell(ground, *request.cell, worker.repeatArguments))

@@ -1,7 +1,9 @@
 // A technique whose passes do what no pass may do, for the tests of the stress battery.
 #include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <limits>
+#include <thread>
 
 #include "lumivox/base/error.h"
 #include "lumivox/plugin/technique.h"
@@ -16,7 +18,7 @@ class Paint : public Pass {
   Param<std::string> deed{this,
                           "deed",
                           "paint",
-                          {"paint", "abort", "fault", "spin", "nan", "refuse", "exhaust"},
+                          {"paint", "abort", "fault", "spin", "nan", "refuse", "exhaust", "tire", "rest"},
                           "what it does in place of painting"};
   Param<float> value{this, "value", 1.0f, {0.0f, 10.0f}, "", "radiance"};
   Out<Image> radiance{this, "radiance", Contributes::direct};
@@ -30,6 +32,10 @@ class Paint : public Pass {
       }
     if (deed == "refuse") throw Error("the pass refuses; expected a scene of another kind");
     if (deed == "exhaust") throw std::bad_alloc();
+    if (deed == "rest") std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    // Pictures and the frame to warm up are no trouble, timed frames are.
+    static int painted = 0;
+    if (deed == "tire" && ++painted > 3) throw Error("the pass is tired; expected fewer frames");
     Image image{frame.image(gpu::Format::rgba32f, "picture")};
     image.texture->clear(glm::vec4(value));
     if (deed == "nan") {

@@ -11,6 +11,8 @@
 // - Bindings of sampled textures, images, storage buffers and uniform blocks are four separate number spaces.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -136,9 +138,19 @@ using TextureRef = std::shared_ptr<Texture>;
 using BufferRef = std::shared_ptr<Buffer>;
 
 /// How a texture is read. Without `repeat` or `border` the edge texel continues outside; `border` means zero
-/// outside; `shadow` compares depth (1 where reference <= stored) and filters the four results. Integer
+/// outside; `shadow` compares depth (1 where reference <= stored) and filters the four results.
+/// `linearOneMip` reads the nearest mip level alone, so that the next one may be written meanwhile. Integer
 /// formats are read with `nearest` only.
-enum class Sampling { nearest, linear, linearMips, linearMipsRepeat, linearBorder, linearMipsBorder, shadow };
+enum class Sampling {
+  nearest,
+  linear,
+  linearMips,
+  linearMipsRepeat,
+  linearBorder,
+  linearMipsBorder,
+  shadow,
+  linearOneMip
+};
 
 // ---- programs
 // -------------------------------------------------------------------------------------------------------------------
@@ -158,6 +170,11 @@ struct SpecialisationValue {
 };
 
 enum class ShaderInput { automatic, spirv, glsl };
+
+/// What a driver may do with sums and products. `exact`: one expression, neither fused nor reordered, so that
+/// all drivers and both routes give the same bits. `fast`: whatever OpenGL allows, as a renderer ships it:
+/// for times.
+enum class Arithmetic { exact, fast };
 
 /// A linked program. Errors carry the driver's log and the name.
 class Program {
@@ -179,6 +196,31 @@ class Program {
 // ---- commands
 // -------------------------------------------------------------------------------------------------------------------
 
+/// The bytes of a uniform block. Those of small blocks lie within, so that a draw allocates nothing.
+class BlockBytes {
+ public:
+  BlockBytes() = default;
+  template <class Iterator>
+  BlockBytes(Iterator first, Iterator last) : size_(static_cast<std::size_t>(last - first)) {
+    if (size_ > kWithin) {
+      beyond_.assign(first, last);
+    } else {
+      std::copy(first, last, within_.begin());
+    }
+  }
+  explicit BlockBytes(std::span<const std::byte> bytes) : BlockBytes(bytes.begin(), bytes.end()) {}
+  std::span<const std::byte> bytes() const {
+    return size_ > kWithin ? std::span<const std::byte>(beyond_) : std::span(within_).first(size_);
+  }
+  std::size_t size() const { return size_; }
+
+ private:
+  static constexpr std::size_t kWithin = 128;  // a matrix and as much again
+  std::size_t size_ = 0;
+  std::array<std::byte, kWithin> within_{};
+  std::vector<std::byte> beyond_;
+};
+
 /// One resource at one binding point of a program. Made by the slots in shader/slots.h, so that names and
 /// kinds are checked.
 struct ResourceBinding {
@@ -194,7 +236,7 @@ struct ResourceBinding {
     const Buffer* buffer;
   };
   struct Uniform {
-    std::vector<std::byte> bytes;
+    BlockBytes bytes;
   };
   const char* name = "";
   std::uint32_t binding = 0;
@@ -222,6 +264,20 @@ struct RenderTargets {
   bool clear = true;  ///< colours to 0, depth to 1
 };
 
+/// Draws go to its targets while it lives. It ends by itself, also when an error passes through. Made by
+/// Device::drawTo; one at a time.
+class [[nodiscard]] Drawing {
+ public:
+  ~Drawing();
+  Drawing(const Drawing&) = delete;
+  Drawing& operator=(const Drawing&) = delete;
+
+ private:
+  friend class Device;
+  explicit Drawing(std::shared_ptr<DeviceState> device) : device_(std::move(device)) {}
+  std::shared_ptr<DeviceState> device_;
+};
+
 struct DeviceInfo {
   std::string vendor, renderer, version;  ///< the driver's own words
   std::string platform;                   ///< "EGL device 0", "EGL surfaceless", ...
@@ -238,11 +294,18 @@ struct DeviceOptions {
   std::string device = "auto";  ///< "auto", "software", "surfaceless", or the index of an EGL device
   ShaderInput shaderInput = ShaderInput::automatic;
   std::uint64_t memoryBytes = 0;  ///< textures and buffers may take so much together; 0: what the device has
+  Arithmetic arithmetic = Arithmetic::exact;
+  /// A context in which the driver explains every error at the command that made it, at the cost of time.
+  /// Without it errors are told when the device is waited for. Default: whether $LUMIVOX_DEBUG_CONTEXT is
+  /// set.
+  bool debugContext = debugContextAsked();
+  static bool debugContextAsked();
 };
 
 class Device {
  public:
-  /// Makes the context current on this thread. AbsentError when there is no EGL or no OpenGL 4.5.
+  /// Makes the context current on this thread. AbsentError when there is no EGL or no OpenGL 4.5, or when the
+  /// device lacks something that docs/gpu.md asks for: it names it.
   explicit Device(const DeviceOptions& options = {});
   ~Device();
   Device(const Device&) = delete;
@@ -250,24 +313,27 @@ class Device {
 
   const DeviceInfo& info() const;
   ShaderInput shaderInput() const;  ///< spirv or glsl, never automatic
+  Arithmetic arithmetic() const;
+  /// How programs reach the driver, as records name it: "spirv", "glsl", "spirv fast", "glsl fast".
+  std::string programRoute() const;
 
   /// Every command between enter and leave belongs to this pass: what the driver says is logged under its
   /// name. Errors do not carry it; whoever runs the pass knows it.
   void enterPass(const std::string& name);
-  void leavePass();  ///< throws Error for a driver error since enterPass
+  void leavePass();  ///< in a debug context: throws Error for a driver error since enterPass
 
   void dispatch(const Program& program, std::span<const ResourceBinding> bindings, glm::uvec3 groups);
   /// Group counts read from three words of `arguments` at `offsetBytes`.
   void dispatchIndirect(const Program& program, std::span<const ResourceBinding> bindings,
                         const Buffer& arguments, std::uint64_t offsetBytes = 0);
 
-  /// Binds targets and state for the draws until endDrawing. Viewport = the whole target.
-  void beginDrawing(const RenderTargets& targets, const RasterState& state);
+  /// Binds targets and state for the draws while what it returns lives. Viewport = the whole target. What a
+  /// drawing draws to may not be read by its draws, nor by anything before it has ended.
+  Drawing drawTo(const RenderTargets& targets, const RasterState& state);
   /// Indexed triangles (32-bit indices); attributes are pulled from storage buffers by gl_VertexID.
   void drawIndexed(const Program& program, std::span<const ResourceBinding> bindings, const Buffer& indices,
                    std::uint32_t firstIndex, std::uint32_t indexCount);
   void draw(const Program& program, std::span<const ResourceBinding> bindings, std::uint32_t vertexCount);
-  void endDrawing();
   /// Where an empty framebuffer of so many samples takes them, in the order of the bits of gl_SampleMaskIn:
   /// x and y inside the pixel, 0..1, in the direction of gl_FragCoord. Error when the device has fewer.
   std::vector<glm::vec2> samplePositions(int samples);
@@ -275,10 +341,11 @@ class Device {
   /// Makes all earlier writes visible to all later reads (also to download, indirect arguments and texture
   /// fetches).
   void barrier();
-  void finish();  ///< waits until the device is idle
+  void finish();  ///< waits until the device is idle; throws Error for a driver error since the last time
 
-  /// Milliseconds that `work` took: {host, device}. The device time comes from a timer query where those are
-  /// trusted, else from the fenced clock (finish before and after).
+  /// Milliseconds that `work` took: {host, device}, for work that is long beside its submission. The device
+  /// time comes from a timer query where those are trusted, else from the fenced clock (finish before and
+  /// after). It waits for the device; the passes of a frame are timed by PassTimers.
   struct Elapsed {
     double hostMs, deviceMs;
   };
@@ -287,6 +354,9 @@ class Device {
   /// Bytes that were moved or filled by commands that are no shader's, since the device was made.
   struct Transfers {
     std::uint64_t uploaded = 0, downloaded = 0, cleared = 0;
+    /// How often something was downloaded while dispatches or draws were under way since the last finish():
+    /// each time the host waited for all of them.
+    std::uint64_t stalls = 0;
   };
   Transfers transfers() const;
 
@@ -299,6 +369,35 @@ class Device {
 
  private:
   std::shared_ptr<DeviceState> state_;  ///< shared with the resources, which may outlive the Device
+};
+
+/// Device::programRoute() in words: "SPIR-V", "GLSL made from the SPIR-V, fast arithmetic".
+std::string programRouteText(const Device& device);
+
+/// Device times of the parts of frames from time stamps, which are read only when the device has long passed
+/// them: nothing waits between the parts, nor between frames. Whether time stamps deserve belief is told by
+/// DeviceInfo::timerQueriesTrusted.
+class PassTimers {
+ public:
+  /// So many frames may be under way; a further one waits for the oldest.
+  explicit PassTimers(Device& device, std::size_t framesUnderWay = 4);
+  ~PassTimers();
+  PassTimers(const PassTimers&) = delete;
+  PassTimers& operator=(const PassTimers&) = delete;
+
+  void beginFrame();  ///< forgets a frame that was not ended
+  void begin();       ///< of the next part
+  void end();
+  void endFrame();
+  using Frame = std::vector<double>;  ///< ms of its parts
+  /// The frames whose times were read since the last call, in their order.
+  std::vector<Frame> take();
+  /// The same of all frames: waits for the device.
+  std::vector<Frame> takeAll();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace lumivox::gpu

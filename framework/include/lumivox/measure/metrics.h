@@ -6,16 +6,23 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "lumivox/base/picture.h"
 
 namespace lumivox {
 
+/// Fewer repeats or seeds than this say too little about their own spread for any claim.
+inline constexpr int kLeastRepeats = 3;
+
 /// A number with its standard uncertainty (one sigma).
 struct Measured {
   double value = 0.0;
   double uncertainty = 0.0;
+  /// False: from fewer than kLeastRepeats repeats or seeds, so that `uncertainty` lacks what chance does;
+  /// whether it differs from another is then undecided.
+  bool enoughRepeats = true;
 };
 
 /// Every number compares a picture with a truth; pixels that are NaN or infinite in either are left out and
@@ -46,6 +53,18 @@ struct PictureError {
 /// Those of the first four numbers are propagated from it to first order. Error when the shapes differ, the
 /// channels are not 1, 3 or 4, or a variance is negative or not finite.
 PictureError compare(const Picture& picture, const Picture& truth, const Picture& truthVariance = {});
+
+/// The same picture made with different random numbers, against one truth. A pixel that is not finite in one
+/// of them counts in none.
+struct SeedsError {
+  /// Of every number the mean over the pictures; its uncertainty is the truth's noise and the standard error
+  /// over the pictures, added in quadrature. nonFinitePicture: of the worst picture.
+  PictureError mean;
+  Picture flipMap;  ///< flipHdr() of the first picture
+};
+/// Errors as compare(), and for no picture at all.
+SeedsError compareSeeds(std::span<const Picture> seeds, const Picture& truth,
+                        const Picture& truthVariance = {});
 
 /// FLIP maps, one channel in [0,1], NaN where a pixel is left out. Radiance below 0 counts as 0; flipLdr
 /// clips at 1. 67 pixels per degree unless said otherwise (the papers' default viewing condition).
@@ -110,7 +129,7 @@ struct TimingStatistics {
 };
 TimingStatistics statisticsOf(std::vector<double> values);
 /// The median with its standard error, sqrt(pi/2) sigma / sqrt(n) for n normal values; sigma from the
-/// quartiles, which are 1.349 sigma apart.
+/// quartiles, which are 1.349 sigma apart. Without kLeastRepeats it says so.
 Measured medianOf(const TimingStatistics& statistics);
 
 /// Mean and standard error of the mean over seeds. One seed has no spread to measure: its uncertainty is 0,

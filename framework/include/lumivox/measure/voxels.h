@@ -31,8 +31,7 @@ class VoxelSet {
   /// False outside the grid.
   bool contains(const glm::ivec3& voxel) const {
     if (!inside(voxel)) return false;
-    const std::uint64_t bit = bitOf(voxel);
-    return (words_[bit >> 6] >> (bit & 63) & 1) != 0;
+    return containsBit(bitOf(voxel));
   }
   /// The voxel must lie inside.
   void insert(const glm::ivec3& voxel) {
@@ -53,13 +52,16 @@ class VoxelSet {
   }
   bool operator==(const VoxelSet&) const = default;
 
- private:
+  /// The bit of words() of a voxel inside.
   std::uint64_t bitOf(const glm::ivec3& voxel) const {
     return static_cast<std::uint64_t>(voxel.x) +
            static_cast<std::uint64_t>(resolution_.x) *
                (static_cast<std::uint64_t>(voxel.y) +
                 static_cast<std::uint64_t>(resolution_.y) * static_cast<std::uint64_t>(voxel.z));
   }
+  bool containsBit(std::uint64_t bit) const { return (words_[bit >> 6] >> (bit & 63) & 1) != 0; }
+
+ private:
   glm::ivec3 resolution_{0};
   std::vector<std::uint64_t> words_;
 };
@@ -128,9 +130,29 @@ struct RayHoles {
 };
 inline constexpr double kHoleReach = 1.5;  ///< voxel lengths along the ray
 
-/// Rays along the axes go through the centres of the columns: of all, or of `raysPerKind` per axis at equal
-/// steps where there are more. As many oblique rays are spread evenly over all directions and places, the
-/// same every time. Error when the resolutions differ.
+/// The crossings of one truth, found once for any number of grids: of each the voxels of its ray that may
+/// close it. Rays along the axes go through the centres of the columns: of all, or of `raysPerKind` per axis
+/// at equal steps where there are more. As many oblique rays are spread evenly over all directions and
+/// places, the same every time.
+class RayCrossings {
+ public:
+  explicit RayCrossings(const VoxelTruth& truth, int raysPerKind = 1 << 16);
+  /// Error when the resolutions differ.
+  RayHoles holes(const VoxelSet& occupied) const;
+
+  /// Crossings of rays of one kind, one behind the other.
+  struct Closers {
+    std::vector<std::uint64_t> voxels;  ///< bits of VoxelSet::words()
+    std::vector<std::uint64_t> ends;    ///< of each crossing: the end of its part of `voxels`
+    std::uint64_t holes(const VoxelSet& occupied) const;
+  };
+
+ private:
+  glm::ivec3 resolution_;
+  Closers axis_, oblique_;
+};
+
+/// The same for one grid.
 RayHoles rayHoles(const VoxelSet& occupied, const VoxelTruth& truth, int raysPerKind = 1 << 16);
 
 }  // namespace lumivox

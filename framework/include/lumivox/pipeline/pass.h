@@ -302,6 +302,12 @@ class PassContext {
   /// Resources from the pool: contents are undefined. They return to the pool when the last reference goes.
   virtual gpu::TextureRef texture(const gpu::TextureDescription& description, const std::string& label) = 0;
   virtual gpu::BufferRef buffer(std::uint64_t sizeBytes, const std::string& label) = 0;
+  /// Has a count that the device finds judged without any pass waiting for it: one word of a buffer, read
+  /// when the device has done the whole frame. `judge` returns false when the pass had taken too little room
+  /// for what it counts, and notes how much it needs; the frame is then rendered again from nothing before
+  /// anything of it is given out. It may throw an Error and warn() through the context that it is given.
+  using CountJudge = std::function<bool(PassContext& frame, std::uint32_t count)>;
+  virtual void judgeLater(gpu::BufferRef counts, std::uint64_t offsetBytes, CountJudge judge) = 0;
   /// Told to the user once per run, with the pass's name.
   virtual void warn(const std::string& text) = 0;
   /// True when a pass may use nothing that it kept from an earlier frame: in the first one, after
@@ -314,13 +320,17 @@ class PassContext {
   /// Tells explain() of a part of the pass's work that this frame took over from an earlier one.
   virtual void reused(const std::string& what, const std::string& why) = 0;
 
-  const shader::BoundProgram& program(const shader::ProgramName& name, const shader::VariantKey& variant = {},
-                                      const std::vector<gpu::SpecialisationValue>& constants = {}) {
+  const shader::BoundProgram& program(const shader::ProgramName& name, shader::VariantKey variant = {},
+                                      std::span<const gpu::SpecialisationValue> constants = {}) {
     return shaders().program(name, variant, constants);
   }
   /// One invocation per item, in groups of `groupSize`; a barrier follows.
-  void dispatch(const shader::BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings,
+  void dispatch(const shader::BoundProgram& program, shader::ShaderLibrary::Bindings bindings,
                 glm::ivec3 items, glm::ivec3 groupSize);
+  void dispatch(const shader::BoundProgram& program, shader::ShaderLibrary::BindingList bindings,
+                glm::ivec3 items, glm::ivec3 groupSize) {
+    dispatch(program, shader::ShaderLibrary::Bindings(bindings.begin(), bindings.end()), items, groupSize);
+  }
   gpu::TextureRef image(gpu::Format format, const std::string& label);  ///< picture-sized d2 texture
 };
 

@@ -104,8 +104,9 @@ struct RenderOptions {
 
 struct PassRecord {
   std::string name, technique, pass;
-  bool ran = true;  ///< false: its inputs had not changed
-  double hostMs = 0, deviceMs = 0;
+  bool ran = true;          ///< false: its inputs had not changed
+  double hostMs = 0;        ///< until its last command was given to the device
+  double deviceMs = 0;      ///< only in what PipelineExecutor::timedPasses() returns
   std::uint64_t bytes = 0;  ///< resources that it took from the pool
   Work work{};              ///< what it did; only with RenderOptions::countWork
 };
@@ -115,8 +116,8 @@ struct FrameResult {
       outputs;  ///< rgb each (one channel for ambient occlusion); only when pictures were asked for
   std::map<std::string, Contributes> components;
   std::vector<PassRecord> passes;
-  double frameMs = 0;          ///< whole frame, device idle before and after
-  double betweenPassesMs = 0;  ///< frameMs minus the passes: what the framework itself costs
+  double frameMs = 0;          ///< whole frame, device idle before and after; with Timing::passes NaN
+  double betweenPassesMs = 0;  ///< of the host, outside of the passes: what the framework itself costs
   std::uint64_t peakBytes = 0;
   std::vector<std::string> healthFindings;  ///< "pass gather, port diffuse: 3 NaN, first at pixel (12, 40)"
   /// With `health`, what passes measured about themselves: "pass gather: 1.1 % of the irradiance was ..."
@@ -153,10 +154,19 @@ class PipelineExecutor {
   ~PipelineExecutor();
 
   enum class Pictures { no, yes };
+  /// What is timed: the frame as a whole, without any instrument inside of it, or its passes, for
+  /// timedPasses(). Where the device keeps time for its passes, such a frame waits for nothing; where it does
+  /// not (DeviceInfo::timerQueriesTrusted), it waits before and after every pass.
+  enum class Timing { frame, passes };
   /// Renders the scene at `time`. Passes whose inputs did not change since the last call are not run again.
-  FrameResult render(double time, int frameIndex = 0, Pictures pictures = Pictures::yes);
+  FrameResult render(double time, int frameIndex = 0, Pictures pictures = Pictures::yes,
+                     Timing timing = Timing::frame);
   /// The same for a snapshot made elsewhere: the viewer's own camera.
-  FrameResult render(const SceneSnapshot& snapshot, int frameIndex = 0, Pictures pictures = Pictures::yes);
+  FrameResult render(const SceneSnapshot& snapshot, int frameIndex = 0, Pictures pictures = Pictures::yes,
+                     Timing timing = Timing::frame);
+  /// The passes of every frame that was rendered with Timing::passes since the last call, in their order,
+  /// with their device times. Waits for the device.
+  std::vector<std::vector<PassRecord>> timedPasses();
   /// Forgets cached results, so that the next frame runs every kept pass.
   void invalidate();
 
@@ -166,6 +176,11 @@ class PipelineExecutor {
   /// Keeps an output of a pass alive after each render, and its pass with it; for exporters and tests. Error
   /// for an unknown name.
   void keepOutput(const std::string& pass, const std::string& port);
+  /// The same for this output alone: those that were kept before are wanted no more.
+  void keepOnly(const std::string& pass, const std::string& port);
+  /// Resources that a frame does not use are freed at its end (true, as it begins), or stay for the next one:
+  /// for frames that want now this and now that output, and are timed.
+  void freeUnused(bool free);
   /// A pass of the pipeline with its parameters set, whether it runs or not. Error for an unknown name.
   const Pass& pass(const std::string& name) const;
   /// After the last render. Null when it was left out or given back. Error for an unknown name.

@@ -67,6 +67,12 @@ struct VoxelFragments {
   GridPlacement grid;
   gpu::BufferRef fragments;  ///< array of VoxelFragment in shaders/common/voxel.glsl
   gpu::BufferRef count;      ///< words: fragments written; then x, y, z of an indirect dispatch over them
+  /// Direct light that fragments are known to reflect, since a renderer computed it where the camera sees
+  /// them (Mavridis & Papaioannou 2011, Sec. 3.2). Null: of none. Else a word for each of the first
+  /// fragments: their reflected radiance in W/(sr m^2), packed as `packShared` does, or kNotKnown; those
+  /// behind the end of the buffer are not known either.
+  gpu::BufferRef reflected;
+  static constexpr std::uint32_t kNotKnown = 0xffffffffu;
   std::uint64_t capacity = 0;
   int workGroupSize = 64;  ///< that the indirect dispatch assumes
   /// How the coverages of the fragments in one voxel make its opacity: their mean (each triangle is judged by
@@ -102,6 +108,19 @@ struct AttributeGrid {
   gpu::TextureRef emission;  ///< d3 rgba32f: rgb mean emitted radiance; null when nothing emits
 };
 
+/// Where in a volume anything is: a list of its occupied bricks, in no order.
+struct OccupiedBricks {
+  static constexpr int kSide = 4;  ///< finest voxels along a side of a brick
+  gpu::BufferRef bricks;           ///< words: i, j, k of each brick, in 10 bits each
+  gpu::BufferRef count;  ///< words: bricks; then x, y, z of the indirect dispatches of one thread for each
+                         ///< voxel in them at level 0, at level 1 and at level 2, in groups of kGroupSize
+  static constexpr int kGroupSize = 64;
+  /// Where the arguments of a level's dispatch lie in `count`.
+  static constexpr std::uint64_t argumentsBytes(int level) {
+    return (1 + 3 * static_cast<std::uint64_t>(level)) * sizeof(std::uint32_t);
+  }
+};
+
 /// Pre-filtered outgoing radiance, pre-multiplied by opacity, one mip per halving (Crassin et al. 2011).
 struct RadianceGrid {
   static constexpr const char* kPortKind = "RadianceGrid";
@@ -109,6 +128,12 @@ struct RadianceGrid {
   gpu::TextureRef radiance;  ///< d3 rgba16f or rgba32f with mips: rgb radiance * opacity / unit, a opacity
   float unit = 1.0f;         ///< W/(sr m^2): keeps very bright and very dark light within half floats
   int filledLevels = 0;      ///< mip levels that hold values, finest first; 0: all that the texture has
+  /// What the opacity of a coarser voxel is that of: the whole of it, as seen through; or a path of one
+  /// finest voxel's length in it, which is what the plain mean of the children gives for a uniform medium.
+  enum class Opacity { ofVoxel, ofFinestVoxel } opacity = Opacity::ofVoxel;
+  bool holdsMedia = false;  ///< participating media are in the voxels beside the surfaces
+  /// Outside of these bricks the finest level is 0; null members: not known.
+  OccupiedBricks occupied;
 };
 
 /// Spherical-harmonic coefficients per voxel, one volume per colour channel, in one or more nested grids.
@@ -122,6 +147,9 @@ struct ShGrid {
     gpu::TextureRef moved;   ///< d3 rgba8, of the same faces, as bytes: how far surfaces were moved to lie on
                              ///< them, fourteenths of a voxel: the low four bits of those that look down the
                              ///< axis and truly lie above, the high ones the other way; null: not at all
+    gpu::BufferRef packed{};  ///< five words a voxel, x first (thesis Gomes 2015, Listings 4.26 to 4.29):
+                              ///< albedo over pi behind its contrast, and for each face of a tetrahedron a
+                              ///< normal behind its closeness to it; 0: no surface. null: not kept
   };
   std::vector<Level> levels;  ///< finest and smallest first
 };

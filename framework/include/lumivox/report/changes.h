@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "lumivox/report/interpolation.h"
 #include "lumivox/report/store.h"
 
 namespace lumivox {
@@ -14,6 +15,8 @@ struct RunChange {
   Measured before, after;
   double sigmas = 0.0;  ///< difference over its standard uncertainty; infinite when that is 0
   bool significant = false, better = false;
+  /// Fewer than kLeastRepeats repeats or seeds on one side, or metrics of the first seed alone: no claim.
+  bool undecided = false;
 };
 
 struct RunComparison {
@@ -24,14 +27,11 @@ struct RunComparison {
   std::vector<std::string> incomparable;
 };
 
-/// A change counts as significant beyond this many standard uncertainties of the difference.
-inline constexpr double kSignificantSigmas = 3.0;
-/// And, for times, beyond this share: quartiles of a few repeats say little about a machine's mood.
-inline constexpr double kSignificantTimeShare = 0.05;
-
 /// Matches points by scene, pipeline, parameters, camera, time and seed, the last stored of each. Two runs
 /// alone are compared whatever they measure. Times of different devices or hosts are not compared; errors of
-/// different sizes or other scenes are not.
-RunComparison compareResults(const std::vector<StoredRun>& before, const std::vector<StoredRun>& after);
+/// different sizes or other scenes are not. Times must be further apart than kSignificantTimeShare and than
+/// `floor`.
+RunComparison compareResults(const std::vector<StoredRun>& before, const std::vector<StoredRun>& after,
+                             const TimeFloor& floor = {});
 
 }  // namespace lumivox

@@ -55,6 +55,10 @@ struct PipelineComparison {
   std::vector<std::size_t> front;  ///< of all points by value alone: the line that bounds them
   std::vector<double> budgetsMs, errors;
   std::vector<BudgetRange> ranges;
+  double timeShare = kSignificantTimeShare;  ///< that times must be apart
+  int controls = 0;                          ///< that say so; 0: it is kSignificantTimeShare
+  /// Points whose time or error has too few repeats or seeds for any claim: they are neither beaten nor beat.
+  std::size_t undecided = 0;
 
   /// Whether some of its points are on the front: no other pipeline beats it at their budgets.
   bool hasFront(std::size_t pipeline) const;
@@ -63,6 +67,7 @@ struct PipelineComparison {
 /// Budgets and errors of the tables. Empty: round numbers between the smallest and the largest measured.
 struct ComparisonLimits {
   std::vector<double> budgetsMs, errors;
+  TimeFloor floor = {};  ///< of the device that the points were timed on
 };
 
 /// Names of the components that pipelines can be compared in, in the order of a picture's making; the last is
@@ -72,7 +77,7 @@ std::vector<std::string> comparableComponents();
 std::vector<std::string> errorMetrics();
 /// Error names the metrics, and the nearest, when this is none of errorMetrics().
 void requireErrorMetric(const std::string& metric);
-/// "rmse": mean over seeds with the truth's noise and the spread over seeds; else the metric of that name.
+/// The metric of that name: mean over seeds with the truth's noise and the spread over seeds; NaN: none.
 Measured errorNumber(const ComponentError& error, const std::string& metric);
 
 /// Compares the points that were timed and judged in this component; without any of them `points` is empty.

@@ -20,18 +20,27 @@ struct TradeOff {
 /// errors fall strictly. Points whose time or error is not above 0 are passed over: they have no logarithm.
 std::vector<std::size_t> frontByValue(const std::vector<TradeOff>& points);
 
+/// A difference counts as significant beyond this many standard uncertainties of it.
+inline constexpr double kSignificantSigmas = 3.0;
+/// And, for times, beyond this share, or beyond what repeated controls show where that is more (TimeFloor):
+/// quartiles of a few repeats say little about a machine's mood.
+inline constexpr double kSignificantTimeShare = 0.05;
+
+/// Whether both have the repeats that any claim about their difference needs.
+bool decidable(const Measured& a, const Measured& b);
 /// Whether a and b differ by more than kSignificantSigmas standard uncertainties of their difference, and by
-/// more than `leastShare` of `a`.
+/// more than `leastShare` of `a`. False when that is undecided: decidable().
 bool differ(const Measured& a, const Measured& b, double leastShare = 0.0);
 /// |a - b| over the standard uncertainty of the difference; infinite when that is 0 and they differ.
 double sigmasApart(const Measured& a, const Measured& b);
 
 /// The rule of all fronts: a is no slower and has no more error than b, and in one of the two it is better
-/// by more than the uncertainty (differ(); for times with kSignificantTimeShare). Points within their
-/// uncertainties do not beat each other.
-bool beats(const TradeOff& a, const TradeOff& b);
+/// by more than the uncertainty (differ(); for times by `timeShare` too). Points within their uncertainties
+/// do not beat each other.
+bool beats(const TradeOff& a, const TradeOff& b, double timeShare = kSignificantTimeShare);
 /// For each point the one that beats it: of those the one with the least error. None: it is on the front.
-std::vector<std::optional<std::size_t>> beatenBy(const std::vector<TradeOff>& points);
+std::vector<std::optional<std::size_t>> beatenBy(const std::vector<TradeOff>& points,
+                                                 double timeShare = kSignificantTimeShare);
 
 enum class Reach {
   interpolated,  ///< between two measured points, or at one

@@ -26,11 +26,14 @@ inline constexpr const char* kWholePicture = "whole_picture";
 struct ComponentError {
   std::string output;     ///< name in the pipeline text, or kWholePicture
   std::string component;  ///< name(Contributes)
-  std::string truth;   ///< layer: one_bounce_diffuse (bias) or indirect_diffuse (what the viewer misses), ...
-  bool bias = true;    ///< against the truth of the technique's own model; false: against the full truth
-  PictureError error;  ///< of the first seed; uncertainties come from the truth's noise
-  Measured rmseOverSeeds;      ///< mean and standard error over the seeds that were run
-  int seeds = 1;               ///< that were run
+  std::string truth;  ///< layer: one_bounce_diffuse (bias) or indirect_diffuse (what the viewer misses), ...
+  bool bias = true;   ///< against the truth of the technique's own model; false: against the full truth
+  /// Of every number the mean over the seeds that were run; the uncertainty is the truth's noise and the
+  /// standard error over the seeds, added in quadrature.
+  PictureError error;
+  int seeds = 1;  ///< that were run
+  /// False: from a results store of schema 3 or before, where every number but the RMSE is of the first seed.
+  bool everyMetricPerSeed = true;
   bool deterministic = false;  ///< two seeds gave the same bits, so that there is no noise to average
   double noiseRmse = 0.0;      ///< RMS of the picture's own noise, from the differences between the seeds
   ErrorParts parts;            ///< mean square over seeds = bias² + noise² + the truth's noise²
@@ -38,8 +41,8 @@ struct ComponentError {
                    0.0};        ///< over the pairs of frames that follow; NaN when none was measured
   PictureError errorOfNothing;  ///< of a black picture: what leaving the component out would cost
 
-  /// RMSE over seeds with the truth's noise and the spread over seeds added in quadrature.
-  Measured rmse() const;
+  /// Whether there are seeds enough to claim anything: kLeastRepeats of them, or no random numbers at all.
+  bool enoughSeeds() const { return deterministic || seeds >= kLeastRepeats; }
   /// rmse / RMSE of nothing: below 1 the component is better than none.
   double ratioToNothing() const;
 };
@@ -102,7 +105,7 @@ struct ReportOptions {
   double time = 0.0;       ///< s
   std::uint64_t seed = 1;  ///< the first one
   int subpixels = 16;      ///< pictures that are judged are means over this many positions in the pixel
-  int repeats = 5, seeds = 2;
+  int repeats = 5, seeds = kLeastRepeats;
   /// Pairs of frames 1/24 s apart whose flicker is measured where the scene moves; 0: none.
   int flickerPairs = 4;
   bool openSweeps = true;                         ///< false: only the default point
@@ -116,13 +119,17 @@ struct ReportOptions {
 
 struct ReportSummary {
   std::vector<ReportPoint> points;
+  std::size_t takenUp = 0;  ///< of them, those that an interrupted run had measured already
   std::vector<PruningRecord> pruning;
   std::vector<std::string> unsuited;  ///< "scene, pipeline: why" for those left out by themselves
   std::filesystem::path page, csv, json;
 };
 
 /// Writes the page, and beside it the same stem with .csv and .json. Error (before any work) when it cannot
-/// be written, when the packaged chart library is absent, or when a text is wrong.
+/// be written, when the packaged chart library is absent, or when a text is wrong. Points are kept beside the
+/// page, in a file with the extension .unfinished.sqlite, as soon as they are measured: when the report is
+/// interrupted, the next one takes them up, and removes the file when its page is written. A point that fails
+/// is one that says why.
 ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
                          const std::function<Scene(const std::filesystem::path&)>& loadScene);
 

@@ -33,6 +33,40 @@ struct RunIdentity {
   std::string key() const;  ///< 32 hexadecimal digits
 };
 
+/// The times of a stored run measured once more, later: what differs is the machine's mood alone.
+struct RepeatedControl {
+  std::string created;            ///< "2015-10-21 16:29:00 UTC"
+  Measured frameMs, nextFrameMs;  ///< of the run
+  Measured frameMsAgain, nextFrameMsAgain;
+};
+
+/// How far apart two times of the same thing were found on one machine, as a share of the smaller.
+struct TimeFloor {
+  double frame = 0.0, nextFrame = 0.0;
+  int controls = 0;  ///< that say so; 0: nobody has looked
+};
+/// The largest of the controls.
+TimeFloor timeFloorOf(const std::vector<RepeatedControl>& controls);
+/// The larger of both, for numbers of both.
+TimeFloor larger(const TimeFloor& a, const TimeFloor& b);
+
+/// A picture of a run: an output, or its FLIP map against a layer of the truth.
+struct StoredPicture {
+  std::string output, component;
+  std::string truth;  ///< layer of the map; empty: the output itself
+  double flip = 0.0;  ///< mean of the map
+  std::string png;
+};
+
+/// Who is measuring a point at present.
+struct RunClaim {
+  std::string machine;  ///< and its start and name space of processes: where `process` means something
+  int process = 0;
+  std::uint64_t started = 0;  ///< of the process, so that another one with its number is told apart
+  std::string command;        ///< its command line
+  std::int64_t expires = 0;   ///< s since 1970
+};
+
 /// One record of the store.
 struct StoredRun {
   std::int64_t id = 0;  ///< in its store; 0 before it is stored
@@ -127,7 +161,27 @@ class ResultsStore {
   std::optional<StoredRun> find(const std::string& key) const;
   /// In one transaction: all of it or nothing, whatever happens. Returns false, and stores nothing, when
   /// another process has stored a run with this key meanwhile. A failed run is replaced by one that did not.
-  bool add(const StoredRun& run);
+  bool add(const StoredRun& run, const std::vector<StoredPicture>& pictures = {});
+  /// Those that were stored with a run.
+  std::vector<StoredPicture> pictures(const std::string& key) const;
+
+  /// Tells others that this process is about to measure these points. For each of them: false when a process
+  /// that is alive and whose claim has not expired is at it. Claims of one's own are renewed. A claim ends
+  /// when the run is stored, with release(), or after kClaimSeconds.
+  std::vector<bool> claim(const std::vector<std::string>& keys);
+  /// Gives up one's own claims.
+  void release(const std::vector<std::string>& keys);
+  /// Of another process that is at this point now.
+  std::optional<RunClaim> claimedByOther(const std::string& key) const;
+
+  /// Adds the times of the run with this key, measured once more.
+  void addControl(const std::string& key, const TimingStatistics& frameMs,
+                  const TimingStatistics& nextFrameMs);
+  /// The last kControls of a device on a host, the newest first.
+  std::vector<RepeatedControl> controls(const RunIdentity& where) const;
+  static constexpr int kControls = 20;
+  static constexpr int kClaimSeconds = 3600;
+
   /// By id, so in the order of storing.
   std::vector<StoredRun> runs(const RunFilter& filter = {}) const;
   /// How many were removed.
@@ -159,7 +213,7 @@ class ResultsStore {
 std::string frameworkHash();
 
 /// The metrics of one error by name, with the same of a black picture: what the store's table `metrics`
-/// holds. Names: rmse, rmse_over_seeds, relative_mse, mean_ratio, bias, percentile95, ssim, flip, flip_ldr,
+/// holds. Names: rmse, relative_mse, mean_ratio, bias, percentile95, ssim, flip, flip_ldr,
 /// rms_bias, rms_noise, flicker, noise_floor, non_finite_picture, non_finite_truth.
 struct NamedMetric {
   std::string name;

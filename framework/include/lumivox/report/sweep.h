@@ -34,7 +34,10 @@ struct SweepSummary {
 /// Measures every pipeline at every point of its sweeps on every scene, and what the texts name, but for what
 /// the store holds. Each seed of a sweep's axis is a run of its own with that seed alone.
 /// Each batch of points is stored as soon as it is measured, so an interruption loses at most one batch.
-/// Errors are measured apart from times; the timed frames of a batch take turns. Throws as makeReport.
+/// Errors are measured apart from times; the timed frames of a batch take turns, and the first batch is timed
+/// again at the end, which gives the floor below which differences of times say nothing (TimeFloor). Several
+/// processes may sweep into one store: each leaves the points to the others that they are at, and while one
+/// takes times on a machine the others of that user wait. Throws as makeReport.
 SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const SweepOptions& options,
                       ResultsStore& store,
                       const std::function<Scene(const std::filesystem::path&)>& loadScene);

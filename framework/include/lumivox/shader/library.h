@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,21 +35,36 @@ class ShaderLibrary {
   void addPack(ShaderPack pack);
 
   /// Error for an unknown technique or program, for a combination that the constraints of the shader exclude,
-  /// or from the driver.
-  const BoundProgram& program(const ProgramName& name, const VariantKey& variant,
-                              const std::vector<gpu::SpecialisationValue>& constants = {});
+  /// or from the driver. Asked for again, the same one; a loop over draws may ask each time.
+  const BoundProgram& program(const ProgramName& name, VariantKey variant,
+                              std::span<const gpu::SpecialisationValue> constants = {});
 
-  void dispatch(const BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings,
-                glm::uvec3 groups);
-  void dispatchIndirect(const BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings,
-                        const gpu::Buffer& arguments, std::uint64_t offsetBytes = 0);
-  void drawIndexed(const BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings,
-                   const gpu::Buffer& indices, std::uint32_t firstIndex, std::uint32_t indexCount);
-  void draw(const BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings,
-            std::uint32_t vertexCount);
+  /// Given in braces, or as any row of bindings that lies somewhere.
+  using Bindings = std::span<const gpu::ResourceBinding>;
+  using BindingList = std::initializer_list<gpu::ResourceBinding>;
+  void dispatch(const BoundProgram& program, Bindings bindings, glm::uvec3 groups);
+  void dispatch(const BoundProgram& program, BindingList bindings, glm::uvec3 groups) {
+    dispatch(program, Bindings(bindings.begin(), bindings.end()), groups);
+  }
+  void dispatchIndirect(const BoundProgram& program, Bindings bindings, const gpu::Buffer& arguments,
+                        std::uint64_t offsetBytes = 0);
+  void dispatchIndirect(const BoundProgram& program, BindingList bindings, const gpu::Buffer& arguments,
+                        std::uint64_t offsetBytes = 0) {
+    dispatchIndirect(program, Bindings(bindings.begin(), bindings.end()), arguments, offsetBytes);
+  }
+  void drawIndexed(const BoundProgram& program, Bindings bindings, const gpu::Buffer& indices,
+                   std::uint32_t firstIndex, std::uint32_t indexCount);
+  void drawIndexed(const BoundProgram& program, BindingList bindings, const gpu::Buffer& indices,
+                   std::uint32_t firstIndex, std::uint32_t indexCount) {
+    drawIndexed(program, Bindings(bindings.begin(), bindings.end()), indices, firstIndex, indexCount);
+  }
+  void draw(const BoundProgram& program, Bindings bindings, std::uint32_t vertexCount);
+  void draw(const BoundProgram& program, BindingList bindings, std::uint32_t vertexCount) {
+    draw(program, Bindings(bindings.begin(), bindings.end()), vertexCount);
+  }
 
   /// Checks that every binding which the variant uses is given, and drops those that this variant does not
-  /// have.
+  /// have: what a command does before it runs.
   static std::vector<gpu::ResourceBinding> select(const BoundProgram& program,
                                                   const std::vector<gpu::ResourceBinding>& bindings);
 
@@ -67,8 +84,10 @@ class ShaderLibrary {
   Work takeWork();
 
  private:
+  static void selectInto(std::vector<gpu::ResourceBinding>& selected, const BoundProgram& program,
+                         Bindings bindings);
   template <class Run>
-  void run(const BoundProgram& program, const std::vector<gpu::ResourceBinding>& bindings, Run&& run);
+  void run(const BoundProgram& program, Bindings bindings, Run&& run);
   struct State;
   std::unique_ptr<State> state_;
 };

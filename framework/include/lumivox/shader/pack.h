@@ -75,7 +75,7 @@ struct PackedProgram {
   std::size_t possible = 0;  ///< size of the full product of the axes, before constraints
 
   /// Null when the constraints of the shader exclude this combination.
-  const PackedVariant* find(const VariantKey& key) const;
+  const PackedVariant* find(VariantKey key) const;
   /// "GLOSSY=1 LIGHT=spot"
   std::string text(const std::vector<int>& values) const;
 };

@@ -5,7 +5,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "lumivox/gpu/device.h"
 
@@ -43,15 +42,12 @@ struct UniformSlot {
   std::uint32_t binding;
   gpu::ResourceBinding operator()(const Block& block) const {
     const auto bytes = std::as_bytes(std::span(&block, 1));
-    return {name, binding, gpu::ResourceBinding::Uniform{{bytes.begin(), bytes.end()}}};
+    return {name, binding, gpu::ResourceBinding::Uniform{gpu::BlockBytes(bytes)}};
   }
 };
 
 /// Which compiled variant of a program: one value per declared axis, in the order of declaration.
-struct VariantKey {
-  std::vector<int> values;
-  bool operator==(const VariantKey&) const = default;
-};
+using VariantKey = std::span<const int>;
 
 /// Names a program in a pack: "voxel_cone_tracing/gather".
 struct ProgramName {
@@ -64,11 +60,11 @@ struct ProgramName {
      inline constexpr shader::ProgramName kProgram{"voxel_cone_tracing", "gather"};
      struct Variant {                       // one int per axis, 0 by default
        int glossy = 0;
-       shader::VariantKey key() const { return {{glossy}}; }
+       std::array<int, 1> key() const { return {{glossy}}; }
      };
      struct Constants {                     // specialisation constants with their defaults in the shader
        int coneCount = 5;
-       std::vector<gpu::SpecialisationValue> values() const;
+       std::array<gpu::SpecialisationValue, 1> values() const;
      };
      struct Parameters { glm::vec3 gridLow; float voxelSize; ... };   // std140 mirror
      inline constexpr shader::SampledSlot radiance{"radiance", 0};

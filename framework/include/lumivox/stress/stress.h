@@ -34,10 +34,15 @@ struct StressOptions {
   std::vector<std::string> families, cases;      ///< empty: all; cases may end in '*'
   bool quick = false;                            ///< only the quick cases, at small sizes
   double timeLimit = 0.0;                        ///< s for one cell; 0: 60 quick, 600 full
-  int workers = 0;                               ///< 0: as many as is fastest here
-  std::filesystem::path output;                  ///< folder for the page and the pictures; empty: neither
-  std::filesystem::path store;                   ///< results store; empty: none
-  /// That runs one worker: the words of its command line, which ends up in serveStress().
+  /// 0: one a processor where the device is a software rasteriser, else one, since several would share the
+  /// device's memory and its watchdog.
+  int workers = 0;
+  /// Most memory of textures and buffers, which several workers share; 0: what the device has.
+  std::uint64_t memoryBytes = 0;
+  std::filesystem::path output;  ///< folder for the page and the pictures; empty: neither
+  std::filesystem::path store;   ///< results store; empty: none
+  /// That runs one worker: the words of its command line, which ends up in serveStress(). Among several,
+  /// `--worker-memory BYTES` follows them.
   std::vector<std::string> program;
   std::vector<std::string>
       repeatArguments;      ///< further options that a repeating command needs, e.g. --device
@@ -56,6 +61,7 @@ struct StressSummary {
   /// No cell is broken: NaN, infinite, crashed or hung.
   bool sound() const;
 };
+/// A cell is in the store as soon as it was run. A worker that is lost is one broken cell.
 StressSummary runStress(const StressOptions& options, TechniqueSource& techniques);
 
 /// What a worker stands on.

@@ -1,0 +1,22 @@
+// What Lumivox asks of a device beyond an OpenGL 4.5 core context: docs/gpu.md.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+
+namespace lumivox::gpu {
+
+struct Requirement {
+  unsigned int limit;  ///< as glGetInteger64v takes it
+  const char* name;
+  std::int64_t least;
+  const char* why;
+};
+std::span<const Requirement> requirements();
+
+/// "GL_MAX_... is 0, and 8 are needed: why" for every limit that is too low, a line each; empty when none is.
+std::string unmetRequirements(const std::function<std::int64_t(const Requirement&)>& valueOf);
+
+}  // namespace lumivox::gpu

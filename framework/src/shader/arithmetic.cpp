@@ -1,0 +1,42 @@
+#include "shader/arithmetic.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace lumivox::shader {
+
+std::vector<std::uint32_t> withoutContractionMarks(std::span<const std::uint32_t> spirv) {
+  // SPIR-V 1.0, sections 2.3 (layout of a module), 3.20 (decorations) and 3.32.3 (OpDecorate).
+  constexpr std::size_t kHeader = 5;
+  constexpr std::uint32_t kOpDecorate = 71, kNoContraction = 42;
+  std::vector<std::uint32_t> kept(spirv.begin(), spirv.begin() + std::min(kHeader, spirv.size()));
+  kept.reserve(spirv.size());
+  for (std::size_t at = kHeader; at < spirv.size();) {
+    const std::size_t length = spirv[at] >> 16;
+    if (length == 0 || at + length > spirv.size())
+      return {spirv.begin(), spirv.end()};  // the driver says why
+    const bool mark = (spirv[at] & 0xffffu) == kOpDecorate && length == 3 && spirv[at + 2] == kNoContraction;
+    if (!mark) kept.insert(kept.end(), spirv.begin() + at, spirv.begin() + at + length);
+    at += length;
+  }
+  return kept;
+}
+
+std::string withoutContractionMarks(std::string_view glsl) {
+  constexpr std::string_view kMark = "precise ";
+  const auto isPartOfWord = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+  };
+  std::string kept;
+  kept.reserve(glsl.size());
+  for (std::size_t at = 0; at < glsl.size();) {
+    const std::size_t found = glsl.find(kMark, at);
+    kept += glsl.substr(at, found - at);
+    if (found == std::string_view::npos) break;
+    at = found + kMark.size();
+    if (found > 0 && isPartOfWord(glsl[found - 1])) kept += kMark;
+  }
+  return kept;
+}
+
+}  // namespace lumivox::shader

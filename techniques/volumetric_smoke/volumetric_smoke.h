@@ -1,0 +1,43 @@
+// What the marches through media share.
+#pragma once
+
+#include "lumivox/pipeline/media.h"
+#include "lumivox/plugin/technique.h"
+
+namespace lumivox::volumetric_smoke {
+
+inline constexpr glm::ivec3 kImageGroup{8, 8, 1};  // local size of the shaders
+
+/// Block View of range.glsl. Its mirrors in the shaders' headers have the same members.
+template <class View>
+View viewOf(const CameraView& camera, int pixelsPerSample) {
+  View view{};
+  view.eyeWorld = camera.eye;
+  view.pixelsPerSample = pixelsPerSample;
+  view.cornerDirection = camera.direction(0.0f, 0.0f);
+  view.perColumn = camera.direction(1.0f, 0.0f) - view.cornerDirection;
+  view.perRow = camera.direction(0.0f, 1.0f) - view.cornerDirection;
+  return view;
+}
+
+/// Samples of a march along either side of the picture, with one for 2 x 2 pixels or for each.
+inline glm::ivec2 samplesOf(const CameraView& camera, int pixelsPerSample) {
+  return (glm::ivec2(camera.width, camera.height) + pixelsPerSample - 1) / pixelsPerSample;
+}
+
+/// Two images: scattered radiance and transmittance.
+struct Result {
+  gpu::TextureRef scattered, transmittance;
+  Result(PassContext& frame, int width, int height) {
+    gpu::TextureDescription description;
+    description.format = gpu::Format::rgba32f;
+    description.width = width;
+    description.height = height;
+    scattered = frame.texture(description, "scattered radiance");
+    transmittance = frame.texture(description, "transmittance");
+  }
+};
+
+void addMarchAsPublished(TechniqueRegistry& registry);
+
+}  // namespace lumivox::volumetric_smoke

@@ -1,0 +1,166 @@
+// Grids of radiance made by hand, and cones through them, for the tests of voxel cone tracing.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "support/scene_builder.h"
+#include "support/techniques.h"
+
+namespace lumivox::test::cones {
+
+inline constexpr int kPixels = 8;  ///< along both sides of the pictures here
+
+/// A g-buffer of one surface point in every pixel; with a specular albedo where its exponent, in w, is above
+/// 0.
+inline GBuffer surfacePoint(const glm::vec3& position, const glm::vec3& normal, const glm::vec3& albedo,
+                            const glm::vec4& specular = glm::vec4(0.0f)) {
+  gpu::TextureDescription description;
+  description.format = gpu::Format::rgba32f;
+  description.width = description.height = kPixels;
+  const auto filled = [&](const glm::vec4& value) {
+    auto texture = std::make_shared<gpu::Texture>(device(), description, "test g-buffer");
+    texture->clear(value);
+    return texture;
+  };
+  GBuffer result;
+  result.position = filled(glm::vec4(position, 1.0f));
+  result.normal = filled(glm::vec4(normal, 1.0f));
+  result.geometricNormal = filled(glm::vec4(normal, 0.0f));
+  result.diffuse = filled(glm::vec4(albedo, 1.0f));
+  if (specular.w > 0.0f) result.specular = filled(specular);
+  return result;
+}
+
+/// A grid of [-1,1]^3 with all levels allocated; `fill` gives the finest.
+inline RadianceGrid makeGrid(int resolution, const std::function<glm::vec4(int, int, int)>& fill) {
+  gpu::TextureDescription description;
+  description.kind = gpu::TextureKind::d3;
+  description.format = gpu::Format::rgba32f;
+  description.width = description.height = description.depth = resolution;
+  description.levels = gpu::fullLevelCount(resolution, resolution, resolution);
+  RadianceGrid grid;
+  grid.grid = {glm::vec3(-1.0f), 2.0f / static_cast<float>(resolution), glm::ivec3(resolution)};
+  grid.radiance = std::make_shared<gpu::Texture>(device(), description, "test grid");
+  grid.radiance->clear(glm::vec4(0.0f));
+  std::vector<float> values;
+  for (int z = 0; z < resolution; ++z)
+    for (int y = 0; y < resolution; ++y)
+      for (int x = 0; x < resolution; ++x) {
+        const glm::vec4 value = fill(x, y, z);
+        values.insert(values.end(), {value.r, value.g, value.b, value.a});
+      }
+  grid.radiance->uploadFloats(0, values);
+  return grid;
+}
+
+/// A grid whose voxels are all the same.
+inline RadianceGrid uniformGrid(int resolution, const glm::vec4& value) {
+  return makeGrid(resolution, [&](int, int, int) { return value; });
+}
+
+inline Scene emptyScene(const glm::vec3& environment = glm::vec3(0.0f)) {
+  SceneBuilder builder;
+  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, kPixels, kPixels);
+  builder.scene.environment = environment;
+  return builder.scene;
+}
+
+inline RadianceGrid filtered(RadianceGrid grid, const char* opacity = "facing") {
+  const Scene scene = emptyScene();
+  PassHarness harness(device(), techniques(), "voxel_cone_tracing", "filter", scene, snapshotOf(scene, 0.0));
+  harness.setParameter("opacity", std::string(opacity));
+  harness.setInput("radiance", grid);
+  harness.run();
+  return harness.output<RadianceGrid>("mips");
+}
+
+struct GatherSettings {
+  int cones = 6;
+  const char* distribution = "cosine";
+  double offset = 0, start = 0, reach = 0, step = 0.25;
+  double clearance = 0.5, footprint = 0.5;  // the defaults of the pass
+  bool asPublished = false;
+  double coneRatio = 1.1547005383792515;
+  double jitter = 0;
+  std::uint64_t seed = 1;
+};
+
+/// Runs `gather` over a g-buffer; `read` gets the pass with its outputs.
+template <class Read>
+auto gatherWith(const Scene& scene, const RadianceGrid& grid, const GBuffer& gbuffer,
+                const GatherSettings& settings, const Read& read) {
+  PassHarness harness(device(), techniques(), "voxel_cone_tracing", "gather", scene, snapshotOf(scene, 0.0));
+  harness.setParameter("cones", settings.cones);
+  harness.setParameter("distribution", std::string(settings.distribution));
+  harness.setParameter("offset", settings.offset);
+  harness.setParameter("start", settings.start);
+  harness.setParameter("reach", settings.reach);
+  harness.setParameter("step", settings.step);
+  harness.setParameter("clearance", settings.clearance);
+  harness.setParameter("footprint", settings.footprint);
+  harness.setParameter("as_published", std::string(settings.asPublished ? "on" : "off"));
+  harness.setParameter("cone_ratio", settings.coneRatio);
+  harness.setParameter("jitter", settings.jitter);
+  harness.setInput("gbuffer", gbuffer);
+  harness.setInput("grid", grid);
+  harness.run(settings.seed);
+  return read(harness);
+}
+
+/// Indirect diffuse radiance at one surface point of albedo 1, in every pixel.
+inline Picture gatherPicture(const Scene& scene, const RadianceGrid& grid, const glm::vec3& position,
+                             const glm::vec3& normal, const GatherSettings& settings) {
+  return gatherWith(
+      scene, grid, surfacePoint(position, normal, glm::vec3(1.0f)), settings,
+      [](PassHarness& harness) { return pictureOf(*harness.output<Image>("diffuse").texture); });
+}
+inline glm::vec3 pixelOf(const Picture& picture) {
+  return {picture.at(3, 3, 0), picture.at(3, 3, 1), picture.at(3, 3, 2)};
+}
+inline glm::vec3 gather(const Scene& scene, const RadianceGrid& grid, const glm::vec3& position,
+                        const glm::vec3& normal, const GatherSettings& settings) {
+  return pixelOf(gatherPicture(scene, grid, position, normal, settings));
+}
+
+/// Indirect glossy radiance at one surface point.
+inline glm::vec3 gatherGlossy(const Scene& scene, const RadianceGrid& grid, const glm::vec3& position,
+                              const glm::vec3& normal, const glm::vec4& specular,
+                              const GatherSettings& settings) {
+  return gatherWith(
+      scene, grid, surfacePoint(position, normal, glm::vec3(0.0f), specular), settings,
+      [](PassHarness& harness) { return pixelOf(pictureOf(*harness.output<Image>("glossy").texture)); });
+}
+
+struct InjectSettings {
+  const char* precision = "float";
+  double ambient = 0;
+  bool lights = true, storeMedia = false;
+  const ScatteringGrid* media = nullptr;
+};
+
+/// The grid after injecting the fragments of a scene under its lights.
+inline RadianceGrid injectedGrid(const Scene& scene, int resolution, const InjectSettings& settings = {},
+                                 VoxelFragments* fragments = nullptr) {
+  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
+  PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshot);
+  voxels.setParameter("resolution", resolution);
+  voxels.run();
+  PassHarness shadow(device(), techniques(), "direct_lighting", "shadow_map", scene, snapshot);
+  PassHarness inject(device(), techniques(), "voxel_cone_tracing", "inject", scene, snapshot);
+  inject.setParameter("precision", std::string(settings.precision));
+  inject.setParameter("ambient", settings.ambient);
+  inject.setParameter("store_media", std::string(settings.storeMedia ? "on" : "off"));
+  inject.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
+  if (settings.lights) {
+    shadow.run();
+    inject.setInput("shadow", shadow.output<ShadowMap>("depth"));
+  }
+  if (settings.media != nullptr) inject.setInput("media", *settings.media);
+  if (fragments != nullptr) *fragments = voxels.output<VoxelFragments>("fragments");
+  inject.run();
+  return inject.output<RadianceGrid>("radiance");
+}
+
+}  // namespace lumivox::test::cones

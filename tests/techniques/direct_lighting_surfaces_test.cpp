@@ -1,0 +1,129 @@
+// What the light of surfaces depends on beside the diffuse albedo: the Phong lobe, and the holes of alpha
+// masks.
+#include <glm/gtc/constants.hpp>
+
+#include "support/scene_builder.h"
+#include "support/techniques.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+constexpr int kSide = 16;
+
+/// A floor of 2 m x 2 m at y = 0 facing up, seen from 3 m above; `up` of the picture is -z.
+SceneBuilder floorOf(const Material& material) {
+  SceneBuilder builder;
+  builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.material(material));
+  builder.look({0, 3, 0}, {0, 0, 0}, {0, 0, -1}, 2.0 * std::atan(1.0 / 3.0), kSide, kSide);
+  return builder;
+}
+
+glm::dvec3 floorPoint(int x, int y) {
+  return {2.0 * (x + 0.5) / kSide - 1.0, 0.0, 2.0 * (y + 0.5) / kSide - 1.0};
+}
+
+Picture directLight(const Scene& scene) {
+  return renderOnce(scene, pipeline("direct_lighting")).outputs.at("direct");
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a Phong floor under a directional light shows (n + 2) / (2 pi) cos^n around the mirror direction") {
+  const glm::dvec3 travel = glm::normalize(glm::dvec3(0.2, -1.0, 0.1));
+  const double irradiance = 3.0 * -travel.y;
+  for (const float exponent : {1.0f, 4.0f, 50.0f}) {
+    CAPTURE(exponent);
+    Material shiny;
+    shiny.specular = {0.5f, 0.25f, 0.125f};
+    shiny.exponent = exponent;
+    SceneBuilder builder = floorOf(shiny);
+    builder.light(LightKind::directional, {3, 3, 3}, {}, travel);
+    const Picture picture = directLight(builder.scene);
+    const glm::dvec3 mirrored(travel.x, -travel.y, travel.z);
+    for (const glm::ivec2 pixel :
+         {glm::ivec2(2, 13), glm::ivec2(8, 8), glm::ivec2(9, 7), glm::ivec2(14, 3)}) {
+      const glm::dvec3 toEye = glm::normalize(glm::dvec3(0, 3, 0) - floorPoint(pixel.x, pixel.y));
+      const double cosine = std::max(0.0, glm::dot(mirrored, toEye));
+      const double lobe = (exponent + 2.0) / (2.0 * glm::pi<double>()) * std::pow(cosine, double(exponent));
+      for (int c = 0; c < 3; ++c)
+        CHECK_THAT(picture.at(pixel.x, pixel.y, c),
+                   WithinRel(static_cast<float>(shiny.specular[c] * lobe * irradiance), 2e-3f));
+    }
+  }
+}
+
+TEST_CASE("a light more than a right angle off the mirror direction adds nothing to a Phong surface") {
+  // Seen and lit at a slant from the same side: the mirror direction points away from the light, 2 x 50
+  // degrees.
+  for (const float exponent : {1.0f, 8.0f}) {
+    Material shiny;
+    shiny.specular = glm::vec3(0.5f);
+    shiny.exponent = exponent;
+    SceneBuilder builder = floorOf(shiny);
+    const double slant = glm::radians(50.0);
+    const glm::dvec3 towards(std::sin(slant), std::cos(slant), 0.0);
+    builder.look(4.0 * towards, {0, 0, 0}, {0, 1, 0}, 0.1, kSide, kSide);
+    builder.light(LightKind::directional, {3, 3, 3}, {}, -towards);
+    const Picture picture = directLight(builder.scene);
+    for (const float radiance : picture.values()) CHECK(radiance == 0.0f);
+  }
+}
+
+TEST_CASE("a blocker casts the shadow of what its alpha mask keeps, and the hole lets the light through") {
+  Material white;
+  white.diffuse = glm::vec3(0.5f);
+  SceneBuilder builder = floorOf(white);
+  // The left half of the mask (u < 0.5, here x < 0) is a hole.
+  SurfaceTexture half;
+  half.width = 2;
+  half.height = 1;
+  half.mask = true;
+  half.values = {0.0f, 1.0f};
+  Material masked;
+  masked.maskTexture = static_cast<int>(builder.scene.textures.size());
+  builder.scene.textures.push_back(half);
+  // Wider than the floor and above the camera, so that it is not seen.
+  builder.quad({-2, 4, -2}, {4, 0, 0}, {0, 0, 4}, builder.material(masked));
+  builder.light(LightKind::directional, {3, 3, 3}, {}, {0, -1, 0});
+  const Picture picture = directLight(builder.scene);
+  const float lit = 0.5f / glm::pi<float>() * 3.0f;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      // Bilinear filtering of the mask has its threshold in the middle; the shadow map's texels blur a pixel
+      // there.
+      if (x == kSide / 2 - 1 || x == kSide / 2) continue;
+      CAPTURE(x, y);
+      if (x < kSide / 2)
+        CHECK_THAT(picture.at(x, y, 0), WithinRel(lit, 1e-3f));
+      else
+        CHECK(picture.at(x, y, 0) == 0.0f);
+    }
+  }
+}
+
+TEST_CASE("the camera looks through the holes of alpha masks") {
+  Material white;
+  white.diffuse = glm::vec3(0.5f);
+  SceneBuilder builder = floorOf(white);
+  SurfaceTexture half;
+  half.width = 2;
+  half.height = 1;
+  half.mask = true;
+  half.values = {0.0f, 1.0f};
+  Material masked;
+  masked.diffuse = glm::vec3(1.0f);
+  masked.maskTexture = static_cast<int>(builder.scene.textures.size());
+  builder.scene.textures.push_back(half);
+  // Just above the floor, facing up, u along x.
+  builder.quad({-1, 0.01f, 1}, {2, 0, 0}, {0, 0, -2}, builder.material(masked));
+  builder.light(LightKind::directional, {3, 3, 3}, {}, glm::normalize(glm::dvec3(0.001, -1, 0)));
+  const Picture picture = directLight(builder.scene);
+  for (int y = 1; y < kSide - 1; ++y) {
+    CHECK_THAT(picture.at(2, y, 0), WithinRel(0.5f / glm::pi<float>() * 3.0f, 2e-3f));
+    CHECK_THAT(picture.at(kSide - 3, y, 0), WithinRel(1.0f / glm::pi<float>() * 3.0f, 2e-3f));
+  }
+}

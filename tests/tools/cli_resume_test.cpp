@@ -1,0 +1,209 @@
+// Work that takes hours is kept as it is done: reports go on where they were interrupted, sweeps share a
+// store, and a point or a cell that fails costs itself alone.
+#include <algorithm>
+
+#include "lumivox/report/store.h"
+#include "tools/cli_support.h"
+#include "tools/started.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+using Json = nlohmann::json;
+
+namespace {
+
+/// A pipeline of the technique that does what none may do, one point for each value.
+class Place : public Workplace {
+ public:
+  Place() {
+    write(
+        "slow.pipeline",
+        "pipeline \"Slow\" {\n  param value 1 in 0..10\n  pass paint hostile.paint { deed rest  value $value }\n\n"
+        "  output direct paint.radiance\n}\n\nsweep values { value [1 2 3 4] }\n");
+    write(
+        "tire.pipeline",
+        "pipeline \"Tire\" {\n  pass paint hostile.paint { deed tire }\n\n  output direct paint.radiance\n}\n");
+  }
+  static std::string techniques() { return (binaryDirectory() / "tests/plugins/hostile").string(); }
+  std::vector<std::string> words(const std::string& command, const std::vector<std::string>& pipelines,
+                                 const std::vector<std::string>& more) const {
+    std::vector<std::string> words{"--techniques", techniques(), command, scene()};
+    for (const std::string& pipeline : pipelines)
+      words.insert(words.end(), {"--pipeline", file(pipeline + ".pipeline")});
+    words.insert(words.end(),
+                 {"--resolution", "8x8", "--spp", "4", "--subpixels", "1", "--repeats", "3", "--seeds", "2"});
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  CommandResult run(const std::string& command, const std::vector<std::string>& pipelines,
+                    const std::vector<std::string>& more) const {
+    std::string line = "lumivox";
+    for (const std::string& word : words(command, pipelines, more)) line += " '" + word + "'";
+    return runCommand(line);
+  }
+};
+
+std::size_t runsIn(const std::string& store) {
+  try {
+    return ResultsStore(store, ResultsStore::Mode::read).runs().size();
+  } catch (const std::exception&) {
+    return 0;  // it is being made
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a report that is killed goes on where it stopped, says so, and gives the same page") {
+  const Place place;
+  const std::string checkpoint = place.file("page.unfinished.sqlite");
+  const std::vector<std::string> more{"-o", place.file("page.html")};
+  {
+    Started report(place.words("report", {"slow"}, more));
+    REQUIRE(becomes([&] { return runsIn(checkpoint) >= 2; }));
+    report.signalAfter(std::chrono::milliseconds(0), SIGKILL);
+    report.wait();
+  }
+  REQUIRE_FALSE(place.has("page.html"));
+  const std::vector<StoredRun> kept = ResultsStore(checkpoint, ResultsStore::Mode::read).runs();
+  REQUIRE(kept.size() >= 2);
+  REQUIRE(kept.size() < 4);
+  const CommandResult again = place.run("report", {"slow"}, more);
+  INFO(again.errors);
+  REQUIRE(again.exitCode == 0);
+  CHECK(contains(again.errors, "taken up from"));
+  CHECK(contains(again.output, std::to_string(kept.size()) + " of 4 points were taken up"));
+  CHECK_FALSE(std::filesystem::exists(checkpoint));
+  const Json points = Json::parse(place.read("page.json")).at("scenes").at(0).at("points");
+  REQUIRE(points.size() == 4);
+  for (const Json& point : points) {
+    CHECK(point.at("errors").size() > 0);
+    CHECK(point.at("frame_ms").at("repeats") == 3);
+    CHECK(point.at("passes").at(0).at("device_ms").at("median") > 0.0);
+  }
+  // What was kept is what stands there.
+  for (const StoredRun& run : kept)
+    CHECK(std::any_of(points.begin(), points.end(), [&](const Json& point) {
+      return point.at("frame_ms").at("median") == run.point.frameMs.median;
+    }));
+  // Pictures of points that were taken up are on the page: an output, a map for each truth.
+  const std::string page = place.read("page.html");
+  REQUIRE(place.run("report", {"slow"}, {"-o", place.file("whole.html")}).exitCode == 0);
+  const auto pictures = [](const std::string& html) {
+    std::size_t count = 0;
+    for (std::size_t at = html.find("data:image/png"); at != std::string::npos;
+         at = html.find("data:image/png", at + 1))
+      ++count;
+    return count;
+  };
+  CHECK(pictures(page) == pictures(place.read("whole.html")));
+}
+
+TEST_CASE("a point that fails while it is timed is a row that says why, and the report stands") {
+  const Place place;
+  const CommandResult result =
+      place.run("report", {"tire", "slow"}, {"-o", place.file("page.html"), "--no-sweep"});
+  INFO(result.errors);
+  CHECK(result.exitCode == 1);
+  const Json points = Json::parse(place.read("page.json")).at("scenes").at(0).at("points");
+  REQUIRE(points.size() == 2);
+  CHECK(points[0].at("failure") == "the pass is tired; expected fewer frames");
+  CHECK(points[0].at("errors").empty());
+  CHECK(points[0].at("passes").empty());
+  CHECK_FALSE(points[1].contains("failure"));
+  CHECK(points[1].at("errors").size() > 0);
+  CHECK(contains(place.read("page.html"), "the pass is tired; expected fewer frames"));
+  CHECK(contains(place.read("page.csv"), "the pass is tired; expected fewer frames"));
+  CHECK(contains(result.output, "failed"));
+}
+
+TEST_CASE("a point that fails in a sweep is stored without numbers, and the others are measured") {
+  const Place place;
+  const std::string store = place.file("results.sqlite");
+  CHECK(place.run("sweep", {"tire", "slow"}, {"--store", store, "--no-sweep"}).exitCode == 1);
+  const std::vector<StoredRun> runs = ResultsStore(store, ResultsStore::Mode::read).runs();
+  REQUIRE(runs.size() == 2);
+  for (const StoredRun& run : runs) {
+    const bool failed = !run.point.failure.empty();
+    CHECK(failed == (run.pipelineName == "Tire"));
+    CHECK(run.point.errors.empty() == failed);
+    CHECK((run.point.frameMs.repeats == 0) == failed);
+  }
+}
+
+TEST_CASE("two sweeps into one store measure each point once, and both end with all of them") {
+  const Place place;
+  const std::string store = place.file("results.sqlite");
+  // More points than are timed together, so that each process finds some.
+  place.write(
+      "slow.pipeline",
+      "pipeline \"Slow\" {\n  param value 1 in 0..10\n  pass paint hostile.paint { deed paint  value $value "
+      "}\n\n  output direct paint.radiance\n}\n\nsweep values { value [0.5 1 2 3 4 5 6 7 8 9] }\n");
+  const std::vector<std::string> words = place.words("sweep", {"slow"}, {"--store", store});
+  Started first(words, place.file("first.txt")), second(words, place.file("second.txt"));
+  const int firstStatus = first.wait(), secondStatus = second.wait();
+  INFO(place.read("first.txt") << "\n" << place.read("second.txt"));
+  CHECK(firstStatus == 0);
+  CHECK(secondStatus == 0);
+  CHECK(runsIn(store) == 10);
+  // Each point is announced when it is measured: once by one of the two.
+  const std::string said = place.read("first.txt") + place.read("second.txt");
+  for (const char* value : {"0.5", "1", "2", "3", "4", "5", "6", "7", "8", "9"}) {
+    std::size_t times = 0;
+    const std::string line = std::string(": value=") + value + ", seed";
+    const std::string bare = std::string(": value=") + value + "\n";
+    for (const std::string& one : {line, bare})
+      for (std::size_t at = said.find(one); at != std::string::npos; at = said.find(one, at + 1)) ++times;
+    INFO(value);
+    CHECK(times == 1);
+  }
+  CHECK(runsIn(store) == 10);
+  // What was timed first was timed twice.
+  const ResultsStore results(store, ResultsStore::Mode::read);
+  CHECK(results.controls(results.runs().front().identity).size() >= 6);
+}
+
+TEST_CASE("points that a killed sweep had claimed are measured by the next") {
+  const Place place;
+  const std::string store = place.file("results.sqlite");
+  const std::vector<std::string> words = place.words("sweep", {"slow"}, {"--store", store});
+  {
+    Started sweep(words, place.file("first.txt"));
+    REQUIRE(becomes([&] { return place.has("first.txt") && contains(place.read("first.txt"), "value=1"); }));
+    sweep.signalAfter(std::chrono::milliseconds(0), SIGKILL);
+    sweep.wait();
+  }
+  REQUIRE(runsIn(store) == 0);
+  const CommandResult next = place.run("sweep", {"slow"}, {"--store", store, "--json"});
+  INFO(next.errors);
+  CHECK(next.exitCode == 0);
+  CHECK(Json::parse(next.output).at("measured") == 4);
+  CHECK(runsIn(store) == 4);
+}
+
+TEST_CASE("a battery that is killed has stored the cells that were run") {
+  const Place place;
+  place.write("good.pipeline",
+              "pipeline \"Good\" {\n  pass paint hostile.paint { }\n\n  output direct paint.radiance\n}\n");
+  place.write(
+      "spin.pipeline",
+      "pipeline \"Spin\" {\n  pass paint hostile.paint { deed spin }\n\n  output direct paint.radiance\n}\n");
+  const std::string store = place.file("cells.sqlite");
+  const auto cells = [&] {
+    try {
+      return ResultsStore(store, ResultsStore::Mode::read).stressCells();
+    } catch (const std::exception&) {
+      return std::vector<StressCell>();
+    }
+  };
+  Started battery({"--techniques", Place::techniques(), "stress", "--quick", "--workers", "1", "--case",
+                   "camera_on_surface", "--pipeline", place.file("good.pipeline"), "--pipeline",
+                   place.file("spin.pipeline"), "--time-limit", "600", "--store", store});
+  REQUIRE(becomes([&] { return cells().size() == 1; }));
+  battery.signalAfter(std::chrono::milliseconds(0), SIGKILL);
+  battery.wait();
+  const std::vector<StressCell> kept = cells();
+  REQUIRE(kept.size() == 1);
+  CHECK(kept[0].outcome == StressOutcome::stable);
+  CHECK(contains(kept[0].pipeline, "good.pipeline"));
+  CHECK_FALSE(kept[0].device.empty());
+}
