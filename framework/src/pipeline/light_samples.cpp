@@ -69,35 +69,30 @@ struct Lamp {
   double weight = 0.0;  ///< of all its emitters together
 };
 
-/// How many points of a mask all emitters together may look up for one set of samples: a few milliseconds.
-constexpr std::size_t kMostMaskPoints = std::size_t{1} << 19;
-constexpr std::size_t kFewestMaskPoints = 16;  // of one triangle
-
-/// The share of a masked emitter that is no hole: over the middles of equal parts of the triangle, four along
-/// every texel where `mostPoints` allows it.
-float shiningShare(Emitter& emitter, std::size_t mostPoints) {
-  const glm::vec2 size(emitter.mask->width, emitter.mask->height);
-  float longest = 0.0f;
-  for (std::size_t k = 0; k < 3; ++k)
-    longest = std::max(longest, glm::length(size * (emitter.texcoords[(k + 1) % 3] - emitter.texcoords[k])));
-  constexpr float kPartsOfTexel = 4.0f, kFewestRows = 64.0f;
-  // An odd number, so that no row of middles follows the borders of texels.
-  const auto rows = static_cast<int>(std::min(std::max(kPartsOfTexel * longest, kFewestRows),
-                                              std::sqrt(float(mostPoints)))) |
-                    1;
-  const float step = 1.0f / static_cast<float>(rows);
-  int shining = 0;
-  // Row by row the upright parts, and between them those upside down: rows^2 in all.
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < 2 * (rows - y) - 1; ++x) {
-      const float third = x % 2 == 0 ? 1.0f / 3.0f : 2.0f / 3.0f;
-      const glm::vec2 point =
-          step * glm::vec2(static_cast<float>(x / 2) + third, static_cast<float>(y) + third);
-      if (!emitter.shinesAt(point)) continue;
-      if (shining++ == 0) emitter.someShiningPoint = point;
-    }
+/// Area-uniform on a triangle, as barycentric coordinates of its second and third corner: the unit square
+/// folded along its diagonal.
+glm::vec2 trianglePoint(int index) {
+  auto [u, v] = r2Point(index);
+  if (u + v > 1.0) {
+    u = 1.0 - u;
+    v = 1.0 - v;
   }
-  return static_cast<float>(shining) * step * step;
+  return glm::vec2(u, v);
+}
+
+/// How many points of masks all emitters together may look up for one set of samples: a few milliseconds.
+constexpr std::size_t kMostMaskPoints = std::size_t{1} << 18;
+
+/// The share of a masked emitter that is no hole, at `points` points. The sequence goes on from one triangle
+/// to the next, so that what few points miss of one of many leaves is found on another.
+float shiningShare(Emitter& emitter, std::size_t points, int& sequence) {
+  std::size_t shining = 0;
+  for (std::size_t i = 0; i < points; ++i) {
+    const glm::vec2 point = trianglePoint(++sequence);
+    if (!emitter.shinesAt(point)) continue;
+    if (shining++ == 0) emitter.someShiningPoint = point;
+  }
+  return static_cast<float>(shining) / static_cast<float>(points);
 }
 
 /// Emissive triangles whose masks have to be looked at.
@@ -113,8 +108,11 @@ std::size_t maskedEmitters(const Scene& scene) {
 }
 
 std::vector<Lamp> lampsOf(const Scene& scene, const SceneSnapshot& snapshot) {
-  const std::size_t mostPoints =
-      std::max(kFewestMaskPoints, kMostMaskPoints / std::max<std::size_t>(maskedEmitters(scene), 1));
+  // What 2^14 points miss of one triangle is below a thousandth of it.
+  constexpr std::size_t kEnoughPoints = std::size_t{1} << 14, kFewestPoints = 16;
+  const std::size_t points = std::clamp(kMostMaskPoints / std::max<std::size_t>(maskedEmitters(scene), 1),
+                                        kFewestPoints, kEnoughPoints);
+  int maskSequence = 0;
   std::vector<Lamp> lamps;
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const ObjectState& state = snapshot.objects[o];
@@ -142,7 +140,7 @@ std::vector<Lamp> lampsOf(const Scene& scene, const SceneSnapshot& snapshot) {
         emitter.area = area;
         if (material.maskTexture >= 0) {
           emitter.mask = &scene.textures[static_cast<std::size_t>(material.maskTexture)];
-          emitter.area *= shiningShare(emitter, mostPoints);
+          emitter.area *= shiningShare(emitter, points, maskSequence);
           if (!(emitter.area > 0.0f)) continue;
         }
         emitter.weight = emitter.area * glm::dot(material.emission,
@@ -156,17 +154,11 @@ std::vector<Lamp> lampsOf(const Scene& scene, const SceneSnapshot& snapshot) {
   return lamps;
 }
 
-/// Area-uniform on what shines of a triangle, as barycentric coordinates of b and c: the next points of the
-/// sequence, the unit square folded along its diagonal, until one is no hole.
+/// A point of what shines of a triangle: the next of the sequence that is no hole.
 glm::vec2 pointOn(const Emitter& emitter, int& sequence) {
   constexpr int kMostHoles = 1000;
   for (int tries = 0; tries < kMostHoles; ++tries) {
-    auto [u, v] = r2Point(++sequence);
-    if (u + v > 1.0) {
-      u = 1.0 - u;
-      v = 1.0 - v;
-    }
-    const glm::vec2 point(u, v);
+    const glm::vec2 point = trianglePoint(++sequence);
     if (emitter.shinesAt(point)) return point;
   }
   return emitter.someShiningPoint;

@@ -68,9 +68,9 @@ std::string entryName(const ContentHash& key) {
 }
 
 void markAsUsed(const fs::path& file) {
-  // The time of the last access, and not that of the content. Where it cannot be set the entry only looks
+  // Not the time of the last access, which any reader changes. Where it cannot be set the entry only looks
   // older.
-  const timespec times[2] = {{0, UTIME_NOW}, {0, UTIME_OMIT}};
+  const timespec times[2] = {{0, UTIME_OMIT}, {0, UTIME_NOW}};
   utimensat(AT_FDCWD, file.c_str(), times, AT_SYMLINK_NOFOLLOW);
 }
 
@@ -83,7 +83,7 @@ std::vector<KeptReference> keptReferences(bool withAttributes) {
     KeptReference entry;
     entry.file = file;
     entry.sizeBytes = static_cast<std::uint64_t>(status.st_size);
-    entry.used = std::max(timeOf(status.st_atim), timeOf(status.st_mtim));
+    entry.used = timeOf(status.st_mtim);
     if (withAttributes) {
       try {
         entry.attributes = readExrAttributes(file);
