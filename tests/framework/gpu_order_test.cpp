@@ -7,6 +7,7 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include "gpu/driver_messages.h"
 #include "gpu/requirements.h"
@@ -128,8 +129,18 @@ TEST_CASE("a device that lacks something is told apart by the name of every limi
 
 namespace {
 
+/// The lines that declare what a stage binds, one each.
+std::string declarationsOf(const std::string& glsl) {
+  std::istringstream lines(glsl);
+  std::string declarations;
+  for (std::string line; std::getline(lines, line);)
+    if (line.rfind("layout(", 0) == 0) declarations += line + "\n";
+  return declarations;
+}
+
 /// What one stage of a program uses, read from its GLSL, which SPIRV-Cross writes in one form.
-std::map<std::string, std::int64_t> usesOf(const std::string& glsl, Stage stage) {
+std::map<std::string, std::int64_t> usesOf(const std::string& text, Stage stage) {
+  const std::string glsl = declarationsOf(text);
   const auto count = [&](const char* pattern) {
     const std::regex expression(pattern);
     return std::distance(std::sregex_iterator(glsl.begin(), glsl.end(), expression), std::sregex_iterator());
