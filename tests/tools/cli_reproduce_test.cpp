@@ -62,25 +62,25 @@ TEST_CASE("check tells everything that is wrong in a published figure, each at i
        {"wrong_shapes.reproduction:5:3: block 'curve \"a\"' lacks the property 'over'",
         "wrong_shapes.reproduction:5:22: unknown value 'sideways' of property 'growth'",
         "wrong_shapes.reproduction:5:3: block 'curve \"a\"' lacks a block 'point'",
-        "wrong_shapes.reproduction:6:52: 9 of property 'subdivisions' is out of range",
-        "wrong_shapes.reproduction:7:21: unknown value 'everything' of property 'reference'",
-        "wrong_shapes.reproduction:8:15: unknown property 'published'"}) {
+        "wrong_shapes.reproduction:8:26: 9 of property 'subdivisions' is out of range",
+        "wrong_shapes.reproduction:10:21: unknown value 'everything' of property 'reference'",
+        "wrong_shapes.reproduction:10:3: block 'panel' lacks a name",
+        "wrong_shapes.reproduction:11:15: unknown property 'published'",
+        "wrong_shapes.reproduction:13:3: block 'row' named 'd' is given twice"}) {
     INFO(finding << "\n" << shapes.errors);
     CHECK(contains(shapes.errors, finding));
   }
   const CommandResult references = runCommand("lumivox check " + data("wrong_figure.reproduction"));
-  checkRefused(references, "wrong_figure.reproduction:8:3: there are two of name 'a'");
+  checkRefused(references, "wrong_figure.reproduction:8:31: there is no row 'aa'");
   for (const char* finding :
-       {"wrong_figure.reproduction:9:31: there is no row 'aa'", "did you mean 'a'",
-        "wrong_figure.reproduction:10:31: row 'c' cannot be divided by 'c'",
-        "wrong_figure.reproduction:11:31: row 'd' cannot be divided by 'a'",
-        "wrong_figure.reproduction:13:10: pipeline \"Volumetric smoke\" has no parameter 'resolutions'",
-        "did you mean 'resolution'", "wrong_figure.reproduction:18:10: the parameter 'pixels' is a word",
-        "wrong_figure.reproduction:23:5: this point measures something else",
-        "wrong_figure.reproduction:25:22: this names no output of a pass",
-        "wrong_figure.reproduction:26:3: there are two of name 'p'",
-        "wrong_figure.reproduction:26:21: pipeline \"Volumetric smoke\" has no parameter 'stepz'",
-        "wrong_figure.reproduction:27:37: there is no file"}) {
+       {"did you mean 'a'", "wrong_figure.reproduction:9:31: row 'c' cannot be divided by 'c'",
+        "wrong_figure.reproduction:10:31: row 'd' cannot be divided by 'a'",
+        "wrong_figure.reproduction:12:10: pipeline \"Volumetric smoke\" has no parameter 'resolutions'",
+        "did you mean 'resolution'", "wrong_figure.reproduction:17:10: the parameter 'pixels' is a word",
+        "wrong_figure.reproduction:22:5: this point measures something else",
+        "wrong_figure.reproduction:24:22: this names no output of a pass",
+        "wrong_figure.reproduction:26:11: pipeline \"Volumetric smoke\" has no parameter 'stepz'",
+        "wrong_figure.reproduction:28:37: there is no file"}) {
     INFO(finding << "\n" << references.errors);
     CHECK(contains(references.errors, finding));
   }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <tuple>
 #include <utility>
 
@@ -244,7 +243,6 @@ class ResultReader : TextFindings {
     if (result_.setUps().empty())
       report(main->place, main->word, fmt::format("reproduction '{}' has nothing to reproduce", result_.id),
              "a row, a curve or a panel");
-    for (const char* part : {"row", "curve", "panel"}) requireOwnNames(block, part);
     if (const dsl::Property* scaled = block.find("scaled")) readScaled(*scaled);
   }
 
@@ -265,16 +263,6 @@ class ResultReader : TextFindings {
       for (const dsl::Item& item : set->items)
         if (item.property) result.settings.push_back(&*item.property);
     return result;
-  }
-
-  void requireOwnNames(const dsl::CheckedBlock& whole, const char* word) {
-    std::set<std::string> names;
-    for (const dsl::Block* block : whole.blocks(word)) {
-      const std::string name = dsl::CheckedBlock(*block, part(word)).name();
-      if (!names.insert(name).second)
-        report(block->place, block->word, fmt::format("there are two of name '{}'", name),
-               fmt::format("a name of its own for each {}", word));
-    }
   }
 
   static const BlockSpecification& part(const std::string& word) {
