@@ -144,7 +144,7 @@ TEST_CASE("when workers no longer start, what was not run says so and takes no s
   FalseWorkers workers("if [ $START -gt 1 ]; then exit 3; fi", "exit 4");
   workers.options.workers = 1;
   const std::vector<StressCell> cells = workers.run();
-  REQUIRE(cells.size() > 6);
+  REQUIRE(cells.size() > 4);  // one is lost, three do not start, and the rest is not run
   CHECK(brokenOf(cells) == static_cast<std::ptrdiff_t>(cells.size()));
   CHECK(workers.starts().size() == 4);
   CHECK(cells.back().detail.find("not run: the last 3 workers did not start") != std::string::npos);
