@@ -105,8 +105,7 @@ StressCell runCell(Ground& ground, const CellRequest& request,
   cell.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   CardAnswer answer = explanationOf(cell, pipeline, ground.techniques);
   cell.explanation = std::move(answer.explanation);
-  if (!answer.contradiction.empty())
-    cell.detail += (cell.detail.empty() ? "" : "; ") + answer.contradiction;
+  if (!answer.contradiction.empty()) cell.detail += (cell.detail.empty() ? "" : "; ") + answer.contradiction;
   const Picture& picture = bench.shown();
   if (!request.picture.empty() && !picture.empty()) {
     createParentDirectories(request.picture);
