@@ -152,12 +152,12 @@ std::map<std::string, std::int64_t> usesOf(const std::string& text, Stage stage)
       most = std::max<std::int64_t>(most, std::stoll((*match)[1]));
     return most + 1;
   };
-  const std::int64_t storage = count(R"(std430\) [^;{]*buffer )"),
-                     images = count(R"(uniform [^;{]*[ui]?image[23]D)");
+  const std::int64_t storage = count(R"(std430\) [^;{\n]*buffer )"),
+                     images = count(R"(uniform [^;{\n]*[ui]?image[23]D)");
   std::map<std::string, std::int64_t> uses{
       {"GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS", highest(R"(binding = (\d+), std430\))")},
       {"GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS", storage},
-      {"GL_MAX_IMAGE_UNITS", highest(R"(layout\(binding = (\d+)[^)]*\) uniform [^;{]*[ui]?image[23]D)")},
+      {"GL_MAX_IMAGE_UNITS", highest(R"(layout\(binding = (\d+)[^)]*\) uniform [^;{\n]*[ui]?image[23]D)")},
       {"GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS", highest(R"(layout\(binding = (\d+)\) uniform [ui]?sampler)")}};
   switch (stage) {
     case Stage::vertex:
