@@ -57,14 +57,23 @@ Scene partsScene(int parts) {
   return scene;
 }
 
-/// A turning sphere of so many vertices, ring after ring.
+/// A turning sphere of so many vertices.
 Scene movingScene(int vertices) {
   Scene scene = partsScene(1);
   scene.positions.clear();
+  // Patch after patch, as models come that were ordered for caches: tiles of 16 x 16 of a square folded to an
+  // octahedron and blown up.
+  const int tiles = std::max(1, static_cast<int>(std::sqrt(vertices / 256.0)));
   for (int i = 0; i < vertices; ++i) {
-    const double height = 2.0 * (i + 0.5) / vertices - 1.0, angle = 2.399963 * i,
-                 radius = std::sqrt(1.0 - height * height);
-    scene.positions.emplace_back(radius * std::cos(angle), height, radius * std::sin(angle));
+    const int tile = i / 256 % (tiles * tiles), within = i % 256;
+    const double u = (tile % tiles * 16 + within % 16 + 0.5) / (8.0 * tiles) - 1.0;
+    const double v = (tile / tiles * 16 + within / 16 + 0.5) / (8.0 * tiles) - 1.0;
+    glm::dvec3 point(u, v, 1.0 - std::abs(u) - std::abs(v));
+    if (point.z < 0.0) {
+      point.x = (1.0 - std::abs(v)) * (u < 0.0 ? -1.0 : 1.0);
+      point.y = (1.0 - std::abs(u)) * (v < 0.0 ? -1.0 : 1.0);
+    }
+    scene.positions.emplace_back(glm::normalize(point));
   }
   scene.normals = scene.positions;
   scene.texcoords.assign(scene.positions.size(), {0, 0});
