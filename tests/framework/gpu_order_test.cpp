@@ -7,6 +7,7 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include "gpu/driver_messages.h"
 #include "gpu/requirements.h"
@@ -128,8 +129,18 @@ TEST_CASE("a device that lacks something is told apart by the name of every limi
 
 namespace {
 
+/// The lines that declare what a stage binds, one each.
+std::string declarationsOf(const std::string& glsl) {
+  std::istringstream lines(glsl);
+  std::string declarations;
+  for (std::string line; std::getline(lines, line);)
+    if (line.rfind("layout(", 0) == 0) declarations += line + "\n";
+  return declarations;
+}
+
 /// What one stage of a program uses, read from its GLSL, which SPIRV-Cross writes in one form.
-std::map<std::string, std::int64_t> usesOf(const std::string& glsl, Stage stage) {
+std::map<std::string, std::int64_t> usesOf(const std::string& text, Stage stage) {
+  const std::string glsl = declarationsOf(text);
   const auto count = [&](const char* pattern) {
     const std::regex expression(pattern);
     return std::distance(std::sregex_iterator(glsl.begin(), glsl.end(), expression), std::sregex_iterator());
@@ -141,12 +152,12 @@ std::map<std::string, std::int64_t> usesOf(const std::string& glsl, Stage stage)
       most = std::max<std::int64_t>(most, std::stoll((*match)[1]));
     return most + 1;
   };
-  const std::int64_t storage = count(R"(std430\) [^;{]*buffer )"),
-                     images = count(R"(uniform [^;{]*[ui]?image[23]D)");
+  const std::int64_t storage = count(R"(std430\) [^;{\n]*buffer )"),
+                     images = count(R"(uniform [^;{\n]*[ui]?image[23]D)");
   std::map<std::string, std::int64_t> uses{
       {"GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS", highest(R"(binding = (\d+), std430\))")},
       {"GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS", storage},
-      {"GL_MAX_IMAGE_UNITS", highest(R"(layout\(binding = (\d+)[^)]*\) uniform [^;{]*[ui]?image[23]D)")},
+      {"GL_MAX_IMAGE_UNITS", highest(R"(layout\(binding = (\d+)[^)]*\) uniform [^;{\n]*[ui]?image[23]D)")},
       {"GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS", highest(R"(layout\(binding = (\d+)\) uniform [ui]?sampler)")}};
   switch (stage) {
     case Stage::vertex:

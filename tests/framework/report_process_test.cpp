@@ -95,6 +95,13 @@ TEST_CASE("a lock ends with its process, however that ends, and names it until t
   CHECK(MachineLock::holders().empty());
 }
 
+TEST_CASE("where no file can be locked nobody is waited for") {
+  const OwnCache cache;
+  const auto file = cache.directory.write("file", "no folder");
+  setenv("LUMIVOX_CACHE", (file / "cache").c_str(), 1);
+  CHECK(waitFor(MachineLock::For::timing) < kAtOnce);
+}
+
 TEST_CASE("a process is told by its number and its start, and one that has ended has none") {
   const std::uint64_t own = startOf(static_cast<int>(getpid()));
   CHECK(own > 0);

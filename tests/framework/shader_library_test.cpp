@@ -3,6 +3,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <new>
 
 #include "shader/arithmetic.h"
 #include "support/support.h"
@@ -11,6 +14,25 @@
 using namespace lumivox;
 using namespace lumivox::gpu;
 namespace code = lumivox::shaders::test_shaders;
+
+namespace {
+
+/// Allocations of C++ on this thread; the driver is C.
+thread_local std::size_t allocations = 0;
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
 
 namespace {
 
@@ -259,6 +281,37 @@ TEST_CASE("what a variant uses must be given and must fit; what it does not use 
                    values, {code::values::waves(someWaves()), code::values::results(tooSmall)});
              }),
              Catch::Contains("'Results'") && Catch::Contains("8 bytes") && Catch::Contains("16"));
+}
+
+TEST_CASE("a draw and a dispatch whose programs are known allocate nothing") {
+  namespace volume = code::volume;
+  Laboratory laboratory;
+  Texture radiance(laboratory.device, {TextureKind::d3, Format::rgba16f, 4, 4, 4, 1}, "grid");
+  Texture counts(laboratory.device, {TextureKind::d3, Format::r32ui, 1, 1, 1, 1}, "counts");
+  Texture summed(laboratory.device, {TextureKind::d3, Format::rgba16f, 4, 4, 4, 1}, "summed");
+  // A block as draws have them: what of, and a matrix.
+  struct Block {
+    glm::mat4 worldToClip{1.0f};
+    glm::ivec4 draw{0};
+  };
+  const auto run = [&](int index) {
+    Block block;
+    block.draw.x = index;
+    const shader::UniformSlot<Block> slot{"View", 3};
+    laboratory.library.dispatch(laboratory.library.program(volume::kProgram, volume::Variant{}.key()),
+                                {volume::radiance(radiance, Sampling::nearest), volume::counts(counts),
+                                 volume::summed(summed), slot(block)},
+                                {1, 1, 1});
+    const Drawing drawing = laboratory.device.drawTo({.width = 2, .height = 2}, {});
+    laboratory.library.draw(laboratory.library.program(code::layers::kProgram, {}), {slot(block)}, 3);
+  };
+  run(0);
+  const std::size_t before = allocations;
+  for (int i = 1; i <= 20; ++i) run(i);
+  CHECK(allocations == before);
+  // The counter counts.
+  const auto one = std::make_unique<int>(1);
+  CHECK(allocations == before + 1);
 }
 
 TEST_CASE("an unknown technique, program or excluded variant is an error that says what there is") {

@@ -153,7 +153,7 @@ TEST_CASE("inside walls that all shine with L a lobe returns its integral times 
 
 TEST_CASE("glossy light of the Cornell box is within its card's error of the reference") {
   const Scene scene = loadScene(sourceDirectory() / "scenes/cornell_glossy.scene");
-  ReferenceOptions referenceOptions = quietly(64, 1);
+  ReferenceOptions referenceOptions = quietly(512, 1);
   referenceOptions.width = referenceOptions.height = 64;
   referenceOptions.useCache = true;
   const Picture oneBounce = cachedReference(scene, referenceOptions).layers.at("one_bounce_glossy");
@@ -165,8 +165,9 @@ TEST_CASE("glossy light of the Cornell box is within its card's error of the ref
                      nothing = compare(Picture(64, 64, 3), oneBounce);
   INFO("RMSE " << error.rmse.value << " against " << nothing.rmse.value << ", ratio "
                << error.meanRatio.value);
-  // Measured: 0.382 of none, ratio 0.852. Picture and reference are the same bits every time; the margin of 5
-  // % is for other drivers' rounding and texture filters.
+  // Measured: 0.382 of none, ratio 0.848, with a reference whose noise is a sixth of that error. Picture and
+  // reference are the same bits every time; the margin of 5 % is for other drivers' rounding and texture
+  // filters.
   CHECK(error.rmse.value < 0.40 * nothing.rmse.value);
-  CHECK(error.meanRatio.value == Approx(0.852).epsilon(0.05));
+  CHECK(error.meanRatio.value == Approx(0.848).epsilon(0.05));
 }

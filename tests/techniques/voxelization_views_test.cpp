@@ -280,9 +280,10 @@ TEST_CASE(
       most[with] = std::max(most[with], coverage);
       sum[with] += coverage / kSteps;
     }
-  // Four samples: none or one, 0 to 0.25. With 8 x 8 pixels of four, 39 to 43 samples of 1/256.
+  // One of four samples, or none: 0 to 0.25. With 8 x 8 pixels of four there are 41 on the average, each
+  // 1/256; which ones is told exactly above, and here 7 of them come and go. A quarter of its light is 10.
   CHECK(most[0] - least[0] >= 0.5 * kSide * kSide);
-  CHECK(most[1] - least[1] < 0.15 * kSide * kSide);
+  CHECK(most[1] - least[1] < 0.25 * kSide * kSide);
   CHECK(sum[1] == Approx(kSide * kSide).epsilon(0.02));
 }
 

@@ -98,6 +98,14 @@ TEST_CASE("a report that is killed goes on where it stopped, says so, and gives 
   CHECK(pictures(page) == pictures(place.read("whole.html")));
 }
 
+TEST_CASE("a report of a wrong text leaves no checkpoint") {
+  const Place place;
+  place.write("wrong.pipeline",
+              "pipeline \"Wrong\" {\n  pass paint hostile.pain { }\n\n  output direct paint.radiance\n}\n");
+  checkRefused(place.run("report", {"wrong"}, {"-o", place.file("page.html")}), "did you mean 'paint'");
+  CHECK_FALSE(place.has("page.unfinished.sqlite"));
+}
+
 TEST_CASE("a point that fails while it is timed is a row that says why, and the report stands") {
   const Place place;
   const CommandResult result =
@@ -106,13 +114,13 @@ TEST_CASE("a point that fails while it is timed is a row that says why, and the 
   CHECK(result.exitCode == 1);
   const Json points = Json::parse(place.read("page.json")).at("scenes").at(0).at("points");
   REQUIRE(points.size() == 2);
-  CHECK(points[0].at("failure") == "the pass is tired; expected fewer frames");
+  CHECK(points[0].at("failure") == "pass paint: the pass is tired; expected fewer frames");
   CHECK(points[0].at("errors").empty());
   CHECK(points[0].at("passes").empty());
   CHECK_FALSE(points[1].contains("failure"));
   CHECK(points[1].at("errors").size() > 0);
-  CHECK(contains(place.read("page.html"), "the pass is tired; expected fewer frames"));
-  CHECK(contains(place.read("page.csv"), "the pass is tired; expected fewer frames"));
+  CHECK(contains(place.read("page.html"), "pass paint: the pass is tired; expected fewer frames"));
+  CHECK(contains(place.read("page.csv"), "pass paint: the pass is tired; expected fewer frames"));
   CHECK(contains(result.output, "failed"));
 }
 

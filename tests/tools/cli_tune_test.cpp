@@ -32,7 +32,7 @@ struct Tuning {
   }
   CommandResult run(const std::string& more) const {
     return runCommand("lumivox -q tune " + kScene + " --pipeline " + pipeline + " --store " + store +
-                      " --resolution 24x24 --spp 64 --subpixels 1 --repeats 2 --seeds 1 " + more);
+                      " --resolution 24x24 --spp 64 --subpixels 1 --repeats 3 --seeds 2 " + more);
   }
 };
 

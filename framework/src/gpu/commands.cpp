@@ -218,11 +218,11 @@ GLuint makeFramebuffer(DeviceState& state, const RenderTargets& targets, glm::iv
     state.check("choosing what to draw to");
     if (status != GL_FRAMEBUFFER_COMPLETE)
       throw Error(fmt::format("cannot draw to these targets: {}", framebufferProblem(status)));
-    // A device may take more samples than it is asked for, in other places (9.2.1).
+    // A device may take more samples than it is asked for, in other places (9.2.1). Mesa tells 0: nothing.
     if (targets.samples > 1) {
       GLint samples = 0;
       glGetNamedFramebufferParameteriv(framebuffer, GL_SAMPLES, &samples);
-      if (samples != targets.samples)
+      if (samples != 0 && samples != targets.samples)
         throw Error(fmt::format("{} samples per pixel asked for, but {} would take {}", targets.samples,
                                 state.info.renderer, samples));
     }
@@ -235,17 +235,22 @@ GLuint makeFramebuffer(DeviceState& state, const RenderTargets& targets, glm::iv
 
 }  // namespace
 
-GLuint FramebufferCache::get(const FramebufferKey& key, const std::function<GLuint()>& make) {
-  if (const auto found = framebuffers_.find(key); found != framebuffers_.end()) return found->second;
+std::optional<GLuint> FramebufferCache::find(const FramebufferKey& key) const {
+  const auto found = framebuffers_.find(key);
+  return found == framebuffers_.end() ? std::nullopt : std::optional(found->second);
+}
+
+void FramebufferCache::keep(const FramebufferKey& key, GLuint framebuffer) {
   constexpr std::size_t kMost = 4096;  // some for each layer of the largest arrays
   if (framebuffers_.size() >= kMost) clear();
-  return framebuffers_.emplace(key, make()).first->second;
+  framebuffers_.emplace(key, framebuffer);
 }
 
 void FramebufferCache::forget(GLuint texture) {
   std::erase_if(framebuffers_, [texture](const auto& one) {
     const auto& [key, framebuffer] = one;
-    // Handles are at the even places, and none of a framebuffer without targets has more than 0 and a size.
+    // Handles are at the even places. Behind them, one without targets has its size: at worst it is made
+    // again.
     bool uses = false;
     for (std::size_t i = 0; i < key.size(); i += 2) uses = uses || key[i] == std::int64_t{texture};
     if (uses) glDeleteFramebuffers(1, &framebuffer);
@@ -316,8 +321,12 @@ Drawing Device::drawTo(const RenderTargets& targets, const RasterState& raster) 
   if (targets.samples < 1 || targets.samples > state.info.maxSamples) refuseSamples(state, targets.samples);
   const glm::ivec2 size = sizeOf(targets);
   keyOf(targets, size, state.framebufferKey);
-  const GLuint framebuffer =
-      state.framebuffers.get(state.framebufferKey, [&] { return makeFramebuffer(state, targets, size); });
+  std::optional<GLuint> known = state.framebuffers.find(state.framebufferKey);
+  if (!known) {
+    known = makeFramebuffer(state, targets, size);
+    state.framebuffers.keep(state.framebufferKey, *known);
+  }
+  const GLuint framebuffer = *known;
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   state.drawing = true;
   glViewport(0, 0, size.x, size.y);

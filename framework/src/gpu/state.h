@@ -81,8 +81,8 @@ using FramebufferKey = std::vector<std::int64_t>;
 /// Framebuffers that were made and checked before.
 class FramebufferCache {
  public:
-  /// The framebuffer of this key; `make` makes and checks it where there is none.
-  GLuint get(const FramebufferKey& key, const std::function<GLuint()>& make);
+  std::optional<GLuint> find(const FramebufferKey& key) const;
+  void keep(const FramebufferKey& key, GLuint framebuffer);
   /// A texture dies: no framebuffer may keep it, nor be taken for one with the next texture of its name.
   void forget(GLuint texture);
   void clear();

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -127,6 +128,17 @@ std::vector<int> MachineLock::holders() {
 }
 
 MachineLock::MachineLock(For purpose) {
+  try {
+    lock_ = lockedFor(purpose);
+  } catch (const Error& error) {
+    // Measuring is possible all the same.
+    static std::atomic<bool> told = false;
+    if (!told.exchange(true))
+      logWarning("nobody is waited for, and times may be disturbed by others: {}", error.what());
+  }
+}
+
+int MachineLock::lockedFor(For purpose) {
   // Everybody passes the gate; who wants to take times keeps it shut until those who work are through, so
   // that they do not come in one after the other for ever.
   const OpenFile gate(fs::path(file()) += ".gate");
@@ -146,7 +158,7 @@ MachineLock::MachineLock(For purpose) {
   };
   take(gate, LOCK_EX);
   take(lock, purpose == For::timing ? LOCK_EX : LOCK_SH);
-  lock_ = lock.take();
+  return lock.take();
 }
 
 MachineLock::~MachineLock() {

@@ -17,7 +17,8 @@ std::string commandOf(int process);
 
 /// Holds back other processes of this user on this machine. Work that keeps the processors or the device busy
 /// goes on in several processes at once; while one takes times, no other works. Whoever must wait says for
-/// whom. Locks end with their process.
+/// whom. Locks end with their process. Where no file can be locked, that is told once and nobody is waited
+/// for.
 class MachineLock {
  public:
   enum class For { work, timing };
@@ -32,6 +33,7 @@ class MachineLock {
   static std::vector<int> holders();
 
  private:
+  static int lockedFor(For purpose);
   int lock_ = -1;
 };
 

@@ -149,10 +149,25 @@ class ReportPoints {
   std::size_t takenUp_ = 0;
 };
 
-/// Where points stay until the page is written.
-std::filesystem::path checkpointFile(const std::filesystem::path& page) {
-  return std::filesystem::path(page).replace_extension(".unfinished.sqlite");
-}
+/// Where points stay until the page is written: a store beside it, which goes when it is of no more use.
+class Checkpoint {
+ public:
+  explicit Checkpoint(const std::filesystem::path& page)
+      : store(std::filesystem::path(page).replace_extension(".unfinished.sqlite")) {}
+  ~Checkpoint() {
+    try {
+      if (!finished && !store.runs().empty()) return;
+      std::filesystem::remove(store.file());
+    } catch (const std::exception& error) {
+      logWarning("{}: it is of no more use, and cannot be removed: {}", store.file().string(), error.what());
+    }
+  }
+  Checkpoint(const Checkpoint&) = delete;
+  Checkpoint& operator=(const Checkpoint&) = delete;
+
+  ResultsStore store;
+  bool finished = false;
+};
 
 SceneRecord measureScene(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
                          const Scene& scene, const std::vector<const LoadedPipeline*>& pipelines,
@@ -285,8 +300,8 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
     pipelines.push_back(choice.forScene(scenes.back(), unsuited.back()));
   }
 
-  ResultsStore checkpoint(checkpointFile(summary.page));
-  ReportPoints points(techniques, data.ceilings, checkpoint, store ? &*store : nullptr);
+  Checkpoint checkpoint(summary.page);
+  ReportPoints points(techniques, data.ceilings, checkpoint.store, store ? &*store : nullptr);
   std::set<std::string> pipelineFiles, techniqueNames;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     data.scenes.push_back(measureScene(device, techniques, options, scenes[i], pipelines[i],
@@ -314,11 +329,7 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
                       toJson(data).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   writeFileAtomically(summary.csv, toCsv(data));
   writeFileAtomically(summary.page, toHtml(data, library));
-  // What was measured is in the report now.
-  std::error_code failure;
-  if (!std::filesystem::remove(checkpoint.file(), failure))
-    logWarning("{}: it is of no more use, and cannot be removed: {}", checkpoint.file().string(),
-               failure.message());
+  checkpoint.finished = true;
   summary.takenUp = points.takenUp();
 
   for (SceneRecord& scene : data.scenes) {

@@ -1,8 +1,12 @@
 #include "stress/cards.h"
 
+#include <fmt/format.h>
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
 #include <sstream>
 
 #include "lumivox/base/file.h"
@@ -23,7 +27,66 @@ std::vector<std::string> cellsOf(const std::string& line) {
   return cells;
 }
 
+/// A number that fills the text, and what one in its last written digit is worth; nullopt: it is none.
+struct WrittenNumber {
+  double value = 0.0, lastDigit = 0.0;
+};
+std::optional<WrittenNumber> numberIn(const std::string& text) {
+  char* end = nullptr;
+  WrittenNumber number;
+  number.value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !std::isfinite(number.value)) return std::nullopt;
+  const std::size_t exponent = std::min(text.find_first_of("eE"), text.size());
+  const std::size_t point = text.find('.');
+  const double decimals = point < exponent ? static_cast<double>(exponent - point - 1) : 0.0;
+  const double scale = exponent < text.size() ? std::strtod(text.c_str() + exponent + 1, nullptr) : 0.0;
+  number.lastDigit = std::pow(10.0, scale - decimals);
+  return number;
+}
+
+std::optional<CardNumber> cardNumberIn(const std::string& text) {
+  constexpr double kSpread = 0.05;  // drivers round differently, and cards write two or three digits
+  static const std::string kBetween = "..", kPlusMinus = "±";
+  const auto part = [&](std::size_t from, std::size_t count) {
+    return numberIn(trimmed(text.substr(from, count)));
+  };
+  if (const std::size_t at = text.find(kBetween); at != std::string::npos) {
+    const auto low = part(0, at), high = part(at + kBetween.size(), std::string::npos);
+    // Whole digits are rounded: the ends may be one half beyond.
+    if (!low || !high || low->value > high->value) return std::nullopt;
+    return CardNumber{low->value - 0.5 * low->lastDigit, high->value + 0.5 * high->lastDigit, text};
+  }
+  if (const std::size_t at = text.find(kPlusMinus); at != std::string::npos) {
+    const auto middle = part(0, at), spread = part(at + kPlusMinus.size(), std::string::npos);
+    if (!middle || !spread) return std::nullopt;
+    return CardNumber{middle->value - spread->value, middle->value + spread->value, text};
+  }
+  const auto number = numberIn(trimmed(text));
+  if (!number) return std::nullopt;
+  const double spread = std::max(kSpread * std::abs(number->value), number->lastDigit);
+  return CardNumber{number->value - spread, number->value + spread, text};
+}
+
 }  // namespace
+
+bool CardNumber::admits(const Measured& measured) const {
+  constexpr double kSigmas = 3.0;
+  const double own = std::isfinite(measured.uncertainty) ? kSigmas * measured.uncertainty : 0.0;
+  return measured.value >= low - own && measured.value <= high + own;
+}
+
+std::vector<CardNumber> boldNumbers(const std::string& text) {
+  static const std::string kStars = "**";
+  std::vector<CardNumber> numbers;
+  for (std::size_t open = text.find(kStars); open != std::string::npos;) {
+    const std::size_t close = text.find(kStars, open + kStars.size());
+    if (close == std::string::npos) break;
+    if (auto number = cardNumberIn(text.substr(open + kStars.size(), close - open - kStars.size())))
+      numbers.push_back(std::move(*number));
+    open = text.find(kStars, close + kStars.size());
+  }
+  return numbers;
+}
 
 std::vector<CardRow> whereItBreaks(const std::string& card) {
   std::vector<CardRow> rows;
@@ -39,7 +102,7 @@ std::vector<CardRow> whereItBreaks(const std::string& card) {
         head = false;
         continue;
       }
-      CardRow row{{}, cells[1], cells[2]};
+      CardRow row{{}, cells[1], cells[2], boldNumbers(cells[1])};
       std::istringstream names(cells[0]);
       for (std::string name; std::getline(names, name, ',');) row.cases.push_back(trimmed(name));
       rows.push_back(std::move(row));
@@ -61,7 +124,23 @@ const CardRow* rowFor(const std::vector<CardRow>& rows, const std::string& pipel
   return nullptr;
 }
 
-std::string explanationOf(const StressCell& cell, const Pipeline& pipeline, TechniqueSource& techniques) {
+CardAnswer answerOf(const CardRow& row, const StressCell& cell) {
+  const std::string explanation = row.what + ": " + row.why;
+  // Without a number there is nothing to compare.
+  if (cell.measure.empty() || !std::isfinite(cell.value.value)) return {explanation, {}};
+  if (row.numbers.empty())
+    return {{}, fmt::format("the card's row for it names no measured number in bold: '{}'", row.what)};
+  if (std::any_of(row.numbers.begin(), row.numbers.end(),
+                  [&](const CardNumber& number) { return number.admits(cell.value); }))
+    return {explanation, {}};
+  std::string said;
+  for (const CardNumber& number : row.numbers) said += (said.empty() ? "" : ", ") + number.text;
+  return {{},
+          fmt::format("{:.3g} is none of the numbers that the card's row for it names: {}", cell.value.value,
+                      said)};
+}
+
+CardAnswer explanationOf(const StressCell& cell, const Pipeline& pipeline, TechniqueSource& techniques) {
   if (cell.outcome != StressOutcome::biased && cell.outcome != StressOutcome::diverges) return {};
   std::vector<std::string> names = pipeline.techniques();
   std::stable_partition(names.begin(), names.end(),
@@ -76,7 +155,7 @@ std::string explanationOf(const StressCell& cell, const Pipeline& pipeline, Tech
     for (CardRow& row : whereItBreaks(readFile(file))) rows.push_back(std::move(row));
   }
   const CardRow* row = rowFor(rows, pipeline.file.stem().string(), cell.name);
-  return row == nullptr ? std::string() : row->what + ": " + row->why;
+  return row == nullptr ? CardAnswer{} : answerOf(*row, cell);
 }
 
 }  // namespace lumivox::stress

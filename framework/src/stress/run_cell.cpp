@@ -103,7 +103,9 @@ StressCell runCell(Ground& ground, const CellRequest& request,
   const auto start = std::chrono::steady_clock::now();
   runGuarded(*one, bench, cell);
   cell.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  cell.explanation = explanationOf(cell, pipeline, ground.techniques);
+  CardAnswer answer = explanationOf(cell, pipeline, ground.techniques);
+  cell.explanation = std::move(answer.explanation);
+  if (!answer.contradiction.empty()) cell.detail += (cell.detail.empty() ? "" : "; ") + answer.contradiction;
   const Picture& picture = bench.shown();
   if (!request.picture.empty() && !picture.empty()) {
     createParentDirectories(request.picture);
