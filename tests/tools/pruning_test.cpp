@@ -125,6 +125,17 @@ std::vector<FragmentData> fragmentsWith(const Scene& scene, const Pipeline& text
                            : fragmentsOf(static_cast<const Out<VoxelFragments>*>(output)->value());
 }
 
+/// Whether any triangle is seen along z; before it moves.
+bool isSeenAlongZ(const Scene& scene) {
+  for (std::size_t i = 0; i + 2 < scene.indices.size(); i += 3) {
+    const glm::vec3 a = scene.positions[scene.indices[i]];
+    if (glm::cross(scene.positions[scene.indices[i + 1]] - a, scene.positions[scene.indices[i + 2]] - a).z !=
+        0.0f)
+      return true;
+  }
+  return false;
+}
+
 void checkSameFragments(const std::filesystem::path& sceneFile) {
   const std::optional<Scene> loaded = sceneIfPresent(sceneFile);
   if (!loaded) return;
@@ -134,8 +145,9 @@ void checkSameFragments(const std::filesystem::path& sceneFile) {
     INFO(sceneFile.filename() << " through " << file.filename());
     const std::vector<FragmentData> pruned = fragmentsWith(scene, text, false);
     CHECK(pruned == fragmentsWith(scene, text, true));
-    // In a grid so coarse slices may miss a whole model, and see nothing of what lies along them.
-    const bool slices = file.stem() == "slicing" && scene.name == "Galloping horse";
+    // In a grid so coarse slices may miss a whole model, and see nothing of a floor that lies along their
+    // view.
+    const bool slices = file.stem() == "slicing" && (scene.name == "Galloping horse" || !isSeenAlongZ(scene));
     if (scene.name != "Degenerate triangles" && scene.name != "One triangle" && !slices)
       CHECK(pruned.empty() == (scene.triangleCount() == 0));
   }
