@@ -160,7 +160,11 @@ TEST_CASE("leaving out gives bit-identical fragments from every voxeliser on eve
 }
 
 TEST_CASE("leaving out gives bit-identical fragments from every voxeliser on the well-known models") {
-  for (const auto& file : scenes(false)) checkSameFragments(file);
+  // Scenes of published figures and tables differ from others in what no voxeliser sees: media, lights and
+  // cameras.
+  std::vector<std::filesystem::path> files = scenes(false);
+  std::erase_if(files, [](const auto& file) { return file.parent_path().filename() == "reproductions"; });
+  for (const auto& file : files) checkSameFragments(file);
 }
 
 TEST_CASE("the same picture comes from SPIR-V and from the GLSL text made of it") {
