@@ -269,7 +269,8 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
     }
   }
   result.betweenPassesMs = millisecondsSince(start) - passesMs - scanMs;
-  // Counts are read when the device is idle; without any, frames that are stamped follow each other without a gap.
+  // Counts are read when the device is idle; without any, frames that are stamped follow each other without a
+  // gap.
   if (instrument != Instrument::stamps || context.hasCounts()) device.finish();
   if (!context.allHadRoom()) {
     // What was rendered lacks something: nothing of it is kept, and the frame's time is that of both
