@@ -6,6 +6,7 @@
 #include <cassert>
 
 #include "lumivox/base/error.h"
+#include "lumivox/pipeline/list_dispatch.h"
 #include "voxelization_shaders.h"
 
 namespace lumivox::voxelization {
@@ -15,10 +16,10 @@ namespace countShader = shaders::voxelization::copy_count;
 namespace finishShader = shaders::voxelization::finish;
 
 glm::uvec3 workGroupsFor(std::uint64_t items) {
-  constexpr std::uint64_t kMostGroups = 65535;  // that OpenGL guarantees per axis
   const std::uint64_t groups = std::max<std::uint64_t>((items + kWorkGroupSize - 1) / kWorkGroupSize, 1);
-  const std::uint64_t rows = (groups + kMostGroups - 1) / kMostGroups;
-  return {static_cast<std::uint32_t>(std::min(groups, kMostGroups)), static_cast<std::uint32_t>(rows), 1u};
+  const std::uint64_t rows = (groups + kMostGroupsAlong - 1) / kMostGroupsAlong;
+  return {static_cast<std::uint32_t>(std::min(groups, kMostGroupsAlong)), static_cast<std::uint32_t>(rows),
+          1u};
 }
 
 namespace {

@@ -25,6 +25,16 @@ glm::dvec3 floorPoint(int x, int y) {
   return {2.0 * (x + 0.5) / kSide - 1.0, 0.0, 2.0 * (y + 0.5) / kSide - 1.0};
 }
 
+/// The left half of the mask (u < 0.5) is a hole.
+SurfaceTexture holeOnTheLeft() {
+  SurfaceTexture half;
+  half.width = 2;
+  half.height = 1;
+  half.mask = true;
+  half.values = {0.0f, 1.0f};
+  return half;
+}
+
 Picture directLight(const Scene& scene) {
   return renderOnce(scene, pipeline("direct_lighting")).outputs.at("direct");
 }
@@ -77,15 +87,9 @@ TEST_CASE("a blocker casts the shadow of what its alpha mask keeps, and the hole
   Material white;
   white.diffuse = glm::vec3(0.5f);
   SceneBuilder builder = floorOf(white);
-  // The left half of the mask (u < 0.5, here x < 0) is a hole.
-  SurfaceTexture half;
-  half.width = 2;
-  half.height = 1;
-  half.mask = true;
-  half.values = {0.0f, 1.0f};
   Material masked;
   masked.maskTexture = static_cast<int>(builder.scene.textures.size());
-  builder.scene.textures.push_back(half);
+  builder.scene.textures.push_back(holeOnTheLeft());
   // Wider than the floor and above the camera, so that it is not seen.
   builder.quad({-2, 4, -2}, {4, 0, 0}, {0, 0, 4}, builder.material(masked));
   builder.light(LightKind::directional, {3, 3, 3}, {}, {0, -1, 0});
@@ -109,15 +113,10 @@ TEST_CASE("the camera looks through the holes of alpha masks") {
   Material white;
   white.diffuse = glm::vec3(0.5f);
   SceneBuilder builder = floorOf(white);
-  SurfaceTexture half;
-  half.width = 2;
-  half.height = 1;
-  half.mask = true;
-  half.values = {0.0f, 1.0f};
   Material masked;
   masked.diffuse = glm::vec3(1.0f);
   masked.maskTexture = static_cast<int>(builder.scene.textures.size());
-  builder.scene.textures.push_back(half);
+  builder.scene.textures.push_back(holeOnTheLeft());
   // Just above the floor, facing up, u along x.
   builder.quad({-1, 0.01f, 1}, {2, 0, 0}, {0, 0, -2}, builder.material(masked));
   builder.light(LightKind::directional, {3, 3, 3}, {}, glm::normalize(glm::dvec3(0.001, -1, 0)));

@@ -73,10 +73,10 @@ struct VoxeliserOptions {
 /// The committed voxelisers' folder, `pipelines/voxelisers` beside the scenes; nullopt when there is none.
 std::optional<std::filesystem::path> committedVoxelisers(const std::filesystem::path& start = {});
 
-/// Measures all voxelisers on one scene. The timed frames of all of them alternate, so that a machine that
-/// grows slower meanwhile does so for all. A voxeliser that cannot be measured has a reason in place of
-/// numbers. Error for a folder without pipelines, a wrong text, a resolution outside 1..1024, or a setting
-/// that no pipeline knows.
+/// Measures all voxelisers on one scene. The timed frames of those that are held together alternate, so that
+/// a machine that grows slower meanwhile does so for all of them (docs/measuring_voxels.md). A voxeliser that
+/// cannot be measured has a reason in place of numbers. Error for a folder without pipelines, a wrong text, a
+/// resolution outside 1..1024, or a setting that no pipeline knows.
 std::vector<VoxeliserRecord> measureVoxelisers(gpu::Device& device, TechniqueSource& techniques,
                                                const Scene& scene, const VoxeliserOptions& options);
 
