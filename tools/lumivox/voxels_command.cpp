@@ -18,6 +18,7 @@ struct VoxelsCommand {
   std::vector<std::string> resolutions;
   std::string picture;
   std::filesystem::path output;
+  std::optional<int> repeats;
   bool scaling = false, noSweep = false, json = false;
 };
 
@@ -80,6 +81,7 @@ int voxels(const VoxelsCommand& command, const GlobalOptions& global) {
   VoxeliserOptions options = command.options;
   if (!command.resolutions.empty()) options.resolutions = resolutionsOf(command.resolutions);
   if (!command.picture.empty()) std::tie(options.width, options.height) = parseResolution(command.picture);
+  if (command.repeats) options.repeats = options.repeatsOfLongFrames = *command.repeats;
   options.openSweeps = !command.noSweep;
   if (command.scaling) options.subdivisions = kScalingSubdivisions;
   const VoxeliserFiles files = voxeliserFiles(command.output);
@@ -119,7 +121,9 @@ void addVoxelsCommand(Commands& commands) {
                 "a pipeline's text or a folder of them; may be repeated (default: the committed voxelisers)");
   addRepeatable(*command, "--set", options.settings,
                 "a parameter, as name=value, of those pipelines that have it");
-  command->add_option("--repeats", options.repeats, "timed frames per voxeliser (default 5)")
+  command
+      ->add_option("--repeats", all->repeats,
+                   "timed frames per voxeliser (default 5, and 3 of frames longer than 0.2 s)")
       ->check(CLI::Range(1, 10000));
   command->add_flag("--no-sweep", all->noSweep,
                     "only the default parameters, not the points of the pipelines' sweeps");

@@ -96,6 +96,13 @@ struct Candidate {
     executor->invalidate();
     return executor->render(time, 0, PipelineExecutor::Pictures::no);
   }
+
+  /// Whether its frames are long and were timed often enough for that.
+  bool hasEnough(const VoxeliserOptions& options) const {
+    const auto timed = static_cast<int>(frameMs.size());
+    return timed >= std::max(1, options.repeatsOfLongFrames) &&
+           statisticsOf(frameMs).median > VoxeliserOptions::kLongFrameMs;
+  }
 };
 
 class Measurement {
@@ -137,7 +144,7 @@ class Measurement {
     }
     for (int repeat = 0; repeat < options_.repeats; ++repeat)
       for (Candidate& candidate : candidates)
-        if (candidate.executor)
+        if (candidate.executor && !candidate.hasEnough(options_))
           candidate.frameMs.push_back(
               candidate.render(options_.time, candidate.executor.use_count() > 1).frameMs);
     for (Candidate& candidate : candidates) {

@@ -64,6 +64,10 @@ struct VoxeliserOptions {
   double time = 0.0;          ///< s
   std::uint64_t seed = 1;
   int repeats = 5;
+  /// Timed frames of a voxeliser whose frames take longer than kLongFrameMs: their spread is a small share
+  /// of them, and they are most of the work.
+  int repeatsOfLongFrames = 3;
+  static constexpr double kLongFrameMs = 200.0;
   bool openSweeps = true;  ///< measure the points of the pipelines' sweeps too; axes that are set collapse
   /// Measured again with every triangle split into four, as often as this, at the first resolution: how time
   /// grows with triangles.
