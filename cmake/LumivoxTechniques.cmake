@@ -32,6 +32,7 @@ function(add_technique name)
   set_target_properties(technique_${name} PROPERTIES
     OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/techniques)
   target_link_libraries(technique_${name} PRIVATE lumivox)
+  lumivox_precompile(technique_${name} FROM lumivox_base)
   set_property(GLOBAL APPEND PROPERTY LUMIVOX_TECHNIQUES technique_${name})
   set(card ${CMAKE_BINARY_DIR}/lib/techniques/${name}.md)
   add_custom_command(

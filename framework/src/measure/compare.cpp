@@ -32,8 +32,6 @@
 namespace lumivox {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 /// Sums of one kind of term over all pixels that count. Rows are summed in parallel and then added from the
 /// top, so that the result does not depend on the number of threads. `addPixel(pixel, sums)` adds one pixel's
 /// terms.

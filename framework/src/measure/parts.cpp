@@ -13,8 +13,6 @@
 namespace lumivox {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 /// The root of an estimated square. The uncertainty is how far the root moves when the square grows by its
 /// own: u / (2 root) where the square is well above it, and still finite at 0.
 Measured rootOf(double square, double uncertainty) {

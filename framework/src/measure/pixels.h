@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,9 @@ namespace lumivox {
 
 /// Rec. 709 luminance of linear R, G, B (ITU-R BT.709, item 3.2).
 inline constexpr std::array<double, 3> kLuminanceWeights = {0.2126, 0.7152, 0.0722};
+
+/// What cannot be told.
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Whether all channels of a pixel that hold radiance are finite. A pixel of which one is not counts nowhere:
 /// this is the one rule of every number that compares pictures.

@@ -7,10 +7,10 @@
 #include <limits>
 #include <set>
 
+#include "measure/pixels.h"
+
 namespace lumivox {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 constexpr double kFlattest = 0.05, kSteepest = 8.0;  // slopes that are sought above a plateau
 

@@ -12,7 +12,7 @@
 namespace lumivox {
 namespace {
 
-SweepText fromDocument(dsl::Document parsed) {
+SweepText sweepOf(dsl::Document parsed) {
   SweepText text;
   const auto document = std::make_shared<const dsl::Document>(std::move(parsed));
   text.file = document->file;
@@ -44,13 +44,13 @@ SweepText fromDocument(dsl::Document parsed) {
 }  // namespace
 
 SweepText SweepText::load(const std::filesystem::path& file) {
-  return fromDocument(dsl::parseFile(file));
+  return sweepOf(dsl::parseFile(file));
 }
 
 SweepText SweepText::parse(std::string source, std::filesystem::path file) {
   dsl::Document document = dsl::parse(std::move(source), std::move(file));
   dsl::resolveIncludes(document);
-  return fromDocument(std::move(document));
+  return sweepOf(std::move(document));
 }
 
 std::vector<SweepShare> sweepShares(const SweepText& text, TechniqueSource& techniques,

@@ -250,7 +250,7 @@ class TextReader : TextFindings {
   std::set<std::string> usedParameters_;
 };
 
-Pipeline fromDocument(dsl::Document parsed) {
+Pipeline pipelineOf(dsl::Document parsed) {
   Pipeline pipeline;
   const auto document = std::make_shared<const dsl::Document>(std::move(parsed));
   pipeline.file = document->file;
@@ -376,13 +376,13 @@ const std::vector<dsl::BlockSpecification>& pipelineSpecifications() {
 }
 
 Pipeline Pipeline::load(const std::filesystem::path& file) {
-  return fromDocument(dsl::parseFile(file));
+  return pipelineOf(dsl::parseFile(file));
 }
 
 Pipeline Pipeline::parse(std::string source, std::filesystem::path file) {
   dsl::Document document = dsl::parse(std::move(source), std::move(file));
   dsl::resolveIncludes(document);
-  return fromDocument(std::move(document));
+  return pipelineOf(std::move(document));
 }
 
 ParameterValues Pipeline::settings(const std::vector<std::string>& assignments) const {

@@ -25,7 +25,7 @@ using namespace report;
 namespace fs = std::filesystem;
 
 /// One set-up with the rows and points that it answers.
-struct SetUp {
+struct TimedSetUp {
   const Scene* scene = nullptr;
   std::string sceneShown;
   LoadedPipeline loaded;
@@ -89,14 +89,14 @@ class Reproduction {
 
  private:
   void time() {
-    for (SetUp& setUp : setUps_)
+    for (TimedSetUp& setUp : setUps_)
       guarded(setUp, [&] {
         setUp.timed =
             std::make_unique<TimedPoint>(timingOf(setUp), setUp.loaded.pipeline, setUp.run.point, setUp.kept);
       });
     for (int repeat = 0; repeat < options_.repeats; ++repeat)
-      for (SetUp& setUp : setUps_) guarded(setUp, [&] { setUp.timed->timeFrame(); });
-    for (SetUp& setUp : setUps_) {
+      for (TimedSetUp& setUp : setUps_) guarded(setUp, [&] { setUp.timed->timeFrame(); });
+    for (TimedSetUp& setUp : setUps_) {
       guarded(setUp, [&] {
         setUp.timed->finish();
         for (const auto& [published, measured] : setUp.answers) readOff(setUp, *published, *measured);
@@ -110,7 +110,7 @@ class Reproduction {
     }
   }
 
-  static std::string shownSetUp(const SetUp& setUp) {
+  static std::string shownSetUp(const TimedSetUp& setUp) {
     return fmt::format("{}{}, {}: {}, {} x {} pixels", setUp.sceneShown,
                        setUp.subdivisions == 0 ? std::string()
                                                : fmt::format(" with every triangle split into four, {} times",
@@ -118,7 +118,7 @@ class Reproduction {
                        setUp.loaded.shown, pointText(setUp.planned.parameters), setUp.width, setUp.height);
   }
 
-  TimingContext timingOf(const SetUp& setUp) {
+  TimingContext timingOf(const TimedSetUp& setUp) {
     return {device_, techniques_, *setUp.scene, setUp.options, setUp.width, setUp.height};
   }
 
@@ -126,17 +126,17 @@ class Reproduction {
   /// from them. The verdict stands whether this succeeds or not.
   void store() {
     for (int repeat = 0; repeat < options_.repeats; ++repeat)
-      for (SetUp& setUp : setUps_) guarded(setUp, [&] { setUp.timed->timeNextFrame(); });
-    for (SetUp& setUp : setUps_) {
+      for (TimedSetUp& setUp : setUps_) guarded(setUp, [&] { setUp.timed->timeNextFrame(); });
+    for (TimedSetUp& setUp : setUps_) {
       guarded(setUp, [&] { setUp.timed->finish(); });
       setUp.timed.reset();  // its memory, which errors may need
     }
     // A scene that was made finer here is none that a sweep could name.
-    for (SetUp& setUp : setUps_)
+    for (TimedSetUp& setUp : setUps_)
       if (setUp.subdivisions == 0) store(setUp);
   }
 
-  void store(SetUp& setUp) {
+  void store(TimedSetUp& setUp) {
     StoredRun& run = setUp.run;
     for (const auto& [pass, port] : setUp.kept) run.identity.kept.push_back(pass + "." + port);
     std::sort(run.identity.kept.begin(), run.identity.kept.end());
@@ -161,7 +161,7 @@ class Reproduction {
     store_->add(run);
   }
 
-  Truth& truthOf(const SetUp& setUp) {
+  Truth& truthOf(const TimedSetUp& setUp) {
     std::unique_ptr<Truth>& truth =
         truths_[{setUp.scene, setUp.options.camera, setUp.options.time, setUp.width, setUp.height}];
     if (!truth)
@@ -171,7 +171,7 @@ class Reproduction {
 
   /// One set-up that cannot be measured must not cost the others.
   template <class Work>
-  void guarded(SetUp& setUp, const Work& work) {
+  void guarded(TimedSetUp& setUp, const Work& work) {
     if (!setUp.failure.empty()) return;
     try {
       work();
@@ -215,7 +215,7 @@ class Reproduction {
     if (!published.absent.empty()) return;
     const Scene* scene = sceneWithAll(published, measured.whyNot);
     if (scene == nullptr) return;
-    SetUp& setUp = setUpOf(published, *scene);
+    TimedSetUp& setUp = setUpOf(published, *scene);
     setUp.answers.emplace_back(&published, &measured);
     const std::pair<std::string, std::string> output(published.pass, published.port);
     if (!published.pass.empty() &&
@@ -252,9 +252,9 @@ class Reproduction {
     return parameters;
   }
 
-  SetUp& setUpOf(const PublishedSetUp& published, const Scene& scene) {
+  TimedSetUp& setUpOf(const PublishedSetUp& published, const Scene& scene) {
     const ParameterValues parameters = parametersOf(published);
-    for (SetUp& known : setUps_)
+    for (TimedSetUp& known : setUps_)
       if (known.scene == &scene && known.loaded.pipeline.file == published.pipeline->file &&
           pointText(known.planned.parameters) == pointText(parameters) &&
           known.options.camera == published.camera && known.options.time == published.time)
@@ -263,8 +263,8 @@ class Reproduction {
     return setUps_.back();
   }
 
-  SetUp newSetUp(const PublishedSetUp& published, const Scene& scene, const ParameterValues& parameters) {
-    SetUp setUp;
+  TimedSetUp newSetUp(const PublishedSetUp& published, const Scene& scene, const ParameterValues& parameters) {
+    TimedSetUp setUp;
     setUp.scene = &scene;
     setUp.subdivisions = published.subdivisions;
     setUp.sceneShown = shownPath(scene.file);
@@ -301,7 +301,7 @@ class Reproduction {
     if (parameter.low) value.number = std::clamp(value.number, *parameter.low, *parameter.high);
   }
 
-  void readOff(SetUp& setUp, const PublishedSetUp& row, MeasuredSetUp& measured) {
+  void readOff(TimedSetUp& setUp, const PublishedSetUp& row, MeasuredSetUp& measured) {
     const ReportPoint& point = setUp.run.point;
     for (const std::string& pass : row.passes) {
       if (std::find(point.passOrder.begin(), point.passOrder.end(), pass) != point.passOrder.end()) continue;
@@ -346,7 +346,7 @@ class Reproduction {
     return sum;
   }
 
-  double fragmentsOf(const SetUp& setUp, const PublishedSetUp& row) const {
+  double fragmentsOf(const TimedSetUp& setUp, const PublishedSetUp& row) const {
     const OutBase* output = setUp.timed->executor().output(row.pass, row.port);
     const std::optional<OccupiedVoxels> voxels = output == nullptr ? std::nullopt : occupiedVoxels(*output);
     if (!voxels || voxels->fragments == 0)
@@ -383,7 +383,7 @@ class Reproduction {
   }
 
   Picture rendered(const PublishedPanel& panel, const Scene& scene, ShownPanel& shown) {
-    const SetUp setUp = newSetUp(panel, scene, parametersOf(panel));
+    const TimedSetUp setUp = newSetUp(panel, scene, parametersOf(panel));
     RenderOptions options;
     options.parameters = setUp.planned.parameters;
     options.camera = panel.camera;
@@ -420,7 +420,7 @@ class Reproduction {
   }
 
   Picture traced(const PublishedPanel& panel, const Scene& scene, ShownPanel& shown) {
-    SetUp setUp;
+    TimedSetUp setUp;
     setUp.scene = &scene;
     std::tie(setUp.width, setUp.height) = sizeOf(panel, scene);
     setUp.options.camera = panel.camera;
@@ -459,7 +459,7 @@ class Reproduction {
   ResultsStore* store_;
   /// By scene, camera, time and size.
   std::map<std::tuple<const Scene*, std::string, double, int, int>, std::unique_ptr<Truth>> truths_;
-  std::deque<SetUp> setUps_;  // points keep references to their records
+  std::deque<TimedSetUp> setUps_;  // points keep references to their records
 };
 
 }  // namespace

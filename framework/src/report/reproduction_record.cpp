@@ -16,9 +16,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kVersion = 1;
-constexpr PublishedQuantity kQuantities[] = {PublishedQuantity::time, PublishedQuantity::frameRate,
-                                             PublishedQuantity::fragments, PublishedQuantity::memory};
-
 Json numberOrNull(double value) {
   return std::isfinite(value) ? Json(value) : Json();
 }
@@ -60,7 +57,7 @@ void readMeasured(const Json& json, MeasuredSetUp& setUp) {
 }
 
 PublishedQuantity quantityOf(const Json& json) {
-  for (const PublishedQuantity quantity : kQuantities)
+  for (const PublishedQuantity quantity : kPublishedQuantities)
     if (json.at("measures") == name(quantity)) return quantity;
   throw Error(fmt::format("nothing is measured as '{}'", json.at("measures").get<std::string>()));
 }

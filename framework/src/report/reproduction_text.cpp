@@ -22,9 +22,6 @@ using dsl::PropertyType;
 constexpr double kLargestPicture =
     16384;  // the widest picture of OpenGL 4.5's guaranteed minimum texture size
 constexpr double kSmallestScale = 1.0 / 64;
-constexpr PublishedQuantity kQuantities[] = {PublishedQuantity::time, PublishedQuantity::frameRate,
-                                             PublishedQuantity::fragments, PublishedQuantity::memory};
-
 PropertySpecification property(const char* word, PropertyType type, const char* meaning) {
   PropertySpecification specification;
   specification.word = word;
@@ -50,7 +47,7 @@ std::vector<PropertySpecification> setUpProperties() {
       "measures", PropertyType::word,
       "what the published numbers are: time in ms, frame_rate in 1/s, fragments (voxel fragments of `output`), "
       "memory in MB of 10^6 bytes");
-  for (const PublishedQuantity quantity : kQuantities) measures.choices.push_back(name(quantity));
+  for (const PublishedQuantity quantity : kPublishedQuantities) measures.choices.push_back(name(quantity));
   measures.defaultText = name(PublishedQuantity::time);
   PropertySpecification time = property("time", PropertyType::number, "of the scene");
   time.dimension = dsl::kTime;
@@ -257,7 +254,7 @@ class ResultReader : TextFindings {
     result.substitute = block.text("substitute", result.substitute);
     result.time = block.number("time", result.time);
     result.subdivisions = block.number("subdivisions", result.subdivisions);
-    for (const PublishedQuantity quantity : kQuantities)
+    for (const PublishedQuantity quantity : kPublishedQuantities)
       if (block.text("measures", "") == name(quantity)) result.quantity = quantity;
     for (const dsl::Block* set : block.blocks("set"))
       for (const dsl::Item& item : set->items)

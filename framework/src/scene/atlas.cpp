@@ -16,7 +16,7 @@ namespace lumivox {
 namespace {
 
 constexpr double kLongestSide = 65535.0;  // that AtlasTexel::x and y can count
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
 [[noreturn]] void tooLarge(double texels) {
   throw Error(fmt::format("the atlas would have {:.3g} texels; at most {} are made: larger texels need fewer",
@@ -28,7 +28,7 @@ struct Patch {
   WeldedObject welded;
   std::vector<glm::dvec3> places;                    ///< m
   std::vector<glm::dvec3> normals;                   ///< of triangles; zero without area
-  std::vector<std::array<std::uint32_t, 3>> beyond;  ///< neighbour across each side, kNone: none
+  std::vector<std::array<std::uint32_t, 3>> beyond;  ///< neighbour across each side, kNobody: none
 
   Patch(const Scene& scene, const Object& object) : welded(weld(scene, object)) {
     for (const glm::vec3& place : welded.places)
@@ -64,7 +64,7 @@ struct Patch {
         sides.push_back({low, high, t, k});
       }
     std::sort(sides.begin(), sides.end());
-    beyond.assign(welded.triangleCount(), {kNone, kNone, kNone});
+    beyond.assign(welded.triangleCount(), {kNobody, kNobody, kNobody});
     for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
       const Side &a = sides[i], &b = sides[i + 1];
       if (a.low != b.low || a.high != b.high) continue;
@@ -238,7 +238,7 @@ class AtlasMaker {
     taken[seed] = true;
     for (std::size_t i = 0; i < triangles.size(); ++i)
       for (const std::uint32_t next : patch.beyond[triangles[i]]) {
-        if (next == kNone || taken[next]) continue;
+        if (next == kNobody || taken[next]) continue;
         // What has no area lies on the sides of its neighbours and goes with any of them.
         const glm::dvec3& normal = patch.normals[next];
         if (normal != glm::dvec3(0.0) && glm::dot(normal, patch.normals[seed]) < cosine) continue;
@@ -283,10 +283,10 @@ class AtlasMaker {
 
   /// Who owns the texels of a chart's rectangle.
   struct Ownership {
-    std::vector<std::uint32_t> owners;  ///< numbers in the chart, kNone: nobody
+    std::vector<std::uint32_t> owners;  ///< numbers in the chart, kNobody: nobody
     std::vector<glm::dvec3> places;     ///< of the owner, m
     std::vector<double> gaps;           ///< from the texel's centre to its owner, 0 inside
-    explicit Ownership(std::size_t size) : owners(size, kNone), places(size), gaps(size, kUntouched) {}
+    explicit Ownership(std::size_t size) : owners(size, kNobody), places(size), gaps(size, kUntouched) {}
     static constexpr double kUntouched = std::numeric_limits<double>::infinity();
   };
 
@@ -312,7 +312,7 @@ class AtlasMaker {
       constexpr double kSheet = 1.5;  // texels
       free =
           !(gap == 0.0 && ownership.gaps[at] == 0.0) &&
-          (ownership.owners[at] == kNone || glm::length(point - ownership.places[at]) <= kSheet * texelSize_);
+          (ownership.owners[at] == kNobody || glm::length(point - ownership.places[at]) <= kSheet * texelSize_);
       claims.push_back({at, gap, point});
     });
     if (!free) return false;
@@ -336,7 +336,7 @@ class AtlasMaker {
     const std::size_t first = texels_.size();
     for (std::size_t at = 0; at < size; ++at) {
       const std::uint32_t owner = ownership.owners[at];
-      if (owner == kNone) continue;
+      if (owner == kNobody) continue;
       const auto x = static_cast<std::uint16_t>(at % static_cast<std::size_t>(chart.width)),
                  y = static_cast<std::uint16_t>(at / static_cast<std::size_t>(chart.width));
       const glm::dvec2 weights = nearestIn(chart.corners[owner], {x + 0.5, y + 0.5});

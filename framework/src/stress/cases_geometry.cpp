@@ -16,7 +16,7 @@
 namespace lumivox::stress {
 namespace {
 
-constexpr const char* kFamily = "geometry";
+constexpr const char* kGeometryFamily = "geometry";
 
 std::optional<Finding> noTriangles(Bench& bench) {
   Scene scene = bench.committedScene("stress/no_triangles");
@@ -217,7 +217,7 @@ std::optional<Finding> outsideTheGrid(Bench& bench) {
 
 std::vector<Case> geometryCases() {
   const auto info = [](const char* name, const char* meaning, bool quick) {
-    return StressCaseInfo{kFamily, name, meaning, quick};
+    return StressCaseInfo{kGeometryFamily, name, meaning, quick};
   };
   return {
       {info("no_triangles", "no triangle at all: the picture is the environment, without one exactly black",

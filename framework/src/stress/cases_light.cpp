@@ -12,7 +12,7 @@
 namespace lumivox::stress {
 namespace {
 
-constexpr const char* kFamily = "light";
+constexpr const char* kLightFamily = "light";
 /// A technique of one bounce is within so much of the truth of one bounce where it does its best.
 constexpr double kFairBias = 0.1;
 
@@ -143,7 +143,7 @@ std::optional<Finding> environmentOnly(Bench& bench) {
 
 std::vector<Case> lightCases() {
   const auto info = [](const char* name, const char* meaning, bool quick) {
-    return StressCaseInfo{kFamily, name, meaning, quick};
+    return StressCaseInfo{kLightFamily, name, meaning, quick};
   };
   return {
       {info("no_light", "a room without any light is black, exactly", true),

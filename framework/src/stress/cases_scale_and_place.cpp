@@ -12,7 +12,7 @@
 namespace lumivox::stress {
 namespace {
 
-constexpr const char* kFamily = "scale_and_place";
+constexpr const char* kScaleAndPlaceFamily = "scale_and_place";
 
 /// The lower half of the Cornell box, its lamp out of view, with something glossy and thin fog; in the full
 /// battery with one more light of every kind that has a place: every length that some technique uses is in
@@ -145,7 +145,7 @@ std::optional<Finding> gridBeside64(Bench& bench, int resolution) {
 
 std::vector<Case> scaleAndPlaceCases() {
   const auto info = [](std::string name, std::string meaning, bool quick) {
-    return StressCaseInfo{kFamily, std::move(name), std::move(meaning), quick};
+    return StressCaseInfo{kScaleAndPlaceFamily, std::move(name), std::move(meaning), quick};
   };
   std::vector<Case> cases{
       {info("scale_0.001", "the same scene in millimetres: the same picture", true),

@@ -1,0 +1,36 @@
+# What makes a first build short: headers that many sources include are read once and kept precompiled, and sources of the framework and of the
+# tools are compiled several at a time. No source relies on either: each includes what it uses, and the presets "debug" and "sanitize"
+# compile each alone. Techniques are always compiled file by file: they are what changes.
+# lumivox_precompile(TARGET [HEADERS headers...] [FROM other]): a set of headers of the target's own, or that of another target.
+# lumivox_compile_together(TARGET): several sources at a time.
+option(LUMIVOX_FAST_BUILD "Read the headers that many sources include once, and compile several sources at a time" ON)
+
+# From precompiled headers g++ 12 forgets which ones are the system's, and then tells of the strings of its own library what it is wrong about
+# (its bug 105651). The preset "sanitize" reads every header anew, with these warnings.
+if(LUMIVOX_FAST_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options(-Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
+endif()
+
+# Programs are compiled as libraries are, so that both can read the same precompiled headers.
+set(CMAKE_CXX_COMPILE_OPTIONS_PIE -fPIC)
+
+set(LUMIVOX_COMMON_HEADERS <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <cstring> <filesystem> <functional> <limits> <map> <memory>
+    <mutex> <numbers> <optional> <set> <span> <string> <string_view> <unordered_map> <utility> <vector> <fmt/format.h> <glm/glm.hpp>)
+
+function(lumivox_precompile target)
+  cmake_parse_arguments(precompiled "" "FROM" "HEADERS" ${ARGN})
+  if(NOT LUMIVOX_FAST_BUILD)
+    return()
+  endif()
+  if(precompiled_FROM)
+    target_precompile_headers(${target} REUSE_FROM ${precompiled_FROM})
+  else()
+    target_precompile_headers(${target} PRIVATE ${precompiled_HEADERS})
+  endif()
+endfunction()
+
+function(lumivox_compile_together target)
+  # Types of a source's own seem to be those of a header when several sources are one.
+  target_compile_options(${target} PRIVATE $<$<AND:$<BOOL:${LUMIVOX_FAST_BUILD}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${LUMIVOX_FAST_BUILD} UNITY_BUILD_BATCH_SIZE 8)
+endfunction()
