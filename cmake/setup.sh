@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# The set-up that ./run and ./test share: `. cmake/setup.sh`, then `lumivox_set_up ROOT`.
-# It installs the packages that are missing, configures once and builds what changed. All of its words go to stderr, so that the
+# The set-up that ./run and ./test share: `. cmake/setup.sh`, then `lumivox_set_up ROOT TARGET...`.
+# It installs the packages that are missing, configures once and builds what changed of the targets. All of its words go to stderr, so that the
 # output of the program that follows stays clean.
 
 lumivox_say() { echo "lumivox: $*" >&2; }
@@ -78,9 +78,10 @@ lumivox_configure() {
 
 lumivox_build() {
   local root=$1
-  lumivox_say "building what changed (ninja -C build)"
+  shift
+  lumivox_say "building what changed (ninja -C build $*)"
   # ninja talks on stdout; its words belong to the set-up.
-  (cd "$root/build" && ninja) >&2 || {
+  (cd "$root/build" && ninja "$@") >&2 || {
     lumivox_say "the build failed"
     return 1
   }
@@ -88,8 +89,9 @@ lumivox_build() {
 
 lumivox_set_up() {
   local root=$1
+  shift
   mkdir -p "$root/build" &&
-    lumivox_ensure_packages "$root" && lumivox_configure "$root" && lumivox_build "$root" && return 0
+    lumivox_ensure_packages "$root" && lumivox_configure "$root" && lumivox_build "$root" "$@" && return 0
   # Whatever went wrong may be a package that was removed: look again the next time.
   rm -f "$root/build/.packages-ok"
   return 1
