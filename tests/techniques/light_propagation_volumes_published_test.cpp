@@ -397,10 +397,12 @@ TEST_CASE("grids are blended as printed from 12 to 16 cells around the eye, what
 
 TEST_CASE(
     "the printed cone gathers from a solid grid what its recurrence gives, and fades the wrong way round") {
-  // Listings 4.13 and 4.37 in a grid of radiance 1 and opacity 1 everywhere, a cone thinner than two voxels:
-  // samples from two voxels on, one apart, with the exponent 1/2. Each is multiplied by its fade f, what was
-  // gathered by the opacity: L <- L A + (1 - A) a f with a = 1 - sqrt(1 - f), A <- A + (1 - A) a.
-  constexpr int voxels = 32;
+  // Listings 4.13 and 4.37 in a grid of radiance 1 and opacity 1 everywhere. The diameter D is that of the
+  // lobe's solid angle 2 pi / (n + 1), at most that of half the half sphere, and two voxels at least: where
+  // the cone begins. The next sample lies D / 2 further; the exponent is half of D over the first one. Each
+  // sample is multiplied by its fade f, what was gathered by the opacity: L <- L A + (1 - A) a f with
+  // a = 1 - (1 - f)^exponent, A <- A + (1 - A) a.
+  constexpr int voxels = 64;
   const double size = 2.0 / voxels;
   const SceneBuilder builder = emptyScene();
   const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
@@ -413,31 +415,45 @@ TEST_CASE(
   description.levels = gpu::fullLevelCount(voxels, voxels, voxels);
   grid.radiance = std::make_shared<gpu::Texture>(device(), description, "test grid");
   grid.radiance->clear(glm::vec4(1.0f));
+  grid.unit = 3.0f;
   const glm::vec3 normal(0, 0, 1), position = snapshot.camera.eye - 0.4f * normal;
-  const double reach = 0.8;  // back past the eye, and to 0.4 beyond it: well within the grid
-  for (const char* fade : {"grows", "falls", "none"}) {
-    PassHarness trace(device(), techniques(), "light_propagation_volumes", "trace", builder.scene, snapshot);
-    trace.setParameter("reach", reach);
-    trace.setParameter("fade", std::string(fade));
-    const gpu::TextureRef normals = filledPixels(glm::vec4(normal, 1.0f));
-    trace.setInput("gbuffer", GBuffer{filledPixels(glm::vec4(position, 1.0f)), normals, normals,
-                                      filledPixels(glm::vec4(1.0f)),
-                                      filledPixels(glm::vec4(1.0f, 1.0f, 1.0f, 1e6f)), nullptr});
-    trace.setInput("grid", grid);
-    trace.run();
-    double gathered = 0.0, opacity = 0.0;
-    for (double distance = 2.0 * size; distance <= reach && opacity < 1.0; distance += size) {
-      const double f = std::string(fade) == "grows"   ? distance / reach
-                       : std::string(fade) == "falls" ? 1.0 - distance / reach
-                                                      : 1.0;
-      const double a = 1.0 - std::sqrt(1.0 - f);
-      gathered = gathered * opacity + (1.0 - opacity) * a * f;
-      opacity += (1.0 - opacity) * a;
+  const gpu::TextureRef normals = filledPixels(glm::vec4(normal, 1.0f));
+  struct Cone {
+    float exponent;
+    double reach;  ///< m; 0.8: back past the eye, and to 0.4 beyond it: well within the grid
+  };
+  for (const Cone& cone :
+       {Cone{1e6f, 0.8}, Cone{20.0f, 0.8}, Cone{5.0f, 0.7}, Cone{1.0f, 0.45}, Cone{0.3f, 0.45}})
+    for (const char* fade : {"grows", "falls", "none"}) {
+      PassHarness trace(device(), techniques(), "light_propagation_volumes", "trace", builder.scene,
+                        snapshot);
+      trace.setParameter("reach", cone.reach);
+      trace.setParameter("fade", std::string(fade));
+      trace.setInput("gbuffer", GBuffer{filledPixels(glm::vec4(position, 1.0f)), normals, normals,
+                                        filledPixels(glm::vec4(1.0f)),
+                                        filledPixels(glm::vec4(1.0f, 0.5f, 0.25f, cone.exponent)), nullptr});
+      trace.setInput("grid", grid);
+      trace.run();
+      const double cosine = std::max(1.0 - 1.0 / (cone.exponent + 1.0), 0.5);
+      const double ratio = 2.0 * std::tan(std::acos(cosine));
+      double gathered = 0.0, opacity = 0.0, distance = 2.0 * size;
+      const double first = std::max(2.0 * size, ratio * distance);
+      while (distance <= cone.reach && opacity < 1.0) {
+        const double diameter = std::max(2.0 * size, ratio * distance);
+        const double f = std::string(fade) == "grows"   ? distance / cone.reach
+                         : std::string(fade) == "falls" ? 1.0 - distance / cone.reach
+                                                        : 1.0;
+        const double a = 1.0 - std::pow(1.0 - f, 0.5 * diameter / first);
+        gathered = gathered * opacity + (1.0 - opacity) * a * f;
+        opacity += (1.0 - opacity) * a;
+        distance += 0.5 * diameter;
+      }
+      const double atSurface = std::string(fade) == "none" ? 1.0 : 1.0 - 0.4;
+      INFO(fade << ", exponent " << cone.exponent << ": " << gathered << ", at the surface " << atSurface);
+      const Picture glossy = pictureOf(*trace.output<Image>("glossy").texture);
+      for (int channel = 0; channel < 3; ++channel)
+        CHECK(glossy.at(4, 4, channel) ==
+              Approx(3.0 * std::exp2(-channel) * gathered * atSurface).epsilon(1e-3));
+      CHECK(gathered * atSurface > 0.01);
     }
-    const double atSurface = std::string(fade) == "none" ? 1.0 : 1.0 - 0.4;
-    INFO(fade << ": " << gathered << ", at the surface " << atSurface);
-    CHECK(pictureOf(*trace.output<Image>("glossy").texture).at(4, 4, 0) ==
-          Approx(gathered * atSurface).epsilon(1e-3));
-    CHECK(gathered * atSurface > 0.01);
-  }
 }
