@@ -42,7 +42,9 @@ inline VoxelFragments listOver(const GridPlacement& cells, const std::vector<Fra
   list.fragments = std::make_shared<gpu::Buffer>(device(), list.capacity * sizeof(FragmentData), "list");
   list.fragments->uploadValues(std::span<const FragmentData>(fragments));
   const auto count = static_cast<std::uint32_t>(fragments.size());
-  const std::array<std::uint32_t, 4> words{count, std::max(1u, (count + 63) / 64), 1, 1};
+  // Two groups in a row where one is not enough, as a long list has many.
+  const std::uint32_t groups = std::max(1u, (count + 63) / 64), row = std::min(groups, 2u);
+  const std::array<std::uint32_t, 4> words{count, row, (groups + row - 1) / row, 1};
   list.count = std::make_shared<gpu::Buffer>(device(), sizeof(words), "count");
   list.count->uploadValues(std::span<const std::uint32_t>(words));
   return list;
