@@ -113,8 +113,7 @@ TEST_CASE("in light of the same radiance L everywhere every surface of the refle
   }
 }
 
-TEST_CASE(
-    "the finer of two grids lights the reflection grid from one cell to five within its border, more and more") {
+TEST_CASE("the finer of two grids lights the reflection grid more and more from one cell to five in") {
   // Radiance 2 in the finer grid, of 16 cells, and 1 in the coarser one; every voxel is a wall.
   ShGrid light = evenLight([](double) { return 2.0; });
   const ShGrid coarse = evenLight([](double) { return 1.0; });

@@ -448,8 +448,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "a packed voxel keeps a normal beside the face of a tetrahedron that it is closest to, with 31 times its cosine") {
+TEST_CASE("a packed voxel keeps a normal at the nearest face of a tetrahedron, with 31 times its cosine") {
   // Listings 4.28 and 4.29. A normal in each of many cells.
   const double a = std::sqrt(1.0 / 3.0), b = std::sqrt(2.0 / 3.0);
   const glm::dvec3 faces[] = {{0, -a, b}, {0, -a, -b}, {-b, a, 0}, {b, a, 0}};
