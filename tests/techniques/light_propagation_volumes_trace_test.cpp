@@ -1,5 +1,6 @@
 // The printed cone through a reflection grid made by hand (thesis Gomes 2015, Sec. 4.3.5), against its
 // recurrence.
+#include <algorithm>
 #include <cmath>
 
 #include "support/light_cells.h"
@@ -87,6 +88,58 @@ TEST_CASE(
       for (int channel = 0; channel < 3; ++channel)
         CHECK(glossy.at(4, 4, channel) == Approx(0.2 * std::exp2(-channel) * expected).epsilon(5e-3));
     }
+}
+
+TEST_CASE("behind a wall that is seen through, each empty step of the printed cone leaves A of what it gathered") {
+  // Listing 4.13 multiplies what was gathered by the opacity A in every step, also where nothing is: n empty
+  // steps behind a wall leave A^n of its light. The printed fade keeps walls from closing, so that hardly
+  // anything is left of reflections (Fig. 76 as printed).
+  constexpr int voxels = 64;
+  constexpr float size = 0.05f, opacity = 0.5f;  // m
+  constexpr int seen = 24, first = 34, end = 38;   // voxels along z: of the surface, and of the wall
+  const SceneBuilder builder = emptyScene();
+  const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
+  RadianceGrid grid;
+  grid.grid = {snapshot.camera.eye - 0.5f * size * voxels, size, glm::ivec3(voxels)};
+  gpu::TextureDescription description;
+  description.kind = gpu::TextureKind::d3;
+  description.format = gpu::Format::rgba32f;
+  description.width = description.height = description.depth = voxels;
+  description.levels = 2;
+  grid.radiance = std::make_shared<gpu::Texture>(device(), description, "test wall");
+  for (int level = 0; level < description.levels; ++level) {
+    const std::size_t side = voxels >> level, slice = side * side * 4;
+    std::vector<float> values(side * slice, 0.0f);
+    std::fill(values.begin() + (first >> level) * slice, values.begin() + (end >> level) * slice, opacity);
+    grid.radiance->uploadFloats(level, values);
+  }
+  PassHarness trace(device(), techniques(), "light_propagation_volumes", "trace", builder.scene, snapshot);
+  trace.setInput("grid", grid);
+  trace.setParameter("fade", std::string("none"));
+  const glm::vec3 position = snapshot.camera.eye - glm::vec3(0, 0, (0.5f * voxels - seen) * size);
+  const gpu::TextureRef normals = filledPixels(glm::vec4(0, 0, 1, 1));
+  trace.setInput("gbuffer", GBuffer{filledPixels(glm::vec4(position, 1.0f)), normals, normals,
+                                    filledPixels(glm::vec4(1.0f)), filledPixels(glm::vec4(1, 1, 1, 1e6f)), nullptr});
+  const auto gathered = [&](int steps) {  // of a voxel each
+    trace.setParameter("reach", (steps + 0.5) * size);
+    trace.run();
+    return pictureOf(*trace.output<Image>("glossy").texture).at(4, 4, 0);
+  };
+  // Between the middles of two voxels of level 1, two finest ones wide, lies a line between their values; each
+  // sample stands for half of its diameter.
+  double through = 1.0;
+  for (int step = 2; step < end - seen + 2; ++step) {
+    const double place = (seen + step) / 2.0 - 0.5, share = place - std::floor(place);
+    const auto inWall = [](double k) { return k >= first / 2 && k < end / 2 ? double{opacity} : 0.0; };
+    through *= std::sqrt(1.0 - (1.0 - share) * inWall(std::floor(place)) - share * inWall(std::floor(place) + 1.0));
+  }
+  const double wall = 1.0 - through;
+  CHECK(wall > 0.6);
+  CHECK(wall < 0.9);
+  const float behind = gathered(end - seen + 2);
+  CHECK(behind > 0.05f);
+  for (const int steps : {1, 2, 5, 10})
+    CHECK(gathered(end - seen + 2 + steps) == Approx(behind * std::pow(wall, steps)).epsilon(1e-3));
 }
 
 TEST_CASE("the printed cone leaves pixels black where nothing is seen, or nothing glossy") {
