@@ -91,7 +91,7 @@ TEST_CASE(
           if (by.columns != columns || (!columns && axis != 1)) continue;
           const Fragments fragments = voxelised(builder.scene, by);
           CAPTURE(by.pass, by.method, axis, alongSecond);
-          double worst = 0.0;
+          double worst = 0.0, farthest = 0.0;  // off the texture, off the square
           int looked = 0;
           for (const FragmentData& fragment : fragments.all) {
             const double along = fragments.place(fragment)[(axis + (alongSecond ? 2 : 1)) % 3];
@@ -102,10 +102,12 @@ TEST_CASE(
             const double expected =
                 glm::mix(mean(static_cast<int>(below)), mean(static_cast<int>(below) + 1), block - below);
             worst = std::max(worst, std::abs(fragment.albedo().g - expected));
+            farthest = std::max(farthest, std::abs(fragments.place(fragment)[axis]));
             ++looked;
           }
           CHECK(looked >= kSide * (kSide - 6));
           CHECK(worst < 0.03);
+          CHECK(farthest < 0.01 * fragments.grid.voxelSize);
         }
       }
     }
