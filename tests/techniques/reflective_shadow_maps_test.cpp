@@ -281,6 +281,37 @@ TEST_CASE("the pattern lies where the light sees the surface point: texels elsew
 }
 
 TEST_CASE(
+    "as published a point has a part in a spot light's view from its very front on, and none behind the light") {
+  constexpr int kSide = 64;
+  constexpr float kReach = 0.25f;
+  SceneBuilder builder = closedBox(0.5f);
+  builder.look({0, 0, 0.9}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);
+  Light& light = builder.light(LightKind::spot, glm::vec3(1.0f), {0, 0.6, 0}, {0, -1, 0});
+  light.innerAngle = light.outerAngle = 0.6f;
+  for (const float ahead : {-0.1f, 0.1f, 0.3f}) {
+    // On the axis all of the pattern lies in the view; every texel has a flux of 1 W, a metre above the
+    // point.
+    const glm::vec3 point(0, 0.6f - ahead, 0);
+    ReflectiveShadowMap map = render(builder.scene, kSide).value;
+    map.position->clear(glm::vec4(point + glm::vec3(0, 1, 0), 1));
+    map.normal->clear({0, -1, 0, 0});
+    map.flux->clear({1, 1, 1, 0});
+    PassHarness harness(device(), techniques(), "reflective_shadow_maps", "gather", builder.scene,
+                        snapshotOf(builder.scene, 0.0));
+    harness.setInput("gbuffer", surfacePoints(point, {0, 1, 0}));
+    harness.setInput("map", map);
+    harness.setParameter("method", std::string("projected"));
+    harness.setParameter("weights", std::string("published"));
+    harness.setParameter("reach", kReach);
+    harness.setParameter("samples", 100);
+    harness.run();
+    const double found = pictureOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
+    CAPTURE(ahead);
+    CHECK(found == Approx(ahead > 0.0f ? kPi * std::pow(kReach * kSide, 2) : 0.0).epsilon(1e-3));
+  }
+}
+
+TEST_CASE(
     "the pattern around the projection stands for the view, the disc or the cap of the sphere that it covers, by its density and as published") {
   // All texels are given one place a metre above the surface, facing it, so that the irradiance is their flux
   // over pi, whichever of them are taken. Their flux is the size of a texel, on the plane or on the sphere,
