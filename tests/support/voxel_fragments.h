@@ -104,6 +104,9 @@ inline Voxels voxelsOf(const VoxelFragments& list) {
   REQUIRE(std::uint64_t{words.at(1)} * words.at(2) * words.at(3) *
               static_cast<std::uint64_t>(list.workGroupSize) >=
           words.at(0));
+  // In a single row no group is idle.
+  const auto size = static_cast<std::uint32_t>(list.workGroupSize);
+  if (words.at(2) == 1) REQUIRE(words.at(1) == std::max((words.at(0) + size - 1) / size, 1u));
   Voxels result{list.grid, fragmentsOf(list), {}};
   result.occupied = cellsOf(result.fragments);
   return result;

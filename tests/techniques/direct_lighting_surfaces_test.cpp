@@ -69,7 +69,7 @@ TEST_CASE(
 TEST_CASE("a light more than a right angle off the mirror direction adds nothing to a Phong surface") {
   // Seen and lit at a slant from the same side: the mirror direction points away from the light, 2 x 50
   // degrees.
-  for (const float exponent : {1.0f, 8.0f}) {
+  for (const float exponent : {0.0f, 1.0f, 8.0f}) {
     Material shiny;
     shiny.specular = glm::vec3(0.5f);
     shiny.exponent = exponent;
@@ -81,6 +81,28 @@ TEST_CASE("a light more than a right angle off the mirror direction adds nothing
     const Picture picture = directLight(builder.scene);
     for (const float radiance : picture.values()) CHECK(radiance == 0.0f);
   }
+}
+
+TEST_CASE("a Phong lobe of exponent 0 or 0.1 reaches up to a right angle off the mirror direction") {
+  // Seen at a slant of 40 degrees from the side of the light, which is a + b off the mirror direction.
+  constexpr double kSeen = 40.0;
+  for (const float exponent : {0.0f, 0.1f})
+    for (const double slant : {5.0, 36.0, 49.0}) {
+      CAPTURE(exponent, slant);
+      Material shiny;
+      shiny.specular = glm::vec3(0.5f);
+      shiny.exponent = exponent;
+      SceneBuilder builder = floorOf(shiny);
+      const auto towards = [](double degrees) {
+        return glm::dvec3(std::sin(glm::radians(degrees)), std::cos(glm::radians(degrees)), 0.0);
+      };
+      builder.look(4.0 * towards(kSeen), {0, 0, 0}, {0, 1, 0}, 1e-3, kSide, kSide);
+      builder.light(LightKind::directional, {3, 3, 3}, {}, -towards(slant));
+      const double lobe = (exponent + 2.0) / (2.0 * glm::pi<double>()) *
+                          std::pow(std::cos(glm::radians(kSeen + slant)), double(exponent));
+      const double expected = 0.5 * lobe * 3.0 * std::cos(glm::radians(slant));
+      CHECK_THAT(directLight(builder.scene).at(8, 8, 1), WithinRel(static_cast<float>(expected), 5e-3f));
+    }
 }
 
 TEST_CASE("a blocker casts the shadow of what its alpha mask keeps, and the hole lets the light through") {

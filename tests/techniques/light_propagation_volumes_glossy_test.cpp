@@ -1,5 +1,6 @@
 // Glossy light through the reflection grid: the light of hand-made cells, the grid's mips and the cones of
 // another technique, against closed forms; and the whole pipeline against the reference.
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -29,9 +30,10 @@ ShGrid evenLight(RadianceOfX radiance) {
   return gridOf(n, cells);
 }
 
-/// A reflection grid with opaque surfaces in the voxels that `isWall` names; their normals are `normal`.
+/// A reflection grid with surfaces, opaque by default, in the voxels that `isWall` names; their normals are
+/// `normal`.
 template <class IsWall>
-AttributeGrid wallsWhere(IsWall isWall, const glm::vec3& normal) {
+AttributeGrid wallsWhere(IsWall isWall, const glm::vec3& normal, float coverage = 1.0f) {
   AttributeGrid surfaces;
   surfaces.grid = {glm::vec3(-1.0f), static_cast<float>(kSize), glm::ivec3(kVoxels)};
   std::vector<float> albedo, normals;
@@ -39,7 +41,7 @@ AttributeGrid wallsWhere(IsWall isWall, const glm::vec3& normal) {
     for (int y = 0; y < kVoxels; ++y)
       for (int x = 0; x < kVoxels; ++x) {
         const bool wall = isWall(glm::ivec3(x, y, z));
-        for (int i = 0; i < 4; ++i) albedo.push_back(wall ? 1.0f : 0.0f);
+        for (int i = 0; i < 4; ++i) albedo.push_back(!wall ? 0.0f : i == 3 ? coverage : 1.0f);
         for (int i = 0; i < 3; ++i) normals.push_back(wall ? normal[i] : 0.0f);
         normals.push_back(0.0f);
       }
@@ -109,6 +111,66 @@ TEST_CASE("in light of the same radiance L everywhere every surface of the refle
         CHECK(values[voxel + 3] == (z == 3 ? 1.0f : 0.0f));
       }
   }
+}
+
+TEST_CASE("the finer of two grids lights the reflection grid more and more from one cell to five in") {
+  // Radiance 2 in the finer grid, of 16 cells, and 1 in the coarser one; every voxel is a wall.
+  ShGrid light = evenLight([](double) { return 2.0; });
+  const ShGrid coarse = evenLight([](double) { return 1.0; });
+  ShGrid::Level& fine = light.levels[0];
+  // Half as large: the same radiance passes a cell with a quarter of the intensity.
+  fine.grid = {glm::vec3(-0.4f, -0.5f, -0.6f), 0.0625f, glm::ivec3(16)};
+  for (const gpu::TextureRef& texture : fine.coefficients) {
+    Cells cells = texture->downloadFloats(0);
+    for (float& value : cells) value *= 0.25f;
+    texture->uploadFloats(0, cells);
+  }
+  light.levels.push_back(coarse.levels[0]);
+  const RadianceGrid grid = reflected(
+      light, wallsWhere([](const glm::ivec3&) { return true; }, glm::normalize(glm::vec3(2, -1, 2))));
+  const std::vector<float> values = grid.radiance->downloadFloats(0);
+  double worst = 0.0;
+  std::size_t i = 0;
+  for (int z = 0; z < kVoxels; ++z)
+    for (int y = 0; y < kVoxels; ++y)
+      for (int x = 0; x < kVoxels; ++x, i += 4) {
+        const glm::dvec3 centre = -1.0 + (glm::dvec3(x, y, z) + 0.5) * kSize;
+        const glm::dvec3 low = (centre - glm::dvec3(-0.4, -0.5, -0.6)) / 0.0625,
+                         inside = glm::min(low, 16.0 - low);
+        const double cells = std::min({inside.x, inside.y, inside.z});
+        worst = std::max(worst, std::abs(values[i] - (1.0 + std::clamp((cells - 1.0) / 4.0, 0.0, 1.0))));
+      }
+  CHECK(worst < 1e-4);
+}
+
+TEST_CASE("the reflection grid loses light and opacity over as many voxels before its border as it is told") {
+  constexpr double kWidth = 5.0;
+  constexpr float kCoverage = 0.1875f;
+  const SceneBuilder builder = emptyScene();
+  PassHarness reflect(device(), techniques(), "light_propagation_volumes", "reflect", builder.scene,
+                      snapshotOf(builder.scene, 0.0));
+  reflect.setParameter("fade", kWidth);
+  reflect.setInput("surfaces", wallsWhere([](const glm::ivec3&) { return true; }, {0, 0, 1}, kCoverage));
+  reflect.setInput("light", evenLight([](double) { return 0.8; }));
+  reflect.run();
+  const std::vector<float> values = reflect.output<RadianceGrid>("radiance").radiance->downloadFloats(0);
+  double worst = 0.0;
+  std::size_t i = 0;
+  for (int z = 0; z < kVoxels; ++z)
+    for (int y = 0; y < kVoxels; ++y)
+      for (int x = 0; x < kVoxels; ++x, i += 4) {
+        const glm::dvec3 low = glm::dvec3(x, y, z) + 0.5, inside = glm::min(low, double(kVoxels) - low);
+        const double share = kCoverage * std::min(std::min({inside.x, inside.y, inside.z}) / kWidth, 1.0);
+        worst = std::max({worst, std::abs(values[i] - 0.8 * share), std::abs(values[i + 3] - share)});
+      }
+  CHECK(worst < 1e-4);
+  // The same textures again: no light of the walls that are gone stays.
+  reflect.setInput("surfaces", wallsWhere([](const glm::ivec3& voxel) { return voxel.z == 7; }, {0, 0, 1}));
+  reflect.run();
+  const std::vector<float> after = reflect.output<RadianceGrid>("radiance").radiance->downloadFloats(0);
+  constexpr std::size_t kSlice = 4 * kVoxels * kVoxels;
+  for (std::size_t j = 0; j < after.size(); ++j)
+    if (j / kSlice != 7 && after[j] != 0.0f) FAIL("light without a wall");
 }
 
 TEST_CASE("a mirror before a lit wall shows the radiance of the place that the mirrored ray meets") {

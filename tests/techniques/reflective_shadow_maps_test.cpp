@@ -58,6 +58,49 @@ GBuffer surfacePoints(const glm::vec3& position, const glm::vec3& normal) {
           nullptr};
 }
 
+/// A map of one texel a layer, each with a place, a normal with an area, and a flux.
+struct Texel {
+  glm::vec4 position, normal, flux;
+};
+ReflectiveShadowMap mapOf(const std::vector<Texel>& texels) {
+  gpu::TextureDescription description;
+  description.kind = gpu::TextureKind::d2Array;
+  description.format = gpu::Format::rgba32f;
+  description.depth = static_cast<int>(texels.size());
+  const auto filled = [&](glm::vec4 Texel::*member) {
+    auto texture = std::make_shared<gpu::Texture>(device(), description, "test map");
+    std::vector<float> floats;
+    for (const Texel& texel : texels)
+      for (int c = 0; c < 4; ++c) floats.push_back((texel.*member)[c]);
+    texture->uploadFloats(0, floats);
+    return texture;
+  };
+  ReflectiveShadowMap map;
+  map.position = filled(&Texel::position);
+  map.normal = filled(&Texel::normal);
+  map.flux = filled(&Texel::flux);
+  map.lights = std::make_shared<gpu::Buffer>(device(), 64, "lights");
+  map.views = std::make_shared<gpu::Buffer>(device(), 64 * texels.size(), "views");
+  map.lightCount = 1;
+  map.layerCount = static_cast<int>(texels.size());
+  return map;
+}
+
+/// What a white surface at the origin that faces up reflects, by so many samples.
+glm::vec3 reflectedAtOrigin(const ReflectiveShadowMap& map, const char* method, int samples) {
+  SceneBuilder builder;
+  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);
+  PassHarness harness(device(), techniques(), "reflective_shadow_maps", "gather", builder.scene,
+                      snapshotOf(builder.scene, 0.0));
+  harness.setInput("gbuffer", surfacePoints({0, 0, 0}, {0, 1, 0}));
+  harness.setInput("map", map);
+  harness.setParameter("method", std::string(method));
+  harness.setParameter("samples", samples);
+  harness.run();
+  const Picture picture = pictureOf(*harness.output<Image>("diffuse").texture);
+  return {picture.at(3, 3, 0), picture.at(3, 3, 1), picture.at(3, 3, 2)};
+}
+
 Picture gather(const Scene& scene, const ReflectiveShadowMap& map, const char* method, int samples) {
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   PassHarness view(device(), techniques(), "direct_lighting", "gbuffer", scene, snapshot);
@@ -125,36 +168,146 @@ TEST_CASE("several lights add up texel by texel") {
 TEST_CASE("a texel lights a surface on its axis as a disc of its area does") {
   // Lambert: a disc of radius r and exitance M seen from its axis at distance d gives M r^2 / (d^2 + r^2);
   // with A = pi r^2 and flux F = M A that is F / (pi d^2 + A).
-  SceneBuilder builder;
-  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);
-  gpu::TextureDescription description;
-  description.kind = gpu::TextureKind::d2Array;
-  description.format = gpu::Format::rgba32f;
-  const auto texel = [&](const glm::vec4& value) {
-    auto texture = std::make_shared<gpu::Texture>(device(), description, "one texel");
-    texture->clear(value);
-    return texture;
-  };
   for (const double area : {1e-4, 0.5, 4.0}) {
-    ReflectiveShadowMap map;
-    map.position = texel({0, 1, 0, 1});
-    map.normal = texel({0, -1, 0, static_cast<float>(area)});
-    map.flux = texel({3, 3, 3, 0});
-    map.lights = std::make_shared<gpu::Buffer>(device(), 64, "lights");
-    map.views = std::make_shared<gpu::Buffer>(device(), 64, "views");
-    map.lightCount = map.layerCount = 1;
-    for (const char* method : {"all", "flux"}) {
+    const ReflectiveShadowMap map =
+        mapOf({{{0, 1, 0, 1}, {0, -1, 0, static_cast<float>(area)}, {3, 3, 3, 0}}});
+    for (const char* method : {"all", "flux"})
+      CHECK(reflectedAtOrigin(map, method, 1).x == Approx(3.0 / (kPi + area) / kPi).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("a texel in the very point of a surface lights nothing there") {
+  for (const float area : {0.0f, 0.5f})
+    for (const char* method : {"all", "flux"})
+      CHECK(reflectedAtOrigin(mapOf({{{0, 0, 0, 1}, {0, -1, 0, area}, {3, 3, 3, 0}}}), method, 1) ==
+            glm::vec3(0.0f));
+}
+
+TEST_CASE("coloured texels are chosen by their luminance, Rec. 709, and carry the luminance of all of them") {
+  // Of two texels one sample takes the one that holds more than half, here by a tenth either way.
+  const glm::dvec3 weights(0.2126, 0.7152, 0.0722);
+  for (const glm::ivec2 colours : {glm::ivec2(0, 1), {1, 2}, {2, 0}})
+    for (const bool firstIsMore : {true, false}) {
+      std::vector<Texel> texels(2, {{0, 1, 0, 1}, {0, -1, 0, 0}, {0, 0, 0, 0}});
+      const double luminances[2] = {firstIsMore ? 1.1 : 1.0, firstIsMore ? 1.0 : 1.1};
+      for (int i = 0; i < 2; ++i)
+        texels[static_cast<std::size_t>(i)].flux[colours[i]] =
+            static_cast<float>(luminances[i] / weights[colours[i]]);
+      const glm::vec3 found = reflectedAtOrigin(mapOf(texels), "flux", 1);
+      const int taken = firstIsMore ? 0 : 1;
+      CAPTURE(colours[taken], firstIsMore);
+      // A metre away the irradiance is the flux over pi.
+      CHECK(found[colours[taken]] * kPi * kPi == Approx(2.1 / weights[colours[taken]]).epsilon(1e-4));
+      CHECK(found[colours[1 - taken]] == 0.0f);
+    }
+}
+
+TEST_CASE(
+    "a map marks the texels that see a surface with 1, tells whose light they reflect, and leaves the others empty") {
+  SceneBuilder builder;
+  builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.6f));
+  for (int i = 0; i < 2; ++i) builder.light(LightKind::directional, glm::vec3(3.0f), {}, {0, -1, 0});
+  const Map map = render(builder.scene, 64);
+  const std::vector<float> position = map.value.position->downloadFloats(0),
+                           flux = map.value.flux->downloadFloats(0),
+                           normal = map.value.normal->downloadFloats(0);
+  REQUIRE(position.size() == 2u * 64u * 64u * 4u);
+  int hits = 0;
+  for (std::size_t i = 0; i < position.size(); i += 4) {
+    const bool hit = position[i + 3] != 0.0f;
+    CHECK(position[i + 3] == (hit ? 1.0f : 0.0f));
+    CHECK(flux[i + 3] == (hit && i >= position.size() / 2 ? 1.0f : 0.0f));
+    CHECK((flux[i] > 0.0f) == hit);
+    CHECK((normal[i + 3] > 0.0f) == hit);
+    hits += hit;
+  }
+  // The view is a square around the ball around the plane, 1.01 sqrt 2 m to either side.
+  CHECK(hits == Approx(2 * 64 * 64 / std::pow(1.01 * std::sqrt(2.0), 2)).epsilon(0.05));
+}
+
+TEST_CASE("the pattern lies where the light sees the surface point: texels elsewhere have no part in it") {
+  // As below all texels are given one place a metre above the surface, and as flux their size; but only those
+  // which see the floor within 0.3 m of the point, so that the sum keeps what the pattern covers.
+  constexpr int kSide = 128;
+  constexpr float kReach = 0.02f;
+  const glm::vec3 point(0.65f, 0.0f, 0.4f);
+  for (const LightKind kind : {LightKind::directional, LightKind::spot, LightKind::point}) {
+    SceneBuilder builder;
+    builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.5f));
+    builder.look({0, 2, 0.9}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);
+    Light& light = builder.light(kind, glm::vec3(1.0f), {0.2, 1.6, -0.1}, {0, -1, 0});
+    if (kind == LightKind::spot) light.innerAngle = light.outerAngle = 0.6f;
+    ReflectiveShadowMap map = render(builder.scene, kSide).value;
+    const double texel = map.lights->downloadValues<LightSampleData>().front().shape.z, width = texel * kSide;
+    const std::vector<float> seen = map.position->downloadFloats(0);
+    const gpu::TextureDescription description = map.flux->description();
+    map.position = std::make_shared<gpu::Texture>(device(), description, "places");
+    map.normal = std::make_shared<gpu::Texture>(device(), description, "normals");
+    map.flux = std::make_shared<gpu::Texture>(device(), description, "sizes");
+    map.position->clear(glm::vec4(point + glm::vec3(0, 1, 0), 1));
+    map.normal->clear({0, -1, 0, 0});
+    for (const bool published : {false, true}) {
+      const bool inView = published && kind == LightKind::spot;
+      std::vector<float> sizes;
+      for (int i = 0; i < kSide * kSide * map.layerCount; ++i) {
+        const float* place = seen.data() + 4 * static_cast<std::size_t>(i);
+        const double u = (i % kSide + 0.5) * texel - 0.5 * width,
+                     v = (i / kSide % kSide + 0.5) * texel - 0.5 * width;
+        double size = texel * texel / std::pow(1.0 + u * u + v * v, 1.5);
+        if (kind == LightKind::directional) size = texel * texel;
+        if (inView) size = 1.0;
+        if (place[3] == 0.0f || glm::length(glm::vec3(place[0], place[1], place[2]) - point) > 0.3f)
+          size = 0.0;
+        sizes.insert(sizes.end(), {float(size), float(size), float(size), 0.0f});
+      }
+      map.flux->uploadFloats(0, sizes);
+      double expected = 2.0 * kPi * (1.0 - std::cos(kReach * kPi));
+      if (kind == LightKind::directional) expected = kPi * std::pow(kReach * width, 2);
+      if (inView) expected = kPi * std::pow(kReach * kSide, 2);
       PassHarness harness(device(), techniques(), "reflective_shadow_maps", "gather", builder.scene,
                           snapshotOf(builder.scene, 0.0));
-      harness.setInput("gbuffer", surfacePoints({0, 0, 0}, {0, 1, 0}));
+      harness.setInput("gbuffer", surfacePoints(point, {0, 1, 0}));
       harness.setInput("map", map);
-      harness.setParameter("method", std::string(method));
-      harness.setParameter("samples", 1);
+      harness.setParameter("method", std::string("projected"));
+      harness.setParameter("weights", std::string(published ? "published" : "exact"));
+      harness.setParameter("reach", kReach);
+      harness.setParameter("samples", 1000);
       harness.run();
-      const double expected = 3.0 / (kPi + area) / kPi;
-      CHECK(pictureOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) ==
-            Approx(expected).epsilon(1e-4));
+      const double found = pictureOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
+      CAPTURE(static_cast<int>(kind), published, found / expected);
+      CHECK(found == Approx(expected).epsilon(0.03));
     }
+  }
+}
+
+TEST_CASE(
+    "as published a point has a part in a spot light's view from its very front on, and none behind the light") {
+  constexpr int kSide = 64;
+  constexpr float kReach = 0.25f;
+  SceneBuilder builder = closedBox(0.5f);
+  builder.look({0, 0, 0.9}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);
+  Light& light = builder.light(LightKind::spot, glm::vec3(1.0f), {0, 0.6, 0}, {0, -1, 0});
+  light.innerAngle = light.outerAngle = 0.6f;
+  for (const float ahead : {-0.1f, 0.1f, 0.3f}) {
+    // On the axis all of the pattern lies in the view; every texel has a flux of 1 W, a metre above the
+    // point.
+    const glm::vec3 point(0, 0.6f - ahead, 0);
+    ReflectiveShadowMap map = render(builder.scene, kSide).value;
+    map.position->clear(glm::vec4(point + glm::vec3(0, 1, 0), 1));
+    map.normal->clear({0, -1, 0, 0});
+    map.flux->clear({1, 1, 1, 0});
+    PassHarness harness(device(), techniques(), "reflective_shadow_maps", "gather", builder.scene,
+                        snapshotOf(builder.scene, 0.0));
+    harness.setInput("gbuffer", surfacePoints(point, {0, 1, 0}));
+    harness.setInput("map", map);
+    harness.setParameter("method", std::string("projected"));
+    harness.setParameter("weights", std::string("published"));
+    harness.setParameter("reach", kReach);
+    harness.setParameter("samples", 100);
+    harness.run();
+    const double found = pictureOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
+    CAPTURE(ahead);
+    CHECK(found == Approx(ahead > 0.0f ? kPi * std::pow(kReach * kSide, 2) : 0.0).epsilon(1e-3));
   }
 }
 

@@ -195,3 +195,27 @@ TEST_CASE("a point light inside smoke that varies is its integral, marching to i
         CHECK(valueOf(found, kPixels * 9 + 5) == Approx(expected).epsilon(way.tolerance));
       }
 }
+
+TEST_CASE("densities are integrated exactly over as many cells as asked for, along every axis both ways") {
+  // One step to a surface 1.5 m away. The four cubes before it, of which the surface halves the first, reach
+  // back to 0.625 m, where the densities begin: between centres they are linear, and the rest holds nothing.
+  constexpr float kVoxel = 0.25f;
+  constexpr double kExtinction = 1.5;
+  const auto densityAlong = [](float way) {
+    return way > 0.8f && way < 1.5f ? std::round((way - 0.625f) / kVoxel) : 0.0f;  // 1, 2, 3
+  };
+  const double integral =
+      kVoxel * (0.5 * (0.0 + 1.0) + 0.5 * (1.0 + 2.0) + 0.5 * (2.0 + 3.0)) + 0.5 * kVoxel * 0.5 * (3.0 + 1.5);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float side : {-1.0f, 1.0f}) {
+      CAPTURE(axis, side);
+      glm::vec3 direction(0.0f);
+      direction[axis] = side;
+      const ScatteringGrid smoke =
+          varyingMedium(static_cast<float>(kExtinction), 0.5f, 0.0f, glm::vec3(-2.0f), kVoxel, glm::ivec3(16),
+                        [&](const glm::vec3& place) { return densityAlong(glm::dot(place, direction)); });
+      const GBuffer gbuffer = surfacesAt([&](int) { return 1.5f * direction; });
+      const Picture through = march(emptyScene(), smoke, gbuffer, 1, {}, {{"cells", 4}}).transmittance;
+      CHECK(valueOf(through, 7) == Approx(std::exp(-kExtinction * integral)).epsilon(0.005));
+    }
+}

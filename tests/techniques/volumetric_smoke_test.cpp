@@ -151,6 +151,33 @@ TEST_CASE("inserting particles keeps their mass, in coarse and fine grids, and g
   }
 }
 
+TEST_CASE("a particle shares out its mass in proportion to its cloud at the centres of voxels") {
+  Medium single = smokeMedium();
+  single.particles = 1;
+  const Scene scene = smokeScene(single);
+  const double time = 1.3, mass = particleMass(single);
+  for (const int resolution : {8, 12}) {  // clouds are at least a voxel wide: a few voxels, then some more
+    const ScatteringGrid::Medium medium = inserted(scene, time, resolution).media.front();
+    const std::vector<float> density = medium.density->downloadFloats(0);
+    const double voxel = medium.grid.voxelSize, radius = std::max(single.radius, voxel);
+    const glm::dvec3 centre = single.source - snapshotOf(scene, time).origin +
+                              glm::dvec3(particleAt(single, particleClock(single, time), 0));
+    std::vector<double> weights;
+    double sum = 0.0;
+    const glm::ivec3 size = medium.grid.resolution;
+    for (int i = 0; i < size.x * size.y * size.z; ++i) {
+      const glm::dvec3 place(i % size.x, i / size.x % size.y, i / (size.x * size.y)),
+          path = (glm::dvec3(medium.grid.low) + voxel * (place + 0.5) - centre) / radius;
+      weights.push_back(std::pow(std::max(0.0, 1.0 - glm::dot(path, path)), 3.0));
+      sum += weights.back();
+    }
+    REQUIRE(weights.size() == density.size());
+    REQUIRE(sum > 0.0);
+    for (std::size_t i = 0; i < weights.size(); ++i)
+      CHECK(density[i] * voxel * voxel * voxel / mass == Approx(weights[i] / sum).margin(1e-4));
+  }
+}
+
 TEST_CASE("a fine grid holds the density of the clouds") {
   const Scene scene = smokeScene(smokeMedium());
   const ScatteringGrid grid = inserted(scene, 2.0, 96);
@@ -239,6 +266,25 @@ TEST_CASE("light depths in a volume give the picture of marching to the light fr
 
   CHECK(errors[0] < 0.01);
   CHECK(errors[1] < 0.006);
+}
+
+TEST_CASE("at half resolution of a picture of odd size every ray is one of the picture's") {
+  // Where the pattern would look beside the picture it takes the last pixel: all rays end at the surface.
+  constexpr int kWidth = 9, kHeight = 7;
+  SceneBuilder builder;
+  builder.look({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 0.7, kWidth, kHeight);
+  gpu::TextureDescription description;
+  description.format = gpu::Format::rgba32f;
+  description.width = kWidth;
+  description.height = kHeight;
+  GBuffer gbuffer;
+  gbuffer.position = std::make_shared<gpu::Texture>(device(), description, "surfaces");
+  gbuffer.position->clear({0, 0, -1, 1});
+  const ScatteringGrid fog = evenMedium(glm::vec3(1.0f), glm::vec3(0.5f), 0, glm::vec3(-3), glm::vec3(3));
+  const Picture through = march(builder.scene, fog, gbuffer, 4, {{"resolution", "half"}}).transmittance;
+  REQUIRE(through.width() == 5);
+  REQUIRE(through.height() == 4);
+  for (const float value : through.values()) CHECK(value == Approx(std::exp(-1.0)).epsilon(1e-3));
 }
 
 TEST_CASE("surfaces are lit through the medium: E exp(-sigma_t d)") {

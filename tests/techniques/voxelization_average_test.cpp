@@ -22,9 +22,11 @@ FragmentData fragment(const glm::ivec3& cell, const glm::vec3& albedo, float cov
   FragmentData result{};
   result.voxel = static_cast<std::uint32_t>(cell.x | cell.y << 10 | cell.z << 20);
   result.offset = 512u | 512u << 10 | 512u << 20;
+  // The octahedron is laid into a square, its lower half folded outwards.
   const glm::vec3 n = normal / (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
-  // Normals of the upper half alone: no fold.
-  result.normal = glm::packSnorm2x16(glm::vec2(n));
+  const glm::vec2 signs(n.x >= 0.0f ? 1.0f : -1.0f, n.y >= 0.0f ? 1.0f : -1.0f);
+  result.normal =
+      glm::packSnorm2x16(n.z >= 0.0f ? glm::vec2(n) : (1.0f - glm::abs(glm::vec2(n.y, n.x))) * signs);
   result.albedoRg = glm::packHalf2x16(glm::vec2(albedo));
   result.albedoBCoverage = glm::packHalf2x16(glm::vec2(albedo.z, coverage));
   result.emission = emission;
@@ -37,7 +39,9 @@ std::uint32_t sharedExponent(float value) {
   return 128u | 128u << 8 | 128u << 16 | exponent << 24;
 }
 
-VoxelFragments listOf(const std::vector<FragmentData>& fragments, VoxelFragments::Coverage rule) {
+/// Dispatched in `columns` by `rows` groups; without columns in one row.
+VoxelFragments listOf(const std::vector<FragmentData>& fragments, VoxelFragments::Coverage rule,
+                      std::uint32_t columns = 0, std::uint32_t rows = 1) {
   VoxelFragments list;
   list.grid = {glm::vec3(0.0f), 1.0f / kSide, glm::ivec3(kSide, kSide - 1, kSide - 2)};
   list.capacity = fragments.size() + 3;
@@ -45,7 +49,8 @@ VoxelFragments listOf(const std::vector<FragmentData>& fragments, VoxelFragments
   list.fragments = std::make_shared<gpu::Buffer>(device(), list.capacity * sizeof(FragmentData), "list");
   list.fragments->uploadValues(std::span<const FragmentData>(fragments));
   const auto count = static_cast<std::uint32_t>(fragments.size());
-  const std::array<std::uint32_t, 4> words{count, std::max(1u, (count + 63) / 64), 1, 1};
+  const std::array<std::uint32_t, 4> words{count, columns > 0 ? columns : std::max(1u, (count + 63) / 64),
+                                           rows, 1};
   list.count = std::make_shared<gpu::Buffer>(device(), sizeof(words), "count");
   list.count->uploadValues(std::span<const std::uint32_t>(words));
   return list;
@@ -72,9 +77,10 @@ struct Averages {
 };
 
 Averages averagesOf(const Scene& scene, const std::vector<FragmentData>& fragments,
-                    VoxelFragments::Coverage rule = VoxelFragments::Coverage::mean) {
+                    VoxelFragments::Coverage rule = VoxelFragments::Coverage::mean, std::uint32_t columns = 0,
+                    std::uint32_t rows = 1) {
   PassHarness harness(device(), techniques(), "voxelization", "average", scene, snapshotOf(scene, 0.0));
-  harness.setInput("fragments", listOf(fragments, rule));
+  harness.setInput("fragments", listOf(fragments, rule, columns, rows));
   harness.run();
   const auto& grid = harness.output<AttributeGrid>("attributes");
   Averages result;
@@ -156,6 +162,40 @@ TEST_CASE("opposite normals cancel, and where they agree the mean has unit lengt
   CHECK(glm::length(glm::vec3(Averages::texel(averages.normal, flat))) == Approx(1.0).epsilon(1e-3));
 }
 
+TEST_CASE("the mean of one normal is that normal, whichever way it points") {
+  std::vector<FragmentData> fragments;
+  std::vector<glm::vec3> normals;
+  for (int i = 0; i < 8; ++i) {
+    const glm::vec3 signs(i & 1 ? -1.0f : 1.0f, i & 2 ? -1.0f : 1.0f, i & 4 ? -1.0f : 1.0f);
+    normals.push_back(signs * glm::normalize(glm::vec3(1, 2, 3)));
+    fragments.push_back(fragment({i & 1, i >> 1 & 1, i >> 2}, glm::vec3(0.5f), 1.0f, normals.back()));
+  }
+  const Averages averages = averagesOf(sceneThatEmits(1.0f), fragments);
+  for (int i = 0; i < 8; ++i) {
+    const glm::vec4 found = Averages::texel(averages.normal, {i & 1, i >> 1 & 1, i >> 2});
+    for (int c = 0; c < 3; ++c)
+      CHECK(found[c] == Approx(normals[static_cast<std::size_t>(i)][c]).margin(1e-3));
+  }
+}
+
+TEST_CASE(
+    "every fragment of a list has its part in the averages, in however many rows of groups it is dispatched") {
+  std::vector<FragmentData> fragments;
+  for (int i = 0; i < 300; ++i)
+    fragments.push_back(fragment({i % kSide, i / kSide % 7, i / (kSide * 7)},
+                                 glm::vec3(0.25f + 0.002f * static_cast<float>(i)), 1.0f, kUp,
+                                 sharedExponent(1.0f)));
+  const Scene scene = sceneThatEmits(1.0f);
+  constexpr auto kMean = VoxelFragments::Coverage::mean;
+  const Averages row = averagesOf(scene, fragments);
+  CHECK(row.bits.size() == fragments.size());
+  for (int i = 0; i < 300; ++i)
+    CHECK(row.albedo[4 * static_cast<std::size_t>(i)] == Approx(0.25 + 0.002 * i).epsilon(1e-3));
+  CHECK(averagesOf(scene, fragments, kMean, 3, 2) == row);
+  CHECK(averagesOf(scene, fragments, kMean, 2, 4) == row);
+  CHECK(averagesOf(scene, fragments, kMean, 1, 5) == row);
+}
+
 TEST_CASE("averages do not depend on the order of the list, to the bit") {
   std::mt19937 generator(5);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
@@ -182,7 +222,8 @@ TEST_CASE("a hundred thousand fragments of one voxel neither overflow nor lose t
   CHECK(albedo.x == Approx(0.25).epsilon(1e-3));
   CHECK(albedo.z == Approx(1.0).epsilon(1e-3));
   CHECK(albedo.w == Approx(1.0).epsilon(1e-3));
-  CHECK(Averages::texel(averages.emission, {0, 0, 0}).x == Approx(2.0).epsilon(1e-3));
+  // What all fragments share is rounded alike above and below the fraction: the mean of equals is exact.
+  CHECK(Averages::texel(averages.emission, {0, 0, 0}).x == Approx(2.0).epsilon(1e-6));
 }
 
 TEST_CASE("a dim crowded voxel keeps its emission in a grid with a lamp 10^12 times as bright") {
@@ -200,6 +241,40 @@ TEST_CASE("a dim crowded voxel keeps its emission in a grid with a lamp 10^12 ti
     CHECK(Averages::texel(averages.emission, dim).x == Approx(0.75).epsilon(1e-4));
     CHECK(Averages::texel(averages.emission, bright).x == Approx(brightest).epsilon(1e-4));
   }
+}
+
+TEST_CASE("coloured emission keeps its colour, whichever channel is the brightest") {
+  std::vector<FragmentData> fragments;
+  for (int i = 0; i < 6; ++i) {
+    // Mantissas 32, 64 and 128 of 256 in all orders, beside the exponent of 2: radiances 1/2, 1 and 2.
+    const std::uint32_t r = 32u << i % 3, g = 32u << (i < 3 ? i + 1 : i + 2) % 3, b = 32u * 7u - r - g;
+    fragments.push_back(
+        fragment({i, 0, 0}, glm::vec3(0.5f), 1.0f, kUp, r | g << 8 | b << 16 | (2u + 128u) << 24));
+  }
+  const Averages averages = averagesOf(sceneThatEmits(2.0f), fragments);
+  for (int i = 0; i < 6; ++i) {
+    const glm::vec4 found = Averages::texel(averages.emission, {i, 0, 0});
+    for (int c = 0; c < 3; ++c) {
+      const std::uint32_t mantissa = fragments[static_cast<std::size_t>(i)].emission >> 8 * c & 255u;
+      CHECK(found[c] == Approx(mantissa / 64.0).epsilon(1e-5));
+    }
+  }
+}
+
+TEST_CASE("a grid of several stacks along z has every voxel's bit in its own") {
+  std::vector<FragmentData> fragments;
+  std::set<Cell> expected;
+  for (const int z : {0, 31, 32, 127, 128, 200, 255, 256, 300, 383, 384, 399}) {
+    fragments.push_back(fragment({z % 3, z % 2, z}, glm::vec3(0.5f), 1.0f, kUp));
+    expected.insert({z % 3, z % 2, z});
+  }
+  VoxelFragments list = listOf(fragments, VoxelFragments::Coverage::mean);
+  list.grid.resolution = {3, 2, 400};
+  const Scene scene = sceneThatEmits(0.0f);
+  PassHarness harness(device(), techniques(), "voxelization", "average", scene, snapshotOf(scene, 0.0));
+  harness.setInput("fragments", list);
+  harness.run();
+  CHECK(cellsOf(harness.output<BinaryGrid>("bits")) == expected);
 }
 
 TEST_CASE("an empty list gives empty grids, and a scene that emits nothing no emission") {

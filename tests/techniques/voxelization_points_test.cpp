@@ -326,6 +326,38 @@ TEST_CASE("what the camera sees stands behind the fragments of another list, and
   CHECK(listOf(executor, "both").grid == listOf(executor, "points").grid);
 }
 
+TEST_CASE(
+    "all of a list stands before what the camera sees, in however many rows of groups it is dispatched") {
+  const Scene scene = litRoom(8, 8);
+  GBuffer nothing;
+  gpu::TextureDescription description;
+  description.format = gpu::Format::rgba32f;
+  description.width = description.height = 8;
+  const auto empty = std::make_shared<gpu::Texture>(device(), description, "nothing seen");
+  empty->clear(glm::vec4(0.0f));
+  nothing.position = nothing.normal = nothing.geometricNormal = nothing.diffuse = nothing.emission = empty;
+  std::vector<FragmentData> fragments(300);
+  for (std::size_t i = 0; i < fragments.size(); ++i)
+    fragments[i].voxel = static_cast<std::uint32_t>(i % 8 | i / 8 % 8 << 10 | i / 64 << 20);
+  std::sort(fragments.begin(), fragments.end());
+  for (const glm::uvec2 groups : {glm::uvec2(5, 1), {3, 2}, {2, 3}, {1, 5}}) {
+    CAPTURE(groups.x, groups.y);
+    VoxelFragments list;
+    list.grid = {glm::vec3(0.0f), 0.1f, glm::ivec3(8)};
+    list.capacity = fragments.size();
+    list.fragments = std::make_shared<gpu::Buffer>(device(), list.capacity * sizeof(FragmentData), "list");
+    list.fragments->uploadValues(std::span<const FragmentData>(fragments));
+    const std::array<std::uint32_t, 4> words{300, groups.x, groups.y, 1};
+    list.count = std::make_shared<gpu::Buffer>(device(), sizeof(words), "count");
+    list.count->uploadValues(std::span<const std::uint32_t>(words));
+    PassHarness harness(device(), techniques(), "voxelization", "reproject", scene, snapshotOf(scene, 0.0));
+    harness.setInput("gbuffer", nothing);
+    harness.setInput("fragments", list);
+    harness.run();
+    CHECK(fragmentsOf(harness.output<VoxelFragments>("fragments")) == fragments);
+  }
+}
+
 TEST_CASE("a seen back side keeps the normal of its front and does not shine") {
   SceneBuilder builder;
   builder.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, builder.lambert(0.5f, 2.0f));  // faces +z

@@ -82,6 +82,30 @@ TEST_CASE("a needle of one to a million still marks every voxel along it") {
   CHECK(error.falseNegative == 0);
 }
 
+TEST_CASE(
+    "needles of any width mark every voxel along them, wherever their short edge is in the order of corners") {
+  for (int turn = 0; turn < 3; ++turn) {
+    SceneBuilder builder;
+    const int grey = builder.lambert(0.5f);
+    std::mt19937 generator(13);
+    std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+    const auto vector = [&] { return glm::vec3(uniform(generator), uniform(generator), uniform(generator)); };
+    for (int i = 0; i < 200; ++i) {
+      const float width = std::pow(10.0f, -4.5f + 2.5f * uniform(generator));
+      const glm::vec3 first = vector(), corners[3] = {first, first + width * vector(), vector()};
+      builder.mesh({corners[turn], corners[(turn + 1) % 3], corners[(turn + 2) % 3]}, grey);
+    }
+    for (const char* method : {"raster", "compute"}) {
+      const Voxels voxels = voxelise(builder.scene, 64, "conservative", method);
+      const VoxelError error = compareVoxels(setOf(voxels), truthOf(builder.scene, voxels.grid));
+      CAPTURE(method, turn);
+      CHECK(error.truePositive > 5000);
+      CHECK(error.falseNegative == 0);
+      CHECK(error.falsePositive == 0);
+    }
+  }
+}
+
 TEST_CASE("an axis-aligned box occupies exactly the shell of its voxels") {
   SceneBuilder builder;
   builder.box({-1, -1, -1}, {1, 1, 1}, builder.lambert(0.5f), false);

@@ -210,14 +210,13 @@ TEST_CASE("a strip is as opaque in the voxel where it begins as the samples that
 
 namespace {
 
-/// The coverages of a square of `side` voxels across z, added up, in a grid of voxels of 1 m around the
+/// The coverages of a rectangle of `size` voxels across z, added up, in a grid of voxels of 1 m around the
 /// camera.
-double coverageOfSquare(const glm::dvec2& low, double side, int supersampling) {
+double coverageOf(const glm::dvec2& low, const glm::dvec2& size, int supersampling) {
   SceneBuilder builder;
-  const auto length = static_cast<float>(side);
-  builder.quad({static_cast<float>(low.x), static_cast<float>(low.y), 0.5f}, {length, 0, 0}, {0, length, 0},
-               builder.lambert(0.5f, 1.0f));
-  // Far outside of the grid: they keep the origin of positions at zero, wherever the square is.
+  const glm::vec2 corner(low), edges(size);
+  builder.quad({corner, 0.5f}, {edges.x, 0, 0}, {0, edges.y, 0}, builder.lambert(0.5f, 1.0f));
+  // Far outside of the grid: they keep the origin of positions at zero, wherever the rectangle is.
   for (const float end : {-100.0f, 100.0f})
     builder.quad(glm::vec3(end), {-0.005f * end, 0, 0}, {0, -0.005f * end, 0}, 0);
   builder.look({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 0.7, 8, 8);
@@ -239,30 +238,33 @@ double coverageOfSquare(const glm::dvec2& low, double side, int supersampling) {
 }  // namespace
 
 TEST_CASE("adaptive supersampling counts the samples of smaller pixels, as many as a small triangle needs") {
-  // Each half of a square of 0.4 voxels has 0.08 of a voxel's side. 8 x 8 pixels of 4 or 8 samples put at
-  // least 16 of them there (20, 41), 4 x 4 do not (5, 10). What the square covers are the samples within it,
-  // each a share of 1 / (64 n); of those within a hundredth of a pixel of its border, corners are rounded to
-  // 1/256 of a pixel.
+  // Each half of a square of 0.4 voxels has 0.08 of a voxel's side, and so has that of a strip. 8 x 8 pixels
+  // of 4 or 8 samples put at least 16 of them there (20, 41), 4 x 4 do not (5, 10). What it covers are the
+  // samples within it, each a share of 1 / (64 n); of those within a hundredth of a pixel of its border,
+  // corners are rounded to 1/256 of a pixel.
   const int count = std::min(8, device().info().maxSamples);
   const std::vector<glm::vec2> samples = device().samplePositions(count);
-  constexpr double kSide = 0.4;
   constexpr int kScale = 8;
-  for (int step = 0; step < 12; ++step) {
-    const glm::dvec2 low(0.05 + 0.113 * step, -0.3 + 0.071 * step);
+  for (int step = 0; step < 18; ++step) {
+    const glm::dvec2 size = step % 3 == 0   ? glm::dvec2(0.4, 0.4)
+                            : step % 3 == 1 ? glm::dvec2(1.6, 0.1)
+                                            : glm::dvec2(0.1, 1.6);
+    const glm::dvec2 low(0.05 + 0.0753 * step, -0.3 + 0.0473 * step);
     int inside = 0, open = 0;
     for (int y = -2 * kScale; y < 3 * kScale; ++y)
       for (int x = -2 * kScale; x < 3 * kScale; ++x)
         for (const glm::vec2& sample : samples) {
           const glm::dvec2 at = (glm::dvec2(x, y) + glm::dvec2(sample)) / double{kScale} - low;
-          const double depth = std::min(std::min(at.x, kSide - at.x), std::min(at.y, kSide - at.y)) * kScale;
+          const double depth =
+              std::min(std::min(at.x, size.x - at.x), std::min(at.y, size.y - at.y)) * kScale;
           inside += depth > 0.0;
           open += std::abs(depth) < 0.01;
         }
     const double share = 1.0 / (kScale * kScale * count);
     INFO("step " << step << ": " << inside << " samples, " << open << " at the border");
-    CHECK(coverageOfSquare(low, kSide, 8) == Approx(inside * share).margin(open * share + 1e-6));
+    CHECK(coverageOf(low, size, 8) == Approx(inside * share).margin(open * share + 1e-6));
     // More pixels than are needed are not taken.
-    CHECK(coverageOfSquare(low, kSide, 16) == coverageOfSquare(low, kSide, 8));
+    CHECK(coverageOf(low, size, 16) == coverageOf(low, size, 8));
   }
 }
 
@@ -275,7 +277,8 @@ TEST_CASE(
   constexpr int kSteps = 40;
   for (int step = 0; step < kSteps; ++step)
     for (const int with : {0, 1}) {
-      const double coverage = coverageOfSquare({0.021 * step, 0.3 + 0.013 * step}, kSide, with == 1 ? 16 : 1);
+      const double coverage =
+          coverageOf({0.021 * step, 0.3 + 0.013 * step}, glm::dvec2(kSide), with == 1 ? 16 : 1);
       least[with] = std::min(least[with], coverage);
       most[with] = std::max(most[with], coverage);
       sum[with] += coverage / kSteps;
