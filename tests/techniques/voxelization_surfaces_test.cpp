@@ -62,13 +62,12 @@ Fragments voxelised(const Scene& scene, const Voxeliser& by) {
 TEST_CASE(
     "a texture is read through the mip whose texels are voxels, along either edge of a square across any axis") {
   // Eight texels a voxel along one edge and half a texel along the other: of each eight the four in the
-  // middle are brighter. Their means make no simple row where the middles of voxels are read; a ramp
-  // elsewhere.
+  // middle are brighter. Their means make no simple row.
   constexpr int kTexels = 8 * kSide;
   for (const bool columns : {true, false})
     for (const bool alongSecond : {false, true}) {
       const auto mean = [&](int block) {
-        return columns ? 0.25 + 0.5 * (block * 7 % kSide) / (kSide - 1) : 0.25 + 0.5 * block / (kSide - 1);
+        return 0.25 + 0.5 * (block * 7 % kSide) / (kSide - 1);
       };
       SurfaceTexture stripes;
       stripes.name = "stripes";
@@ -102,11 +101,12 @@ TEST_CASE(
             const double expected =
                 glm::mix(mean(static_cast<int>(below)), mean(static_cast<int>(below) + 1), block - below);
             worst = std::max(worst, std::abs(fragment.albedo().g - expected));
+            if (std::string(by.pass) != "msaa_opacity") REQUIRE(fragment.coverage() == 1.0f);
             farthest = std::max(farthest, std::abs(fragments.place(fragment)[axis]));
             ++looked;
           }
           CHECK(looked >= kSide * (kSide - 6));
-          CHECK(worst < 0.03);
+          CHECK(worst < (columns ? 0.03 : 0.05));
           CHECK(farthest < 0.01 * fragments.grid.voxelSize);
         }
       }
