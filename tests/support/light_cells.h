@@ -34,6 +34,16 @@ inline gpu::TextureRef volume(int n, gpu::Format format) {
   return texture;
 }
 
+/// A picture of 8 x 8 pixels of one value, as a layer of a g-buffer.
+inline gpu::TextureRef filledPixels(const glm::vec4& value) {
+  gpu::TextureDescription description;
+  description.format = gpu::Format::rgba32f;
+  description.width = description.height = 8;
+  auto texture = std::make_shared<gpu::Texture>(device(), description, "test g-buffer");
+  texture->clear(value);
+  return texture;
+}
+
 /// A grid of [-1,1]^3 with the same light in all channels; `closed` gives xyz shares of (n+1)^3 faces.
 inline ShGrid gridOf(int n, const Cells& cells, const std::vector<float>& closed = {}) {
   ShGrid::Level level;

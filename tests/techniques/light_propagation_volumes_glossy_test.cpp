@@ -78,18 +78,10 @@ double shown(const RadianceGrid& radiance, const glm::dvec3& eye, const glm::vec
   filter.setInput("radiance", placed);
   filter.run();
   PassHarness gather(device(), techniques(), "voxel_cone_tracing", "gather", builder.scene, snapshot);
-  const auto pixels = [](const glm::vec4& value) {
-    gpu::TextureDescription description;
-    description.format = gpu::Format::rgba32f;
-    description.width = description.height = 8;
-    auto texture = std::make_shared<gpu::Texture>(device(), description, "test g-buffer");
-    texture->clear(value);
-    return texture;
-  };
-  const gpu::TextureRef normals = pixels(glm::vec4(normal, 1.0f));
+  const gpu::TextureRef normals = filledPixels(glm::vec4(normal, 1.0f));
   gather.setInput("gbuffer",
-                  GBuffer{pixels(glm::vec4(position - glm::vec3(snapshot.origin), 1.0f)), normals, normals,
-                          pixels(glm::vec4(0.0f)), pixels(glm::vec4(1, 1, 1, exponent)), nullptr});
+                  GBuffer{filledPixels(glm::vec4(position - glm::vec3(snapshot.origin), 1.0f)), normals, normals,
+                          filledPixels(glm::vec4(0.0f)), filledPixels(glm::vec4(1, 1, 1, exponent)), nullptr});
   gather.setInput("grid", filter.output<RadianceGrid>("mips"));
   gather.run();
   return pictureOf(*gather.output<Image>("glossy").texture).at(4, 4, 0);

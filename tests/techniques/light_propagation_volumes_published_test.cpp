@@ -64,15 +64,6 @@ Cells growing(int n, int axis) {
   return cells;
 }
 
-gpu::TextureRef filledPixels(const glm::vec4& value) {
-  gpu::TextureDescription description;
-  description.format = gpu::Format::rgba32f;
-  description.width = description.height = 8;
-  auto texture = std::make_shared<gpu::Texture>(device(), description, "test g-buffer");
-  texture->clear(value);
-  return texture;
-}
-
 /// Radiance that a white surface at a place reflects, through `gather` with these words set.
 double gathered(const ShGrid& light, const glm::vec3& position, const glm::vec3& normal,
                 const std::vector<std::pair<const char*, const char*>>& settings) {

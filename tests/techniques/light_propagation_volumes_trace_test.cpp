@@ -8,19 +8,6 @@
 using namespace lumivox;
 using namespace lumivox::test;
 
-namespace {
-
-gpu::TextureRef filledPixels(const glm::vec4& value) {
-  gpu::TextureDescription description;
-  description.format = gpu::Format::rgba32f;
-  description.width = description.height = 8;
-  auto texture = std::make_shared<gpu::Texture>(device(), description, "test g-buffer");
-  texture->clear(value);
-  return texture;
-}
-
-}  // namespace
-
 TEST_CASE(
     "the printed cone gathers from a solid grid what its recurrence gives, and fades the wrong way round") {
   // Listings 4.13 and 4.37 in a grid of opacity 1 everywhere and of radiance k + 1 in its mip level k: D

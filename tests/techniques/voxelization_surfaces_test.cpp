@@ -138,3 +138,31 @@ TEST_CASE("a fragment's normal is that between the corners, of unit length howev
     CHECK(worst < 0.01);
   }
 }
+
+TEST_CASE("with a mask and no texture a fragment has the material's albedo and the mask's mean over a voxel") {
+  // Each voxel sees 4 x 4 texels of the mask, of which a quarter are holes.
+  SurfaceTexture holes;
+  holes.name = "holes";
+  holes.width = holes.height = 4 * kSide;
+  holes.mask = true;
+  for (int y = 0; y < holes.height; ++y)
+    for (int x = 0; x < holes.width; ++x) holes.values.push_back(x % 2 + y % 2 == 0 ? 0.0f : 1.0f);
+  Material material;
+  material.diffuse = {0.6f, 0.4f, 0.2f};
+  material.maskTexture = 0;
+  SceneBuilder builder = square(1, material);
+  builder.scene.textures = {holes};
+  for (const Voxeliser& by : kVoxelisers) {
+    CAPTURE(by.pass, by.method);
+    const Fragments fragments = voxelised(builder.scene, by);
+    CHECK(fragments.all.size() >= kSide * kSide);
+    double offAlbedo = 0.0, offCoverage = 0.0;
+    for (const FragmentData& fragment : fragments.all) {
+      offAlbedo = std::max(offAlbedo, glm::length(glm::dvec3(fragment.albedo()) - glm::dvec3(material.diffuse)));
+      if (std::string(by.pass) != "msaa_opacity")
+        offCoverage = std::max(offCoverage, std::abs(double{fragment.coverage()} - 0.75));
+    }
+    CHECK(offAlbedo < 1e-3);
+    CHECK(offCoverage < 1e-2);
+  }
+}
