@@ -79,9 +79,9 @@ double shown(const RadianceGrid& radiance, const glm::dvec3& eye, const glm::vec
   filter.run();
   PassHarness gather(device(), techniques(), "voxel_cone_tracing", "gather", builder.scene, snapshot);
   const gpu::TextureRef normals = filledPixels(glm::vec4(normal, 1.0f));
-  gather.setInput("gbuffer",
-                  GBuffer{filledPixels(glm::vec4(position - glm::vec3(snapshot.origin), 1.0f)), normals, normals,
-                          filledPixels(glm::vec4(0.0f)), filledPixels(glm::vec4(1, 1, 1, exponent)), nullptr});
+  gather.setInput("gbuffer", GBuffer{filledPixels(glm::vec4(position - glm::vec3(snapshot.origin), 1.0f)),
+                                     normals, normals, filledPixels(glm::vec4(0.0f)),
+                                     filledPixels(glm::vec4(1, 1, 1, exponent)), nullptr});
   gather.setInput("grid", filter.output<RadianceGrid>("mips"));
   gather.run();
   return pictureOf(*gather.output<Image>("glossy").texture).at(4, 4, 0);

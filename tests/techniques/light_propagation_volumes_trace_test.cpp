@@ -77,13 +77,14 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("behind a wall that is seen through, each empty step of the printed cone leaves A of what it gathered") {
+TEST_CASE(
+    "behind a wall that is seen through, each empty step of the printed cone leaves A of what it gathered") {
   // Listing 4.13 multiplies what was gathered by the opacity A in every step, also where nothing is: n empty
   // steps behind a wall leave A^n of its light. The printed fade keeps walls from closing, so that hardly
   // anything is left of reflections (Fig. 76 as printed).
   constexpr int voxels = 64;
-  constexpr float size = 0.05f, opacity = 0.5f;  // m
-  constexpr int seen = 24, first = 34, end = 38;   // voxels along z: of the surface, and of the wall
+  constexpr float size = 0.05f, opacity = 0.5f;   // m
+  constexpr int seen = 24, first = 34, end = 38;  // voxels along z: of the surface, and of the wall
   const SceneBuilder builder = emptyScene();
   const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
   RadianceGrid grid;
@@ -105,20 +106,22 @@ TEST_CASE("behind a wall that is seen through, each empty step of the printed co
   trace.setParameter("fade", std::string("none"));
   const glm::vec3 position = snapshot.camera.eye - glm::vec3(0, 0, (0.5f * voxels - seen) * size);
   const gpu::TextureRef normals = filledPixels(glm::vec4(0, 0, 1, 1));
-  trace.setInput("gbuffer", GBuffer{filledPixels(glm::vec4(position, 1.0f)), normals, normals,
-                                    filledPixels(glm::vec4(1.0f)), filledPixels(glm::vec4(1, 1, 1, 1e6f)), nullptr});
+  trace.setInput("gbuffer",
+                 GBuffer{filledPixels(glm::vec4(position, 1.0f)), normals, normals,
+                         filledPixels(glm::vec4(1.0f)), filledPixels(glm::vec4(1, 1, 1, 1e6f)), nullptr});
   const auto gathered = [&](int steps) {  // of a voxel each
     trace.setParameter("reach", (steps + 0.5) * size);
     trace.run();
     return pictureOf(*trace.output<Image>("glossy").texture).at(4, 4, 0);
   };
-  // Between the middles of two voxels of level 1, two finest ones wide, lies a line between their values; each
-  // sample stands for half of its diameter.
+  // Between the middles of two voxels of level 1, two finest ones wide, lies a line between their values;
+  // each sample stands for half of its diameter.
   double through = 1.0;
   for (int step = 2; step < end - seen + 2; ++step) {
     const double place = (seen + step) / 2.0 - 0.5, share = place - std::floor(place);
     const auto inWall = [](double k) { return k >= first / 2 && k < end / 2 ? double{opacity} : 0.0; };
-    through *= std::sqrt(1.0 - (1.0 - share) * inWall(std::floor(place)) - share * inWall(std::floor(place) + 1.0));
+    through *=
+        std::sqrt(1.0 - (1.0 - share) * inWall(std::floor(place)) - share * inWall(std::floor(place) + 1.0));
   }
   const double wall = 1.0 - through;
   CHECK(wall > 0.6);

@@ -128,9 +128,9 @@ TEST_CASE(
   // square.
   CHECK(run.fragments("peeled").size() >= 60u * 30u * 30u);
   run.at(2.0, 1);
-  // The block's surface lies on the faces of voxels, at 1 and 31, and touches the voxels at both sides: 28^3 of
-  // those inside are not touched, less those of the square that stands still, which touches both sides of the
-  // faces around its 4 x 4 voxels: 6 x 6 x 2. The other fragments are those of the surface.
+  // The block's surface lies on the faces of voxels, at 1 and 31, and touches the voxels at both sides: 28^3
+  // of those inside are not touched, less those of the square that stands still, which touches both sides of
+  // the faces around its 4 x 4 voxels: 6 x 6 x 2. The other fragments are those of the surface.
   CHECK(run.fragments("solid").size() == run.fragments("touched").size() + 28u * 28u * 28u - 72u);
 }
 

@@ -66,9 +66,7 @@ TEST_CASE(
   constexpr int kTexels = 8 * kSide;
   for (const bool columns : {true, false})
     for (const bool alongSecond : {false, true}) {
-      const auto mean = [&](int block) {
-        return 0.25 + 0.5 * (block * 7 % kSide) / (kSide - 1);
-      };
+      const auto mean = [&](int block) { return 0.25 + 0.5 * (block * 7 % kSide) / (kSide - 1); };
       SurfaceTexture stripes;
       stripes.name = "stripes";
       stripes.width = alongSecond ? 8 : kTexels;
@@ -139,7 +137,8 @@ TEST_CASE("a fragment's normal is that between the corners, of unit length howev
   }
 }
 
-TEST_CASE("with a mask and no texture a fragment has the material's albedo and the mask's mean over a voxel") {
+TEST_CASE(
+    "with a mask and no texture a fragment has the material's albedo and the mask's mean over a voxel") {
   // Each voxel sees 4 x 4 texels of the mask, of which a quarter are holes.
   SurfaceTexture holes;
   holes.name = "holes";
@@ -158,7 +157,8 @@ TEST_CASE("with a mask and no texture a fragment has the material's albedo and t
     CHECK(fragments.all.size() >= kSide * kSide);
     double offAlbedo = 0.0, offCoverage = 0.0;
     for (const FragmentData& fragment : fragments.all) {
-      offAlbedo = std::max(offAlbedo, glm::length(glm::dvec3(fragment.albedo()) - glm::dvec3(material.diffuse)));
+      offAlbedo =
+          std::max(offAlbedo, glm::length(glm::dvec3(fragment.albedo()) - glm::dvec3(material.diffuse)));
       if (std::string(by.pass) != "msaa_opacity")
         offCoverage = std::max(offCoverage, std::abs(double{fragment.coverage()} - 0.75));
     }

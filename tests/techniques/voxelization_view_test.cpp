@@ -27,7 +27,8 @@ std::optional<Hit> entry(const glm::dvec3& eye, const glm::dvec3& direction, con
   hit.at = -1.0;
   double leave = std::numeric_limits<double>::infinity(), second = -1.0;
   for (int axis = 0; axis < 3; ++axis) {
-    const double a = (low[axis] - eye[axis]) / direction[axis], b = (low[axis] + 1.0 - eye[axis]) / direction[axis];
+    const double a = (low[axis] - eye[axis]) / direction[axis],
+                 b = (low[axis] + 1.0 - eye[axis]) / direction[axis];
     if (std::min(a, b) > hit.at) {
       second = hit.at;
       hit.at = std::min(a, b);
@@ -57,7 +58,8 @@ TEST_CASE("every line of sight shows the nearest cube, with darker edges where c
       fragments.push_back(squareAt((glm::dvec3(voxel) + 0.5) / 2.0, {0, 0, 1}));
     }
   const GridPlacement cells{glm::vec3(-1.2f), 0.4f, glm::ivec3(kVoxels / 2)};
-  for (const glm::vec3& eye : {glm::vec3(1.9f, 2.1f, 2.4f), glm::vec3(-1.8f, 1.6f, -2.3f), glm::vec3(2.6f, -9.0f, 3.1f)}) {
+  for (const glm::vec3& eye :
+       {glm::vec3(1.9f, 2.1f, 2.4f), glm::vec3(-1.8f, 1.6f, -2.3f), glm::vec3(2.6f, -9.0f, 3.1f)}) {
     CAPTURE(eye.x, eye.y, eye.z);
     SceneBuilder builder;
     builder.look(eye, {0.05f, -0.1f, 0.02f}, {0, 1, 0}, 0.9, 96, 96);
@@ -72,10 +74,10 @@ TEST_CASE("every line of sight shows the nearest cube, with darker edges where c
     int looked = 0, lines = 0, empty = 0;
     for (int y = 0; y < camera.height; ++y)
       for (int x = 0; x < camera.width; ++x) {
-        const glm::dvec3 direction = glm::normalize(
-            glm::dvec3(camera.forward) +
-            pixelWidth * ((x + 0.5 - 0.5 * camera.width) * glm::dvec3(camera.right) -
-                          (y + 0.5 - 0.5 * camera.height) * glm::dvec3(camera.up)));
+        const glm::dvec3 direction =
+            glm::normalize(glm::dvec3(camera.forward) +
+                           pixelWidth * ((x + 0.5 - 0.5 * camera.width) * glm::dvec3(camera.right) -
+                                         (y + 0.5 - 0.5 * camera.height) * glm::dvec3(camera.up)));
         Hit nearest;
         bool clear = true;  // no line nearly along an edge: there rounding decides
         for (const glm::ivec3& voxel : voxels)
@@ -90,7 +92,8 @@ TEST_CASE("every line of sight shows the nearest cube, with darker edges where c
           const glm::dvec3 place = eyeGrid + nearest.at * direction;
           for (int axis = 0; axis < 3; ++axis)
             if (axis != nearest.side)
-              toEdge = std::min({toEdge, place[axis] - std::floor(place[axis]), std::ceil(place[axis]) - place[axis]});
+              toEdge = std::min(
+                  {toEdge, place[axis] - std::floor(place[axis]), std::ceil(place[axis]) - place[axis]});
           clear = clear && std::abs(toEdge - wide) > 1e-3;
           const double line = toEdge < wide ? std::clamp(1.0 - 4.0 * pixel, 0.0, 1.0) : 0.0;
           expected = kBrightness[nearest.side] * (1.0 - 0.65 * line);

@@ -263,7 +263,8 @@ class Reproduction {
     return setUps_.back();
   }
 
-  TimedSetUp newSetUp(const PublishedSetUp& published, const Scene& scene, const ParameterValues& parameters) {
+  TimedSetUp newSetUp(const PublishedSetUp& published, const Scene& scene,
+                      const ParameterValues& parameters) {
     TimedSetUp setUp;
     setUp.scene = &scene;
     setUp.subdivisions = published.subdivisions;

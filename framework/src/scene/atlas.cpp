@@ -310,9 +310,9 @@ class AtlasMaker {
       const glm::dvec3 point = patch.point(chart.triangles[i], weights);
       // Two pieces of one sheet meet within a texel; farther apart than this they are two sheets.
       constexpr double kSheet = 1.5;  // texels
-      free =
-          !(gap == 0.0 && ownership.gaps[at] == 0.0) &&
-          (ownership.owners[at] == kNobody || glm::length(point - ownership.places[at]) <= kSheet * texelSize_);
+      free = !(gap == 0.0 && ownership.gaps[at] == 0.0) &&
+             (ownership.owners[at] == kNobody ||
+              glm::length(point - ownership.places[at]) <= kSheet * texelSize_);
       claims.push_back({at, gap, point});
     });
     if (!free) return false;

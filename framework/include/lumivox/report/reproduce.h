@@ -21,8 +21,9 @@ enum class PublishedQuantity {
   fragments,  ///< voxel fragments of an output, a number
   memory      ///< of passes, or of the whole frame at its peak, MB (10^6 bytes)
 };
-inline constexpr PublishedQuantity kPublishedQuantities[] = {PublishedQuantity::time, PublishedQuantity::frameRate,
-                                                             PublishedQuantity::fragments, PublishedQuantity::memory};
+inline constexpr PublishedQuantity kPublishedQuantities[] = {
+    PublishedQuantity::time, PublishedQuantity::frameRate, PublishedQuantity::fragments,
+    PublishedQuantity::memory};
 const char* name(PublishedQuantity quantity);  ///< "frame_rate"
 const char* unit(PublishedQuantity quantity);  ///< "1/s"
 
