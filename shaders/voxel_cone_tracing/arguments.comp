@@ -1,18 +1,18 @@
 #version 450
 // Turns the number of bricks into the arguments of dispatches over their voxels, so that the count never travels to the host.
 layout(local_size_x = 1) in;
+#include "common/list.glsl"
 
 layout(std430, binding = 6) readonly buffer BrickTotals { uint listed; };
 layout(std430, binding = 7) writeonly buffer BrickCount { uint brickCountAndGroups[]; };  // bricks; x, y, z for the levels 0, 1 and 2
 
-const uint kMostGroups = 65535u;  // that OpenGL guarantees per axis
-
 void main() {
   brickCountAndGroups[0] = listed;
   for (uint level = 0u; level < 3u; ++level) {
-    uint threads = listed * (64u >> 3u * level), groups = (threads + 63u) / 64u;
-    brickCountAndGroups[1u + 3u * level] = min(max(groups, 1u), kMostGroups);
-    brickCountAndGroups[2u + 3u * level] = max((groups + kMostGroups - 1u) / kMostGroups, 1u);
+    uint threads = listed * (64u >> 3u * level);
+    uvec2 groups = rowsOfGroups((threads + 63u) / 64u);
+    brickCountAndGroups[1u + 3u * level] = groups.x;
+    brickCountAndGroups[2u + 3u * level] = groups.y;
     brickCountAndGroups[3u + 3u * level] = 1u;
   }
 }

@@ -14,6 +14,7 @@
 #include "common/voxel.glsl"
 
 layout(local_size_x = 64) in;
+#include "common/list.glsl"
 
 layout(std430, binding = 6) readonly buffer Indices { uint indices[]; };
 layout(std140, binding = 1) uniform Grid {
@@ -53,7 +54,6 @@ layout(binding = 1) uniform sampler2D maskTexture;
 
 const int kTile = 8;
 const int kBits = 64;             // voxels of a triangle that one thread notes
-const uint kMostGroups = 65535u;  // that OpenGL guarantees per axis
 
 void put(uint index, ColumnSample s, ivec3 voxel, int axis) {
   if (index < uint(capacity)) fragments[index] = fragmentAt(s, voxel, axis);

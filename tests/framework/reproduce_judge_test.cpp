@@ -72,6 +72,46 @@ TEST_CASE("an uncertainty that reaches across the limit allows no verdict, more 
   CHECK(judge({row("a", 2.0, 1.0, 0.1), row("b", 4.0, 5.0)}).rows[1].verdict == Verdict::notReproduced);
 }
 
+TEST_CASE("a time of fewer than three repeats allows no verdict, a count does") {
+  MeasuredRow reference = row("a", 2.0, 1.0), once = row("b", 4.0, 2.0), slow = row("c", 4.0, 9.0);
+  for (MeasuredRow* few : {&reference, &once, &slow}) few->measured->repeats = 2;
+  const JudgedTable table = judge({reference, once, slow});
+  for (std::size_t r : {1u, 2u}) {
+    CHECK(table.rows[r].verdict == Verdict::notComparable);
+    CHECK_THAT(table.rows[r].why, Contains("2 repeats of a time, and a claim takes 3 at least"));
+  }
+  CHECK(table.rows[1].ratio == Approx(2.0));
+  CHECK(table.verdict == Verdict::notComparable);
+  // Neither is the order of such rows broken.
+  MeasuredRow below = row("b", 1.2, 0.9);
+  below.measured->repeats = 1;
+  CHECK(judge({row("a", 1.0, 1.0), below, row("c", 1.2, 1.2)}).verdict == Verdict::reproduced);
+  // The reference's repeats count as well.
+  reference.measured->repeats = 1;
+  CHECK_THAT(judge({reference, row("b", 4.0, 2.0)}).rows[1].why, Contains("1 repeat of a time"));
+  // Fragments and bytes are the same in every repeat.
+  for (const PublishedQuantity counted : {PublishedQuantity::fragments, PublishedQuantity::memory}) {
+    for (MeasuredRow* few : {&reference, &once, &slow}) {
+      few->quantity = counted;
+      few->measured->repeats = 1;
+    }
+    CHECK(judge({reference, once}).rows[1].verdict == Verdict::reproduced);
+    CHECK(judge({reference, slow}).rows[1].verdict == Verdict::notReproduced);
+  }
+  MeasuredCurve curve;
+  curve.growth = Growth::linear;
+  for (const double x : {1.0, 10.0, 100.0}) {
+    MeasuredPoint point;
+    point.x = x;
+    point.measured = TimingStatistics{x, x, x, x, x, 3};
+    curve.points.push_back(point);
+  }
+  CHECK(judgeGrowth(curve).verdict == Verdict::reproduced);
+  curve.points[1].measured->repeats = 2;
+  CHECK(judgeGrowth(curve).verdict == Verdict::notComparable);
+  CHECK_THAT(judgeGrowth(curve).why, Contains("2 repeats of a time"));
+}
+
 TEST_CASE("rows in the other order than published break a table although each is within the factor") {
   const JudgedTable broken = judge({row("a", 1.0, 1.0), row("b", 1.2, 1.0), row("c", 1.4, 0.95)});
   CHECK(broken.rows[1].verdict == Verdict::reproduced);

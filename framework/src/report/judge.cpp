@@ -29,6 +29,18 @@ double comparable(const MeasuredRow& row) {
                                                       : row.published;
 }
 
+/// What was measured, with its uncertainty. Fragments and bytes are counted, the same in every repeat.
+Measured measuredValue(const MeasuredSetUp& setUp, PublishedQuantity quantity) {
+  Measured value = medianOf(*setUp.measured);
+  value.enoughRepeats = value.enoughRepeats || !isTime(quantity);
+  return value;
+}
+
+std::string tooFewRepeats(const MeasuredSetUp& setUp) {
+  return fmt::format("{} repeat{} of a time, and a claim takes {} at least", setUp.measured->repeats,
+                     setUp.measured->repeats == 1 ? "" : "s", kLeastRepeats);
+}
+
 bool usable(const MeasuredRow& row) {
   return row.measured && row.measured->median > 0.0;
 }
@@ -66,13 +78,18 @@ JudgedRow judgeRow(const MeasuredRow& row, const MeasuredRow* reference) {
     if (row.whyNot.empty()) judged.verdict = Verdict::reference;
     return judged;
   }
-  const Measured above = medianOf(*row.measured), below = medianOf(*reference->measured);
+  const Measured above = measuredValue(row, row.quantity),
+                 below = measuredValue(*reference, reference->quantity);
   judged.ratio = above.value / below.value;
   const double reach =
       kReproducedSigmas * std::hypot(above.uncertainty / above.value, below.uncertainty / below.value);
   judged.lowRatio = judged.ratio * std::max(0.0, 1.0 - reach);
   judged.highRatio = judged.ratio * (1.0 + reach);
   if (!judged.why.empty()) return judged;
+  if (!above.enoughRepeats || !below.enoughRepeats) {
+    judged.why = tooFewRepeats(above.enoughRepeats ? *reference : row);
+    return judged;
+  }
   const double least = judged.publishedRatio / kReproducedFactor,
                most = judged.publishedRatio * kReproducedFactor;
   if (judged.lowRatio >= least && judged.highRatio <= most)
@@ -93,7 +110,8 @@ std::string brokenOrder(const std::vector<MeasuredRow>& rows) {
       if (!sameMeasure(one.quantity, other.quantity) || !one.whyNot.empty() || !other.whyNot.empty() ||
           !usable(one) || !usable(other) || !one.over.empty() || !other.over.empty())
         continue;
-      const Measured first = medianOf(*one.measured), second = medianOf(*other.measured);
+      const Measured first = measuredValue(one, one.quantity), second = measuredValue(other, other.quantity);
+      if (!first.enoughRepeats || !second.enoughRepeats) continue;
       const double apart = kReproducedSigmas * std::hypot(first.uncertainty, second.uncertainty);
       if (comparable(one) < comparable(other) && first.value - second.value > apart)
         return fmt::format("'{}' is above '{}', in the other order than published", one.name, other.name);
@@ -187,7 +205,10 @@ JudgedCurve judgeGrowth(const MeasuredCurve& curve) {
   std::vector<PowerLawPoint> points;
   for (const MeasuredPoint& point : curve.points) {
     if (judged.why.empty()) judged.why = point.whyNot;
-    if (point.measured && point.x > 0.0) points.push_back({point.x, medianOf(*point.measured)});
+    if (!point.measured) continue;
+    const Measured value = measuredValue(point, curve.quantity);
+    if (judged.why.empty() && !value.enoughRepeats) judged.why = tooFewRepeats(point);
+    if (point.x > 0.0) points.push_back({point.x, value});
   }
   const PowerLaw law = fitPowerLaw(points);
   judged.exponent = law.slope;

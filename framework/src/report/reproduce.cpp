@@ -17,6 +17,7 @@
 #include "report/choice.h"
 #include "report/measure.h"
 #include "report/plan.h"
+#include "report/process.h"
 
 namespace lumivox {
 namespace {
@@ -89,6 +90,7 @@ class Reproduction {
 
  private:
   void time() {
+    const MachineLock alone(MachineLock::For::timing);
     for (TimedSetUp& setUp : setUps_)
       guarded(setUp, [&] {
         setUp.timed =
@@ -125,8 +127,11 @@ class Reproduction {
   /// What a sweep would store: the times, of later frames too, and errors and work, which are measured apart
   /// from them. The verdict stands whether this succeeds or not.
   void store() {
-    for (int repeat = 0; repeat < options_.repeats; ++repeat)
-      for (TimedSetUp& setUp : setUps_) guarded(setUp, [&] { setUp.timed->timeNextFrame(); });
+    {
+      const MachineLock alone(MachineLock::For::timing);
+      for (int repeat = 0; repeat < options_.repeats; ++repeat)
+        for (TimedSetUp& setUp : setUps_) guarded(setUp, [&] { setUp.timed->timeNextFrame(); });
+    }
     for (TimedSetUp& setUp : setUps_) {
       guarded(setUp, [&] { setUp.timed->finish(); });
       setUp.timed.reset();  // its memory, which errors may need

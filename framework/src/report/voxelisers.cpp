@@ -14,6 +14,7 @@
 #include "lumivox/pipeline/grid_placement.h"
 #include "lumivox/report/report.h"
 #include "report/plan.h"
+#include "report/process.h"
 
 namespace lumivox {
 
@@ -142,6 +143,7 @@ class Measurement {
       candidate.executor->freeUnused(false);
       candidate.render(options_.time, true);
     }
+    const MachineLock alone(MachineLock::For::timing);
     for (int repeat = 0; repeat < options_.repeats; ++repeat)
       for (Candidate& candidate : candidates)
         if (candidate.executor && !candidate.hasEnough(options_))
