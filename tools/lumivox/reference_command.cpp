@@ -60,6 +60,13 @@ void addReferenceCommand(Commands& commands) {
       ->check(CLI::Range(2, 1 << 24));
   command->add_option("--bounces", options.bounces, "indirect bounces of the full transport (default 32)")
       ->check(CLI::Range(0, 1 << 16));
+  command
+      ->add_option(
+          "--bounce-layers", options.bounceLayers,
+          "numbers N of bounces, as 1,2,4: layers bounces_N, bounces_N_diffuse and bounces_N_glossy with "
+          "up to N of them")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1 << 16));
   command->add_option("--seed", options.seed, "of the random numbers");
   command->add_option("--time", options.time, "seconds");
   command->add_option("--camera", options.camera, "the scene's camera of this name (default: the first)");
