@@ -129,7 +129,9 @@ std::string rangeText(const ParamBase& parameter) {
 std::string inputText(const InBase& input) {
   const std::string need = unmetNeed(input.needs(), SceneTraits{});
   return fmt::format("{}{}{}", input.portKind(),
-                     input.presence() == Presence::optional ? ", may be left out" : "",
+                     input.presence() == Presence::optional  ? ", may be left out"
+                     : input.presence() == Presence::history ? ", of the frame before, may be left out"
+                                                             : "",
                      need.empty() ? "" : ", read when the scene has " + need);
 }
 

@@ -1,4 +1,5 @@
 // The truth's layers as the components of a pipeline need them.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -89,8 +90,11 @@ const PictureError& Truth::errorOfNothing(const std::string& name) {
   auto found = nothing_.find(name);
   if (found == nothing_.end()) {
     const TruthLayer& truth = *layer(name);
-    const Picture black(truth.mean.width(), truth.mean.height(), truth.mean.channels());
-    found = nothing_.emplace(name, compare(black, truth.mean, truth.variance)).first;
+    Picture nothing(truth.mean.width(), truth.mean.height(), truth.mean.channels());
+    const Contributes component =
+        name == "ambient_occlusion" ? Contributes::ambientOcclusion : Contributes::final;
+    std::fill(nothing.values().begin(), nothing.values().end(), neutralElement(component));
+    found = nothing_.emplace(name, compare(nothing, truth.mean, truth.variance)).first;
   }
   return found->second;
 }
