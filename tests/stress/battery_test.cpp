@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lumivox/base/file.h"
-#include "lumivox/report/store.h"
+#include "lumivox/results/store.h"
 #include "tools/cli_support.h"
 
 using namespace lumivox;

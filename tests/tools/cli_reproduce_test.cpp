@@ -2,9 +2,10 @@
 #include <set>
 #include <sstream>
 
+#include "lumivox/base/file.h"
 #include "lumivox/base/picture.h"
 #include "lumivox/dsl/document.h"
-#include "lumivox/report/reproduce.h"
+#include "lumivox/experiment/reproduce.h"
 #include "tools/cli_support.h"
 
 using namespace lumivox;

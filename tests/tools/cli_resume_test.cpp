@@ -2,7 +2,7 @@
 // store, and a point or a cell that fails costs itself alone.
 #include <algorithm>
 
-#include "lumivox/report/store.h"
+#include "lumivox/results/store.h"
 #include "tools/cli_support.h"
 #include "tools/started.h"
 

@@ -5,7 +5,9 @@
 #include <map>
 #include <set>
 
-#include "lumivox/report/voxelisers.h"
+#include "lumivox/analysis/scaling.h"
+#include "lumivox/base/file.h"
+#include "lumivox/experiment/voxelisers.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 #include "tools/cli_support.h"
