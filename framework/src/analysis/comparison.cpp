@@ -154,7 +154,8 @@ Json cellsJson(const std::vector<double>& limits, const char* limitName, const c
 Json pointJson(const PipelineComparison& comparison, const ComparedPoint& point) {
   Json parameters = Json::object();
   for (const auto& [name, value] : point.parameters) parameters[name] = value.text();
-  return {{"pipeline", point.pipeline},
+  return {{"source", point.source},
+          {"pipeline", point.pipeline},
           {"file", comparison.pipelines[point.pipeline].pipeline},
           {"parameters", std::move(parameters)},
           {"frame_ms",

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "lumivox/experiment/report.h"
 #include "lumivox/results/report_record.h"
 
 namespace lumivox::experiment {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "lumivox/page/reproduction_page.h"
-#include "page/page_parts.h"
+#include "page/markup.h"
 
 namespace lumivox {
 namespace {

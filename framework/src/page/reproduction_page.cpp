@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "lumivox/analysis/judge.h"
-#include "page/data.h"
-#include "page/page_parts.h"
+#include "lumivox/results/text.h"
+#include "page/document.h"
+#include "page/markup.h"
+#include "page_assets.h"
 
 namespace lumivox {
 namespace {
@@ -158,36 +160,37 @@ std::string reproductionsAsMarkdown(const std::vector<ReproducedResult>& results
 }
 
 std::string reproductionsAsHtml(const std::vector<ReproducedResult>& results) {
-  const char* const kTitle = "Published tables and figures, measured here";
-  std::string body = fmt::format("<main>\n<h1>{}</h1>\n<p>{}</p>\n", kTitle, escaped(reproductionRule()));
+  using Json = nlohmann::ordered_json;
+  Json shown = Json::array(), pictures = Json::array();
   for (const ReproducedResult& result : results) {
-    body += fmt::format("<h2>{}</h2>\n<p>{}. <strong>{}</strong></p>\n", escaped(heading(result)),
-                        escaped(result.published.paper), escaped(verdictText(result)));
-    if (!result.rows.empty()) {
-      std::vector<Table::Column> columns;
-      for (const std::string& heading : reproductionHeadings())
-        columns.push_back({heading, heading == "row" || heading == "verdict" ? "wide" : "number"});
-      Table html(columns);
-      for (std::size_t i = 0; i < result.rows.size(); ++i) {
-        std::vector<std::string> cells = reproductionCells(result.rows[i], result.judged.rows[i]);
-        for (std::string& cell : cells) cell = escaped(cell);
-        html.row(cells);
-      }
-      body += html.html();
-    }
-    if (!result.panels.empty())
-      body += fmt::format("<p><img alt=\"{}\" src=\"data:image/png;base64,{}\"></p>\n",
-                          escaped(result.published.title), base64(encodePng(contactSheet(result))));
-    if (!result.curves.empty()) body += "<div>" + curvesAsSvg(result) + "</div>\n";
-    body += "<ul>\n";
+    Json rows = Json::array(), curves = Json::array(), panels = Json::array();
+    for (std::size_t i = 0; i < result.rows.size(); ++i)
+      rows.push_back(reproductionCells(result.rows[i], result.judged.rows[i]));
     for (std::size_t i = 0; i < result.curves.size(); ++i)
-      body += fmt::format("<li>{}: {}</li>\n", escaped(result.curves[i].name),
-                          escaped(curveText(result.curves[i], result.judgedCurves[i])));
-    for (const ShownPanel& panel : result.panels) body += "<li>" + escaped(panelText(panel)) + "</li>\n";
-    for (const std::string& note : reproductionNotes(result)) body += "<li>" + escaped(note) + "</li>\n";
-    body += "</ul>\n";
+      curves.push_back(result.curves[i].name + ": " + curveText(result.curves[i], result.judgedCurves[i]));
+    for (const ShownPanel& panel : result.panels) panels.push_back(panelText(panel));
+    shown.push_back({{"heading", heading(result)},
+                     {"title", result.published.title},
+                     {"paper", result.published.paper},
+                     {"verdict", verdictText(result)},
+                     {"rows", std::move(rows)},
+                     {"curves", std::move(curves)},
+                     {"panels", std::move(panels)},
+                     {"notes", reproductionNotes(result)}});
+    Json own = Json::object();
+    if (!result.panels.empty()) own["sheet"] = base64(encodePng(contactSheet(result)));
+    if (!result.curves.empty()) own["curves"] = base64(curvesAsSvg(result));
+    pictures.push_back(std::move(own));
   }
-  return wholePage(kTitle, "", body + "</main>\n", "", "");
+  Document document;
+  document.title = "Published tables and figures, measured here";
+  document.data = {{"title", document.title},
+                   {"rule", reproductionRule()},
+                   {"headings", reproductionHeadings()},
+                   {"results", std::move(shown)}};
+  document.pictures = {{"results", std::move(pictures)}};
+  document.scripts = {assets::kReproductionPageJs};
+  return html(document);
 }
 
 }  // namespace lumivox

@@ -8,7 +8,7 @@
 #include "lumivox/analysis/judge.h"
 #include "lumivox/base/error.h"
 #include "lumivox/page/reproduction_page.h"
-#include "page/page_parts.h"
+#include "page/markup.h"
 
 namespace lumivox {
 namespace {

@@ -120,6 +120,7 @@ Json toJson(const ReportPoint& point, bool isDefault) {
   Json errors = Json::array();
   for (const ComponentError& error : point.errors) errors.push_back(toJson(error));
   json["errors"] = std::move(errors);
+  if (!point.whyNotCounted.empty()) json["why_not_counted"] = point.whyNotCounted;
   json["health_findings"] = point.healthFindings;
   json["notes"] = point.notes;
   json["command"] = point.command;
