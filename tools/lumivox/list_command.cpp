@@ -8,6 +8,7 @@
 #include "lumivox/base/file.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/experiment/report.h"
+#include "lumivox/pipeline/pass.h"
 
 namespace lumivox::command {
 namespace {

@@ -11,6 +11,7 @@
 #include "lumivox/dsl/document.h"
 #include "lumivox/dsl/schema.h"
 #include "lumivox/experiment/reproduce.h"
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/sweep_text.h"
 #include "lumivox/results/reproduction.h"
 #include "lumivox/scene/text.h"

@@ -9,6 +9,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/pipeline/pass.h"
 
 namespace lumivox {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/experiment/report.h"
+#include "lumivox/pipeline/pass.h"
 
 namespace lumivox::stress {
 

@@ -12,11 +12,26 @@
 #include "lumivox/base/picture.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/dsl/schema.h"
-#include "lumivox/pipeline/pass.h"
+#include "lumivox/pipeline/contributes.h"
 #include "lumivox/pipeline/technique_source.h"
 #include "lumivox/scene/scene.h"
+#include "lumivox/shader/work.h"
 
 namespace lumivox {
+
+namespace gpu {
+class Device;
+class Texture;
+}  // namespace gpu
+namespace shader {
+class ShaderLibrary;
+}
+// Of pipeline/pass.h, which few of those need who load pipelines and run them.
+class OutBase;
+class Pass;
+class PassContext;
+template <class Port>
+class Out;
 
 /// One value of a pipeline parameter.
 struct ParameterValue {
