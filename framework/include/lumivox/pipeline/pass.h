@@ -35,6 +35,7 @@ const char* name(Contributes component);  ///< "direct", "indirect_diffuse", ...
 /// What an output shows where there is nothing to compute: 1 (nothing is occluded) for ambient occlusion,
 /// else 0 (black).
 float neutralElement(Contributes component);
+int channelsOf(Contributes component);  ///< of its pictures: 1 for ambient occlusion, else 3
 
 /// What the scene must have for an output (or a whole pass) to differ from its neutral element.
 enum class Needs : std::uint32_t {
