@@ -7,7 +7,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/dsl/document.h"
-#include "lumivox/report/report.h"
+#include "lumivox/experiment/report.h"
 
 namespace lumivox::command {
 namespace {

@@ -3,11 +3,12 @@
 
 #include "command.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
 #include "lumivox/base/picture.h"
+#include "lumivox/experiment/report.h"
 #include "lumivox/measure/metrics.h"
 #include "lumivox/reference/path_tracer.h"
-#include "lumivox/report/report.h"
 
 namespace lumivox::command {
 namespace {

@@ -6,10 +6,11 @@
 #include "command.h"
 #include "lumivox/base/background_writer.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
 #include "lumivox/base/picture.h"
+#include "lumivox/experiment/report.h"
 #include "lumivox/measure/metrics.h"
-#include "lumivox/report/report.h"
 
 namespace lumivox::command {
 namespace {

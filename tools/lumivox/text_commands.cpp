@@ -10,8 +10,9 @@
 #include "lumivox/base/log.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/dsl/schema.h"
+#include "lumivox/experiment/reproduce.h"
 #include "lumivox/pipeline/sweep_text.h"
-#include "lumivox/report/reproduce.h"
+#include "lumivox/results/reproduction.h"
 #include "lumivox/scene/text.h"
 
 namespace lumivox::command {
