@@ -17,5 +17,6 @@ const char* name(Contributes component);  ///< "direct", "indirect_diffuse", ...
 /// What an output shows where there is nothing to compute: 1 (nothing is occluded) for ambient occlusion,
 /// else 0 (black).
 float neutralElement(Contributes component);
+int channelsOf(Contributes component);  ///< of its pictures: 1 for ambient occlusion, else 3
 
 }  // namespace lumivox

@@ -139,6 +139,8 @@ struct FrameResult {
   std::map<std::string, Picture>
       outputs;  ///< rgb each (one channel for ambient occlusion); only when pictures were asked for
   std::map<std::string, Contributes> components;
+  /// Per output: the most bounces that its pass or one before it models (Pass::indirectBounces()).
+  std::map<std::string, int> indirectBounces;
   std::vector<PassRecord> passes;
   double frameMs = 0;          ///< whole frame, device idle before and after; with Timing::passes NaN
   double betweenPassesMs = 0;  ///< of the host, outside of the passes: what the framework itself costs
@@ -265,6 +267,9 @@ class PassHarness {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// What an output shows that was left out: its neutral element everywhere.
+Picture neutralPicture(int width, int height, Contributes component);
 
 /// A texture's picture as the framework stores pictures: row 0 on top.
 Picture pictureOf(const gpu::Texture& texture, int channels = 3);
