@@ -68,10 +68,6 @@ std::vector<std::string> mentionsOfTree(const fs::path& file) {
   return found;
 }
 
-nlohmann::json parsed(const fs::path& file) {
-  return nlohmann::json::parse(readFile(file));
-}
-
 }  // namespace
 
 TEST_CASE(
@@ -113,12 +109,12 @@ TEST_CASE(
   installed.mustRun(lab,
                     "lumivox report " + furnace + " --pipeline scenes/pipelines/glow.pipeline" + more +
                         "--set radiance=0.5 --spp 64 --repeats 1 --seeds 1 --no-sweep -o page/index.html");
+  const nlohmann::json page = nlohmann::json::parse(readFile(lab / "page/index.json"));
   bool isJudged = false;
-  for (const nlohmann::json& error :
-       parsed(lab / "page/index.json").at("scenes").at(0).at("points").at(0).at("errors"))
+  for (const nlohmann::json& error : page.at("scenes").at(0).at("points").at(0).at("errors"))
     if (error.at("output") == "indirect_diffuse" && error.at("kind") == "bias") {
       isJudged = true;
-      CHECK(error.at("rmse").at("value").get<double>() < 0.02 * 0.25);
+      CHECK(error.at("rmse").at("value").get<double>() < 0.1 * 0.25);  // noise of the reference
     }
   CHECK(isJudged);
 
