@@ -76,6 +76,17 @@ std::vector<fs::path> guides() {
   return files;
 }
 
+/// A text without what stands from "<!-- reproduced" to "<!-- end -->".
+std::string withoutGenerated(std::string text) {
+  static const std::string kBegin = "<!-- reproduced ", kEnd = "<!-- end -->";
+  for (std::size_t from = text.find(kBegin); from != std::string::npos; from = text.find(kBegin, from)) {
+    const std::size_t end = text.find(kEnd, from);
+    if (end == std::string::npos) break;
+    text.erase(from, end + kEnd.size() - from);
+  }
+  return text;
+}
+
 /// A template as `lumivox new technique ambient` writes it out: the example of the guide.
 std::string named(std::string text) {
   static const std::string placeholder = "technique_name";
@@ -186,4 +197,44 @@ TEST_CASE("the guide to techniques shows every file of the one that `lumivox new
     ++shown;
   }
   CHECK(shown == 5);
+}
+
+TEST_CASE("a paper card begins with a picture of the technique and its three headline deviations") {
+  std::vector<fs::path> cards;
+  for (const char* folder : {"techniques", "templates/technique/techniques"})
+    for (const auto& entry : fs::directory_iterator(test::sourceDirectory() / folder))
+      if (entry.is_directory()) cards.push_back(entry.path() / "README.md");
+  REQUIRE(cards.size() >= 7);
+  for (const fs::path& card : cards) {
+    INFO(card);
+    const std::string text = readFile(card), top = text.substr(0, text.find("\n\n", text.find("\n1. ")));
+    std::smatch picture;
+    REQUIRE(std::regex_search(top, picture,
+                              std::regex("^# \\w+\n\n!\\[[^\\]]+\\]\\(([^)]+\\.png)\\)\n\n1\\. \\*\\*")));
+    REQUIRE(fs::exists(card.parent_path() / picture[1].str()));
+    CHECK(fs::file_size(card.parent_path() / picture[1].str()) < 60'000);
+    for (const char* number : {"\n1. **", "\n2. **", "\n3. **"}) CHECK(top.find(number) != std::string::npos);
+    CHECK(top.find("\n4. ") == std::string::npos);
+  }
+}
+
+TEST_CASE("no line of a guide or card is longer than 140 characters, but for what is generated") {
+  constexpr std::size_t kLongest = 140;
+  std::vector<fs::path> texts = guides();
+  for (const char* folder : {"techniques", "templates/technique/techniques"})
+    for (const auto& entry : fs::directory_iterator(test::sourceDirectory() / folder))
+      if (entry.is_directory()) texts.push_back(entry.path() / "README.md");
+  for (const fs::path& file : texts) {
+    if (file.filename() == "reference.md") continue;  // lumivox describe --markdown
+    // What lumivox reproduce --cards writes between its marks.
+    const std::string text = withoutGenerated(readFile(file));
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      // Characters, not bytes.
+      const auto length =
+          std::count_if(line.begin(), line.end(), [](unsigned char c) { return (c & 0xC0) != 0x80; });
+      INFO(file << ": " << line);
+      CHECK(static_cast<std::size_t>(length) <= kLongest);
+    }
+  }
 }

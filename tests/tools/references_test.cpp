@@ -133,9 +133,10 @@ std::vector<Citation> citationsOf(const std::string& text) {
     std::size_t at = i;  // one behind the last name
     const auto before = [&](std::size_t back) {
       if (at < back) return std::string();
-      std::string word = words[at - back];
-      word.erase(0, word.find_first_not_of('('));
-      return word;
+      const std::string& word = words[at - back];
+      const auto letter = std::find_if(
+          word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) || c == '&' || c >= 0x80; });
+      return std::string(letter, word.end());  // without brackets before it
     };
     const auto plain = [](std::string word) {
       if (!word.empty() && word.back() == ',') word.pop_back();
