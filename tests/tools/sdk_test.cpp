@@ -89,6 +89,8 @@ TEST_CASE(
   // The device's own shaders, and the reader of volume files, lie beside the libraries.
   installed.mustRun(installed.work(), "lumivox device --only dispatches --repeats 1");
 
+  CHECK(contains(readFile(installed.prefix() / "share/man/man1/vdbexport.1"), "\\fB\\-\\-grid\\fR"));
+
   installed.mustRun(installed.work(), "lumivox new technique glow --in lab");
   const fs::path lab = installed.work() / "lab";
   installed.mustRun(lab, "cmake -S . -B build -G Ninja -DCMAKE_PREFIX_PATH=" + installed.prefix().string() +

@@ -8,7 +8,7 @@
 #include "lumivox/base/file.h"
 #include "lumivox/base/installation.h"
 #include "lumivox/dsl/document.h"
-#include "lumivox/report/report.h"
+#include "lumivox/experiment/report.h"
 
 namespace lumivox::command {
 namespace {

@@ -46,8 +46,8 @@ int newTechniqueCommand(const std::string& name, const fs::path& in, const Globa
   const std::string folder = project.lexically_normal().string();
   if (isTree) {
     print(fmt::format(
-        "\nNext, in {}:\n  cmake --preset release && ninja -C build laboratory {}_test\n"
-        "  build/bin/{}_test\n"
+        "\nNext, in {}:\n  cmake --preset release && ninja -C build laboratory {}_tests\n"
+        "  build/bin/{}_tests\n"
         "  build/bin/lumivox render scenes/cornell.scene scenes/pipelines/{}.pipeline -o {}.png\n",
         folder, name, name, name, name));
     return kGood;

@@ -10,8 +10,9 @@
 #include "lumivox/base/log.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/dsl/schema.h"
+#include "lumivox/experiment/reproduce.h"
 #include "lumivox/pipeline/sweep_text.h"
-#include "lumivox/report/reproduce.h"
+#include "lumivox/results/reproduction.h"
 #include "lumivox/scene/text.h"
 
 namespace lumivox::command {
@@ -129,7 +130,9 @@ std::string rangeText(const ParamBase& parameter) {
 std::string inputText(const InBase& input) {
   const std::string need = unmetNeed(input.needs(), SceneTraits{});
   return fmt::format("{}{}{}", input.portKind(),
-                     input.presence() == Presence::optional ? ", may be left out" : "",
+                     input.presence() == Presence::optional  ? ", may be left out"
+                     : input.presence() == Presence::history ? ", of the frame before, may be left out"
+                                                             : "",
                      need.empty() ? "" : ", read when the scene has " + need);
 }
 

@@ -52,6 +52,9 @@ struct BoundGraph {
 /// DiagnosticsError with every finding.
 BoundGraph bindPipeline(const Pipeline& pipeline, TechniqueSource& techniques, const ParameterValues& values);
 
+/// Connects the inputs of all passes to their sources.
+void connectInputs(BoundGraph& graph);
+
 /// Technique of a source, or an Error-like explanation of why there is none: {what, expected, suggestion}.
 struct MissingTechnique {
   std::string what, expected, suggestion;

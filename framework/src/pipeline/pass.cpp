@@ -28,6 +28,10 @@ const char* name(Contributes component) {
   return "";
 }
 
+float neutralElement(Contributes component) {
+  return component == Contributes::ambientOcclusion ? 1.0f : 0.0f;
+}
+
 std::string unmetNeed(Needs needs, const SceneTraits& traits) {
   struct Need {
     Needs flag;

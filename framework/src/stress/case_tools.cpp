@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "lumivox/base/error.h"
-#include "lumivox/report/report.h"
+#include "lumivox/experiment/report.h"
 
 namespace lumivox::stress {
 
@@ -101,8 +101,9 @@ std::map<std::string, Measured> ratiosToNothing(Bench& bench, const Scene& scene
     const std::optional<TruthLayer> wanted = layer.empty() ? std::nullopt : truthLayer(truth, layer);
     if (!wanted || picture == frame.result.outputs.end() || !wanted->mean.sameShape(picture->second))
       continue;
-    const Picture black(wanted->mean.width(), wanted->mean.height(), wanted->mean.channels());
-    const Measured nothing = compare(black, wanted->mean, wanted->variance).rmse;
+    Picture neutral(wanted->mean.width(), wanted->mean.height(), wanted->mean.channels());
+    std::fill(neutral.values().begin(), neutral.values().end(), neutralElement(component));
+    const Measured nothing = compare(neutral, wanted->mean, wanted->variance).rmse;
     if (!(nothing.value > 0.0)) continue;
     const Measured error = compare(picture->second, wanted->mean, wanted->variance).rmse;
     const double ratio = error.value / nothing.value;

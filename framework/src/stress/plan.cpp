@@ -6,8 +6,8 @@
 #include <set>
 
 #include "lumivox/base/error.h"
-#include "lumivox/report/report.h"
-#include "lumivox/report/voxelisers.h"
+#include "lumivox/experiment/report.h"
+#include "lumivox/experiment/voxelisers.h"
 #include "stress/cases.h"
 
 namespace lumivox {

@@ -9,8 +9,8 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/installation.h"
-#include "lumivox/report/report.h"
-#include "lumivox/report/stress_cells.h"
+#include "lumivox/experiment/report.h"
+#include "lumivox/results/stress_cells.h"
 #include "stress/protocol.h"
 #include "stress/run_cell.h"
 
