@@ -12,6 +12,7 @@ install(TARGETS lumivox lumivox_lab lumivox_command vdbexport shaderpack EXPORT 
 install(TARGETS lumivox_volume LIBRARY DESTINATION lib/lumivox)
 install(FILES ${CMAKE_BINARY_DIR}/lib/shaders/device.shaderpack DESTINATION lib/lumivox/shaders)
 install(DIRECTORY framework/include/lumivox DESTINATION include FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY ${CMAKE_BINARY_DIR}/generated/include/lumivox DESTINATION include OPTIONAL)
 
 install(EXPORT LumivoxTargets NAMESPACE Lumivox:: DESTINATION ${package})
 configure_package_config_file(cmake/LumivoxConfig.cmake.in ${CMAKE_BINARY_DIR}/generated/cmake/LumivoxConfig.cmake

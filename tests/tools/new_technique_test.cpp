@@ -41,6 +41,9 @@ TEST_CASE("a new technique has one of each part, under its name, in a project of
     CHECK(contains(made.output, file));
     CHECK_FALSE(contains(readFile(work.path() / "lab" / file), "technique_name"));
   }
+  CHECK(runCommand("lumivox fmt --check '" + (work.path() / "lab/scenes/pipelines/glow.pipeline").string() +
+                   "'")
+            .exitCode == 0);
   // A second one goes beside it and leaves the project as it is.
   const std::string project = readFile(work.path() / "lab/CMakeLists.txt");
   CHECK(runCommand("cd '" + work.path().string() + "/lab/techniques' && '" +
