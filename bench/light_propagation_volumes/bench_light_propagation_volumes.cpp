@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "lumivox/base/error.h"
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/plugin/loader.h"
 #include "lumivox/scene/builder.h"

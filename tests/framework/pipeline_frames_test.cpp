@@ -611,6 +611,16 @@ TEST_CASE("another scene runs again what reads what differs, with the bits of a 
   CHECK(valuesOf(withCamera.render(0.0)).size() == 5 * 4 * 4 * 3);
 }
 
+TEST_CASE("an output models as many bounces as its pass or the one before it that models most") {
+  FramesFixture f;
+  if (!f) return;
+  PipelineExecutor executor = f.executor(
+      "pass a toy.paint { }\npass b toy.progressive { source a }\npass c toy.add { first a  second b }\n"
+      "output one a.radiance\noutput three b.mean\noutput sum c.sum");
+  CHECK(executor.render(0.0).indirectBounces ==
+        std::map<std::string, int>{{"one", 1}, {"three", 3}, {"sum", 3}});
+}
+
 // ---- useless inputs ------------------------------------------------------------------------------------
 
 namespace {

@@ -3,6 +3,7 @@
 
 #include "lumivox/measure/metrics.h"
 #include "lumivox/pipeline/light_samples.h"
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/reference/path_tracer.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "lumivox/pipeline/light_samples.h"
+#include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 #include "support/voxel_fragments.h"

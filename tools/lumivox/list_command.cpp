@@ -9,6 +9,7 @@
 #include "lumivox/base/installation.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/experiment/report.h"
+#include "lumivox/pipeline/pass.h"
 
 namespace lumivox::command {
 namespace {

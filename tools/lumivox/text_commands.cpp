@@ -11,6 +11,7 @@
 #include "lumivox/dsl/document.h"
 #include "lumivox/dsl/schema.h"
 #include "lumivox/experiment/reproduce.h"
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/sweep_text.h"
 #include "lumivox/results/reproduction.h"
 #include "lumivox/scene/text.h"
@@ -149,6 +150,9 @@ std::string meaningAfter(const std::string& meaning) {
 std::string passText(const std::string& technique, const PassEntry& entry) {
   const std::unique_ptr<Pass> pass = entry.make();
   std::string text = fmt::format("pass NAME {}.{}\n  {}\n", technique, entry.name, entry.meaning);
+  if (pass->indirectBounces() != 1)
+    text += fmt::format("  models {} bounces of indirect light\n", pass->indirectBounces());
+  if (pass->worksOnHost()) text += "  works on the host\n";
   const auto section = [&](const char* title, const auto& members, const auto& line) {
     if (members.empty()) return;
     text += fmt::format("  {}\n", title);

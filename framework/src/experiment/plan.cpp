@@ -10,6 +10,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/installation.h"
+#include "lumivox/pipeline/pass.h"
 
 namespace lumivox {
 namespace {

@@ -15,6 +15,7 @@
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/pipeline/grid_placement.h"
+#include "lumivox/pipeline/pass.h"
 
 namespace lumivox {
 

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "lumivox/pipeline/contributes.h"
 #include "lumivox/pipeline/ports.h"
 #include "lumivox/scene/scene.h"
 #include "lumivox/shader/library.h"
@@ -20,21 +21,6 @@ namespace lumivox {
 
 class GpuScene;
 class Pass;
-
-/// The component of the picture that an output holds; decides which truth it is judged against.
-enum class Contributes {
-  nothing,
-  direct,
-  indirectDiffuse,
-  indirectGlossy,
-  ambientOcclusion,
-  scattered,
-  final
-};
-const char* name(Contributes component);  ///< "direct", "indirect_diffuse", ...
-/// What an output shows where there is nothing to compute: 1 (nothing is occluded) for ambient occlusion,
-/// else 0 (black).
-float neutralElement(Contributes component);
 
 /// What the scene must have for an output (or a whole pass) to differ from its neutral element.
 enum class Needs : std::uint32_t {

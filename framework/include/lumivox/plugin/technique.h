@@ -14,7 +14,7 @@
 
 namespace lumivox {
 
-inline constexpr std::uint32_t kTechniqueApiVersion = 2;
+inline constexpr std::uint32_t kTechniqueApiVersion = 3;
 
 /// Plain data, C layout: compared member by member before anything else is called.
 struct TechniqueVersionRecord {
