@@ -1,4 +1,4 @@
-// Direct light: an array of point samples with shadow views. C++ side: framework/include/lumivox/pipeline/light_samples.h, port ShadowMap.
+// Direct light: an array of point samples with shadow views. C++ side: framework/include/lumivox/toolkit/light_samples.h, port ShadowMap.
 #ifndef LUMIVOX_LIGHTS
 #define LUMIVOX_LIGHTS
 #include "common/constants.glsl"

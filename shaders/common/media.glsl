@@ -1,5 +1,5 @@
 // Participating media: where they are, how dense, and the optical depth along rays. C++ side:
-// framework/include/lumivox/pipeline/media.h. Where the includer has an axis MEDIUM whose word `varying` is chosen, there are densities in
+// framework/include/lumivox/toolkit/media.h. Where the includer has an axis MEDIUM whose word `varying` is chosen, there are densities in
 // textures; without it only even media can be asked about their depth.
 #ifndef LUMIVOX_MEDIA
 #define LUMIVOX_MEDIA

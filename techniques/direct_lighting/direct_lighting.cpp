@@ -5,9 +5,9 @@
 
 #include "direct_lighting_shaders.h"
 #include "lumivox/pipeline/gpu_scene.h"
-#include "lumivox/pipeline/light_samples.h"
-#include "lumivox/pipeline/media.h"
 #include "lumivox/plugin/technique.h"
+#include "lumivox/toolkit/light_samples.h"
+#include "lumivox/toolkit/media.h"
 
 namespace lumivox::direct_lighting {
 namespace {

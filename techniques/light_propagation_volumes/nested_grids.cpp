@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "lumivox/base/error.h"
-#include "lumivox/pipeline/light_samples.h"
+#include "lumivox/toolkit/light_samples.h"
 
 namespace lumivox::light_propagation_volumes {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "lumivox/pipeline/grid_placement.h"
 #include "lumivox/plugin/technique.h"
+#include "lumivox/toolkit/grid_placement.h"
 
 namespace lumivox::light_propagation_volumes {
 

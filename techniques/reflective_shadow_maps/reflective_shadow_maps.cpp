@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "lumivox/pipeline/gpu_scene.h"
-#include "lumivox/pipeline/light_samples.h"
-#include "lumivox/pipeline/list_dispatch.h"
 #include "lumivox/plugin/technique.h"
+#include "lumivox/toolkit/light_samples.h"
+#include "lumivox/toolkit/list_dispatch.h"
 #include "reflective_shadow_maps_shaders.h"
 
 namespace lumivox::reflective_shadow_maps {

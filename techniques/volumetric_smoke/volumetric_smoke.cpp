@@ -9,8 +9,8 @@
 #include <map>
 
 #include "lumivox/base/error.h"
-#include "lumivox/pipeline/grid_placement.h"
-#include "lumivox/pipeline/list_dispatch.h"
+#include "lumivox/toolkit/grid_placement.h"
+#include "lumivox/toolkit/list_dispatch.h"
 #include "volumetric_smoke_shaders.h"
 
 namespace lumivox::volumetric_smoke {

@@ -1,8 +1,8 @@
 // What the marches through media share.
 #pragma once
 
-#include "lumivox/pipeline/media.h"
 #include "lumivox/plugin/technique.h"
+#include "lumivox/toolkit/media.h"
 
 namespace lumivox::volumetric_smoke {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "lumivox/base/error.h"
-#include "lumivox/pipeline/media.h"
 #include "lumivox/plugin/technique.h"
+#include "lumivox/toolkit/media.h"
 #include "voxel_cone_tracing_shaders.h"
 
 namespace lumivox::voxel_cone_tracing {

@@ -6,7 +6,7 @@
 #include <cassert>
 
 #include "lumivox/base/error.h"
-#include "lumivox/pipeline/list_dispatch.h"
+#include "lumivox/toolkit/list_dispatch.h"
 #include "voxelization_shaders.h"
 
 namespace lumivox::voxelization {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "lumivox/pipeline/gpu_scene.h"
-#include "lumivox/pipeline/grid_placement.h"
 #include "lumivox/plugin/technique.h"
+#include "lumivox/toolkit/grid_placement.h"
 
 namespace lumivox::voxelization {
 

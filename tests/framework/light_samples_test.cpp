@@ -1,5 +1,5 @@
 // How lights become point samples: every lamp has some, and they carry its light.
-#include "lumivox/pipeline/light_samples.h"
+#include "lumivox/toolkit/light_samples.h"
 
 #include <cmath>
 

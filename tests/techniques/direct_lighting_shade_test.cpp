@@ -1,5 +1,5 @@
 // Shading of surfaces and shadow maps that are made here.
-#include "lumivox/pipeline/light_samples.h"
+#include "lumivox/toolkit/light_samples.h"
 #include "support/marching.h"
 
 using namespace lumivox;

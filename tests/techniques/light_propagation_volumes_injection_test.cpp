@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "lumivox/pipeline/light_samples.h"
+#include "lumivox/toolkit/light_samples.h"
 #include "support/light_cells.h"
 #include "support/made_fragments.h"
 

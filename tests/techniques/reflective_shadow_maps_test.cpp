@@ -2,8 +2,8 @@
 #include <optional>
 
 #include "lumivox/measure/metrics.h"
-#include "lumivox/pipeline/light_samples.h"
 #include "lumivox/reference/path_tracer.h"
+#include "lumivox/toolkit/light_samples.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 

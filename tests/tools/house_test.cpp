@@ -104,7 +104,7 @@ std::vector<Include> includesOf(const std::string& text) {
 // ------------------------------------------------------------------------------------------------------
 
 /// For each part of the framework those that it may include: base <- dsl <- scene; base <- gpu <- shader;
-/// those <- pipeline <- plugin; scene <- reference; base <- measure; all <- report <- stress.
+/// those <- pipeline <- toolkit, plugin; scene <- reference; base <- measure; all <- report <- stress.
 const std::map<std::string, std::set<std::string>>& houseOrder() {
   static const std::map<std::string, std::set<std::string>> order = {
       {"base", {}},
@@ -113,13 +113,16 @@ const std::map<std::string, std::set<std::string>>& houseOrder() {
       {"gpu", {"base"}},
       {"shader", {"base", "gpu"}},
       {"pipeline", {"base", "dsl", "scene", "gpu", "shader"}},
+      {"toolkit", {"base", "dsl", "scene", "gpu", "shader", "pipeline"}},
       {"plugin", {"base", "dsl", "scene", "gpu", "shader", "pipeline"}},
       {"volume", {"base", "scene"}},
       {"reference", {"base", "dsl", "scene"}},
       {"measure", {"base", "dsl", "scene"}},
-      {"report", {"base", "dsl", "scene", "gpu", "shader", "pipeline", "plugin", "reference", "measure"}},
+      {"report",
+       {"base", "dsl", "scene", "gpu", "shader", "pipeline", "toolkit", "plugin", "reference", "measure"}},
       {"stress",
-       {"base", "dsl", "scene", "gpu", "shader", "pipeline", "plugin", "reference", "measure", "report"}}};
+       {"base", "dsl", "scene", "gpu", "shader", "pipeline", "toolkit", "plugin", "reference", "measure",
+        "report"}}};
   return order;
 }
 

@@ -11,8 +11,8 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
-#include "lumivox/pipeline/grid_placement.h"
 #include "lumivox/report/report.h"
+#include "lumivox/toolkit/grid_placement.h"
 #include "report/plan.h"
 #include "report/process.h"
 

@@ -1,4 +1,4 @@
-#include "lumivox/pipeline/media.h"
+#include "lumivox/toolkit/media.h"
 
 #include <algorithm>
 #include <cassert>

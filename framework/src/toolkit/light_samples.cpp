@@ -1,4 +1,4 @@
-#include "lumivox/pipeline/light_samples.h"
+#include "lumivox/toolkit/light_samples.h"
 
 #include <algorithm>
 #include <array>
