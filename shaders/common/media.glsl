@@ -46,11 +46,11 @@ vec2 insideMedia(vec3 origin, vec3 direction, float reach) {
 
 // Where the light of a sample comes from: the way to it and how long that is.
 void wayToLight(LightSample light, vec3 posWorld, out vec3 direction, out float reach) {
-  if (int(light.positionKind.w) == kLightDirectional) {
-    direction = -light.directionLayer.xyz;
+  if (light.kind == kLightDirectional) {
+    direction = -light.direction;
     reach = kNoReach;
   } else {
-    vec3 path = light.positionKind.xyz - posWorld;
+    vec3 path = light.position - posWorld;
     reach = length(path);
     direction = path / max(reach, 1e-30);
   }

@@ -16,9 +16,6 @@ struct VoxelFragment {
 // A triangle with sharper corners than this, in radians, is a needle: its plane and its enlarged corners are mostly rounding.
 const float kNeedle = 1e-3;
 
-// Shares of averages are added up as integers of this unit, so that a full sum fits into 32 bits.
-const float kFixedPoint = 2147483648.0;  // 2^31
-
 uint packVoxel(ivec3 voxel) { return uint(voxel.x) | uint(voxel.y) << 10 | uint(voxel.z) << 20; }
 ivec3 unpackVoxel(uint packed) { return ivec3(packed & 1023u, packed >> 10 & 1023u, packed >> 20 & 1023u); }
 

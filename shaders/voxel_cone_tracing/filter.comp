@@ -18,6 +18,7 @@
 #if OCCUPIED
 #include "common/voxel.glsl"
 layout(local_size_x = 64) in;
+#include "common/list.glsl"
 layout(std430, binding = 0) readonly buffer BrickList { uint brickList[]; };
 layout(std430, binding = 1) readonly buffer BrickCount { uint listed; };
 #else
@@ -104,7 +105,7 @@ vec4 lookThrough(ivec3 cell, int axis, ivec3 first, ivec3 last, vec3 ratio) {
 
 void main() {
 #if OCCUPIED
-  uint item = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  uint item = listIndex();
   uint perBrick = fineLevel == 0 ? 8u : 1u;
   if (item / perBrick >= listed) return;
   ivec3 brick = unpackVoxel(brickList[item / perBrick]);

@@ -58,13 +58,11 @@ class MsaaOpacityPass : public Voxeliser {
     while (2 * mostScale <= supersampling) mostScale *= 2;
     for (int scale = 1; scale <= mostScale; scale *= 2)
       rasterise(frame, list.grid, draws, static_cast<int>(list.capacity), msaaShader::Variant::targetList,
-                {msaaShader::count(*list.count), msaaShader::fragments(*list.fragments)}, scale, mostScale);
+                appending(list), scale, mostScale);
   }
 
   void rasterise(PassContext& frame, const GridPlacement& placement, const Draws& draws, int capacity,
-                 int target, const std::vector<gpu::ResourceBinding>& results, int scale = 1,
-                 int mostScale = 1) const {
-    GpuScene& scene = frame.scene();
+                 int target, const shader::BindingSet& results, int scale = 1, int mostScale = 1) const {
     gpu::RenderTargets targets;
     targets.width = targets.height = scale * viewSide(placement);
     targets.samples = sampleCount_;
@@ -82,16 +80,10 @@ class MsaaOpacityPass : public Voxeliser {
     const gpu::Drawing drawing = frame.device().drawTo(targets, {});
     for (const SceneDraw* draw : draws) {
       grid.firstIndex = static_cast<int>(draw->firstIndex);
-      msaaShader::Variant variant;
-      variant.textures = frame.keepsEverything() || draw->diffuseTexture != nullptr;
-      variant.masks = frame.keepsEverything() || draw->maskTexture != nullptr;
-      variant.target = target;
-      std::vector<gpu::ResourceBinding> bindings = viewBindings(frame, {}, *draw);
-      std::erase_if(bindings,
-                    [](const gpu::ResourceBinding& one) { return std::string(one.name) == "View"; });
-      bindings.insert(bindings.end(), {msaaShader::indices(scene.indices()), msaaShader::sampleGrid(grid)});
-      bindings.insert(bindings.end(), results.begin(), results.end());
-      frame.shaders().draw(frame.program(msaaShader::kProgram, variant.key()), bindings, draw->indexCount);
+      const SceneBinding scene(frame, *draw);
+      const msaaShader::Variant variant{scene.textures, scene.masks, target};
+      frame.shaders().draw(frame.program(msaaShader::kProgram, variant.key()),
+                           {scene, msaaShader::sampleGrid(grid), results}, draw->indexCount);
     }
     frame.device().barrier();
   }
@@ -106,7 +98,7 @@ class MsaaOpacityPass : public Voxeliser {
     const StillKey key = stillKey(frame, grid, still);
     if (frame.startsAfresh() || stillMasks_ == nullptr || !(key == stillMasksKey_)) {
       stillMasks_.reset();  // before the next one is taken: the pool may give back the same
-      stillMasks_ = frame.texture(volumeOf(grid, gpu::Format::r32ui), "samples of what stands still");
+      stillMasks_ = frame.volume(grid.resolution, gpu::Format::r32ui, "samples of what stands still");
       stillMasks_->clear(glm::vec4(0.0f));
       mark(*stillMasks_, still);
       stillMasksKey_ = key;
@@ -114,10 +106,9 @@ class MsaaOpacityPass : public Voxeliser {
       frame.reused("samples of what stands still", "static geometry is voxelised once");
     }
     if (moving.empty()) return stillMasks_;
-    const gpu::TextureRef masks = frame.texture(volumeOf(grid, gpu::Format::r32ui), "samples");
+    const gpu::TextureRef masks = frame.volume(grid.resolution, gpu::Format::r32ui, "samples");
     frame.dispatch(frame.program(copyShader::kProgram),
-                   {copyShader::source(*stillMasks_), copyShader::target(*masks)}, grid.resolution,
-                   copyShader::kGroupSize);
+                   {copyShader::source(*stillMasks_), copyShader::target(*masks)}, grid.resolution);
     mark(*masks, moving);
     return masks;
   }
@@ -129,13 +120,11 @@ class MsaaOpacityPass : public Voxeliser {
     for (int side = 0; side < 4; ++side) {
       Out<OccupancyGrid>& output = *outputs[static_cast<std::size_t>(side)];
       if (!output.wanted()) continue;
-      OccupancyGrid result;
-      result.grid = grid;
-      result.opacity = frame.texture(volumeOf(grid, gpu::Format::r8), output.name());
+      const OccupancyGrid result{grid, frame.volume(grid.resolution, gpu::Format::r8, output.name())};
       frame.dispatch(frame.program(countShader::kProgram),
                      {countShader::sides({sampleCount_, side}), countShader::sampleMasks(*masks),
                       countShader::opacity(*result.opacity)},
-                     grid.resolution, countShader::kGroupSize);
+                     grid.resolution);
       output = result;
     }
   }

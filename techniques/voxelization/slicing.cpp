@@ -7,7 +7,7 @@
 namespace lumivox::voxelization {
 namespace {
 
-namespace slicingShader = shaders::voxelization::slicing;
+namespace code = shaders::voxelization::slicing;
 
 class SlicingPass : public Voxeliser {
   Param<int> axes{this,
@@ -54,14 +54,11 @@ class SlicingPass : public Voxeliser {
   static void drawSlice(PassContext& frame, const VoxelFragments& list, const Draws& draws,
                         const OrthogonalView& view) {
     for (const SceneDraw* draw : draws) {
-      slicingShader::Variant variant;
-      variant.textures = frame.keepsEverything() || draw->diffuseTexture != nullptr;
-      variant.masks = frame.keepsEverything() || draw->maskTexture != nullptr;
-      std::vector<gpu::ResourceBinding> bindings = viewBindings(frame, view, *draw);
-      bindings.push_back(slicingShader::count(*list.count));
-      bindings.push_back(slicingShader::fragments(*list.fragments));
-      frame.shaders().drawIndexed(frame.program(slicingShader::kProgram, variant.key()), bindings,
-                                  frame.scene().indices(), draw->firstIndex, draw->indexCount);
+      const SceneBinding scene(frame, *draw);
+      frame.shaders().drawIndexed(
+          frame.program(code::kProgram, code::Variant{scene.textures, scene.masks}.key()),
+          {scene, viewBinding(view), appending(list)}, frame.scene().indices(), draw->firstIndex,
+          draw->indexCount);
     }
   }
 

@@ -46,8 +46,9 @@ struct Injection {
 /// A directional light of this irradiance without shadows.
 ShadowMap sunFrom(const glm::vec3& towards, float irradiance) {
   LightSampleData light{};
-  light.directionLayer = glm::vec4(-glm::normalize(towards), -1.0f);
-  light.power = glm::vec4(glm::vec3(irradiance), 1.0f);
+  light.direction = -glm::normalize(towards);
+  light.firstView = -1;
+  light.power = glm::vec3(irradiance);
   ShadowMap map;
   map.lights = std::make_shared<gpu::Buffer>(device(), sizeof(light), "lights");
   map.lights->uploadValues(std::span<const LightSampleData>(&light, 1));
@@ -388,10 +389,10 @@ TEST_CASE("a surface is lit by a lamp at its true place and not at the middle of
           const glm::dvec3 lamp = glm::dvec3(4.9, 4.7, 5.1) + 3.0 * glm::dvec3(unit(axis, sign));
           ShadowMap shadow = sunFrom({0, 1, 0}, 0.0f);
           LightSampleData light{};
-          light.positionKind =
-              glm::vec4(Injection::grid().low + kSize * glm::vec3(lamp), float(LightSampleKind::point));
-          light.directionLayer.w = -1.0f;
-          light.power = glm::vec4(0.3f);
+          light.position = Injection::grid().low + kSize * glm::vec3(lamp);
+          light.kind = LightSampleKind::point;
+          light.firstView = -1;
+          light.power = glm::vec3(0.3f);
           shadow.lights->uploadValues(std::span<const LightSampleData>(&light, 1));
           inject.harness.setInput("shadow", shadow);
           const Cells cells =

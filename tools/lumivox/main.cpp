@@ -1,5 +1,6 @@
 // lumivox: the command line of the laboratory.
 #include "command.h"
+#include "lumivox/plugin/technique.h"
 
 namespace {
 
@@ -7,6 +8,7 @@ using namespace lumivox;
 using namespace lumivox::command;
 
 int run(int count, char** arguments) {
+  requireLibraryOf(techniqueVersionHere());
   CLI::App app{
       "A laboratory for real-time global illumination: a scene and a pipeline in; pictures, their error and "
       "their time out."};

@@ -128,15 +128,15 @@ std::string rangeText(const ParamBase& parameter) {
 
 std::string inputText(const InBase& input) {
   const std::string need = unmetNeed(input.needs(), SceneTraits{});
-  return fmt::format("{}{}{}", input.portKind(),
+  return fmt::format("{}{}{}", input.kind().name,
                      input.presence() == Presence::optional ? ", may be left out" : "",
                      need.empty() ? "" : ", read when the scene has " + need);
 }
 
 std::string outputText(const OutBase& output) {
   return output.contributes() == Contributes::nothing
-             ? output.portKind()
-             : fmt::format("{}, {}", output.portKind(), name(output.contributes()));
+             ? output.kind().name
+             : fmt::format("{}, {}", output.kind().name, name(output.contributes()));
 }
 
 std::string meaningAfter(const std::string& meaning) {

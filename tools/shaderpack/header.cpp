@@ -114,7 +114,7 @@ std::string constantsText(const shader::PackedProgram& program) {
       members, program.constants.size(), list);
 }
 
-std::string slotText(const shader::PackedBinding& binding) {
+std::string slotText(const shader::PackedBinding& binding, std::uint32_t elementBytes) {
   const char* type = nullptr;
   switch (binding.kind) {
     case shader::BindingKind::sampled:
@@ -131,8 +131,9 @@ std::string slotText(const shader::PackedBinding& binding) {
       break;
   }
   const std::string argument = binding.kind == shader::BindingKind::uniform ? "<" + binding.name + ">" : "";
-  return fmt::format("inline constexpr shader::{}{} {}{{\"{}\", {}}};  // {}\n", type, argument,
-                     slotName(binding), binding.name, binding.binding, binding.type);
+  const std::string elements = elementBytes > 0 ? fmt::format(", {}", elementBytes) : "";
+  return fmt::format("inline constexpr shader::{}{} {}{{\"{}\", {}{}}};  // {}\n", type, argument,
+                     slotName(binding), binding.name, binding.binding, elements, binding.type);
 }
 
 void checkSlotNames(const std::string& technique, const shader::PackedProgram& program) {
@@ -198,7 +199,8 @@ std::string generateHeader(const BuildResult& result) {
     }
     std::set<std::string> written;  // a binding whose format follows an axis is there once per format
     for (const shader::PackedBinding& binding : program.bindings) {
-      if (written.insert(binding.name).second) text += slotText(binding);
+      if (written.insert(binding.name).second)
+        text += slotText(binding, interface.elementBytes.at(binding.name));
     }
     text += fmt::format("\n}}  // namespace {}\n\n", program.name);
   }
