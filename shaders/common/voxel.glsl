@@ -1,5 +1,5 @@
 // Voxel addressing and the fragment list. Voxel (i,j,k) covers gridLow + [i,i+1] x [j,j+1] x [k,k+1] voxel sizes.
-// C++ side: GridPlacement and VoxelFragments in framework/include/lumivox/pipeline/ports.h.
+// C++ side: GridPlacement and VoxelFragments in framework/include/lumivox/pipeline/ports/.
 #ifndef LUMIVOX_VOXEL
 #define LUMIVOX_VOXEL
 

@@ -25,6 +25,8 @@ layout(std430, binding = 1) readonly buffer BrickCount { uint listed; };
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #endif
 
+#include "common/cones.glsl"
+
 const int kFacing = 0, kAverage = 1, kTrilinear = 2;
 layout(constant_id = 0) const int rule = kFacing;
 
@@ -49,8 +51,6 @@ vec4 slab(vec4 value, float length) {
   float opacity = 1.0 - pow(1.0 - value.a, length);
   return vec4(value.rgb * (opacity / value.a), opacity);
 }
-
-vec4 over(vec4 front, vec4 back) { return front + (1.0 - front.a) * back; }
 
 // The usual case, two whole children along each axis, without loops: the mean over four columns, each seen from both its ends.
 vec4 pair(vec4 a, vec4 b) { return over(a, b) + over(b, a); }

@@ -76,18 +76,18 @@ class GBufferPass : public Pass {
                                            .masks = scene.masks,
                                            .glossy = frame.traits().glossy,
                                            .emission = frame.traits().emission};
-      frame.shaders().drawIndexed(frame.program(code::gbuffer::kProgram, variant.key()), {scene, view, eye},
-                                  frame.scene().indices(), draw.firstIndex, draw.indexCount);
+      drawPart(frame, frame.program(variant), {scene, view, eye}, draw);
     }
   }
 };
 
 class ShadowMapPass : public Pass {
-  Param<int> size{this, "size", 512, {16, 8192}, "texels along a side of the view of a light without extent"};
-  Param<int> areaSamples{
-      this, "area_samples", 16, {1, 1024}, "point samples that stand for all emissive triangles together"};
-  Param<int> areaSize{
-      this, "area_size", 128, {16, 4096}, "texels along a side of each cube face of an area sample"};
+  Param<int> size{this, "size", 512, within(16, 8192),
+                  "texels along a side of the view of a light without extent"};
+  Param<int> areaSamples{this, "area_samples", 16, within(1, 1024),
+                         "point samples that stand for all emissive triangles together"};
+  Param<int> areaSize{this, "area_size", 128, within(16, 4096),
+                      "texels along a side of each cube face of an area sample"};
   Out<ShadowMap> depth{this, "depth", "every light as point samples, with depth seen from each"};
 
   Reads readsFrom() const override { return Reads::geometry | Reads::materials | Reads::lights; }
@@ -110,10 +110,8 @@ class ShadowMapPass : public Pass {
     };
     drawLightViews(frame, views, state, targets, [&](const LightViewDrawn& drawn, const SceneDraw& draw) {
       const SceneBinding scene(frame, draw);
-      frame.shaders().drawIndexed(
-          frame.program(code::shadow_map::kProgram, code::shadow_map::Variant{scene.masks}.key()),
-          {scene, code::shadow_map::view({drawn.view.worldToClip})}, frame.scene().indices(), draw.firstIndex,
-          draw.indexCount);
+      drawPart(frame, frame.program(code::shadow_map::Variant{scene.masks}),
+               {scene, code::shadow_map::view({drawn.view.worldToClip})}, draw);
     });
     depth = result;
   }
@@ -125,8 +123,8 @@ class ShadePass : public Pass {
                        "lights and their visibility; without it only emission is seen"};
   In<ScatteringGrid> media{this, "media", Presence::optional,
                            "media between lights and surfaces, which dim the light on its way"};
-  Param<int> mediumSteps{
-      this, "medium_steps", 32, {1, 1024}, "most steps through a medium that varies, towards a light"};
+  Param<int> mediumSteps{this, "medium_steps", 32, within(1, 1024),
+                         "most steps through a medium that varies, towards a light"};
   Param<bool> shadows{this, "shadows", true, "test visibility; off: lights shine through everything"};
   Out<Image> radiance{this, "radiance", Contributes::direct, Needs::nothing,
                       "emission and light that is reflected once, W/(sr m^2)"};
@@ -144,7 +142,7 @@ class ShadePass : public Pass {
     variant.emission = frame.traits().emission;
     variant.medium = bound.axis;
     const Image result{floatImage(frame, "direct radiance")};
-    frame.dispatch(frame.program(code::shade::kProgram, variant.key()),
+    frame.dispatch(frame.program(variant),
                    {code::shade::parameters({.eyeWorld = frame.snapshot().camera.eye,
                                              .lightCount = lights.count,
                                              .environment = frame.sceneDescription().environment,
@@ -173,7 +171,7 @@ class ComposePass : public Pass {
     const auto read = [](const In<Image>& input) { return input.present() ? input->texture : nullptr; };
     const Image result{floatImage(frame, "final radiance")};
     using gpu::Sampling;
-    frame.dispatch(frame.program(code::compose::kProgram, variant.key()),
+    frame.dispatch(frame.program(variant),
                    {code::compose::directRadiance(direct->texture, Sampling::nearest),
                     code::compose::diffuseRadiance(read(diffuse), Sampling::nearest),
                     code::compose::glossyRadiance(read(glossy), Sampling::nearest),

@@ -48,14 +48,13 @@ class GatherPass : public Pass {
   In<ShGrid> light{this, "light", "all light that passed each cell"};
   In<ClosedFaces> faces{this, "faces", Presence::optional,
                         "what surfaces close; needed with 'lookup reachable'"};
-  Param<float> blend{this,          "blend", kBlendCells,
-                     {0.5f, 64.0f}, "",      "cells over which a grid is blended into the coarser one"};
-  Param<float> offset{this,         "offset", 1.0f,
-                      {0.0f, 4.0f}, "",       "of the lookup from the surface along its normal, in cells"};
+  Param<float> blend{this, "blend", kBlendCells, within(0.5f, 64.0f),
+                     "cells over which a grid is blended into the coarser one"};
+  Param<float> offset{this, "offset", 1.0f, within(0.0f, 4.0f),
+                      "of the lookup from the surface along its normal, in cells"};
   Param<float> exponent{
-      this, "exponent",
-      1.0f, {0.1f, 10.0f},
-      "",   "of the radiance before the albedo, a matter of taste (Listing 4.36); 1 conserves energy"};
+      this, "exponent", 1.0f, within(0.1f, 10.0f),
+      "of the radiance before the albedo, a matter of taste (Listing 4.36); 1 conserves energy"};
   Param<Negative> negative{
       this, "negative", Negative::closure,
       "two bands can make irradiance negative: keep what the two sides of a surface differ by, and neither below 0; or cut off"};
@@ -94,7 +93,7 @@ class GatherPass : public Pass {
       const ClosedFaces::Level surfaces =
           faces.present() && i < faces->levels.size() ? faces->levels[i] : ClosedFaces::Level{};
       const float side = longestSide(level.grid);
-      frame.dispatch(frame.program(code::gather::kProgram, {}, constants.values()),
+      frame.dispatch(frame.program(code::gather::Variant{}, constants),
                      {code::gather::parameters({.gridLow = level.grid.low,
                                                 .cellSize = level.grid.voxelSize,
                                                 .resolution = level.grid.resolution,
@@ -136,8 +135,8 @@ class GatherPass : public Pass {
 class ReflectPass : public Pass {
   In<AttributeGrid> surfaces{this, "surfaces", "surfaces of the reflection grid"};
   In<ShGrid> light{this, "light", "all light that passed each cell"};
-  Param<float> fade{
-      this, "fade", 0.0f, {0.0f, 1024.0f}, "", "voxels before the border over which the grid fades out"};
+  Param<float> fade{this, "fade", 0.0f, within(0.0f, 1024.0f),
+                    "voxels before the border over which the grid fades out"};
   Param<bool> asPublished{
       this, "as_published", false,
       "Listing 4.34: albedo times the mean of all light in the finest cells, half a voxel off along z, fading out with the distance to the eye; in place of what crosses the face before a surface, and of fade"};
@@ -204,7 +203,8 @@ class ReflectPass : public Pass {
 class TracePass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<RadianceGrid> grid{this, "grid", "the reflection grid with its mips"};
-  Param<float> reach{this, "reach", 0.0f, {0.0f, 1e9f}, "m", "of a cone; 0: the longest side of the grid"};
+  Param<float> reach{
+      this, "reach", 0.0f, within(0.0f, 1e9f), "m", "of a cone; 0: the longest side of the grid"};
   Param<Fade> fade{
       this, "fade", Fade::falls,
       "of samples along a cone: to nothing at its reach; or, as published (Listing 4.37), from nothing at its start; with both the whole reflection falls to nothing half a side of the grid from the eye"};
@@ -224,7 +224,7 @@ class TracePass : public Pass {
     constants.fade = asPublished || fade == Fade::grows ? 2 : fade == Fade::falls ? 1 : 0;
     const Image result{frame.image(gpu::Format::rgba32f, "indirect glossy radiance")};
     frame.dispatch(
-        frame.program(code::trace::kProgram, {}, constants.values()),
+        frame.program(code::trace::Variant{}, constants),
         {code::trace::parameters({.gridLow = place.low,
                                   .voxelSize = place.voxelSize,
                                   .gridExtent = glm::vec3(place.resolution) * place.voxelSize,

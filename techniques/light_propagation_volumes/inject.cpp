@@ -119,11 +119,12 @@ class Inject : public Pass {
 
   In<VoxelFragments> fragments{this, "fragments",
                                "surface samples; their voxels no larger than the finest cells"};
-  Param<int> levels{this, "levels", 2, {1, 10}, "nested grids, each of twice the size of the one inside"};
-  Param<int> resolution{this, "resolution", 32, {8, 128}, "cells along a side of each grid"};
+  Param<int> levels{this, "levels", 2, within(1, 10),
+                    "nested grids, each of twice the size of the one inside"};
+  Param<int> resolution{this, "resolution", 32, within(8, 128), "cells along a side of each grid"};
   Param<float> extent{
       this, "extent",
-      0.0f, {0.0f, 1e9f},
+      0.0f, within(0.0f, 1e9f),
       "m",  "side of the finest grid, around the camera; 0: as large as lets the coarsest hold the scene"};
   Param<Lobe> lobe{
       this, "lobe", Lobe::forward,
@@ -183,7 +184,7 @@ class InjectRsmPass : public Inject {
     using Variant = code::inject_rsm::Variant;
     for (const int step : {Variant::stepWeigh, Variant::stepAdd})
       frame.dispatch(
-          frame.program(code::inject_rsm::kProgram, Variant{step}.key()),
+          frame.program(Variant{step}),
           {code::inject_rsm::parameters({grid.low, grid.voxelSize, grid.resolution}),
            ReflectiveShadowMapBinding(*map), code::inject_rsm::moved(surfaces.moved, gpu::Sampling::nearest),
            code::inject_rsm::sums(sums), code::inject_rsm::brickFlags(lit.flags),
@@ -250,7 +251,7 @@ class InjectVoxelsPass : public Inject {
     using Variant = code::collect_voxels::Variant;
     for (const int step : {Variant::stepWeigh, Variant::stepAdd})
       forEachFragment(
-          frame, frame.program(code::collect_voxels::kProgram, Variant{step}.key()),
+          frame, frame.program(Variant{step}),
           {code::collect_voxels::parameters({fragments->grid.low, fragments->grid.voxelSize, grid.low,
                                              grid.voxelSize, grid.resolution, twoSided}),
            code::collect_voxels::voxels(collected),

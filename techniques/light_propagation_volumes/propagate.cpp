@@ -49,16 +49,15 @@ class PropagatePass : public Pass {
   In<ShGrid> injected{this, "light", "virtual point lights"};
   In<ClosedFaces> faces{this, "faces", Presence::optional,
                         "what surfaces close, from the same injection; always needed"};
-  Param<int> iterations{
-      this, "iterations", 64, {1, 4096}, "steps from cell to cell; light that has not arrived then is lost"};
+  Param<int> iterations{this, "iterations", 64, within(1, 4096),
+                        "steps from cell to cell; light that has not arrived then is lost"};
   Param<Lobe> lobe{
       this, "lobe", Lobe::straight,
       "flux goes on in the direction in which it came, or, as published, leaves as a clamped cosine around the face"};
-  Param<float> fluxAmplifier{
-      this, "flux_amplifier", 1.0f, {0.0f, 100.0f}, "", "factor of every step; 1 conserves energy"};
-  Param<float> occlusionAmplifier{this, "occlusion_amplifier",
-                                  1.0f, {0.0f, 100.0f},
-                                  "",   "factor of the closed share of a face; 0: nothing occludes"};
+  Param<float> fluxAmplifier{this, "flux_amplifier", 1.0f, within(0.0f, 100.0f),
+                             "factor of every step; 1 conserves energy"};
+  Param<float> occlusionAmplifier{this, "occlusion_amplifier", 1.0f, within(0.0f, 100.0f),
+                                  "factor of the closed share of a face; 0: nothing occludes"};
   Param<Border> border{this, "border", Border::open,
                        "of the coarsest grid; a mirror loses no light, for checks of energy"};
   Param<Method> method{
@@ -136,7 +135,7 @@ class PropagatePass : public Pass {
     code::start::Constants constants;
     constants.cosineLobe = lobe == Lobe::cosine;
     frame.dispatch(
-        frame.program(code::start::kProgram, variant.key(), constants.values()),
+        frame.program(variant, constants),
         {code::start::parameters(parameters), sampled(level, gpu::Sampling::nearest), fromOutside,
          code::start::closed(facesOrUnread(surfaces.closed, level), gpu::Sampling::nearest),
          images(result.light[0], kNext), images(sum, kTotal), code::start::stampsNext(result.stamps[0])},
@@ -155,8 +154,7 @@ class PropagatePass : public Pass {
     folded.cosineLobe = faceByFace.cosineLobe = lobe == Lobe::cosine;
     faceByFace.publishedTransfer = publishedTransfer();
     const shader::BoundProgram& program =
-        plain ? frame.program(code::propagate_plain::kProgram, variant.key(), faceByFace.values())
-              : frame.program(code::propagate::kProgram, {}, folded.values());
+        plain ? frame.program(variant, faceByFace) : frame.program(code::propagate::Variant{}, folded);
     const glm::ivec3 wholeBricks = (level.grid.resolution + kBrick - 1) / kBrick * kBrick;
     for (int i = 0; i < iterations; ++i) {
       const auto now = static_cast<std::size_t>(i % 2), next = 1 - now;

@@ -27,11 +27,12 @@ constexpr int kLoopLimit = 60000;
 constexpr std::uint32_t kFan = 16;  // kFan in sum_tree.glsl
 
 class RenderPass : public Pass {
-  Param<int> size{this, "size", 256, {8, 4096}, "texels along a side of the view of a light without extent"};
-  Param<int> areaSamples{
-      this, "area_samples", 16, {1, 1024}, "point samples that stand for all emissive triangles together"};
-  Param<int> areaSize{
-      this, "area_size", 64, {8, 2048}, "texels along a side of each cube face of an area sample"};
+  Param<int> size{this, "size", 256, within(8, 4096),
+                  "texels along a side of the view of a light without extent"};
+  Param<int> areaSamples{this, "area_samples", 16, within(1, 1024),
+                         "point samples that stand for all emissive triangles together"};
+  Param<int> areaSize{this, "area_size", 64, within(8, 2048),
+                      "texels along a side of each cube face of an area sample"};
   Out<ReflectiveShadowMap> map{this, "map", "what each light sees: position, normal, area, reflected flux"};
 
   Reads readsFrom() const override { return Reads::geometry | Reads::materials | Reads::lights; }
@@ -62,11 +63,11 @@ class RenderPass : public Pass {
     };
     drawLightViews(frame, views, state, targets, [&](const LightViewDrawn& drawn, const SceneDraw& draw) {
       const SceneBinding scene(frame, draw);
-      frame.shaders().drawIndexed(
-          frame.program(code::render::kProgram, code::render::Variant{scene.textures, scene.masks}.key()),
+      drawPart(
+          frame, frame.program(code::render::Variant{scene.textures, scene.masks}),
           {scene, code::render::lights(result.lights),
            code::render::view({drawn.view.worldToClip, drawn.light, 0.5f * static_cast<float>(views.side)})},
-          frame.scene().indices(), draw.firstIndex, draw.indexCount);
+          draw);
     });
     map = result;
   }
@@ -90,17 +91,10 @@ class GatherPass : public Pass {
   Param<Method> method{
       this, "method", Method::flux,
       "texels in proportion to their flux, or, as published, around the projection of the surface point into each light's view, or all of them: exact and slow"};
-  Param<int> samples{this,
-                     "samples",
-                     400,
-                     {1, kLoopLimit},
+  Param<int> samples{this, "samples", 400, within(1, kLoopLimit),
                      "texels that are gathered, with 'projected' shared among the lights; unused with 'all'"};
   Param<float> reach{
-      this,
-      "reach",
-      1.0f,
-      {0.01f, 1.0f},
-      "",
+      this, "reach", 1.0f, within(0.01f, 1.0f),
       "with 'projected': radius of the pattern as a share of the half turn around a light, or of the width of the view of a directional light, with 'published' of a spot light too"};
   Param<Weights> weights{
       this, "weights", Weights::exact,
@@ -132,7 +126,7 @@ class GatherPass : public Pass {
     }
     const auto add = [&] {
       frame.dispatch(
-          frame.program(code::gather::kProgram, variant.key()),
+          frame.program(variant),
           {code::gather::parameters(parameters), GBufferBinding(*gbuffer), ReflectiveShadowMapBinding(*map),
            code::gather::chosen(chosen), code::gather::diffuseImage(result.texture)},
           pixels(frame));
@@ -165,7 +159,7 @@ class GatherPass : public Pass {
       firstOfSums -= sizes[level];
       using Variant = code::accumulate::Variant;
       const Variant variant{level == 1 ? Variant::ofTexels : Variant::ofSums};
-      frame.dispatchList(frame.program(code::accumulate::kProgram, variant.key()),
+      frame.dispatchList(frame.program(variant),
                          {code::accumulate::parameters({sizes[level - 1], side, firstOfAddends, firstOfSums}),
                           texels, code::accumulate::tree(tree)},
                          sizes[level]);

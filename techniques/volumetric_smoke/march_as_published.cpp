@@ -31,8 +31,8 @@ class MarchAsPublishedPass : public Pass {
                        "lights and their visibility; without it nothing is scattered"};
   Param<Resolution> resolution{this, "resolution", Resolution::half,
                                "one ray a pixel, or one for 2 x 2 pixels, to be upsampled"};
-  Param<int> steps{
-      this, "steps", 32, {1, 4096}, "steps from the camera to the surface, wherever the media are"};
+  Param<int> steps{this, "steps", 32, within(1, 4096),
+                   "steps from the camera to the surface, wherever the media are"};
   Param<Dither> dither{this, "dither", Dither::asPublished,
                        "the matrix of Listing 4.51 with its entry 0.22, or with 0.25 in its place"};
   Param<Cosine> cosine{
@@ -83,7 +83,7 @@ class MarchAsPublishedPass : public Pass {
         amount = static_cast<float>(std::pow(double(medium.grid.voxelSize), 3.0) / particleMass(all[i]));
     }
     const code::Variant variant{bound.axis == MediaBinding::varying};
-    frame.dispatch(frame.program(code::kProgram, variant.key(), constants.values()),
+    frame.dispatch(frame.program(variant, constants),
                    {code::view(viewOf<code::View>(camera, perSample)), code::parameters(parameters),
                     GBufferBinding(*gbuffer), lights, bound, code::scatteredImage(result.scattered)},
                    {size, 1});

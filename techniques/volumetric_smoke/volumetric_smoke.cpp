@@ -76,10 +76,7 @@ class InsertPass : public Pass {
   In<OccupancyGrid> space{this, "space", Presence::optional,
                           "voxels that are solid: particles share out their mass among the free ones",
                           Needs::particles};
-  Param<int> resolution{this,
-                        "resolution",
-                        64,
-                        {8, kLargestGrid},
+  Param<int> resolution{this, "resolution", 64, within(8, kLargestGrid),
                         "voxels along the longest side of the box that holds all particles of a medium"};
   Param<Deposit> deposit{
       this, "deposit", Deposit::clouds,
@@ -158,7 +155,7 @@ class InsertPass : public Pass {
     using Variant = code::insert::Variant;
     const Variant variant{space.present(),
                           deposit == Deposit::counts ? Variant::depositCounts : Variant::depositClouds};
-    frame.dispatchList(frame.program(code::insert::kProgram, variant.key()),
+    frame.dispatchList(frame.program(variant),
                        {code::insert::parameters(parameters), code::insert::offsets(group.offsets),
                         code::insert::lowWords(low), code::insert::highWords(high),
                         code::insert::occupancy(occupancy, gpu::Sampling::nearest)},
@@ -183,20 +180,17 @@ class MarchPass : public Pass {
                        "lights and their visibility; without it media only dim"};
   Param<Resolution> resolution{this, "resolution", Resolution::half,
                                "one ray a pixel, or one for 2 x 2 pixels, to be upsampled"};
-  Param<int> steps{this, "steps", 32, {1, 4096}, "steps along a ray's way through the media"};
+  Param<int> steps{this, "steps", 32, within(1, 4096), "steps along a ray's way through the media"};
   Param<LightDepth> lightDepth{this, "light_depth", LightDepth::volume,
                                "optical depth between media that vary and the lights: once a frame for a "
                                "grid of points, or for every step of every ray"};
-  Param<int> lightResolution{
-      this, "light_resolution", 32, {4, 256}, "points along each side of that grid, for each light"};
+  Param<int> lightResolution{this, "light_resolution", 32, within(4, 256),
+                             "points along each side of that grid, for each light"};
   Param<int> cells{
-      this,
-      "cells",
-      8,
-      {0, 1024},
+      this, "cells", 8, within(0, 1024),
       "cubes between voxels over which densities are integrated exactly, from every place of a step "
       "towards the eye and towards the lights; 0: looked at once a step, as published"};
-  Param<int> lightSteps{this, "light_steps", 32, {1, 1024}, "most steps of a march towards a light"};
+  Param<int> lightSteps{this, "light_steps", 32, within(1, 1024), "most steps of a march towards a light"};
   Param<Start> start{this, "start", Start::dithered,
                      "where each step is looked at: another place in neighbouring pixels, or the middle"};
   Param<Phase> phase{
@@ -231,7 +225,7 @@ class MarchPass : public Pass {
       transmittances = makeTransmittances(frame, bound, lights, parameters);
     const code::march::Variant variant{bound.axis == MediaBinding::varying, lights.count > 0,
                                        transmittances != nullptr};
-    frame.dispatch(frame.program(code::march::kProgram, variant.key(), constants.values()),
+    frame.dispatch(frame.program(variant, constants),
                    {code::march::view(viewOf<code::march::View>(camera, perSample)),
                     code::march::parameters(parameters), GBufferBinding(*gbuffer), lights, bound,
                     code::march::lightTransmittance(transmittances, gpu::Sampling::linear),
@@ -269,7 +263,7 @@ class MarchPass : public Pass {
     const glm::ivec3 size(side, side, side * lightCount);
     gpu::TextureRef transmittances = frame.volume(size, gpu::Format::rgba32f, "transmittances to the lights");
     using Variant = code::light_depth::Variant;
-    frame.dispatch(frame.program(code::light_depth::kProgram, Variant{Variant::mediumVarying}.key()),
+    frame.dispatch(frame.program(Variant{Variant::mediumVarying}),
                    {code::light_depth::parameters({box.low, side, box.high, lightCount, lightSteps}), lights,
                     bound, code::light_depth::transmittanceImage(transmittances)},
                    size);
@@ -283,11 +277,7 @@ class UpsamplePass : public Pass {
   In<Image> scatteredSamples{this, "scattered", "of the march"};
   In<Image> transmittanceSamples{this, "transmittance", "of the march"};
   Param<float> similarity{
-      this,
-      "similarity",
-      0.05f,
-      {1e-4f, 10.0f},
-      "",
+      this, "similarity", 0.05f, within(1e-4f, 10.0f),
       "difference of the ends of two rays, as a share of their length, from which on they "
       "are no longer alike"};
   Out<Image> scattered{this, "scattered", Contributes::scattered, Needs::medium,

@@ -36,17 +36,13 @@ class InjectPass : public Pass {
                        "lights and their visibility; without it the grid is dark but opaque"};
   In<ScatteringGrid> media{this, "media", Presence::optional,
                            "media between lights and surfaces, which dim the light on its way"};
-  Param<int> mediumSteps{
-      this, "medium_steps", 16, {1, 1024}, "most steps through a medium that varies, towards a light"};
+  Param<int> mediumSteps{this, "medium_steps", 16, within(1, 1024),
+                         "most steps through a medium that varies, towards a light"};
   Param<bool> storeMedia{
       this, "store_media", false,
       "the media lie in the voxels beside the surfaces and scatter light there, evenly to all sides, so that one set of cones sees both and 'gather' takes no media of its own (thesis Sec. 4.5)"};
   Param<float> ambient{
-      this,
-      "ambient",
-      0.0f,
-      {0.0f, 1e9f},
-      "",
+      this, "ambient", 0.0f, within(0.0f, 1e9f),
       "irradiance that all surfaces receive besides that of the lights, W/m^2: cones then see what no light reaches (thesis Fig. 66)"};
   Param<bool> twoSided{this, "two_sided", true,
                        "light on the back of a triangle counts; off, as published: only on the front"};
@@ -123,7 +119,7 @@ class InjectPass : public Pass {
     variant.lights = variant.shadows = shadow.present();
     variant.reflected = fragments->reflected != nullptr;
     variant.medium = bound.axis;
-    forEachFragment(frame, frame.program(code::inject::kProgram, variant.key()),
+    forEachFragment(frame, frame.program(variant),
                     {code::inject::grid({.gridLow = fragments->grid.low,
                                          .voxelSize = fragments->grid.voxelSize,
                                          .lightCount = lights.count,
@@ -146,7 +142,7 @@ class InjectPass : public Pass {
     code::resolve::Variant variant;
     variant.lights = result.holdsMedia && shadow.present();
     variant.medium = bound.axis;
-    const auto& program = frame.program(code::resolve::kProgram, variant.key());
+    const auto& program = frame.program(variant);
     const OccupiedBricks occupied = result.occupied;
     const shader::BindingSet bindings{
         code::resolve::parameters({.brickCount = sums.brickCount,

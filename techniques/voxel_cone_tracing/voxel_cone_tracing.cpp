@@ -45,8 +45,7 @@ class FilterPass : public Pass {
       // The voxels of a level are those of the bricks down to one a brick, where bricks are halved evenly.
       const bool followsBricks = occupied.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
                                  finest % OccupiedBricks::kSide == glm::ivec3(0);
-      const auto& program = frame.program(code::filter::kProgram, code::filter::Variant{followsBricks}.key(),
-                                          constants.values());
+      const auto& program = frame.program(code::filter::Variant{followsBricks}, constants);
       const shader::BindingSet bindings{
           code::filter::parameters({.coarse = coarse, .fineLevel = level - 1, .fine = fine}),
           code::filter::radianceGrid(radiance->radiance, sampling),
@@ -72,43 +71,31 @@ class GatherPass : public Pass {
   In<RadianceGrid> grid{this, "grid", "pre-filtered radiance, one mip per halving"};
   In<ScatteringGrid> media{this, "media", Presence::optional,
                            "media that dim what the cones see; light that they scatter is left out"};
-  Param<int> cones{this, "cones", 6, {1, 256}, "diffuse cones per pixel"};
+  Param<int> cones{this, "cones", 6, within(1, 256), "diffuse cones per pixel"};
   Param<Distribution> distribution{
       this, "distribution", Distribution::cosine,
       "cones of equal weight distributed as the cosine, or one upright and four at 45 degrees"};
-  Param<float> coneRatio{this,
-                         "cone_ratio",
+  Param<float> coneRatio{this, "cone_ratio",
                          1.15470053837925152902f,  // 2 tan 30 degrees
-                         {0.01f, 8.0f},
-                         "",
+                         within(0.01f, 8.0f),
                          "diameter of one of those five over its height; no number is published"};
   Param<bool> asPublished{
       this, "as_published", false,
       "Listings 4.12 and 4.13 to the letter: the five cones with the weights 1 and 0.707, not normalised, from two voxels on by samples of two voxels and more; 'cones', 'distribution', 'step', 'offset', 'start', 'clearance' and 'footprint' have no say"};
-  Param<float> step{this, "step", 0.5f, {0.05f, 2.0f}, "", "step along a cone as a share of its diameter"};
-  Param<float> offset{this, "offset", 1.0f, {0.0f, 8.0f}, "", "start of a cone along the normal, in voxels"};
-  Param<float> start{this, "start", 1.0f, {0.0f, 8.0f}, "", "start of a cone along its axis, in voxels"};
+  Param<float> step{this, "step", 0.5f, within(0.05f, 2.0f), "step along a cone as a share of its diameter"};
+  Param<float> offset{this, "offset", 1.0f, within(0.0f, 8.0f),
+                      "start of a cone along the normal, in voxels"};
+  Param<float> start{this, "start", 1.0f, within(0.0f, 8.0f), "start of a cone along its axis, in voxels"};
   Param<float> clearance{
-      this,
-      "clearance",
-      0.5f,
-      {0.0f, 1e3f},
-      "",
+      this, "clearance", 0.5f, within(0.0f, 1e3f),
       "largest voxels that are read as a share of their height over the surface; as published: no limit, 1000"};
   Param<float> footprint{
-      this,
-      "footprint",
-      0.5f,
-      {0.25f, 1.0f},
-      "",
+      this, "footprint", 0.5f, within(0.25f, 1.0f),
       "voxels that are read as a share of the diameter of the cone; as published: 1, which reads twice as wide as the cone"};
-  Param<float> reach{this, "reach", 0.0f, {0.0f, 1e9f}, "m", "length of a cone; 0: to the end of the grid"};
+  Param<float> reach{
+      this, "reach", 0.0f, within(0.0f, 1e9f), "m", "length of a cone; 0: to the end of the grid"};
   Param<float> jitter{
-      this,
-      "jitter",
-      0.0f,
-      {0.0f, 1.0f},
-      "",
+      this, "jitter", 0.0f, within(0.0f, 1.0f),
       "most by which a cone's first step is shorter, as a share of it, by chance for each pixel and cone: noise in place of bands"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
                      "indirect light reflected by the diffuse lobe"};
@@ -140,7 +127,7 @@ class GatherPass : public Pass {
     const Image ofDiffuse = image(variant.diffuse, "indirect diffuse radiance"),
                 ofGlossy = image(variant.glossy, "indirect glossy radiance");
     frame.dispatch(
-        frame.program(code::gather::kProgram, variant.key(), constants.values()),
+        frame.program(variant, constants),
         {code::gather::parameters({.gridLow = input.grid.low,
                                    .voxelSize = input.grid.voxelSize,
                                    .gridExtent = extent,

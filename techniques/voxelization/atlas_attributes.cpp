@@ -17,7 +17,7 @@ class AtlasAttributesPass : public Voxeliser {
     for (const SceneDraw* draw : draws) {
       const AtlasPart texels = atlas_.texelsOf(frame, *draw);
       const SceneBinding scene(frame, *draw);
-      frame.dispatchList(frame.program(code::kProgram, code::Variant{scene.textures, scene.masks}.key()),
+      frame.dispatchList(frame.program(code::Variant{scene.textures, scene.masks}),
                          {scene, atlas_.bindings(texels), appending(list),
                           code::grid({list.grid.low, list.grid.voxelSize, list.grid.resolution,
                                       static_cast<int>(list.capacity)})},

@@ -13,11 +13,7 @@ class AtlasBinaryPass : public BitVoxeliser {
                               "",   kTexelsPerVoxelMeaning};
 
   Param<float> pointSize{
-      this,
-      "point_size",
-      1.0f,
-      {1.0f, 16.0f},
-      "",
+      this, "point_size", 1.0f, within(1.0f, 16.0f),
       "side of a texel's point across the stacks, in voxels; above 1 it closes holes of an atlas "
       "with too few texels, and thickens what stands along the stacks"};
 
@@ -27,7 +23,7 @@ class AtlasBinaryPass : public BitVoxeliser {
     for (const SceneDraw* draw : draws) {
       const AtlasPart texels = atlas_.texelsOf(frame, *draw);
       const SceneBinding scene(frame, *draw);
-      frame.dispatchList(frame.program(code::kProgram, code::Variant{scene.masks}.key()),
+      frame.dispatchList(frame.program(code::Variant{scene.masks}),
                          {scene, atlas_.bindings(texels), code::words(words),
                           code::grid({grid.low, grid.voxelSize, grid.resolution, pointSize})},
                          texels.texelCount);

@@ -107,13 +107,11 @@ class AveragePass : public Pass {
         code::average_add::normalSums(normal),
         code::average_add::emissionSums(emission),
         code::average_add::brightest(brightest)};
-    forEachFragment(frame,
-                    frame.program(code::average_add::kProgram,
-                                  code::average_add::Variant{withAttributes, withEmission}.key()),
+    forEachFragment(frame, frame.program(code::average_add::Variant{withAttributes, withEmission}),
                     {sums, code::average_add::slots(slots.numbers)}, *fragments);
     const code::average_resolve::Variant resolving{withAttributes, withEmission, opacity.wanted()};
     frame.dispatchIndirect(
-        frame.program(code::average_resolve::kProgram, resolving.key()),
+        frame.program(resolving),
         {sums, code::average_resolve::slotCount(slots.count), code::average_resolve::slotVoxels(slots.voxels),
          code::average_resolve::albedoImage(averages.albedo),
          code::average_resolve::normalImage(averages.normal),

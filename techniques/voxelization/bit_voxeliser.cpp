@@ -84,7 +84,7 @@ BinaryGrid binaryGridOf(PassContext& frame, const GridPlacement& grid, const gpu
   description.levels = gpu::fullLevelCount(grid.resolution.x, grid.resolution.y);
   result.stacks = frame.texture(description, "voxel stacks");
   frame.dispatch(
-      frame.program(stackShader::kProgram, stackShader::Variant{surface != nullptr}.key()),
+      frame.program(stackShader::Variant{surface != nullptr}),
       {stackShader::words(voxels), stackShader::surfaceWords(surface != nullptr ? *surface : voxels),
        stackShader::stacks(*result.stacks)},
       {description.width, description.height, description.depth});
@@ -101,11 +101,10 @@ OccupancyGrid BitVoxeliser::opacityOf(PassContext& frame, const GridPlacement& g
   OccupancyGrid result;
   result.grid = grid;
   result.opacity = frame.volume(grid.resolution, gpu::Format::r8, "opacity");
-  frame.dispatch(
-      frame.program(opacityShader::kProgram, opacityShader::Variant{words.surface != nullptr}.key()),
-      {opacityShader::words(*words.voxels), opacityShader::surfaceWords(surfaceOf(words)),
-       opacityShader::opacity(*result.opacity)},
-      grid.resolution);
+  frame.dispatch(frame.program(opacityShader::Variant{words.surface != nullptr}),
+                 {opacityShader::words(*words.voxels), opacityShader::surfaceWords(surfaceOf(words)),
+                  opacityShader::opacity(*result.opacity)},
+                 grid.resolution);
   return result;
 }
 
@@ -116,7 +115,7 @@ VoxelFragments BitVoxeliser::fragmentsOf(PassContext& frame, const GridPlacement
   if (room_ == 0) room_ = 6 * side * side;
   const VoxelFragments list = listBehind(frame, grid, surface(), room_);
   frame.dispatch(
-      frame.program(fragmentShader::kProgram, fragmentShader::Variant{words.surface != nullptr}.key()),
+      frame.program(fragmentShader::Variant{words.surface != nullptr}),
       {fragmentShader::parameters({static_cast<int>(list.capacity)}), fragmentShader::words(*words.voxels),
        fragmentShader::surfaceWords(surfaceOf(words)), appending(list)},
       wordCount(grid));

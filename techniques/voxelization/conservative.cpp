@@ -85,7 +85,7 @@ class ConservativePass : public Voxeliser {
       const SceneBinding scene(frame, *draw);
       const rasterShader::Variant variant{scene.textures, scene.masks};
       frame.shaders().draw(
-          frame.program(rasterShader::kProgram, variant.key(), constants.values()),
+          frame.program(variant, constants),
           {scene, appending(list),
            rasterShader::grid({list.grid.low, list.grid.voxelSize, list.grid.resolution,
                                static_cast<int>(draw->firstIndex), static_cast<int>(list.capacity)})},
@@ -119,12 +119,11 @@ class ConservativePass : public Voxeliser {
         scene, appending(list), computeShader::batches(table), computeShader::rows(rows),
         computeShader::grid({list.grid.low, list.grid.voxelSize, list.grid.resolution,
                              static_cast<int>(list.capacity), static_cast<int>(kRowCapacity)})};
-    frame.shaders().dispatch(frame.program(computeShader::kProgram, variant.key(), constants.values()),
-                             bindings, {static_cast<std::uint32_t>(batches.size()), 1, 1});
+    frame.shaders().dispatch(frame.program(variant, constants), bindings,
+                             {static_cast<std::uint32_t>(batches.size()), 1, 1});
     frame.device().barrier();
     variant.large = 1;
-    frame.dispatchIndirect(frame.program(computeShader::kProgram, variant.key(), constants.values()),
-                           bindings, *rows, sizeof(std::uint32_t));
+    frame.dispatchIndirect(frame.program(variant, constants), bindings, *rows, sizeof(std::uint32_t));
   }
 };
 

@@ -12,7 +12,7 @@ namespace {
 namespace code = shaders::voxelization;
 
 class DepthPeelingPass : public Voxeliser {
-  Param<int> layers{this, "layers", 64, {1, 4096}, "most layers that are peeled from one view"};
+  Param<int> layers{this, "layers", 64, within(1, 4096), "most layers that are peeled from one view"};
 
   struct Layer {
     gpu::TextureRef depth, surface, depthInGrid;
@@ -92,10 +92,9 @@ class DepthPeelingPass : public Voxeliser {
     for (const SceneDraw* draw : draws) {
       const SceneBinding scene(frame, *draw);
       const code::depth_peeling::Variant variant{scene.textures, scene.masks, before == nullptr};
-      frame.shaders().drawIndexed(
-          frame.program(code::depth_peeling::kProgram, variant.key()),
-          {scene, viewBinding(view), code::depth_peeling::layerBefore(before, gpu::Sampling::nearest)},
-          frame.scene().indices(), draw->firstIndex, draw->indexCount);
+      drawPart(frame, frame.program(variant),
+               {scene, viewBinding(view), code::depth_peeling::layerBefore(before, gpu::Sampling::nearest)},
+               *draw);
     }
     frame.device().barrier();
   }

@@ -15,15 +15,11 @@ namespace countShader = shaders::voxelization::msaa_opacity_count;
 namespace copyShader = shaders::voxelization::bits_copy;
 
 class MsaaOpacityPass : public Voxeliser {
-  Param<int> samples{this, "samples", 8, {2, 8}, "per pixel; at most what the device has"};
-  Param<float> thickness{this, "thickness",
-                         0.5f, {0.0f, 1.0f},
-                         "",   "how thick a surface is seen from the side, in voxels; 0: as thin as it is"};
+  Param<int> samples{this, "samples", 8, within(2, 8), "per pixel; at most what the device has"};
+  Param<float> thickness{this, "thickness", 0.5f, within(0.0f, 1.0f),
+                         "how thick a surface is seen from the side, in voxels; 0: as thin as it is"};
   Param<int> supersampling{
-      this,
-      "supersampling",
-      1,
-      {1, 16},
+      this, "supersampling", 1, within(1, 16),
       "most pixels along a voxel for triangles that few samples meet, so that the coverage of small things does "
       "not change by leaps as they move; the largest power of two that is no more; 1: none"};
   Out<OccupancyGrid> opacity{this, "opacity", "of the most opaque side of each voxel"};
@@ -82,8 +78,8 @@ class MsaaOpacityPass : public Voxeliser {
       grid.firstIndex = static_cast<int>(draw->firstIndex);
       const SceneBinding scene(frame, *draw);
       const msaaShader::Variant variant{scene.textures, scene.masks, target};
-      frame.shaders().draw(frame.program(msaaShader::kProgram, variant.key()),
-                           {scene, msaaShader::sampleGrid(grid), results}, draw->indexCount);
+      frame.shaders().draw(frame.program(variant), {scene, msaaShader::sampleGrid(grid), results},
+                           draw->indexCount);
     }
     frame.device().barrier();
   }

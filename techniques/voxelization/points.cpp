@@ -21,12 +21,12 @@ constexpr auto words(Spread) {
 
 class PointsPass : public Voxeliser {
   // The paper's figures are made with 19 points; it finds 12 to 19 nearly perfect in most scenes.
-  Param<int> points{this, "points", 19, {1, 65536}, "random points on each triangle"};
+  Param<int> points{this, "points", 19, within(1, 65536), "random points on each triangle"};
   Param<bool> adaptive{this, "adaptive", false,
                        "as many points as the triangle's area asks for, whatever `points` says"};
   // A voxel that a plane crosses squarely is missed with probability e^-8 = 3 in 10000.
-  Param<float> density{
-      this, "density", 8.0f, {0.001f, 1000.0f}, "", "adaptive: points per squared voxel size of area"};
+  Param<float> density{this, "density", 8.0f, within(0.001f, 1000.0f),
+                       "adaptive: points per squared voxel size of area"};
 
   Param<Spread> spread{this, "spread", Spread::random,
                        "random points; or the middles of equal parts of the triangle, of which there are "
@@ -112,9 +112,9 @@ class PointsPass : public Voxeliser {
         code::points({static_cast<int>(draw.firstIndex / 3), static_cast<int>(triangles), points,
                       adaptive ? density + 0.0f : 0.0f, seedWords(frame), kMostPoints})};
     aside.clear();
-    frame.dispatchList(frame.program(code::kProgram, variant.key(), constants.values()), bindings, triangles);
+    frame.dispatchList(frame.program(variant, constants), bindings, triangles);
     variant.many = 1;
-    aside.workOff(frame, frame.program(code::kProgram, variant.key(), constants.values()), bindings);
+    aside.workOff(frame, frame.program(variant, constants), bindings);
   }
 
   std::optional<double> largestTriangle_;  ///< m^2, once it was needed

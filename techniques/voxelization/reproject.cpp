@@ -35,7 +35,7 @@ class ReprojectPass : public GridPass {
       list.reflected->clear(VoxelFragments::kNotKnown);
     }
     const code::Variant variant{gbuffer->emission != nullptr, direct.present()};
-    frame.dispatch(frame.program(code::kProgram, variant.key()),
+    frame.dispatch(frame.program(variant),
                    {code::grid({list.grid.low, list.grid.voxelSize, list.grid.resolution,
                                 static_cast<int>(list.capacity)}),
                     appending(list), GBufferBinding(*gbuffer), code::reflected(list.reflected),

@@ -10,10 +10,7 @@ namespace {
 namespace code = shaders::voxelization::slicing;
 
 class SlicingPass : public Voxeliser {
-  Param<int> axes{this,
-                  "axes",
-                  1,
-                  {1, 3},
+  Param<int> axes{this, "axes", 1, within(1, 3),
                   "1: slices along z, as published; 3: along all axes, so that no surface is lost"};
 
   std::string checkParameters() const override {
@@ -55,10 +52,8 @@ class SlicingPass : public Voxeliser {
                         const OrthogonalView& view) {
     for (const SceneDraw* draw : draws) {
       const SceneBinding scene(frame, *draw);
-      frame.shaders().drawIndexed(
-          frame.program(code::kProgram, code::Variant{scene.textures, scene.masks}.key()),
-          {scene, viewBinding(view), appending(list)}, frame.scene().indices(), draw->firstIndex,
-          draw->indexCount);
+      drawPart(frame, frame.program(code::Variant{scene.textures, scene.masks}),
+               {scene, viewBinding(view), appending(list)}, *draw);
     }
   }
 

@@ -89,9 +89,8 @@ class SolidPass : public BitVoxeliser {
                                       code::solid_flip::parity(parity)};
     aside.clear();
     using Variant = code::solid_flip::Variant;
-    frame.dispatchList(frame.program(code::solid_flip::kProgram, Variant{0}.key()), bindings,
-                       closed.triangleCount);
-    aside.workOff(frame, frame.program(code::solid_flip::kProgram, Variant{1}.key()), bindings);
+    frame.dispatchList(frame.program(Variant{0}), bindings, closed.triangleCount);
+    aside.workOff(frame, frame.program(Variant{1}), bindings);
     frame.dispatch(frame.program(code::solid_fill::kProgram),
                    {code::solid_fill::parameters({columns.low, columns.size, grid.resolution.z}),
                     code::solid_fill::parity(parity), code::solid_fill::words(words)},

@@ -9,8 +9,9 @@ namespace code = shaders::voxelization::view;
 
 class ViewPass : public Pass {
   In<VoxelFragments> fragments{this, "fragments", "voxels"};
-  Param<float> cut{this,         "cut", 0.0f,
-                   {0.0f, 1e9f}, "m",   "distance before the camera up to which everything is cut away"};
+  Param<float> cut{this, "cut",
+                   0.0f, within(0.0f, 1e9f),
+                   "m",  "distance before the camera up to which everything is cut away"};
   Out<Image> picture{this, "picture", "cubes where the voxels are, not light"};
 
   Reads readsFrom() const override { return Reads::camera; }

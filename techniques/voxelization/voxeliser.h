@@ -46,12 +46,13 @@ class GridPass : public Pass {
   };
   StillKey stillKey(const PassContext& frame, const GridPlacement& grid, const Draws& still);
 
-  Param<int> resolution{
-      this, "resolution", 64, {1, kLargestGrid}, "voxels along the longest side of the grid"};
+  Param<int> resolution{this, "resolution", 64, within(1, kLargestGrid),
+                        "voxels along the longest side of the grid"};
   Param<Around> around{this, "around", Around::scene,
                        "the grid holds the whole scene, or moves with the camera by whole voxels"};
-  Param<float> extent{this,         "extent", 0.0f,
-                      {0.0f, 1e9f}, "m",      "side of a grid around the camera; needed there, unused else"};
+  Param<float> extent{this, "extent",
+                      0.0f, within(0.0f, 1e9f),
+                      "m",  "side of a grid around the camera; needed there, unused else"};
 };
 
 /// A list of fragments begins with those of what stands still, and what moves is written behind them in every

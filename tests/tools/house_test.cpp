@@ -210,7 +210,7 @@ const Confined kEmbree{
 const Confined kOpenVdb{"OpenVDB",
                         "<openvdb|\\bopenvdb::",
                         {"tools/vdbexport/", "framework/src/volume/", "tests/framework/scene_media_test.cpp",
-                         "tests/tools/vdbexport_", "bench/"}};  // speed programs compare with it
+                         "tests/tools/vdbexport_", "tests/tools/own_kind_test.cpp", "bench/"}};  // speed programs compare with it
 
 // ---- techniques
 // --------------------------------------------------------------------------------------------------------------------

@@ -78,13 +78,17 @@ std::string variantText(const shader::PackedProgram& program) {
     list += (list.empty() ? "" : ", ") + member;
   }
   if (!list.empty()) list = "{" + list + "}";
-  return fmt::format("struct Variant {{\n{}{}  std::array<int, {}> key() const {{ return {{{}}}; }}\n}};\n",
-                     enumerations, members, program.axes.size(), list);
+  return fmt::format(
+      "struct Variant {{\n  static constexpr shader::ProgramName kOf = kProgram;\n{}{}  std::array<int, {}> key() const {{ return {{{}}}; }}\n}};\n",
+      enumerations, members, program.axes.size(), list);
 }
 
 std::string constantsText(const shader::PackedProgram& program) {
   std::string members, list;
-  for (const shader::PackedConstant& constant : program.constants) {
+  // By their numbers, so that the order of the members is that of the shader's author.
+  std::vector<shader::PackedConstant> constants = program.constants;
+  std::sort(constants.begin(), constants.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  for (const shader::PackedConstant& constant : constants) {
     const std::uint32_t bits = constant.defaultBits;
     switch (constant.type) {
       case ConstantType::boolean:

@@ -213,6 +213,11 @@ template <class T>
 struct ParamRange {
   T low, high;
 };
+/// The range of a parameter, its ends included.
+template <class T>
+constexpr ParamRange<T> within(T low, T high) {
+  return {low, high};
+}
 
 template <class T>
 class Param;
@@ -236,6 +241,9 @@ class Param<float> : public ParamBase {
  public:
   Param(Pass* pass, std::string name, float value, ParamRange<float> range, std::string unit,
         std::string meaning);
+  /// A pure number.
+  Param(Pass* pass, std::string name, float value, ParamRange<float> range, std::string meaning)
+      : Param(pass, std::move(name), value, range, "", std::move(meaning)) {}
   operator float() const { return value_; }
   std::string valueText() const override;
   std::string defaultText() const override;
@@ -332,6 +340,17 @@ class PassContext {
   const shader::BoundProgram& program(const shader::ProgramName& name, shader::VariantKey variant = {},
                                       std::span<const gpu::SpecialisationValue> constants = {}) {
     return shaders().program(name, variant, constants);
+  }
+  /// The program of a generated Variant, with its generated Constants.
+  template <class Variant>
+  requires requires { Variant::kOf; }
+  const shader::BoundProgram& program(const Variant& variant) {
+    return shaders().program(Variant::kOf, variant.key());
+  }
+  template <class Variant, class Constants>
+  requires requires { Variant::kOf; }
+  const shader::BoundProgram& program(const Variant& variant, const Constants& constants) {
+    return shaders().program(Variant::kOf, variant.key(), constants.values());
   }
   /// One invocation per item along each axis, in work groups of the program's size; a barrier follows.
   void dispatch(const shader::BoundProgram& program, const shader::BindingSet& bindings, glm::ivec3 items);

@@ -18,7 +18,7 @@ namespace lumivox::shader {
 inline constexpr std::uint32_t kByName = ~0u;
 
 // A slot takes the resource itself, or a reference that may be null: nothing is given then, which is an error
-// only where the variant needs it.
+// only where the variant needs it. Not one that would be gone before the command runs.
 
 struct SampledSlot {
   const char* name;
@@ -26,6 +26,7 @@ struct SampledSlot {
   gpu::ResourceBinding operator()(const gpu::TextureRef& texture, gpu::Sampling sampling) const {
     return {name, binding, gpu::ResourceBinding::Sampled{texture.get(), sampling}};
   }
+  gpu::ResourceBinding operator()(gpu::TextureRef&& texture, gpu::Sampling sampling) const = delete;
   gpu::ResourceBinding operator()(const gpu::Texture& texture, gpu::Sampling sampling) const {
     return {name, binding, gpu::ResourceBinding::Sampled{&texture, sampling}};
   }
@@ -37,6 +38,7 @@ struct ImageSlot {
   gpu::ResourceBinding operator()(const gpu::TextureRef& texture, int level = 0) const {
     return {name, binding, gpu::ResourceBinding::StorageImage{texture.get(), level}};
   }
+  gpu::ResourceBinding operator()(gpu::TextureRef&& texture, int level = 0) const = delete;
   gpu::ResourceBinding operator()(const gpu::Texture& texture, int level = 0) const {
     return {name, binding, gpu::ResourceBinding::StorageImage{&texture, level}};
   }
@@ -49,6 +51,7 @@ struct StorageSlot {
   gpu::ResourceBinding operator()(const gpu::BufferRef& buffer) const {
     return {name, binding, gpu::ResourceBinding::Storage{buffer.get()}};
   }
+  gpu::ResourceBinding operator()(gpu::BufferRef&& buffer) const = delete;
   gpu::ResourceBinding operator()(const gpu::Buffer& buffer) const {
     return {name, binding, gpu::ResourceBinding::Storage{&buffer}};
   }

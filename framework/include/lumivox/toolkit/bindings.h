@@ -29,6 +29,10 @@ class SceneBinding : public shader::BindingSet {
   int textures = 0, masks = 0;
 };
 
+/// Draws one part of the scene, whose SceneBinding is among the bindings.
+void drawPart(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
+              const SceneDraw& draw);
+
 /// A g-buffer: gPosition, gNormal, gGeometricNormal, gDiffuse, gSpecular, gEmission.
 class GBufferBinding : public shader::BindingSet {
  public:
