@@ -12,7 +12,7 @@
 namespace lumivox::direct_lighting {
 namespace {
 
-namespace code = shaders::direct_lighting;
+using namespace shaders::direct_lighting;
 
 /// World to clip space of a camera, z in [0,1]. Depth is clamped when drawing, so that near only sets the
 /// precision.
@@ -67,15 +67,15 @@ class GBufferPass : public Pass {
 
   static void drawScene(PassContext& frame, const gpu::RenderTargets& targets,
                         const gpu::RasterState& state) {
-    const auto view = code::gbuffer::view({worldToClip(frame.snapshot())});
-    const auto eye = code::gbuffer::eye({frame.snapshot().camera.eye, glm::vec2(pixels(frame))});
+    const auto view = gbuffer::view({worldToClip(frame.snapshot())});
+    const auto eye = gbuffer::eye({frame.snapshot().camera.eye, glm::vec2(pixels(frame))});
     const gpu::Drawing drawing = frame.device().drawTo(targets, state);
     for (const SceneDraw& draw : frame.scene().draws()) {
       const SceneBinding scene(frame, draw);
-      const code::gbuffer::Variant variant{.textures = scene.textures,
-                                           .masks = scene.masks,
-                                           .glossy = frame.traits().glossy,
-                                           .emission = frame.traits().emission};
+      const gbuffer::Variant variant{.textures = scene.textures,
+                                     .masks = scene.masks,
+                                     .glossy = frame.traits().glossy,
+                                     .emission = frame.traits().emission};
       drawPart(frame, frame.program(variant), {scene, view, eye}, draw);
     }
   }
@@ -110,8 +110,8 @@ class ShadowMapPass : public Pass {
     };
     drawLightViews(frame, views, state, targets, [&](const LightViewDrawn& drawn, const SceneDraw& draw) {
       const SceneBinding scene(frame, draw);
-      drawPart(frame, frame.program(code::shadow_map::Variant{scene.masks}),
-               {scene, code::shadow_map::view({drawn.view.worldToClip})}, draw);
+      drawPart(frame, frame.program(shadow_map::Variant{scene.masks}),
+               {scene, shadow_map::view({drawn.view.worldToClip})}, draw);
     });
     depth = result;
   }
@@ -135,7 +135,7 @@ class ShadePass : public Pass {
     const LightBinding lights(shadow);
     MediaBinding bound;
     if (shadow.present()) bound = MediaBinding(frame, media);
-    code::shade::Variant variant;
+    shade::Variant variant;
     variant.lights = shadow.present();
     variant.shadows = shadow.present() && shadows;
     variant.glossy = gbuffer->specular != nullptr;
@@ -143,11 +143,11 @@ class ShadePass : public Pass {
     variant.medium = bound.axis;
     const Image result{floatImage(frame, "direct radiance")};
     frame.dispatch(frame.program(variant),
-                   {code::shade::parameters({.eyeWorld = frame.snapshot().camera.eye,
-                                             .lightCount = lights.count,
-                                             .environment = frame.sceneDescription().environment,
-                                             .mediumSteps = mediumSteps}),
-                    GBufferBinding(*gbuffer), lights, bound, code::shade::radianceImage(result.texture)},
+                   {shade::parameters({.eyeWorld = frame.snapshot().camera.eye,
+                                       .lightCount = lights.count,
+                                       .environment = frame.sceneDescription().environment,
+                                       .mediumSteps = mediumSteps}),
+                    GBufferBinding(*gbuffer), lights, bound, shade::radianceImage(result.texture)},
                    pixels(frame));
     radiance = result;
   }
@@ -164,20 +164,20 @@ class ComposePass : public Pass {
                       "sum of the components, W/(sr m^2)"};
 
   void run(PassContext& frame) override {
-    const code::compose::Variant variant{.diffuse = diffuse.present(),
-                                         .glossy = glossy.present(),
-                                         .transmittance = transmittance.present(),
-                                         .scattered = scattered.present()};
+    const compose::Variant variant{.diffuse = diffuse.present(),
+                                   .glossy = glossy.present(),
+                                   .transmittance = transmittance.present(),
+                                   .scattered = scattered.present()};
     const auto read = [](const In<Image>& input) { return input.present() ? input->texture : nullptr; };
     const Image result{floatImage(frame, "final radiance")};
     using gpu::Sampling;
     frame.dispatch(frame.program(variant),
-                   {code::compose::directRadiance(direct->texture, Sampling::nearest),
-                    code::compose::diffuseRadiance(read(diffuse), Sampling::nearest),
-                    code::compose::glossyRadiance(read(glossy), Sampling::nearest),
-                    code::compose::mediaTransmittance(read(transmittance), Sampling::nearest),
-                    code::compose::scatteredRadiance(read(scattered), Sampling::nearest),
-                    code::compose::radianceImage(result.texture)},
+                   {compose::directRadiance(direct->texture, Sampling::nearest),
+                    compose::diffuseRadiance(read(diffuse), Sampling::nearest),
+                    compose::glossyRadiance(read(glossy), Sampling::nearest),
+                    compose::mediaTransmittance(read(transmittance), Sampling::nearest),
+                    compose::scatteredRadiance(read(scattered), Sampling::nearest),
+                    compose::radianceImage(result.texture)},
                    pixels(frame));
     radiance = result;
   }

@@ -10,33 +10,12 @@
 namespace lumivox::light_propagation_volumes {
 namespace {
 
-namespace code = shaders::light_propagation_volumes;
+using namespace shaders::light_propagation_volumes;
 
 constexpr float kBlendCells = 4.0f;  // width of the seam between two grids, Listing 4.36
 // Listing 4.36: the finer of two grids of 32 cells counts alone up to 12 of them from the eye, and not at all
 // from 16 on.
 constexpr float kInnerReach = 12.0f / 32.0f, kOuterReach = 16.0f / 32.0f;
-
-enum class Negative { closure, clip };
-constexpr auto words(Negative) {
-  return std::array{"closure", "clip"};
-}
-enum class Lookup { reachable, filtered };
-constexpr auto words(Lookup) {
-  return std::array{"reachable", "filtered"};
-}
-enum class Lobe { arriving, normal };
-constexpr auto words(Lobe) {
-  return std::array{"arriving", "normal"};
-}
-enum class Seam { border, radial };
-constexpr auto words(Seam) {
-  return std::array{"border", "radial"};
-}
-enum class Fade { falls, grows, none };
-constexpr auto words(Fade) {
-  return std::array{"falls", "grows", "none"};
-}
 
 float longestSide(const GridPlacement& grid) {
   const glm::ivec3& cells = grid.resolution;
@@ -44,6 +23,15 @@ float longestSide(const GridPlacement& grid) {
 }
 
 class GatherPass : public Pass {
+  enum class Negative { closure, clip };
+  friend constexpr auto words(Negative) { return std::array{"closure", "clip"}; }
+  enum class Lookup { reachable, filtered };
+  friend constexpr auto words(Lookup) { return std::array{"reachable", "filtered"}; }
+  enum class Lobe { arriving, normal };
+  friend constexpr auto words(Lobe) { return std::array{"arriving", "normal"}; }
+  enum class Seam { border, radial };
+  friend constexpr auto words(Seam) { return std::array{"border", "radial"}; }
+
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<ShGrid> light{this, "light", "all light that passed each cell"};
   In<ClosedFaces> faces{this, "faces", Presence::optional,
@@ -82,7 +70,7 @@ class GatherPass : public Pass {
     if (!filtered) requireFaces(*light, faces);
     const Image result{frame.image(gpu::Format::rgba32f, "indirect diffuse radiance")};
     const Image cut{frame.image(gpu::Format::rgba32f, "clipped radiance")};
-    code::gather::Constants constants;
+    gather::Constants constants;
     constants.filtered = filtered;
     constants.ownLobe = asPublished || lobe == Lobe::normal;
     constants.radialBlend = asPublished || seam == Seam::radial;
@@ -93,22 +81,22 @@ class GatherPass : public Pass {
       const ClosedFaces::Level surfaces =
           faces.present() && i < faces->levels.size() ? faces->levels[i] : ClosedFaces::Level{};
       const float side = longestSide(level.grid);
-      frame.dispatch(frame.program(code::gather::Variant{}, constants),
-                     {code::gather::parameters({.gridLow = level.grid.low,
-                                                .cellSize = level.grid.voxelSize,
-                                                .resolution = level.grid.resolution,
-                                                .blend = blend,
-                                                .offset = offset,
-                                                .exponent = exponent,
-                                                .first = i + 1 == levels,
-                                                .last = i == 0,
-                                                .eye = frame.snapshot().camera.eye,
-                                                .innerReach = kInnerReach * side,
-                                                .outerReach = kOuterReach * side}),
+      frame.dispatch(frame.program(gather::Variant{}, constants),
+                     {gather::parameters({.gridLow = level.grid.low,
+                                          .cellSize = level.grid.voxelSize,
+                                          .resolution = level.grid.resolution,
+                                          .blend = blend,
+                                          .offset = offset,
+                                          .exponent = exponent,
+                                          .first = i + 1 == levels,
+                                          .last = i == 0,
+                                          .eye = frame.snapshot().camera.eye,
+                                          .innerReach = kInnerReach * side,
+                                          .outerReach = kOuterReach * side}),
                       GBufferBinding(*gbuffer), sampled(level, gpu::Sampling::linear),
-                      code::gather::closed(facesOrUnread(surfaces.closed, level), gpu::Sampling::nearest),
-                      code::gather::moved(facesOrUnread(surfaces.moved, level), gpu::Sampling::nearest),
-                      code::gather::diffuseImage(result.texture), code::gather::clippedImage(cut.texture)},
+                      gather::closed(facesOrUnread(surfaces.closed, level), gpu::Sampling::nearest),
+                      gather::moved(facesOrUnread(surfaces.moved, level), gpu::Sampling::nearest),
+                      gather::diffuseImage(result.texture), gather::clippedImage(cut.texture)},
                      pixels(frame));
     }
     if (frame.inspects()) tellShare(frame, *result.texture, *cut.texture);
@@ -162,17 +150,17 @@ class ReflectPass : public Pass {
 
   void reflectAsPublished(PassContext& frame, const RadianceGrid& result) {
     const ShGrid::Level& level = light->levels.front();
-    frame.dispatch(frame.program(code::reflect_published::kProgram),
-                   {code::reflect_published::parameters({.gridLow = level.grid.low,
-                                                         .cellSize = level.grid.voxelSize,
-                                                         .resolution = level.grid.resolution,
-                                                         .fadeDistance = 0.5f * longestSide(result.grid),
-                                                         .reflectionLow = result.grid.low,
-                                                         .voxelSize = result.grid.voxelSize,
-                                                         .centre = frame.snapshot().camera.eye}),
+    frame.dispatch(frame.program(reflect_published::kProgram),
+                   {reflect_published::parameters({.gridLow = level.grid.low,
+                                                   .cellSize = level.grid.voxelSize,
+                                                   .resolution = level.grid.resolution,
+                                                   .fadeDistance = 0.5f * longestSide(result.grid),
+                                                   .reflectionLow = result.grid.low,
+                                                   .voxelSize = result.grid.voxelSize,
+                                                   .centre = frame.snapshot().camera.eye}),
                     sampled(level, gpu::Sampling::linear),
-                    code::reflect_published::surfaceAlbedo(surfaces->albedo, gpu::Sampling::nearest),
-                    code::reflect_published::radianceImage(result.radiance)},
+                    reflect_published::surfaceAlbedo(surfaces->albedo, gpu::Sampling::nearest),
+                    reflect_published::radianceImage(result.radiance)},
                    result.grid.resolution);
   }
 
@@ -180,27 +168,30 @@ class ReflectPass : public Pass {
     const std::size_t levels = light->levels.size();
     for (std::size_t i = levels; i-- > 0;) {
       const ShGrid::Level& level = light->levels[i];
-      frame.dispatch(frame.program(code::reflect::kProgram),
-                     {code::reflect::parameters({.gridLow = level.grid.low,
-                                                 .cellSize = level.grid.voxelSize,
-                                                 .resolution = level.grid.resolution,
-                                                 .blend = kBlendCells,
-                                                 .reflectionLow = result.grid.low,
-                                                 .voxelSize = result.grid.voxelSize,
-                                                 .first = i + 1 == levels,
-                                                 .last = i == 0,
-                                                 .fades = fade > 0.0f,
-                                                 .fadeWidth = fade}),
+      frame.dispatch(frame.program(reflect::kProgram),
+                     {reflect::parameters({.gridLow = level.grid.low,
+                                           .cellSize = level.grid.voxelSize,
+                                           .resolution = level.grid.resolution,
+                                           .blend = kBlendCells,
+                                           .reflectionLow = result.grid.low,
+                                           .voxelSize = result.grid.voxelSize,
+                                           .first = i + 1 == levels,
+                                           .last = i == 0,
+                                           .fades = fade > 0.0f,
+                                           .fadeWidth = fade}),
                       sampled(level, gpu::Sampling::linear),
-                      code::reflect::surfaceAlbedo(surfaces->albedo, gpu::Sampling::nearest),
-                      code::reflect::surfaceNormal(surfaces->normal, gpu::Sampling::nearest),
-                      code::reflect::radianceImage(result.radiance)},
+                      reflect::surfaceAlbedo(surfaces->albedo, gpu::Sampling::nearest),
+                      reflect::surfaceNormal(surfaces->normal, gpu::Sampling::nearest),
+                      reflect::radianceImage(result.radiance)},
                      result.grid.resolution);
     }
   }
 };
 
 class TracePass : public Pass {
+  enum class Fade { falls, grows, none };
+  friend constexpr auto words(Fade) { return std::array{"falls", "grows", "none"}; }
+
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<RadianceGrid> grid{this, "grid", "the reflection grid with its mips"};
   Param<float> reach{
@@ -220,20 +211,20 @@ class TracePass : public Pass {
     const GridPlacement place{
         grid->grid.low, grid->grid.voxelSize, {texture.width, texture.height, texture.depth}};
     const float side = longestSide(place);
-    code::trace::Constants constants;
+    trace::Constants constants;
     constants.fade = asPublished || fade == Fade::grows ? 2 : fade == Fade::falls ? 1 : 0;
     const Image result{frame.image(gpu::Format::rgba32f, "indirect glossy radiance")};
     frame.dispatch(
-        frame.program(code::trace::Variant{}, constants),
-        {code::trace::parameters({.gridLow = place.low,
-                                  .voxelSize = place.voxelSize,
-                                  .gridExtent = glm::vec3(place.resolution) * place.voxelSize,
-                                  .reach = reach > 0.0f ? reach + 0.0f : side,
-                                  .eyeWorld = frame.snapshot().camera.eye,
-                                  .fadeDistance = 0.5f * side,
-                                  .unit = grid->unit}),
-         GBufferBinding(*gbuffer), code::trace::radianceGrid(grid->radiance, gpu::Sampling::linearMipsBorder),
-         code::trace::glossyImage(result.texture)},
+        frame.program(trace::Variant{}, constants),
+        {trace::parameters({.gridLow = place.low,
+                            .voxelSize = place.voxelSize,
+                            .gridExtent = glm::vec3(place.resolution) * place.voxelSize,
+                            .reach = reach > 0.0f ? reach + 0.0f : side,
+                            .eyeWorld = frame.snapshot().camera.eye,
+                            .fadeDistance = 0.5f * side,
+                            .unit = grid->unit}),
+         GBufferBinding(*gbuffer), trace::radianceGrid(grid->radiance, gpu::Sampling::linearMipsBorder),
+         trace::glossyImage(result.texture)},
         pixels(frame));
     glossy = result;
   }

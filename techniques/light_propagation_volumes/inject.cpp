@@ -12,28 +12,7 @@
 namespace lumivox::light_propagation_volumes {
 namespace {
 
-namespace code = shaders::light_propagation_volumes;
-
-enum class Lobe { forward, cosine };
-constexpr auto words(Lobe) {
-  return std::array{"forward", "cosine"};
-}
-enum class Albedo { mean, contrast };
-constexpr auto words(Albedo) {
-  return std::array{"mean", "contrast"};
-}
-enum class Normals { all, closest };
-constexpr auto words(Normals) {
-  return std::array{"all", "closest"};
-}
-enum class Area { covered, whole };
-constexpr auto words(Area) {
-  return std::array{"covered", "whole"};
-}
-enum class Voxels { mean, packed };
-constexpr auto words(Voxels) {
-  return std::array{"mean", "packed"};
-}
+using namespace shaders::light_propagation_volumes;
 
 constexpr int kLargestVoxelGrid = 96;  // cells along a side whose voxels fit into 128 MiB, which every driver
                                        // can address
@@ -68,6 +47,9 @@ void walkBricks(PassContext& frame, const shader::BoundProgram& program, const s
 }
 
 class Inject : public Pass {
+  enum class Lobe { forward, cosine };
+  friend constexpr auto words(Lobe) { return std::array{"forward", "cosine"}; }
+
  public:
   Reads readsFrom() const override { return Reads::partOfCamera | Reads::geometry | Reads::lights; }
   /// The grids move with the camera, but by whole cells and not out of the scene.
@@ -101,16 +83,16 @@ class Inject : public Pass {
   /// Virtual lights to the coefficients of the cells.
   virtual void fillCells(PassContext& frame, const ShGrid::Level& level, ClosedFaces::Level& surfaces) {
     const GridPlacement& grid = level.grid;
-    const gpu::BufferRef sums = frame.elements(code::resolve_lights::sums, cellCount(grid), "virtual lights");
+    const gpu::BufferRef sums = frame.elements(resolve_lights::sums, cellCount(grid), "virtual lights");
     sums->clear();
     const BrickList lit = emptyBricks(frame, grid.resolution);
     addLights(frame, grid, surfaces, sums, lit);
     for (const gpu::TextureRef& channel : level.coefficients) channel->clear(glm::vec4(0.0f));
     // A clamped cosine has the mean cosine 2/3; 0 asks for that of the default lobe.
     const float meanCosine = lobe == Lobe::cosine ? 2.0f / 3.0f : 0.0f;
-    walkBricks(frame, frame.program(code::resolve_lights::kProgram),
-               {code::resolve_lights::parameters({grid.resolution, meanCosine}),
-                code::resolve_lights::sums(sums), images(level.coefficients)},
+    walkBricks(frame, frame.program(resolve_lights::kProgram),
+               {resolve_lights::parameters({grid.resolution, meanCosine}), resolve_lights::sums(sums),
+                images(level.coefficients)},
                lit);
   }
   /// Adds virtual lights to the sums of the cells, marks their bricks, and a barrier.
@@ -154,22 +136,21 @@ class Inject : public Pass {
     }
     const BrickList bricks = emptyBricks(frame, size);
     forEachFragment(
-        frame, frame.program(code::close::kProgram),
-        {code::close::parameters(
-             {fragments->grid.low, fragments->grid.voxelSize, grid.low, grid.voxelSize, size}),
-         images(parts, kParts), code::close::brickFlags(bricks.flags), code::close::brickList(bricks.list)},
+        frame, frame.program(close::kProgram),
+        {close::parameters({fragments->grid.low, fragments->grid.voxelSize, grid.low, grid.voxelSize, size}),
+         images(parts, kParts), close::brickFlags(bricks.flags), close::brickList(bricks.list)},
         *fragments);
     for (int round = 0; round < 2; ++round) {
-      walkBricks(frame, frame.program(code::fill_corners::kProgram),
+      walkBricks(frame, frame.program(fill_corners::kProgram),
                  {images(parts, kParts), images(filled, kFilled)}, bricks);
       std::swap(parts, filled);
     }
     level.closed = empty(gpu::Format::rgba8, "closed faces");
     level.moved = empty(gpu::Format::rgba8, "moved surfaces");
-    walkBricks(frame, frame.program(code::resolve_closed::kProgram),
-               {images(parts, kParts), code::resolve_closed::closed(level.closed),
-                code::resolve_closed::moved(level.moved)},
-               bricks);
+    walkBricks(
+        frame, frame.program(resolve_closed::kProgram),
+        {images(parts, kParts), resolve_closed::closed(level.closed), resolve_closed::moved(level.moved)},
+        bricks);
   }
 };
 
@@ -181,19 +162,27 @@ class InjectRsmPass : public Inject {
                  const gpu::BufferRef& sums, const BrickList& lit) override {
     if (!map.present() || map->lightCount == 0) return;
     const gpu::TextureDescription& layers = map->flux->description();
-    using Variant = code::inject_rsm::Variant;
+    using Variant = inject_rsm::Variant;
     for (const int step : {Variant::stepWeigh, Variant::stepAdd})
       frame.dispatch(
           frame.program(Variant{step}),
-          {code::inject_rsm::parameters({grid.low, grid.voxelSize, grid.resolution}),
-           ReflectiveShadowMapBinding(*map), code::inject_rsm::moved(surfaces.moved, gpu::Sampling::nearest),
-           code::inject_rsm::sums(sums), code::inject_rsm::brickFlags(lit.flags),
-           code::inject_rsm::brickList(lit.list)},
+          {inject_rsm::parameters({grid.low, grid.voxelSize, grid.resolution}),
+           ReflectiveShadowMapBinding(*map), inject_rsm::moved(surfaces.moved, gpu::Sampling::nearest),
+           inject_rsm::sums(sums), inject_rsm::brickFlags(lit.flags), inject_rsm::brickList(lit.list)},
           {layers.width, layers.height, layers.depth});
   }
 };
 
 class InjectVoxelsPass : public Inject {
+  enum class Albedo { mean, contrast };
+  friend constexpr auto words(Albedo) { return std::array{"mean", "contrast"}; }
+  enum class Normals { all, closest };
+  friend constexpr auto words(Normals) { return std::array{"all", "closest"}; }
+  enum class Area { covered, whole };
+  friend constexpr auto words(Area) { return std::array{"covered", "whole"}; }
+  enum class Voxels { mean, packed };
+  friend constexpr auto words(Voxels) { return std::array{"mean", "packed"}; }
+
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
                        "lights and their visibility; without it only the environment shines"};
   Param<Albedo> albedo{this, "albedo", Albedo::mean, "of a voxel; as published: its most contrasting one"};
@@ -221,56 +210,54 @@ class InjectVoxelsPass : public Inject {
   void fillCells(PassContext& frame, const ShGrid::Level& level, ClosedFaces::Level& surfaces) override {
     if (!packed()) return Inject::fillCells(frame, level, surfaces);
     const GridPlacement& grid = level.grid;
-    surfaces.packed = frame.elements(code::pack_voxels::words, cellCount(grid), "packed voxels");
+    surfaces.packed = frame.elements(pack_voxels::words, cellCount(grid), "packed voxels");
     surfaces.packed->clear();
-    forEachFragment(frame, frame.program(code::pack_voxels::kProgram),
-                    {code::pack_voxels::parameters({fragments->grid.low, fragments->grid.voxelSize, grid.low,
-                                                    grid.voxelSize, grid.resolution}),
-                     code::pack_voxels::words(surfaces.packed)},
+    forEachFragment(frame, frame.program(pack_voxels::kProgram),
+                    {pack_voxels::parameters({fragments->grid.low, fragments->grid.voxelSize, grid.low,
+                                              grid.voxelSize, grid.resolution}),
+                     pack_voxels::words(surfaces.packed)},
                     *fragments);
     const LightBinding lights(shadow);
     if (lights.count == 0) {
       for (const gpu::TextureRef& channel : level.coefficients) channel->clear(glm::vec4(0.0f));
       return;
     }
-    frame.dispatch(frame.program(code::light_packed::kProgram),
-                   {code::light_packed::parameters({grid.low, grid.voxelSize, grid.resolution,
-                                                    largestFlux(frame.sceneDescription(), frame.snapshot()),
-                                                    lights.count}),
-                    code::light_packed::words(surfaces.packed), lights, images(level.coefficients)},
-                   grid.resolution);
+    frame.dispatch(
+        frame.program(light_packed::kProgram),
+        {light_packed::parameters({grid.low, grid.voxelSize, grid.resolution,
+                                   largestFlux(frame.sceneDescription(), frame.snapshot()), lights.count}),
+         light_packed::words(surfaces.packed), lights, images(level.coefficients)},
+        grid.resolution);
   }
 
   void addLights(PassContext& frame, const GridPlacement& grid, const ClosedFaces::Level& surfaces,
                  const gpu::BufferRef& sums, const BrickList& lit) override {
     const LightBinding lights(shadow);
     if (lights.count == 0) return;
-    const gpu::BufferRef collected =
-        frame.elements(code::collect_voxels::voxels, cellCount(grid), "lit voxels");
+    const gpu::BufferRef collected = frame.elements(collect_voxels::voxels, cellCount(grid), "lit voxels");
     collected->clear();
-    using Variant = code::collect_voxels::Variant;
+    using Variant = collect_voxels::Variant;
     for (const int step : {Variant::stepWeigh, Variant::stepAdd})
       forEachFragment(
           frame, frame.program(Variant{step}),
-          {code::collect_voxels::parameters({fragments->grid.low, fragments->grid.voxelSize, grid.low,
-                                             grid.voxelSize, grid.resolution, twoSided}),
-           code::collect_voxels::voxels(collected),
-           code::collect_voxels::moved(surfaces.moved, gpu::Sampling::nearest),
-           code::collect_voxels::closed(surfaces.closed, gpu::Sampling::nearest),
-           code::collect_voxels::brickFlags(lit.flags), code::collect_voxels::brickList(lit.list)},
+          {collect_voxels::parameters({fragments->grid.low, fragments->grid.voxelSize, grid.low,
+                                       grid.voxelSize, grid.resolution, twoSided}),
+           collect_voxels::voxels(collected), collect_voxels::moved(surfaces.moved, gpu::Sampling::nearest),
+           collect_voxels::closed(surfaces.closed, gpu::Sampling::nearest),
+           collect_voxels::brickFlags(lit.flags), collect_voxels::brickList(lit.list)},
           *fragments);
-    walkBricks(frame, frame.program(code::light_voxels::kProgram),
-               {code::light_voxels::parameters(
-                    {.gridLow = grid.low,
-                     .cellSize = grid.voxelSize,
-                     .resolution = grid.resolution,
-                     .largestFlux = largestFlux(frame.sceneDescription(), frame.snapshot()),
-                     .lightCount = lights.count,
-                     .contrastAlbedo = albedo == Albedo::contrast,
-                     .closestNormal = normals == Normals::closest,
-                     .wholeFaces = area == Area::whole}),
-                code::light_voxels::voxels(collected), code::light_voxels::sums(sums), lights},
-               lit);
+    walkBricks(
+        frame, frame.program(light_voxels::kProgram),
+        {light_voxels::parameters({.gridLow = grid.low,
+                                   .cellSize = grid.voxelSize,
+                                   .resolution = grid.resolution,
+                                   .largestFlux = largestFlux(frame.sceneDescription(), frame.snapshot()),
+                                   .lightCount = lights.count,
+                                   .contrastAlbedo = albedo == Albedo::contrast,
+                                   .closestNormal = normals == Normals::closest,
+                                   .wholeFaces = area == Area::whole}),
+         light_voxels::voxels(collected), light_voxels::sums(sums), lights},
+        lit);
   }
 };
 

@@ -8,32 +8,7 @@
 namespace lumivox::light_propagation_volumes {
 namespace {
 
-namespace code = shaders::light_propagation_volumes;
-
-enum class Lobe { straight, cosine };
-constexpr auto words(Lobe) {
-  return std::array{"straight", "cosine"};
-}
-enum class Border { open, mirror };
-constexpr auto words(Border) {
-  return std::array{"open", "mirror"};
-}
-enum class Method { folded, plain };
-constexpr auto words(Method) {
-  return std::array{"folded", "plain"};
-}
-enum class Transfer { conserving, published };
-constexpr auto words(Transfer) {
-  return std::array{"conserving", "published"};
-}
-enum class Occlusion { faces, normals };
-constexpr auto words(Occlusion) {
-  return std::array{"faces", "normals"};
-}
-enum class Grids { nested, apart };
-constexpr auto words(Grids) {
-  return std::array{"nested", "apart"};
-}
+using namespace shaders::light_propagation_volumes;
 
 /// Mean projected area of a cube of side 1, a quarter of its surface (Cauchy): light of the same radiance L
 /// everywhere passes a cell of size h with the intensity L 3/2 h^2.
@@ -46,6 +21,19 @@ struct Travelling {
 };
 
 class PropagatePass : public Pass {
+  enum class Lobe { straight, cosine };
+  friend constexpr auto words(Lobe) { return std::array{"straight", "cosine"}; }
+  enum class Border { open, mirror };
+  friend constexpr auto words(Border) { return std::array{"open", "mirror"}; }
+  enum class Method { folded, plain };
+  friend constexpr auto words(Method) { return std::array{"folded", "plain"}; }
+  enum class Transfer { conserving, published };
+  friend constexpr auto words(Transfer) { return std::array{"conserving", "published"}; }
+  enum class Occlusion { faces, normals };
+  friend constexpr auto words(Occlusion) { return std::array{"faces", "normals"}; }
+  enum class Grids { nested, apart };
+  friend constexpr auto words(Grids) { return std::array{"nested", "apart"}; }
+
   In<ShGrid> injected{this, "light", "virtual point lights"};
   In<ClosedFaces> faces{this, "faces", Presence::optional,
                         "what surfaces close, from the same injection; always needed"};
@@ -115,12 +103,12 @@ class PropagatePass : public Pass {
     }
     for (const gpu::TextureRef& texture : result.light[1]) texture->clear(glm::vec4(0.0f));
 
-    code::start::Variant variant;
-    code::start::Parameters parameters{.resolution = resolution, .occlusion = occlusionAmplifier};
+    start::Variant variant;
+    start::Parameters parameters{.resolution = resolution, .occlusion = occlusionAmplifier};
     shader::BindingSet fromOutside;
     const float cell = level.grid.voxelSize;
     if (outside != nullptr && !gridsApart()) {
-      variant.outside = code::start::Variant::outsideGrid;
+      variant.outside = start::Variant::outsideGrid;
       const glm::vec3 size = glm::vec3(outside->grid.resolution) * outside->grid.voxelSize;
       // The same radiance passes cells in proportion to their faces.
       parameters.outsideShare = std::pow(cell / outside->grid.voxelSize, 2.0f);
@@ -128,18 +116,17 @@ class PropagatePass : public Pass {
       parameters.lowInOutside = (level.grid.low - outside->grid.low) / size;
       fromOutside = sampled(outside->coefficients, gpu::Sampling::linear, kOutside);
     } else if (outside == nullptr && frame.traits().environment && border == Border::open && !gridsApart()) {
-      variant.outside = code::start::Variant::outsideEnvironment;
+      variant.outside = start::Variant::outsideEnvironment;
       parameters.environment =
           glm::vec4(frame.sceneDescription().environment * (kMeanProjection * cell * cell), 0.0f);
     }
-    code::start::Constants constants;
+    start::Constants constants;
     constants.cosineLobe = lobe == Lobe::cosine;
-    frame.dispatch(
-        frame.program(variant, constants),
-        {code::start::parameters(parameters), sampled(level, gpu::Sampling::nearest), fromOutside,
-         code::start::closed(facesOrUnread(surfaces.closed, level), gpu::Sampling::nearest),
-         images(result.light[0], kNext), images(sum, kTotal), code::start::stampsNext(result.stamps[0])},
-        resolution);
+    frame.dispatch(frame.program(variant, constants),
+                   {start::parameters(parameters), sampled(level, gpu::Sampling::nearest), fromOutside,
+                    start::closed(facesOrUnread(surfaces.closed, level), gpu::Sampling::nearest),
+                    images(result.light[0], kNext), images(sum, kTotal), start::stampsNext(result.stamps[0])},
+                   resolution);
     return result;
   }
 
@@ -147,33 +134,32 @@ class PropagatePass : public Pass {
   int iterate(PassContext& frame, const ShGrid::Level& level, const ClosedFaces::Level& surfaces,
               const Travelling& state, const Channels& sum) {
     const bool plain = publishedTransfer() || occludesByNormals() || method == Method::plain;
-    code::propagate_plain::Variant variant;
-    if (occludesByNormals()) variant.occlusion = code::propagate_plain::Variant::occlusionNormals;
-    code::propagate::Constants folded;
-    code::propagate_plain::Constants faceByFace;
+    propagate_plain::Variant variant;
+    if (occludesByNormals()) variant.occlusion = propagate_plain::Variant::occlusionNormals;
+    propagate::Constants folded;
+    propagate_plain::Constants faceByFace;
     folded.cosineLobe = faceByFace.cosineLobe = lobe == Lobe::cosine;
     faceByFace.publishedTransfer = publishedTransfer();
     const shader::BoundProgram& program =
-        plain ? frame.program(variant, faceByFace) : frame.program(code::propagate::Variant{}, folded);
+        plain ? frame.program(variant, faceByFace) : frame.program(propagate::Variant{}, folded);
     const glm::ivec3 wholeBricks = (level.grid.resolution + kBrick - 1) / kBrick * kBrick;
     for (int i = 0; i < iterations; ++i) {
       const auto now = static_cast<std::size_t>(i % 2), next = 1 - now;
       // What the last iteration brings has not passed its cell yet: it is still travelling.
       const bool passes = i + 1 < iterations && !publishedTransfer();
-      frame.dispatch(
-          program,
-          {code::propagate::parameters({.resolution = level.grid.resolution,
-                                        .stamp = i + 1,
-                                        .amplifier = fluxAmplifier,
-                                        .occlusion = occlusionAmplifier,
-                                        .mirrors = border == Border::mirror,
-                                        .addToTotal = passes}),
-           sampled(state.light[now], gpu::Sampling::nearest),
-           code::propagate::closed(facesOrUnread(surfaces.closed, level), gpu::Sampling::nearest),
-           code::propagate::stamps(state.stamps[now], gpu::Sampling::nearest),
-           images(state.light[next], kNext), images(sum, kTotal),
-           code::propagate::stampsNext(state.stamps[next]), code::propagate_plain::words(surfaces.packed)},
-          wholeBricks);
+      frame.dispatch(program,
+                     {propagate::parameters({.resolution = level.grid.resolution,
+                                             .stamp = i + 1,
+                                             .amplifier = fluxAmplifier,
+                                             .occlusion = occlusionAmplifier,
+                                             .mirrors = border == Border::mirror,
+                                             .addToTotal = passes}),
+                      sampled(state.light[now], gpu::Sampling::nearest),
+                      propagate::closed(facesOrUnread(surfaces.closed, level), gpu::Sampling::nearest),
+                      propagate::stamps(state.stamps[now], gpu::Sampling::nearest),
+                      images(state.light[next], kNext), images(sum, kTotal),
+                      propagate::stampsNext(state.stamps[next]), propagate_plain::words(surfaces.packed)},
+                     wholeBricks);
     }
     return iterations % 2;
   }

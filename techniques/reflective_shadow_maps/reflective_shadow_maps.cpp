@@ -11,16 +11,7 @@
 namespace lumivox::reflective_shadow_maps {
 namespace {
 
-namespace code = shaders::reflective_shadow_maps;
-
-enum class Method { flux, projected, all };
-constexpr auto words(Method) {
-  return std::array{"flux", "projected", "all"};
-}
-enum class Weights { exact, published };
-constexpr auto words(Weights) {
-  return std::array{"exact", "published"};
-}
+using namespace shaders::reflective_shadow_maps;
 
 // Turns of all loops of an invocation together: software drivers cut them off, without a word, at 65535.
 constexpr int kLoopLimit = 60000;
@@ -63,11 +54,10 @@ class RenderPass : public Pass {
     };
     drawLightViews(frame, views, state, targets, [&](const LightViewDrawn& drawn, const SceneDraw& draw) {
       const SceneBinding scene(frame, draw);
-      drawPart(
-          frame, frame.program(code::render::Variant{scene.textures, scene.masks}),
-          {scene, code::render::lights(result.lights),
-           code::render::view({drawn.view.worldToClip, drawn.light, 0.5f * static_cast<float>(views.side)})},
-          draw);
+      drawPart(frame, frame.program(render::Variant{scene.textures, scene.masks}),
+               {scene, render::lights(result.lights),
+                render::view({drawn.view.worldToClip, drawn.light, 0.5f * static_cast<float>(views.side)})},
+               draw);
     });
     map = result;
   }
@@ -85,6 +75,11 @@ float publishedScale(int samples) {
 }
 
 class GatherPass : public Pass {
+  enum class Method { flux, projected, all };
+  friend constexpr auto words(Method) { return std::array{"flux", "projected", "all"}; }
+  enum class Weights { exact, published };
+  friend constexpr auto words(Weights) { return std::array{"exact", "published"}; }
+
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<ReflectiveShadowMap> map{this, "map", Presence::optional,
                               "what the lights see; without it there is no indirect light"};
@@ -109,26 +104,25 @@ class GatherPass : public Pass {
       result.texture->clear(glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
       return;
     }
-    code::gather::Parameters parameters{.width = map->flux->description().width,
-                                        .samples = samples,
-                                        .lightCount = map->lightCount,
-                                        .reach = reach};
-    code::gather::Variant variant;
+    gather::Parameters parameters{.width = map->flux->description().width,
+                                  .samples = samples,
+                                  .lightCount = map->lightCount,
+                                  .reach = reach};
+    gather::Variant variant;
     gpu::BufferRef chosen;
     if (method == Method::flux) {
-      variant.method = code::gather::Variant::methodChosen;
+      variant.method = gather::Variant::methodChosen;
       chosen = choose(frame, parameters.width, map->layerCount);
     } else {
-      variant.method =
-          method == Method::all ? code::gather::Variant::methodAll : code::gather::Variant::methodProjected;
+      variant.method = method == Method::all ? gather::Variant::methodAll : gather::Variant::methodProjected;
       parameters.samples = std::max(samples / map->lightCount, 1);
       parameters.publishedScale = weights == Weights::published ? publishedScale(parameters.samples) : 0.0f;
     }
     const auto add = [&] {
       frame.dispatch(
           frame.program(variant),
-          {code::gather::parameters(parameters), GBufferBinding(*gbuffer), ReflectiveShadowMapBinding(*map),
-           code::gather::chosen(chosen), code::gather::diffuseImage(result.texture)},
+          {gather::parameters(parameters), GBufferBinding(*gbuffer), ReflectiveShadowMapBinding(*map),
+           gather::chosen(chosen), gather::diffuseImage(result.texture)},
           pixels(frame));
     };
     if (method != Method::all) return add();
@@ -151,24 +145,24 @@ class GatherPass : public Pass {
       sizes.push_back((sizes.back() + kFan - 1) / kFan);
       total += sizes.back();
     } while (sizes.back() > 1);
-    const gpu::BufferRef tree = frame.elements(code::choose::tree, total, "sums of flux");
-    const gpu::BufferRef chosen = frame.elements(code::choose::chosen, count, "chosen texels");
+    const gpu::BufferRef tree = frame.elements(choose::tree, total, "sums of flux");
+    const gpu::BufferRef chosen = frame.elements(choose::chosen, count, "chosen texels");
     const ReflectiveShadowMapBinding texels(*map);
     std::uint32_t firstOfAddends = 0, firstOfSums = total;
     for (std::size_t level = 1; level < sizes.size(); ++level) {
       firstOfSums -= sizes[level];
-      using Variant = code::accumulate::Variant;
+      using Variant = accumulate::Variant;
       const Variant variant{level == 1 ? Variant::ofTexels : Variant::ofSums};
       frame.dispatchList(frame.program(variant),
-                         {code::accumulate::parameters({sizes[level - 1], side, firstOfAddends, firstOfSums}),
-                          texels, code::accumulate::tree(tree)},
+                         {accumulate::parameters({sizes[level - 1], side, firstOfAddends, firstOfSums}),
+                          texels, accumulate::tree(tree)},
                          sizes[level]);
       firstOfAddends = firstOfSums;
     }
     const auto levels = static_cast<std::uint32_t>(sizes.size() - 1);
-    frame.dispatchList(frame.program(code::choose::kProgram),
-                       {code::choose::parameters({sizes.front(), side, levels, count}), texels,
-                        code::choose::tree(tree), code::choose::chosen(chosen)},
+    frame.dispatchList(frame.program(choose::kProgram),
+                       {choose::parameters({sizes.front(), side, levels, count}), texels, choose::tree(tree),
+                        choose::chosen(chosen)},
                        count);
     return chosen;
   }

@@ -10,20 +10,14 @@ namespace {
 
 namespace code = shaders::volumetric_smoke::march_as_published;
 
-enum class Dither { asPublished, bayer };
-constexpr auto words(Dither) {
-  return std::array{"as_published", "bayer"};
-}
-enum class Cosine { asPublished, unitVectors };
-constexpr auto words(Cosine) {
-  return std::array{"as_published", "unit_vectors"};
-}
-enum class Phase { asPublished, normalised };
-constexpr auto words(Phase) {
-  return std::array{"as_published", "normalised"};
-}
-
 class MarchAsPublishedPass : public Pass {
+  enum class Dither { asPublished, bayer };
+  friend constexpr auto words(Dither) { return std::array{"as_published", "bayer"}; }
+  enum class Cosine { asPublished, unitVectors };
+  friend constexpr auto words(Cosine) { return std::array{"as_published", "unit_vectors"}; }
+  enum class Phase { asPublished, normalised };
+  friend constexpr auto words(Phase) { return std::array{"as_published", "normalised"}; }
+
   In<GBuffer> gbuffer{this, "gbuffer", "where the rays end"};
   In<ScatteringGrid> media{this, "media",
                            "what they go through; of particles the count in a voxel is looked up"};

@@ -15,24 +15,7 @@
 namespace lumivox::volumetric_smoke {
 namespace {
 
-namespace code = shaders::volumetric_smoke;
-
-enum class Deposit { clouds, counts };
-constexpr auto words(Deposit) {
-  return std::array{"clouds", "counts"};
-}
-enum class LightDepth { volume, march };
-constexpr auto words(LightDepth) {
-  return std::array{"volume", "march"};
-}
-enum class Start { dithered, middle };
-constexpr auto words(Start) {
-  return std::array{"dithered", "middle"};
-}
-enum class Phase { normalised, asPublished };
-constexpr auto words(Phase) {
-  return std::array{"normalised", "as_published"};
-}
+using namespace shaders::volumetric_smoke;
 
 constexpr double kUnitsPerParticle = 16777216.0;  // kUnits in insert.comp
 
@@ -52,17 +35,17 @@ class ParticlesPass : public Pass {
       const ParticleClock clock = particleClock(medium, frame.snapshot().time);
       const auto count = static_cast<std::uint32_t>(medium.particles);
       Particles::Group group{static_cast<int>(i), medium.particles, {}};
-      group.offsets = frame.elements(code::particles::offsets, count, "particles");
-      frame.dispatchList(frame.program(code::particles::kProgram),
-                         {code::particles::parameters({.count = count,
-                                                       .seed = medium.seed,
-                                                       .lives = clock.lives,
-                                                       .share = clock.share,
-                                                       .life = static_cast<float>(medium.life),
-                                                       .spread = static_cast<float>(medium.spread),
-                                                       .drift = static_cast<float>(medium.drift),
-                                                       .rise = static_cast<float>(medium.rise)}),
-                          code::particles::offsets(group.offsets)},
+      group.offsets = frame.elements(particles::offsets, count, "particles");
+      frame.dispatchList(frame.program(particles::kProgram),
+                         {particles::parameters({.count = count,
+                                                 .seed = medium.seed,
+                                                 .lives = clock.lives,
+                                                 .share = clock.share,
+                                                 .life = static_cast<float>(medium.life),
+                                                 .spread = static_cast<float>(medium.spread),
+                                                 .drift = static_cast<float>(medium.drift),
+                                                 .rise = static_cast<float>(medium.rise)}),
+                          particles::offsets(group.offsets)},
                          count);
       result.groups.push_back(std::move(group));
     }
@@ -72,6 +55,9 @@ class ParticlesPass : public Pass {
 
 /// Sec. 4.5, Listing 4.50: particles into the grid. Even media and volume files join here.
 class InsertPass : public Pass {
+  enum class Deposit { clouds, counts };
+  friend constexpr auto words(Deposit) { return std::array{"clouds", "counts"}; }
+
   In<Particles> particles{this, "particles", Presence::optional, "where the particles are"};
   In<OccupancyGrid> space{this, "space", Presence::optional,
                           "voxels that are solid: particles share out their mass among the free ones",
@@ -139,34 +125,33 @@ class InsertPass : public Pass {
                           high = frame.volume(size, gpu::Format::r32ui, "particle units, high words");
     low->clear(glm::vec4(0.0f));
     high->clear(glm::vec4(0.0f));
-    code::insert::Parameters parameters{.source = glm::vec3(medium.source - frame.snapshot().origin),
-                                        .count = static_cast<std::uint32_t>(group.count),
-                                        .gridLow = result.grid.low,
-                                        .voxelSize = voxelSize,
-                                        .resolution = size,
-                                        // A cloud smaller than a voxel could miss all centres.
-                                        .radius = std::max(static_cast<float>(medium.radius), voxelSize)};
+    insert::Parameters parameters{.source = glm::vec3(medium.source - frame.snapshot().origin),
+                                  .count = static_cast<std::uint32_t>(group.count),
+                                  .gridLow = result.grid.low,
+                                  .voxelSize = voxelSize,
+                                  .resolution = size,
+                                  // A cloud smaller than a voxel could miss all centres.
+                                  .radius = std::max(static_cast<float>(medium.radius), voxelSize)};
     gpu::TextureRef occupancy;
     if (space.present()) {
       parameters.spaceLow = space->grid.low;
       parameters.spaceVoxelSize = space->grid.voxelSize;
       occupancy = space->opacity;
     }
-    using Variant = code::insert::Variant;
+    using Variant = insert::Variant;
     const Variant variant{space.present(),
                           deposit == Deposit::counts ? Variant::depositCounts : Variant::depositClouds};
     frame.dispatchList(frame.program(variant),
-                       {code::insert::parameters(parameters), code::insert::offsets(group.offsets),
-                        code::insert::lowWords(low), code::insert::highWords(high),
-                        code::insert::occupancy(occupancy, gpu::Sampling::nearest)},
+                       {insert::parameters(parameters), insert::offsets(group.offsets), insert::lowWords(low),
+                        insert::highWords(high), insert::occupancy(occupancy, gpu::Sampling::nearest)},
                        static_cast<std::uint64_t>(group.count));
 
     result.density = frame.volume(size, gpu::Format::r32f, "density of particles");
     const double voxelVolume = std::pow(static_cast<double>(voxelSize), 3.0);
     const auto densityPerUnit = static_cast<float>(particleMass(medium) / kUnitsPerParticle / voxelVolume);
-    frame.dispatch(frame.program(code::density::kProgram),
-                   {code::density::parameters({size, densityPerUnit}), code::density::lowWords(low),
-                    code::density::highWords(high), code::density::densityImage(result.density)},
+    frame.dispatch(frame.program(density::kProgram),
+                   {density::parameters({size, densityPerUnit}), density::lowWords(low),
+                    density::highWords(high), density::densityImage(result.density)},
                    size);
   }
 
@@ -174,6 +159,13 @@ class InsertPass : public Pass {
 };
 
 class MarchPass : public Pass {
+  enum class LightDepth { volume, march };
+  friend constexpr auto words(LightDepth) { return std::array{"volume", "march"}; }
+  enum class Start { dithered, middle };
+  friend constexpr auto words(Start) { return std::array{"dithered", "middle"}; }
+  enum class Phase { normalised, asPublished };
+  friend constexpr auto words(Phase) { return std::array{"normalised", "as_published"}; }
+
   In<GBuffer> gbuffer{this, "gbuffer", "where the rays end"};
   In<ScatteringGrid> media{this, "media", "what they go through"};
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
@@ -213,24 +205,23 @@ class MarchPass : public Pass {
     const Result result(frame, size);
     const MediaBinding bound(frame, *media);
     const LightBinding lights(shadow);
-    code::march::Constants constants;
+    march::Constants constants;
     constants.stepCount = steps;
     constants.lightSteps = lightSteps;
     constants.exactCells = cells;
     constants.dithered = start == Start::dithered;
     constants.phaseIsPublished = phase == Phase::asPublished;
-    code::march::Parameters parameters{.size = size, .lightCount = lights.count};
+    march::Parameters parameters{.size = size, .lightCount = lights.count};
     gpu::TextureRef transmittances;
     if (lights.count > 0 && bound.axis == MediaBinding::varying && lightDepth == LightDepth::volume)
       transmittances = makeTransmittances(frame, bound, lights, parameters);
-    const code::march::Variant variant{bound.axis == MediaBinding::varying, lights.count > 0,
-                                       transmittances != nullptr};
+    const march::Variant variant{bound.axis == MediaBinding::varying, lights.count > 0,
+                                 transmittances != nullptr};
     frame.dispatch(frame.program(variant, constants),
-                   {code::march::view(viewOf<code::march::View>(camera, perSample)),
-                    code::march::parameters(parameters), GBufferBinding(*gbuffer), lights, bound,
-                    code::march::lightTransmittance(transmittances, gpu::Sampling::linear),
-                    code::march::scatteredImage(result.scattered),
-                    code::march::transmittanceImage(result.transmittance)},
+                   {march::view(viewOf<march::View>(camera, perSample)), march::parameters(parameters),
+                    GBufferBinding(*gbuffer), lights, bound,
+                    march::lightTransmittance(transmittances, gpu::Sampling::linear),
+                    march::scatteredImage(result.scattered), march::transmittanceImage(result.transmittance)},
                    {size, 1});
     scattered = Image{result.scattered};
     transmittance = Image{result.transmittance};
@@ -238,7 +229,7 @@ class MarchPass : public Pass {
 
   /// Those to all lights side by side along z. Null where so many lights do not fit into a texture.
   gpu::TextureRef makeTransmittances(PassContext& frame, const MediaBinding& bound,
-                                     const LightBinding& lights, code::march::Parameters& parameters) {
+                                     const LightBinding& lights, march::Parameters& parameters) {
     const int lightCount = lights.count;
     constexpr float kSpacings = 2.0f;
     constexpr int kFewest = 4;  // points along a side that are still a grid
@@ -262,10 +253,10 @@ class MarchPass : public Pass {
     parameters.nearReach = cells > 0 ? kSpacings * std::max({spacing.x, spacing.y, spacing.z}) : 0.0f;
     const glm::ivec3 size(side, side, side * lightCount);
     gpu::TextureRef transmittances = frame.volume(size, gpu::Format::rgba32f, "transmittances to the lights");
-    using Variant = code::light_depth::Variant;
+    using Variant = light_depth::Variant;
     frame.dispatch(frame.program(Variant{Variant::mediumVarying}),
-                   {code::light_depth::parameters({box.low, side, box.high, lightCount, lightSteps}), lights,
-                    bound, code::light_depth::transmittanceImage(transmittances)},
+                   {light_depth::parameters({box.low, side, box.high, lightCount, lightSteps}), lights, bound,
+                    light_depth::transmittanceImage(transmittances)},
                    size);
     return transmittances;
   }
@@ -295,13 +286,12 @@ class UpsamplePass : public Pass {
     const int perSample = samples.width < camera.width || samples.height < camera.height ? 2 : 1;
     const Result result(frame, {camera.width, camera.height});
     frame.dispatch(
-        frame.program(code::upsample::kProgram),
-        {code::upsample::view(viewOf<code::upsample::View>(camera, perSample)),
-         code::upsample::parameters({similarity}), GBufferBinding(*gbuffer), MediaBinding(frame, *media),
-         code::upsample::scatteredSamples(scatteredSamples->texture, gpu::Sampling::nearest),
-         code::upsample::transmittanceSamples(transmittanceSamples->texture, gpu::Sampling::nearest),
-         code::upsample::scatteredImage(result.scattered),
-         code::upsample::transmittanceImage(result.transmittance)},
+        frame.program(upsample::kProgram),
+        {upsample::view(viewOf<upsample::View>(camera, perSample)), upsample::parameters({similarity}),
+         GBufferBinding(*gbuffer), MediaBinding(frame, *media),
+         upsample::scatteredSamples(scatteredSamples->texture, gpu::Sampling::nearest),
+         upsample::transmittanceSamples(transmittanceSamples->texture, gpu::Sampling::nearest),
+         upsample::scatteredImage(result.scattered), upsample::transmittanceImage(result.transmittance)},
         pixels(frame));
     scattered = Image{result.scattered};
     transmittance = Image{result.transmittance};

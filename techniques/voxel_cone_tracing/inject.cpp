@@ -11,12 +11,7 @@
 namespace lumivox::voxel_cone_tracing {
 namespace {
 
-namespace code = shaders::voxel_cone_tracing;
-
-enum class Precision { whole, half };
-constexpr auto words(Precision) {
-  return std::array{"float", "half"};
-}
+using namespace shaders::voxel_cone_tracing;
 
 constexpr float kLargestHalf = 32768.0f;  // half floats end at 65504; filtering adds nothing to the largest
 
@@ -31,6 +26,9 @@ glm::ivec3 evenlyHalved(const glm::ivec3& size) {
 }
 
 class InjectPass : public Pass {
+  enum class Precision { whole, half };
+  friend constexpr auto words(Precision) { return std::array{"float", "half"}; }
+
   In<VoxelFragments> fragments{this, "fragments", "surface samples"};
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
                        "lights and their visibility; without it the grid is dark but opaque"};
@@ -55,7 +53,7 @@ class InjectPass : public Pass {
   struct Sums {
     glm::ivec3 brickCount{0};
     gpu::BufferRef bricks, voxels;
-    shader::BindingSet bindings() const { return {code::add::bricks(bricks), code::add::sums(voxels)}; }
+    shader::BindingSet bindings() const { return {add::bricks(bricks), add::sums(voxels)}; }
   };
 
   void run(PassContext& frame) override {
@@ -74,12 +72,11 @@ class InjectPass : public Pass {
 
     const Sums sums = claimSums(frame, size, result.occupied);
     const gpu::BufferRef radiances =
-        frame.buffer(std::max<std::uint64_t>(fragments->capacity, 1) * 3 * code::add::radiances.elementBytes,
+        frame.buffer(std::max<std::uint64_t>(fragments->capacity, 1) * 3 * add::radiances.elementBytes,
                      "reflected radiance per fragment");
     light(frame, sums, radiances, brightest);
-    forEachFragment(frame, frame.program(code::add::kProgram),
-                    {code::add::size({sums.brickCount}), code::add::radiances(radiances), sums.bindings()},
-                    *fragments);
+    forEachFragment(frame, frame.program(add::kProgram),
+                    {add::size({sums.brickCount}), add::radiances(radiances), sums.bindings()}, *fragments);
     resolve(frame, sums, brightest, result);
     radiance = result;
   }
@@ -91,22 +88,21 @@ class InjectPass : public Pass {
     Sums sums;
     sums.brickCount = (size + (OccupiedBricks::kSide - 1)) / OccupiedBricks::kSide;
     const std::uint64_t bricks = volume(sums.brickCount), most = fragments->capacity;
-    sums.bricks = frame.elements(code::claim::bricks, bricks, "occupied voxels of bricks");
-    sums.voxels = frame.elements(code::add::sums, std::min(most, volume(size)), "sums of voxels");
-    occupied.bricks = frame.elements(code::claim::brickList, std::min(most, bricks), "occupied bricks");
+    sums.bricks = frame.elements(claim::bricks, bricks, "occupied voxels of bricks");
+    sums.voxels = frame.elements(add::sums, std::min(most, volume(size)), "sums of voxels");
+    occupied.bricks = frame.elements(claim::brickList, std::min(most, bricks), "occupied bricks");
     occupied.count = frame.buffer(OccupiedBricks::argumentsBytes(3), "occupied brick count");
     const gpu::BufferRef totals = frame.buffer(2 * sizeof(std::uint32_t), "claimed bricks and voxels");
     for (const gpu::BufferRef& zeroed : {sums.bricks, sums.voxels, totals}) zeroed->clear();
-    const auto brickCount = code::claim::size({sums.brickCount});
-    forEachFragment(frame, frame.program(code::mark::kProgram), {brickCount, code::mark::bricks(sums.bricks)},
+    const auto brickCount = claim::size({sums.brickCount});
+    forEachFragment(frame, frame.program(mark::kProgram), {brickCount, mark::bricks(sums.bricks)},
                     *fragments);
-    frame.dispatch(frame.program(code::claim::kProgram),
-                   {brickCount, code::claim::bricks(sums.bricks), code::claim::brickList(occupied.bricks),
-                    code::claim::brickTotals(totals)},
+    frame.dispatch(frame.program(claim::kProgram),
+                   {brickCount, claim::bricks(sums.bricks), claim::brickList(occupied.bricks),
+                    claim::brickTotals(totals)},
                    sums.brickCount);
-    frame.dispatch(frame.program(code::arguments::kProgram),
-                   {code::arguments::brickTotals(totals), code::arguments::brickCount(occupied.count)},
-                   {1, 1, 1});
+    frame.dispatch(frame.program(arguments::kProgram),
+                   {arguments::brickTotals(totals), arguments::brickCount(occupied.count)}, {1, 1, 1});
     return sums;
   }
 
@@ -115,21 +111,21 @@ class InjectPass : public Pass {
     const LightBinding lights(shadow);
     MediaBinding bound;
     if (shadow.present()) bound = MediaBinding(frame, media);
-    code::inject::Variant variant;
+    inject::Variant variant;
     variant.lights = variant.shadows = shadow.present();
     variant.reflected = fragments->reflected != nullptr;
     variant.medium = bound.axis;
     forEachFragment(frame, frame.program(variant),
-                    {code::inject::grid({.gridLow = fragments->grid.low,
-                                         .voxelSize = fragments->grid.voxelSize,
-                                         .lightCount = lights.count,
-                                         .mostRadiance = mostRadiance,
-                                         .twoSided = twoSided,
-                                         .mediumSteps = mediumSteps,
-                                         .brickCount = sums.brickCount,
-                                         .ambient = ambient}),
-                     code::inject::radiances(radiances), code::inject::reflected(fragments->reflected),
-                     sums.bindings(), lights, bound},
+                    {inject::grid({.gridLow = fragments->grid.low,
+                                   .voxelSize = fragments->grid.voxelSize,
+                                   .lightCount = lights.count,
+                                   .mostRadiance = mostRadiance,
+                                   .twoSided = twoSided,
+                                   .mediumSteps = mediumSteps,
+                                   .brickCount = sums.brickCount,
+                                   .ambient = ambient}),
+                     inject::radiances(radiances), inject::reflected(fragments->reflected), sums.bindings(),
+                     lights, bound},
                     *fragments);
   }
 
@@ -139,24 +135,24 @@ class InjectPass : public Pass {
     const LightBinding lights(shadow);
     MediaBinding bound;
     if (result.holdsMedia) bound = MediaBinding(frame, media);
-    code::resolve::Variant variant;
+    resolve::Variant variant;
     variant.lights = result.holdsMedia && shadow.present();
     variant.medium = bound.axis;
     const auto& program = frame.program(variant);
     const OccupiedBricks occupied = result.occupied;
     const shader::BindingSet bindings{
-        code::resolve::parameters({.brickCount = sums.brickCount,
-                                   .unit = result.unit,
-                                   .resolution = result.grid.resolution,
-                                   .coverageSum = fragments->coverage == VoxelFragments::Coverage::sum,
-                                   .gridLow = result.grid.low,
-                                   .voxelSize = result.grid.voxelSize,
-                                   .lightCount = lights.count,
-                                   .mediumSteps = mediumSteps,
-                                   .mostRadiance = mostRadiance}),
-        code::resolve::brickList(occupied.bricks),
-        code::resolve::brickCount(occupied.count),
-        code::resolve::radianceImage(result.radiance),
+        resolve::parameters({.brickCount = sums.brickCount,
+                             .unit = result.unit,
+                             .resolution = result.grid.resolution,
+                             .coverageSum = fragments->coverage == VoxelFragments::Coverage::sum,
+                             .gridLow = result.grid.low,
+                             .voxelSize = result.grid.voxelSize,
+                             .lightCount = lights.count,
+                             .mediumSteps = mediumSteps,
+                             .mostRadiance = mostRadiance}),
+        resolve::brickList(occupied.bricks),
+        resolve::brickCount(occupied.count),
+        resolve::radianceImage(result.radiance),
         sums.bindings(),
         lights,
         bound};

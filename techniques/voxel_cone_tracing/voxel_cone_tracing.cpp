@@ -13,19 +13,13 @@ void addInject(TechniqueRegistry& registry);
 
 namespace {
 
-namespace code = shaders::voxel_cone_tracing;
-
-// In the order of filter.comp.
-enum class Opacity { facing, average, trilinear };
-constexpr auto words(Opacity) {
-  return std::array{"facing", "average", "trilinear"};
-}
-enum class Distribution { cosine, published };
-constexpr auto words(Distribution) {
-  return std::array{"cosine", "published"};
-}
+using namespace shaders::voxel_cone_tracing;
 
 class FilterPass : public Pass {
+  // In the order of filter.comp.
+  enum class Opacity { facing, average, trilinear };
+  friend constexpr auto words(Opacity) { return std::array{"facing", "average", "trilinear"}; }
+
   In<RadianceGrid> radiance{this, "radiance", "the finest level"};
   Param<Opacity> opacity{
       this, "opacity", Opacity::facing,
@@ -36,7 +30,7 @@ class FilterPass : public Pass {
     const gpu::TextureDescription& texture = radiance->radiance->description();
     const glm::ivec3 finest(texture.width, texture.height, texture.depth);
     const OccupiedBricks& occupied = radiance->occupied;
-    code::filter::Constants constants;
+    filter::Constants constants;
     constants.rule = static_cast<int>(static_cast<Opacity>(opacity));
     const auto sampling =
         opacity == Opacity::trilinear ? gpu::Sampling::linearOneMip : gpu::Sampling::nearest;
@@ -45,12 +39,12 @@ class FilterPass : public Pass {
       // The voxels of a level are those of the bricks down to one a brick, where bricks are halved evenly.
       const bool followsBricks = occupied.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
                                  finest % OccupiedBricks::kSide == glm::ivec3(0);
-      const auto& program = frame.program(code::filter::Variant{followsBricks}, constants);
+      const auto& program = frame.program(filter::Variant{followsBricks}, constants);
       const shader::BindingSet bindings{
-          code::filter::parameters({.coarse = coarse, .fineLevel = level - 1, .fine = fine}),
-          code::filter::radianceGrid(radiance->radiance, sampling),
-          code::filter::radianceImage(radiance->radiance, level), code::filter::brickList(occupied.bricks),
-          code::filter::brickCount(occupied.count)};
+          filter::parameters({.coarse = coarse, .fineLevel = level - 1, .fine = fine}),
+          filter::radianceGrid(radiance->radiance, sampling),
+          filter::radianceImage(radiance->radiance, level), filter::brickList(occupied.bricks),
+          filter::brickCount(occupied.count)};
       if (!followsBricks) {
         frame.dispatch(program, bindings, coarse);
         continue;
@@ -67,6 +61,9 @@ class FilterPass : public Pass {
 };
 
 class GatherPass : public Pass {
+  enum class Distribution { cosine, published };
+  friend constexpr auto words(Distribution) { return std::array{"cosine", "published"}; }
+
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<RadianceGrid> grid{this, "grid", "pre-filtered radiance, one mip per halving"};
   In<ScatteringGrid> media{this, "media", Presence::optional,
@@ -110,12 +107,12 @@ class GatherPass : public Pass {
       throw Error(
           "voxel_cone_tracing.gather: the voxels of 'grid' hold the media already, and 'media' would dim what the cones see once more; expected 'media' to be left out, or 'store_media off' in voxel_cone_tracing.inject");
     const MediaBinding bound(frame, media);
-    code::gather::Variant variant;
+    gather::Variant variant;
     variant.diffuse = diffuse.wanted();
     variant.glossy = glossy.wanted() && gbuffer->specular != nullptr;
     variant.environment = frame.traits().environment;
     variant.medium = bound.axis;
-    code::gather::Constants constants;
+    gather::Constants constants;
     constants.coneCount = cones;
     constants.publishedCones = distribution == Distribution::published;
     constants.asPublished = asPublished;
@@ -128,25 +125,25 @@ class GatherPass : public Pass {
                 ofGlossy = image(variant.glossy, "indirect glossy radiance");
     frame.dispatch(
         frame.program(variant, constants),
-        {code::gather::parameters({.gridLow = input.grid.low,
-                                   .voxelSize = input.grid.voxelSize,
-                                   .gridExtent = extent,
-                                   .stepShare = step,
-                                   .eyeWorld = frame.snapshot().camera.eye,
-                                   .maxDistance = reach > 0.0f ? reach + 0.0f : 2.0f * glm::length(extent),
-                                   .environment = frame.sceneDescription().environment,
-                                   .offset = offset,
-                                   .startShare = start,
-                                   .coarsest = static_cast<float>(input.radiance->description().levels - 1),
-                                   .clearance = clearance,
-                                   .unit = input.unit,
-                                   .footprint = footprint,
-                                   .coneRatio = coneRatio,
-                                   .jitter = jitter,
-                                   .seed = seedWords(frame)}),
+        {gather::parameters({.gridLow = input.grid.low,
+                             .voxelSize = input.grid.voxelSize,
+                             .gridExtent = extent,
+                             .stepShare = step,
+                             .eyeWorld = frame.snapshot().camera.eye,
+                             .maxDistance = reach > 0.0f ? reach + 0.0f : 2.0f * glm::length(extent),
+                             .environment = frame.sceneDescription().environment,
+                             .offset = offset,
+                             .startShare = start,
+                             .coarsest = static_cast<float>(input.radiance->description().levels - 1),
+                             .clearance = clearance,
+                             .unit = input.unit,
+                             .footprint = footprint,
+                             .coneRatio = coneRatio,
+                             .jitter = jitter,
+                             .seed = seedWords(frame)}),
          GBufferBinding(*gbuffer), bound,
-         code::gather::radianceGrid(input.radiance, gpu::Sampling::linearMipsBorder),
-         code::gather::diffuseImage(ofDiffuse.texture), code::gather::glossyImage(ofGlossy.texture)},
+         gather::radianceGrid(input.radiance, gpu::Sampling::linearMipsBorder),
+         gather::diffuseImage(ofDiffuse.texture), gather::glossyImage(ofGlossy.texture)},
         pixels(frame));
     if (variant.diffuse) diffuse = ofDiffuse;
     if (variant.glossy) glossy = ofGlossy;

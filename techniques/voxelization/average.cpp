@@ -10,7 +10,7 @@
 namespace lumivox::voxelization {
 namespace {
 
-namespace code = shaders::voxelization;
+using namespace shaders::voxelization;
 
 class AveragePass : public Pass {
   In<VoxelFragments> fragments{this, "fragments", "surface samples"};
@@ -46,11 +46,11 @@ class AveragePass : public Pass {
     slots.numbers = emptyVolume(frame, fragments->grid, gpu::Format::r32ui, "slots of voxels");
     slots.count = countBuffer(frame, "slot count");
     slots.count->clear();
-    slots.voxels = frame.elements(code::average_claim::slotVoxels, fragments->capacity, "voxels of slots");
-    const shader::BindingSet claimed{code::average_claim::slotVoxels(slots.voxels),
-                                     code::average_claim::slotCount(slots.count),
-                                     code::average_claim::slots(slots.numbers)};
-    forEachFragment(frame, frame.program(code::average_claim::kProgram), claimed, *fragments);
+    slots.voxels = frame.elements(average_claim::slotVoxels, fragments->capacity, "voxels of slots");
+    const shader::BindingSet claimed{average_claim::slotVoxels(slots.voxels),
+                                     average_claim::slotCount(slots.count),
+                                     average_claim::slots(slots.numbers)};
+    forEachFragment(frame, frame.program(average_claim::kProgram), claimed, *fragments);
     // A first guess: surfaces fill about as many voxels as six sides of the grid, some in two layers; never
     // more than there are fragments.
     const glm::ivec3& size = fragments->grid.resolution;
@@ -63,9 +63,9 @@ class AveragePass : public Pass {
       room_ = inSteps(count);
       return false;
     });
-    slots.fragments = frame.elements(code::average_number::fragmentsOfSlot, slots.room, "fragments of slots");
-    frame.dispatchIndirect(frame.program(code::average_number::kProgram),
-                           {claimed, code::average_number::fragmentsOfSlot(slots.fragments)}, *slots.count,
+    slots.fragments = frame.elements(average_number::fragmentsOfSlot, slots.room, "fragments of slots");
+    frame.dispatchIndirect(frame.program(average_number::kProgram),
+                           {claimed, average_number::fragmentsOfSlot(slots.fragments)}, *slots.count,
                            kGroupsOffset);
     return slots;
   }
@@ -93,30 +93,27 @@ class AveragePass : public Pass {
     }
     if (withEmission) {
       averages.emission = emptyVolume(frame, grid, gpu::Format::rgba32f, "mean emission");
-      forEachFragment(
-          frame, frame.program(code::average_brightest::kProgram),
-          {code::average_brightest::brightest(brightest), code::average_brightest::slots(slots.numbers)},
-          *fragments);
+      forEachFragment(frame, frame.program(average_brightest::kProgram),
+                      {average_brightest::brightest(brightest), average_brightest::slots(slots.numbers)},
+                      *fragments);
     }
     if (opacity.wanted()) covered.opacity = emptyVolume(frame, grid, gpu::Format::r8, "opacity");
     const shader::BindingSet sums{
-        code::average_add::averaging({grid.resolution, fragments->coverage == VoxelFragments::Coverage::sum}),
-        code::average_add::fragmentsOfSlot(slots.fragments),
-        code::average_add::coverageSums(coverage),
-        code::average_add::albedoSums(albedo),
-        code::average_add::normalSums(normal),
-        code::average_add::emissionSums(emission),
-        code::average_add::brightest(brightest)};
-    forEachFragment(frame, frame.program(code::average_add::Variant{withAttributes, withEmission}),
-                    {sums, code::average_add::slots(slots.numbers)}, *fragments);
-    const code::average_resolve::Variant resolving{withAttributes, withEmission, opacity.wanted()};
+        average_add::averaging({grid.resolution, fragments->coverage == VoxelFragments::Coverage::sum}),
+        average_add::fragmentsOfSlot(slots.fragments),
+        average_add::coverageSums(coverage),
+        average_add::albedoSums(albedo),
+        average_add::normalSums(normal),
+        average_add::emissionSums(emission),
+        average_add::brightest(brightest)};
+    forEachFragment(frame, frame.program(average_add::Variant{withAttributes, withEmission}),
+                    {sums, average_add::slots(slots.numbers)}, *fragments);
+    const average_resolve::Variant resolving{withAttributes, withEmission, opacity.wanted()};
     frame.dispatchIndirect(
         frame.program(resolving),
-        {sums, code::average_resolve::slotCount(slots.count), code::average_resolve::slotVoxels(slots.voxels),
-         code::average_resolve::albedoImage(averages.albedo),
-         code::average_resolve::normalImage(averages.normal),
-         code::average_resolve::emissionImage(averages.emission),
-         code::average_resolve::opacityImage(covered.opacity)},
+        {sums, average_resolve::slotCount(slots.count), average_resolve::slotVoxels(slots.voxels),
+         average_resolve::albedoImage(averages.albedo), average_resolve::normalImage(averages.normal),
+         average_resolve::emissionImage(averages.emission), average_resolve::opacityImage(covered.opacity)},
         *slots.count, kGroupsOffset);
     if (withAttributes) attributes = averages;
     if (opacity.wanted()) opacity = covered;

@@ -14,15 +14,6 @@ namespace {
 namespace rasterShader = shaders::voxelization::conservative;
 namespace computeShader = shaders::voxelization::conservative_compute;
 
-enum class Depth { conservative, centre };
-constexpr auto words(Depth) {
-  return std::array{"conservative", "centre"};
-}
-enum class Method { automatic, raster, compute };
-constexpr auto words(Method) {
-  return std::array{"automatic", "raster", "compute"};
-}
-
 /// Triangles of one draw, for one work group: first index, number of triangles, object, material.
 using Batch = glm::uvec4;
 /// Draws that can share dispatches: those with the same textures.
@@ -43,6 +34,11 @@ BatchesByTextures batchesOf(const std::vector<const SceneDraw*>& draws) {
 }
 
 class ConservativePass : public Voxeliser {
+  enum class Depth { conservative, centre };
+  friend constexpr auto words(Depth) { return std::array{"conservative", "centre"}; }
+  enum class Method { automatic, raster, compute };
+  friend constexpr auto words(Method) { return std::array{"automatic", "raster", "compute"}; }
+
   Param<Depth> depth{
       this, "depth", Depth::conservative,
       "voxels along the projection: all that the triangle crosses, or only the one at the pixel's centre"};

@@ -9,7 +9,7 @@
 namespace lumivox::voxelization {
 namespace {
 
-namespace code = shaders::voxelization;
+using namespace shaders::voxelization;
 
 class DepthPeelingPass : public Voxeliser {
   Param<int> layers{this, "layers", 64, within(1, 4096), "most layers that are peeled from one view"};
@@ -49,14 +49,13 @@ class DepthPeelingPass : public Voxeliser {
         const Layer &now = pair[static_cast<std::size_t>(index % 2)],
                     &before = pair[static_cast<std::size_t>((index + 1) % 2)];
         peel(frame, view, draws, now, index == 0 ? nullptr : before.depth);
-        frame.dispatch(
-            frame.program(code::depth_peeling_append::kProgram),
-            {viewBinding(view), appending(list), code::depth_peeling_append::layer({index}),
-             code::depth_peeling_append::deepest(deepest),
-             code::depth_peeling_append::layerDepth(now.depth, gpu::Sampling::nearest),
-             code::depth_peeling_append::layerSurface(now.surface, gpu::Sampling::nearest),
-             code::depth_peeling_append::layerDepthInGrid(now.depthInGrid, gpu::Sampling::nearest)},
-            {side, side, 1});
+        frame.dispatch(frame.program(depth_peeling_append::kProgram),
+                       {viewBinding(view), appending(list), depth_peeling_append::layer({index}),
+                        depth_peeling_append::deepest(deepest),
+                        depth_peeling_append::layerDepth(now.depth, gpu::Sampling::nearest),
+                        depth_peeling_append::layerSurface(now.surface, gpu::Sampling::nearest),
+                        depth_peeling_append::layerDepthInGrid(now.depthInGrid, gpu::Sampling::nearest)},
+                       {side, side, 1});
       }
       frame.judgeLater(deepest, static_cast<std::uint64_t>(axis) * sizeof(std::uint32_t),
                        [this, &plan, axis](PassContext& done, std::uint32_t count) {
@@ -91,10 +90,9 @@ class DepthPeelingPass : public Voxeliser {
     const gpu::Drawing drawing = frame.device().drawTo(targets, state);
     for (const SceneDraw* draw : draws) {
       const SceneBinding scene(frame, *draw);
-      const code::depth_peeling::Variant variant{scene.textures, scene.masks, before == nullptr};
+      const depth_peeling::Variant variant{scene.textures, scene.masks, before == nullptr};
       drawPart(frame, frame.program(variant),
-               {scene, viewBinding(view), code::depth_peeling::layerBefore(before, gpu::Sampling::nearest)},
-               *draw);
+               {scene, viewBinding(view), depth_peeling::layerBefore(before, gpu::Sampling::nearest)}, *draw);
     }
     frame.device().barrier();
   }

@@ -14,12 +14,9 @@ namespace {
 
 namespace code = shaders::voxelization::points;
 
-enum class Spread { random, regular };
-constexpr auto words(Spread) {
-  return std::array{"random", "regular"};
-}
-
 class PointsPass : public Voxeliser {
+  enum class Spread { random, regular };
+  friend constexpr auto words(Spread) { return std::array{"random", "regular"}; }
   // The paper's figures are made with 19 points; it finds 12 to 19 nearly perfect in most scenes.
   Param<int> points{this, "points", 19, within(1, 65536), "random points on each triangle"};
   Param<bool> adaptive{this, "adaptive", false,

@@ -12,12 +12,7 @@
 namespace lumivox::voxelization {
 namespace {
 
-namespace code = shaders::voxelization;
-
-enum class Inwards { leave, fill };
-constexpr auto words(Inwards) {
-  return std::array{"leave", "fill"};
-}
+using namespace shaders::voxelization;
 
 /// The closed surfaces of an object.
 struct ClosedSurface {
@@ -41,6 +36,9 @@ Columns columnsOf(const Bounds& bounds, const glm::mat4& toWorld, const GridPlac
 }
 
 class SolidPass : public BitVoxeliser {
+  enum class Inwards { leave, fill };
+  friend constexpr auto words(Inwards) { return std::array{"leave", "fill"}; }
+
   In<VoxelFragments> base{this, "fragments", Presence::optional,
                           "surface samples that the inside is added to; the grid is theirs then"};
   Param<Inwards> inwards{
@@ -80,20 +78,18 @@ class SolidPass : public BitVoxeliser {
     const Columns columns = state.positions.empty() ? columnsOf(closed.bounds, state.toWorld, grid)
                                                     : Columns{{0, 0}, {grid.resolution.x, grid.resolution.y}};
     if (columns.size.x <= 0 || columns.size.y <= 0) return;
-    const shader::BindingSet bindings{SceneBinding(frame, SceneDraw{object}),
-                                      code::solid_flip::grid({grid.low, grid.voxelSize, grid.resolution,
-                                                              static_cast<int>(closed.firstTriangle),
-                                                              static_cast<int>(closed.triangleCount)}),
-                                      code::solid_flip::triangles(triangles_),
-                                      code::solid_flip::aside(aside.buffer()),
-                                      code::solid_flip::parity(parity)};
+    const shader::BindingSet bindings{
+        SceneBinding(frame, SceneDraw{object}),
+        solid_flip::grid({grid.low, grid.voxelSize, grid.resolution, static_cast<int>(closed.firstTriangle),
+                          static_cast<int>(closed.triangleCount)}),
+        solid_flip::triangles(triangles_), solid_flip::aside(aside.buffer()), solid_flip::parity(parity)};
     aside.clear();
-    using Variant = code::solid_flip::Variant;
+    using Variant = solid_flip::Variant;
     frame.dispatchList(frame.program(Variant{0}), bindings, closed.triangleCount);
     aside.workOff(frame, frame.program(Variant{1}), bindings);
-    frame.dispatch(frame.program(code::solid_fill::kProgram),
-                   {code::solid_fill::parameters({columns.low, columns.size, grid.resolution.z}),
-                    code::solid_fill::parity(parity), code::solid_fill::words(words)},
+    frame.dispatch(frame.program(solid_fill::kProgram),
+                   {solid_fill::parameters({columns.low, columns.size, grid.resolution.z}),
+                    solid_fill::parity(parity), solid_fill::words(words)},
                    {columns.size, 1});
   }
 
