@@ -3,6 +3,7 @@
 # compile each alone. Techniques are always compiled file by file: they are what changes.
 # lumivox_precompile(TARGET [HEADERS headers...] [FROM other]): a set of headers of the target's own, or that of another target.
 # lumivox_compile_together(TARGET): several sources at a time.
+# lumivox_compile_quickly(TARGET...): with less optimisation, for what spends its time in other code: commands, records, pages, plans.
 option(LUMIVOX_FAST_BUILD "Read the headers that many sources include once, and compile several sources at a time" ON)
 
 # From precompiled headers g++ 12 forgets which ones are the system's, and then tells of the strings of its own library what it is wrong about
@@ -33,4 +34,10 @@ function(lumivox_compile_together target)
   # Types of a source's own seem to be those of a header when several sources are one.
   target_compile_options(${target} PRIVATE $<$<AND:$<BOOL:${LUMIVOX_FAST_BUILD}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${LUMIVOX_FAST_BUILD} UNITY_BUILD_BATCH_SIZE 8)
+endfunction()
+
+function(lumivox_compile_quickly)
+  foreach(target IN LISTS ARGN)
+    target_compile_options(${target} PRIVATE $<$<BOOL:${LUMIVOX_FAST_BUILD}>:-O1>)
+  endforeach()
 endfunction()

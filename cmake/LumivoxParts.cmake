@@ -69,3 +69,19 @@ function(lumivox_library name)
   endforeach()
   target_link_libraries(${name} PUBLIC ${library_LIBRARIES})
 endfunction()
+
+# lumivox_embed(PART): the files of framework/src/PART/assets become constants of generated/PART_assets.h, so that an editor
+# understands them and the program needs none of them beside it.
+function(lumivox_embed part)
+  file(GLOB assets CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/framework/src/${part}/assets/*)
+  set(header ${CMAKE_BINARY_DIR}/generated/${part}_assets.h)
+  add_custom_command(
+    OUTPUT ${header}
+    COMMAND ${CMAKE_COMMAND} "-DFILES=${assets}" -DOUTPUT=${header} -DNAMESPACE=lumivox::${part}::assets -P ${CMAKE_SOURCE_DIR}/cmake/embed.cmake
+    DEPENDS ${assets} ${CMAKE_SOURCE_DIR}/cmake/embed.cmake
+    COMMENT "Embedding the assets of ${part}"
+    VERBATIM)
+  add_custom_target(assets_${part} DEPENDS ${header})
+  add_dependencies(lumivox_${part} assets_${part})
+  target_include_directories(lumivox_${part} PRIVATE ${CMAKE_BINARY_DIR}/generated)
+endfunction()

@@ -16,6 +16,7 @@
 
 #include "../../techniques/light_propagation_volumes/closed_faces.h"
 #include "lumivox/base/error.h"
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/plugin/loader.h"
 #include "lumivox/scene/builder.h"

@@ -17,10 +17,10 @@
 #include "competitors.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
+#include "lumivox/experiment/voxelisers.h"
 #include "lumivox/measure/metrics.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/plugin/loader.h"
-#include "lumivox/report/voxelisers.h"
 
 namespace {
 

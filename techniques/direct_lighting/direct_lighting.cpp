@@ -129,7 +129,7 @@ class ShadePass : public Pass {
   Out<Image> radiance{this, "radiance", Contributes::direct, Needs::nothing,
                       "emission and light that is reflected once, W/(sr m^2)"};
 
-  Reads readsFrom() const override { return Reads::camera | Reads::lights; }
+  Reads readsFrom() const override { return Reads::camera | Reads::lights | Reads::environment; }
 
   void run(PassContext& frame) override {
     const LightBinding lights(shadow);

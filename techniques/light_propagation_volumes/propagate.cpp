@@ -65,7 +65,7 @@ class PropagatePass : public Pass {
   Out<ShGrid> light{this, "light", "all light that passed each cell, summed over the iterations, W/sr"};
   Out<ShGrid> travelling{this, "travelling", "light that is still on its way after the last iteration, W/sr"};
 
-  Reads readsFrom() const override { return Reads::lights; }
+  Reads readsFrom() const override { return Reads::environment; }
 
   void run(PassContext& frame) override {
     requireFlux(*injected);

@@ -41,7 +41,7 @@ class MarchAsPublishedPass : public Pass {
   Out<Image> transmittance{this, "transmittance", Contributes::nothing, Needs::medium,
                            "1: as published media dim nothing; size as above"};
 
-  Reads readsFrom() const override { return Reads::camera | Reads::lights; }
+  Reads readsFrom() const override { return Reads::camera | Reads::lights | Reads::media; }
   Needs needs() const override { return Needs::medium; }
 
   void run(PassContext& frame) override {

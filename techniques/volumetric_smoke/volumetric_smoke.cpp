@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/grid_placement.h"
@@ -23,7 +22,7 @@ constexpr double kUnitsPerParticle = 16777216.0;  // kUnits in insert.comp
 class ParticlesPass : public Pass {
   Out<Particles> particles{this, "particles", "where the particles of every medium are"};
 
-  Reads readsFrom() const override { return Reads::time; }
+  Reads readsFrom() const override { return Reads::time | Reads::media; }
   Needs needs() const override { return Needs::particles; }
 
   void run(PassContext& frame) override {
@@ -69,11 +68,10 @@ class InsertPass : public Pass {
       "a particle as the cloud that it is, or all of it in the one voxel that holds its middle, as published"};
   Out<ScatteringGrid> media{this, "media", "density, extinction and scattering of every medium"};
 
-  Reads readsFrom() const override { return Reads::geometry; }
+  Reads readsFrom() const override { return Reads::geometry | Reads::media; }
   Needs needs() const override { return Needs::medium; }
 
   void run(PassContext& frame) override {
-    if (frame.startsAfresh()) volumes_.clear();
     ScatteringGrid result;
     const std::vector<Medium>& all = frame.sceneDescription().media;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -101,16 +99,16 @@ class InsertPass : public Pass {
     media = result;
   }
 
-  /// The texture of a volume file is made once.
+  /// The texture of a volume file is uploaded once.
   void uploadVolume(PassContext& frame, const DensityVolume& volume, ScatteringGrid::Medium& result) {
     result.grid = {glm::vec3(volume.low - frame.snapshot().origin), static_cast<float>(volume.voxelSize),
                    volume.resolution};
-    gpu::TextureRef& texture = volumes_[&volume];
-    if (texture == nullptr) {
-      texture = frame.volume(volume.resolution, gpu::Format::r32f, "density of a volume file");
+    result.density = frame.kept("density of medium " + result.name, &volume, [&] {
+      const gpu::TextureRef texture =
+          frame.volume(volume.resolution, gpu::Format::r32f, "density of a volume file");
       texture->uploadFloats(0, volume.values);
-    }
-    result.density = texture;
+      return texture;
+    });
   }
 
   void insert(PassContext& frame, const Medium& medium, const Particles::Group& group,
@@ -154,8 +152,6 @@ class InsertPass : public Pass {
                     density::highWords(high), density::densityImage(result.density)},
                    size);
   }
-
-  std::map<const DensityVolume*, gpu::TextureRef> volumes_;
 };
 
 class MarchPass : public Pass {

@@ -99,7 +99,7 @@ class GatherPass : public Pass {
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::glossyMaterial,
                     "indirect light reflected by the Phong lobe"};
 
-  Reads readsFrom() const override { return Reads::camera; }
+  Reads readsFrom() const override { return Reads::camera | Reads::environment; }
 
   void run(PassContext& frame) override {
     const RadianceGrid& input = *grid;

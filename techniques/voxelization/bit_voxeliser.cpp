@@ -39,22 +39,18 @@ void markFragments(PassContext& frame, const VoxelFragments& fragments, const gp
 }
 
 gpu::TextureRef BitVoxeliser::wordsOf(PassContext& frame, const GridPlacement& grid) {
-  Draws still, moving;
-  for (const SceneDraw& draw : frame.scene().draws()) (draw.moving ? moving : still).push_back(&draw);
-  const StillKey key = stillKey(frame, grid, still);
-  const bool kept = !frame.startsAfresh() && still_ != nullptr && key == stillKey_;
-  if (!kept) {
-    still_.reset();  // before the next one is taken: the pool may give back the same
-    still_ = bitWords(frame, grid, "bits of what stands still");
-    if (!still.empty()) mark(frame, grid, *still_, still);
-    stillKey_ = key;
-  } else if (!still.empty()) {
-    frame.reused("bits of what stands still", "static geometry is voxelised once");
-  }
-  if (moving.empty()) return still_;
+  const auto [still, moving] = drawsByMotion(frame);
+  const auto make = [&, &draws = still] {
+    gpu::TextureRef words = bitWords(frame, grid, "bits of what stands still");
+    if (!draws.empty()) mark(frame, grid, *words, draws);
+    return words;
+  };
+  const gpu::TextureRef first =
+      still.empty() ? make() : frame.kept("bits of what stands still", stillKey(frame, grid, still), make);
+  if (moving.empty()) return first;
   const gpu::TextureRef words = bitWords(frame, grid, "bits");
   frame.dispatch(frame.program(copyShader::kProgram),
-                 {copyShader::source(*still_), copyShader::target(*words)}, wordCount(grid));
+                 {copyShader::source(*first), copyShader::target(*words)}, wordCount(grid));
   mark(frame, grid, *words, moving);
   return words;
 }

@@ -48,8 +48,6 @@ class BitVoxeliser : public GridPass {
   OccupancyGrid opacityOf(PassContext& frame, const GridPlacement& grid, const Words& words) const;
   VoxelFragments fragmentsOf(PassContext& frame, const GridPlacement& grid, const Words& words);
 
-  gpu::TextureRef still_;  ///< words of what stands still
-  StillKey stillKey_;
   std::uint64_t room_ = 0;  ///< fragments that the list is made for, beside those of the surface
 };
 

@@ -86,25 +86,22 @@ class MsaaOpacityPass : public Voxeliser {
 
   /// The covered samples of every voxel's three sides. Those of what stands still are kept.
   gpu::TextureRef sideMasks(PassContext& frame, const GridPlacement& grid) {
-    Draws still, moving;
-    for (const SceneDraw& draw : frame.scene().draws()) (draw.moving ? moving : still).push_back(&draw);
+    const auto [still, moving] = drawsByMotion(frame);
     const auto mark = [&](const gpu::Texture& masks, const Draws& draws) {
       rasterise(frame, grid, draws, 0, msaaShader::Variant::targetMasks, {msaaShader::sampleMasks(masks)});
     };
-    const StillKey key = stillKey(frame, grid, still);
-    if (frame.startsAfresh() || stillMasks_ == nullptr || !(key == stillMasksKey_)) {
-      stillMasks_.reset();  // before the next one is taken: the pool may give back the same
-      stillMasks_ = frame.volume(grid.resolution, gpu::Format::r32ui, "samples of what stands still");
-      stillMasks_->clear(glm::vec4(0.0f));
-      mark(*stillMasks_, still);
-      stillMasksKey_ = key;
-    } else {
-      frame.reused("samples of what stands still", "static geometry is voxelised once");
-    }
-    if (moving.empty()) return stillMasks_;
+    const gpu::TextureRef first =
+        frame.kept("samples of what stands still", stillKey(frame, grid, still), [&, &draws = still] {
+          gpu::TextureRef masks =
+              frame.volume(grid.resolution, gpu::Format::r32ui, "samples of what stands still");
+          masks->clear(glm::vec4(0.0f));
+          mark(*masks, draws);
+          return masks;
+        });
+    if (moving.empty()) return first;
     const gpu::TextureRef masks = frame.volume(grid.resolution, gpu::Format::r32ui, "samples");
     frame.dispatch(frame.program(copyShader::kProgram),
-                   {copyShader::source(*stillMasks_), copyShader::target(*masks)}, grid.resolution);
+                   {copyShader::source(*first), copyShader::target(*masks)}, grid.resolution);
     mark(*masks, moving);
     return masks;
   }
@@ -127,8 +124,6 @@ class MsaaOpacityPass : public Voxeliser {
 
   int sampleCount_ = 2;
   std::vector<glm::vec2> positions_;
-  gpu::TextureRef stillMasks_;
-  StillKey stillMasksKey_;
 };
 
 }  // namespace

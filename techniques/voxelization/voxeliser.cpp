@@ -49,61 +49,71 @@ std::uint64_t Voxeliser::expectedFragments(const Scene& scene, const GridPlaceme
   return 12 * side * side + 4 * scene.triangleCount();
 }
 
+GridPass::DrawsByMotion GridPass::drawsByMotion(PassContext& frame) {
+  DrawsByMotion result;
+  for (const SceneDraw& draw : frame.scene().draws())
+    (draw.moving ? result.moving : result.still).push_back(&draw);
+  return result;
+}
+
 GridPass::StillKey GridPass::stillKey(const PassContext& frame, const GridPlacement& grid,
                                       const Draws& still) {
-  StillKey key{grid, {}, {}};
-  for (const ParamBase* parameter : parameters()) key.parameters.push_back(parameter->valueText());
+  StillKey key{grid, {}};
   for (const SceneDraw* draw : still)
-    key.placements.push_back(frame.snapshot().objects[static_cast<std::size_t>(draw->object)].toWorld);
+    key.second.push_back(frame.snapshot().objects[static_cast<std::size_t>(draw->object)].toWorld);
   return key;
 }
 
-void Voxeliser::run(PassContext& frame) {
-  if (!fragments.wanted()) {
-    list_ = {};
-    stillCount_.reset();
-    return;
-  }
-  Draws still, moving;
-  for (const SceneDraw& draw : frame.scene().draws()) (draw.moving ? moving : still).push_back(&draw);
-  const GridPlacement grid = placement(frame);
-  const StillKey key = stillKey(frame, grid, still);
-  const bool stillKept = !frame.startsAfresh() && list_.fragments != nullptr && key == stillKey_;
-  list_.grid = grid;
-  list_.workGroupSize = kWorkGroupSize;
-  list_.coverage = coverage();
-  // A reader of an earlier frame may still hold the old count.
-  list_.count = countBuffer(frame, "voxel fragment count");
-  if (stillKept) {
-    copyCount(frame, *stillCount_, *list_.count);
-  } else {
-    // A first guess is no reason to ask for more than one buffer can have.
-    const std::uint64_t most = frame.device().info().maxStorageBytes / VoxelFragments::kFragmentBytes;
-    if (room_ == 0)
-      room_ = std::max<std::uint64_t>(std::min(expectedFragments(frame.sceneDescription(), grid), most), 1);
-    list_.fragments.reset();  // before the next one is taken: the pool may give back the same
-    list_.fragments = frame.buffer(room_ * VoxelFragments::kFragmentBytes, "voxel fragments");
-    list_.capacity = room_;
-    list_.count->clear();
-    if (!still.empty()) append(frame, list_, still);
-    frame.device().barrier();
-    stillCount_ = countBuffer(frame, "count of what stands still");
-    copyCount(frame, *list_.count, *stillCount_);
-    stillKey_ = key;
-  }
-  if (stillKept && !still.empty())
-    frame.reused("fragments of what stands still", "static geometry is voxelised once");
-  if (!moving.empty()) append(frame, list_, moving);
+VoxelFragments Voxeliser::emptyList(const GridPlacement& grid) const {
+  VoxelFragments list;
+  list.grid = grid;
+  list.workGroupSize = kWorkGroupSize;
+  list.coverage = coverage();
+  return list;
+}
+
+Voxeliser::StillList Voxeliser::listOfStill(PassContext& frame, const GridPlacement& grid,
+                                            const Draws& still) {
+  // A first guess is no reason to ask for more than one buffer can have.
+  const std::uint64_t most = frame.device().info().maxStorageBytes / VoxelFragments::kFragmentBytes;
+  if (room_ == 0)
+    room_ = std::max<std::uint64_t>(std::min(expectedFragments(frame.sceneDescription(), grid), most), 1);
+  VoxelFragments list = emptyList(grid);
+  list.count = countBuffer(frame, "count of what stands still");
+  list.fragments = frame.buffer(room_ * VoxelFragments::kFragmentBytes, "voxel fragments");
+  list.capacity = room_;
+  list.count->clear();
+  if (!still.empty()) append(frame, list, still);
   frame.device().barrier();
-  finishList(frame, list_);
+  return {list.fragments, list.count, list.capacity};
+}
+
+void Voxeliser::run(PassContext& frame) {
+  if (!fragments.wanted()) return;
+  const auto [still, moving] = drawsByMotion(frame);
+  const GridPlacement grid = placement(frame);
+  const auto make = [&, &draws = still] { return listOfStill(frame, grid, draws); };
+  const StillList first =
+      still.empty() ? make()
+                    : frame.kept("fragments of what stands still", stillKey(frame, grid, still), make);
+  VoxelFragments list = emptyList(grid);
+  list.fragments = first.fragments;
+  list.capacity = first.capacity;
+  // A reader of an earlier frame may still hold the old count.
+  list.count = countBuffer(frame, "voxel fragment count");
+  copyCount(frame, *first.count, *list.count);
+  if (!moving.empty()) append(frame, list, moving);
+  frame.device().barrier();
+  finishList(frame, list);
   // Where nothing moves, the next list from nothing will be as long as this one.
   const bool repeats = moving.empty() && around == Around::scene;
-  frame.judgeLater(list_.count, kWantedOffset, [this, repeats](PassContext&, std::uint32_t count) {
-    const bool fits = count <= list_.capacity;
-    if (!fits || repeats) room_ = std::max<std::uint64_t>(roomFor(count, !repeats), 1);
-    return fits;
-  });
-  fragments = list_;
+  frame.judgeLater(list.count, kWantedOffset,
+                   [this, repeats, capacity = list.capacity](PassContext&, std::uint32_t count) {
+                     const bool fits = count <= capacity;
+                     if (!fits || repeats) room_ = std::max<std::uint64_t>(roomFor(count, !repeats), 1);
+                     return fits;
+                   });
+  fragments = list;
 }
 
 }  // namespace lumivox::voxelization

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lumivox/plugin/technique.h"
@@ -37,14 +38,13 @@ class GridPass : public Pass {
   Reads readsSurface() const;
 
   using Draws = std::vector<const SceneDraw*>;
-  /// What the voxels of still geometry depend on.
-  struct StillKey {
-    GridPlacement grid;
-    std::vector<std::string> parameters;
-    std::vector<glm::mat4> placements;
-    bool operator==(const StillKey&) const = default;
+  struct DrawsByMotion {
+    Draws still, moving;
   };
-  StillKey stillKey(const PassContext& frame, const GridPlacement& grid, const Draws& still);
+  static DrawsByMotion drawsByMotion(PassContext& frame);
+  /// What the voxels of still geometry depend on: where the grid lies, and where their objects are.
+  using StillKey = std::pair<GridPlacement, std::vector<glm::mat4>>;
+  static StillKey stillKey(const PassContext& frame, const GridPlacement& grid, const Draws& still);
 
   Param<int> resolution{this, "resolution", 64, within(1, kLargestGrid),
                         "voxels along the longest side of the grid"};
@@ -74,9 +74,14 @@ class Voxeliser : public GridPass {
   Out<VoxelFragments> fragments{this, "fragments", "surface samples"};
 
  private:
-  VoxelFragments list_;        ///< kept between frames, so that the fragments of still geometry stay
-  gpu::BufferRef stillCount_;  ///< how many of them there are, at the beginning of the list
-  StillKey stillKey_;
+  /// The fragments of what stands still, in a list with room for those of what moves.
+  struct StillList {
+    gpu::BufferRef fragments, count;
+    std::uint64_t capacity = 0;
+  };
+  StillList listOfStill(PassContext& frame, const GridPlacement& grid, const Draws& still);
+  VoxelFragments emptyList(const GridPlacement& grid) const;
+
   std::uint64_t room_ = 0;  ///< fragments that the list is made for: a guess, or what earlier frames needed
 };
 

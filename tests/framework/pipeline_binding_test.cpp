@@ -7,10 +7,20 @@ using Catch::Matchers::Contains;
 
 namespace {
 
+/// Reads a picture of this frame and one of the frame before.
+class Echo : public Toy {
+ public:
+  using Toy::Toy;
+  In<Image> first{this, "first", Presence::optional, "of this frame"};
+  In<Image> before{this, "before", Presence::history, "of the frame before"};
+  Out<Image> sum{this, "sum", Contributes::direct};
+  void run(PassContext& frame) override { sum = paint(frame, 1.0f); }
+};
+
 /// Findings of a pipeline with this body, on the toys.
 std::string findings(const std::string& body, const std::string& after = {}) {
   TestTechniques techniques;
-  addToys(techniques);
+  addToys(techniques).add<Echo>("toy", "echo");
   const Pipeline pipeline =
       Pipeline::parse("pipeline \"test\" {\n" + body + "\n}\n" + after, "test.pipeline");
   return messageOf<DiagnosticsError>([&] { checkPipeline(pipeline, techniques); });
@@ -18,7 +28,7 @@ std::string findings(const std::string& body, const std::string& after = {}) {
 
 void accept(const std::string& body) {
   TestTechniques techniques;
-  addToys(techniques);
+  addToys(techniques).add<Echo>("toy", "echo");
   CHECK_NOTHROW(checkPipeline(pipelineOf(body), techniques));
 }
 
@@ -120,6 +130,18 @@ TEST_CASE("a cycle between passes is refused, naming its passes in the order of 
   CHECK_THAT(text, !Contains("after ->"));
 }
 
+TEST_CASE("a cycle is accepted where it leads through the frame before, and nowhere else") {
+  const std::string output = "output o b.sum";
+  accept("pass a toy.echo { before b.sum }\npass b toy.add { first a.sum }\n" + output);
+  accept("pass a toy.echo { before a.sum }\npass b toy.add { first a.sum }\n" + output);
+  CHECK_THAT(
+      findings("pass a toy.echo { first b.sum  before b.sum }\npass b toy.add { first a.sum }\n" + output),
+      Contains("test.pipeline:2:6: passes feed each other in a circle: a -> b -> a; expected an order in "
+               "which they can run; only an input that is a history may lead back"));
+  CHECK_THAT(findings("pass v toy.voxels { }\npass a toy.echo { before v.grid }\noutput o a.sum"),
+             Contains("output 'v.grid' is of kind RadianceGrid, but input 'before' of pass 'a' takes Image"));
+}
+
 TEST_CASE("a parameter out of its range is refused with the range") {
   CHECK_THAT(findings("pass v toy.voxels { resolution 65 }\noutput o v.grid"),
              Contains("test.pipeline:2:32: parameter 'resolution' is 65, which does not fit; expected a "
@@ -182,7 +204,7 @@ TEST_CASE("parameters that contradict each other are refused in the pass's words
 
 TEST_CASE("all binding errors of a pipeline are reported at once") {
   TestTechniques techniques;
-  addToys(techniques);
+  addToys(techniques).add<Echo>("toy", "echo");
   const Pipeline pipeline = pipelineOf(
       "pass a missing.pass { }\n"
       "pass v toy.voxels { resolution 1000  widht 2 }\n"
@@ -204,7 +226,7 @@ TEST_CASE("all binding errors of a pipeline are reported at once") {
 
 TEST_CASE("a setting given to a pipeline must exist and fit") {
   TestTechniques techniques;
-  addToys(techniques);
+  addToys(techniques).add<Echo>("toy", "echo");
   const std::unique_ptr<gpu::Device> device = deviceOrSkip();
   if (!device) return;
   const Scene scene = triangleScene();

@@ -5,7 +5,9 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/plugin/loader.h"
+#include "lumivox/plugin/technique.h"
 #include "support/support.h"
 
 using namespace lumivox;

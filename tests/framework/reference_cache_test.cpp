@@ -113,6 +113,14 @@ TEST_CASE("the cache tells apart everything that changes the picture, and nothin
   options = cached();
   options.occlusionDistance = 0.2;
   another("occlusion", options);
+  options = cached();
+  options.bounceLayers = {2, 1};
+  another("layers of numbers of bounces", options);
+  CHECK(cachedReference(scene, options).layers.count("bounces_2_glossy.variance") == 1);
+  options.bounceLayers = {1, 2, 2};
+  same("the same layers in another order", options);
+  options.bounceLayers = {1};
+  another("fewer layers", options);
   scene.materials[0].diffuse.x = 0.5f;
   another("a material", cached());
   scene.positions[0].x += 0.01f;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "lumivox/base/error.h"
 #include "lumivox/reference/path_tracer.h"
 #include "support/scene_builder.h"
 #include "support/support.h"
@@ -91,6 +92,83 @@ TEST_CASE("the furnace's layers are the terms of the geometric series") {
   CHECK(estimateOf(picture, "full").mean == Approx(geometricSeries(albedo, 5)).epsilon(0.002));
   CHECK(estimateOf(picture, "one_bounce_glossy").mean == 0.0);
   CHECK(estimateOf(picture, "indirect_glossy").mean == 0.0);
+}
+
+TEST_CASE("N bounces of a furnace of albedo a give the partial geometric sum 1 + a + ... + a^(N+1)") {
+  const double albedo = 0.6;
+  ReferenceOptions options = quietly(64, 8);
+  options.roulette = false;
+  options.bounceLayers = {4, 1, 2, 4};
+  const LayeredPicture picture = renderReference(furnace(0.6f, 1.0f, 16), options);
+  for (const int bounces : {1, 2, 4}) {
+    CAPTURE(bounces);
+    const std::string layer = "bounces_" + std::to_string(bounces);
+    // Emission, direct light, and N terms more.
+    CHECK(estimateOf(picture, layer).mean == Approx(geometricSeries(albedo, bounces + 2)).epsilon(0.002));
+    CHECK(estimateOf(picture, layer + "_diffuse").mean ==
+          Approx(albedo * albedo * geometricSeries(albedo, bounces)).epsilon(0.003));
+    CHECK(estimateOf(picture, layer + "_glossy").mean == 0.0);
+    CHECK(estimateOf(picture, layer).deviation > 0.0);
+  }
+  CHECK(picture.layers.count("bounces_3") == 0);
+  CHECK(picture.attributes.at("bounce_layers") == "1 2 4");
+}
+
+TEST_CASE("layers of numbers of bounces leave the others as they are, and begin and end with them") {
+  for (const bool media : {false, true}) {
+    CAPTURE(media);
+    Scene scene = litRoom(16, 16);
+    scene.environment = glm::vec3(0.5f);
+    if (media) {
+      scene.media.push_back({});
+      scene.media[0].extinction = glm::vec3(0.5f);
+      scene.media[0].albedo = glm::vec3(0.8f);
+    }
+    const LayeredPicture plain = renderReference(scene, quietly(8, 4));
+    ReferenceOptions options = quietly(8, 4);
+    options.bounceLayers = {1, 2, 4};
+    const LayeredPicture picture = renderReference(scene, options);
+    for (const auto& [name, layer] : plain.layers) {
+      CAPTURE(name);
+      CHECK(picture.layers.at(name).values() == layer.values());
+    }
+    CHECK(picture.layers.size() == plain.layers.size() + 18);
+    const auto difference = [&](const std::string& a, const std::string& b) {
+      double largest = 0.0;
+      for (std::size_t i = 0; i < picture.layers.at(a).values().size(); ++i)
+        largest = std::max(largest, std::abs(static_cast<double>(picture.layers.at(a).values()[i]) -
+                                             static_cast<double>(picture.layers.at(b).values()[i])));
+      return largest;
+    };
+    // Sums in another order: within rounding.
+    const double full = estimateOf(picture, "full").mean;
+    CHECK(full > 0.0);
+    CHECK(difference("bounces_4", "full") < 1e-4 * full);
+    CHECK(difference("bounces_4_diffuse", "indirect_diffuse") < 1e-4 * full);
+    CHECK(difference("bounces_4_glossy", "indirect_glossy") < 1e-4 * full);
+    CHECK(estimateOf(picture, "bounces_1_glossy").mean > 0.0);
+    // With media a scattering is a bounce, which one_bounce leaves out.
+    const double once = estimateOf(picture, "one_bounce").mean, first = estimateOf(picture, "bounces_1").mean,
+                 second = estimateOf(picture, "bounces_2").mean;
+    if (media) {
+      CHECK(first > 1.001 * once);
+    } else {
+      CHECK(difference("bounces_1", "one_bounce") < 1e-4 * full);
+      CHECK(difference("bounces_1_diffuse", "one_bounce_diffuse") < 1e-4 * full);
+    }
+    CHECK(second > first);
+    CHECK(full > second);
+  }
+}
+
+TEST_CASE("a number of bounces beyond those of the paths has no layer") {
+  for (const int wrong : {0, -1, 3}) {
+    ReferenceOptions options = quietly(4, 2);
+    options.bounceLayers = {1, wrong};
+    CHECK_THAT(
+        messageOf<Error>([&] { renderReference(furnace(0.5f, 1.0f, 4), options); }),
+        Catch::Matchers::Contains("a number of bounces with layers of its own is " + std::to_string(wrong)));
+  }
 }
 
 TEST_CASE("with one bounce the indirect layers are the one-bounce layers; with none they are black") {

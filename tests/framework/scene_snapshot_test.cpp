@@ -59,6 +59,14 @@ TEST_CASE("another resolution replaces the camera's own") {
   CHECK(snapshot.camera.height == 32);
 }
 
+TEST_CASE("ambient occlusion looks as far as a tenth of the diagonal of what there is") {
+  Bounds bounds;
+  CHECK(ambientOcclusionDistance(bounds) == 0.0);
+  bounds.grow({1, 1, 1});
+  bounds.grow({2, 3, 3});  // 1 x 2 x 2: a diagonal of 3
+  CHECK(ambientOcclusionDistance(bounds) == Approx(0.3));
+}
+
 TEST_CASE("the origin is the centre of what stands still, and positions are relative to it") {
   Scene scene = triangle();
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);

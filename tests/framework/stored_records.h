@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "lumivox/report/store.h"
+#include "lumivox/results/store.h"
 
 namespace lumivox::test {
 

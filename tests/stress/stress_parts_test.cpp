@@ -7,7 +7,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
-#include "lumivox/report/stress_cells.h"
+#include "lumivox/results/stress_cells.h"
 #include "lumivox/stress/stress.h"
 #include "stress/cards.h"
 #include "stress/child.h"

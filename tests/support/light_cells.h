@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../../techniques/light_propagation_volumes/closed_faces.h"
+#include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 

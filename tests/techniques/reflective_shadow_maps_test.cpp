@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "lumivox/measure/metrics.h"
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/reference/path_tracer.h"
 #include "lumivox/toolkit/light_samples.h"
 #include "support/scene_builder.h"

@@ -4,6 +4,7 @@
 #include <glm/gtc/packing.hpp>
 #include <random>
 
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/toolkit/light_samples.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"

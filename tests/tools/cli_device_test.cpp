@@ -1,4 +1,5 @@
 // The ceilings of the device from the command line, and how a report and the store use them.
+#include "support/drawn_page.h"
 #include "tools/cli_support.h"
 
 using namespace lumivox;
@@ -58,9 +59,9 @@ TEST_CASE(
   };
   const Json without = report("");
   CHECK(without.at("ceilings").empty());
-  const std::string page = place.read("page.html");
-  CHECK(contains(page, "<code>lumivox device</code>"));
-  const bool counted = !contains(page, "was not counted");
+  const bool draws = canDrawPages();
+  if (draws) CHECK(contains(drawnPage(place.file("page.html")).at("html"), "<code>lumivox device</code>"));
+  const bool counted = !without.at("scenes").at(0).at("points").at(0).contains("why_not_counted");
 
   REQUIRE(runCommand("lumivox -q device --repeats 2 --only float_operations --only triangles --only draws "
                      "--only image_writes_d2_rgba32f --store " +
@@ -81,6 +82,8 @@ TEST_CASE(
   }
   const Json& shade = with.at("scenes").at(0).at("points").at(0).at("passes").at(2).at("limit");
   CHECK(shade.at("work").at("image_writes_d2_rgba32f") == 24 * 16);
-  CHECK(contains(place.read("page.html"), "Limited by"));
-  CHECK(contains(place.read("page.html"), "What this device can do at most"));
+  if (!draws) return;
+  const std::string page = drawnPage(place.file("page.html")).at("text");
+  CHECK(contains(page, "Limited by"));
+  CHECK(contains(page, "What this device can do at most"));
 }

@@ -86,6 +86,50 @@ TEST_CASE("render of one output alone has it as the main layer, and a wrong name
   checkRefused(runCommand(command + " --output dirext"), "did you mean 'direct'");
 }
 
+TEST_CASE(
+    "render accumulates frames at each time; without anything that does, the picture stays to the bit") {
+  const Workplace place;
+  const std::string command = "lumivox render " + roomWith(place, "direct_lighting") + " -q -o ";
+  REQUIRE(runCommand(command + quoted(place.file("alone.exr"))).exitCode == 0);
+  REQUIRE(runCommand(command + quoted(place.file("third.exr")) + " --accumulate 3").exitCode == 0);
+  const LayeredPicture alone = readExr(place.path() / "alone.exr"),
+                       third = readExr(place.path() / "third.exr");
+  for (const auto& [name, picture] : alone.layers) CHECK(picture.values() == third.layers.at(name).values());
+  CHECK(alone.attributes.count("lumivox.accumulate") == 0);
+  CHECK(third.attributes.at("lumivox.accumulate") == "3");
+  for (const char* wrong : {"0", "-1", "2.5", "many"})
+    checkRefused(runCommand(command + quoted(place.file("x.exr")) + " --accumulate " + wrong),
+                 "--accumulate");
+  CHECK_FALSE(place.has("x.exr"));
+}
+
+TEST_CASE("render --check-reads finds nothing in techniques that say what they read") {
+  const Workplace place;
+  for (const char* pipeline : {"voxel_cone_tracing", "light_propagation_volumes"}) {
+    const CommandResult result =
+        runCommand("lumivox render " + roomWith(place, pipeline) +
+                   " -q --set resolution=16 --resolution 8x8 --frames 0..1 --check-reads -o " +
+                   quoted(place.file("f#.exr")));
+    INFO(result.errors);
+    CHECK(result.exitCode == 0);
+    CHECK(result.errors.empty());
+  }
+}
+
+TEST_CASE("the reference has layers of numbers of bounces when they are asked for") {
+  const Workplace place;
+  const std::string command = "lumivox reference " + quoted(place.scene()) +
+                              " -q --no-cache --resolution 8x8 --spp 2 --bounces 4 -o " +
+                              quoted(place.file("t.exr"));
+  REQUIRE(runCommand(command + " --bounce-layers 1,3").exitCode == 0);
+  const LayeredPicture picture = readExr(place.path() / "t.exr");
+  for (const char* layer : {"bounces_1", "bounces_3_diffuse", "bounces_3_glossy.variance"})
+    CHECK(picture.layers.count(layer) == 1);
+  CHECK(picture.layers.count("bounces_2") == 0);
+  checkRefused(runCommand(command + " --bounce-layers 5"), "a number of bounces with layers of its own is 5");
+  checkRefused(runCommand(command + " --bounce-layers one"), "--bounce-layers");
+}
+
 TEST_CASE("a frame that cannot be written ends the render with its name, and those before it are whole") {
   const Workplace place;
   std::filesystem::create_directories(place.path() / "f_1.png" / "in the way");

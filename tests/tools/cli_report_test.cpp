@@ -2,6 +2,7 @@
 #include <map>
 #include <sstream>
 
+#include "support/drawn_page.h"
 #include "support/page_check.h"
 #include "tools/cli_support.h"
 
@@ -79,7 +80,9 @@ TEST_CASE(
   const std::string page = place.read("out/page.html");
   CHECK(contains(page, "Chart.js v3"));
   CHECK(contains(page, "Little room"));
-  CHECK(contains(page, "data:image/png;base64,"));
+  const nlohmann::json pictures = pageRecords(page, "pictures").at("scenes").at(0);
+  CHECK(pictures.at("points").size() == 2);
+  CHECK(pictures.at("points").at(0).at(0).at("png").get<std::string>().rfind("iVBORw0KGgo", 0) == 0);  // PNG
   CHECK(externalLoad(page).empty());
   CHECK_FALSE(contains(page, "<link"));
 
@@ -110,9 +113,7 @@ TEST_CASE(
   CHECK(json.at("device").contains("timer_note"));
 
   // The page holds the same records.
-  const std::string start = "<script type=\"application/json\" id=\"data\">";
-  const std::size_t from = page.find(start) + start.size();
-  CHECK(nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from)) == json);
+  CHECK(pageRecords(page) == json);
 }
 
 TEST_CASE("the command of a point repeats it with the same error") {

@@ -2,7 +2,8 @@
 // store, and a point or a cell that fails costs itself alone.
 #include <algorithm>
 
-#include "lumivox/report/store.h"
+#include "lumivox/results/store.h"
+#include "support/drawn_page.h"
 #include "tools/cli_support.h"
 #include "tools/started.h"
 
@@ -88,14 +89,7 @@ TEST_CASE("a report that is killed goes on where it stopped, says so, and gives 
   // Pictures of points that were taken up are on the page: an output, a map for each truth.
   const std::string page = place.read("page.html");
   REQUIRE(place.run("report", {"slow"}, {"-o", place.file("whole.html")}).exitCode == 0);
-  const auto pictures = [](const std::string& html) {
-    std::size_t count = 0;
-    for (std::size_t at = html.find("data:image/png"); at != std::string::npos;
-         at = html.find("data:image/png", at + 1))
-      ++count;
-    return count;
-  };
-  CHECK(pictures(page) == pictures(place.read("whole.html")));
+  CHECK(pageRecords(page, "pictures") == pageRecords(place.read("whole.html"), "pictures"));
 }
 
 TEST_CASE("a report of a wrong text leaves no checkpoint") {

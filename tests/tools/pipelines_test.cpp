@@ -7,9 +7,9 @@
 
 #include "lumivox/base/file.h"
 #include "lumivox/dsl/document.h"
+#include "lumivox/experiment/reproduce.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/plugin/loader.h"
-#include "lumivox/report/reproduce.h"
 #include "support/support.h"
 
 using namespace lumivox;

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "lumivox/results/text.h"
 #include "measure_options.h"
 
 namespace lumivox::command {

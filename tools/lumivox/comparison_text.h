@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "lumivox/report/comparison.h"
+#include "lumivox/analysis/comparison.h"
 
 namespace lumivox::command {
 

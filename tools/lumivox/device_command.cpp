@@ -4,8 +4,11 @@
 #include "command.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
-#include "lumivox/report/device.h"
-#include "lumivox/report/report.h"
+#include "lumivox/experiment/report.h"
+#include "lumivox/results/json.h"
+#include "lumivox/results/store.h"
+#include "lumivox/results/text.h"
+#include "lumivox/roofline/ceilings.h"
 
 namespace lumivox::command {
 namespace {
@@ -43,7 +46,7 @@ int device(const DeviceCommand& command, const GlobalOptions& global) {
                  {"samples", info.maxSamples},
                  {"host", ceilings.front().host}}},
                {"store", file.string()},
-               {"ceilings", ceilingsJson(ceilings)}});
+               {"ceilings", toJson(ceilings)}});
     return kGood;
   }
   std::string text = textTable({{"", ""},

@@ -9,7 +9,9 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
-#include "lumivox/report/needs.h"
+#include "lumivox/experiment/needs.h"
+#include "lumivox/results/json.h"
+#include "lumivox/results/text.h"
 
 namespace lumivox::command {
 namespace {
@@ -21,57 +23,6 @@ struct ExplainCommand {
   int repeats = 5;
   bool all = false, noTimes = false, json = false;
 };
-
-Json timeAsJson(const TimingStatistics& time) {
-  if (time.repeats == 0) return nullptr;
-  return {{"median", time.median},
-          {"lower_quartile", time.lowerQuartile},
-          {"upper_quartile", time.upperQuartile},
-          {"repeats", time.repeats}};
-}
-
-Json shareAsJson(const PruningRecord& record, double share) {
-  return record.prunedMs.repeats == 0 ? Json(nullptr) : Json(share);
-}
-
-Json asJson(const PruningRecord& record) {
-  const Explanation& explanation = record.explanation;
-  Json json = {{"scene", record.scene},
-               {"pipeline", record.pipeline},
-               {"passes_kept", explanation.passesKept},
-               {"passes_total", explanation.passesTotal},
-               {"variants",
-                {{"possible", explanation.variantsPossible},
-                 {"compiled", explanation.variantsCompiled},
-                 {"needed", explanation.variantsNeeded}}},
-               {"frame_ms", timeAsJson(record.prunedMs)},
-               {"frame_ms_keep_everything", timeAsJson(record.unprunedMs)},
-               {"saved_share", shareAsJson(record, record.savedShare())},
-               {"next_frame_ms", timeAsJson(record.nextPrunedMs)},
-               {"next_frame_ms_keep_everything", timeAsJson(record.nextUnprunedMs)},
-               {"saved_share_next", shareAsJson(record, record.savedShareNext())},
-               {"bytes", record.prunedBytes},
-               {"bytes_keep_everything", record.unprunedBytes},
-               {"same_picture", record.samePicture}};
-  json["left_out"] = Json::array();
-  for (const LeftOut& one : explanation.leftOut)
-    json["left_out"].push_back({{"level", name(one.level)},
-                                {"what", one.what},
-                                {"why", one.why},
-                                {"pass", one.pass},
-                                {"saved_bytes", one.savedBytes},
-                                {"saved_ms", one.savedMs}});
-  json["passes"] = Json::array();
-  for (const std::string& pass : record.passOrder) {
-    const auto pruned = record.prunedPassMs.find(pass), unpruned = record.unprunedPassMs.find(pass);
-    json["passes"].push_back(
-        {{"pass", pass},
-         {"ms", pruned == record.prunedPassMs.end() ? Json(nullptr) : timeAsJson(pruned->second)},
-         {"ms_keep_everything",
-          unpruned == record.unprunedPassMs.end() ? Json(nullptr) : timeAsJson(unpruned->second)}});
-  }
-  return json;
-}
 
 std::string leftOutText(const Explanation& explanation) {
   std::vector<std::vector<std::string>> leftOut{{"Level", "Left out", "Memory", "ms", "Why"}};
@@ -234,7 +185,7 @@ std::string matrixText(const std::vector<NeededCell>& cells) {
 Json matrixJson(const std::vector<NeededCell>& cells) {
   Json list = Json::array();
   for (const NeededCell& cell : cells) {
-    Json json = cell.record ? asJson(*cell.record)
+    Json json = cell.record ? toJson(*cell.record)
                             : Json{{"scene", cell.scene},
                                    {"pipeline", cell.pipeline},
                                    {"absent", cell.absent},
@@ -290,7 +241,7 @@ int explain(const ExplainCommand& command, const GlobalOptions& global) {
       });
   if (one && !cells.front().record) throw Error(cells.front().absent);
   if (command.json)
-    printJson(one ? asJson(*cells.front().record) : matrixJson(cells));
+    printJson(one ? toJson(*cells.front().record) : matrixJson(cells));
   else
     print(one ? asText(*cells.front().record) : matrixText(cells));
   const bool good = std::all_of(cells.begin(), cells.end(), [](const NeededCell& cell) {

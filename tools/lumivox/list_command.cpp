@@ -7,7 +7,8 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/dsl/document.h"
-#include "lumivox/report/report.h"
+#include "lumivox/experiment/report.h"
+#include "lumivox/pipeline/pass.h"
 
 namespace lumivox::command {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/dsl/document.h"
+#include "lumivox/results/text.h"
 
 namespace lumivox::command {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "command.h"
-#include "lumivox/report/report.h"
+#include "lumivox/experiment/report.h"
 
 namespace lumivox::command {
 

@@ -3,11 +3,12 @@
 
 #include "command.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
 #include "lumivox/base/picture.h"
+#include "lumivox/experiment/report.h"
 #include "lumivox/measure/metrics.h"
 #include "lumivox/reference/path_tracer.h"
-#include "lumivox/report/report.h"
 
 namespace lumivox::command {
 namespace {
@@ -60,6 +61,13 @@ void addReferenceCommand(Commands& commands) {
       ->check(CLI::Range(2, 1 << 24));
   command->add_option("--bounces", options.bounces, "indirect bounces of the full transport (default 32)")
       ->check(CLI::Range(0, 1 << 16));
+  command
+      ->add_option(
+          "--bounce-layers", options.bounceLayers,
+          "numbers N of bounces, as 1,2,4: layers bounces_N, bounces_N_diffuse and bounces_N_glossy with "
+          "up to N of them")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1 << 16));
   command->add_option("--seed", options.seed, "of the random numbers");
   command->add_option("--time", options.time, "seconds");
   command->add_option("--camera", options.camera, "the scene's camera of this name (default: the first)");

@@ -6,10 +6,11 @@
 #include "command.h"
 #include "lumivox/base/background_writer.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
 #include "lumivox/base/picture.h"
+#include "lumivox/experiment/report.h"
 #include "lumivox/measure/metrics.h"
-#include "lumivox/report/report.h"
 
 namespace lumivox::command {
 namespace {
@@ -21,8 +22,33 @@ struct RenderCommand {
   RunOptions run;
   std::string frames, onlyOutput;
   double framesPerSecond = 24.0;
-  bool keepEverything = false, health = false;
+  int accumulate = 0;  ///< frames a picture; 0: each is made alone
+  bool keepEverything = false, health = false, checkReads = false;
 };
+
+/// The frame that is shown at one time, after the frames that it accumulates. Findings are those of all of
+/// them.
+FrameResult renderShown(const RenderCommand& command, PipelineExecutor& executor, double time, int frame,
+                        Progress& progress) {
+  std::vector<std::string> health, reads, notes;
+  const auto collect = [](std::vector<std::string>& all, std::vector<std::string>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  const int count = std::max(command.accumulate, 1);
+  for (int i = 1;; ++i) {
+    FrameResult result = executor.render(
+        time, frame, i == count ? PipelineExecutor::Pictures::yes : PipelineExecutor::Pictures::no);
+    collect(health, result.healthFindings);
+    collect(reads, result.readsFindings);
+    collect(notes, result.notes);
+    progress.advance();
+    if (i < count) continue;
+    result.healthFindings = std::move(health);
+    result.readsFindings = std::move(reads);
+    result.notes = std::move(notes);
+    return result;
+  }
+}
 
 Picture mainPicture(const RenderCommand& command, const FrameResult& frame) {
   if (command.onlyOutput.empty()) return compositePicture(frame);
@@ -63,6 +89,8 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
   RenderOptions options = command.run.renderOptions(pipeline);
   options.keepEverything = command.keepEverything;
   options.health = command.health;
+  options.accumulate = command.accumulate > 0;
+  options.checkReads = command.checkReads;
   if (!command.onlyOutput.empty()) {
     std::vector<std::string> names;
     for (const Pipeline::Output& output : pipeline.outputs) names.push_back(output.name);
@@ -82,22 +110,25 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
 
   std::size_t findings = 0;
   BackgroundWriter writer;
-  Progress progress("rendering", static_cast<std::uint64_t>(last - first + 1));
+  Progress progress("rendering", static_cast<std::uint64_t>(last - first + 1) *
+                                     static_cast<std::uint64_t>(std::max(command.accumulate, 1)));
   for (int frame = first; frame <= last; ++frame) {
     const double time = command.run.time + (animation ? frame / command.framesPerSecond : 0.0);
-    FrameResult result = executor.render(time, frame);
-    for (const std::string& finding : result.healthFindings)
-      std::cerr << (animation ? fmt::format("frame {}: ", frame) : std::string()) << finding << "\n";
-    findings += result.healthFindings.size();
+    FrameResult result = renderShown(command, executor, time, frame, progress);
+    for (const auto* found : {&result.healthFindings, &result.readsFindings}) {
+      for (const std::string& finding : *found)
+        std::cerr << (animation ? fmt::format("frame {}: ", frame) : std::string()) << finding << "\n";
+      findings += found->size();
+    }
     for (const std::string& note : result.notes) logInformation("{}", note);
     const fs::path file = animation ? numberedName(command.output, frame) : command.output;
     auto attributes = provenance(global, scene, pipeline, options, *device, time);
     if (animation) attributes["lumivox.frame"] = fmt::format("{}", frame);
+    if (command.accumulate > 0) attributes["lumivox.accumulate"] = fmt::format("{}", command.accumulate);
     logInformation("{}: {:.1f} ms", file.string(), result.frameMs);
     writer.submit([&command, file, made = std::move(result), attributes = std::move(attributes)]() mutable {
       writeFrame(command, file, std::move(made), attributes);
     });
-    progress.advance();
   }
   writer.finish();
   return findings == 0 ? kGood : kNotGood;
@@ -123,6 +154,16 @@ void addRenderCommand(Commands& commands) {
   command->add_flag("--keep-everything", options->keepEverything, "leave nothing out");
   command->add_flag("--health", options->health,
                     "scan every output of every pass for NaN, Inf and negative values");
+  command
+      ->add_option(
+          "--accumulate", options->accumulate,
+          "N: every picture is the last of N frames at its time, and every frame finds what passes left "
+          "in the one before; with --frames from picture to picture too (default: every frame alone)")
+      ->check(CLI::Range(1, 1 << 20));
+  command->add_flag(
+      "--check-reads", options->checkReads,
+      "for authors of techniques: make every frame a second time from scratch, and name passes whose "
+      "Reads, Needs or uses() leave out what they depend on");
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] { return render(*options, global); });
 }

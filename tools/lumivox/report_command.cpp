@@ -6,6 +6,8 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/page/page.h"
+#include "lumivox/results/text.h"
 #include "measure_options.h"
 
 namespace lumivox::command {
@@ -73,17 +75,17 @@ int report(const ReportCommand& command, const GlobalOptions& global) {
     options.equalTimesMs.push_back(millisecondsOf("--equal-time", text));
   for (const std::string& text : command.equalErrors)
     options.equalErrors.push_back(positiveNumberOf("--equal-error", text));
-  requireWritable(options.output);
+  const ReportFiles files = reportFiles(options.output);
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();
-  const ReportSummary summary =
-      makeReport(*device, techniques, options,
-                 [&](const std::filesystem::path& file) { return global.loadScene(file); });
+  const ReportSummary summary = makeReport(
+      *device, techniques, options, [&](const std::filesystem::path& file) { return global.loadScene(file); },
+      [&](const ReportRecord& record) { writeReport(files, record); });
   if (command.json) {
-    print(readFile(summary.json));
+    print(readFile(files.json));
   } else {
     printSummary(summary);
-    print(summary.page.string() + "\n");
+    print(files.page.string() + "\n");
   }
   const bool good = std::all_of(summary.points.begin(), summary.points.end(), [](const ReportPoint& point) {
     return point.failure.empty() && point.healthFindings.empty();

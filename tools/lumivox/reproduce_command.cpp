@@ -6,12 +6,14 @@
 #include <iostream>
 
 #include "command.h"
+#include "lumivox/analysis/judge.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
 #include "lumivox/base/picture.h"
-#include "lumivox/report/report.h"
-#include "lumivox/report/reproduce.h"
+#include "lumivox/experiment/report.h"
+#include "lumivox/experiment/reproduce.h"
+#include "lumivox/page/reproduction_page.h"
 #include "measure_options.h"
 #include "results_text.h"
 
@@ -141,7 +143,7 @@ fs::path projectFolder() {
 /// Those that were measured take the place of what the file has of them; the rest of it stays.
 void record(const fs::path& file, const std::vector<ReproducedResult>& measured) {
   std::vector<ReproducedResult> kept;
-  if (fs::exists(file)) kept = readReproductions(file);
+  if (fs::exists(file)) kept = judged(readReproductions(file));
   for (const ReproducedResult& result : measured) {
     const auto known = std::find_if(kept.begin(), kept.end(), [&](const ReproducedResult& one) {
       return one.published.id == result.published.id;
@@ -167,8 +169,8 @@ std::size_t firstDifference(const std::string& one, const std::string& other) {
 /// checking, tells where one differs.
 int writeCards(const ReproduceCommand& command) {
   const fs::path project = projectFolder(), page = project / "docs/benchmarks/reproductions.md";
-  const std::vector<ReproducedResult> results = readReproductions(
-      command.record.empty() ? project / "docs/benchmarks/reproductions.json" : command.record);
+  const std::vector<ReproducedResult> results = judged(readReproductions(
+      command.record.empty() ? project / "docs/benchmarks/reproductions.json" : command.record));
   std::vector<std::pair<fs::path, std::string>> texts{{page, reproductionsAsMarkdown(results)}};
   std::vector<fs::path> quoting;
   for (const char* folder : {"techniques", "docs"})

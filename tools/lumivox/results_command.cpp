@@ -8,12 +8,12 @@
 
 #include "command.h"
 #include "comparison_text.h"
+#include "lumivox/analysis/changes.h"
+#include "lumivox/analysis/comparison.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
-#include "lumivox/report/changes.h"
-#include "lumivox/report/comparison.h"
-#include "lumivox/report/report.h"
-#include "lumivox/report/stress_cells.h"
+#include "lumivox/experiment/report.h"
+#include "lumivox/results/stress_cells.h"
 #include "measure_options.h"
 #include "results_text.h"
 

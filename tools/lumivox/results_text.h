@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/command_line.h"
-#include "lumivox/report/store.h"
+#include "lumivox/results/store.h"
 
 namespace lumivox::command {
 

@@ -5,7 +5,7 @@
 
 #include "command.h"
 #include "lumivox/base/error.h"
-#include "lumivox/report/report.h"
+#include "lumivox/experiment/report.h"
 #include "lumivox/shader/library.h"
 
 namespace lumivox::command {

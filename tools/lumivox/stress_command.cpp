@@ -7,9 +7,11 @@
 
 #include "command.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
-#include "lumivox/report/report.h"
-#include "lumivox/report/stress_cells.h"
+#include "lumivox/experiment/report.h"
+#include "lumivox/page/stress_page.h"
+#include "lumivox/results/stress_cells.h"
 #include "lumivox/stress/stress.h"
 #include "measure_options.h"
 #include "results_text.h"

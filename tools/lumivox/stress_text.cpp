@@ -7,7 +7,7 @@
 #include <map>
 
 #include "common/command_line.h"
-#include "lumivox/report/stress_cells.h"
+#include "lumivox/results/stress_cells.h"
 
 namespace lumivox::command {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lumivox/report/store.h"
+#include "lumivox/results/store.h"
 
 namespace lumivox::command {
 

@@ -6,7 +6,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
-#include "lumivox/report/sweep.h"
+#include "lumivox/experiment/sweep.h"
 #include "measure_options.h"
 #include "results_text.h"
 

@@ -11,8 +11,10 @@
 #include "lumivox/base/log.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/dsl/schema.h"
+#include "lumivox/experiment/reproduce.h"
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/sweep_text.h"
-#include "lumivox/report/reproduce.h"
+#include "lumivox/results/reproduction.h"
 #include "lumivox/scene/text.h"
 
 namespace lumivox::command {
@@ -130,7 +132,9 @@ std::string rangeText(const ParamBase& parameter) {
 std::string inputText(const InBase& input) {
   const std::string need = unmetNeed(input.needs(), SceneTraits{});
   return fmt::format("{}{}{}", input.kind().name,
-                     input.presence() == Presence::optional ? ", may be left out" : "",
+                     input.presence() == Presence::optional  ? ", may be left out"
+                     : input.presence() == Presence::history ? ", of the frame before, may be left out"
+                                                             : "",
                      need.empty() ? "" : ", read when the scene has " + need);
 }
 
@@ -147,6 +151,9 @@ std::string meaningAfter(const std::string& meaning) {
 std::string passText(const std::string& technique, const PassEntry& entry) {
   const std::unique_ptr<Pass> pass = entry.make();
   std::string text = fmt::format("pass NAME {}.{}\n  {}\n", technique, entry.name, entry.meaning);
+  if (pass->indirectBounces() != 1)
+    text += fmt::format("  models {} bounces of indirect light\n", pass->indirectBounces());
+  if (pass->worksOnHost()) text += "  works on the host\n";
   const auto section = [&](const char* title, const auto& members, const auto& line) {
     if (members.empty()) return;
     text += fmt::format("  {}\n", title);

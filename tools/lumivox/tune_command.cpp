@@ -3,7 +3,8 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
-#include "lumivox/report/tune.h"
+#include "lumivox/experiment/tune.h"
+#include "lumivox/results/text.h"
 #include "measure_options.h"
 
 namespace lumivox::command {

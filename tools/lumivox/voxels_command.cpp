@@ -4,10 +4,13 @@
 #include <charconv>
 
 #include "command.h"
+#include "lumivox/analysis/scaling.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
-#include "lumivox/report/report.h"
-#include "lumivox/report/voxelisers.h"
+#include "lumivox/experiment/report.h"
+#include "lumivox/experiment/voxelisers.h"
+#include "lumivox/page/voxel_page.h"
+#include "lumivox/results/text.h"
 
 namespace lumivox::command {
 namespace {

@@ -8,7 +8,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
-#include "lumivox/report/report.h"
+#include "lumivox/experiment/report.h"
 #include "vdbexport/difference.h"
 #include "vdbexport/export.h"
 #include "vdbexport/vdb_file.h"

@@ -33,4 +33,23 @@ Reads whatChanged(const Scene& scene, const SceneSnapshot& before, const SceneSn
   return changed;
 }
 
+Reads whatChanged(const Scene& before, const Scene& after) {
+  Reads changed = Reads::nothing;
+  const bool geometry = before.positions != after.positions || before.normals != after.normals ||
+                        before.texcoords != after.texcoords || before.indices != after.indices ||
+                        before.objects != after.objects;
+  const bool materials = before.materials != after.materials || before.textures != after.textures;
+  if (geometry) changed = changed | Reads::geometry;
+  // Which part has which material is said by the objects.
+  if (materials || before.objects != after.objects) changed = changed | Reads::materials;
+  const auto emits = [](const Scene& scene) {
+    return std::any_of(scene.materials.begin(), scene.materials.end(),
+                       [](const Material& material) { return material.emissive(); });
+  };
+  if ((geometry || materials) && (emits(before) || emits(after))) changed = changed | Reads::lights;
+  if (before.environment != after.environment) changed = changed | Reads::environment;
+  if (before.media != after.media) changed = changed | Reads::media;
+  return changed;
+}
+
 }  // namespace lumivox

@@ -10,12 +10,13 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
+#include "pipeline/prune.h"
 
 namespace lumivox {
 
 GpuScene& FrameContext::scene() {
   if (!gpuScene_) {
-    gpuScene_.emplace(device_, scene_);
+    gpuScene_.emplace(device_, *scene_);
     gpuScene_->update(snapshot_);
   }
   return *gpuScene_;
@@ -71,8 +72,43 @@ void FrameContext::note(const std::string& text) {
   if (inspects_) notes_.push_back("pass " + passName_ + ": " + text);
 }
 
-void FrameContext::reused(const std::string& what, const std::string& why) {
-  reusedParts_.insert({passName_, what, why});
+PassContext::Kept& FrameContext::keptEntry(const std::string& what) {
+  return memory_.kept(passName_, what);
+}
+
+void FrameContext::tellReused(const std::string& what) {
+  reusedParts_.insert({passName_, what});
+}
+
+void FrameContext::requireHistory(const char* called) const {
+  if (pass_ != nullptr && !reads(readsOf(*pass_), Reads::history))
+    throw Error(fmt::format("it calls {}, but its readsFrom() does not return Reads::history", called));
+}
+
+History<gpu::TextureRef> FrameContext::history(const gpu::TextureDescription& description,
+                                               const std::string& label) {
+  requireHistory("history()");
+  gpu::TextureRef current = texture(description, label);
+  return accumulates_ ? memory_.history(passName_, label, std::move(current))
+                      : History<gpu::TextureRef>{nullptr, std::move(current)};
+}
+
+History<gpu::BufferRef> FrameContext::history(std::uint64_t sizeBytes, const std::string& label) {
+  requireHistory("history()");
+  gpu::BufferRef current = buffer(sizeBytes, label);
+  return accumulates_ ? memory_.history(passName_, label, std::move(current))
+                      : History<gpu::BufferRef>{nullptr, std::move(current)};
+}
+
+int FrameContext::accumulated() const {
+  requireHistory("accumulated()");
+  return accumulated_;
+}
+
+void FrameContext::setScene(const Scene& scene, bool uploads) {
+  scene_ = &scene;
+  traits_ = keepsEverything_ ? SceneTraits::everything() : SceneTraits::of(scene);
+  if (uploads) gpuScene_.reset();
 }
 
 void FrameContext::setFrame(SceneSnapshot snapshot, int frameIndex, bool geometryChanged) {
@@ -82,14 +118,18 @@ void FrameContext::setFrame(SceneSnapshot snapshot, int frameIndex, bool geometr
   if (gpuScene_ && geometryChanged) gpuScene_->update(snapshot_);
 }
 
-gpu::Device::Elapsed FrameContext::run(Pass& pass, const std::string& name, bool fenced) {
+gpu::Device::Elapsed FrameContext::run(Pass& pass, const std::string& name, bool fenced, int accumulated) {
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   };
   passName_ = name;
+  pass_ = &pass;
+  accumulated_ = accumulated;
   bytesOfRun_ = 0;
   lastResource_.clear();
+  memory_.beginRun(name);
+  if (keepsEverything_) memory_.forgetKept(name);
   gpu::Device::Elapsed elapsed{0.0, 0.0};
   std::exception_ptr failure;
   if (fenced) device_.finish();
@@ -111,6 +151,8 @@ gpu::Device::Elapsed FrameContext::run(Pass& pass, const std::string& name, bool
     if (!failure) failure = std::current_exception();
   }
   if (fenced) elapsed.deviceMs = since(start);
+  pass_ = nullptr;
+  memory_.endRun(name);
   if (!failure) return elapsed;
   // The one place that names the pass in an error.
   try {

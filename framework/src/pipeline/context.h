@@ -10,6 +10,7 @@
 
 #include "lumivox/pipeline/gpu_scene.h"
 #include "lumivox/pipeline/pass.h"
+#include "pipeline/pass_memory.h"
 #include "pipeline/pool.h"
 
 namespace lumivox {
@@ -18,7 +19,7 @@ class FrameContext : public PassContext {
  public:
   FrameContext(gpu::Device& device, const Scene& scene, bool keepsEverything)
       : device_(device),
-        scene_(scene),
+        scene_(&scene),
         keepsEverything_(keepsEverything),
         traits_(keepsEverything ? SceneTraits::everything() : SceneTraits::of(scene)),
         shaders_(device),
@@ -27,7 +28,7 @@ class FrameContext : public PassContext {
   gpu::Device& device() override { return device_; }
   shader::ShaderLibrary& shaders() override { return shaders_; }
   GpuScene& scene() override;
-  const Scene& sceneDescription() const override { return scene_; }
+  const Scene& sceneDescription() const override { return *scene_; }
   const SceneSnapshot& snapshot() const override { return snapshot_; }
   const SceneTraits& traits() const override { return traits_; }
   bool keepsEverything() const override { return keepsEverything_; }
@@ -37,50 +38,65 @@ class FrameContext : public PassContext {
   gpu::BufferRef buffer(std::uint64_t sizeBytes, const std::string& label) override;
   void judgeLater(gpu::BufferRef counts, std::uint64_t offsetBytes, CountJudge judge) override;
   void warn(const std::string& text) override;
-  bool startsAfresh() const override { return keepsEverything_ || afresh_; }
-  void reused(const std::string& what, const std::string& why) override;
+  History<gpu::TextureRef> history(const gpu::TextureDescription& description,
+                                   const std::string& label) override;
+  History<gpu::BufferRef> history(std::uint64_t sizeBytes, const std::string& label) override;
+  int accumulated() const override;
   bool inspects() const override { return inspects_; }
   void note(const std::string& text) override;
 
   ResourcePool& pool() { return pool_; }
+  PassMemory& memory() { return memory_; }
+  /// Another scene from now on. `uploads`: what the device has of the old one is of no use.
+  void setScene(const Scene& scene, bool uploads);
   void setSeed(std::uint64_t seed) { seed_ = seed; }
   /// The device's copy of the scene follows when `geometryChanged`.
   void setFrame(SceneSnapshot snapshot, int frameIndex, bool geometryChanged);
-  void setAfresh(bool afresh) { afresh_ = afresh; }
+  /// Whether histories are carried from frame to frame.
+  void setAccumulates(bool accumulates) { accumulates_ = accumulates; }
   void setInspects(bool inspects) { inspects_ = inspects; }
   /// What passes told about themselves since the last call, each with its pass's name.
   std::vector<std::string> takeNotes() { return std::exchange(notes_, {}); }
-  /// Parts of passes that were taken over from earlier frames, by pass, and why.
+  /// Parts of passes that were taken over from earlier frames, by pass.
   struct Reused {
-    std::string pass, what, why;
+    std::string pass, what;
     auto operator<=>(const Reused&) const = default;
   };
   const std::set<Reused>& reusedParts() const { return reusedParts_; }
 
   /// Runs one pass under its name: driver errors and errors of the pass carry it, once. `fenced`: waits for
   /// the device before and after, and takes the time between as the device's; without it that is 0.
-  gpu::Device::Elapsed run(Pass& pass, const std::string& name, bool fenced = false);
+  /// `accumulated`: what the pass is told under this name.
+  gpu::Device::Elapsed run(Pass& pass, const std::string& name, bool fenced = false, int accumulated = 0);
   /// Whether a pass of the frame has left a count to be judged.
   bool hasCounts() const { return !judgements_.empty(); }
   /// Once the device is idle: has the counts of the frame judged. False when a pass had too little room, so
-  /// that the frame has to be rendered again with setAfresh(true). Error when that does not help.
+  /// that the frame has to be rendered again, with nothing that was kept. Error when that does not help.
   bool allHadRoom();
   /// Bytes that the last run asked the pool for.
   std::uint64_t bytesOfRun() const { return bytesOfRun_; }
 
  private:
+  Kept& keptEntry(const std::string& what) override;
+  void tellReused(const std::string& what) override;
+  /// Error for a pass that did not say that it reads what earlier frames left.
+  void requireHistory(const char* called) const;
+
   gpu::Device& device_;
-  const Scene& scene_;
+  const Scene* scene_;
   bool keepsEverything_;
   SceneTraits traits_;
   shader::ShaderLibrary shaders_;
   ResourcePool pool_;
+  PassMemory memory_;
   std::optional<GpuScene> gpuScene_;
   SceneSnapshot snapshot_;
   int frameIndex_ = 0;
   std::uint64_t seed_ = 1, bytesOfRun_ = 0;
   std::string passName_, lastResource_;  ///< lastResource_: label, as this run asked the pool for it
-  bool afresh_ = true, inspects_ = false;
+  const Pass* pass_ = nullptr;           ///< that runs
+  int accumulated_ = 0;
+  bool accumulates_ = false, inspects_ = false;
   struct Judgement {
     std::string pass;
     gpu::BufferRef counts;

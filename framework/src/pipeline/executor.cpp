@@ -2,18 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
-#include <map>
-#include <optional>
 
 #include "lumivox/base/error.h"
 #include "pipeline/changes.h"
-#include "pipeline/context.h"
+#include "pipeline/executor_state.h"
 #include "pipeline/explain.h"
-#include "pipeline/graph.h"
 #include "pipeline/health.h"
-#include "pipeline/prune.h"
 #include "pipeline/text_values.h"
 
 namespace lumivox {
@@ -26,65 +21,32 @@ double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// Black of the size of the frame, for an output that was left out.
-Picture neutralPicture(const SceneSnapshot& snapshot, Contributes component) {
-  return {snapshot.camera.width, snapshot.camera.height, component == Contributes::ambientOcclusion ? 1 : 3};
+/// Per pass: the most bounces that it or a pass before it models.
+std::vector<int> bouncesOf(const BoundGraph& graph) {
+  std::vector<int> bounces(graph.passes.size(), 0);
+  for (const int position : graph.order) {
+    const auto index = static_cast<std::size_t>(position);
+    bounces[index] = graph.passes[index].object->indirectBounces();
+    for (const OutputIndex source : graph.passes[index].sources)
+      if (source.valid())
+        bounces[index] = std::max(bounces[index], bounces[static_cast<std::size_t>(source.pass)]);
+  }
+  return bounces;
 }
 
 }  // namespace
-
-struct PipelineExecutor::State {
-  gpu::Device& device;
-  TechniqueSource& techniques;
-  const Scene& scene;
-  Pipeline pipeline;
-  RenderOptions options;
-  BoundGraph graph;
-  PruneRequest request;
-  std::vector<std::string> outputNames;
-  FrameContext context;
-
-  std::optional<PrunePlan> plan;      ///< made when the first frame or an explanation asks for it
-  std::optional<SceneSnapshot> last;  ///< of the last frame
-  bool freesUnused = true;            ///< resources that a frame did not use
-  bool complete = false;              ///< the last frame's results are there; otherwise every pass runs
-  std::optional<int> lastFrameIndex;
-  std::map<int, PassRecord> lastRun;     ///< per pass, from the last time that it ran
-  std::map<std::string, double> lastMs;  ///< device time of passes, from the last time that it was measured
-  std::map<std::size_t, std::vector<float>> lastOfCamera;  ///< Pass::readsOfCamera(), the same
-  gpu::PassTimers timers;
-  /// Passes of the frames whose times are not read yet, and of those whose are and that nobody took.
-  std::vector<std::vector<PassRecord>> awaited, timed;
-
-  State(gpu::Device& gpuDevice, TechniqueSource& source, const Scene& sceneToRender, const Pipeline& text,
-        const RenderOptions& renderOptions);
-  const PrunePlan& planned();
-  std::vector<bool> passesToRun(Reads changed, const SceneSnapshot& snapshot);
-  bool readsWhatChanged(std::size_t pass, Reads changed, const SceneSnapshot& snapshot) const;
-  /// How the passes of a frame are timed: not at all, by waiting around each, or by the device's time stamps.
-  enum class Instrument { none, fence, stamps };
-  Instrument instrumentOf(Timing timing) const;
-  void keepTimes(std::vector<PassRecord> passes);
-  void readTimes(const std::vector<gpu::PassTimers::Frame>& frames);
-  void runPass(std::size_t index, Instrument instrument, FrameResult& result);
-  /// Before a frame, the snapshot of its time included: what its time starts from.
-  Clock::time_point startFrame(Instrument instrument);
-  FrameResult frame(SceneSnapshot snapshot, int frameIndex, Pictures pictures, Timing timing,
-                    Clock::time_point start);
-  void collectPictures(FrameResult& result, Pictures pictures);
-};
 
 PipelineExecutor::State::State(gpu::Device& gpuDevice, TechniqueSource& source, const Scene& sceneToRender,
                                const Pipeline& text, const RenderOptions& renderOptions)
     : device(gpuDevice),
       techniques(source),
-      scene(sceneToRender),
+      scene(&sceneToRender),
       pipeline(text),
       options(renderOptions),
       graph(bindPipeline(pipeline, source, renderOptions.parameters)),
       context(gpuDevice, sceneToRender, renderOptions.keepEverything),
       timers(gpuDevice) {
-  scene.camera(options.camera);
+  scene->camera(options.camera);
   for (const BoundOutput& output : graph.outputs) outputNames.push_back(output.name);
   for (const std::string& wanted : options.wanted) {
     if (std::find(outputNames.begin(), outputNames.end(), wanted) != outputNames.end()) continue;
@@ -94,8 +56,10 @@ PipelineExecutor::State::State(gpu::Device& gpuDevice, TechniqueSource& source, 
                             nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
   }
   request.traits = context.traits();
+  sceneTraits = SceneTraits::of(*scene);
   request.keepEverything = options.keepEverything;
   request.interactive = options.interactive;
+  request.accumulate = options.accumulate;
   for (const std::string& output : outputNames) {
     const bool named =
         std::find(options.wanted.begin(), options.wanted.end(), output) != options.wanted.end();
@@ -107,41 +71,101 @@ PipelineExecutor::State::State(gpu::Device& gpuDevice, TechniqueSource& source, 
   }
   context.setSeed(options.seed);
   context.setInspects(options.health);
+  context.setAccumulates(options.accumulate);
   if (options.countWork) context.shaders().countWork();
+  if (options.checkReads) {
+    RenderOptions plain = options;
+    plain.checkReads = plain.health = plain.countWork = false;
+    scratch = std::make_unique<PipelineExecutor>(device, techniques, *scene, pipeline, plain);
+    plain.keepEverything = true;
+    whole = std::make_unique<PipelineExecutor>(device, techniques, *scene, pipeline, plain);
+    keepsOutputs = scratch->state_->keepsOutputs = true;
+  }
 }
+
+namespace {
+
+/// Whether a pass sees other inputs, or is asked for other outputs, with another plan.
+bool plannedOtherwise(const BoundPass& bound, std::size_t pass, const PrunePlan& before,
+                      const PrunePlan& after) {
+  const PassPlan &a = before.passes[pass], &b = after.passes[pass];
+  if (a.kept != b.kept) return true;
+  for (std::size_t port = 0; port < b.outputs.size(); ++port)
+    if (a.outputs[port].wanted != b.outputs[port].wanted) return true;
+  return std::any_of(bound.sources.begin(), bound.sources.end(), [&](const OutputIndex source) {
+    return source.valid() && before.output(source).wanted != after.output(source).wanted;
+  });
+}
+
+}  // namespace
 
 const PrunePlan& PipelineExecutor::State::planned() {
   if (plan) return *plan;
   plan = prune(graph, request);
+  mustRun.resize(graph.passes.size(), false);
   for (std::size_t pass = 0; pass < graph.passes.size(); ++pass) {
     const auto& outputs = graph.passes[pass].object->outputs();
-    for (std::size_t port = 0; port < outputs.size(); ++port)
-      outputs[port]->wanted_ = plan->passes[pass].outputs[port].wanted;
+    for (std::size_t port = 0; port < outputs.size(); ++port) {
+      OutputPlan& output = plan->passes[pass].outputs[port];
+      outputs[port]->wanted_ = output.wanted;
+      if (!output.wanted) outputs[port]->reset();
+      output.keep = output.keep || (keepsOutputs && output.wanted);
+    }
+    if (!plan->passes[pass].kept) context.memory().forgetKept(graph.passes[pass].name);
+    if (earlierPlan && plannedOtherwise(graph.passes[pass], pass, *earlierPlan, *plan)) mustRun[pass] = true;
   }
-  complete = false;
+  if (!earlierPlan) complete = false;
+  earlierPlan.reset();
   return *plan;
+}
+
+void PipelineExecutor::State::forgetPlan() {
+  plan.reset();
+  earlierPlan.reset();
+  complete = false;
+  emptyHistories();
+}
+
+Reads PipelineExecutor::State::changesSince(const SceneSnapshot& snapshot, int frameIndex) const {
+  Reads changed = announced;
+  changed = changed | (last ? whatChanged(*scene, *last, snapshot) : ~Reads::history);
+  if (lastFrameIndex && *lastFrameIndex != frameIndex) changed = changed | Reads::time;
+  return options.accumulate ? changed | Reads::history : changed;
 }
 
 bool PipelineExecutor::State::readsWhatChanged(std::size_t pass, Reads changed,
                                                const SceneSnapshot& snapshot) const {
   const Pass& object = *graph.passes[pass].object;
-  const Reads read = object.readsFrom();
-  if ((static_cast<std::uint32_t>(read) & static_cast<std::uint32_t>(changed)) != 0) return true;
+  const Reads read = readsOf(object);
+  if (reads(read, changed & ~Reads::partOfCamera)) return true;
   if (!reads(read, Reads::partOfCamera) || !reads(changed, Reads::camera)) return false;
   const auto before = lastOfCamera.find(pass);
   return before == lastOfCamera.end() || object.readsOfCamera(snapshot) != before->second;
 }
 
+namespace {
+
+/// Connected outputs that are read in the frame that made them.
+std::vector<OutputIndex> sourcesNow(const BoundPass& pass) {
+  std::vector<OutputIndex> result;
+  for (std::size_t i = 0; i < pass.sources.size(); ++i)
+    if (pass.sources[i].valid() && pass.object->inputs()[i]->presence() != Presence::history)
+      result.push_back(pass.sources[i]);
+  return result;
+}
+
+}  // namespace
+
 /// Per pass of the graph. A pass runs when something that it reads changed, when a source of it did, or when
 /// a value that such a pass needs was given back meanwhile.
-std::vector<bool> PipelineExecutor::State::passesToRun(Reads changed, const SceneSnapshot& snapshot) {
+std::vector<bool> PipelineExecutor::State::passesToRun(Reads changed, const SceneSnapshot& snapshot) const {
   const bool all = !complete || options.keepEverything;
   std::vector<bool> runs(graph.passes.size(), false);
   for (const int position : plan->order) {
     const auto index = static_cast<std::size_t>(position);
-    runs[index] = all || readsWhatChanged(index, changed, snapshot);
-    for (const OutputIndex source : graph.passes[index].sources) {
-      if (source.valid() && runs[static_cast<std::size_t>(source.pass)]) runs[index] = true;
+    runs[index] = all || mustRun[index] || readsWhatChanged(index, changed, snapshot);
+    for (const OutputIndex source : sourcesNow(graph.passes[index])) {
+      if (runs[static_cast<std::size_t>(source.pass)]) runs[index] = true;
     }
   }
   // From here on a pass may be added without running its readers: the same inputs give the same values again.
@@ -153,8 +177,8 @@ std::vector<bool> PipelineExecutor::State::passesToRun(Reads changed, const Scen
   }
   for (auto index = plan->order.rbegin(); index != plan->order.rend(); ++index) {
     if (!runs[static_cast<std::size_t>(*index)]) continue;
-    for (const OutputIndex source : graph.passes[static_cast<std::size_t>(*index)].sources) {
-      if (source.valid() && plan->output(source).wanted && !graph.output(source).hasValue()) {
+    for (const OutputIndex source : sourcesNow(graph.passes[static_cast<std::size_t>(*index)])) {
+      if (plan->output(source).wanted && !graph.output(source).hasValue()) {
         runs[static_cast<std::size_t>(source.pass)] = true;
       }
     }
@@ -167,7 +191,7 @@ PipelineExecutor::State::Instrument PipelineExecutor::State::instrumentOf(Timing
   return device.info().timerQueriesTrusted ? Instrument::stamps : Instrument::fence;
 }
 
-Clock::time_point PipelineExecutor::State::startFrame(Instrument instrument) {
+PipelineExecutor::State::Clock::time_point PipelineExecutor::State::startFrame(Instrument instrument) {
   // Frames whose passes the device times follow each other without a gap, so that it never waits for the
   // host.
   if (instrument != Instrument::stamps) device.finish();
@@ -188,7 +212,7 @@ void PipelineExecutor::State::readTimes(const std::vector<gpu::PassTimers::Frame
     awaited.erase(awaited.begin());
     auto time = frame.begin();
     for (PassRecord& pass : passes) {
-      if (pass.ran) pass.deviceMs = *time++;
+      if (pass.ran && !pass.onHost) pass.deviceMs = *time++;
     }
     keepTimes(std::move(passes));
   }
@@ -198,10 +222,13 @@ void PipelineExecutor::State::runPass(std::size_t index, Instrument instrument, 
   const BoundPass& bound = graph.passes[index];
   PassRecord record{bound.name, bound.technique, bound.pass};
   if (options.countWork) context.shaders().takeWork();  // what was done between the passes
-  if (instrument == Instrument::stamps) timers.begin();
+  record.onHost = bound.object->worksOnHost();
+  const bool stamped = instrument == Instrument::stamps && !record.onHost;
+  const bool fenced = instrument != Instrument::none && !stamped;
+  if (stamped) timers.begin();
   const gpu::Device::Elapsed elapsed =
-      context.run(*bound.object, bound.name, instrument == Instrument::fence);
-  if (instrument == Instrument::stamps) timers.end();
+      context.run(*bound.object, bound.name, fenced, stillFrames.empty() ? 0 : stillFrames[index]);
+  if (stamped) timers.end();
   if (options.countWork) record.work = context.shaders().takeWork();
   record.hostMs = elapsed.hostMs;
   record.deviceMs = elapsed.deviceMs;
@@ -224,17 +251,41 @@ void PipelineExecutor::State::runPass(std::size_t index, Instrument instrument, 
 FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameIndex, Pictures pictures,
                                            Timing timing, Clock::time_point start) {
   planned();
-  const Instrument instrument = instrumentOf(timing);
-  if (instrument == Instrument::stamps) timers.beginFrame();
-  FrameResult result;
-  Reads changed = last ? whatChanged(scene, *last, snapshot) : Reads::geometry;
-  if (lastFrameIndex && *lastFrameIndex != frameIndex) changed = changed | Reads::time;
-  const std::vector<bool> runs = passesToRun(changed, snapshot);
-  context.pool().beginFrame();
-  context.setFrame(snapshot, frameIndex, reads(changed, Reads::geometry));
-  context.setAfresh(!complete);
+  const Reads changed = changesSince(snapshot, frameIndex);
+  const bool otherSize =
+      last && (last->camera.width != snapshot.camera.width || last->camera.height != snapshot.camera.height);
+  if (interrupted || otherSize) emptyHistories();
+  countStillFrames(changed, snapshot);
+  announced = Reads::nothing;
   last = std::move(snapshot);
   lastFrameIndex = frameIndex;
+  interrupted = true;  // until the frame is done
+
+  const Instrument instrument = instrumentOf(timing);
+  std::optional<FrameResult> result = attempt(changed, instrument, start);
+  // What was rendered lacks something: nothing of it is kept, and the frame's time is that of all attempts.
+  while (!result) result = attempt(Reads::nothing, instrument, start);
+  if (timing == Timing::passes) result->frameMs = std::numeric_limits<double>::quiet_NaN();
+  if (options.accumulate) holdHistories();
+  complete = true;
+  interrupted = false;
+  mustRun.assign(graph.passes.size(), false);
+  if (instrument == Instrument::fence) keepTimes(result->passes);
+  if (instrument == Instrument::stamps) readTimes(timers.take());
+  if (options.checkReads) checkReads(*result);
+  collectPictures(*result, pictures);
+  return *std::move(result);
+}
+
+std::optional<FrameResult> PipelineExecutor::State::attempt(Reads changed, Instrument instrument,
+                                                            Clock::time_point start) {
+  if (instrument == Instrument::stamps) timers.beginFrame();
+  FrameResult result;
+  const std::vector<bool> runs = passesToRun(changed, *last);
+  context.pool().beginFrame();
+  context.setFrame(*last, *lastFrameIndex, reads(changed, Reads::geometry));
+  context.memory().abandonFrame();
+  if (!complete) context.memory().forgetKept();
   // Until the frame is done, an error leaves nothing that a later frame could take for current.
   complete = false;
   for (const int index : plan->order) {
@@ -262,8 +313,7 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
       record.bytes = lastRun[static_cast<int>(index)].bytes;
       result.passes.push_back(std::move(record));
     }
-    for (const OutputIndex source : bound.sources) {
-      if (!source.valid()) continue;
+    for (const OutputIndex source : sourcesNow(bound)) {
       const OutputPlan& output = plan->output(source);
       if (!output.keep && output.lastReader == static_cast<int>(position)) graph.output(source).reset();
     }
@@ -272,30 +322,19 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
   // Counts are read when the device is idle; without any, frames that are stamped follow each other without a
   // gap.
   if (instrument != Instrument::stamps || context.hasCounts()) device.finish();
-  if (!context.allHadRoom()) {
-    // What was rendered lacks something: nothing of it is kept, and the frame's time is that of both
-    // attempts.
-    context.takeNotes();
-    context.pool().endFrame();
-    if (instrument == Instrument::stamps) {
-      timers.endFrame();
-      awaited.push_back(result.passes);
-    }
-    return frame(SceneSnapshot(*last), frameIndex, pictures, timing, start);
-  }
-  result.frameMs =
-      timing == Timing::frame ? millisecondsSince(start) - scanMs : std::numeric_limits<double>::quiet_NaN();
-  result.peakBytes = device.peakBytes();
-  result.notes = context.takeNotes();
-  if (freesUnused) context.pool().endFrame();
-  complete = true;
-  if (instrument == Instrument::fence) keepTimes(result.passes);
+  const bool enough = context.allHadRoom();
   if (instrument == Instrument::stamps) {
     timers.endFrame();
     awaited.push_back(result.passes);
-    readTimes(timers.take());
   }
-  collectPictures(result, pictures);
+  result.notes = context.takeNotes();
+  if (!enough) {
+    context.pool().endFrame();
+    return std::nullopt;
+  }
+  result.frameMs = millisecondsSince(start) - scanMs;
+  result.peakBytes = device.peakBytes();
+  if (freesUnused) context.pool().endFrame();
   return result;
 }
 
@@ -303,14 +342,17 @@ void PipelineExecutor::State::collectPictures(FrameResult& result, Pictures pict
   if (pictures == Pictures::yes && graph.outputs.empty() && request.forced.empty())
     throw Error(
         fmt::format("pipeline \"{}\" makes no picture; expected output NAME pass.port", pipeline.name));
+  const std::vector<int> bounces = bouncesOf(graph);
   for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
     if (!request.wanted[i]) continue;
     const BoundOutput& bound = graph.outputs[i];
     const OutBase& output = graph.output(bound.source);
     result.components[bound.name] = output.contributes();
+    result.indirectBounces[bound.name] = bounces[static_cast<std::size_t>(bound.source.pass)];
     if (pictures == Pictures::no) continue;
     if (!output.hasValue()) {
-      result.outputs[bound.name] = neutralPicture(*last, output.contributes());
+      result.outputs[bound.name] =
+          neutralPicture(last->camera.width, last->camera.height, output.contributes());
       continue;
     }
     const std::vector<gpu::TextureRef> textures = output.textures();
@@ -322,8 +364,7 @@ void PipelineExecutor::State::collectPictures(FrameResult& result, Pictures pict
           "output '{}' of pipeline \"{}\": {} has {} x {} texels; expected {} x {}, the picture's size",
           bound.name, pipeline.name, graph.outputText(bound.source), size.width, size.height,
           last->camera.width, last->camera.height));
-    result.outputs[bound.name] =
-        pictureOf(*textures.front(), output.contributes() == Contributes::ambientOcclusion ? 1 : 3);
+    result.outputs[bound.name] = pictureOf(*textures.front(), channelsOf(output.contributes()));
   }
 }
 
@@ -338,7 +379,7 @@ PipelineExecutor::~PipelineExecutor() = default;
 FrameResult PipelineExecutor::render(double time, int frameIndex, Pictures pictures, Timing timing) {
   State& s = *state_;
   const auto start = s.startFrame(s.instrumentOf(timing));
-  return s.frame(snapshotOf(s.scene, time, s.options.camera, s.options.width, s.options.height), frameIndex,
+  return s.frame(snapshotOf(*s.scene, time, s.options.camera, s.options.width, s.options.height), frameIndex,
                  pictures, timing, start);
 }
 
@@ -359,6 +400,27 @@ std::vector<std::vector<PassRecord>> PipelineExecutor::timedPasses() {
 
 void PipelineExecutor::invalidate() {
   state_->complete = false;
+}
+
+void PipelineExecutor::emptyHistories() {
+  state_->emptyHistories();
+}
+
+void PipelineExecutor::setParameters(const ParameterValues& values) {
+  state_->setParameters(values);
+}
+
+void PipelineExecutor::setSeed(std::uint64_t seed) {
+  State& s = *state_;
+  if (seed == std::exchange(s.options.seed, seed)) return;
+  s.context.setSeed(seed);
+  s.complete = false;
+  s.emptyHistories();
+  s.forEachCheck([&](PipelineExecutor& check) { check.setSeed(seed); });
+}
+
+void PipelineExecutor::setScene(const Scene& scene) {
+  state_->setScene(scene);
 }
 
 Explanation PipelineExecutor::explain() const {
@@ -391,7 +453,7 @@ shader::ShaderLibrary& PipelineExecutor::shaders() {
 
 void PipelineExecutor::keepOutput(const std::string& pass, const std::string& port) {
   state_->request.forced.push_back(state_->graph.find(pass, port));
-  state_->plan.reset();
+  state_->forgetPlan();
 }
 
 void PipelineExecutor::keepOnly(const std::string& pass, const std::string& port) {
@@ -399,7 +461,7 @@ void PipelineExecutor::keepOnly(const std::string& pass, const std::string& port
   s.request.forced = {s.graph.find(pass, port)};
   for (const BoundPass& bound : s.graph.passes)
     for (OutBase* output : bound.object->outputs()) output->reset();
-  s.plan.reset();
+  s.forgetPlan();
 }
 
 void PipelineExecutor::freeUnused(bool free) {

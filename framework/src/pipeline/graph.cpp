@@ -57,11 +57,7 @@ class Binder {
     bindOutputs();
     schedule();
     throwOrLog(std::move(findings_));
-    for (BoundPass& pass : graph_.passes) {
-      for (std::size_t i = 0; i < pass.sources.size(); ++i) {
-        if (pass.sources[i].valid()) pass.object->inputs()[i]->connect(&graph_.output(pass.sources[i]));
-      }
-    }
+    connectInputs(graph_);
     return std::move(graph_);
   }
 
@@ -368,15 +364,24 @@ class Binder {
 
   // ---- order ---------------------------------------------------------------------------------------------
 
+  /// The sources of a pass in the same frame: a history is there before the frame begins.
+  std::vector<std::size_t> sourcesBefore(std::size_t index) const {
+    std::vector<std::size_t> result;
+    const BoundPass& bound = graph_.passes[index];
+    for (std::size_t i = 0; i < bound.sources.size(); ++i) {
+      if (bound.sources[i].valid() && bound.object->inputs()[i]->presence() != Presence::history)
+        result.push_back(static_cast<std::size_t>(bound.sources[i].pass));
+    }
+    return result;
+  }
+
   /// Sources before readers; of passes that may run, the first in the text. What is left over feeds itself.
   void schedule() {
     const std::size_t count = graph_.passes.size();
     std::vector<bool> done(count, false);
     const auto ready = [&](std::size_t index) {
-      for (const OutputIndex& source : graph_.passes[index].sources) {
-        if (source.valid() && !done[static_cast<std::size_t>(source.pass)]) return false;
-      }
-      return true;
+      const std::vector<std::size_t> sources = sourcesBefore(index);
+      return std::all_of(sources.begin(), sources.end(), [&](std::size_t source) { return done[source]; });
     };
     for (bool progress = true; progress;) {
       progress = false;
@@ -399,11 +404,10 @@ class Binder {
     std::size_t at = start;
     while (std::find(path.begin(), path.end(), at) == path.end()) {
       path.push_back(at);
-      for (const OutputIndex& source : graph_.passes[at].sources) {
-        if (source.valid() && !done[static_cast<std::size_t>(source.pass)]) {
-          at = static_cast<std::size_t>(source.pass);
-          break;
-        }
+      for (const std::size_t source : sourcesBefore(at)) {
+        if (done[source]) continue;
+        at = source;
+        break;
       }
     }
     const auto first = std::find(path.begin(), path.end(), at);
@@ -418,7 +422,7 @@ class Binder {
     for (const std::size_t pass : cycle) text += graph_.passes[pass].name + " -> ";
     text += graph_.passes[cycle.front()].name;
     report(pipeline_.passes[cycle.front()], "passes feed each other in a circle: " + text,
-           "an order in which they can run");
+           "an order in which they can run; only an input that is a history may lead back");
   }
 
   const Pipeline& pipeline_;
@@ -464,6 +468,14 @@ MissingTechnique explainMissing(const TechniqueSource& techniques, const std::st
   const std::vector<std::string> available = techniques.available();
   return {fmt::format("unknown technique '{}'", name),
           oneOf(available, "a technique, but no technique library was found"), nearestWord(name, available)};
+}
+
+void connectInputs(BoundGraph& graph) {
+  for (BoundPass& pass : graph.passes) {
+    for (std::size_t i = 0; i < pass.sources.size(); ++i) {
+      if (pass.sources[i].valid()) pass.object->inputs()[i]->connect(&graph.output(pass.sources[i]));
+    }
+  }
 }
 
 BoundGraph bindPipeline(const Pipeline& pipeline, TechniqueSource& techniques,

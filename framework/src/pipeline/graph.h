@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/pipeline.h"
 
 namespace lumivox {
@@ -51,6 +52,9 @@ struct BoundGraph {
 /// Makes the passes, sets their parameters (`values` over the defaults) and connects them. Throws
 /// DiagnosticsError with every finding.
 BoundGraph bindPipeline(const Pipeline& pipeline, TechniqueSource& techniques, const ParameterValues& values);
+
+/// Connects the inputs of all passes to their sources.
+void connectInputs(BoundGraph& graph);
 
 /// Technique of a source, or an Error-like explanation of why there is none: {what, expected, suggestion}.
 struct MissingTechnique {

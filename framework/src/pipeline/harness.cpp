@@ -23,6 +23,8 @@ struct PassHarness::State {
   std::unique_ptr<Pass> pass;
   std::string name;
   std::vector<std::unique_ptr<OutBase>> sources;
+  bool accumulates = false;
+  int runs = 0;  ///< since it accumulates
 
   State(gpu::Device& device, const Scene& scene) : context(device, scene, false) {}
 };
@@ -65,9 +67,11 @@ void require(const std::string& parameter, const std::string& misfit) {
 }  // namespace
 
 void PassHarness::setParameter(const std::string& name, double value) {
+  state_->context.memory().forgetKept();
   require(name, parameterNamed(*state_->pass, name).set(value));
 }
 void PassHarness::setParameter(const std::string& name, const std::string& word) {
+  state_->context.memory().forgetKept();
   require(name, parameterNamed(*state_->pass, name).set(word));
 }
 
@@ -82,6 +86,7 @@ void PassHarness::connectInput(const std::string& name, std::unique_ptr<OutBase>
       throw Error(fmt::format("input '{}' takes {}, not {}", name, input->kind().name, source->kind().name));
     }
     input->connect(source.get());
+    if (input->presence() == Presence::history) input->hold();
     state_->sources.push_back(std::move(source));
     return;
   }
@@ -107,13 +112,26 @@ void PassHarness::run(std::uint64_t seed) {
   if (const std::string contradiction = state_->pass->checkParameters(); !contradiction.empty())
     throw Error(contradiction);
   state_->context.setSeed(seed);
+  FrameContext& context = state_->context;
+  bool again = false;
   do {
     for (OutBase* output : state_->pass->outputs()) output->reset();
-    state_->context.pool().beginFrame();
-    state_->context.run(*state_->pass, state_->name);
-    state_->context.pool().endFrame();
-    state_->context.device().finish();
-  } while (!state_->context.allHadRoom());
+    context.memory().abandonFrame();
+    if (again || !state_->accumulates) context.memory().forgetKept();
+    context.pool().beginFrame();
+    context.run(*state_->pass, state_->name, /*fenced=*/false, state_->runs);
+    context.pool().endFrame();
+    context.device().finish();
+    again = !context.allHadRoom();
+  } while (again);
+  if (!state_->accumulates) return;
+  context.memory().commitFrame();
+  ++state_->runs;
+}
+
+void PassHarness::accumulate() {
+  state_->accumulates = true;
+  state_->context.setAccumulates(true);
 }
 
 PassContext& PassHarness::context() {

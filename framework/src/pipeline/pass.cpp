@@ -29,6 +29,14 @@ const char* name(Contributes component) {
   return "";
 }
 
+float neutralElement(Contributes component) {
+  return component == Contributes::ambientOcclusion ? 1.0f : 0.0f;
+}
+
+int channelsOf(Contributes component) {
+  return component == Contributes::ambientOcclusion ? 1 : 3;
+}
+
 std::string unmetNeed(Needs needs, const SceneTraits& traits) {
   struct Need {
     Needs flag;

@@ -37,6 +37,8 @@ class Availability {
       const std::string need = unmetNeed(outputs[i]->needs(), request_.traits);
       if (!need.empty()) pass.outputs[i].why = fmt::format("needs {}, which the scene does not have", need);
       available_[index][i] = pass.why.empty() && need.empty();
+      pass.outputs[i].impossible = !available_[index][i];
+      pass.outputs[i].lacksNeed = !need.empty() || !unmetNeed(bound.object->needs(), request_.traits).empty();
       any = any || available_[index][i];
     }
     if (pass.why.empty() && !any && !outputs.empty())
@@ -54,7 +56,7 @@ class Availability {
     for (std::size_t i = 0; i < bound.sources.size(); ++i) {
       const InBase& input = *bound.object->inputs()[i];
       const OutputIndex source = bound.sources[i];
-      if (input.presence() == Presence::optional || !source.valid()) continue;
+      if (input.presence() != Presence::required || !source.valid() || !bound.object->uses(input)) continue;
       if (!available_[static_cast<std::size_t>(source.pass)][static_cast<std::size_t>(source.port)]) {
         return fmt::format("its input '{}' comes from '{}', which was left out", input.name(),
                            graph_.outputText(source));
@@ -69,15 +71,31 @@ class Availability {
   std::vector<std::vector<bool>> available_;
 };
 
-/// What a kept pass reads: its connected inputs, but for optional ones that this scene gives no use.
-std::vector<OutputIndex> sourcesRead(const BoundPass& pass, const PruneRequest& request) {
+std::vector<OutputIndex> inputsRead(const BoundPass& pass, const PruneRequest& request, bool histories) {
   std::vector<OutputIndex> result;
   for (std::size_t i = 0; i < pass.sources.size(); ++i) {
-    const bool ofUse =
-        request.keepEverything || unmetNeed(pass.object->inputs()[i]->needs(), request.traits).empty();
-    if (pass.sources[i].valid() && ofUse) result.push_back(pass.sources[i]);
+    const InBase& input = *pass.object->inputs()[i];
+    if (!pass.sources[i].valid() || (input.presence() == Presence::history) != histories) continue;
+    const bool ofUse = request.keepEverything ||
+                       (unmetNeed(input.needs(), request.traits).empty() && pass.object->uses(input));
+    if (ofUse) result.push_back(pass.sources[i]);
   }
   return result;
+}
+
+/// Why an output is not wanted: a reader that is kept and whose parameters make it useless, or nobody.
+std::string whyUnwanted(const BoundGraph& graph, const PrunePlan& plan, std::size_t pass, int port) {
+  for (std::size_t reader = 0; reader < graph.passes.size(); ++reader) {
+    const BoundPass& bound = graph.passes[reader];
+    for (std::size_t i = 0; i < bound.sources.size(); ++i) {
+      const OutputIndex source = bound.sources[i];
+      if (source.pass != static_cast<int>(pass) || (port >= 0 && source.port != port)) continue;
+      if (plan.passes[reader].kept && !bound.object->uses(*bound.object->inputs()[i]))
+        return fmt::format("the parameters of '{}' make its input '{}' useless", bound.name,
+                           bound.object->inputs()[i]->name());
+    }
+  }
+  return "nothing that is wanted depends on it";
 }
 
 void markWanted(const BoundGraph& graph, const PruneRequest& request,
@@ -91,30 +109,41 @@ void markWanted(const BoundGraph& graph, const PruneRequest& request,
   }
   for (const OutputIndex forced : request.forced) want(forced);
 
-  // Backward: a pass is kept when one of its outputs is wanted, and then wants its sources.
-  for (auto index = graph.order.rbegin(); index != graph.order.rend(); ++index) {
-    const BoundPass& bound = graph.passes[static_cast<std::size_t>(*index)];
-    PassPlan& pass = plan.passes[static_cast<std::size_t>(*index)];
-    for (OutputPlan& output : pass.outputs) {
-      output.wanted = output.wanted || request.keepEverything;
-      pass.kept = pass.kept || output.wanted;
+  // Backward: a pass is kept when one of its outputs is wanted, and then wants its sources. A history may
+  // want an output of a later pass, which wants its own sources in a further round.
+  for (bool again = true; again;) {
+    again = false;
+    for (auto index = graph.order.rbegin(); index != graph.order.rend(); ++index) {
+      const BoundPass& bound = graph.passes[static_cast<std::size_t>(*index)];
+      PassPlan& pass = plan.passes[static_cast<std::size_t>(*index)];
+      const bool before = pass.kept;
+      for (OutputPlan& output : pass.outputs) {
+        output.wanted = output.wanted || request.keepEverything;
+        pass.kept = pass.kept || output.wanted;
+      }
+      pass.kept = pass.kept || request.keepEverything;
+      if (!pass.kept) continue;
+      for (const OutputIndex source : sourcesRead(bound, request)) want(source);
+      for (const OutputIndex source : historiesRead(bound, request)) want(source);
+      again = again || (!before && !historiesRead(bound, request).empty());
     }
-    pass.kept = pass.kept || request.keepEverything;
-    if (!pass.kept) {
-      if (pass.why.empty()) pass.why = "nothing that is wanted depends on it";
-      continue;
-    }
-    for (const OutputIndex source : sourcesRead(bound, request)) want(source);
-    for (OutputPlan& output : pass.outputs) {
-      if (!output.wanted && output.why.empty()) output.why = "nothing that is wanted depends on it";
+  }
+  for (std::size_t index = 0; index < plan.passes.size(); ++index) {
+    PassPlan& pass = plan.passes[index];
+    if (!pass.kept && pass.why.empty()) pass.why = whyUnwanted(graph, plan, index, -1);
+    for (std::size_t port = 0; pass.kept && port < pass.outputs.size(); ++port) {
+      OutputPlan& output = pass.outputs[port];
+      if (!output.wanted && output.why.empty())
+        output.why = whyUnwanted(graph, plan, index, static_cast<int>(port));
     }
   }
 }
 
 Reads whatMayChange(const PruneRequest& request) {
   const Reads camera = Reads::camera | Reads::partOfCamera;
-  if (request.interactive) return Reads::geometry | Reads::lights | camera | Reads::time;
-  Reads result = Reads::time;
+  const Reads histories = request.accumulate ? Reads::history : Reads::nothing;
+  if (request.interactive) return Reads::geometry | Reads::lights | camera | Reads::time | histories;
+  Reads result = Reads::time | histories;
   if (request.traits.movingGeometry) result = result | Reads::geometry;
   if (request.traits.movingGeometry && request.traits.areaLights > 0) result = result | Reads::lights;
   if (request.traits.movingCamera) result = result | camera;
@@ -129,11 +158,15 @@ void planLifetimes(const BoundGraph& graph, const PruneRequest& request, PrunePl
   for (std::size_t position = 0; position < plan.order.size(); ++position) {
     const std::size_t index = static_cast<std::size_t>(plan.order[position]);
     PassPlan& pass = plan.passes[index];
-    pass.dependsOn = graph.passes[index].object->readsFrom();
+    pass.dependsOn = readsOf(*graph.passes[index].object);
+    if (!request.accumulate) pass.dependsOn = pass.dependsOn & ~Reads::history;
     for (const OutputIndex source : sourcesRead(graph.passes[index], request)) {
       if (!plan.output(source).wanted) continue;
       pass.dependsOn = pass.dependsOn | plan.passes[static_cast<std::size_t>(source.pass)].dependsOn;
       plan.output(source).lastReader = static_cast<int>(position);
+    }
+    for (const OutputIndex source : historiesRead(graph.passes[index], request)) {
+      if (plan.output(source).wanted) plan.output(source).keep = true;
     }
   }
   // A reader that something changes which leaves its source alone runs again without it.
@@ -159,6 +192,21 @@ void planLifetimes(const BoundGraph& graph, const PruneRequest& request, PrunePl
 
 }  // namespace
 
+Reads readsOf(const Pass& pass) {
+  Reads result = pass.readsFrom();
+  for (const InBase* input : pass.inputs())
+    if (input->presence() == Presence::history) result = result | Reads::history;
+  return result;
+}
+
+std::vector<OutputIndex> sourcesRead(const BoundPass& pass, const PruneRequest& request) {
+  return inputsRead(pass, request, /*histories=*/false);
+}
+
+std::vector<OutputIndex> historiesRead(const BoundPass& pass, const PruneRequest& request) {
+  return request.accumulate ? inputsRead(pass, request, /*histories=*/true) : std::vector<OutputIndex>{};
+}
+
 PrunePlan prune(const BoundGraph& graph, const PruneRequest& request) {
   PrunePlan plan;
   plan.mayChange = whatMayChange(request);
@@ -179,7 +227,10 @@ std::string readsText(Reads set) {
   if (reads(set, Reads::lights)) words.push_back("lights");
   if (reads(set, Reads::camera)) words.push_back("camera");
   if (reads(set, Reads::partOfCamera)) words.push_back("part of the camera");
+  if (reads(set, Reads::environment)) words.push_back("environment");
+  if (reads(set, Reads::media)) words.push_back("media");
   if (reads(set, Reads::time)) words.push_back("time");
+  if (reads(set, Reads::history)) words.push_back("earlier frames");
   return words.empty() ? "nothing of the scene" : fmt::format("{}", fmt::join(words, ", "));
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "lumivox/pipeline/pass.h"
 #include "pipeline/graph.h"
 
 namespace lumivox {
@@ -13,22 +14,25 @@ struct PruneRequest {
   SceneTraits traits;
   bool keepEverything = false;
   bool interactive = false;
+  bool accumulate = false;          ///< histories are carried on; otherwise no pass ever sees one
   std::vector<bool> wanted;         ///< per output of the pipeline
   std::vector<OutputIndex> forced;  ///< outputs that stay alive after the frame
 };
 
 struct OutputPlan {
-  bool wanted = false;  ///< computed and stored
-  bool keep = false;    ///< must outlive the frame: a later frame may read it without running its pass
-  int lastReader = -1;  ///< position in PrunePlan::order after which it is no longer read
-  std::string why;      ///< when not wanted
+  bool wanted = false;      ///< computed and stored
+  bool keep = false;        ///< must outlive the frame: a later frame may read it without running its pass
+  bool impossible = false;  ///< the scene lacks what it or a pass before it needs
+  bool lacksNeed = false;   ///< the same of what it needs by itself
+  int lastReader = -1;      ///< position in PrunePlan::order after which it is no longer read
+  std::string why;          ///< when not wanted
 };
 
 struct PassPlan {
   bool kept = false;
   std::string why;  ///< when not kept
   std::vector<OutputPlan> outputs;
-  Reads dependsOn = Reads::nothing;  ///< what it and all of its kept sources read
+  Reads dependsOn = Reads::nothing;  ///< what it and all of its kept sources read, histories among them
 };
 
 struct PrunePlan {
@@ -45,6 +49,14 @@ struct PrunePlan {
 };
 
 PrunePlan prune(const BoundGraph& graph, const PruneRequest& request);
+
+/// What a pass reads besides its inputs: what it says, and histories where it has an input of that kind.
+Reads readsOf(const Pass& pass);
+/// What a pass reads of this frame: its connected inputs, but for those that the scene or the parameters make
+/// useless.
+std::vector<OutputIndex> sourcesRead(const BoundPass& pass, const PruneRequest& request);
+/// The same of the frame before: inputs that are histories. None in a run that does not accumulate.
+std::vector<OutputIndex> historiesRead(const BoundPass& pass, const PruneRequest& request);
 
 /// "geometry, camera"
 std::string readsText(Reads set);

@@ -12,6 +12,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
+#include "lumivox/plugin/technique.h"
 #include "plugin/elf_check.h"
 
 namespace lumivox {

@@ -121,6 +121,8 @@ std::string defectOf(LayeredPicture& entry, const Scene& scene, const ResolvedOp
   } else {
     for (const char* layer : kMediaLayers) channels[layer] = 3;
   }
+  for (const int bounces : resolved.options.bounceLayers)
+    for (const std::string& layer : bounceLayerNames(bounces)) channels[layer] = 3;
   if (entry.layers.size() != 2 * channels.size()) return "it has other layers";
   for (const auto& [name, count] : channels) {
     for (const std::string& layer : {name, name + ".variance"}) {
@@ -199,22 +201,27 @@ ContentHash cacheKey(const Scene& scene, const ResolvedOptions& resolved) {
       .add(options.seed)
       .add(options.time);
   hasher.add(options.camera).add(options.width).add(options.height).add(options.occlusionDistance);
+  if (!options.bounceLayers.empty()) hasher.add("bounce layers").add(options.bounceLayers);
   return hasher.finish();
 }
 
 std::map<std::string, std::string> provenance(const Scene& scene, const ResolvedOptions& resolved) {
   const ReferenceOptions& options = resolved.options;
-  return {{"scene", scene.name},
-          {"hash", contentOf(scene).text()},
-          {"samples", std::to_string(options.samplesPerPixel)},
-          {"bounces", std::to_string(options.bounces)},
-          {"roulette", options.roulette ? "on" : "off"},
-          {"seed", std::to_string(options.seed)},
-          {"time", fmt::format("{}", options.time)},
-          {"camera", options.camera},
-          {"resolution", fmt::format("{} {}", options.width, options.height)},
-          {"occlusion_distance", fmt::format("{}", options.occlusionDistance)},
-          {"tracer_version", std::to_string(kTracerVersion)}};
+  std::map<std::string, std::string> attributes{
+      {"scene", scene.name},
+      {"hash", contentOf(scene).text()},
+      {"samples", std::to_string(options.samplesPerPixel)},
+      {"bounces", std::to_string(options.bounces)},
+      {"roulette", options.roulette ? "on" : "off"},
+      {"seed", std::to_string(options.seed)},
+      {"time", fmt::format("{}", options.time)},
+      {"camera", options.camera},
+      {"resolution", fmt::format("{} {}", options.width, options.height)},
+      {"occlusion_distance", fmt::format("{}", options.occlusionDistance)},
+      {"tracer_version", std::to_string(kTracerVersion)}};
+  if (!options.bounceLayers.empty())
+    attributes["bounce_layers"] = fmt::format("{}", fmt::join(options.bounceLayers, " "));
+  return attributes;
 }
 
 }  // namespace reference

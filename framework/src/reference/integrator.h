@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <vector>
 
 #include "lumivox/base/random.h"
 #include "lumivox/reference/path_tracer.h"
@@ -48,6 +49,31 @@ struct MediaPathSample {
   glm::vec3 full() const { return transmittance * surfaces.full() + scattered(); }
 };
 
+/// What one path brings over up to N bounces, for every N that has layers of its own: radiance that is
+/// reflected by the lobes of the first surface, or scattered to the camera by media.
+struct BounceSums {
+  struct Sum {
+    int bounces;
+    glm::vec3 diffuse{0.0f}, glossy{0.0f}, scattered{0.0f};
+  };
+  std::vector<Sum> sums;  ///< in rising order of bounces
+
+  explicit BounceSums(const std::vector<int>& limits) {
+    for (const int limit : limits) sums.push_back({limit});
+  }
+  void clear() {
+    for (Sum& sum : sums) sum = {sum.bounces};
+  }
+  void add(int bounces, const glm::vec3& diffuse, const glm::vec3& glossy, const glm::vec3& scattered) {
+    for (Sum& sum : sums) {
+      if (bounces > sum.bounces) continue;
+      sum.diffuse += diffuse;
+      sum.glossy += glossy;
+      sum.scattered += scattered;
+    }
+  }
+};
+
 /// The way of the path tracer to the triangles; counts its rays.
 struct CountingRays {
   const RayScene& scene;
@@ -75,14 +101,15 @@ struct Integrator {
   bool roulette;
   float occlusionDistance;  ///< m; not positive: no occlusion ray
 
+  /// `sums`: also filled, where it is not null.
   template <class Rays>
-  PathSample trace(Rays& rays, RandomStream& random, const glm::vec3& origin,
-                   const glm::vec3& direction) const;
+  PathSample trace(Rays& rays, RandomStream& random, const glm::vec3& origin, const glm::vec3& direction,
+                   BounceSums* sums = nullptr) const;
 
   /// For scenes with media.
   template <class Rays>
   MediaPathSample traceThroughMedia(Rays& rays, RandomStream& random, const glm::vec3& origin,
-                                    const glm::vec3& direction) const;
+                                    const glm::vec3& direction, BounceSums* sums = nullptr) const;
 
  private:
   /// Light of one chosen emitter that reaches a surface.
@@ -123,10 +150,10 @@ struct Integrator {
                            const glm::vec3& direction) const;
   template <class Rays>
   void traceSurfaces(Rays& rays, RandomStream& random, const Hit& hit, const glm::vec3& direction,
-                     PathSample& result) const;
+                     PathSample& result, BounceSums* sums) const;
   template <class Rays>
   void traceScattered(Rays& rays, RandomStream& random, const glm::vec3& origin, const glm::vec3& direction,
-                      float reach, MediaPathSample& result) const;
+                      float reach, MediaPathSample& result, BounceSums* sums) const;
   /// Russian roulette once little of a path's radiance is left; survivors stand for the others. False: the
   /// path ends.
   bool survives(RandomStream& random, glm::vec3& throughput) const {
@@ -161,7 +188,7 @@ Integrator::NextEvent Integrator::nextEvent(Rays& rays, RandomStream& random, co
 
 template <class Rays>
 PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& origin,
-                             const glm::vec3& direction) const {
+                             const glm::vec3& direction, BounceSums* sums) const {
   PathSample result;
   Hit hit;
   if (!rays.closestHit(origin, direction, hit)) {
@@ -183,6 +210,9 @@ PathSample Integrator::trace(Rays& rays, RandomStream& random, const glm::vec3& 
     arriving += throughput * radiance;
     arrivingLate.add(throughput * radiance, bounce, bounces);
     if (bounce == 1) arrivingOnce += throughput * radiance;
+    if (sums != nullptr)
+      sums->add(bounce, firstDiffuse * (throughput * radiance), firstGlossy * (throughput * radiance),
+                glm::vec3(0.0f));
   };
   for (int depth = 0;; ++depth) {
     const NextEvent event = lights.empty() ? NextEvent{} : nextEvent<false>(rays, random, surface);

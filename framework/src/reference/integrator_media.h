@@ -81,7 +81,7 @@ void Integrator::walk(Rays& rays, RandomStream& random, glm::vec3 origin, glm::v
 
 template <class Rays>
 void Integrator::traceSurfaces(Rays& rays, RandomStream& random, const Hit& hit, const glm::vec3& direction,
-                               PathSample& result) const {
+                               PathSample& result, BounceSums* sums) const {
   result.direct = scene.emissionTowards(scene.triangles[hit.triangle], direction);
   Surface surface;
   scene.surfaceAt(hit, direction, surface);
@@ -98,6 +98,7 @@ void Integrator::traceSurfaces(Rays& rays, RandomStream& random, const Hit& hit,
       result.direct += diffuse + glossy;
       return;
     }
+    if (sums != nullptr) sums->add(light.bounces, diffuse, glossy, glm::vec3(0.0f));
     result.indirectDiffuse += diffuse;
     result.indirectGlossy += glossy;
     result.lateLight.add(diffuse + glossy, light.bounces, bounces);
@@ -109,7 +110,8 @@ void Integrator::traceSurfaces(Rays& rays, RandomStream& random, const Hit& hit,
 
 template <class Rays>
 void Integrator::traceScattered(Rays& rays, RandomStream& random, const glm::vec3& origin,
-                                const glm::vec3& direction, float reach, MediaPathSample& result) const {
+                                const glm::vec3& direction, float reach, MediaPathSample& result,
+                                BounceSums* sums) const {
   glm::vec3 weight(1.0f);
   Collision collision;
   if (!media.collide(origin, direction, reach, random, weight, collision)) return;
@@ -117,6 +119,8 @@ void Integrator::traceScattered(Rays& rays, RandomStream& random, const glm::vec
   float density;
   const glm::vec3 onwards = scatter(collision, direction, random, density);
   walk(rays, random, collision.position, onwards, density, [&](const Arrival& light) {
+    if (sums != nullptr && light.bounces > 0)
+      sums->add(light.bounces, glm::vec3(0.0f), glm::vec3(0.0f), weight * light.radiance);
     (light.bounces == 0 ? result.scatteredSingle : result.scatteredMultiple) += weight * light.radiance;
     result.lateLight.add(weight * light.radiance, light.bounces, bounces);
   });
@@ -124,15 +128,15 @@ void Integrator::traceScattered(Rays& rays, RandomStream& random, const glm::vec
 
 template <class Rays>
 MediaPathSample Integrator::traceThroughMedia(Rays& rays, RandomStream& random, const glm::vec3& origin,
-                                              const glm::vec3& direction) const {
+                                              const glm::vec3& direction, BounceSums* sums) const {
   MediaPathSample result;
   Hit hit;
   const bool met = rays.closestHit(origin, direction, hit);
   const float reach = met ? hit.distance : std::numeric_limits<float>::infinity();
   result.transmittance = media.transmittance(origin, direction, reach, random);
-  traceScattered(rays, random, origin, direction, reach, result);
+  traceScattered(rays, random, origin, direction, reach, result, sums);
   if (met) {
-    traceSurfaces(rays, random, hit, direction, result.surfaces);
+    traceSurfaces(rays, random, hit, direction, result.surfaces, sums);
     const LateLight behind = result.surfaces.lateLight.times(result.transmittance);
     result.lateLight.middle += behind.middle;
     result.lateLight.late += behind.late;

@@ -39,14 +39,18 @@ ResolvedOptions resolve(const Scene& scene, const ReferenceOptions& given) {
   require(given.occlusionDistance >= 0.0 && !std::isnan(given.occlusionDistance),
           "the distance of ambient occlusion", std::to_string(given.occlusionDistance),
           "a positive number of metres (0 for a tenth of the scene's diagonal)");
+  for (const int bounces : given.bounceLayers)
+    require(bounces >= 1 && bounces <= given.bounces, "a number of bounces with layers of its own",
+            std::to_string(bounces), "at least 1 and at most the number of bounces");
   ResolvedOptions resolved{given, snapshotOf(scene, given.time, given.camera, given.width, given.height)};
+  std::vector<int>& layers = resolved.options.bounceLayers;
+  std::sort(layers.begin(), layers.end());
+  layers.erase(std::unique(layers.begin(), layers.end()), layers.end());
   resolved.options.camera = scene.camera(given.camera).name;
   resolved.options.width = resolved.snapshot.camera.width;
   resolved.options.height = resolved.snapshot.camera.height;
-  if (given.occlusionDistance == 0.0 && !resolved.snapshot.bounds.empty) {
-    resolved.options.occlusionDistance =
-        0.1 * glm::length(resolved.snapshot.bounds.high - resolved.snapshot.bounds.low);
-  }
+  if (given.occlusionDistance == 0.0)
+    resolved.options.occlusionDistance = ambientOcclusionDistance(resolved.snapshot.bounds);
   return resolved;
 }
 
@@ -62,7 +66,7 @@ Tracer::Tracer(const Scene& scene, const ResolvedOptions& resolved)
                  resolved.options.roulette,
                  static_cast<float>(resolved.options.occlusionDistance)} {}
 
-Film::Film(int width, int height, bool media) {
+Film::Film(int width, int height, bool media, const std::vector<int>& bounceLayers) {
   if (media) {
     names_.assign(kMediaLayers.begin(), kMediaLayers.end());
   } else {
@@ -71,6 +75,12 @@ Film::Film(int width, int height, bool media) {
   for (std::size_t layer = 0; layer < names_.size(); ++layer) means_.emplace_back(width, height, 3);
   names_.push_back("ambient_occlusion");
   means_.emplace_back(width, height, 1);
+  for (const int bounces : bounceLayers) {
+    for (const std::string& name : bounceLayerNames(bounces)) {
+      names_.push_back(name);
+      means_.emplace_back(width, height, 3);
+    }
+  }
   variances_ = means_;
   middle_.assign(means_[0].pixelCount(), 0.0);
   late_ = middle_;
@@ -153,7 +163,7 @@ LayeredPicture renderReference(const Scene& scene, const ReferenceOptions& given
         "reference: one sample per pixel; expected at least 2, because the noise is told from their spread");
   }
   const Tracer tracer(scene, resolved);
-  Film film(options.width, options.height, !tracer.media.empty());
+  Film film(options.width, options.height, !tracer.media.empty(), options.bounceLayers);
   const Tiles tiles(options.width, options.height);
   std::optional<Progress> progress;
   if (options.progress) {

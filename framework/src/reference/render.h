@@ -76,6 +76,47 @@ inline std::array<glm::vec3, kMediaLayers.size()> radiancesOf(const MediaPathSam
           sample.scattered()};
 }
 
+/// The layers of a number of bounces, in the order of bounceRadiancesOf().
+inline std::array<std::string, 3> bounceLayerNames(int bounces) {
+  const std::string name = "bounces_" + std::to_string(bounces);
+  return {name, name + "_diffuse", name + "_glossy"};
+}
+/// `direct`: light of the path without any further bounce, in the whole picture. `transmittance`: between the
+/// camera and the first surface.
+inline std::array<glm::vec3, 3> bounceRadiancesOf(const BounceSums::Sum& sum, const glm::vec3& direct,
+                                                  const glm::vec3& transmittance) {
+  return {direct + transmittance * (sum.diffuse + sum.glossy) + sum.scattered, sum.diffuse, sum.glossy};
+}
+
+/// Mean and variance of the mean of the layers of numbers of bounces, in one pixel.
+class BounceStatistics {
+ public:
+  explicit BounceStatistics(std::size_t limits) : sum_(9 * limits), squares_(9 * limits) {}
+  void add(const BounceSums& sums, const glm::vec3& direct, const glm::vec3& transmittance) {
+    std::size_t channel = 0;
+    for (const BounceSums::Sum& sum : sums.sums) {
+      for (const glm::vec3& radiance : bounceRadiancesOf(sum, direct, transmittance)) {
+        for (int i = 0; i < 3; ++i, ++channel) {
+          const auto value = static_cast<double>(radiance[i]);
+          sum_[channel] += value;
+          squares_[channel] += value * value;
+        }
+      }
+    }
+    ++count_;
+  }
+  std::size_t channels() const { return sum_.size(); }
+  float mean(std::size_t channel) const { return static_cast<float>(sum_[channel] / count_); }
+  float varianceOfMean(std::size_t channel) const {
+    const double centred = std::max(0.0, squares_[channel] - sum_[channel] * sum_[channel] / count_);
+    return static_cast<float>(centred / (count_ - 1.0) / count_);
+  }
+
+ private:
+  std::vector<double> sum_, squares_;
+  double count_ = 0.0;
+};
+
 /// Mean and variance of the mean of the paths of one pixel: radiance layers, then the occlusion.
 template <std::size_t Layers>
 class PixelStatistics {
@@ -126,13 +167,14 @@ struct CutOff {
 /// r, late / middle = x (1 + x) with x = r^(N/4), and late x^2 / (1 - x^2) lies beyond the last bounce N.
 CutOff cutOffOf(double middle, double late, double full, int bounces);
 
-/// The pictures that pixels are written to: the radiance layers, and the occlusion last.
+/// The pictures that pixels are written to: the radiance layers, the occlusion, and the layers of numbers of
+/// bounces.
 class Film {
  public:
-  Film(int width, int height, bool media);
+  Film(int width, int height, bool media, const std::vector<int>& bounceLayers);
   template <std::size_t Layers>
   void write(int x, int y, const PixelStatistics<Layers>& pixel) {
-    assert(means_.size() == Layers + 1);
+    assert(means_.size() >= Layers + 1);
     for (std::size_t layer = 0; layer <= Layers; ++layer) {
       for (int channel = 0; channel < means_[layer].channels(); ++channel) {
         means_[layer].at(x, y, channel) = pixel.mean(3 * layer + static_cast<std::size_t>(channel));
@@ -144,6 +186,14 @@ class Film {
                               static_cast<std::size_t>(x);
     middle_[index] = pixel.middle();
     late_[index] = pixel.late();
+  }
+  void write(int x, int y, const BounceStatistics& pixel) {
+    const std::size_t first = means_.size() - pixel.channels() / 3;
+    for (std::size_t channel = 0; channel < pixel.channels(); ++channel) {
+      const int component = static_cast<int>(channel % 3);
+      means_[first + channel / 3].at(x, y, component) = pixel.mean(channel);
+      variances_[first + channel / 3].at(x, y, component) = pixel.varianceOfMean(channel);
+    }
   }
   /// Sums in the order of the pixels, so that threads change nothing.
   CutOff cutOff(int bounces) const;
@@ -177,8 +227,8 @@ class Tiles {
   int width_, height_, columns_, rows_;
 };
 
-/// Paths through the pixels of one tile: addPath(statistics, random, direction) each. The numbers of a path
-/// depend on seed, pixel and sample only.
+/// Paths through the pixels of one tile: addPath(statistics, statistics of bounces, random, direction) each.
+/// The numbers of a path depend on seed, pixel and sample only.
 template <std::size_t Layers, class AddPath>
 void renderPixels(const ResolvedOptions& resolved, const Tiles& tiles, int tile, Film& film,
                   AddPath&& addPath) {
@@ -190,6 +240,7 @@ void renderPixels(const ResolvedOptions& resolved, const Tiles& tiles, int tile,
   const glm::vec3 perRow = (camera.direction(0.0f, height) - corner) / height;
   tiles.forEachPixel(tile, [&](int x, int y) {
     PixelStatistics<Layers> pixel;
+    BounceStatistics ofBounces(resolved.options.bounceLayers.size());
     const auto stream = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(camera.width) +
                         static_cast<std::uint32_t>(x);
     for (int sample = 0; sample < resolved.options.samplesPerPixel; ++sample) {
@@ -197,9 +248,10 @@ void renderPixels(const ResolvedOptions& resolved, const Tiles& tiles, int tile,
       const float column = static_cast<float>(x) + random.uniform(),
                   row = static_cast<float>(y) + random.uniform();
       const glm::vec3 direction = glm::normalize(corner + column * perColumn + row * perRow);
-      addPath(pixel, random, direction);
+      addPath(pixel, ofBounces, random, direction);
     }
     film.write(x, y, pixel);
+    if (ofBounces.channels() > 0) film.write(x, y, ofBounces);
   });
 }
 
@@ -208,19 +260,29 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
                 Rays& rays, Film& film) {
   const glm::vec3& eye = resolved.snapshot.camera.eye;
   const Integrator& integrator = tracer.integrator;
+  BounceSums sums(resolved.options.bounceLayers);
+  BounceSums* const asked = sums.sums.empty() ? nullptr : &sums;
   if (tracer.media.empty()) {
     renderPixels<kSurfaceLayers.size()>(
-        resolved, tiles, tile, film, [&](auto& pixel, RandomStream& random, const glm::vec3& direction) {
-          const PathSample sample = integrator.trace(rays, random, eye, direction);
+        resolved, tiles, tile, film,
+        [&](auto& pixel, auto& ofBounces, RandomStream& random, const glm::vec3& direction) {
+          sums.clear();
+          const PathSample sample = integrator.trace(rays, random, eye, direction, asked);
           pixel.add(radiancesOf(sample), sample.unoccluded);
           pixel.addLate(sample.lateLight);
+          if (asked) ofBounces.add(sums, sample.direct, glm::vec3(1.0f));
         });
   } else {
     renderPixels<kMediaLayers.size()>(
-        resolved, tiles, tile, film, [&](auto& pixel, RandomStream& random, const glm::vec3& direction) {
-          const MediaPathSample sample = integrator.traceThroughMedia(rays, random, eye, direction);
+        resolved, tiles, tile, film,
+        [&](auto& pixel, auto& ofBounces, RandomStream& random, const glm::vec3& direction) {
+          sums.clear();
+          const MediaPathSample sample = integrator.traceThroughMedia(rays, random, eye, direction, asked);
           pixel.add(radiancesOf(sample), sample.surfaces.unoccluded);
           pixel.addLate(sample.lateLight);
+          if (asked)
+            ofBounces.add(sums, sample.transmittance * sample.surfaces.direct + sample.scatteredSingle,
+                          sample.transmittance);
         });
   }
 }

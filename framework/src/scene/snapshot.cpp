@@ -238,6 +238,10 @@ CameraView viewOf(const Camera& camera, double time, const glm::dvec3& origin, i
 
 }  // namespace
 
+double ambientOcclusionDistance(const Bounds& bounds) {
+  return bounds.empty ? 0.0 : 0.1 * glm::length(bounds.high - bounds.low);
+}
+
 std::pair<glm::dvec3, glm::dvec3> sweptBoundsOf(const Scene& scene, const Object& object) {
   if (!object.animated()) {
     const WideBounds placed = placedBounds(scene, object);

@@ -8,12 +8,14 @@
 #include <mutex>
 #include <thread>
 
+#include "experiment/choice.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
-#include "lumivox/report/report.h"
-#include "lumivox/report/stress_cells.h"
-#include "report/choice.h"
+#include "lumivox/experiment/report.h"
+#include "lumivox/page/stress_page.h"
+#include "lumivox/results/store.h"
+#include "lumivox/results/stress_cells.h"
 #include "stress/child.h"
 #include "stress/protocol.h"
 #include "stress/run_cell.h"

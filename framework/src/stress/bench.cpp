@@ -6,12 +6,12 @@
 #include <array>
 #include <cstring>
 
+#include "experiment/measure.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/hash.h"
-#include "lumivox/report/report.h"
-#include "lumivox/report/voxelisers.h"
+#include "lumivox/experiment/report.h"
+#include "lumivox/experiment/voxelisers.h"
 #include "lumivox/scene/text.h"
-#include "report/measure.h"
 #include "stress/elsewhere.h"
 #include "stress/pass_parameters.h"
 
@@ -156,7 +156,7 @@ Frame PipelineBench::State::frame(PipelineExecutor& executor, const SceneSnapsho
     frame.result = executor.render(snapshot, index, PipelineExecutor::Pictures::no);
     lookAtVoxels(lastOutputs(executor, pipeline));
   } else {
-    frame.result = shot.subpixels > 1 ? report::renderFiltered(executor, snapshot, shot.subpixels, index)
+    frame.result = shot.subpixels > 1 ? experiment::renderFiltered(executor, snapshot, shot.subpixels, index)
                                       : executor.render(snapshot, index);
     frame.whole = compositePicture(frame.result);
     if (!frame.whole.empty()) last = frame.whole;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lumivox/pipeline/pipeline.h"
-#include "lumivox/report/store.h"
+#include "lumivox/results/store.h"
 
 namespace lumivox::stress {
 

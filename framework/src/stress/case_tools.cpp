@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "lumivox/base/error.h"
-#include "lumivox/report/report.h"
+#include "lumivox/experiment/report.h"
+#include "lumivox/pipeline/pass.h"
 
 namespace lumivox::stress {
 
@@ -101,8 +102,8 @@ std::map<std::string, Measured> ratiosToNothing(Bench& bench, const Scene& scene
     const std::optional<TruthLayer> wanted = layer.empty() ? std::nullopt : truthLayer(truth, layer);
     if (!wanted || picture == frame.result.outputs.end() || !wanted->mean.sameShape(picture->second))
       continue;
-    const Picture black(wanted->mean.width(), wanted->mean.height(), wanted->mean.channels());
-    const Measured nothing = compare(black, wanted->mean, wanted->variance).rmse;
+    const Picture neutral = neutralPicture(wanted->mean.width(), wanted->mean.height(), component);
+    const Measured nothing = compare(neutral, wanted->mean, wanted->variance).rmse;
     if (!(nothing.value > 0.0)) continue;
     const Measured error = compare(picture->second, wanted->mean, wanted->variance).rmse;
     const double ratio = error.value / nothing.value;

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "lumivox/report/report.h"
+#include "lumivox/experiment/report.h"
 #include "stress/cases.h"
 
 namespace lumivox::stress {

@@ -17,7 +17,7 @@
 #include "lumivox/measure/voxels.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/reference/path_tracer.h"
-#include "lumivox/report/store.h"
+#include "lumivox/results/store.h"
 #include "lumivox/scene/scene.h"
 #include "lumivox/stress/stress.h"
 

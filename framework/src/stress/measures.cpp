@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "lumivox/base/error.h"
-#include "lumivox/report/report.h"
+#include "lumivox/experiment/report.h"
 
 namespace lumivox::stress {
 namespace {

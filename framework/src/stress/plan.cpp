@@ -6,8 +6,9 @@
 #include <set>
 
 #include "lumivox/base/error.h"
-#include "lumivox/report/report.h"
-#include "lumivox/report/voxelisers.h"
+#include "lumivox/experiment/report.h"
+#include "lumivox/experiment/voxelisers.h"
+#include "lumivox/pipeline/pass.h"
 #include "stress/cases.h"
 
 namespace lumivox {

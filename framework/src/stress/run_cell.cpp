@@ -6,20 +6,20 @@
 #include <chrono>
 #include <new>
 
+#include "experiment/choice.h"
+#include "experiment/plan.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
-#include "report/choice.h"
-#include "report/plan.h"
 #include "stress/cards.h"
 
 namespace lumivox::stress {
 namespace {
 
 std::string repeatingCommand(const CellRequest& request, const std::vector<std::string>& repeatArguments) {
-  std::string command =
-      fmt::format("lumivox stress --case {} --pipeline {}{}", report::shellQuoted(request.name),
-                  report::shellQuoted(report::shownPath(request.pipeline)), request.quick ? " --quick" : "");
-  for (const std::string& argument : repeatArguments) command += " " + report::shellQuoted(argument);
+  std::string command = fmt::format(
+      "lumivox stress --case {} --pipeline {}{}", experiment::shellQuoted(request.name),
+      experiment::shellQuoted(experiment::shownPath(request.pipeline)), request.quick ? " --quick" : "");
+  for (const std::string& argument : repeatArguments) command += " " + experiment::shellQuoted(argument);
   return command;
 }
 
@@ -70,11 +70,11 @@ StressCell cellBefore(const CellRequest& request, const std::string& family, Tec
                       const std::vector<std::string>& repeatArguments) {
   const Pipeline pipeline = Pipeline::load(request.pipeline);
   StressCell cell;
-  cell.created = report::dateText();
+  cell.created = dateText();
   cell.version = LUMIVOX_VERSION;
   cell.family = family;
   cell.name = request.name;
-  cell.pipeline = report::shownPath(request.pipeline);
+  cell.pipeline = experiment::shownPath(request.pipeline);
   cell.technique = techniqueOf(pipeline, techniques);
   cell.size = request.quick ? "quick" : "full";
   cell.command = repeatingCommand(request, repeatArguments);
@@ -83,7 +83,7 @@ StressCell cellBefore(const CellRequest& request, const std::string& family, Tec
   for (const std::string& name : pipeline.techniques())
     if (const Technique* technique = techniques.technique(name))
       cell.techniques[name] = technique->hash.text() + "+" + technique->shaders.hash.text();
-  cell.host = report::hostText();
+  cell.host = hostText();
   return cell;
 }
 

@@ -8,8 +8,8 @@
 #include <iostream>
 
 #include "lumivox/base/error.h"
-#include "lumivox/report/report.h"
-#include "lumivox/report/stress_cells.h"
+#include "lumivox/experiment/report.h"
+#include "lumivox/results/stress_cells.h"
 #include "stress/protocol.h"
 #include "stress/run_cell.h"
 

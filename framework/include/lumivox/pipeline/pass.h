@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "lumivox/pipeline/contributes.h"
 #include "lumivox/pipeline/ports.h"
 #include "lumivox/scene/scene.h"
 #include "lumivox/shader/library.h"
@@ -22,19 +23,7 @@ namespace lumivox {
 class GpuScene;
 class Pass;
 
-/// The component of the picture that an output holds; decides which truth it is judged against.
-enum class Contributes {
-  nothing,
-  direct,
-  indirectDiffuse,
-  indirectGlossy,
-  ambientOcclusion,
-  scattered,
-  final
-};
-const char* name(Contributes component);  ///< "direct", "indirect_diffuse", ...
-
-/// What the scene must have for an output (or a whole pass) to differ from its neutral element, black.
+/// What the scene must have for an output (or a whole pass) to differ from its neutral element.
 enum class Needs : std::uint32_t {
   nothing = 0,
   anyLight = 1u << 0,
@@ -54,8 +43,10 @@ constexpr Needs operator|(Needs a, Needs b) {
 std::string unmetNeed(Needs needs, const SceneTraits& traits);
 
 /// What a pass reads besides its inputs and parameters. A pass is run again only when one of these or an
-/// input changed. lights: also the motion of emissive objects. camera: also the size of the picture.
-/// partOfCamera: only what Pass::readsOfCamera() returns. time: also the frame's index.
+/// input changed. materials: with their textures. lights: also the motion of emissive objects. camera: also
+/// the size of the picture. partOfCamera: only what Pass::readsOfCamera() returns. time: also the frame's
+/// index. history: what earlier frames left, by PassContext::history() and accumulated(); such a pass runs in
+/// every frame of a run that accumulates (RenderOptions::accumulate).
 enum class Reads : std::uint32_t {
   nothing = 0,
   geometry = 1u << 0,
@@ -63,13 +54,22 @@ enum class Reads : std::uint32_t {
   lights = 1u << 2,
   camera = 1u << 3,
   time = 1u << 4,
-  partOfCamera = 1u << 5
+  partOfCamera = 1u << 5,
+  environment = 1u << 6,
+  media = 1u << 7,
+  history = 1u << 8
 };
 constexpr Reads operator|(Reads a, Reads b) {
   return static_cast<Reads>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
 }
+constexpr Reads operator&(Reads a, Reads b) {
+  return static_cast<Reads>(static_cast<std::uint32_t>(a) & static_cast<std::uint32_t>(b));
+}
+constexpr Reads operator~(Reads a) {
+  return static_cast<Reads>(~static_cast<std::uint32_t>(a));
+}
 constexpr bool reads(Reads set, Reads one) {
-  return (static_cast<std::uint32_t>(set) & static_cast<std::uint32_t>(one)) != 0;
+  return (set & one) != Reads::nothing;
 }
 
 /// Members of a pass register themselves with it, in the order of declaration.
@@ -139,7 +139,10 @@ class Out : public OutBase {
   std::optional<Port> value_;
 };
 
-enum class Presence { required, optional };
+/// history: optional, and read one frame late: the value that the connected output (of this pass, of a later
+/// or an earlier one) had at the end of the frame before. Absent in the first frame, after histories were
+/// emptied, and in runs that do not accumulate.
+enum class Presence { required, optional, history };
 
 class InBase : public PortBase {
  public:
@@ -150,12 +153,18 @@ class InBase : public PortBase {
   Needs needs() const { return needs_; }
   /// False when nothing is connected or what is connected was pruned away: the pass then uses the variant
   /// without this input.
-  bool present() const { return source_ != nullptr && source_->hasValue(); }
+  bool present() const {
+    return presence_ == Presence::history ? holds() : source_ != nullptr && source_->hasValue();
+  }
   explicit operator bool() const { return present(); }
   /// Connects or disconnects; the kinds must agree (checked by the graph with a message; asserted here).
   void connect(const OutBase* source);
+  /// For a history: takes what the source has now, to be read in the next frame; or forgets it.
+  virtual void hold() = 0;
+  virtual void forget() = 0;
 
  protected:
+  virtual bool holds() const = 0;
   const OutBase* source_ = nullptr;
 
  private:
@@ -169,11 +178,24 @@ class In : public InBase {
   In(Pass* pass, std::string name, std::string meaning = {})
       : InBase(pass, std::move(name), portKind<Port>(), Presence::required, std::move(meaning),
                Needs::nothing) {}
-  /// `needs` is for optional inputs: what the scene must have for the input to be read.
+  /// `needs` is for inputs that are not required: what the scene must have for the input to be read.
   In(Pass* pass, std::string name, Presence presence, std::string meaning = {}, Needs needs = Needs::nothing)
       : InBase(pass, std::move(name), portKind<Port>(), presence, std::move(meaning), needs) {}
-  const Port& operator*() const { return static_cast<const Out<Port>*>(source_)->value(); }
+  const Port& operator*() const {
+    return presence() == Presence::history ? *held_ : static_cast<const Out<Port>*>(source_)->value();
+  }
   const Port* operator->() const { return &**this; }
+  void hold() override {
+    held_.reset();
+    if (source_ != nullptr && source_->hasValue()) held_ = static_cast<const Out<Port>*>(source_)->value();
+  }
+  void forget() override { held_.reset(); }
+
+ protected:
+  bool holds() const override { return held_.has_value(); }
+
+ private:
+  std::optional<Port> held_;  ///< with Presence::history
 };
 
 /// A parameter of a pass: a number, a switch (on/off) or a word, with its range and default. Set from the
@@ -299,6 +321,13 @@ class Param : public WordParam {
   operator Word() const { return static_cast<Word>(value_); }
 };
 
+/// A resource that a pass carries from frame to frame.
+template <class Resource>
+struct History {
+  Resource previous;  ///< as the pass left `current` in the frame before; null where histories are empty
+  Resource current;   ///< what the next frame finds as `previous`; its contents are undefined
+};
+
 /// Everything that a pass may use while it runs.
 class PassContext {
  public:
@@ -327,15 +356,40 @@ class PassContext {
   virtual void judgeLater(gpu::BufferRef counts, std::uint64_t offsetBytes, CountJudge judge) = 0;
   /// Told to the user once per run, with the pass's name.
   virtual void warn(const std::string& text) = 0;
-  /// True when a pass may use nothing that it kept from an earlier frame: in the first one, after
-  /// PipelineExecutor::invalidate() and with --keep-everything.
-  virtual bool startsAfresh() const = 0;
+  /// What a pass makes once while it stands still: the result of make(), or what an earlier frame made where
+  /// that had the same `what` and `key`. The key holds what the thing depends on and what changes while the
+  /// pass lives, compared by ==: placements, the place of a grid. It needs neither parameters, seed nor the
+  /// contents of the scene, since nothing is kept over their change, nor over
+  /// PipelineExecutor::invalidate(); with --keep-everything nothing is kept at all. What a run of the pass
+  /// does not ask for is given back. explain() tells what was taken over.
+  template <class Key, class Make>
+  const auto& kept(const std::string& what, const Key& key, Make&& make) {
+    using Value = std::decay_t<std::invoke_result_t<Make&>>;
+    Kept& entry = keptEntry(what);
+    const Key* const before = std::any_cast<Key>(&entry.key);
+    if (before != nullptr && *before == key) {
+      tellReused(what);
+      return std::any_cast<const Value&>(entry.value);
+    }
+    entry = {};  // before the next one is made: the pool may give back the same memory
+    entry.value = Value(make());
+    entry.key = key;
+    return std::any_cast<const Value&>(entry.value);
+  }
+  /// Resources that stay for the next frame; needs Reads::history. Every call returns both sides, so that a
+  /// frame that has to be rendered again finds `previous` as it was. `previous` is null in the first frame,
+  /// after a frame in which the pass did not ask for this label with this shape, after a change of the
+  /// picture's size, a parameter, the seed or the pipeline, and in runs that do not accumulate.
+  virtual History<gpu::TextureRef> history(const gpu::TextureDescription& description,
+                                           const std::string& label) = 0;
+  virtual History<gpu::BufferRef> history(std::uint64_t sizeBytes, const std::string& label) = 0;
+  /// For how many frames in a row nothing has changed that this pass or any source of it depends on: 0 in the
+  /// first frame and in runs that do not accumulate. Needs Reads::history.
+  virtual int accumulated() const = 0;
   /// True when this run is inspected (RenderOptions::health): what a pass measures about itself may then cost
   /// time, and is told with note(), a sentence that begins in the middle: "1.1 % of the irradiance was ...".
   virtual bool inspects() const = 0;
   virtual void note(const std::string& text) = 0;
-  /// Tells explain() of a part of the pass's work that this frame took over from an earlier one.
-  virtual void reused(const std::string& what, const std::string& why) = 0;
 
   const shader::BoundProgram& program(const shader::ProgramName& name, shader::VariantKey variant = {},
                                       std::span<const gpu::SpecialisationValue> constants = {}) {
@@ -368,6 +422,16 @@ class PassContext {
   /// Room for so many elements of a storage block that ends with an array of open length, and for one at
   /// least.
   gpu::BufferRef elements(const shader::StorageSlot& block, std::uint64_t count, const std::string& label);
+
+  /// What kept() holds under one name.
+  struct Kept {
+    std::any key, value;
+  };
+
+ protected:
+  /// Of the pass that runs; empty where nothing of an earlier frame may be used.
+  virtual Kept& keptEntry(const std::string& what) = 0;
+  virtual void tellReused(const std::string& what) = 0;
 };
 
 class Pass {
@@ -379,6 +443,15 @@ class Pass {
   /// With Reads::partOfCamera: what it reads of the camera, such as where its grids lie. While that stays the
   /// same, a moved camera is no reason to run the pass again.
   virtual std::vector<float> readsOfCamera(const SceneSnapshot&) const { return {}; }
+  /// False for an input that the parameters, as they are set, make useless: nothing is made for its sake, and
+  /// it may be absent even where it is required. Whatever is connected must then leave the outputs as they
+  /// are, to the bit.
+  virtual bool uses(const InBase&) const { return true; }
+  /// How many indirect bounces the pass's indirect outputs model: which reference their bias is judged by.
+  virtual int indirectBounces() const { return 1; }
+  /// True for a pass whose work is the host's: it is timed by the host's clock, with the device idle before
+  /// and after.
+  virtual bool worksOnHost() const { return false; }
   /// What the scene must have for the pass as a whole.
   virtual Needs needs() const { return Needs::nothing; }
   /// Contradictions between parameters, in words; empty when there are none.

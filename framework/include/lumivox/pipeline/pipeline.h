@@ -12,11 +12,26 @@
 #include "lumivox/base/picture.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/dsl/schema.h"
-#include "lumivox/pipeline/pass.h"
+#include "lumivox/pipeline/contributes.h"
 #include "lumivox/pipeline/technique_source.h"
 #include "lumivox/scene/scene.h"
+#include "lumivox/shader/work.h"
 
 namespace lumivox {
+
+namespace gpu {
+class Device;
+class Texture;
+}  // namespace gpu
+namespace shader {
+class ShaderLibrary;
+}
+// Of pipeline/pass.h, which few of those need who load pipelines and run them.
+class OutBase;
+class Pass;
+class PassContext;
+template <class Port>
+class Out;
 
 /// One value of a pipeline parameter.
 struct ParameterValue {
@@ -96,6 +111,13 @@ struct RenderOptions {
   std::uint64_t seed = 1;
   bool health = false;     ///< scan every pass output for NaN, Inf and negative values; not part of the times
   bool countWork = false;  ///< count what every pass does: the same pictures, several times slower
+  /// Passes find what they left in the frame before (PassContext::history(), accumulated(), inputs that are
+  /// histories). Off: every frame is made as if it were the first, so that frame N alone is frame N of a
+  /// sequence.
+  bool accumulate = false;
+  /// Debugging: every frame is made a second time from scratch, and FrameResult::readsFindings names passes
+  /// whose Reads, Needs or uses() leave out what they depend on. Needs the memory of both.
+  bool checkReads = false;
   bool interactive =
       false;  ///< camera, lights and objects may change in ways that the scene text does not announce
   std::string camera;
@@ -104,7 +126,9 @@ struct RenderOptions {
 
 struct PassRecord {
   std::string name, technique, pass;
-  bool ran = true;          ///< false: its inputs had not changed
+  bool ran = true;  ///< false: its inputs had not changed
+  bool onHost =
+      false;  ///< Pass::worksOnHost(): deviceMs is then by the host's clock, the device idle around it
   double hostMs = 0;        ///< until its last command was given to the device
   double deviceMs = 0;      ///< only in what PipelineExecutor::timedPasses() returns
   std::uint64_t bytes = 0;  ///< resources that it took from the pool
@@ -115,10 +139,14 @@ struct FrameResult {
   std::map<std::string, Picture>
       outputs;  ///< rgb each (one channel for ambient occlusion); only when pictures were asked for
   std::map<std::string, Contributes> components;
+  /// Per output: the most bounces that its pass or one before it models (Pass::indirectBounces()).
+  std::map<std::string, int> indirectBounces;
   std::vector<PassRecord> passes;
   double frameMs = 0;          ///< whole frame, device idle before and after; with Timing::passes NaN
   double betweenPassesMs = 0;  ///< of the host, outside of the passes: what the framework itself costs
   std::uint64_t peakBytes = 0;
+  /// With `checkReads`: "pass voxels, port grid: 96 of 4096 bytes differ from a run from scratch; ..."
+  std::vector<std::string> readsFindings;
   std::vector<std::string> healthFindings;  ///< "pass gather, port diffuse: 3 NaN, first at pixel (12, 40)"
   /// With `health`, what passes measured about themselves: "pass gather: 1.1 % of the irradiance was ..."
   std::vector<std::string> notes;
@@ -167,8 +195,22 @@ class PipelineExecutor {
   /// The passes of every frame that was rendered with Timing::passes since the last call, in their order,
   /// with their device times. Waits for the device.
   std::vector<std::vector<PassRecord>> timedPasses();
-  /// Forgets cached results, so that the next frame runs every kept pass.
+  /// Forgets cached results and what passes keep while it stands still, so that the next frame runs every
+  /// kept pass. Histories stay.
   void invalidate();
+  /// The next frame finds no history and counts as the first.
+  void emptyHistories();
+
+  /// Other parameters from now on, over the pipeline's defaults. Passes whose parameters stay as they are
+  /// keep what they made; pictures are those of a new executor, to the bit. Histories are emptied. Throws
+  /// DiagnosticsError like the constructor, and then leaves everything as it was.
+  void setParameters(const ParameterValues& values);
+  /// Another seed from now on: every pass runs again, and histories are emptied.
+  void setSeed(std::uint64_t seed);
+  /// Another scene from now on, such as the same text after an edit; it must outlive the executor, the one
+  /// before may go. Passes that read what differs run again, and histories are emptied. Error when it lacks
+  /// the camera.
+  void setScene(const Scene& scene);
 
   Explanation explain() const;
   const std::vector<std::string>& outputNames() const;  ///< kept and pruned; a pruned one renders as black
@@ -191,7 +233,8 @@ class PipelineExecutor {
   std::unique_ptr<State> state_;
 };
 
-/// Runs one pass alone on hand-made inputs: for the closed-form tests of techniques.
+/// Runs one pass alone on hand-made inputs: for the closed-form tests of techniques. A run finds nothing that
+/// an earlier one left, unless accumulate() was called.
 class PassHarness {
  public:
   PassHarness(gpu::Device& device, TechniqueSource& techniques, const std::string& technique,
@@ -207,6 +250,9 @@ class PassHarness {
     *source = std::move(value);
     connectInput(name, std::move(source));
   }
+  /// From now on histories and what the pass keeps are carried from run to run, as in frames in which nothing
+  /// changes.
+  void accumulate();
   void run(std::uint64_t seed = 1);
   template <class Port>
   const Port& output(const std::string& name) {
@@ -221,6 +267,9 @@ class PassHarness {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// What an output shows that was left out: its neutral element everywhere.
+Picture neutralPicture(int width, int height, Contributes component);
 
 /// A texture's picture as the framework stores pictures: row 0 on top.
 Picture pictureOf(const gpu::Texture& texture, int channels = 3);

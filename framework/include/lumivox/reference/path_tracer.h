@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "lumivox/base/picture.h"
 #include "lumivox/scene/scene.h"
@@ -25,7 +26,9 @@ namespace lumivox {
 
 struct ReferenceOptions {
   int samplesPerPixel = 256;
-  int bounces = 32;      ///< indirect bounces of the full transport: what lies beyond is cut off
+  int bounces = 32;  ///< indirect bounces of the full transport: what lies beyond is cut off
+  /// Numbers N of bounces that get layers of their own, bounces_N and its two lobes; each in 1..bounces.
+  std::vector<int> bounceLayers;
   bool roulette = true;  ///< Russian roulette: ends dim paths early, without bias
   std::uint64_t seed = 1;
   double time = 0.0;  ///< s
@@ -43,10 +46,13 @@ struct ReferenceOptions {
 /// Y: unoccluded fraction, cosine-weighted); with media also transmittance, scattered_single (light of the
 /// lights, scattered once and nothing else), scattered_multiple (all other) and scattered; and for each of
 /// them "<layer>.variance": the variance of the pixel's mean. One path gives all of them, so sums have their
-/// own, right variance. Attributes hold the provenance: scene, hash, samples, bounces, roulette, seed, time,
-/// camera, resolution, occlusion_distance, tracer_version, cut_off (the estimated share of all light that
-/// lies beyond the last bounce, which is warned of above 1 %, and the factor from bounce to bounce). At least
-/// two samples per pixel, or Error.
+/// own, right variance. For each N of `bounceLayers` also bounces_N_diffuse and bounces_N_glossy, what
+/// arrives after up to N further bounces, and bounces_N, their sum with direct (and with media dimmed, with
+/// the light that these scatter after up to N further bounces; there a scattering counts as a bounce, which
+/// one_bounce leaves out). Attributes hold the provenance: scene, hash, samples, bounces, roulette, seed,
+/// time, camera, resolution, occlusion_distance, tracer_version, bounce_layers (when there are any), cut_off
+/// (the estimated share of all light that lies beyond the last bounce, which is warned of above 1 %, and the
+/// factor from bounce to bounce). At least two samples per pixel, or Error.
 LayeredPicture renderReference(const Scene& scene, const ReferenceOptions& options);
 
 /// The same through the cache (base/file.h cacheDirectory), keyed by everything the picture depends on. A

@@ -23,6 +23,7 @@ struct SurfaceTexture {
   bool mask = false;  ///< one channel, a coverage mask; otherwise linear RGB
   std::vector<float>
       values;  ///< width*height*(mask ? 1 : 3); row 0 is the top of the picture (texture coordinate v = 1)
+  bool operator==(const SurfaceTexture&) const = default;
 };
 
 /// Lambert `diffuse/pi` plus Phong `specular (n+2)/(2 pi) max(0, cos a)^n`, a from the mirror direction; with
@@ -37,6 +38,7 @@ struct Material {
   int maskTexture = -1;      ///< coverage below 0.5 is a hole
   bool glossy() const { return specular != glm::vec3(0.0f); }
   bool emissive() const { return emission != glm::vec3(0.0f); }
+  bool operator==(const Material&) const = default;
 };
 
 /// A run of triangles of one object with one material.
@@ -44,6 +46,7 @@ struct Part {
   int material = 0;
   std::uint32_t firstIndex = 0;  ///< into Scene::indices
   std::uint32_t indexCount = 0;  ///< three per triangle
+  bool operator==(const Part&) const = default;
 };
 
 /// Rigid motion about a point, as functions of the time in seconds; parts add up in the order translate after
@@ -53,6 +56,7 @@ struct RigidMotion {
   double angularSpeed = 0.0;  ///< rad/s
   glm::dvec3 pivot{0};        ///< of the rotation, in metres, world space before motion
   glm::dvec3 velocity{0};     ///< m/s
+  bool operator==(const RigidMotion&) const = default;
 };
 
 /// Whole vertex sets of a deforming object at equal steps of time; between them positions are interpolated
@@ -62,6 +66,7 @@ struct VertexSequence {
   bool loop = true;
   std::vector<std::vector<glm::vec3>> positions;  ///< [frame][vertex of the object]
   std::vector<std::vector<glm::vec3>> normals;
+  bool operator==(const VertexSequence&) const = default;
 };
 
 /// A named piece of geometry that moves as one: "room/tall_box" is the object or group tall_box of the mesh
@@ -80,6 +85,7 @@ struct Object {
   /// Filled in by the loader like placedBounds.
   std::optional<std::pair<glm::dvec3, glm::dvec3>> sweptBounds;
   bool animated() const { return motion.has_value() || sequence.has_value(); }
+  bool operator==(const Object&) const = default;
 };
 
 enum class LightKind { directional, point, spot };
@@ -141,6 +147,7 @@ struct Medium {
   std::uint32_t seed = 1;                       ///< of the particles' random numbers
   std::shared_ptr<const DensityVolume> volume;  ///< of a volume file; else null
   bool homogeneous() const { return particles == 0 && volume == nullptr; }
+  bool operator==(const Medium&) const = default;
 };
 
 struct Scene {
@@ -174,6 +181,7 @@ struct SceneTraits {
 
   static SceneTraits of(const Scene& scene);
   static SceneTraits everything();  ///< all present, for --keep-everything
+  bool operator==(const SceneTraits&) const = default;
 };
 
 /// One camera as the renderers need it: relative to SceneSnapshot::origin, orthonormal basis.
@@ -226,6 +234,10 @@ struct SceneSnapshot {
 /// The bounds of an object over a whole turn and its whole sequence of deformations, without its travel: what
 /// the loader keeps as Object::sweptBounds. The object must have vertices.
 std::pair<glm::dvec3, glm::dvec3> sweptBoundsOf(const Scene& scene, const Object& object);
+
+/// Within which ambient occlusion looks for surfaces where nobody says otherwise, m: a tenth of the diagonal
+/// of the scene's bounds; 0 without a triangle.
+double ambientOcclusionDistance(const Bounds& bounds);
 
 /// Evaluates motion. `origin` is the centre of the static scene's bounds (of everything at rest, before
 /// motion, where nothing is static), the same for all times. `width`/`height` of 0 keep the camera's

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lumivox/gpu/device.h"
-#include "lumivox/report/store.h"
+#include "lumivox/results/store.h"
 
 namespace lumivox {
 

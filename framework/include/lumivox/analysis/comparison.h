@@ -1,0 +1,112 @@
+// All pipelines of a scene against each other: the front of error against time over all of their points, what
+// each reaches in equal time and what each needs for equal error.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lumivox/analysis/interpolation.h"
+#include "lumivox/results/runs.h"
+
+namespace lumivox {
+
+/// One point of a sweep, timed and judged.
+struct ComparedPoint {
+  std::size_t source = 0;    ///< into the points that were given
+  std::size_t pipeline = 0;  ///< into PipelineComparison::pipelines
+  ParameterValues parameters;
+  TimingStatistics frameMs;
+  TradeOff tradeOff;                    ///< of the median of frameMs
+  std::optional<std::size_t> beatenBy;  ///< by the rule of beats(), into points; none: on the front
+};
+
+/// One cell of the tables.
+struct ComparedCell {
+  Interpolated reached;
+  bool best = false;  ///< the least of its column, or not to be told apart from that (differ())
+};
+
+struct ComparedPipeline {
+  std::string pipeline;  ///< file as given
+  std::string output;    ///< that is judged
+  /// Its points that none of its own beats by value, by time: interpolated between, in comparison.points.
+  std::vector<std::size_t> front;
+  std::vector<ComparedCell> atTime;   ///< errors, one per budget
+  std::vector<ComparedCell> atError;  ///< ms, one per error
+};
+
+/// From one budget to another, the points that give the least error within it: the first has the least, the
+/// others, one for each further pipeline, cannot be told apart from it. Measured points only.
+struct BudgetRange {
+  double fromMs = 0.0;
+  std::optional<double> toMs;  ///< none: for every larger budget
+  std::vector<std::size_t> best;
+};
+
+struct PipelineComparison {
+  std::string component;  ///< name(Contributes); "final": the whole picture
+  bool bias = false;      ///< against the technique's own model; false: against full transport
+  std::string truth;      ///< layer that they are judged against
+  std::string metric;
+  std::vector<ComparedPoint> points;  ///< by time
+  std::vector<ComparedPipeline> pipelines;
+  std::vector<std::size_t> front;  ///< of all points by value alone: the line that bounds them
+  std::vector<double> budgetsMs, errors;
+  std::vector<BudgetRange> ranges;
+  double timeShare = kSignificantTimeShare;  ///< that times must be apart
+  int controls = 0;                          ///< that say so; 0: it is kSignificantTimeShare
+  /// Points whose time or error has too few repeats or seeds for any claim: they are neither beaten nor beat.
+  std::size_t undecided = 0;
+
+  /// Whether some of its points are on the front: no other pipeline beats it at their budgets.
+  bool hasFront(std::size_t pipeline) const;
+};
+
+/// Budgets and errors of the tables. Empty: round numbers between the smallest and the largest measured.
+struct ComparisonLimits {
+  std::vector<double> budgetsMs, errors;
+  TimeFloor floor = {};  ///< of the device that the points were timed on
+};
+
+/// Names of the components that pipelines can be compared in, in the order of a picture's making; the last is
+/// "final", the whole picture.
+std::vector<std::string> comparableComponents();
+/// Of these, those that some point has an error for.
+std::vector<std::string> componentsOf(const std::vector<const ReportPoint*>& points);
+/// The error of a component at a point, if it was measured: against the bias truth or the full one (a
+/// component with one truth has only the first, which then answers for both). For the component "final" it is
+/// that of the whole picture.
+const ComponentError* componentErrorOf(const ReportPoint& point, const std::string& component, bool bias);
+/// The metrics that can be compared: those that are 0 for the truth itself and grow with the error.
+std::vector<std::string> errorMetrics();
+/// Error names the metrics, and the nearest, when this is none of errorMetrics().
+void requireErrorMetric(const std::string& metric);
+/// The metric of that name: mean over seeds with the truth's noise and the spread over seeds; NaN: none.
+Measured errorNumber(const ComponentError& error, const std::string& metric);
+
+/// Compares the points that were timed and judged in this component; without any of them `points` is empty.
+PipelineComparison comparePipelines(const std::vector<const ReportPoint*>& points,
+                                    const std::string& component, bool bias, const std::string& metric,
+                                    const ComparisonLimits& limits);
+/// Every component of a scene, the whole picture last, against full transport and, where that is another
+/// truth, against the techniques' own model. Without what has no points.
+std::vector<PipelineComparison> compareComponents(const std::vector<const ReportPoint*>& points,
+                                                  const std::vector<std::string>& metrics,
+                                                  const ComparisonLimits& limits);
+
+/// Stored runs that can be set against each other: one scene with its content, camera, time, size of the
+/// picture and positions in the pixel, one device, driver, way of shaders and host, the same outputs kept.
+struct ComparableRuns {
+  std::string title;  ///< "cornell, camera main, 128x128, on llvmpipe"
+  /// The last of each point, and of each pipeline only those with the content of its last run: its text, its
+  /// techniques and the framework. Without failed ones.
+  std::vector<const StoredRun*> runs;
+  std::size_t passedOver = 0;  ///< older ones, and failed ones
+};
+std::vector<ComparableRuns> comparableRuns(const std::vector<StoredRun>& runs);
+
+nlohmann::ordered_json toJson(const PipelineComparison& comparison);
+
+}  // namespace lumivox

@@ -1,0 +1,31 @@
+// When a published table or curve counts as reproduced.
+#pragma once
+
+#include <vector>
+
+#include "lumivox/results/reproduction.h"
+
+namespace lumivox {
+
+/// A ratio is reproduced within this factor of the published one, upwards and downwards.
+inline constexpr double kReproducedFactor = 1.5;
+/// A measured ratio reaches this many of its standard uncertainties to both sides (95 % of a normal
+/// distribution).
+inline constexpr double kReproducedSigmas = 2.0;
+
+/// The rule. Times and frame rates are divided by the first row of either that is comparable, fragments and
+/// memory by the first of their own; a row that says so by the row that it names. A table is reproduced when
+/// at least one row is, none is not, and no two comparable rows stand in the other order than published by
+/// more than their uncertainty.
+JudgedTable judge(const std::vector<MeasuredRow>& rows);
+
+/// A curve follows x^p; p reaches so many of its standard uncertainties to both sides as a ratio does.
+/// Sublinear is reproduced when all of that lies below 1, superlinear when above, and not when all of it lies
+/// on the other side. Linear: when from the first point to the last the curve grows as x does within the
+/// factor of ratios.
+JudgedCurve judgeGrowth(const MeasuredCurve& curve);
+
+/// The results with every row, table and curve judged anew.
+std::vector<ReproducedResult> judged(std::vector<ReproducedResult> results);
+
+}  // namespace lumivox

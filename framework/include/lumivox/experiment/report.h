@@ -1,0 +1,95 @@
+// The main job: every pipeline at every point of its sweep, error and time apart, one record.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lumivox/gpu/device.h"
+#include "lumivox/pipeline/pipeline.h"
+#include "lumivox/plugin/loader.h"
+#include "lumivox/reference/path_tracer.h"
+#include "lumivox/results/report_record.h"
+
+namespace lumivox {
+
+struct ReportOptions {
+  std::vector<std::filesystem::path> scenes,
+      pipelines;                      ///< no pipelines: every committed one that suits the scene
+  std::vector<std::string> settings;  ///< "name=value"; pins that axis of a sweep
+  std::filesystem::path output = "out/report/index.html";  ///< the page
+  int truthSamples = 0;                                    ///< per pixel; 0: truthSamplesFor(width, height)
+  int width = 0, height = 0;  ///< 0: the camera's, reduced to at most 160 on a software rasteriser
+  std::string camera;
+  double time = 0.0;       ///< s
+  std::uint64_t seed = 1;  ///< the first one
+  int subpixels = 16;      ///< pictures that are judged are means over this many positions in the pixel
+  int repeats = 5, seeds = kLeastRepeats;
+  /// Pairs of frames 1/24 s apart whose flicker is measured where the scene moves; 0: none.
+  int flickerPairs = 4;
+  bool openSweeps = true;                         ///< false: only the default point
+  int voxelResolution = 0;                        ///< of a section on the committed voxelisers; 0: none
+  std::filesystem::path store;                    ///< results store that the points are added to; empty: none
+  std::vector<double> equalTimesMs, equalErrors;  ///< of the tables; empty: round numbers from the data
+  std::string commandLine;                        ///< as typed, for the page
+  std::vector<std::string>
+      repeatArguments;  ///< further options that a repeating command needs, e.g. --device
+};
+
+struct ReportSummary {
+  std::vector<ReportPoint> points;
+  std::size_t takenUp = 0;  ///< of them, those that an interrupted run had measured already
+  std::vector<PruningRecord> pruning;
+  std::vector<std::string> unsuited;  ///< "scene, pipeline: why" for those left out by themselves
+};
+
+/// Measures, and gives the whole record to `write`, once. Error (before any work) when a text is wrong.
+/// Points are kept beside `options.output`, in a file with the extension .unfinished.sqlite, as soon as they
+/// are measured: when the report is interrupted, the next one takes them up, and removes the file when
+/// `write` has returned. A point that fails is one that says why.
+ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
+                         const std::function<Scene(const std::filesystem::path&)>& loadScene,
+                         const std::function<void(const ReportRecord&)>& write);
+
+/// The truth layer that a component's bias is measured against, and the one for what the viewer misses.
+/// Empty names: a component without a truth.
+std::pair<std::string, std::string> truthLayers(Contributes component);
+
+/// One layer of a truth and its variance. Where the truth has no layer "one_bounce", direct and both
+/// one-bounce layers are added up; nullopt when it is not there.
+struct TruthLayer {
+  Picture mean, variance;
+};
+std::optional<TruthLayer> truthLayer(const LayeredPicture& truth, const std::string& name);
+
+/// What an output adds to the whole picture: the output named "final" or contributing final if there is one,
+/// else the sum of the radiance components (direct, indirect_diffuse, indirect_glossy, scattered). Empty when
+/// there is none of them.
+Picture compositePicture(const FrameResult& frame);
+
+/// Renders pruned and unpruned alternately, `repeats` times each after one warm-up. With 0 only the warm-up
+/// is rendered, for the pictures, the bytes and the variants; nothing is timed.
+PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, const Scene& scene,
+                             const Pipeline& pipeline, RenderOptions options, double time, int repeats);
+
+/// The folder with the committed scenes (its `pipelines` beside them): found upwards from `start`, from the
+/// working directory and from the running program; nullopt when there is none.
+std::optional<std::filesystem::path> committedScenes(const std::filesystem::path& start = {});
+/// Sorted *.pipeline files of a folder.
+std::vector<std::filesystem::path> pipelinesIn(const std::filesystem::path& folder);
+
+/// Why a pipeline does not suit a scene, or empty: it suits unless all that it adds to direct light needs
+/// something that the scene lacks.
+std::string whyUnsuited(const Pipeline& pipeline, TechniqueSource& techniques, const SceneTraits& traits);
+
+/// Size of the camera's picture reduced to fit within `limit` pixels on its longer side, at least 1, aspect
+/// kept.
+std::pair<int, int> reducedResolution(int width, int height, int limit);
+/// Samples per pixel at which the truth's noise is well below the techniques' errors and a small picture
+/// takes less than a minute or two.
+int truthSamplesFor(int width, int height);
+
+}  // namespace lumivox

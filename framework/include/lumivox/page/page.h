@@ -1,0 +1,20 @@
+// The page of a report: records in, one page out, with the same numbers as CSV and JSON beside it.
+#pragma once
+
+#include <filesystem>
+
+#include "lumivox/results/report_record.h"
+
+namespace lumivox {
+
+struct ReportFiles {
+  std::filesystem::path page, csv, json;
+};
+/// The page, and beside it the same stem with .csv and .json. Error, so before any work, when one of them
+/// cannot be written or the packaged chart library is absent.
+ReportFiles reportFiles(const std::filesystem::path& page);
+
+/// Every number of the page stands in the JSON, but for those that a reader makes of others.
+void writeReport(const ReportFiles& files, const ReportRecord& record);
+
+}  // namespace lumivox

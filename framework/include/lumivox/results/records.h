@@ -1,0 +1,111 @@
+// What was measured, as plain values: errors, times, work, and what leaving out saved.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lumivox/measure/metrics.h"
+#include "lumivox/pipeline/pipeline.h"
+#include "lumivox/shader/work.h"
+
+namespace lumivox {
+
+/// The name under which a pipeline's whole picture (its composite, see compositePicture) is judged.
+inline constexpr const char* kWholePicture = "whole_picture";
+
+/// Error of one output against one truth layer.
+struct ComponentError {
+  std::string output;     ///< name in the pipeline text, or kWholePicture
+  std::string component;  ///< name(Contributes)
+  std::string truth;  ///< layer: one_bounce_diffuse (bias) or indirect_diffuse (what the viewer misses), ...
+  bool bias = true;   ///< against the truth of the technique's own model; false: against the full truth
+  /// Of every number the mean over the seeds that were run; the uncertainty is the truth's noise and the
+  /// standard error over the seeds, added in quadrature.
+  PictureError error;
+  int seeds = 1;  ///< that were run
+  /// False: from a results store of schema 3 or before, where every number but the RMSE is of the first seed.
+  bool everyMetricPerSeed = true;
+  bool deterministic = false;  ///< two seeds gave the same bits, so that there is no noise to average
+  double noiseRmse = 0.0;      ///< RMS of the picture's own noise, from the differences between the seeds
+  ErrorParts parts;            ///< mean square over seeds = bias² + noise² + the truth's noise²
+  Measured flicker{std::numeric_limits<double>::quiet_NaN(),
+                   0.0};        ///< over the pairs of frames that follow; NaN when none was measured
+  PictureError errorOfNothing;  ///< of a black picture: what leaving the component out would cost
+
+  /// Whether there are seeds enough to claim anything: kLeastRepeats of them, or no random numbers at all.
+  bool enoughSeeds() const { return deterministic || seeds >= kLeastRepeats; }
+  /// rmse / RMSE of nothing: below 1 the component is better than none.
+  double ratioToNothing() const;
+};
+
+/// The least time that the work of a pass can take on one resource of the device (roofline/ceilings.h).
+struct WorkBound {
+  std::string resource;  ///< "texture sampling"
+  double ms = 0.0;
+};
+
+/// One sweep point: both error and time, in one record.
+struct ReportPoint {
+  std::string scene, pipeline, sweep;  ///< scene and pipeline as given files; sweep empty: the default point
+  ParameterValues parameters;          ///< all parameters of the pipeline at this point
+  TimingStatistics frameMs;            ///< every kept pass runs
+  TimingStatistics nextFrameMs;        ///< 1/60 s later, only what changed runs
+  std::map<std::string, TimingStatistics> passDeviceMs, passHostMs;
+  std::map<std::string, std::uint64_t> passBytes;
+  /// What each pass does, counted in a frame of its own.
+  std::map<std::string, Work> passWork;
+  /// What each pass takes at least: one bound per resource, the largest first. Empty without the ceilings of
+  /// this device.
+  std::map<std::string, std::vector<WorkBound>> passBounds;
+  std::string whyNotCounted;           ///< empty when passWork is there
+  std::vector<std::string> passOrder;  ///< as they ran
+  double frameworkShare = 0.0;         ///< time between passes / frame
+  std::uint64_t peakBytes = 0;
+  std::vector<ComponentError> errors;
+  std::vector<std::string> healthFindings;
+  std::vector<std::string> notes;  ///< what passes measured about themselves; not kept in the results store
+  std::string failure;  ///< why it has no numbers (it did not fit into memory, ...); empty when it has
+  std::string command;  ///< that repeats it
+};
+
+/// What leaving out saves, measured: the pruned and the unpruned pipeline timed alternately in one run.
+struct PruningRecord {
+  std::string scene, pipeline;
+  Explanation explanation;                        ///< savedMs is filled in for passes
+  TimingStatistics prunedMs, unprunedMs;          ///< frames in which nothing is known from before
+  TimingStatistics nextPrunedMs, nextUnprunedMs;  ///< frames that follow 1/60 s after another
+  std::map<std::string, TimingStatistics> prunedPassMs,
+      unprunedPassMs;                  ///< device; a missing pass did not run
+  std::vector<std::string> passOrder;  ///< of the unpruned pipeline
+  std::map<std::string, std::uint64_t> prunedPassBytes, unprunedPassBytes;
+  std::uint64_t prunedBytes = 0, unprunedBytes = 0;  ///< all resources of the passes
+  bool samePicture = false;                          ///< bit for bit: the law of leaving out
+
+  double savedShare() const;      ///< of the unpruned frame time, 0..1
+  double savedShareNext() const;  ///< of that of a frame that follows another, with a moving camera
+};
+
+/// What one device can do at most, measured: `lumivox device`.
+struct DeviceCeiling {
+  std::string name;       ///< "texture_sampling_rgba16f_3d"
+  std::string unit;       ///< "samples/s", "writes/s", "operations/s", "bytes/s"
+  TimingStatistics rate;  ///< in that unit
+  std::string created, version, device, driver, shaderInput, host;
+};
+
+/// The metrics of one error by name, with the same of a black picture: what the store's table `metrics`
+/// holds. Names: rmse, relative_mse, mean_ratio, bias, percentile95, ssim, flip, flip_ldr,
+/// rms_bias, rms_noise, flicker, noise_floor, non_finite_picture, non_finite_truth.
+struct NamedMetric {
+  std::string name;
+  Measured measured;
+  double ofNothing = 0.0;
+};
+std::vector<NamedMetric> metricsOf(const ComponentError& error);
+/// The inverse: fills the error's numbers from one metric; false for a name that it does not know.
+bool setMetric(ComponentError& error, const NamedMetric& metric);
+
+}  // namespace lumivox

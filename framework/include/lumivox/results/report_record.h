@@ -1,0 +1,84 @@
+// What a report holds between measuring and writing: the records, and pictures already encoded.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lumivox/gpu/device.h"
+#include "lumivox/plugin/loader.h"
+#include "lumivox/results/records.h"
+#include "lumivox/results/runs.h"
+#include "lumivox/results/stress_cells.h"
+#include "lumivox/results/voxelisers.h"
+
+namespace lumivox {
+
+/// Pictures of one output at one point, as PNG bytes.
+struct OutputPictures {
+  std::string output, component;
+  std::string picture;
+  struct Against {
+    std::string truth;
+    std::string flipMap;
+    double flip = 0.0;
+  };
+  std::vector<Against> against;  ///< one per truth layer
+};
+
+struct PointRecord {
+  ReportPoint point;
+  bool isDefault = false;  ///< every parameter as the text has it (with --set)
+  std::vector<OutputPictures> pictures;
+};
+
+struct TruthRecord {
+  std::string layer;
+  std::string picture;    ///< PNG
+  double exposure = 1.0;  ///< common to every picture of this component
+  double noise = 0.0;     ///< sqrt of the mean variance of a pixel value
+  double mean = 0.0, largest = 0.0;
+};
+
+struct PipelineRecord {
+  std::string file, name, hash;
+};
+
+struct SceneRecord {
+  std::string file, name, hash, camera;
+  int width = 0, height = 0;
+  double time = 0.0;
+  std::size_t triangles = 0;
+  int truthSamples = 0;
+  double truthSeconds = 0.0;  ///< to make or to read from the cache
+  std::map<std::string, std::string> truthAttributes;
+  std::vector<TruthRecord> truths;
+  std::vector<PointRecord> points;
+  std::vector<PruningRecord> pruning;
+  std::vector<std::pair<std::string, std::string>> unsuited;  ///< pipeline, why
+  TimeFloor floor;                                            ///< of the times of its points
+};
+
+struct TechniqueRecord {
+  std::string name, libraryHash, shaderHash, meaning, paper;
+};
+
+struct ReportRecord {
+  std::string commandLine, date;                  ///< as typed; when it was made
+  std::vector<double> equalTimesMs, equalErrors;  ///< of the tables; empty: round numbers from the data
+  gpu::DeviceInfo device;
+  std::string shaderInput, host;
+  std::vector<PipelineRecord> pipelines;
+  std::vector<TechniqueRecord> techniques;
+  std::vector<SkippedTechnique> skipped;
+  std::vector<SceneRecord> scenes;
+  std::vector<DeviceCeiling> ceilings;  ///< of this device; empty when nobody has measured them
+  std::vector<VoxeliserRecord> voxels;  ///< only when they were asked for
+  std::vector<StressCell> stress;       ///< that the results store holds, the newest of each
+};
+
+std::vector<const ReportPoint*> pointsOf(const SceneRecord& scene);
+
+}  // namespace lumivox

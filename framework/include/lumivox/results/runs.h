@@ -1,0 +1,82 @@
+// A measured point with everything that it depends on.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lumivox/gpu/device.h"
+#include "lumivox/results/records.h"
+
+namespace lumivox {
+
+/// Everything that a result depends on. Two runs with the same identity measure the same thing, so that the
+/// second is not run.
+struct RunIdentity {
+  std::string sceneHash, pipelineHash;            ///< of the texts with all that they include and name
+  std::map<std::string, std::string> techniques;  ///< name to hash of library and shader pack
+  std::string framework;                          ///< hash of the framework's own libraries
+  std::map<std::string, std::string> parameters;  ///< all parameters of the pipeline, as settings
+  std::string camera;
+  double time = 0.0;  ///< s
+  int width = 0, height = 0;
+  std::uint64_t seed = 1;
+  int seeds = 1, repeats = 1, subpixels = 1, truthSamples = 0;
+  int flickerPairs = 0;                           ///< 0 where the scene does not move
+  std::vector<std::string> kept;                  ///< sorted outputs "pass.port" that no picture needs
+  std::string device, driver, shaderInput, host;  ///< host: processor and system
+
+  std::string key() const;  ///< 32 hexadecimal digits
+};
+
+/// One record of the store.
+struct StoredRun {
+  std::int64_t id = 0;  ///< in its store; 0 before it is stored
+  RunIdentity identity;
+  std::string created;  ///< "2015-10-21 16:29:00 UTC"
+  std::string version;  ///< of lumivox
+  std::string sceneName, pipelineName;
+  bool isDefault = false;  ///< every parameter as the text has it
+  ReportPoint point;       ///< `command` repeats it; a point with `failure` has no numbers
+};
+
+/// The times of a stored run measured once more, later: what differs is the machine's mood alone.
+struct RepeatedControl {
+  std::string created;            ///< "2015-10-21 16:29:00 UTC"
+  Measured frameMs, nextFrameMs;  ///< of the run
+  Measured frameMsAgain, nextFrameMsAgain;
+};
+
+/// How far apart two times of the same thing were found on one machine, as a share of the smaller.
+struct TimeFloor {
+  double frame = 0.0, nextFrame = 0.0;
+  int controls = 0;  ///< that say so; 0: nobody has looked
+};
+/// The largest of the controls.
+TimeFloor timeFloorOf(const std::vector<RepeatedControl>& controls);
+/// The larger of both, for numbers of both.
+TimeFloor larger(const TimeFloor& a, const TimeFloor& b);
+
+/// A picture of a run: an output, or its FLIP map against a layer of the truth.
+struct StoredPicture {
+  std::string output, component;
+  std::string truth;  ///< layer of the map; empty: the output itself
+  double flip = 0.0;  ///< mean of the map
+  std::string png;
+};
+
+/// Hash of the framework's libraries as they are loaded: part of every identity.
+std::string frameworkHash();
+
+/// What times depend on besides the work.
+struct DeviceIdentity {
+  std::string device, driver, shaderInput, host;
+};
+DeviceIdentity identityOf(const gpu::Device& device);
+/// System and processor.
+std::string hostText();
+/// Now, as "2015-10-21 16:29:00 UTC".
+std::string dateText();
+
+}  // namespace lumivox

@@ -1,0 +1,113 @@
+// The results store: every measured point with everything that it depends on, in one SQLite file. Schema and
+// the meaning of each column: docs/results.md.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lumivox/results/runs.h"
+#include "lumivox/results/stress_cells.h"
+
+namespace lumivox {
+
+/// Who is measuring a point at present.
+struct RunClaim {
+  std::string machine;  ///< and its start and name space of processes: where `process` means something
+  int process = 0;
+  std::uint64_t started = 0;  ///< of the process, so that another one with its number is told apart
+  std::string command;        ///< its command line
+  std::int64_t expires = 0;   ///< s since 1970
+};
+
+/// Which runs. Empty members do not restrict. Names match when they are the stem, the whole path or the
+/// title of the text.
+struct RunFilter {
+  std::string scene, pipeline, device, since;  ///< device: a part of its name; since: "2015-10-21"
+  std::vector<std::string> parameters;         ///< "name=value"
+  std::vector<std::int64_t> ids;
+  std::optional<bool> failed;
+  bool everything() const;
+};
+
+/// Which cells. Empty members do not restrict; the pipeline matches as in RunFilter, without its title.
+struct CellFilter {
+  std::string family, name, pipeline, technique, device, since;
+  std::optional<StressOutcome> outcome;
+  std::vector<std::int64_t> ids;
+  bool everything() const;
+};
+
+/// How much a store took over from another.
+struct MergeCount {
+  std::size_t runs = 0, cells = 0, ceilings = 0;
+};
+
+class ResultsStore {
+ public:
+  enum class Mode { read, write };
+  /// Opens a store; `write` makes it where there is none. Error for a file that is no store, has a schema of
+  /// another version, or cannot be written.
+  explicit ResultsStore(const std::filesystem::path& file, Mode mode = Mode::write);
+  ~ResultsStore();
+  ResultsStore(ResultsStore&&) noexcept;
+  ResultsStore& operator=(ResultsStore&&) noexcept;
+
+  const std::filesystem::path& file() const;
+  bool contains(const std::string& key) const;
+  /// The run with this key, if it is there.
+  std::optional<StoredRun> find(const std::string& key) const;
+  /// In one transaction: all of it or nothing, whatever happens. Returns false, and stores nothing, when
+  /// another process has stored a run with this key meanwhile. A failed run is replaced by one that did not.
+  bool add(const StoredRun& run, const std::vector<StoredPicture>& pictures = {});
+  /// Those that were stored with a run.
+  std::vector<StoredPicture> pictures(const std::string& key) const;
+
+  /// Tells others that this process is about to measure these points. For each of them: false when a process
+  /// that is alive and whose claim has not expired is at it. Claims of one's own are renewed. A claim ends
+  /// when the run is stored, with release(), or after kClaimSeconds.
+  std::vector<bool> claim(const std::vector<std::string>& keys);
+  /// Gives up one's own claims.
+  void release(const std::vector<std::string>& keys);
+  /// Of another process that is at this point now.
+  std::optional<RunClaim> claimedByOther(const std::string& key) const;
+
+  /// Adds the times of the run with this key, measured once more.
+  void addControl(const std::string& key, const TimingStatistics& frameMs,
+                  const TimingStatistics& nextFrameMs);
+  /// The last kControls of a device on a host, the newest first.
+  std::vector<RepeatedControl> controls(const RunIdentity& where) const;
+  static constexpr int kControls = 20;
+  static constexpr int kClaimSeconds = 3600;
+
+  /// By id, so in the order of storing.
+  std::vector<StoredRun> runs(const RunFilter& filter = {}) const;
+  /// How many were removed.
+  std::size_t remove(const RunFilter& filter);
+  /// Takes over the runs of another store that are not here, and the cells and ceilings that are not here or
+  /// are older here. In one transaction.
+  MergeCount merge(const ResultsStore& other);
+
+  /// Cells of the stress battery. A cell with the same key takes the place of the older one.
+  void add(const std::vector<StressCell>& cells);
+  /// By id; empty for a store of schema 1 that is only read.
+  std::vector<StressCell> stressCells(const CellFilter& filter = {}) const;
+  std::size_t removeCells(const CellFilter& filter);  ///< how many were removed
+  /// The newest ceilings of each device; those of the same name take the place of the older ones.
+  void add(const std::vector<DeviceCeiling>& ceilings);
+  std::vector<DeviceCeiling> ceilings(const std::string& device, const std::string& driver,
+                                      const std::string& shaderInput, const std::string& host) const;
+  std::vector<DeviceCeiling> ceilings() const;  ///< of all devices
+
+  /// The store of a user who names none: $LUMIVOX_RESULTS, else results.sqlite in the cache directory.
+  static std::filesystem::path defaultFile();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lumivox

@@ -1,0 +1,365 @@
+#include "experiment/measure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <span>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/log.h"
+#include "lumivox/base/low_discrepancy.h"
+#include "lumivox/roofline/ceilings.h"
+#include "pipeline/changes.h"
+
+namespace lumivox::experiment {
+namespace {
+
+/// The pictures of every output that has a truth, and the whole picture; per seed.
+struct Judged {
+  std::string output;
+  Contributes component;
+  std::vector<Picture> seeds;
+};
+
+RenderOptions renderOptions(const TimingContext& context, const ReportPoint& point) {
+  RenderOptions options;
+  options.parameters = point.parameters;
+  options.seed = context.options.seed;
+  options.camera = context.options.camera;
+  options.width = context.width;
+  options.height = context.height;
+  return options;
+}
+
+void collect(std::vector<Judged>& judged, const std::string& output, Contributes component, Picture picture) {
+  if (picture.empty() || truthLayers(component).first.empty()) return;
+  const auto found =
+      std::find_if(judged.begin(), judged.end(), [&](const Judged& one) { return one.output == output; });
+  if (found == judged.end())
+    judged.push_back({output, component, {std::move(picture)}});
+  else
+    found->seeds.push_back(std::move(picture));
+}
+
+void collectOutputs(std::vector<Judged>& judged, const PipelineExecutor& executor, FrameResult frame) {
+  Picture whole = compositePicture(frame);
+  for (const std::string& output : executor.outputNames()) {
+    const auto picture = frame.outputs.find(output);
+    const auto component = frame.components.find(output);
+    // An output that is the whole picture already is judged as that, once.
+    if (picture != frame.outputs.end() && component != frame.components.end() &&
+        component->second != Contributes::final)
+      collect(judged, output, component->second, std::move(picture->second));
+  }
+  collect(judged, kWholePicture, Contributes::final, std::move(whole));
+}
+
+bool sameValues(const Picture& a, const Picture& b) {
+  return a.sameShape(b) &&
+         std::equal(a.values().begin(), a.values().end(), b.values().begin(),
+                    [](float x, float y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
+bool sameInEverySeed(const Judged& judged) {
+  return judged.seeds.size() > 1 &&
+         std::all_of(judged.seeds.begin() + 1, judged.seeds.end(),
+                     [&](const Picture& seed) { return sameValues(judged.seeds.front(), seed); });
+}
+
+/// `flipMap` becomes that of the first seed.
+ComponentError errorAgainst(const Judged& judged, Truth& truth, const std::string& layer, bool bias,
+                            Picture& flipMap) {
+  const TruthLayer& reference = *truth.layer(layer);
+  ComponentError record;
+  record.output = judged.output;
+  record.component = name(judged.component);
+  record.truth = layer;
+  record.bias = bias;
+  record.seeds = static_cast<int>(judged.seeds.size());
+  record.deterministic = sameInEverySeed(judged);
+  // Seeds that are the same bits are one picture.
+  SeedsError error =
+      compareSeeds(std::span(judged.seeds).first(record.deterministic ? 1 : judged.seeds.size()),
+                   reference.mean, reference.variance);
+  record.error = error.mean;
+  flipMap = std::move(error.flipMap);
+  record.parts = errorParts(judged.seeds, reference.mean, reference.variance, record.deterministic);
+  record.noiseRmse = judged.seeds.size() > 1 ? record.parts.noise.value : 0.0;
+  record.errorOfNothing = truth.errorOfNothing(layer);
+  return record;
+}
+
+SceneSnapshot snapshotAt(const MeasureContext& context, const RenderOptions& options, double time) {
+  return snapshotOf(context.scene, time, options.camera, options.width, options.height);
+}
+
+}  // namespace
+
+void fail(ReportPoint& point, const std::string& why) {
+  ReportPoint empty;
+  empty.scene = point.scene;
+  empty.pipeline = point.pipeline;
+  empty.sweep = point.sweep;
+  empty.parameters = point.parameters;
+  empty.command = point.command;
+  empty.failure = why;
+  point = std::move(empty);
+}
+
+std::string whyFailed(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const DiagnosticsError&) {
+    throw;
+  } catch (const Error& error) {
+    return error.what();
+  } catch (const std::bad_alloc&) {
+    return "out of memory, without a word about what was too large";
+  } catch (const std::exception& error) {
+    return fmt::format("an error that nobody foresaw: {}", error.what());
+  }
+  return {};
+}
+
+FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& centre, int positions,
+                           int frameIndex) {
+  // The truth is filtered over the pixel, so that with one sample at its centre the silhouettes of bright
+  // lamps would outweigh every other error. The camera turns by the fraction of a pixel, which shifts the
+  // picture but for second order.
+  const int count = std::max(1, positions);
+  const float pixel = 2.0f * centre.camera.tanHalfFov / static_cast<float>(centre.camera.height);
+  // Unlike a regular grid, the sequence has as many different rows and columns as positions, which matters
+  // where edges run along the rows. A single position is the centre.
+  FrameResult sum;
+  for (int position = 0; position < count; ++position) {
+    SceneSnapshot shifted = centre;
+    const auto [u, v] = r2Point(position);
+    const glm::vec2 offset(u - 0.5, v - 0.5);
+    CameraView& camera = shifted.camera;
+    camera.forward =
+        glm::normalize(camera.forward + pixel * (offset.x * camera.right + offset.y * camera.up));
+    FrameResult frame = executor.render(shifted, frameIndex);
+    if (position == 0) {
+      sum = std::move(frame);
+      continue;
+    }
+    if (sum.healthFindings.empty()) sum.healthFindings = std::move(frame.healthFindings);
+    for (auto& [name, picture] : sum.outputs) {
+      const std::vector<float>& added = frame.outputs.at(name).values();
+      for (std::size_t i = 0; i < added.size(); ++i) picture.values()[i] += added[i];
+    }
+  }
+  for (auto& [name, picture] : sum.outputs)
+    for (float& value : picture.values()) value /= static_cast<float>(count);
+  return sum;
+}
+
+bool flickers(const Scene& scene, const ReportOptions& options) {
+  if (options.flickerPairs < 1) return false;
+  const auto at = [&](double time) { return snapshotOf(scene, time, options.camera, 1, 1); };
+  const Reads changed =
+      whatChanged(scene, at(options.time), at(options.time + options.flickerPairs * kFlickerStep));
+  return reads(changed, Reads::geometry) || reads(changed, Reads::lights) || reads(changed, Reads::camera) ||
+         SceneTraits::of(scene).particles;
+}
+
+void measureErrors(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
+  RenderOptions options = renderOptions(context, record.point);
+  std::vector<Judged> judged;
+  for (int seed = 0; seed < std::max(1, context.options.seeds); ++seed) {
+    options.seed = context.options.seed + static_cast<std::uint64_t>(seed);
+    options.health = seed == 0;
+    options.interactive = true;
+    PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
+    FrameResult frame = renderFiltered(executor, snapshotAt(context, options, context.options.time),
+                                       context.options.subpixels);
+    if (seed == 0) {
+      record.point.healthFindings = frame.healthFindings;
+      record.point.notes = frame.notes;
+    }
+    collectOutputs(judged, executor, std::move(frame));
+    // A technique without random numbers gives the same bits for every seed: two show it, more would only
+    // cost time.
+    if (seed == 1 && std::all_of(judged.begin(), judged.end(),
+                                 [](const Judged& one) { return sameValues(one.seeds[0], one.seeds[1]); }))
+      break;
+  }
+
+  for (const Judged& one : judged) {
+    const auto [biasLayer, missLayer] = truthLayers(one.component);
+    OutputPictures pictures;
+    pictures.output = one.output;
+    pictures.component = name(one.component);
+    const float exposure = context.truth.exposure(missLayer);
+    pictures.picture = encodePng(one.seeds.front(), exposure);
+    for (const bool bias : {true, false}) {
+      const std::string& layer = bias ? biasLayer : missLayer;
+      const TruthLayer* reference = context.truth.layer(layer);
+      if (reference == nullptr || (!bias && missLayer == biasLayer)) continue;
+      if (!reference->mean.sameShape(one.seeds.front()))
+        throw Error(fmt::format(
+            "output '{}' has {} x {} pixels of {} channels, but its truth '{}' has {} x {} of {}", one.output,
+            one.seeds.front().width(), one.seeds.front().height(), one.seeds.front().channels(), layer,
+            reference->mean.width(), reference->mean.height(), reference->mean.channels()));
+      Picture flipMap;
+      ComponentError error = errorAgainst(one, context.truth, layer, bias, flipMap);
+      pictures.against.push_back({layer, encodePng(falseColour(flipMap)), error.error.flip});
+      record.point.errors.push_back(std::move(error));
+    }
+    record.pictures.push_back(std::move(pictures));
+  }
+}
+
+namespace {
+
+/// The frames of an animation with one seed, in place of seeds.
+std::vector<Judged> sequenceOf(const MeasureContext& context, const Pipeline& pipeline,
+                               const ReportPoint& point, int seed) {
+  RenderOptions options = renderOptions(context, point);
+  options.seed += static_cast<std::uint64_t>(seed);
+  options.interactive = true;
+  PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
+  std::vector<Judged> judged;
+  for (int frame = 0; frame <= context.options.flickerPairs; ++frame)
+    collectOutputs(
+        judged, executor,
+        renderFiltered(executor, snapshotAt(context, options, context.options.time + frame * kFlickerStep),
+                       context.options.subpixels, frame));
+  return judged;
+}
+
+Measured flickerAgainst(const MeasureContext& context, const std::vector<Picture>& frames,
+                        const std::string& truth) {
+  std::vector<Picture> means, variances;
+  for (int frame = 0; frame <= context.options.flickerPairs; ++frame) {
+    const TruthLayer& layer = *context.truth.later(context.scene, frame).layer(truth);
+    means.push_back(layer.mean);
+    variances.push_back(layer.variance);
+  }
+  return flicker(frames, means, variances);
+}
+
+}  // namespace
+
+void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
+  if (record.point.errors.empty() || !flickers(context.scene, context.options)) return;
+  int seeds = 0;  // as many as differ
+  for (const ComponentError& error : record.point.errors)
+    seeds = std::max(seeds, error.deterministic ? 1 : error.seeds);
+  std::vector<std::vector<Measured>> flickers(record.point.errors.size());  // of each error, by seed
+  for (int seed = 0; seed < seeds; ++seed) {
+    const std::vector<Judged> judged = sequenceOf(context, pipeline, record.point, seed);
+    for (std::size_t i = 0; i < flickers.size(); ++i) {
+      const ComponentError& error = record.point.errors[i];
+      for (const Judged& one : judged)
+        if (one.output == error.output && (seed == 0 || !error.deterministic))
+          flickers[i].push_back(flickerAgainst(context, one.seeds, error.truth));
+    }
+  }
+  for (std::size_t i = 0; i < flickers.size(); ++i) {
+    if (flickers[i].empty()) continue;
+    std::vector<double> values;
+    for (const Measured& one : flickers[i]) values.push_back(one.value);
+    const Measured over = meanOverSeeds(values);
+    record.point.errors[i].flicker = {over.value,
+                                      std::hypot(flickers[i].front().uncertainty, over.uncertainty)};
+  }
+}
+
+void countWork(const TimingContext& context, const Pipeline& pipeline,
+               const std::vector<DeviceCeiling>& ceilings, ReportPoint& point, const KeptOutputs& kept) {
+  RenderOptions options = renderOptions(context, point);
+  options.countWork = true;
+  try {
+    PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
+    for (const auto& [pass, port] : kept) executor.keepOutput(pass, port);
+    FrameResult frame = executor.render(context.options.time, 0, PipelineExecutor::Pictures::no);
+    for (PassRecord& pass : frame.passes) {
+      point.passBounds[pass.name] = lowerBounds(pass.work, ceilings);
+      point.passWork[pass.name] = std::move(pass.work);
+    }
+  } catch (const AbsentError& error) {
+    point.whyNotCounted = error.what();
+  }
+}
+
+struct TimedPoint::State {
+  ReportPoint& point;
+  double time;                        ///< s
+  const std::uint64_t bytesOfOthers;  ///< of points that are timed at the same time
+  PipelineExecutor executor;
+  int nextFrames = 0;
+  std::vector<double> frameMs, shares, nextMs;
+  std::map<std::string, std::vector<double>> deviceMs, hostMs;
+
+  State(const TimingContext& context, const Pipeline& pipeline, ReportPoint& pointToTime)
+      : point(pointToTime),
+        time(context.options.time),
+        bytesOfOthers(context.device.allocatedBytes()),
+        executor(context.device, context.techniques, context.scene, pipeline,
+                 renderOptions(context, pointToTime)) {}
+};
+
+TimedPoint::TimedPoint(const TimingContext& context, const Pipeline& pipeline, ReportPoint& point,
+                       const KeptOutputs& kept)
+    : state_(std::make_unique<State>(context, pipeline, point)) {
+  for (const auto& [pass, port] : kept) state_->executor.keepOutput(pass, port);
+  const FrameResult frame = state_->executor.render(state_->time, 0, PipelineExecutor::Pictures::no);
+  point.peakBytes = frame.peakBytes - state_->bytesOfOthers;
+  for (const PassRecord& pass : frame.passes) {
+    point.passOrder.push_back(pass.name);
+    point.passBytes[pass.name] = pass.bytes;
+  }
+}
+
+const PipelineExecutor& TimedPoint::executor() const {
+  return state_->executor;
+}
+
+TimedPoint::~TimedPoint() = default;
+TimedPoint::TimedPoint(TimedPoint&&) noexcept = default;
+
+void TimedPoint::timeFrame() {
+  State& s = *state_;
+  s.executor.invalidate();
+  const FrameResult frame = s.executor.render(s.time, 0, PipelineExecutor::Pictures::no);
+  s.frameMs.push_back(frame.frameMs);
+  if (frame.frameMs > 0.0) s.shares.push_back(frame.betweenPassesMs / frame.frameMs);
+  for (const PassRecord& pass : frame.passes) s.hostMs[pass.name].push_back(pass.hostMs);
+  // The passes in a frame of their own: their instruments are no part of the frame's time.
+  s.executor.invalidate();
+  s.executor.render(s.time, 0, PipelineExecutor::Pictures::no, PipelineExecutor::Timing::passes);
+}
+
+void TimedPoint::timeNextFrame() {
+  constexpr double kNextFrame = 1.0 / 60.0;  // s
+  State& s = *state_;
+  ++s.nextFrames;
+  s.nextMs.push_back(
+      s.executor.render(s.time + s.nextFrames * kNextFrame, s.nextFrames, PipelineExecutor::Pictures::no)
+          .frameMs);
+}
+
+void TimedPoint::finish() {
+  State& s = *state_;
+  for (const std::vector<PassRecord>& frame : s.executor.timedPasses())
+    for (const PassRecord& pass : frame) s.deviceMs[pass.name].push_back(pass.deviceMs);
+  s.point.frameMs = statisticsOf(s.frameMs);
+  s.point.nextFrameMs = statisticsOf(s.nextMs);
+  s.point.frameworkShare = s.shares.empty() ? 0.0 : statisticsOf(s.shares).median;
+  for (const auto& [name, values] : s.deviceMs) s.point.passDeviceMs[name] = statisticsOf(values);
+  for (const auto& [name, values] : s.hostMs) s.point.passHostMs[name] = statisticsOf(values);
+}
+
+void measureTimes(const TimingContext& context, const Pipeline& pipeline, PointRecord& record) {
+  TimedPoint timed(context, pipeline, record.point);
+  const int repeats = std::max(1, context.options.repeats);
+  for (int repeat = 0; repeat < repeats; ++repeat) timed.timeFrame();
+  for (int repeat = 0; repeat < repeats; ++repeat) timed.timeNextFrame();
+  timed.finish();
+}
+
+}  // namespace lumivox::experiment

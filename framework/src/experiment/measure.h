@@ -1,0 +1,105 @@
+// One scene's share of a report: the truth, and every point measured for error and, apart from that, for
+// time.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lumivox/experiment/report.h"
+#include "lumivox/results/report_record.h"
+
+namespace lumivox::experiment {
+
+/// The truth of a scene with the layers that outputs are judged by, added up once.
+class Truth {
+ public:
+  Truth(const Scene& scene, const ReferenceOptions& options);
+  const LayeredPicture& layers() const { return layers_; }
+  /// Null when the truth has no such layer.
+  const TruthLayer* layer(const std::string& name);
+  /// The truth `frame` frames of an animation later, for flicker: with a quarter of the samples, which are
+  /// others in every frame, so that its noise is independent. Frame 0 is this one.
+  Truth& later(const Scene& scene, int frame);
+  /// The error of a picture of nothing against it: black, or 1 for ambient occlusion.
+  const PictureError& errorOfNothing(const std::string& name);
+  /// At which every picture judged against this component's full truth is shown.
+  float exposure(const std::string& name);
+  double seconds() const { return seconds_; }
+
+ private:
+  ReferenceOptions options_;
+  std::map<int, std::unique_ptr<Truth>> later_;
+  LayeredPicture layers_;
+  std::map<std::string, std::optional<TruthLayer>> cache_;
+  std::map<std::string, PictureError> nothing_;
+  double seconds_ = 0.0;
+};
+
+/// Empties a point of its numbers, which are none, and says why.
+void fail(ReportPoint& point, const std::string& why);
+/// Does it, and says what went wrong; empty: nothing. A wrong text is wrong at every point and goes on up.
+std::string whyFailed(const std::function<void()>& work);
+
+struct TimingContext {
+  gpu::Device& device;
+  TechniqueSource& techniques;
+  const Scene& scene;
+  const ReportOptions& options;
+  int width, height;
+};
+struct MeasureContext : TimingContext {
+  Truth& truth;
+};
+
+/// The picture that a pipeline converges to under sub-pixel motion of the camera (temporal anti-aliasing):
+/// the mean of the outputs over so many positions inside the pixel, the centre when there is one. The rest of
+/// the result is the first frame's; health findings are those of the first frame that has some.
+FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& centre, int positions,
+                           int frameIndex = 0);
+
+/// Fills the errors, pictures and health of a point: executors of their own, one per seed.
+void measureErrors(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record);
+/// Time between the frames whose flicker is measured, s.
+inline constexpr double kFlickerStep = 1.0 / 24.0;
+/// Whether flicker is to be measured: something moves meanwhile.
+bool flickers(const Scene& scene, const ReportOptions& options);
+/// Fills the flicker of the errors that are there already, where the scene moves.
+void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record);
+/// Outputs, pass and port, that stay alive although no picture needs them.
+using KeptOutputs = std::vector<std::pair<std::string, std::string>>;
+/// Fills what the passes do, counted in a frame of its own, and what that takes at least: nothing without
+/// ceilings.
+void countWork(const TimingContext& context, const Pipeline& pipeline,
+               const std::vector<DeviceCeiling>& ceilings, ReportPoint& point, const KeptOutputs& kept = {});
+
+/// One point that is timed frame by frame, so that the frames of several points can take turns: a machine
+/// that drifts then biases none of them. No pictures are taken.
+class TimedPoint {
+ public:
+  /// Renders one frame as warm-up: programs are linked, the pool is filled.
+  TimedPoint(const TimingContext& context, const Pipeline& pipeline, ReportPoint& point,
+             const KeptOutputs& kept = {});
+  ~TimedPoint();
+  TimedPoint(TimedPoint&&) noexcept;
+  void timeFrame();      ///< every kept pass runs
+  void timeNextFrame();  ///< 1/60 s after the last one
+  void finish();         ///< fills the point's times; again after further frames
+  const PipelineExecutor& executor() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Times a point alone.
+void measureTimes(const TimingContext& context, const Pipeline& pipeline, PointRecord& record);
+
+/// The truth layers that were used, for the page.
+std::vector<TruthRecord> truthRecords(Truth& truth, const std::set<std::string>& used);
+
+}  // namespace lumivox::experiment

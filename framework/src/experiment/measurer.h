@@ -1,0 +1,72 @@
+// Measures points of one scene into a results store: errors and work apart from times, the timed frames
+// taking turns.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiment/choice.h"
+#include "experiment/measure.h"
+#include "lumivox/results/store.h"
+
+namespace lumivox::experiment {
+
+/// One point that somebody wants to know.
+struct WantedPoint {
+  const LoadedPipeline* loaded = nullptr;
+  PlannedPoint point;
+  std::optional<std::uint64_t> seed = std::nullopt;  ///< that alone, in place of the seeds of the options
+};
+
+class Measurer {
+ public:
+  Measurer(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options, ResultsStore& store,
+           Scene scene, std::string sceneShown);
+
+  /// What the store holds of these points, in their order, before anything is measured. A failure counts as
+  /// held unless `retryFailed`.
+  std::vector<bool> held(const std::vector<WantedPoint>& points, bool retryFailed) const;
+  std::string key(const WantedPoint& point) const;
+  std::string text(const WantedPoint& point) const;
+
+  /// Measures the points together and stores them; gives them back as they are in the store now. Points that
+  /// another process measures are left to it, and waited for at the end. `done` is told after each batch how
+  /// many points were measured here and how many by others.
+  std::vector<StoredRun> measure(const std::vector<WantedPoint>& points,
+                                 const std::function<void(std::size_t, std::size_t)>& done = {});
+  /// Times the first of these points that the store holds once more, as many as are timed together, in the
+  /// same way: what differs is the machine's mood.
+  void control(const std::vector<WantedPoint>& points);
+  /// What the controls in the store say of this device.
+  TimeFloor floor() const;
+  /// Those that the store holds are taken from it, the others are measured.
+  std::vector<StoredRun> fetch(const std::vector<WantedPoint>& points);
+
+  const Scene& scene() const { return scene_; }
+
+ private:
+  StoredRun open(const WantedPoint& point) const;
+  /// The options of one run: of its seeds.
+  ReportOptions optionsOf(const RunIdentity& identity) const;
+  using Batch = std::vector<std::pair<const LoadedPipeline*, StoredRun>>;
+  /// Points that this process may measure now, at most a batch; takes them, and what others have stored
+  /// meanwhile, out of `pending`.
+  Batch claimed(std::vector<WantedPoint>& pending, std::size_t& byOthers);
+  void measureBatch(Batch& batch);
+  void timeTogether(Batch& batch);
+  std::string waitingText(const std::vector<WantedPoint>& pending) const;
+
+  gpu::Device& device_;
+  TechniqueSet& techniques_;
+  const ReportOptions& options_;
+  ResultsStore& store_;
+  Scene scene_;
+  std::string sceneShown_;
+  int width_ = 0, height_ = 0;
+  ReferenceOptions truthOptions_;
+  std::optional<Truth> truth_;  ///< made when the first point is measured
+};
+
+}  // namespace lumivox::experiment

@@ -1,0 +1,510 @@
+// Measuring the set-ups of a published table or figure, and rendering the panels of a figure.
+#include "lumivox/experiment/reproduce.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <map>
+#include <tuple>
+
+#include "base/process.h"
+#include "experiment/choice.h"
+#include "experiment/measure.h"
+#include "experiment/plan.h"
+#include "lumivox/analysis/judge.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/log.h"
+#include "lumivox/experiment/voxelisers.h"
+#include "lumivox/pipeline/ports.h"
+#include "lumivox/results/text.h"
+
+namespace lumivox {
+namespace {
+
+using namespace experiment;
+namespace fs = std::filesystem;
+
+/// One set-up with the rows and points that it answers.
+struct TimedSetUp {
+  const Scene* scene = nullptr;
+  std::string sceneShown;
+  LoadedPipeline loaded;
+  PlannedPoint planned;
+  ReportOptions options;
+  int width = 0, height = 0;
+  int subdivisions = 0;
+  std::vector<std::pair<const PublishedSetUp*, MeasuredSetUp*>> answers;
+  KeptOutputs kept;
+  StoredRun run;
+  std::unique_ptr<TimedPoint> timed;
+  std::string failure;
+};
+
+class Reproduction {
+ public:
+  Reproduction(gpu::Device& device, TechniqueSet& techniques, const PublishedResult& published,
+               const ReproduceOptions& options, const std::function<Scene(const fs::path&)>& loadScene,
+               ResultsStore* store)
+      : device_(device), techniques_(techniques), options_(options), loadScene_(loadScene), store_(store) {
+    result_.published = published;
+    result_.device = device.info();
+    result_.host = hostText();
+    result_.date = dateText();
+    result_.repeats = options.repeats;
+    result_.scale = options.scale > 0.0      ? options.scale
+                    : device.info().software ? published.softwareScale
+                                             : 1.0;
+    result_.command =
+        fmt::format("lumivox reproduce {} --scale {} --repeats {} --seed {}",
+                    shellQuoted(shownPath(published.file)), result_.scale, options.repeats, options.seed);
+    if (options.truthSamples > 0) result_.command += fmt::format(" --spp {}", options.truthSamples);
+    for (const std::string& argument : options.repeatArguments)
+      result_.command += " " + shellQuoted(argument);
+  }
+
+  ReproducedResult run() {
+    for (const PublishedRow& row : result_.published.rows) {
+      MeasuredRow measured;
+      measured.name = row.name;
+      measured.quantity = row.quantity;
+      measured.published = row.published;
+      measured.over = row.over;
+      result_.rows.push_back(std::move(measured));
+    }
+    for (const PublishedCurve& curve : result_.published.curves)
+      result_.curves.push_back({curve.name, curve.over, curve.points.front().quantity, curve.growth,
+                                std::vector<MeasuredPoint>(curve.points.size())});
+    // What is measured stays where it is from here on.
+    for (std::size_t i = 0; i < result_.rows.size(); ++i) place(result_.published.rows[i], result_.rows[i]);
+    for (std::size_t i = 0; i < result_.curves.size(); ++i) placeCurve(i);
+    time();
+    for (const MeasuredCurve& curve : result_.curves) result_.judgedCurves.push_back(judgeGrowth(curve));
+    result_.judged = judge(result_.rows);
+    if (store_ != nullptr) store();
+    setUps_.clear();  // their memory, which pictures may need
+    for (const PublishedPanel& panel : result_.published.panels) result_.panels.push_back(show(panel));
+    expose();
+    return std::move(result_);
+  }
+
+ private:
+  void time() {
+    const MachineLock alone(MachineLock::For::timing);
+    for (TimedSetUp& setUp : setUps_)
+      guarded(setUp, [&] {
+        setUp.timed =
+            std::make_unique<TimedPoint>(timingOf(setUp), setUp.loaded.pipeline, setUp.run.point, setUp.kept);
+      });
+    for (int repeat = 0; repeat < options_.repeats; ++repeat)
+      for (TimedSetUp& setUp : setUps_) guarded(setUp, [&] { setUp.timed->timeFrame(); });
+    for (TimedSetUp& setUp : setUps_) {
+      guarded(setUp, [&] {
+        setUp.timed->finish();
+        for (const auto& [published, measured] : setUp.answers) readOff(setUp, *published, *measured);
+      });
+      for (const auto& [published, measured] : setUp.answers) {
+        if (setUp.failure.empty()) continue;
+        measured->whyNot = setUp.failure;
+        measured->failed = true;
+      }
+      result_.setUps.push_back(shownSetUp(setUp));
+    }
+  }
+
+  static std::string shownSetUp(const TimedSetUp& setUp) {
+    return fmt::format("{}{}, {}: {}, {} x {} pixels", setUp.sceneShown,
+                       setUp.subdivisions == 0 ? std::string()
+                                               : fmt::format(" with every triangle split into four, {} times",
+                                                             setUp.subdivisions),
+                       setUp.loaded.shown, pointText(setUp.planned.parameters), setUp.width, setUp.height);
+  }
+
+  TimingContext timingOf(const TimedSetUp& setUp) {
+    return {device_, techniques_, *setUp.scene, setUp.options, setUp.width, setUp.height};
+  }
+
+  /// What a sweep would store: the times, of later frames too, and errors and work, which are measured apart
+  /// from them. The verdict stands whether this succeeds or not.
+  void store() {
+    {
+      const MachineLock alone(MachineLock::For::timing);
+      for (int repeat = 0; repeat < options_.repeats; ++repeat)
+        for (TimedSetUp& setUp : setUps_) guarded(setUp, [&] { setUp.timed->timeNextFrame(); });
+    }
+    for (TimedSetUp& setUp : setUps_) {
+      guarded(setUp, [&] { setUp.timed->finish(); });
+      setUp.timed.reset();  // its memory, which errors may need
+    }
+    // A scene that was made finer here is none that a sweep could name.
+    for (TimedSetUp& setUp : setUps_)
+      if (setUp.subdivisions == 0) store(setUp);
+  }
+
+  void store(TimedSetUp& setUp) {
+    StoredRun& run = setUp.run;
+    for (const auto& [pass, port] : setUp.kept) run.identity.kept.push_back(pass + "." + port);
+    std::sort(run.identity.kept.begin(), run.identity.kept.end());
+    if (const auto held = store_->find(run.identity.key()); held && held->point.failure.empty()) {
+      logInformation("{}: the store has this set-up already, which stays", setUp.loaded.shown);
+      return;
+    }
+    guarded(setUp, [&] {
+      PointRecord record;
+      record.point = run.point;
+      // A pipeline that only times something makes no picture.
+      if (!setUp.loaded.pipeline.outputs.empty()) {
+        const MeasureContext context{timingOf(setUp), truthOf(setUp)};
+        measureErrors(context, setUp.loaded.pipeline, record);
+        measureFlicker(context, setUp.loaded.pipeline, record);
+      }
+      countWork(timingOf(setUp), setUp.loaded.pipeline, {}, record.point, setUp.kept);
+      run.point = std::move(record.point);
+    });
+    run.point.failure = setUp.failure;
+    run.created = dateText();
+    store_->add(run);
+  }
+
+  Truth& truthOf(const TimedSetUp& setUp) {
+    std::unique_ptr<Truth>& truth =
+        truths_[{setUp.scene, setUp.options.camera, setUp.options.time, setUp.width, setUp.height}];
+    if (!truth)
+      truth = std::make_unique<Truth>(*setUp.scene, truthOptionsOf(setUp.options, setUp.width, setUp.height));
+    return *truth;
+  }
+
+  /// One set-up that cannot be measured must not cost the others.
+  template <class Work>
+  void guarded(TimedSetUp& setUp, const Work& work) {
+    if (!setUp.failure.empty()) return;
+    try {
+      work();
+    } catch (const DiagnosticsError&) {
+      throw;  // a wrong text
+    } catch (const Error& error) {
+      setUp.failure = error.what();
+      logWarning("{}: {}: {}", result_.published.id, setUp.loaded.shown, error.what());
+    }
+  }
+
+  /// The scene, read once; null, and why, when its model is not on this machine.
+  const Scene* sceneOf(const PublishedSetUp& published, std::string& whyNot) {
+    const auto [known, isNew] = scenes_.emplace(std::pair(published.scene, published.subdivisions), nullptr);
+    if (isNew) {
+      try {
+        Scene scene = loadScene_(published.scene);
+        for (int times = 0; times < published.subdivisions; ++times) scene = subdivided(scene);
+        known->second = std::make_unique<Scene>(std::move(scene));
+      } catch (const AbsentError& error) {
+        whyAbsent_[published.scene] = error.what();
+      }
+    }
+    if (!known->second) whyNot = whyAbsent_[published.scene];
+    return known->second.get();
+  }
+
+  /// The scene of a set-up all of whose parts are here, else null and why not.
+  const Scene* sceneWithAll(const PublishedSetUp& published, std::string& whyNot) {
+    if (published.pipeline)
+      for (const std::string& technique : published.pipeline->techniques())
+        if (techniques_.technique(technique) == nullptr) {
+          whyNot = fmt::format("the technique '{}' is not here", technique);
+          return nullptr;
+        }
+    return sceneOf(published, whyNot);
+  }
+
+  void place(const PublishedSetUp& published, MeasuredSetUp& measured) {
+    measured.whyNot = published.absent.empty() ? published.substitute : published.absent;
+    if (!published.absent.empty()) return;
+    const Scene* scene = sceneWithAll(published, measured.whyNot);
+    if (scene == nullptr) return;
+    TimedSetUp& setUp = setUpOf(published, *scene);
+    setUp.answers.emplace_back(&published, &measured);
+    const std::pair<std::string, std::string> output(published.pass, published.port);
+    if (!published.pass.empty() &&
+        std::find(setUp.kept.begin(), setUp.kept.end(), output) == setUp.kept.end())
+      setUp.kept.push_back(output);
+  }
+
+  void placeCurve(std::size_t index) {
+    const PublishedCurve& curve = result_.published.curves[index];
+    for (std::size_t i = 0; i < curve.points.size(); ++i) {
+      const PublishedSetUp& published = curve.points[i];
+      MeasuredPoint& point = result_.curves[index].points[i];
+      place(published, point);
+      std::string whyNot;
+      if (curve.over != "triangles") {
+        point.x = published.pipeline ? parametersOf(published).at(curve.over).number
+                                     : std::numeric_limits<double>::quiet_NaN();
+      } else if (const Scene* scene = published.absent.empty() ? sceneOf(published, whyNot) : nullptr) {
+        point.x = static_cast<double>(scene->triangleCount());
+      } else {
+        point.x = std::numeric_limits<double>::quiet_NaN();
+      }
+    }
+  }
+
+  /// All parameters of the pipeline, reduced.
+  ParameterValues parametersOf(const PublishedSetUp& published) const {
+    ParameterValues parameters;
+    for (const PipelineParameter& parameter : published.pipeline->parameters)
+      parameters[parameter.name] = parameter.value;
+    for (const auto& [name, value] : published.settings) parameters[name] = value;
+    for (const PipelineParameter& parameter : published.pipeline->parameters)
+      reduce(parameter, parameters[parameter.name]);
+    return parameters;
+  }
+
+  TimedSetUp& setUpOf(const PublishedSetUp& published, const Scene& scene) {
+    const ParameterValues parameters = parametersOf(published);
+    for (TimedSetUp& known : setUps_)
+      if (known.scene == &scene && known.loaded.pipeline.file == published.pipeline->file &&
+          pointText(known.planned.parameters) == pointText(parameters) &&
+          known.options.camera == published.camera && known.options.time == published.time)
+        return known;
+    setUps_.push_back(newSetUp(published, scene, parameters));
+    return setUps_.back();
+  }
+
+  TimedSetUp newSetUp(const PublishedSetUp& published, const Scene& scene,
+                      const ParameterValues& parameters) {
+    TimedSetUp setUp;
+    setUp.scene = &scene;
+    setUp.subdivisions = published.subdivisions;
+    setUp.sceneShown = shownPath(scene.file);
+    setUp.loaded = {*published.pipeline, shownPath(published.pipeline->file), {}};
+    setUp.planned.parameters = parameters;
+    setUp.options.repeats = options_.repeats;
+    std::tie(setUp.width, setUp.height) = sizeOf(published, scene);
+    setUp.options.camera = published.camera;
+    setUp.options.time = published.time;
+    setUp.options.seed = options_.seed;
+    setUp.options.truthSamples = options_.truthSamples;
+    setUp.run = storedRunOf(
+        device_, techniques_, scene, setUp.loaded, setUp.planned, setUp.options, setUp.width, setUp.height,
+        truthOptionsOf(setUp.options, setUp.width, setUp.height).samplesPerPixel, setUp.sceneShown);
+    setUp.run.point.command = result_.command;
+    return setUp;
+  }
+
+  std::pair<int, int> sizeOf(const PublishedSetUp& published, const Scene& scene) const {
+    const Camera& camera = scene.camera(published.camera);
+    const PublishedResult& whole = result_.published;
+    return {reduced(whole.width > 0 ? whole.width : camera.width),
+            reduced(whole.width > 0 ? whole.height : camera.height)};
+  }
+
+  int reduced(int size) const { return std::max(1, static_cast<int>(std::lround(size * result_.scale))); }
+
+  void reduce(const PipelineParameter& parameter, ParameterValue& value) const {
+    const std::vector<std::string>& scaled = result_.published.scaled;
+    if (result_.scale == 1.0 || !value.word.empty() ||
+        std::find(scaled.begin(), scaled.end(), parameter.name) == scaled.end())
+      return;
+    value.number = std::round(value.number * result_.scale);
+    if (parameter.low) value.number = std::clamp(value.number, *parameter.low, *parameter.high);
+  }
+
+  void readOff(TimedSetUp& setUp, const PublishedSetUp& row, MeasuredSetUp& measured) {
+    const ReportPoint& point = setUp.run.point;
+    for (const std::string& pass : row.passes) {
+      if (std::find(point.passOrder.begin(), point.passOrder.end(), pass) != point.passOrder.end()) continue;
+      measured.whyNot = fmt::format("pass '{}' was left out", pass);
+      for (const LeftOut& leftOut : setUp.timed->executor().explain().leftOut)
+        if (leftOut.level == LeftOut::Level::pass && leftOut.pass == pass)
+          measured.whyNot += ": " + leftOut.why;
+      return;
+    }
+    switch (row.quantity) {
+      case PublishedQuantity::time:
+      case PublishedQuantity::frameRate:
+        measured.measured = row.passes.empty() ? point.frameMs : sumOf(point.passDeviceMs, row.passes);
+        return;
+      case PublishedQuantity::fragments:
+        measured.measured = exactly(fragmentsOf(setUp, row));
+        return;
+      case PublishedQuantity::memory: {
+        constexpr double kMegabyte = 1e6;
+        double bytes = row.passes.empty() ? static_cast<double>(point.peakBytes) : 0.0;
+        for (const std::string& pass : row.passes) bytes += static_cast<double>(point.passBytes.at(pass));
+        measured.measured = exactly(bytes / kMegabyte);
+        return;
+      }
+    }
+  }
+
+  static TimingStatistics exactly(double value) { return {value, value, value, value, value, 1}; }
+
+  static TimingStatistics sumOf(const std::map<std::string, TimingStatistics>& times,
+                                const std::vector<std::string>& passes) {
+    TimingStatistics sum;
+    for (const std::string& pass : passes) {
+      const TimingStatistics& one = times.at(pass);
+      sum.median += one.median;
+      sum.lowerQuartile += one.lowerQuartile;
+      sum.upperQuartile += one.upperQuartile;
+      sum.smallest += one.smallest;
+      sum.largest += one.largest;
+      sum.repeats = one.repeats;
+    }
+    return sum;
+  }
+
+  double fragmentsOf(const TimedSetUp& setUp, const PublishedSetUp& row) const {
+    const OutBase* output = setUp.timed->executor().output(row.pass, row.port);
+    const std::optional<OccupiedVoxels> voxels = output == nullptr ? std::nullopt : occupiedVoxels(*output);
+    if (!voxels || voxels->fragments == 0)
+      throw Error(
+          fmt::format("{}: output {}.{} holds no voxel fragments", row.place.text(), row.pass, row.port));
+    return static_cast<double>(voxels->fragments);
+  }
+
+  // ---- pictures
+
+  ShownPanel show(const PublishedPanel& panel) {
+    ShownPanel shown;
+    shown.name = panel.name;
+    shown.whyNot = panel.absent.empty() ? panel.substitute : panel.absent;
+    shown.meanLuminance = std::numeric_limits<double>::quiet_NaN();
+    const Scene* scene = panel.absent.empty() ? sceneWithAll(panel, shown.whyNot) : nullptr;
+    if (scene == nullptr) return shown;
+    try {
+      shown.picture = panel.reference.empty() ? rendered(panel, *scene, shown) : traced(panel, *scene, shown);
+    } catch (const DiagnosticsError&) {
+      throw;  // a wrong text
+    } catch (const Error& error) {
+      shown.whyNot = error.what();
+      shown.failed = true;
+      logWarning("{}: {}: {}", result_.published.id, panel.name, error.what());
+    }
+    if (!shown.picture.empty()) {
+      const Picture bright = luminance(shown.picture);
+      const Health health = scanHealth(bright.values().data(), bright.values().size(), 1);
+      shown.meanLuminance =
+          health.sum / static_cast<double>(bright.pixelCount() - health.nan - health.infinite);
+    }
+    return shown;
+  }
+
+  Picture rendered(const PublishedPanel& panel, const Scene& scene, ShownPanel& shown) {
+    const TimedSetUp setUp = newSetUp(panel, scene, parametersOf(panel));
+    RenderOptions options;
+    options.parameters = setUp.planned.parameters;
+    options.camera = panel.camera;
+    options.width = setUp.width;
+    options.height = setUp.height;
+    options.seed = options_.seed;
+    options.wantsOutputs = panel.pass.empty();
+    PipelineExecutor executor(device_, techniques_, scene, setUp.loaded.pipeline, options);
+    if (!panel.pass.empty()) executor.keepOutput(panel.pass, panel.port);
+    const std::string set = shownSetUp(setUp);
+    if (std::find(result_.setUps.begin(), result_.setUps.end(), set) == result_.setUps.end())
+      result_.setUps.push_back(set);
+    if (panel.pass.empty()) {
+      Picture whole = compositePicture(executor.render(panel.time));
+      if (whole.empty())
+        throw Error(
+            fmt::format("{}: pipeline \"{}\" makes no picture; expected an output PASS.PORT of the panel",
+                        panel.place.text(), setUp.loaded.pipeline.name));
+      return whole;
+    }
+    executor.render(panel.time, 0, PipelineExecutor::Pictures::no);
+    const OutBase* output = executor.output(panel.pass, panel.port);
+    if (output == nullptr || !output->hasValue()) {
+      shown.whyNot = fmt::format("{}.{} was left out", panel.pass, panel.port);
+      for (const LeftOut& leftOut : executor.explain().leftOut)
+        if (leftOut.pass == panel.pass) shown.whyNot += ": " + leftOut.why;
+      return {};
+    }
+    const auto* image = dynamic_cast<const Out<Image>*>(output);
+    if (image == nullptr)
+      throw Error(fmt::format("{}: {}.{} is no picture", panel.place.text(), panel.pass, panel.port));
+    const gpu::Texture& texture = *image->value().texture;
+    return pictureOf(texture, gpu::componentCount(texture.description().format) < 3 ? 1 : 3);
+  }
+
+  Picture traced(const PublishedPanel& panel, const Scene& scene, ShownPanel& shown) {
+    TimedSetUp setUp;
+    setUp.scene = &scene;
+    std::tie(setUp.width, setUp.height) = sizeOf(panel, scene);
+    setUp.options.camera = panel.camera;
+    setUp.options.time = panel.time;
+    setUp.options.seed = options_.seed;
+    setUp.options.truthSamples = options_.truthSamples;
+    result_.setUps.push_back(fmt::format(
+        "{}, path-traced reference ({}): {} samples a pixel, {} x {} pixels", shownPath(scene.file),
+        panel.reference, truthOptionsOf(setUp.options, setUp.width, setUp.height).samplesPerPixel,
+        setUp.width, setUp.height));
+    const TruthLayer* layer = truthOf(setUp).layer(panel.reference);
+    if (layer == nullptr) {
+      shown.whyNot = fmt::format("the reference of this scene has no layer {}", panel.reference);
+      return {};
+    }
+    return layer->mean;
+  }
+
+  /// One exposure for all panels: the brightest of them keeps its lights.
+  void expose() {
+    result_.exposure = 1.0;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const ShownPanel& panel : result_.panels)
+      if (!panel.picture.empty() && panel.meanLuminance > 0.0)
+        smallest = std::min(smallest, static_cast<double>(displayExposure(panel.picture)));
+    if (std::isfinite(smallest)) result_.exposure = smallest;
+  }
+
+  gpu::Device& device_;
+  TechniqueSet& techniques_;
+  const ReproduceOptions& options_;
+  const std::function<Scene(const fs::path&)>& loadScene_;
+  ReproducedResult result_;
+  std::map<std::pair<fs::path, int>, std::unique_ptr<Scene>> scenes_;  // by file and subdivisions
+  std::map<fs::path, std::string> whyAbsent_;
+  ResultsStore* store_;
+  /// By scene, camera, time and size.
+  std::map<std::tuple<const Scene*, std::string, double, int, int>, std::unique_ptr<Truth>> truths_;
+  std::deque<TimedSetUp> setUps_;  // points keep references to their records
+};
+
+}  // namespace
+
+bool ReproducedResult::failed() const {
+  const auto bad = [](const auto& one) { return one.failed; };
+  return std::any_of(rows.begin(), rows.end(), bad) || std::any_of(panels.begin(), panels.end(), bad) ||
+         std::any_of(curves.begin(), curves.end(), [&](const MeasuredCurve& curve) {
+           return std::any_of(curve.points.begin(), curve.points.end(), bad);
+         });
+}
+
+ReproducedResult reproduce(gpu::Device& device, TechniqueSet& techniques, const PublishedResult& published,
+                           const ReproduceOptions& options,
+                           const std::function<Scene(const fs::path&)>& loadScene, ResultsStore* store) {
+  // Texts whose techniques are all here are checked whole; the others as far as they go.
+  const std::vector<const PublishedSetUp*> setUps = published.setUps();
+  const bool complete = std::all_of(setUps.begin(), setUps.end(), [&](const PublishedSetUp* one) {
+    if (!one->pipeline) return true;
+    const std::vector<std::string> needed = one->pipeline->techniques();
+    return std::all_of(needed.begin(), needed.end(),
+                       [&](const std::string& name) { return techniques.technique(name) != nullptr; });
+  });
+  if (complete) checkReproduction(published, techniques);
+  return Reproduction(device, techniques, published, options, loadScene, store).run();
+}
+
+std::vector<fs::path> committedReproductions() {
+  std::vector<fs::path> files;
+  const auto scenes = committedScenes();
+  if (!scenes) return files;
+  std::error_code failure;
+  for (const fs::directory_entry& entry : fs::directory_iterator(*scenes / "reproductions", failure))
+    if (entry.path().extension() == ".reproduction" && entry.is_regular_file(failure))
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace lumivox

@@ -1,0 +1,160 @@
+// Sweeps: plan, leave out what is stored, measure the rest.
+#include "lumivox/experiment/sweep.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "experiment/measurer.h"
+#include "experiment/plan.h"
+#include "lumivox/base/error.h"
+#include "lumivox/pipeline/sweep_text.h"
+
+namespace lumivox {
+
+using namespace experiment;
+
+namespace {
+
+/// One scene with all points that are wanted on it, so that its truth is made once.
+struct ScenePlan {
+  std::unique_ptr<Measurer> measurer;
+  std::vector<WantedPoint> points, missing;
+};
+
+/// Everything that a sweep measures, in the order of the scenes as they are named first.
+class SweepPlan {
+ public:
+  SweepPlan(gpu::Device& device, TechniqueSet& techniques, const SweepOptions& options, ResultsStore& store,
+            const std::function<Scene(const std::filesystem::path&)>& loadScene)
+      : device_(device), techniques_(techniques), options_(options), store_(store), loadScene_(loadScene) {}
+
+  /// A scene of the command line: the pipelines that are given or suit it, at the points of their own sweeps.
+  void addScene(const std::filesystem::path& file, PipelineChoice& choice, SweepSummary& summary) {
+    ScenePlan& plan = planOf(file);
+    std::vector<std::pair<std::string, std::string>> unsuited;
+    for (const LoadedPipeline* loaded : choice.forScene(plan.measurer->scene(), unsuited))
+      addPoints(plan, loaded, plannedPoints(loaded->pipeline, loaded->settings, options_.measure.openSweeps));
+    for (const auto& [pipeline, why] : unsuited)
+      summary.unsuited.push_back(fmt::format("{}, {}: {}", shownPath(file), pipeline, why));
+  }
+
+  void addText(const std::filesystem::path& file, SweepSummary& summary) {
+    const SweepText text = SweepText::load(file);
+    std::vector<const LoadedPipeline*> all;
+    std::vector<std::pair<const SweepBlock*, std::vector<PlannedPoint>>> wanted;
+    for (SweepShare& share : sweepShares(text, techniques_, summary.notes)) {
+      loaded_.push_back(
+          std::make_unique<LoadedPipeline>(withSettings(*share.pipeline, options_.measure.settings)));
+      all.push_back(loaded_.back().get());
+      if (!options_.measure.openSweeps) share.sweep.axes.clear();
+      wanted.emplace_back(&text.sweeps[share.block],
+                          pointsOfSweeps(all.back()->pipeline, all.back()->settings, {share.sweep}));
+    }
+    requireKnownSettings(all, options_.measure.settings);
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      for (const std::filesystem::path& scene : wanted[i].first->scenes)
+        addPoints(planOf(scene), all[i], wanted[i].second);
+  }
+
+  /// What the store lacks; counts what it holds.
+  std::size_t findMissing(SweepSummary& summary) {
+    std::size_t total = 0;
+    for (ScenePlan& plan : plans_) {
+      const std::vector<bool> held = plan.measurer->held(plan.points, options_.retryFailed);
+      std::set<std::string> seen;  // several sweeps may name the same point
+      for (std::size_t i = 0; i < plan.points.size(); ++i) {
+        const std::string key = plan.measurer->key(plan.points[i]);
+        if (!seen.insert(key).second) continue;
+        summary.keys.push_back(key);
+        if (held[i]) {
+          ++summary.held;
+          continue;
+        }
+        if (options_.planOnly) summary.missing.push_back(plan.measurer->text(plan.points[i]));
+        plan.missing.push_back(plan.points[i]);
+      }
+      total += plan.missing.size();
+    }
+    return total;
+  }
+
+  std::vector<ScenePlan>& scenes() { return plans_; }
+
+ private:
+  ScenePlan& planOf(const std::filesystem::path& file) {
+    std::error_code failure;
+    const std::filesystem::path canonical = std::filesystem::weakly_canonical(file, failure);
+    const auto [index, isNew] = indices_.emplace(canonical, plans_.size());
+    if (isNew)
+      plans_.push_back({std::make_unique<Measurer>(device_, techniques_, options_.measure, store_,
+                                                   loadScene_(file), shownPath(file)),
+                        {},
+                        {}});
+    return plans_[index->second];
+  }
+
+  static void addPoints(ScenePlan& plan, const LoadedPipeline* loaded,
+                        const std::vector<PlannedPoint>& points) {
+    for (const PlannedPoint& point : points) {
+      if (point.seeds.empty()) plan.points.push_back({loaded, point, {}});
+      for (const std::uint64_t seed : point.seeds) plan.points.push_back({loaded, point, seed});
+    }
+  }
+
+  gpu::Device& device_;
+  TechniqueSet& techniques_;
+  const SweepOptions& options_;
+  ResultsStore& store_;
+  const std::function<Scene(const std::filesystem::path&)>& loadScene_;
+  std::vector<std::unique_ptr<LoadedPipeline>> loaded_;
+  std::map<std::filesystem::path, std::size_t> indices_;
+  std::vector<ScenePlan> plans_;
+};
+
+}  // namespace
+
+SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const SweepOptions& options,
+                      ResultsStore& store,
+                      const std::function<Scene(const std::filesystem::path&)>& loadScene) {
+  const ReportOptions& measure = options.measure;
+  if (measure.scenes.empty() && options.texts.empty()) throw Error("a sweep needs at least one scene");
+  if (measure.scenes.empty() && !measure.pipelines.empty())
+    throw Error("the text of a sweep names its pipelines; --pipeline goes with a scene");
+  SweepSummary summary;
+  PipelineChoice choice(measure, techniques);
+  SweepPlan plan(device, techniques, options, store, loadScene);
+  // All texts are read before the first picture is rendered.
+  for (const std::filesystem::path& file : measure.scenes) plan.addScene(file, choice, summary);
+  for (const std::filesystem::path& file : options.texts) plan.addText(file, summary);
+  const std::size_t total = plan.findMissing(summary);
+
+  const auto start = std::chrono::steady_clock::now();
+  std::size_t finished = 0;
+  const auto done = [&](std::size_t measured, std::size_t byOthers) {
+    summary.measured += measured;
+    summary.held += byOthers;
+    finished += measured + byOthers;
+    if (!options.progress) return;
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto left = static_cast<double>(total - finished);
+    options.progress(finished, total, seconds / static_cast<double>(finished) * left);
+  };
+  ScenePlan* first = nullptr;
+  for (ScenePlan& scene : plan.scenes()) {
+    if (options.planOnly) break;
+    if (first == nullptr && !scene.missing.empty()) first = &scene;
+    for (const StoredRun& run : scene.measurer->measure(scene.missing, done))
+      summary.failed += run.point.failure.empty() ? 0 : 1;
+  }
+  // What was timed first is timed again at the end: how far apart times of the same thing are here.
+  if (first != nullptr && summary.measured > 0) first->measurer->control(first->missing);
+  for (const std::string& key : summary.keys)
+    if (std::optional<StoredRun> stored = store.find(key)) summary.runs.push_back(std::move(*stored));
+  return summary;
+}
+
+}  // namespace lumivox

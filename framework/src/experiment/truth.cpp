@@ -1,0 +1,137 @@
+// The truth's layers as the components of a pipeline need them.
+#include <chrono>
+#include <cmath>
+
+#include "experiment/measure.h"
+#include "lumivox/base/error.h"
+
+namespace lumivox {
+namespace {
+
+void add(Picture& sum, const Picture& part) {
+  for (std::size_t i = 0; i < sum.values().size(); ++i) sum.values()[i] += part.values()[i];
+}
+
+}  // namespace
+
+std::pair<std::string, std::string> truthLayers(Contributes component) {
+  switch (component) {
+    case Contributes::direct:
+      return {"direct", "direct"};
+    case Contributes::indirectDiffuse:
+      return {"one_bounce_diffuse", "indirect_diffuse"};
+    case Contributes::indirectGlossy:
+      return {"one_bounce_glossy", "indirect_glossy"};
+    case Contributes::ambientOcclusion:
+      return {"ambient_occlusion", "ambient_occlusion"};
+    case Contributes::scattered:
+      return {"scattered_single", "scattered"};
+    case Contributes::final:
+      return {"one_bounce", "full"};
+    case Contributes::nothing:
+      break;
+  }
+  return {};
+}
+
+std::optional<TruthLayer> truthLayer(const LayeredPicture& truth, const std::string& name) {
+  const auto find = [&](const std::string& layer) -> std::optional<TruthLayer> {
+    const auto mean = truth.layers.find(layer);
+    if (mean == truth.layers.end()) return std::nullopt;
+    const auto variance = truth.layers.find(layer + ".variance");
+    return TruthLayer{mean->second, variance == truth.layers.end() ? Picture{} : variance->second};
+  };
+  if (name != "one_bounce" || truth.layers.count(name) != 0) return find(name);
+  std::optional<TruthLayer> sum = find("direct");
+  for (const char* part : {"one_bounce_diffuse", "one_bounce_glossy"}) {
+    const std::optional<TruthLayer> layer = find(part);
+    if (!sum || !layer || !sum->mean.sameShape(layer->mean)) return std::nullopt;
+    add(sum->mean, layer->mean);
+    // The layers share camera rays; their covariance is not recorded, so the sum of variances is an estimate
+    // that leaves it out.
+    if (sum->variance.sameShape(layer->variance)) add(sum->variance, layer->variance);
+  }
+  return sum;
+}
+
+}  // namespace lumivox
+
+namespace lumivox::experiment {
+
+Truth::Truth(const Scene& scene, const ReferenceOptions& options) : options_(options) {
+  const auto start = std::chrono::steady_clock::now();
+  layers_ = cachedReference(scene, options);
+  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Truth& Truth::later(const Scene& scene, int frame) {
+  if (frame == 0) return *this;
+  std::unique_ptr<Truth>& truth = later_[frame];
+  if (!truth) {
+    constexpr int kFewerSamples = 4, kFewest = 16;
+    ReferenceOptions options = options_;
+    options.time += frame * kFlickerStep;
+    options.seed += static_cast<std::uint64_t>(frame);
+    options.samplesPerPixel =
+        std::min(options.samplesPerPixel, std::max(kFewest, options.samplesPerPixel / kFewerSamples));
+    truth = std::make_unique<Truth>(scene, options);
+  }
+  return *truth;
+}
+
+const TruthLayer* Truth::layer(const std::string& name) {
+  auto found = cache_.find(name);
+  if (found == cache_.end()) found = cache_.emplace(name, truthLayer(layers_, name)).first;
+  return found->second ? &*found->second : nullptr;
+}
+
+const PictureError& Truth::errorOfNothing(const std::string& name) {
+  auto found = nothing_.find(name);
+  if (found == nothing_.end()) {
+    const TruthLayer& truth = *layer(name);
+    const Contributes component = name == lumivox::name(Contributes::ambientOcclusion)
+                                      ? Contributes::ambientOcclusion
+                                      : Contributes::final;
+    const Picture nothing = neutralPicture(truth.mean.width(), truth.mean.height(), component);
+    found = nothing_.emplace(name, compare(nothing, truth.mean, truth.variance)).first;
+  }
+  return found->second;
+}
+
+float Truth::exposure(const std::string& name) {
+  const TruthLayer* truth = layer(name);
+  if (truth == nullptr) return 1.0f;
+  return truth->mean.channels() == 1 ? 1.0f : displayExposure(truth->mean);  // occlusion is shown as it is
+}
+
+std::vector<TruthRecord> truthRecords(Truth& truth, const std::set<std::string>& used) {
+  std::vector<TruthRecord> records;
+  // A one-bounce layer is shown at the exposure of the full one, so that all pictures of a component compare.
+  const auto exposureLayer = [](const std::string& name) -> std::string {
+    if (name == "one_bounce_diffuse") return "indirect_diffuse";
+    if (name == "one_bounce_glossy") return "indirect_glossy";
+    return name == "one_bounce" ? "full" : name;
+  };
+  for (const std::string& name : used) {
+    const TruthLayer* layer = truth.layer(name);
+    if (layer == nullptr) continue;
+    TruthRecord record;
+    record.layer = name;
+    record.exposure = truth.exposure(exposureLayer(name));
+    record.picture = encodePng(layer->mean, static_cast<float>(record.exposure));
+    double sum = 0.0, variance = 0.0;
+    for (const float value : layer->mean.values()) {
+      sum += value;
+      record.largest = std::max(record.largest, static_cast<double>(value));
+    }
+    for (const float value : layer->variance.values()) variance += value;
+    record.mean = layer->mean.values().empty() ? 0.0 : sum / static_cast<double>(layer->mean.values().size());
+    record.noise = layer->variance.empty()
+                       ? 0.0
+                       : std::sqrt(variance / static_cast<double>(layer->variance.values().size()));
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+}  // namespace lumivox::experiment

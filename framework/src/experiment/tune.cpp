@@ -1,0 +1,291 @@
+#include "lumivox/experiment/tune.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "experiment/measurer.h"
+#include "experiment/plan.h"
+#include "lumivox/analysis/comparison.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/log.h"
+#include "lumivox/pipeline/pass.h"
+
+namespace lumivox {
+namespace {
+
+using namespace experiment;
+
+constexpr double kNearLimit = 2.0;  // points of the front beyond this many times the limit are not followed
+
+/// Whether a parameter of the pipeline goes to a whole number of some pass.
+bool isWhole(const Pipeline& pipeline, TechniqueSource& techniques, const std::string& name) {
+  for (const PassText& text : pipeline.passes) {
+    const Technique* technique = techniques.technique(text.technique);
+    const PassEntry* entry = technique == nullptr ? nullptr : technique->find(text.pass);
+    if (entry == nullptr || text.block == nullptr) continue;
+    const std::unique_ptr<Pass> pass = entry->make();
+    for (const dsl::Item& item : text.block->items) {
+      if (!item.property || item.property->values.empty()) continue;
+      const dsl::Value& value = item.property->values.front();
+      if (value.kind != dsl::ValueKind::parameter || value.text != name) continue;
+      for (const ParamBase* parameter : pass->parameters())
+        if (parameter->name() == item.property->word && parameter->type() == ParamBase::Type::integer)
+          return true;
+    }
+  }
+  return false;
+}
+
+/// The pipeline's text with other defaults, included files spliced in.
+std::string textWith(const Pipeline& pipeline, const ParameterValues& values) {
+  dsl::Document document = dsl::parseFile(pipeline.file);
+  for (dsl::Item& top : document.items) {
+    if (!top.block || top.block->word != "pipeline") continue;
+    for (dsl::Item& item : top.block->items) {
+      if (!item.property || item.property->word != "param" || item.property->values.size() < 2) continue;
+      const auto found = values.find(item.property->values[0].text);
+      if (found == values.end()) continue;
+      dsl::Value& value = item.property->values[1];
+      if (!found->second.word.empty()) {
+        value.text = found->second.word;
+      } else {
+        value.number = value.unit ? found->second.number / value.unit->toBase : found->second.number;
+        value.text = fmt::format("{}", value.number);
+      }
+    }
+  }
+  return dsl::format(document);
+}
+
+class Search {
+ public:
+  Search(TechniqueSource& techniques, const TuneOptions& options, Measurer& measurer)
+      : techniques_(techniques), options_(options), measurer_(measurer) {}
+
+  /// Measures points that were not looked at yet; false when the evaluations are used up.
+  bool look(const std::vector<WantedPoint>& points) {
+    std::vector<WantedPoint> fresh;
+    for (const WantedPoint& point : points) {
+      if (known_.size() >= static_cast<std::size_t>(options_.evaluations)) {
+        usedUp_ = true;
+        break;
+      }
+      if (known_.insert(measurer_.key(point)).second) fresh.push_back(point);
+    }
+    const std::vector<StoredRun> runs = measurer_.fetch(fresh);
+    for (std::size_t i = 0; i < runs.size(); ++i) add(fresh[i], runs[i]);
+    markFront();
+    return !usedUp_;
+  }
+
+  /// Points beside those ahead and beside the best that were not followed yet. The front itself would be too
+  /// much: it holds whatever cannot be told apart from the best, and on a plateau of the error, where times
+  /// are as good as equal, that would use up the evaluations.
+  std::vector<WantedPoint> neighbours() {
+    std::vector<std::vector<WantedPoint>> lists;
+    for (const std::size_t index : ahead()) follow(seen_[index], lists);
+    if (const std::optional<std::size_t> index = best()) follow(seen_[*index], lists);
+    // In turns, so that few evaluations are shared by all that is on the front.
+    std::vector<WantedPoint> result;
+    for (std::size_t i = 0; result.size() < total(lists); ++i)
+      for (const std::vector<WantedPoint>& list : lists)
+        if (i < list.size()) result.push_back(list[i]);
+    return result;
+  }
+
+  TuneResult finish() {
+    TuneResult result;
+    result.exhausted = !usedUp_;
+    std::stable_sort(seen_.begin(), seen_.end(), [](const Seen& a, const Seen& b) {
+      return a.point.tradeOff.timeMs.value < b.point.tradeOff.timeMs.value;
+    });
+    for (const Seen& seen : seen_) result.seen.push_back(seen.point);
+    result.winner = best();
+    if (result.winner) {
+      const WantedPoint& winner = seen_[*result.winner].wanted;
+      result.pipelineText = textWith(winner.loaded->pipeline, winner.point.parameters);
+    }
+    return result;
+  }
+
+ private:
+  struct Seen {
+    TunedPoint point;
+    WantedPoint wanted;
+    bool followed = false;
+  };
+
+  static std::size_t total(const std::vector<std::vector<WantedPoint>>& lists) {
+    std::size_t sum = 0;
+    for (const std::vector<WantedPoint>& list : lists) sum += list.size();
+    return sum;
+  }
+
+  void add(const WantedPoint& wanted, const StoredRun& run) {
+    if (!run.point.failure.empty() || run.point.frameMs.repeats == 0) return;
+    for (const ComponentError& error : run.point.errors) {
+      if (error.output != options_.output) continue;
+      // A component with one truth has only the first, which then answers for both.
+      const bool only =
+          std::count_if(run.point.errors.begin(), run.point.errors.end(),
+                        [&](const ComponentError& other) { return other.output == options_.output; }) == 1;
+      if (error.bias != options_.bias && !only) continue;
+      const Measured number = errorNumber(error, options_.metric);
+      if (!std::isfinite(number.value)) continue;
+      TunedPoint point{run, {medianOf(run.point.frameMs), number}, false, false};
+      point.fits = withinLimit(point.tradeOff, 1.0);
+      seen_.push_back({std::move(point), wanted, false});
+    }
+  }
+
+  std::vector<TradeOff> tradeOffs() const {
+    std::vector<TradeOff> result;
+    for (const Seen& seen : seen_) result.push_back(seen.point.tradeOff);
+    return result;
+  }
+
+  void markFront() {
+    const std::vector<std::optional<std::size_t>> beaten =
+        beatenBy(tradeOffs(), std::max(kSignificantTimeShare, measurer_.floor().frame));
+    for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i].point.onFront = !beaten[i];
+  }
+
+  /// Of the points that fit, the one with the least error, or the least time.
+  std::optional<std::size_t> best() const {
+    const auto cost = [&](const Seen& one) {
+      return options_.budgetMs ? one.point.tradeOff.error.value : one.point.tradeOff.timeMs.value;
+    };
+    std::optional<std::size_t> result;
+    for (std::size_t i = 0; i < seen_.size(); ++i)
+      if (seen_[i].point.fits && seen_[i].point.onFront && (!result || cost(seen_[i]) < cost(seen_[*result])))
+        result = i;
+    return result;
+  }
+
+  /// Of the points that none beats by value, by time, those whose error differs from that of the last one, or
+  /// of which too little is known to say so.
+  std::vector<std::size_t> ahead() const {
+    const std::vector<TradeOff> points = tradeOffs();
+    std::vector<std::size_t> result;
+    for (const std::size_t index : frontByValue(points))
+      if (result.empty() || !decidable(points[result.back()].error, points[index].error) ||
+          differ(points[result.back()].error, points[index].error))
+        result.push_back(index);
+    return result;
+  }
+
+  void follow(Seen& seen, std::vector<std::vector<WantedPoint>>& lists) {
+    if (seen.followed || !withinLimit(seen.point.tradeOff, kNearLimit)) return;
+    seen.followed = true;
+    lists.emplace_back();
+    addNeighbours(seen.wanted, lists.back());
+  }
+
+  /// Whether a point lies within so many times the limit.
+  bool withinLimit(const TradeOff& point, double times) const {
+    return options_.budgetMs ? point.timeMs.value <= times * *options_.budgetMs
+                             : point.error.value <= times * *options_.errorLimit;
+  }
+
+  void addNeighbours(const WantedPoint& wanted, std::vector<WantedPoint>& result) {
+    const Pipeline& pipeline = wanted.loaded->pipeline;
+    for (const PipelineParameter& parameter : pipeline.parameters) {
+      // What the command line sets stays.
+      if (wanted.loaded->settings.count(parameter.name) != 0) continue;
+      const ParameterValue& now = wanted.point.parameters.at(parameter.name);
+      for (ParameterValue& value : steps(pipeline, parameter, now)) {
+        if (value.text() == now.text() || !parameter.misfit(value).empty()) continue;
+        WantedPoint neighbour = wanted;
+        neighbour.point.sweep = "tune";
+        neighbour.point.isDefault = false;
+        neighbour.point.parameters[parameter.name] = std::move(value);
+        result.push_back(std::move(neighbour));
+      }
+    }
+  }
+
+  std::vector<ParameterValue> steps(const Pipeline& pipeline, const PipelineParameter& parameter,
+                                    const ParameterValue& now) const {
+    std::vector<ParameterValue> result;
+    for (const std::string& choice : parameter.choices) {
+      ParameterValue value = now;
+      value.word = choice;
+      result.push_back(value);
+    }
+    if (!now.word.empty() || !parameter.low || !parameter.high) return result;
+    const bool whole = isWhole(pipeline, techniques_, parameter.name);
+    const auto step = [&](double number) {
+      ParameterValue value = now;
+      value.number = std::clamp(whole ? std::round(number) : number, *parameter.low, *parameter.high);
+      result.push_back(value);
+    };
+    // Doubling and halving, then finer steps around: the front is followed down to a factor of sqrt(2).
+    for (const double factor : {2.0, 0.5, std::sqrt(2.0), std::sqrt(0.5)}) step(now.number * factor);
+    if (now.number == 0.0) step(0.5 * *parameter.high);
+    if (*parameter.low <= 0.0 && *parameter.high > 0.0) step(0.0);
+    return result;
+  }
+
+  TechniqueSource& techniques_;
+  const TuneOptions& options_;
+  Measurer& measurer_;
+  std::vector<Seen> seen_;
+  std::set<std::string> known_;
+  bool usedUp_ = false;
+};
+
+void requireSensible(const TuneOptions& options) {
+  if (options.measure.scenes.size() != 1) throw Error("tuning needs exactly one scene");
+  if (options.budgetMs.has_value() == options.errorLimit.has_value())
+    throw Error("tuning needs a budget or an error, one of the two");
+  if (options.budgetMs && !(*options.budgetMs > 0.0)) throw Error("the budget must be above 0 ms");
+  if (options.errorLimit && !(*options.errorLimit > 0.0)) throw Error("the error must be above 0");
+  requireErrorMetric(options.metric);
+}
+
+}  // namespace
+
+TuneResult tune(gpu::Device& device, TechniqueSet& techniques, const TuneOptions& options,
+                ResultsStore& store, const std::function<Scene(const std::filesystem::path&)>& loadScene) {
+  requireSensible(options);
+  PipelineChoice choice(options.measure, techniques);
+  const std::filesystem::path& file = options.measure.scenes.front();
+  Measurer measurer(device, techniques, options.measure, store, loadScene(file), shownPath(file));
+  std::vector<std::pair<std::string, std::string>> unsuited;
+  std::vector<WantedPoint> first;
+  std::set<std::string> outputs{kWholePicture};
+  for (const LoadedPipeline* loaded : choice.forScene(measurer.scene(), unsuited)) {
+    std::set<std::string> own{kWholePicture};
+    for (const Pipeline::Output& output : loaded->pipeline.outputs) own.insert(output.name);
+    outputs.insert(own.begin(), own.end());
+    if (own.count(options.output) == 0) {
+      unsuited.emplace_back(loaded->shown, fmt::format("it has no output '{}'", options.output));
+      continue;
+    }
+    for (PlannedPoint& point : plannedPoints(loaded->pipeline, loaded->settings, options.measure.openSweeps))
+      first.push_back({loaded, std::move(point)});
+  }
+  if (outputs.count(options.output) == 0)
+    throw Error(fmt::format("no pipeline has an output '{}'; expected one of {}", options.output,
+                            fmt::join(outputs, ", ")));
+
+  Search search(techniques, options, measurer);
+  // The defaults come first, so that few evaluations still see every technique.
+  std::stable_partition(first.begin(), first.end(),
+                        [](const WantedPoint& point) { return point.point.isDefault; });
+  for (bool more = search.look(first); more;) {
+    const std::vector<WantedPoint> next = search.neighbours();
+    if (next.empty()) break;
+    logInformation("tuning: {} neighbours of what is ahead", next.size());
+    more = search.look(next);
+  }
+  TuneResult result = search.finish();
+  for (const auto& [pipeline, why] : unsuited) result.unsuited.push_back(pipeline + ": " + why);
+  return result;
+}
+
+}  // namespace lumivox

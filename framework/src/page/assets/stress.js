@@ -1,0 +1,76 @@
+"use strict";
+// Where each technique breaks: the matrix of pipelines and cases, the cells that are not stable, and those that are. `pictures`: the
+// folder beside the page that holds the cells' pictures; empty: no links.
+const stressSection = (function () {
+  const { h, caption, table, isNumber, number, measured, shortName, words } = lumivox;
+  // In the order of concern.
+  const outcomes = {
+    broken: "NaN, infinite or negative where it must not be, a crash or a hang",
+    diverges: "finite, but it grows without bound or does not converge where it should",
+    biased: "healthy and bounded, but beyond the limit of the case",
+    refused: "a clear message in place of a picture",
+    stable: "healthy, and within the limit of the case",
+    not_applicable: "the case asks for something that the pipeline does not have" };
+  const hasNumber = cell => cell.measure !== "" && ["diverges", "biased", "stable"].includes(cell.outcome);
+  const unit = cell => cell.unit ? " " + cell.unit : "";
+
+  /** Each once; neighbours of one head stand together, in the order of their first ones. */
+  function axis(cells, head, name) {
+    const groups = new Map();
+    for (const cell of cells) groups.set(cell[head], (groups.get(cell[head]) || new Set()).add(cell[name]));
+    return [...groups].map(([group, names]) => ({ group, names: [...names] }));
+  }
+
+  function matrix(cells) {
+    const cases = axis(cells, "family", "case"), techniques = axis(cells, "technique", "pipeline");
+    const pipelines = techniques.flatMap(one => one.names);
+    const at = (name, pipeline) => cells.findLastIndex(cell => cell.case === name && cell.pipeline === pipeline);
+    const text = cell => cell.outcome === "not_applicable" ? "" : hasNumber(cell) ? number(cell.value) + unit(cell) : words(cell.outcome);
+    const place = (name, pipeline) => {
+      const index = at(name, pipeline), cell = cells[index];
+      if (!cell) return h("td", null);
+      const value = cell.outcome + (hasNumber(cell) ? " " + (isNumber(cell.value) ? number(cell.value) : "-") + unit(cell) : "");
+      return h("td", { class: "cell " + cell.outcome, title: shortName(pipeline) + ", " + name + ": " + value + (cell.measure ? "; " + cell.measure : "") },
+               text(cell) && h("a", { href: "#cell-" + index }, text(cell)));
+    };
+    return h("div", { class: "scroll" }, h("table", { class: "stress" },
+      // Names of the columns stand upright, so that a dozen and more fit.
+      h("thead", null,
+        h("tr", null, h("th", null), techniques.map(one => h("th", { class: "group", colspan: one.names.length }, words(one.group)))),
+        h("tr", null, h("th", null, "case"), pipelines.map(one => h("th", { class: "upright" }, h("span", null, words(shortName(one))))))),
+      h("tbody", null, cases.map(family => [
+        h("tr", { class: "family" }, h("th", { colspan: pipelines.length + 1 }, words(family.group))),
+        family.names.map(name => h("tr", null, h("td", { class: "case" }, words(name)), pipelines.map(pipeline => place(name, pipeline))))]))));
+  }
+
+  const legend = cells => h("table", { class: "stress legend" }, h("tbody", null, Object.entries(outcomes).map(([outcome, meaning]) =>
+    h("tr", null, h("td", { class: "cell " + outcome }, words(outcome)),
+      h("td", { class: "number" }, cells.filter(cell => cell.outcome === outcome).length), h("td", null, meaning)))));
+
+  const measureText = cell => cell.measure === "" ? null
+    : [cell.measure + ": ", h("b", null, measured(cell)), unit(cell) + (cell.limit > 0 ? "; limit " + number(cell.limit) : "")];
+
+  const concern = (cell, index, pictures) => h("section", { class: "concern", id: "cell-" + index },
+    pictures && cell.picture && h("a", { href: cell.picture }, h("img", { alt: "picture of the cell", src: cell.picture, loading: "lazy" })),
+    h("h4", null, h("span", { class: "cell " + cell.outcome }, words(cell.outcome)), " " + shortName(cell.pipeline) + ": " + words(cell.case)),
+    measureText(cell) && h("p", null, measureText(cell)), cell.detail && h("p", { class: "soft" }, cell.detail),
+    cell.explanation && h("p", null, cell.explanation), h("pre", null, cell.command));
+
+  return function (cells, pictures) {
+    const quiet = ["stable", "not_applicable"];
+    const concerns = Object.keys(outcomes).filter(outcome => !quiet.includes(outcome)).flatMap(outcome =>
+      cells.map((cell, index) => cell.outcome === outcome ? concern(cell, index, pictures) : null).filter(Boolean));
+    const stable = cells.map((cell, index) => ({ cell, index })).filter(({ cell }) => cell.outcome === "stable");
+    return [
+      h("h2", { id: "stress" }, "Where each technique breaks"),
+      caption("Every pipeline on every extreme case. A cell holds what its case measures; its colour is the outcome. Each leads to its "
+        + "picture and to the command that repeats it."),
+      legend(cells), matrix(cells), h("h3", null, "Cells that are not stable"), concerns.length > 0 ? concerns : h("p", null, "There are none."),
+      h("h3", null, "Stable cells"),
+      table([{ title: "Pipeline" }, { title: "Case" }, { title: "Measured", kind: "wide" }, { title: "Detail", kind: "wide" },
+             { title: "Picture" }, { title: "Command" }],
+        stable.map(({ cell, index }) => [
+          [h("span", { id: "cell-" + index }), shortName(cell.pipeline)], words(cell.case), measureText(cell), cell.detail,
+          pictures && cell.picture ? h("a", { href: cell.picture }, "picture") : "", h("code", null, cell.command)]))];
+  };
+})();

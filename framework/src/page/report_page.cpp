@@ -1,0 +1,147 @@
+// The page of a report, with CSV and JSON beside it.
+#include <algorithm>
+
+#include "lumivox/analysis/comparison.h"
+#include "lumivox/analysis/slopes.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/page/page.h"
+#include "lumivox/results/json.h"
+#include "page/document.h"
+#include "page/markup.h"
+#include "page/report_files.h"
+#include "page/voxel_json.h"
+#include "page_assets.h"
+
+namespace lumivox::page {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The metrics that the page compares pipelines by.
+constexpr const char* kMetrics[] = {"rmse", "relative_mse", "percentile95", "flip"};
+
+/// What leaving out saved of a time, where that is more than the spread of the repeats.
+Json savingJson(const TimingStatistics& pruned, const TimingStatistics& unpruned) {
+  const Measured before = medianOf(unpruned), after = medianOf(pruned);
+  const char* told = !decidable(before, after)                       ? "undecided"
+                     : !differ(before, after, kSignificantTimeShare) ? "not_measurable"
+                                                                     : "saved";
+  return {
+      {"told", told}, {"ms", numberJson(before.value - after.value)}, {"of_ms", numberJson(before.value)}};
+}
+
+Json sceneJson(const ReportRecord& record, const SceneRecord& scene) {
+  Json json = toJson(scene);
+  json["points"] = Json::array();
+  for (const PointRecord& point : scene.points)
+    json["points"].push_back(toJson(point.point, point.isDefault));
+  const std::vector<const ReportPoint*> points = pointsOf(scene);
+  json["slopes"] = toJson(slopesOf(points));
+  json["pruning"] = Json::array();
+  for (const PruningRecord& pruning : scene.pruning) {
+    Json one = toJson(pruning);
+    one["first_frame_saves"] = savingJson(pruning.prunedMs, pruning.unprunedMs);
+    one["later_frames_save"] = savingJson(pruning.nextPrunedMs, pruning.nextUnprunedMs);
+    json["pruning"].push_back(std::move(one));
+  }
+  json["components"] = componentsOf(points);
+  json["comparisons"] = Json::array();
+  for (const PipelineComparison& comparison :
+       compareComponents(points, {std::begin(kMetrics), std::end(kMetrics)},
+                         {record.equalTimesMs, record.equalErrors, scene.floor}))
+    json["comparisons"].push_back(toJson(comparison));
+  return json;
+}
+
+/// In the order of the scenes, points and outputs.
+Json picturesJson(const ReportRecord& record) {
+  Json scenes = Json::array();
+  for (const SceneRecord& scene : record.scenes) {
+    Json truths = Json::array(), points = Json::array();
+    for (const TruthRecord& truth : scene.truths)
+      truths.push_back({{"layer", truth.layer}, {"png", base64(truth.picture)}});
+    for (const PointRecord& point : scene.points) {
+      Json outputs = Json::array();
+      for (const OutputPictures& output : point.pictures) {
+        Json against = Json::array();
+        for (const OutputPictures::Against& map : output.against)
+          against.push_back(
+              {{"truth", map.truth}, {"flip", numberJson(map.flip)}, {"png", base64(map.flipMap)}});
+        outputs.push_back({{"output", output.output},
+                           {"component", output.component},
+                           {"png", base64(output.picture)},
+                           {"against", std::move(against)}});
+      }
+      points.push_back(std::move(outputs));
+    }
+    scenes.push_back({{"truths", std::move(truths)}, {"points", std::move(points)}});
+  }
+  return {{"scenes", std::move(scenes)}};
+}
+
+}  // namespace
+
+Json reportJson(const ReportRecord& record) {
+  Json json = {{"report", "lumivox"}, {"format", 1}, {"date", record.date}, {"command", record.commandLine}};
+  json["device"] = {{"vendor", record.device.vendor},
+                    {"renderer", record.device.renderer},
+                    {"version", record.device.version},
+                    {"platform", record.device.platform},
+                    {"software", record.device.software},
+                    {"shaders", record.shaderInput},
+                    {"timer_queries_trusted", record.device.timerQueriesTrusted},
+                    {"timer_note", record.device.timerNote},
+                    {"host", record.host}};
+  json["ceilings"] = toJson(record.ceilings);
+  json["units"] = {{"error", "radiance, W/(sr m^2)"}, {"time", "ms"}, {"memory", "bytes"}};
+  json["pipelines"] = Json::array();
+  for (const PipelineRecord& pipeline : record.pipelines)
+    json["pipelines"].push_back({{"file", pipeline.file}, {"name", pipeline.name}, {"hash", pipeline.hash}});
+  json["techniques"] = Json::array();
+  for (const TechniqueRecord& technique : record.techniques)
+    json["techniques"].push_back({{"name", technique.name},
+                                  {"library_hash", technique.libraryHash},
+                                  {"shader_hash", technique.shaderHash},
+                                  {"paper", technique.paper}});
+  json["skipped"] = Json::array();
+  for (const SkippedTechnique& skipped : record.skipped)
+    json["skipped"].push_back({{"library", skipped.library.string()}, {"reason", skipped.reason}});
+  json["least_repeats"] = kLeastRepeats;
+  json["scenes"] = Json::array();
+  for (const SceneRecord& scene : record.scenes) json["scenes"].push_back(sceneJson(record, scene));
+  if (!record.voxels.empty()) {
+    json["voxels"] = toJson(record.voxels);
+    json["voxel_scaling"] = scalingJson(record.voxels);
+  }
+  for (const StressCell& cell : record.stress) json["stress"].push_back(toJson(cell));
+  return json;
+}
+
+}  // namespace lumivox::page
+
+namespace lumivox {
+
+ReportFiles reportFiles(const std::filesystem::path& file) {
+  const ReportFiles files{file, std::filesystem::path(file).replace_extension(".csv"),
+                          std::filesystem::path(file).replace_extension(".json")};
+  if (files.page == files.csv || files.page == files.json)
+    throw Error(file.string() + ": the page cannot have the extension of the files beside it; use .html");
+  for (const auto& one : {files.page, files.csv, files.json}) requireWritable(one);
+  page::chartLibrary();
+  return files;
+}
+
+void writeReport(const ReportFiles& files, const ReportRecord& record) {
+  page::Document document{"Lumivox report",
+                          page::reportJson(record),
+                          page::picturesJson(record),
+                          true,
+                          {page::assets::kComparisonJs, page::assets::kPicturesJs, page::assets::kVoxelsJs,
+                           page::assets::kStressJs, page::assets::kReportJs}};
+  writeFileAtomically(files.json, textOf(document.data, 1) + "\n");
+  writeFileAtomically(files.csv, page::reportCsv(record));
+  writeFileAtomically(files.page, page::html(document));
+}
+
+}  // namespace lumivox

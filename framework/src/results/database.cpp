@@ -1,0 +1,115 @@
+#include "results/database.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+
+namespace lumivox::results {
+namespace {
+
+/// How long one process waits for another that is writing.
+constexpr int kPatienceMs = 60'000;
+
+}  // namespace
+
+Database::Database(const std::filesystem::path& file, bool write) : file_(file) {
+  requireRegularFile(file);
+  sqlite3* handle = nullptr;
+  const int flags = write ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
+  const int status = sqlite3_open_v2(file.c_str(), &handle, flags, nullptr);
+  handle_.reset(handle);
+  if (status != SQLITE_OK) fail();
+  sqlite3_busy_timeout(handle, kPatienceMs);
+  execute("PRAGMA foreign_keys = ON");
+}
+
+void Database::fail() const {
+  throw Error(fmt::format("{}: {}", file_.string(),
+                          handle_ ? sqlite3_errmsg(handle_.get()) : "not enough memory to open it"));
+}
+
+void Database::execute(const char* sql) const {
+  if (sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail();
+}
+
+std::int64_t Database::pragma(const char* name) const {
+  Statement statement(*this, fmt::format("PRAGMA {}", name).c_str());
+  return statement.step() ? statement.integer(0) : 0;
+}
+
+Statement::Statement(const Database& database, const char* sql) : database_(database) {
+  sqlite3_stmt* statement = nullptr;
+  if (sqlite3_prepare_v2(database.handle(), sql, -1, &statement, nullptr) != SQLITE_OK) database.fail();
+  statement_.reset(statement);
+}
+
+bool Statement::step() {
+  const int status = sqlite3_step(statement_.get());
+  if (status != SQLITE_ROW && status != SQLITE_DONE) database_.fail();
+  return status == SQLITE_ROW;
+}
+
+void Statement::run() {
+  while (step()) {
+  }
+  // A statement that is not reset would keep its lock on the file.
+  reset();
+}
+
+double Statement::number(int column) const {
+  if (sqlite3_column_type(statement_.get(), column) == SQLITE_NULL)
+    return std::numeric_limits<double>::quiet_NaN();
+  return sqlite3_column_double(statement_.get(), column);
+}
+
+std::string Statement::text(int column) const {
+  const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
+  return bytes == nullptr
+             ? std::string()
+             : std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column)));
+}
+
+void Statement::bindOne(int index, const std::string& text) {
+  if (sqlite3_bind_text(statement_.get(), index, text.c_str(), static_cast<int>(text.size()),
+                        SQLITE_TRANSIENT) != SQLITE_OK)
+    database_.fail();
+}
+
+std::string Statement::bytes(int column) const {
+  const auto* bytes = static_cast<const char*>(sqlite3_column_blob(statement_.get(), column));
+  return bytes == nullptr
+             ? std::string()
+             : std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column)));
+}
+
+void Statement::bindOne(int index, const Blob& blob) {
+  if (sqlite3_bind_blob64(statement_.get(), index, blob.bytes.data(), blob.bytes.size(), SQLITE_TRANSIENT) !=
+      SQLITE_OK)
+    database_.fail();
+}
+
+void Statement::bindOne(int index, double number) {
+  const int status = std::isnan(number) ? sqlite3_bind_null(statement_.get(), index)
+                                        : sqlite3_bind_double(statement_.get(), index, number);
+  if (status != SQLITE_OK) database_.fail();
+}
+
+void Statement::bindInteger(int index, std::int64_t value) {
+  if (sqlite3_bind_int64(statement_.get(), index, value) != SQLITE_OK) database_.fail();
+}
+
+Transaction::~Transaction() {
+  // An error of the rollback itself changes nothing: SQLite rolls back when the file is opened again.
+  if (open_) sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
+}
+
+void Transaction::commit() {
+  database_.execute("COMMIT");
+  open_ = false;
+}
+
+}  // namespace lumivox::results

@@ -1,0 +1,101 @@
+// SQLite with exceptions and values.
+#pragma once
+
+#include <sqlite3.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+
+namespace lumivox::results {
+
+class Database;
+
+/// Bytes that are no text.
+struct Blob {
+  const std::string& bytes;
+};
+
+/// A prepared statement. Bind all values in order, then step through the rows.
+class Statement {
+ public:
+  Statement(const Database& database, const char* sql);
+  template <class... Values>
+  Statement& bind(const Values&... values) {
+    sqlite3_reset(statement_.get());
+    int index = 0;
+    (bindOne(++index, values), ...);
+    return *this;
+  }
+  /// Binds one value at a position from 1 on; after reset().
+  void bindAt(int index, const std::string& text) { bindOne(index, text); }
+  void reset() { sqlite3_reset(statement_.get()); }
+  bool step();  ///< true: a row is there
+  void run();   ///< to the end
+  template <class... Values>
+  void run(const Values&... values) {
+    bind(values...);
+    run();
+  }
+
+  std::int64_t integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
+  /// NaN has no place in SQLite and is stored as NULL.
+  double number(int column) const;
+  std::string text(int column) const;
+  std::string bytes(int column) const;
+
+ private:
+  void bindOne(int index, const Blob& blob);
+  void bindOne(int index, const std::string& text);
+  void bindOne(int index, const char* text) { bindOne(index, std::string(text)); }
+  void bindOne(int index, double number);
+  template <class T>
+  requires std::is_integral_v<T>
+  void bindOne(int index, T value) { bindInteger(index, static_cast<std::int64_t>(value)); }
+  void bindInteger(int index, std::int64_t value);
+
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+  };
+  const Database& database_;
+  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+};
+
+class Database {
+ public:
+  Database(const std::filesystem::path& file, bool write);
+  void execute(const char* sql) const;
+  std::int64_t pragma(const char* name) const;  ///< an integer pragma
+  std::int64_t lastRow() const { return sqlite3_last_insert_rowid(handle_.get()); }
+  std::size_t changes() const { return static_cast<std::size_t>(sqlite3_changes(handle_.get())); }
+  const std::filesystem::path& file() const { return file_; }
+  /// Throws Error with the file and what SQLite says.
+  [[noreturn]] void fail() const;
+  sqlite3* handle() const { return handle_.get(); }
+
+ private:
+  struct Close {
+    void operator()(sqlite3* handle) const { sqlite3_close(handle); }
+  };
+  std::filesystem::path file_;
+  std::unique_ptr<sqlite3, Close> handle_;
+};
+
+/// Rolled back unless committed.
+class Transaction {
+ public:
+  explicit Transaction(const Database& database) : database_(database) {
+    database.execute("BEGIN IMMEDIATE");
+  }
+  ~Transaction();
+  void commit();
+
+ private:
+  const Database& database_;
+  bool open_ = true;
+};
+
+}  // namespace lumivox::results

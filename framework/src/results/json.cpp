@@ -1,0 +1,254 @@
+#include "lumivox/results/json.h"
+
+#include <cmath>
+
+namespace lumivox {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double millisecondsOf(const ReportPoint& point, const std::string& pass) {
+  const auto time = point.passDeviceMs.find(pass);
+  return time == point.passDeviceMs.end() ? 0.0 : time->second.median;
+}
+
+/// What a pass does, and what limits it; null when that was not counted.
+Json limitJson(const ReportPoint& point, const std::string& pass) {
+  Json json = Json::object();
+  const auto work = point.passWork.find(pass);
+  if (work == point.passWork.end()) return nullptr;
+  json["work"] = work->second;
+  const auto bounds = point.passBounds.find(pass);
+  const double ms = millisecondsOf(point, pass);
+  if (bounds == point.passBounds.end() || bounds->second.empty() || !(ms > 0.0)) return json;
+  json["limited_by"] = bounds->second.front().resource;
+  json["of_ceiling"] = bounds->second.front().ms / ms;
+  Json least = Json::object();
+  for (const WorkBound& bound : bounds->second) least[bound.resource] = bound.ms;
+  json["at_least_ms"] = std::move(least);
+  return json;
+}
+
+}  // namespace
+
+Json numberJson(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+std::string textOf(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+Json toJson(const Measured& measured) {
+  return {{"value", numberJson(measured.value)}, {"uncertainty", numberJson(measured.uncertainty)}};
+}
+
+Json toJson(const TimingStatistics& statistics) {
+  return {{"median", numberJson(statistics.median)},
+          {"lower_quartile", numberJson(statistics.lowerQuartile)},
+          {"upper_quartile", numberJson(statistics.upperQuartile)},
+          {"smallest", numberJson(statistics.smallest)},
+          {"largest", numberJson(statistics.largest)},
+          {"repeats", statistics.repeats}};
+}
+
+Json toJson(const ParameterValues& values) {
+  Json json = Json::object();
+  for (const auto& [name, value] : values)
+    json[name] = value.word.empty() ? numberJson(value.number) : Json(value.word);
+  return json;
+}
+
+Json toJson(const ComponentError& record) {
+  const PictureError& error = record.error;
+  return {{"output", record.output},
+          {"component", record.component},
+          {"truth", record.truth},
+          {"kind", record.bias ? "bias" : "miss"},
+          {"rmse", toJson(record.error.rmse)},
+          {"seeds", record.seeds},
+          {"deterministic", record.deterministic},
+          {"enough_seeds", record.enoughSeeds()},
+          {"rms_bias", toJson(record.parts.bias)},
+          {"picture_noise", numberJson(record.noiseRmse)},
+          {"rms_noise", toJson(record.parts.noise)},
+          {"flicker", toJson(record.flicker)},
+          {"truth_noise", numberJson(error.noiseFloor)},
+          {"relative_mse", toJson(error.relativeMse)},
+          {"mean_ratio", toJson(error.meanRatio)},
+          {"mean_difference", toJson(error.bias)},
+          {"percentile_95", numberJson(error.percentile95)},
+          {"percentile_95_uncertainty", numberJson(error.percentile95Uncertainty)},
+          {"ssim", numberJson(error.ssim)},
+          {"ssim_uncertainty", numberJson(error.ssimUncertainty)},
+          {"flip_hdr", numberJson(error.flip)},
+          {"flip_hdr_uncertainty", numberJson(error.flipUncertainty)},
+          {"flip_ldr", numberJson(error.flipLdr)},
+          {"flip_ldr_uncertainty", numberJson(error.flipLdrUncertainty)},
+          {"non_finite_picture", error.nonFinitePicture},
+          {"non_finite_truth", error.nonFiniteTruth},
+          {"rmse_of_nothing", numberJson(record.errorOfNothing.rmse.value)},
+          {"ratio_to_nothing", numberJson(record.ratioToNothing())}};
+}
+
+Json toJson(const ReportPoint& point, bool isDefault) {
+  Json json = {{"scene", point.scene},
+               {"pipeline", point.pipeline},
+               {"sweep", point.sweep},
+               {"default", isDefault},
+               {"parameters", toJson(point.parameters)}};
+  if (!point.failure.empty()) json["failure"] = point.failure;
+  json["frame_ms"] = toJson(point.frameMs);
+  json["next_frame_ms"] = toJson(point.nextFrameMs);
+  json["framework_share"] = numberJson(point.frameworkShare);
+  json["peak_bytes"] = point.peakBytes;
+  Json passes = Json::array();
+  // A point that failed has no numbers, and one of an older store may lack some.
+  const auto timeOf = [](const std::map<std::string, TimingStatistics>& times, const std::string& pass) {
+    const auto found = times.find(pass);
+    return found == times.end() ? Json(nullptr) : toJson(found->second);
+  };
+  for (const std::string& pass : point.passOrder) {
+    const auto bytes = point.passBytes.find(pass);
+    passes.push_back({{"pass", pass},
+                      {"device_ms", timeOf(point.passDeviceMs, pass)},
+                      {"host_ms", timeOf(point.passHostMs, pass)},
+                      {"bytes", bytes == point.passBytes.end() ? Json(nullptr) : Json(bytes->second)},
+                      {"limit", limitJson(point, pass)}});
+  }
+  json["passes"] = std::move(passes);
+  Json errors = Json::array();
+  for (const ComponentError& error : point.errors) errors.push_back(toJson(error));
+  json["errors"] = std::move(errors);
+  if (!point.whyNotCounted.empty()) json["why_not_counted"] = point.whyNotCounted;
+  json["health_findings"] = point.healthFindings;
+  json["notes"] = point.notes;
+  json["command"] = point.command;
+  return json;
+}
+
+Json toJson(const PruningRecord& record) {
+  const auto time = [](const TimingStatistics& statistics) {
+    return statistics.repeats == 0 ? Json(nullptr) : toJson(statistics);
+  };
+  const auto timeOf = [&](const std::map<std::string, TimingStatistics>& times, const std::string& pass) {
+    const auto found = times.find(pass);
+    return found == times.end() ? Json(nullptr) : time(found->second);
+  };
+  const auto share = [&](double value) { return record.prunedMs.repeats == 0 ? Json(nullptr) : Json(value); };
+  const Explanation& explanation = record.explanation;
+  Json json = {{"scene", record.scene},
+               {"pipeline", record.pipeline},
+               {"passes_kept", explanation.passesKept},
+               {"passes_total", explanation.passesTotal},
+               {"variants",
+                {{"possible", explanation.variantsPossible},
+                 {"compiled", explanation.variantsCompiled},
+                 {"needed", explanation.variantsNeeded}}},
+               {"frame_ms", time(record.prunedMs)},
+               {"frame_ms_keep_everything", time(record.unprunedMs)},
+               {"saved_share", share(record.savedShare())},
+               {"next_frame_ms", time(record.nextPrunedMs)},
+               {"next_frame_ms_keep_everything", time(record.nextUnprunedMs)},
+               {"saved_share_next", share(record.savedShareNext())},
+               {"bytes", record.prunedBytes},
+               {"bytes_keep_everything", record.unprunedBytes},
+               {"same_picture", record.samePicture}};
+  json["left_out"] = Json::array();
+  for (const LeftOut& one : explanation.leftOut)
+    json["left_out"].push_back({{"level", name(one.level)},
+                                {"what", one.what},
+                                {"why", one.why},
+                                {"pass", one.pass},
+                                {"saved_bytes", one.savedBytes},
+                                {"saved_ms", numberJson(one.savedMs)}});
+  json["passes"] = Json::array();
+  for (const std::string& pass : record.passOrder)
+    json["passes"].push_back({{"pass", pass},
+                              {"ms", timeOf(record.prunedPassMs, pass)},
+                              {"ms_keep_everything", timeOf(record.unprunedPassMs, pass)}});
+  return json;
+}
+
+Json toJson(const std::vector<DeviceCeiling>& ceilings) {
+  Json list = Json::array();
+  for (const DeviceCeiling& ceiling : ceilings)
+    list.push_back({{"name", ceiling.name},
+                    {"unit", ceiling.unit},
+                    {"median", ceiling.rate.median},
+                    {"lower_quartile", ceiling.rate.lowerQuartile},
+                    {"upper_quartile", ceiling.rate.upperQuartile},
+                    {"smallest", ceiling.rate.smallest},
+                    {"largest", ceiling.rate.largest},
+                    {"repeats", ceiling.rate.repeats},
+                    {"created", ceiling.created}});
+  return list;
+}
+
+Json toJson(const VoxeliserRecord& record) {
+  Json json = {{"scene", record.scene},         {"pipeline", record.pipeline},
+               {"label", record.label()},       {"output", record.output},
+               {"kind", record.kind},           {"resolution", record.resolution},
+               {"triangles", record.triangles}, {"subdivisions", record.subdivisions},
+               {"is_default", record.isDefault}};
+  json["parameters"] = Json::object();
+  for (const auto& [name, value] : record.parameters) json["parameters"][name] = value.text();
+  if (!record.whyNot.empty()) {
+    json["why_not"] = record.whyNot;
+    return json;
+  }
+  json["grid"] = {
+      {"low_m", {record.grid.low.x, record.grid.low.y, record.grid.low.z}},
+      {"voxel_size_m", record.grid.voxelSize},
+      {"resolution", {record.grid.resolution.x, record.grid.resolution.y, record.grid.resolution.z}}};
+  json["frame_ms"] = toJson(record.frameMs);
+  json["occupied"] = record.occupied;
+  json["truth"] = record.truth;
+  json["undecided"] = record.undecided;
+  json["true_positive"] = record.error.truePositive;
+  json["false_positive"] = record.error.falsePositive;
+  json["false_negative"] = record.error.falseNegative;
+  json["recall"] = record.error.recall();
+  json["precision"] = record.error.precision();
+  json["holes"] = {{"axis_crossings", record.holes.axisCrossings},
+                   {"axis_holes", record.holes.axisHoles},
+                   {"oblique_crossings", record.holes.obliqueCrossings},
+                   {"oblique_holes", record.holes.obliqueHoles},
+                   {"axis_share", record.holes.axisShare()},
+                   {"oblique_share", record.holes.obliqueShare()}};
+  json["fragments"] = record.fragments;
+  json["bytes"] = record.bytes;
+  json["allocated_bytes"] = record.allocatedBytes;
+  json["bytes_per_fragment"] = record.bytesPerFragment();
+  json["bytes_per_voxel"] = record.bytesPerVoxel();
+  return json;
+}
+
+Json toJson(const std::vector<VoxeliserRecord>& records) {
+  Json list = Json::array();
+  for (const VoxeliserRecord& record : records) list.push_back(toJson(record));
+  return list;
+}
+
+Json toJson(const SceneRecord& scene) {
+  Json json = {{"file", scene.file},     {"name", scene.name},          {"hash", scene.hash},
+               {"camera", scene.camera}, {"time_s", scene.time},        {"width", scene.width},
+               {"height", scene.height}, {"triangles", scene.triangles}};
+  json["truth"] = {{"samples_per_pixel", scene.truthSamples},
+                   {"seconds", numberJson(scene.truthSeconds)},
+                   {"attributes", scene.truthAttributes}};
+  Json layers = Json::array();
+  for (const TruthRecord& truth : scene.truths)
+    layers.push_back({{"layer", truth.layer},
+                      {"noise", numberJson(truth.noise)},
+                      {"mean", numberJson(truth.mean)},
+                      {"largest", numberJson(truth.largest)},
+                      {"display_exposure", numberJson(truth.exposure)}});
+  json["truth"]["layers"] = std::move(layers);
+  json["unsuited"] = Json::array();
+  for (const auto& [pipeline, why] : scene.unsuited)
+    json["unsuited"].push_back({{"pipeline", pipeline}, {"why", why}});
+  return json;
+}
+
+}  // namespace lumivox

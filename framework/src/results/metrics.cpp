@@ -1,0 +1,83 @@
+// The numbers of an error by name, so that the store's schema does not change with every metric.
+#include <cmath>
+#include <limits>
+
+#include "lumivox/results/records.h"
+
+namespace lumivox {
+namespace {
+
+/// Reads or writes one metric; the same list serves both ways.
+template <class Error, class Visit>
+void visitMetrics(Error& error, Visit visit) {
+  auto& e = error.error;
+  auto& n = error.errorOfNothing;
+  visit("rmse", e.rmse.value, &e.rmse.uncertainty, n.rmse.value);
+  visit("relative_mse", e.relativeMse.value, &e.relativeMse.uncertainty, n.relativeMse.value);
+  visit("mean_ratio", e.meanRatio.value, &e.meanRatio.uncertainty, n.meanRatio.value);
+  visit("bias", e.bias.value, &e.bias.uncertainty, n.bias.value);
+  visit("percentile95", e.percentile95, &e.percentile95Uncertainty, n.percentile95);
+  visit("ssim", e.ssim, &e.ssimUncertainty, n.ssim);
+  visit("flip", e.flip, &e.flipUncertainty, n.flip);
+  visit("flip_ldr", e.flipLdr, &e.flipLdrUncertainty, n.flipLdr);
+}
+
+}  // namespace
+
+std::vector<NamedMetric> metricsOf(const ComponentError& error) {
+  std::vector<NamedMetric> metrics;
+  visitMetrics(error, [&](const char* name, double value, const double* uncertainty, double ofNothing) {
+    metrics.push_back({name, {value, *uncertainty}, ofNothing});
+  });
+  const double floorOfNothing = error.errorOfNothing.noiseFloor,
+               rmseOfNothing = error.errorOfNothing.rmse.value;
+  const double biasOfNothing =
+      std::sqrt(std::max(0.0, rmseOfNothing * rmseOfNothing - floorOfNothing * floorOfNothing));
+  metrics.push_back({"rms_bias", error.parts.bias, biasOfNothing});
+  metrics.push_back({"rms_noise", error.parts.noise, 0.0});
+  metrics.push_back({"flicker", error.flicker, std::numeric_limits<double>::quiet_NaN()});
+  for (NamedMetric& metric : metrics)
+    metric.measured.enoughRepeats = error.enoughSeeds() && (error.deterministic || error.everyMetricPerSeed ||
+                                                            metric.name == std::string("rmse"));
+  metrics.push_back({"noise_floor", {error.error.noiseFloor, 0.0}, error.errorOfNothing.noiseFloor});
+  metrics.push_back({"non_finite_picture", {static_cast<double>(error.error.nonFinitePicture), 0.0}, 0.0});
+  metrics.push_back({"non_finite_truth", {static_cast<double>(error.error.nonFiniteTruth), 0.0}, 0.0});
+  return metrics;
+}
+
+bool setMetric(ComponentError& error, const NamedMetric& metric) {
+  bool known = false;
+  visitMetrics(error, [&](const char* name, double& value, double* uncertainty, double& ofNothing) {
+    if (metric.name != name) return;
+    value = metric.measured.value;
+    *uncertainty = metric.measured.uncertainty;
+    ofNothing = metric.ofNothing;
+    known = true;
+  });
+  if (known) return true;
+  if (metric.name == "rmse_over_seeds") {
+    // Stores of schema 3 and before: mean and standard error over the seeds beside the RMSE of the first one,
+    // whose uncertainty is the truth's noise.
+    error.error.rmse = {metric.measured.value,
+                        std::hypot(error.error.rmse.uncertainty, metric.measured.uncertainty)};
+  } else if (metric.name == "rms_bias") {
+    error.parts.bias = metric.measured;
+  } else if (metric.name == "rms_noise") {
+    error.parts.noise = metric.measured;
+  } else if (metric.name == "flicker") {
+    error.flicker = metric.measured;
+  } else if (metric.name == "noise_floor") {
+    error.parts.truthNoise = metric.measured.value;
+    error.error.noiseFloor = metric.measured.value;
+    error.errorOfNothing.noiseFloor = metric.ofNothing;
+  } else if (metric.name == "non_finite_picture") {
+    error.error.nonFinitePicture = static_cast<std::uint64_t>(metric.measured.value);
+  } else if (metric.name == "non_finite_truth") {
+    error.error.nonFiniteTruth = static_cast<std::uint64_t>(metric.measured.value);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace lumivox

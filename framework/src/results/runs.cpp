@@ -1,0 +1,91 @@
+#include "lumivox/results/runs.h"
+
+#include <dlfcn.h>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <ctime>
+#include <fstream>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/base/hash.h"
+
+namespace lumivox {
+namespace {
+
+/// Larger over smaller, less 1; 0 where one of them is not above 0.
+double apart(const Measured& a, const Measured& b) {
+  if (!(a.value > 0.0) || !(b.value > 0.0)) return 0.0;
+  return std::max(a.value, b.value) / std::min(a.value, b.value) - 1.0;
+}
+
+}  // namespace
+
+std::string RunIdentity::key() const {
+  Hasher hasher;
+  hasher.add(sceneHash).add(pipelineHash).add(framework).add(std::uint64_t{techniques.size()});
+  for (const auto& [name, hash] : techniques) hasher.add(name).add(hash);
+  hasher.add(std::uint64_t{parameters.size()});
+  for (const auto& [name, value] : parameters) hasher.add(name).add(value);
+  hasher.add(camera).add(time).add(width).add(height).add(seed).add(seeds).add(repeats).add(subpixels);
+  if (flickerPairs > 0) hasher.add("flicker").add(flickerPairs);
+  for (const std::string& output : kept) hasher.add("kept").add(output);
+  hasher.add(truthSamples).add(device).add(driver).add(shaderInput).add(host);
+  return hasher.finish().text();
+}
+
+std::string frameworkHash() {
+  static const std::string hash = [] {
+    Hasher hasher;
+    // A function of each library tells where that library was loaded from.
+    for (const void* inside :
+         {reinterpret_cast<const void*>(&loadScene), reinterpret_cast<const void*>(&frameworkHash)}) {
+      Dl_info information{};
+      if (dladdr(inside, &information) == 0 || information.dli_fname == nullptr)
+        throw Error("the framework's own libraries cannot be found, so results cannot be told apart");
+      hasher.add(readFile(information.dli_fname, kLargestLibraryFile));
+    }
+    return hasher.finish().text();
+  }();
+  return hash;
+}
+
+TimeFloor timeFloorOf(const std::vector<RepeatedControl>& controls) {
+  TimeFloor floor;
+  floor.controls = static_cast<int>(controls.size());
+  for (const RepeatedControl& control : controls) {
+    floor.frame = std::max(floor.frame, apart(control.frameMs, control.frameMsAgain));
+    floor.nextFrame = std::max(floor.nextFrame, apart(control.nextFrameMs, control.nextFrameMsAgain));
+  }
+  return floor;
+}
+
+TimeFloor larger(const TimeFloor& a, const TimeFloor& b) {
+  return {std::max(a.frame, b.frame), std::max(a.nextFrame, b.nextFrame), a.controls + b.controls};
+}
+
+DeviceIdentity identityOf(const gpu::Device& device) {
+  return {device.info().renderer, device.info().version, device.programRoute(), hostText()};
+}
+
+std::string hostText() {
+  utsname system{};
+  uname(&system);
+  std::string processor;
+  std::ifstream information("/proc/cpuinfo");
+  for (std::string line; processor.empty() && std::getline(information, line);)
+    if (line.rfind("model name", 0) == 0 && line.find(": ") != std::string::npos)
+      processor = line.substr(line.find(": ") + 2);
+  return fmt::format("{} {} {}, {} x {}", system.sysname, system.release, system.machine,
+                     sysconf(_SC_NPROCESSORS_ONLN), processor.empty() ? "processor" : processor);
+}
+
+std::string dateText() {
+  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(std::time(nullptr)));
+}
+
+}  // namespace lumivox

@@ -1,0 +1,123 @@
+// Which process measures which point at present, and times that were measured twice.
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+#include "base/process.h"
+#include "results/database.h"
+#include "results/store_state.h"
+
+namespace lumivox {
+
+using results::Statement;
+using results::Transaction;
+
+namespace {
+
+RunClaim ownClaim() {
+  RunClaim claim;
+  claim.machine = machineIdentity();
+  claim.process = static_cast<int>(getpid());
+  claim.started = startOf(claim.process);
+  claim.command = commandOf(claim.process);
+  claim.expires = static_cast<std::int64_t>(std::time(nullptr)) + ResultsStore::kClaimSeconds;
+  return claim;
+}
+
+bool same(const RunClaim& a, const RunClaim& b) {
+  return a.machine == b.machine && a.process == b.process && a.started == b.started;
+}
+
+/// A process on this machine is looked for; of one elsewhere only the clock tells.
+bool stands(const RunClaim& claim) {
+  if (claim.expires <= static_cast<std::int64_t>(std::time(nullptr))) return false;
+  return claim.machine != machineIdentity() || startOf(claim.process) == claim.started;
+}
+
+std::optional<RunClaim> claimIn(const results::Database& database, const std::string& key) {
+  Statement row(database, "SELECT machine, process, started, command, expires FROM claims WHERE key = ?");
+  if (!row.bind(key).step()) return std::nullopt;
+  return RunClaim{row.text(0), static_cast<int>(row.integer(1)), static_cast<std::uint64_t>(row.integer(2)),
+                  row.text(3), row.integer(4)};
+}
+
+}  // namespace
+
+std::vector<bool> ResultsStore::claim(const std::vector<std::string>& keys) {
+  const RunClaim own = ownClaim();
+  std::vector<bool> claimed;
+  Transaction transaction(state_->database);
+  Statement insert(state_->database, "INSERT OR REPLACE INTO claims VALUES (?,?,?,?,?,?)");
+  for (const std::string& key : keys) {
+    const std::optional<RunClaim> there = claimIn(state_->database, key);
+    claimed.push_back(!there || same(*there, own) || !stands(*there));
+    if (claimed.back()) insert.run(key, own.machine, own.process, own.started, own.command, own.expires);
+  }
+  transaction.commit();
+  return claimed;
+}
+
+void ResultsStore::release(const std::vector<std::string>& keys) {
+  const RunClaim own = ownClaim();
+  Transaction transaction(state_->database);
+  Statement remove(state_->database,
+                   "DELETE FROM claims WHERE key = ? AND machine = ? AND process = ? AND started = ?");
+  for (const std::string& key : keys) remove.run(key, own.machine, own.process, own.started);
+  transaction.commit();
+}
+
+std::optional<RunClaim> ResultsStore::claimedByOther(const std::string& key) const {
+  if (state_->schema < 4) return std::nullopt;
+  const std::optional<RunClaim> there = claimIn(state_->database, key);
+  return there && !same(*there, ownClaim()) && stands(*there) ? there : std::nullopt;
+}
+
+void ResultsStore::addControl(const std::string& key, const TimingStatistics& frameMs,
+                              const TimingStatistics& nextFrameMs) {
+  Transaction transaction(state_->database);
+  Statement insert(state_->database,
+                   "INSERT OR REPLACE INTO controls SELECT id, ?, ?, ?, ?, ?, ? FROM runs WHERE key = ?");
+  const std::string created = dateText();
+  const auto add = [&](const char* what, const TimingStatistics& time) {
+    if (time.repeats > 0)
+      insert.run(created, what, time.median, time.lowerQuartile, time.upperQuartile, time.repeats, key);
+  };
+  add("frame", frameMs);
+  add("next_frame", nextFrameMs);
+  transaction.commit();
+}
+
+std::vector<RepeatedControl> ResultsStore::controls(const RunIdentity& where) const {
+  std::vector<RepeatedControl> controls;
+  if (state_->schema < 4) return controls;
+  Statement row(
+      state_->database,
+      "SELECT c.run, c.created, c.what, t.median_ms, t.lower_quartile_ms, t.upper_quartile_ms, t.repeats, "
+      "c.median_ms, c.lower_quartile_ms, c.upper_quartile_ms, c.repeats FROM controls c JOIN runs r ON r.id = "
+      "c.run JOIN timings t ON t.run = c.run AND t.what = c.what AND t.pass = '' WHERE r.device = ? AND "
+      "r.driver = ? AND r.shader_input = ? AND r.host = ? ORDER BY c.created DESC, c.run, c.what");
+  std::int64_t run = -1;
+  for (row.bind(where.device, where.driver, where.shaderInput, where.host); row.step();) {
+    if (controls.empty() || run != row.integer(0) || controls.back().created != row.text(1)) {
+      if (controls.size() == static_cast<std::size_t>(kControls)) break;
+      run = row.integer(0);
+      controls.push_back({row.text(1), {}, {}, {}, {}});
+    }
+    const auto timeAt = [&](int column) {
+      TimingStatistics time;
+      time.median = row.number(column);
+      time.lowerQuartile = row.number(column + 1);
+      time.upperQuartile = row.number(column + 2);
+      time.repeats = static_cast<int>(row.integer(column + 3));
+      return medianOf(time);
+    };
+    const bool frame = row.text(2) == "frame";
+    (frame ? controls.back().frameMs : controls.back().nextFrameMs) = timeAt(3);
+    (frame ? controls.back().frameMsAgain : controls.back().nextFrameMsAgain) = timeAt(7);
+  }
+  return controls;
+}
+
+}  // namespace lumivox

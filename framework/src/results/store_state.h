@@ -1,0 +1,42 @@
+// The inside of a results store, shared by the files that read and write its tables.
+#pragma once
+
+#include <string>
+
+#include "lumivox/results/store.h"
+#include "results/database.h"
+
+namespace lumivox::results {
+
+/// Whether a word of a filter stands for a file: its whole path as given, or its stem.
+bool namesFile(const std::string& wanted, const std::string& file);
+
+}  // namespace lumivox::results
+
+namespace lumivox {
+
+struct ResultsStore::State {
+  results::Database database;
+  Mode mode;
+  std::int64_t schema = 0;  ///< of the file; an older one has fewer tables
+
+  State(const std::filesystem::path& file, Mode openMode)
+      : database(file, openMode == Mode::write), mode(openMode) {}
+  void requireSchema();
+  std::int64_t insertRun(const StoredRun& run);
+  void insertTimes(std::int64_t id, const ReportPoint& point);
+  void insertWork(std::int64_t id, const ReportPoint& point);
+  void insertErrors(std::int64_t id, const ReportPoint& point);
+  void insertNames(std::int64_t id, const StoredRun& run);
+  bool add(const StoredRun& run, const std::vector<StoredPicture>& pictures = {});
+  void addCells(const std::vector<StressCell>& cells);
+  void addCeilings(const std::vector<DeviceCeiling>& ceilings);
+  StoredRun runAt(const results::Statement& row) const;
+  void readTimes(StoredRun& run) const;
+  void readWork(StoredRun& run) const;
+  void readErrors(StoredRun& run) const;
+  void readAll(StoredRun& run) const;  ///< all but what runAt() and readNames() give
+  void readNames(StoredRun& run) const;
+};
+
+}  // namespace lumivox

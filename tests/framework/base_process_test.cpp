@@ -1,0 +1,121 @@
+// Processes that wait for each other while times are taken.
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+
+#include "base/process.h"
+#include "support/support.h"
+
+using namespace lumivox;
+using namespace lumivox;
+using namespace lumivox::test;
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+/// A process that holds the lock for a time, from its construction on.
+class Holder {
+ public:
+  Holder(MachineLock::For purpose, std::chrono::milliseconds time) {
+    int ready[2];
+    REQUIRE(pipe(ready) == 0);
+    process_ = fork();
+    REQUIRE(process_ >= 0);
+    if (process_ == 0) {
+      const MachineLock lock(purpose);
+      if (write(ready[1], "r", 1) != 1) _exit(1);
+      usleep(static_cast<useconds_t>(std::chrono::microseconds(time).count()));
+      _exit(0);
+    }
+    char answer = 0;
+    REQUIRE(read(ready[0], &answer, 1) == 1);
+    close(ready[0]);
+    close(ready[1]);
+  }
+  ~Holder() { end(); }
+  void end() {
+    if (process_ <= 0) return;
+    kill(process_, SIGKILL);
+    waitpid(process_, nullptr, 0);
+    process_ = -1;
+  }
+  int process() const { return process_; }
+
+ private:
+  pid_t process_ = -1;
+};
+
+/// How long it takes to get the lock.
+std::chrono::milliseconds waitFor(MachineLock::For purpose) {
+  const auto start = Clock::now();
+  const MachineLock lock(purpose);
+  return std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - start);
+}
+
+/// A cache of its own, so that nobody else on this machine is waited for.
+struct OwnCache {
+  TemporaryDirectory directory;
+  OwnCache() { setenv("LUMIVOX_CACHE", directory.path().c_str(), 1); }
+};
+
+constexpr auto kHeld = 700ms, kAtOnce = 500ms;
+
+}  // namespace
+
+TEST_CASE("whoever takes times is alone, and those who only work go on side by side") {
+  const OwnCache cache;
+  {
+    const Holder works(MachineLock::For::work, 60s);
+    CHECK(waitFor(MachineLock::For::work) < kAtOnce);
+  }
+  {
+    const Holder works(MachineLock::For::work, kHeld);
+    CHECK(waitFor(MachineLock::For::timing) > kHeld / 2);
+  }
+  for (const auto purpose : {MachineLock::For::work, MachineLock::For::timing}) {
+    const Holder times(MachineLock::For::timing, kHeld);
+    CHECK(waitFor(purpose) > kHeld / 2);
+  }
+  CHECK(waitFor(MachineLock::For::timing) < kAtOnce);
+}
+
+TEST_CASE("a lock ends with its process, however that ends, and names it until then") {
+  const OwnCache cache;
+  Holder times(MachineLock::For::timing, 60s);
+  if (!MachineLock::holders().empty()) {  // a system may hide it
+    CHECK(MachineLock::holders() == std::vector<int>{times.process()});
+    CHECK(commandOf(times.process()).find("base_process_test") != std::string::npos);
+  }
+  times.end();
+  CHECK(waitFor(MachineLock::For::timing) < kAtOnce);
+  CHECK(MachineLock::holders().empty());
+}
+
+TEST_CASE("where no file can be locked nobody is waited for") {
+  const OwnCache cache;
+  const auto file = cache.directory.write("file", "no folder");
+  setenv("LUMIVOX_CACHE", (file / "cache").c_str(), 1);
+  CHECK(waitFor(MachineLock::For::timing) < kAtOnce);
+}
+
+TEST_CASE("a process is told by its number and its start, and one that has ended has none") {
+  const std::uint64_t own = startOf(static_cast<int>(getpid()));
+  CHECK(own > 0);
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0)
+    for (;;) pause();
+  CHECK(startOf(static_cast<int>(child)) >= own);
+  kill(child, SIGKILL);
+  // Ended, but not yet waited for.
+  siginfo_t information{};
+  REQUIRE(waitid(P_PID, static_cast<id_t>(child), &information, WEXITED | WNOWAIT) == 0);
+  CHECK(startOf(static_cast<int>(child)) == 0);
+  waitpid(child, nullptr, 0);
+  CHECK(startOf(static_cast<int>(child)) == 0);
+  CHECK_FALSE(machineIdentity().empty());
+}

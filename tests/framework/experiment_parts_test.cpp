@@ -1,0 +1,183 @@
+// The report's decisions that need no device: truths, whole pictures, sizes, uncertainties, places.
+#include <cmath>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/experiment/report.h"
+#include "lumivox/pipeline/pass.h"
+#include "lumivox/results/text.h"
+#include "support/support.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+Picture constant(float value) {
+  return Picture(2, 2, 3, value);
+}
+
+LayeredPicture truth() {
+  LayeredPicture picture;
+  float value = 1.0f;
+  for (const char* name :
+       {"direct", "one_bounce_diffuse", "one_bounce_glossy", "indirect_diffuse", "indirect_glossy", "full"}) {
+    picture.layers[name] = constant(value);
+    picture.layers[std::string(name) + ".variance"] = constant(0.01f * value);
+    value *= 2.0f;
+  }
+  return picture;
+}
+
+/// A pass whose one output needs a glossy material, and one that needs nothing.
+class Shine : public Pass {
+ public:
+  Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::glossyMaterial};
+  void run(PassContext&) override {}
+};
+class Plain : public Pass {
+ public:
+  Out<Image> radiance{this, "radiance", Contributes::direct};
+  void run(PassContext&) override {}
+};
+/// Its picture comes from a required input.
+class Blur : public Pass {
+ public:
+  In<Image> source{this, "source"};
+  Out<Image> blurred{this, "blurred", Contributes::indirectDiffuse};
+  void run(PassContext&) override {}
+};
+
+class Toys : public TechniqueSource {
+ public:
+  Toys() {
+    technique_.name = "toys";
+    technique_.passes = {{"shine", "", [] { return std::make_unique<Shine>(); }},
+                         {"plain", "", [] { return std::make_unique<Plain>(); }},
+                         {"blur", "", [] { return std::make_unique<Blur>(); }}};
+  }
+  const Technique* technique(const std::string& name) override {
+    return name == "toys" ? &technique_ : nullptr;
+  }
+  std::vector<std::string> available() const override { return {"toys"}; }
+  const std::vector<SkippedTechnique>& skipped() const override { return skipped_; }
+
+ private:
+  Technique technique_;
+  std::vector<SkippedTechnique> skipped_;
+};
+
+std::string why(const std::string& text, const SceneTraits& traits) {
+  Toys toys;
+  const Pipeline pipeline = Pipeline::parse(text, "toys.pipeline");
+  return whyUnsuited(pipeline, toys, traits);
+}
+
+}  // namespace
+
+TEST_CASE("a component is judged by its own bounce for bias and by full transport for what it misses") {
+  CHECK(truthLayers(Contributes::direct) == std::pair<std::string, std::string>("direct", "direct"));
+  CHECK(truthLayers(Contributes::indirectDiffuse) ==
+        std::pair<std::string, std::string>("one_bounce_diffuse", "indirect_diffuse"));
+  CHECK(truthLayers(Contributes::final) == std::pair<std::string, std::string>("one_bounce", "full"));
+  CHECK(truthLayers(Contributes::nothing).first.empty());
+}
+
+TEST_CASE("the one-bounce picture is direct light and both first bounces, and their variances add") {
+  const auto layer = truthLayer(truth(), "one_bounce");
+  REQUIRE(layer);
+  CHECK(layer->mean.at(1, 1, 2) == 1.0f + 2.0f + 4.0f);
+  CHECK(layer->variance.at(0, 1, 0) == Approx(0.07));
+  CHECK(truthLayer(truth(), "full")->mean.at(0, 0, 0) == 32.0f);
+  CHECK_FALSE(truthLayer(truth(), "scattered"));
+  LayeredPicture lacking = truth();
+  lacking.layers.erase("one_bounce_glossy");
+  CHECK_FALSE(truthLayer(lacking, "one_bounce"));
+}
+
+TEST_CASE("the whole picture is the output called final, else the sum of what is radiance") {
+  FrameResult frame;
+  frame.outputs["direct"] = constant(1.0f);
+  frame.outputs["bounce"] = constant(0.5f);
+  frame.outputs["occlusion"] = Picture(2, 2, 1, 0.25f);
+  frame.components = {{"direct", Contributes::direct},
+                      {"bounce", Contributes::indirectDiffuse},
+                      {"occlusion", Contributes::ambientOcclusion}};
+  CHECK(compositePicture(frame).at(0, 1, 1) == 1.5f);
+  frame.outputs["composed"] = constant(7.0f);
+  frame.components["composed"] = Contributes::final;
+  CHECK(compositePicture(frame).at(0, 1, 1) == 7.0f);
+  CHECK(compositePicture(FrameResult{}).empty());
+}
+
+TEST_CASE("an error is told as its share of leaving the light out, where there is light") {
+  ComponentError error;
+  error.error.rmse = {0.5, 0.04};
+  error.errorOfNothing.rmse = {2.0, 0.0};
+  CHECK(error.ratioToNothing() == Approx(0.25));
+  error.errorOfNothing.rmse = {0.0, 0.0};
+  CHECK(std::isnan(error.ratioToNothing()));
+}
+
+TEST_CASE("a picture is reduced to its limit with its aspect kept, and never enlarged") {
+  CHECK(reducedResolution(256, 256, 128) == std::pair(128, 128));
+  CHECK(reducedResolution(1920, 1080, 160) == std::pair(160, 90));
+  CHECK(reducedResolution(100, 50, 160) == std::pair(100, 50));
+  CHECK(reducedResolution(10000, 1, 100) == std::pair(100, 1));
+}
+
+TEST_CASE(
+    "numbers are written with three digits, times of 100 ms and more whole, and no share is minus zero") {
+  CHECK(formatMilliseconds(1548.3) == "1548");
+  CHECK(formatMilliseconds(4.5612) == "4.56");
+  CHECK(formatMilliseconds(0.01234) == "0.0123");
+  CHECK(formatPercent(-0.001) == "0 %");
+  CHECK(formatPercent(0.416) == "42 %");
+}
+
+TEST_CASE("the truth takes fewer samples per pixel the larger the picture, within bounds") {
+  CHECK(truthSamplesFor(64, 64) > truthSamplesFor(128, 128));
+  CHECK(truthSamplesFor(1, 1) <= 4096);
+  CHECK(truthSamplesFor(16384, 16384) >= 64);
+}
+
+TEST_CASE("a pipeline suits unless all that it adds to direct light needs what the scene lacks") {
+  SceneTraits diffuse;
+  diffuse.triangles = true;
+  SceneTraits shiny = diffuse;
+  shiny.glossy = true;
+  const std::string glossyOnly =
+      "pipeline \"A\" {\n  pass d toys.plain { }\n  pass s toys.shine { }\n  output direct d.radiance\n  "
+      "output glossy s.glossy\n}\n";
+  CHECK(why(glossyOnly, shiny).empty());
+  CHECK(why(glossyOnly, diffuse).find("glossy") != std::string::npos);
+  const std::string directOnly = "pipeline \"B\" {\n  pass d toys.plain { }\n  output direct d.radiance\n}\n";
+  CHECK(why(directOnly, diffuse).empty());
+  const std::string throughInput =
+      "pipeline \"C\" {\n  pass s toys.shine { }\n  pass b toys.blur { source s.glossy }\n  output "
+      "indirect_diffuse b.blurred\n}\n";
+  CHECK(why(throughInput, shiny).empty());
+  CHECK(why(throughInput, diffuse).find("glossy") != std::string::npos);
+}
+
+TEST_CASE("a place that cannot be written is told, and the file there is not touched") {
+  const TemporaryDirectory directory;
+  const auto file = directory.write("old.html", "old");
+  CHECK_NOTHROW(requireWritable(file));
+  CHECK(readFile(file) == "old");
+  CHECK_NOTHROW(requireWritable(directory.path() / "new/folder/page.html"));
+  CHECK(std::filesystem::is_directory(directory.path() / "new/folder"));
+  CHECK_FALSE(std::filesystem::exists(directory.path() / "new/folder/page.html"));
+  CHECK_THROWS_AS(requireWritable(directory.path()), Error);
+  CHECK_THROWS_AS(requireWritable(file / "page.html"), Error);
+  CHECK_THROWS_AS(requireWritable(""), Error);
+}
+
+TEST_CASE("the committed scenes are found from any folder inside the project") {
+  const auto found = committedScenes(sourceDirectory() / "scenes" / "pipelines");
+  REQUIRE(found);
+  CHECK(std::filesystem::equivalent(*found, sourceDirectory() / "scenes"));
+  const auto pipelines = pipelinesIn(*found / "pipelines");
+  CHECK(pipelines.size() >= 2);
+  CHECK(std::is_sorted(pipelines.begin(), pipelines.end()));
+}
