@@ -1,6 +1,7 @@
 // lumivox: the command line of the laboratory.
 #include "command.h"
 #include "common/manual.h"
+#include "lumivox/plugin/technique.h"
 
 namespace {
 
@@ -8,6 +9,7 @@ using namespace lumivox;
 using namespace lumivox::command;
 
 int run(int count, char** arguments) {
+  requireLibraryOf(techniqueVersionHere());
   CLI::App app{
       "A laboratory for real-time global illumination: a scene and a pipeline in; pictures, their error and "
       "their time out."};

@@ -76,7 +76,7 @@ class Comparison {
     forEachOutput([&](std::size_t pass, const OutBase&, OutputIndex index) -> std::string {
       const OutBase &less = lean.output(index), &everything = whole.output(index);
       const OutputPlan& planned = plan_.output(index);
-      if (!everything.hasValue() || everything.portKind() != Image::kPortKind) return {};
+      if (!everything.hasValue() || !everything.kind().isSameType(portKind<Image>())) return {};
       // What nobody would read may be anything where its inputs are left out.
       if (!planned.wanted && (planned.lacksNeed || (planned.impossible && isShown(index)))) {
         const std::string difference = differenceOfPictures(everything, nullptr);
