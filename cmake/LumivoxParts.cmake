@@ -55,19 +55,24 @@ function(lumivox_headers_hash)
   add_custom_target(lumivox_headers_hash DEPENDS ${stamp})
 endfunction()
 
-# lumivox_library(NAME PARTS parts... [LIBRARIES libraries...]): one shared library made of parts.
+# lumivox_library(NAME PARTS parts... [LIBRARIES libraries...] [INSTALLED packages...]): one shared library made of parts. Who builds against the
+# installed one needs only the packages that the public headers include. Lumivox::NAME is its name inside the tree and outside.
 function(lumivox_library name)
-  cmake_parse_arguments(library "" "" "PARTS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(library "" "" "PARTS;LIBRARIES;INSTALLED" ${ARGN})
   set(objects)
   foreach(part IN LISTS library_PARTS)
     list(APPEND objects $<TARGET_OBJECTS:lumivox_${part}>)
   endforeach()
   add_library(${name} SHARED ${objects})
+  add_library(Lumivox::${name} ALIAS ${name})
   set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX)
   foreach(part IN LISTS library_PARTS)
-    target_link_libraries(${name} PUBLIC lumivox_${part}_interface)
+    target_link_libraries(${name} PUBLIC $<BUILD_INTERFACE:lumivox_${part}_interface>)
   endforeach()
   target_link_libraries(${name} PUBLIC ${library_LIBRARIES})
+  foreach(package IN LISTS library_INSTALLED)
+    target_link_libraries(${name} INTERFACE $<INSTALL_INTERFACE:${package}>)
+  endforeach()
 endfunction()
 
 # lumivox_embed(PART): the files of framework/src/PART/assets become constants of generated/PART_assets.h, so that an editor

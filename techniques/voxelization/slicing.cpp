@@ -1,4 +1,4 @@
-// Fang et al. 2000, "Hardware accelerated voxelization": one pass of the whole scene per slice of the grid,
+// Fang & Chen 2000, "Hardware accelerated voxelization": one pass of the whole scene per slice of the grid,
 // between two clip planes.
 #include <map>
 
@@ -63,7 +63,7 @@ class SlicingPass : public Voxeliser {
 }  // namespace
 
 void addSlicing(TechniqueRegistry& registry) {
-  registry.add<SlicingPass>("slicing", "One clipped pass of the scene per slice (Fang et al. 2000)");
+  registry.add<SlicingPass>("slicing", "One clipped pass of the scene per slice (Fang & Chen 2000)");
 }
 
 }  // namespace lumivox::voxelization

@@ -116,7 +116,7 @@ TEST_CASE("nothing is black, but for ambient occlusion, where it is that nothing
   SceneBuilder builder;
   builder.quad({-9, 0, 9}, {18, 0, 0}, {0, 0, -18}, builder.lambert(0.5f, 0.25f));
   builder.look({0, 1, 0}, {0, 0, 0}, {0, 0, -1}, 0.5, 8, 8);
-  report::Truth truth(builder.scene, quietly(4, 2));
+  experiment::Truth truth(builder.scene, quietly(4, 2));
   CHECK(truth.errorOfNothing("ambient_occlusion").rmse.value == 0.0);
   CHECK(truth.errorOfNothing("direct").rmse.value == Approx(0.25));
 }

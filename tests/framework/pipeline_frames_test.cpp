@@ -55,6 +55,15 @@ class Feedback : public Toy {
   }
 };
 
+/// Light of a medium that changes with time: none where there is no medium.
+class Flicker : public Toy {
+ public:
+  using Toy::Toy;
+  Out<Image> scattered{this, "scattered", Contributes::scattered, Needs::medium};
+  Reads readsFrom() const override { return Reads::time; }
+  void run(PassContext& frame) override { scattered = paint(frame, 0.0f); }
+};
+
 /// A sum that leads back to its own first term.
 const char* const kFeedback =
     "pass light toy.paint { value 1 }\n"
@@ -82,6 +91,7 @@ struct FramesFixture : Fixture {
   FramesFixture() {
     techniques.add<Progressive>("toy", "progressive");
     techniques.add<Feedback>("toy", "feedback");
+    techniques.add<Flicker>("toy", "flicker");
   }
 };
 
@@ -172,7 +182,9 @@ TEST_CASE("leaving out and keeping everything give the same bits in every frame 
       std::string(kProgressive) +
       "\npass fog toy.fog { }\npass clock toy.feedback { light view  previous fin.sum }\n"
       "pass fin toy.add { first a.mean  second fog }\noutput c clock.radiance\n"
-      "pass unread toy.progressive { source fin.sum }";
+      "pass unread toy.progressive { source fin.sum }\n"
+      "pass flicker toy.flicker { }\npass lit toy.add { first still  second flicker }\n"
+      "pass d toy.progressive { source lit.sum }\noutput d d.mean";
   PipelineExecutor lean = f.executor(text, accumulating()), whole = f.executor(text, accumulating(true));
   SceneSnapshot snapshot = snapshotOf(f.scene, 0.0);
   for (int n = 0; n < 12; ++n) {
@@ -186,8 +198,10 @@ TEST_CASE("leaving out and keeping everything give the same bits in every frame 
     if (n == 10) snapshot.camera.width = 6;
     CAPTURE(n);
     const FrameResult a = lean.render(snapshot, n / 2), b = whole.render(snapshot, n / 2);
-    REQUIRE(a.outputs.size() == 3);
+    REQUIRE(a.outputs.size() == 4);
     CHECK(valuesOf(a) == valuesOf(b));
+    // The medium is not there, so that time alone does not begin the mean of d anew.
+    if (n == 4) CHECK(first(a, "d") == 3.0f + 0.5f * 4.0f);
   }
 }
 
@@ -680,6 +694,32 @@ TEST_CASE("an input that the parameters make useless is left out like one that t
       "pass one toy.paint { value 2 }\npass fog toy.fog { }\npass mix toy.blend { a one  b fog  share 0 }\n"
       "output o mix.sum");
   CHECK(first(foggy.render(0.0), "o") == 2.0f);
+}
+
+namespace {
+
+/// Needs a medium unless it is told not to.
+class Gated : public Paint {
+ public:
+  using Paint::Paint;
+  Param<bool> open{this, "open", true, "makes its picture without a medium, too"};
+  Needs needs() const override { return open ? Needs::nothing : Needs::medium; }
+};
+
+}  // namespace
+
+TEST_CASE("a reader runs again when a parameter of its source has that left out") {
+  FramesFixture f;
+  if (!f) return;
+  f.techniques.add<Gated>("toy", "gated");
+  PipelineExecutor executor = f.executor(
+      "param open on\npass one toy.paint { value 2 }\npass gate toy.gated { value 4  open $open }\n"
+      "pass sum toy.add { first one  second gate }\noutput o sum.sum");
+  CHECK(first(executor.render(0.0), "o") == 6.0f);
+  executor.setParameters({{"open", {0.0, "off", {}}}});
+  CHECK(first(executor.render(0.0), "o") == 2.0f);
+  executor.setParameters({});
+  CHECK(first(executor.render(0.0), "o") == 6.0f);
 }
 
 // ---- ambient occlusion, the host -----------------------------------------------------------------------

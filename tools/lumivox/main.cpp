@@ -1,5 +1,6 @@
 // lumivox: the command line of the laboratory.
 #include "command.h"
+#include "common/manual.h"
 #include "lumivox/plugin/technique.h"
 
 namespace {
@@ -37,6 +38,8 @@ int run(int count, char** arguments) {
   addExplainCommand(commands);
   addDeviceCommand(commands);
   addShadersCommand(commands);
+  addNewCommand(commands);
+  addDescriptionOptions(app, LUMIVOX_VERSION);
 
   if (const auto done = parseOptions(app, global, count, arguments)) return *done;
   return commands.chosen();

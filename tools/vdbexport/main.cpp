@@ -1,5 +1,6 @@
 // vdbexport: voxel grids of a pipeline as OpenVDB files, and what such files hold.
 #include "common/command_line.h"
+#include "common/manual.h"
 #include "lumivox/plugin/technique.h"
 #include "vdbexport/commands.h"
 
@@ -22,6 +23,7 @@ int run(int count, char** arguments) {
   global.addTo(app);
   vdb::Options options;
   options.addTo(app);
+  addDescriptionOptions(app, LUMIVOX_VERSION);
   if (const auto done = parseOptions(app, global, count, arguments)) return *done;
   if (options.list) return vdb::list(options, global);
   if (options.diff) return vdb::diff(options, global);

@@ -114,6 +114,7 @@ const PrunePlan& PipelineExecutor::State::planned() {
     if (!plan->passes[pass].kept) context.memory().forgetKept(graph.passes[pass].name);
     if (earlierPlan && plannedOtherwise(graph.passes[pass], pass, *earlierPlan, *plan)) mustRun[pass] = true;
   }
+  if (options.accumulate) countedSources = sourcesThatCount();
   if (!earlierPlan) complete = false;
   earlierPlan.reset();
   return *plan;
