@@ -5,6 +5,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/pipeline/pass.h"
 #include "support/techniques.h"
 #include "support/voxel_fragments.h"
 
