@@ -397,8 +397,12 @@ TEST_CASE("merging takes over what is not there, once") {
   ResultsStore mine(directory.path() / "mine.sqlite"), theirs(directory.path() / "theirs.sqlite");
   for (int number : {1, 2}) mine.add(runNumber(number));
   for (int number : {2, 3, 4}) theirs.add(runNumber(number));
+  theirs.addControl(runNumber(3).identity.key(), {12.0, 11.5, 12.5, 11.0, 13.0, 5}, {});
   CHECK(mine.merge(theirs).runs == 2);
   CHECK(mine.merge(theirs).runs == 0);
   CHECK(mine.runs().size() == 4);
+  const std::vector<RepeatedControl> controls = mine.controls(runNumber(3).identity);
+  REQUIRE(controls.size() == 1);
+  CHECK(controls[0].frameMsAgain.value == 12.0);
   CHECK(theirs.runs().size() == 3);
 }

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "lumivox/base/error.h"
+#include "lumivox/base/log.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/results/text.h"
 
@@ -42,7 +43,17 @@ ReportOptions MeasureOptions::asked(const GlobalOptions& global) const {
   asked.openSweeps = !noSweep;
   asked.commandLine = global.commandLine;
   asked.repeatArguments = repeatArguments(global);
+  asked.progress = [](std::size_t done, std::size_t total, double secondsLeft) {
+    logInformation("{} of {} points{}", done, total,
+                   done < total ? ", about " + durationText(secondsLeft) + " left" : std::string());
+  };
   return asked;
+}
+
+std::string durationText(double seconds) {
+  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  return fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
 std::vector<std::string> repeatArguments(const GlobalOptions& global) {

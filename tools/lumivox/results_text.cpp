@@ -84,12 +84,6 @@ Json identityJson(const RunIdentity& identity) {
 
 }  // namespace
 
-std::string durationText(double seconds) {
-  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
-  return fmt::format("{:.1f} h", seconds / 3600.0);
-}
-
 Json jsonNumber(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }

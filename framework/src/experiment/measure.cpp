@@ -11,7 +11,6 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "lumivox/base/low_discrepancy.h"
-#include "lumivox/roofline/ceilings.h"
 #include "pipeline/changes.h"
 
 namespace lumivox::experiment {
@@ -269,18 +268,15 @@ void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, Poi
   }
 }
 
-void countWork(const TimingContext& context, const Pipeline& pipeline,
-               const std::vector<DeviceCeiling>& ceilings, ReportPoint& point, const KeptOutputs& kept) {
+void countWork(const TimingContext& context, const Pipeline& pipeline, ReportPoint& point,
+               const KeptOutputs& kept) {
   RenderOptions options = renderOptions(context, point);
   options.countWork = true;
   try {
     PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
     for (const auto& [pass, port] : kept) executor.keepOutput(pass, port);
     FrameResult frame = executor.render(context.options.time, 0, PipelineExecutor::Pictures::no);
-    for (PassRecord& pass : frame.passes) {
-      point.passBounds[pass.name] = lowerBounds(pass.work, ceilings);
-      point.passWork[pass.name] = std::move(pass.work);
-    }
+    for (PassRecord& pass : frame.passes) point.passWork[pass.name] = std::move(pass.work);
   } catch (const AbsentError& error) {
     point.whyNotCounted = error.what();
   }
@@ -309,6 +305,7 @@ TimedPoint::TimedPoint(const TimingContext& context, const Pipeline& pipeline, R
   for (const auto& [pass, port] : kept) state_->executor.keepOutput(pass, port);
   const FrameResult frame = state_->executor.render(state_->time, 0, PipelineExecutor::Pictures::no);
   point.peakBytes = frame.peakBytes - state_->bytesOfOthers;
+  point.passOrder.clear();  // of an attempt that failed
   for (const PassRecord& pass : frame.passes) {
     point.passOrder.push_back(pass.name);
     point.passBytes[pass.name] = pass.bytes;
@@ -352,14 +349,6 @@ void TimedPoint::finish() {
   s.point.frameworkShare = s.shares.empty() ? 0.0 : statisticsOf(s.shares).median;
   for (const auto& [name, values] : s.deviceMs) s.point.passDeviceMs[name] = statisticsOf(values);
   for (const auto& [name, values] : s.hostMs) s.point.passHostMs[name] = statisticsOf(values);
-}
-
-void measureTimes(const TimingContext& context, const Pipeline& pipeline, PointRecord& record) {
-  TimedPoint timed(context, pipeline, record.point);
-  const int repeats = std::max(1, context.options.repeats);
-  for (int repeat = 0; repeat < repeats; ++repeat) timed.timeFrame();
-  for (int repeat = 0; repeat < repeats; ++repeat) timed.timeNextFrame();
-  timed.finish();
 }
 
 }  // namespace lumivox::experiment

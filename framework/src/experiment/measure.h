@@ -72,10 +72,9 @@ bool flickers(const Scene& scene, const ReportOptions& options);
 void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record);
 /// Outputs, pass and port, that stay alive although no picture needs them.
 using KeptOutputs = std::vector<std::pair<std::string, std::string>>;
-/// Fills what the passes do, counted in a frame of its own, and what that takes at least: nothing without
-/// ceilings.
-void countWork(const TimingContext& context, const Pipeline& pipeline,
-               const std::vector<DeviceCeiling>& ceilings, ReportPoint& point, const KeptOutputs& kept = {});
+/// Fills what the passes do, counted in a frame of its own.
+void countWork(const TimingContext& context, const Pipeline& pipeline, ReportPoint& point,
+               const KeptOutputs& kept = {});
 
 /// One point that is timed frame by frame, so that the frames of several points can take turns: a machine
 /// that drifts then biases none of them. No pictures are taken.
@@ -95,9 +94,6 @@ class TimedPoint {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-/// Times a point alone.
-void measureTimes(const TimingContext& context, const Pipeline& pipeline, PointRecord& record);
 
 /// The truth layers that were used, for the page.
 std::vector<TruthRecord> truthRecords(Truth& truth, const std::set<std::string>& used);

@@ -138,10 +138,10 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
     summary.measured += measured;
     summary.held += byOthers;
     finished += measured + byOthers;
-    if (!options.progress) return;
+    if (!measure.progress) return;
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const auto left = static_cast<double>(total - finished);
-    options.progress(finished, total, seconds / static_cast<double>(finished) * left);
+    measure.progress(finished, total, seconds / static_cast<double>(finished) * left);
   };
   ScenePlan* first = nullptr;
   for (ScenePlan& scene : plan.scenes()) {

@@ -245,6 +245,10 @@ Json toJson(const SceneRecord& scene) {
                       {"largest", numberJson(truth.largest)},
                       {"display_exposure", numberJson(truth.exposure)}});
   json["truth"]["layers"] = std::move(layers);
+  json["left_out_points"] = Json::array();
+  for (const LeftOutPoint& point : scene.leftOutPoints)
+    json["left_out_points"].push_back(
+        {{"pipeline", point.pipeline}, {"sweep", point.sweep}, {"parameters", toJson(point.parameters)}});
   json["unsuited"] = Json::array();
   for (const auto& [pipeline, why] : scene.unsuited)
     json["unsuited"].push_back({{"pipeline", pipeline}, {"why", why}});

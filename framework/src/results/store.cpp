@@ -156,6 +156,7 @@ void ResultsStore::State::insertNames(std::int64_t id, const StoredRun& run) {
   provenance.run(id, "framework", "lumivox", run.identity.framework);
   if (run.identity.flickerPairs > 0)
     provenance.run(id, "flicker", fmt::format("{} pairs", run.identity.flickerPairs), "");
+  if (!run.point.whyNotCounted.empty()) provenance.run(id, "not_counted", run.point.whyNotCounted, "");
   for (const std::string& output : run.identity.kept) provenance.run(id, "kept", output, "");
   for (const auto& [name, hash] : run.identity.techniques) provenance.run(id, "technique", name, hash);
   Statement health(database, "INSERT INTO health VALUES (?,?,?)");
@@ -275,6 +276,7 @@ void ResultsStore::State::readNames(StoredRun& run) const {
   for (provenance.bind(run.id); provenance.step();) {
     const std::string kind = provenance.text(0), hash = provenance.text(2);
     if (kind == "flicker") run.identity.flickerPairs = std::atoi(provenance.text(1).c_str());
+    if (kind == "not_counted") run.point.whyNotCounted = provenance.text(1);
     if (kind == "kept") run.identity.kept.push_back(provenance.text(1));
     if (kind == "scene") run.identity.sceneHash = hash;
     if (kind == "pipeline") run.identity.pipelineHash = hash;
@@ -415,6 +417,7 @@ MergeCount ResultsStore::merge(const ResultsStore& other) {
       newer.push_back(ceiling);
   state_->addCeilings(newer);
   count.ceilings = newer.size();
+  state_->addControls(*other.state_);
   transaction.commit();
   return count;
 }

@@ -30,6 +30,11 @@ struct ReportOptions {
   int repeats = 5, seeds = kLeastRepeats;
   /// Pairs of frames 1/24 s apart whose flicker is measured where the scene moves; 0: none.
   int flickerPairs = 4;
+  /// s, for measuring after the references; 0: no limit. The default points are measured in any case, the
+  /// points of sweeps in turns as long as there is time.
+  double budgetSeconds = 0.0;
+  /// Told after points were measured: how many of how many, and about how many seconds the rest will take.
+  std::function<void(std::size_t done, std::size_t total, double secondsLeft)> progress;
   bool openSweeps = true;                         ///< false: only the default point
   int voxelResolution = 0;                        ///< of a section on the committed voxelisers; 0: none
   std::filesystem::path store;                    ///< results store that the points are added to; empty: none
@@ -43,7 +48,8 @@ struct ReportSummary {
   std::vector<ReportPoint> points;
   std::size_t takenUp = 0;  ///< of them, those that an interrupted run had measured already
   std::vector<PruningRecord> pruning;
-  std::vector<std::string> unsuited;  ///< "scene, pipeline: why" for those left out by themselves
+  std::vector<std::string> unsuited;       ///< "scene, pipeline: why" for those left out by themselves
+  std::vector<std::string> leftOutPoints;  ///< "scene, pipeline: cones=6" for which there was no time
 };
 
 /// Measures, and gives the whole record to `write`, once. Error (before any work) when a text is wrong.

@@ -310,11 +310,14 @@
       data.command && [h("p", null, "This page was made by"), h("pre", null, data.command)]];
   }
 
+  const left = data.scenes.reduce((sum, scene) => sum + scene.left_out_points.length, 0);
+  const outOfTime = left === 0 ? "" : ` Measured within a budget of ${data.budget_s} s, default points first: for ${left} points of sweeps there `
+    + "was no time; they are named below.";
   const link = (id, title) => h("a", { href: "#" + id }, title);
   show(
     h("header", null, h("h1", null, "Lumivox report"),
       h("p", { class: "soft" }, "How wrong, how fast, and what was left out. Measured on " + data.device.renderer + ", " + data.date
-        + ". The same numbers stand in the .csv and .json files beside this page."),
+        + ". The same numbers stand in the .csv and .json files beside this page." + outOfTime),
       h("nav", null, link("summary", "Summary"), link("needed", "What was needed"),
         data.scenes.map((scene, index) => link("scene-" + index, sceneTitle(scene))), data.voxels && link("voxels", "Voxels"),
         data.stress && link("stress", "Where it breaks"), link("device", "Device and contents"))),
