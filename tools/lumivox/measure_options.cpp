@@ -29,6 +29,10 @@ void MeasureOptions::addTo(CLI::App& app, const std::string& store, const std::s
   app.add_option("--flicker-frames", options.flickerPairs,
                  "pairs of frames 1/24 s apart for the flicker of scenes that move (default 4; 0: none)")
       ->check(CLI::Range(0, 1000));
+  app.add_option(
+         "--frames", options.frames,
+         "pipelines that accumulate are measured after 1, 2, 4 ... N frames of the still scene (default 1)")
+      ->check(CLI::Range(1, 1 << 20));
   app.add_flag("--no-sweep", noSweep, "only the default parameters, not the points of the pipelines' sweeps");
   app.add_option("--store", options.store, store);
 }

@@ -180,6 +180,8 @@ Json runsJson(const std::vector<StoredRun>& runs) {
                     {"identity", identityJson(run.identity)},
                     {"frame", timeJson(point.frameMs)},
                     {"next_frame", timeJson(point.nextFrameMs)},
+                    {"still_frame", timeJson(point.stillFrameMs)},
+                    {"moved_frame", timeJson(point.movedFrameMs)},
                     {"framework_share", jsonNumber(point.frameworkShare)},
                     {"peak_bytes", point.peakBytes},
                     {"passes", passes},

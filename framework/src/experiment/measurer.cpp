@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 #include <thread>
 
 #include "base/process.h"
@@ -154,7 +155,10 @@ std::vector<StoredRun> Measurer::measure(const std::vector<WantedPoint>& points,
       std::this_thread::sleep_for(kPause);
       continue;
     }
-    if (!batch.empty()) measureBatch(batch);
+    if (!batch.empty()) {
+      makeTruth(points);
+      measureBatch(batch);
+    }
     for (Entry& entry : batch) {
       entry.run.created = dateText();
       store_.add(entry.run, entry.pictures);
@@ -208,12 +212,29 @@ std::vector<StoredRun> Measurer::fetch(const std::vector<WantedPoint>& points) {
   return result;
 }
 
-Truth& Measurer::truth() {
-  if (!truth_) {
-    const MachineLock working(MachineLock::For::work);
-    truth_.emplace(scene_, truthOptions_);
+void Measurer::makeTruth(const std::vector<WantedPoint>& points) {
+  if (truth_) return;
+  const MachineLock working(MachineLock::For::work);
+  std::set<int> layers;
+  std::set<const LoadedPipeline*> seen;
+  for (const WantedPoint& point : points) {
+    if (!seen.insert(point.loaded).second) continue;
+    RenderOptions options;
+    options.parameters = point.point.parameters;
+    options.parameters.erase(kAccumulatedFrames);
+    options.camera = options_.camera;
+    options.width = width_;
+    options.height = height_;
+    // A pipeline that fails is told so when it is measured.
+    whyFailed([&] {
+      const PipelineExecutor executor(device_, techniques_, scene_, point.loaded->pipeline, options);
+      for (const auto& [output, bounces] : bouncesOf(executor, point.loaded->pipeline))
+        if (bounces > 1) layers.insert(bounces);
+    });
   }
-  return *truth_;
+  ReferenceOptions options = truthOptions_;
+  options.bounceLayers.assign(layers.begin(), layers.end());
+  truth_.emplace(scene_, options);
 }
 
 double Measurer::secondsOf(const WantedPoint& point) const {

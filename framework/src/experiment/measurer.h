@@ -55,8 +55,10 @@ class Measurer {
   int width() const { return width_; }
   int height() const { return height_; }
   const ReferenceOptions& truthOptions() const { return truthOptions_; }
-  /// Made when it is first asked for.
-  Truth& truth();
+  /// Makes it with all layers that these points are judged by; measure() does it for its own where it is not
+  /// there.
+  void makeTruth(const std::vector<WantedPoint>& points);
+  Truth& truth() { return truth_.value(); }
   /// How long a point took that was measured here, its share of the batch's times included, s; 0: it was not.
   double secondsOf(const WantedPoint& point) const;
 

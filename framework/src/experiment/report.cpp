@@ -87,17 +87,17 @@ class SceneReport {
         measurer_(device, techniques, options, checkpoint, std::move(scene), shown,
                   Measurer::Pictures::kept) {
     for (const LoadedPipeline* loaded : pipelines)
-      for (PlannedPoint& planned : plannedPoints(loaded->pipeline, loaded->settings, options.openSweeps))
+      for (PlannedPoint& planned : pointsFor(*loaded, techniques, options))
         points_.push_back({{loaded, std::move(planned)}});
   }
 
   void makeTruth() {
     logInformation("{}: truth at {} x {}, {} samples per pixel", shown_, measurer_.width(),
                    measurer_.height(), measurer_.truthOptions().samplesPerPixel);
-    whyNoTruth_ = whyFailed([&] { measurer_.truth(); });
-    if (!whyNoTruth_.empty()) logWarning("{}: its truth could not be made: {}", shown_, whyNoTruth_);
     std::vector<WantedPoint> wanted;
     for (const Point& point : points_) wanted.push_back(point.wanted);
+    whyNoTruth_ = whyFailed([&] { measurer_.makeTruth(wanted); });
+    if (!whyNoTruth_.empty()) logWarning("{}: its truth could not be made: {}", shown_, whyNoTruth_);
     const std::vector<bool> held = measurer_.held(wanted, true);
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (held[i]) points_[i].state = State::takenUp;

@@ -37,7 +37,7 @@ class SweepPlan {
     ScenePlan& plan = planOf(file);
     std::vector<std::pair<std::string, std::string>> unsuited;
     for (const LoadedPipeline* loaded : choice.forScene(plan.measurer->scene(), unsuited))
-      addPoints(plan, loaded, plannedPoints(loaded->pipeline, loaded->settings, options_.measure.openSweeps));
+      addPoints(plan, loaded, pointsFor(*loaded, techniques_, options_.measure));
     for (const auto& [pipeline, why] : unsuited)
       summary.unsuited.push_back(fmt::format("{}, {}: {}", shownPath(file), pipeline, why));
   }

@@ -63,6 +63,10 @@ void timeInTurns(std::vector<Turn>& turns, int repeats, int nextFrames) {
     });
     for (int frame = 0; frame < nextFrames; ++frame)
       forEach(held, failed, [](Held& one) { one.point->timeNextFrame(); });
+    for (int frame = 0; frame < nextFrames; ++frame)
+      forEach(held, failed, [](Held& one) { one.point->timeStillFrame(); });
+    for (int frame = 0; frame < nextFrames; ++frame)
+      forEach(held, failed, [](Held& one) { one.point->timeMovedFrame(); });
     forEach(held, failed, [](Held& one) { one.point->finish(); });
     if (held.size() > 1) again.insert(again.end(), failed.begin(), failed.end());
   };

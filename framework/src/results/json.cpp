@@ -100,6 +100,12 @@ Json toJson(const ReportPoint& point, bool isDefault) {
   if (!point.failure.empty()) json["failure"] = point.failure;
   json["frame_ms"] = toJson(point.frameMs);
   json["next_frame_ms"] = toJson(point.nextFrameMs);
+  json["still_frame_ms"] = toJson(point.stillFrameMs);
+  json["moved_frame_ms"] = toJson(point.movedFrameMs);
+  const CostParts parts = costParts(point);
+  json["once_ms"] = toJson(parts.onceMs);
+  json["when_moving_ms"] = toJson(parts.movingMs);
+  json["every_frame_ms"] = toJson(parts.everyFrameMs);
   json["framework_share"] = numberJson(point.frameworkShare);
   json["peak_bytes"] = point.peakBytes;
   Json passes = Json::array();

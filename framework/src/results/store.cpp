@@ -26,7 +26,8 @@ constexpr const char* kRunColumns =
     "key, created, version, scene, scene_name, pipeline, pipeline_name, sweep, is_default, camera, time, "
     "width, height, seed, seeds, repeats, subpixels, truth_samples, device, driver, shader_input, host, "
     "framework_share, failure, command";
-constexpr const char* kTimings[] = {"frame", "next_frame", "pass_device", "pass_host"};
+constexpr const char* kTimings[] = {"frame",     "next_frame",  "pass_device",
+                                    "pass_host", "still_frame", "moved_frame"};
 
 bool hasNamed(const std::string& wanted, const std::string& file, const std::string& title) {
   return wanted.empty() || wanted == title || results::namesFile(wanted, file);
@@ -176,6 +177,8 @@ void ResultsStore::State::insertTimes(std::int64_t id, const ReportPoint& point)
   };
   add(kTimings[0], "", point.frameMs);
   add(kTimings[1], "", point.nextFrameMs);
+  add(kTimings[4], "", point.stillFrameMs);
+  add(kTimings[5], "", point.movedFrameMs);
   for (const auto& [pass, time] : point.passDeviceMs) add(kTimings[2], pass, time);
   for (const auto& [pass, time] : point.passHostMs) add(kTimings[3], pass, time);
   Statement pass(database, "INSERT INTO passes VALUES (?,?,?)");
@@ -301,6 +304,8 @@ void ResultsStore::State::readTimes(StoredRun& run) const {
     if (what == kTimings[1]) point.nextFrameMs = time;
     if (what == kTimings[2]) point.passDeviceMs[pass] = time;
     if (what == kTimings[3]) point.passHostMs[pass] = time;
+    if (what == kTimings[4]) point.stillFrameMs = time;
+    if (what == kTimings[5]) point.movedFrameMs = time;
   }
   Statement pass(database, "SELECT name FROM passes WHERE run = ? ORDER BY position");
   for (pass.bind(run.id); pass.step();) point.passOrder.push_back(pass.text(0));

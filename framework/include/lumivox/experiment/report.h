@@ -30,6 +30,9 @@ struct ReportOptions {
   int repeats = 5, seeds = kLeastRepeats;
   /// Pairs of frames 1/24 s apart whose flicker is measured where the scene moves; 0: none.
   int flickerPairs = 4;
+  /// Pipelines that accumulate are measured after 1, 2, 4 ... and this many frames of the still scene too, at
+  /// their default parameters.
+  int frames = 1;
   /// s, for measuring after the references; 0: no limit. The default points are measured in any case, the
   /// points of sweeps in turns as long as there is time.
   double budgetSeconds = 0.0;
@@ -60,9 +63,10 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
                          const std::function<Scene(const std::filesystem::path&)>& loadScene,
                          const std::function<void(const ReportRecord&)>& write);
 
-/// The truth layer that a component's bias is measured against, and the one for what the viewer misses.
-/// Empty names: a component without a truth.
-std::pair<std::string, std::string> truthLayers(Contributes component);
+/// The truth layer that a component's bias is measured against, that of so many indirect bounces as its
+/// technique models (Pass::indirectBounces()), and the one for what the viewer misses. Empty names: a
+/// component without a truth.
+std::pair<std::string, std::string> truthLayers(Contributes component, int bounces = 1);
 
 /// One layer of a truth and its variance. Where the truth has no layer "one_bounce", direct and both
 /// one-bounce layers are added up; nullopt when it is not there.

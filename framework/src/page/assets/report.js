@@ -191,7 +191,10 @@
                                  point => of(point, name) ? bytes(of(point, name).bytes) : "-")),
        row("whole frame; most memory at once", point => quartiles(point.frame_ms), point => bytes(point.peak_bytes), "total"),
        row("between passes (the framework)", point => percent(point.framework_share), () => ""),
-       row("next frame, only what changed", point => quartiles(point.next_frame_ms), () => "")]);
+       row("next frame, only what changed", point => quartiles(point.next_frame_ms), () => ""),
+       row("done once (preprocessing)", point => measured(point.once_ms, milliseconds), () => ""),
+       row("done when the camera or a light moves", point => measured(point.when_moving_ms, milliseconds), () => ""),
+       row("done in every frame", point => measured(point.every_frame_ms, milliseconds), () => "")]);
   }
 
   /** The operations that there are most of: "12.3 M texture samples d3 rgba16f mips; 4.56 M buffer reads". */
@@ -215,7 +218,9 @@
       h("h3", null, "Time and memory per pass"),
       caption("Medians over repeats of frames in which every kept pass runs; quartiles in brackets. Measured apart from the pictures above. "
         + "What a pass does was counted in a frame of its own; with the ceilings of this device it gives the time that the pass takes at "
-        + "least: on the resource that limits it, and on all of them one after the other, as a device that overlaps nothing would need."),
+        + "least: on the resource that limits it, and on all of them one after the other, as a device that overlaps nothing would need. The "
+        + "last three rows take a first frame apart: what is done once, what is done again when the camera and the lights have moved, and "
+        + "what every frame costs. A point of several accumulated frames holds all of them."),
       h("div", { class: "charts" },
         passChart(scene, pass => pass.device_ms ? pass.device_ms.median : 0, "ms", "time per pass, ms", "time"),
         passChart(scene, pass => pass.bytes / 1048576, "MiB", "memory taken per pass, MiB", "bytes")),
