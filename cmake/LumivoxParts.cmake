@@ -3,7 +3,7 @@
 # packages of the parts that it needs; the include rules of the house are held by a test.
 function(lumivox_part name)
   cmake_parse_arguments(part "" "" "NEEDS;LIBRARIES" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/framework/src/${name}/*.cpp ${CMAKE_SOURCE_DIR}/framework/src/${name}/*.h
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/framework/src/${name}/*.cpp ${CMAKE_SOURCE_DIR}/framework/src/${name}/*.h
        ${CMAKE_SOURCE_DIR}/framework/include/lumivox/${name}/*.h)
   add_library(lumivox_${name} OBJECT ${sources})
   set_target_properties(lumivox_${name} PROPERTIES LINKER_LANGUAGE CXX)
@@ -28,19 +28,51 @@ function(lumivox_part name)
   endforeach()
 endfunction()
 
-# lumivox_library(NAME PARTS parts... [LIBRARIES libraries...]): one shared library made of parts.
+# Where headers lie that the build writes.
+set(LUMIVOX_GENERATED_INCLUDE ${CMAKE_BINARY_DIR}/generated/include)
+
+# lumivox_headers_hash(PARTS parts...): the hash of the public headers of these parts, as <lumivox/plugin/headers_hash.h>. By it the loader
+# tells techniques that were compiled with other headers.
+function(lumivox_headers_hash)
+  cmake_parse_arguments(hash "" "" "PARTS" ${ARGN})
+  set(headers)
+  foreach(part IN LISTS hash_PARTS)
+    file(GLOB_RECURSE found CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/framework/include/lumivox/${part}/*.h)
+    list(APPEND headers ${found})
+  endforeach()
+  string(REPLACE ";" "," parts "${hash_PARTS}")
+  set(output ${LUMIVOX_GENERATED_INCLUDE}/lumivox/plugin/headers_hash.h)
+  set(stamp ${CMAKE_BINARY_DIR}/generated/headers_hash.stamp)
+  add_custom_command(
+    OUTPUT ${stamp}
+    BYPRODUCTS ${output}
+    COMMAND ${CMAKE_COMMAND} -DINCLUDE=${CMAKE_SOURCE_DIR}/framework/include -DPARTS=${parts} -DOUTPUT=${output}
+            -P ${CMAKE_SOURCE_DIR}/cmake/LumivoxHeadersHash.cmake
+    COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
+    DEPENDS ${headers} ${CMAKE_SOURCE_DIR}/cmake/LumivoxHeadersHash.cmake
+    COMMENT "Hashing the public headers"
+    VERBATIM)
+  add_custom_target(lumivox_headers_hash DEPENDS ${stamp})
+endfunction()
+
+# lumivox_library(NAME PARTS parts... [LIBRARIES libraries...] [INSTALLED packages...]): one shared library made of parts. Who builds against the
+# installed one needs only the packages that the public headers include. Lumivox::NAME is its name inside the tree and outside.
 function(lumivox_library name)
-  cmake_parse_arguments(library "" "" "PARTS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(library "" "" "PARTS;LIBRARIES;INSTALLED" ${ARGN})
   set(objects)
   foreach(part IN LISTS library_PARTS)
     list(APPEND objects $<TARGET_OBJECTS:lumivox_${part}>)
   endforeach()
   add_library(${name} SHARED ${objects})
+  add_library(Lumivox::${name} ALIAS ${name})
   set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX)
   foreach(part IN LISTS library_PARTS)
-    target_link_libraries(${name} PUBLIC lumivox_${part}_interface)
+    target_link_libraries(${name} PUBLIC $<BUILD_INTERFACE:lumivox_${part}_interface>)
   endforeach()
   target_link_libraries(${name} PUBLIC ${library_LIBRARIES})
+  foreach(package IN LISTS library_INSTALLED)
+    target_link_libraries(${name} INTERFACE $<INSTALL_INTERFACE:${package}>)
+  endforeach()
 endfunction()
 
 # lumivox_embed(PART): the files of framework/src/PART/assets become constants of generated/PART_assets.h, so that an editor

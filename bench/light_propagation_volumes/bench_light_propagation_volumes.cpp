@@ -14,7 +14,9 @@
 #include <string_view>
 #include <vector>
 
+#include "../../techniques/light_propagation_volumes/closed_faces.h"
 #include "lumivox/base/error.h"
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/plugin/loader.h"
 #include "lumivox/scene/builder.h"
@@ -22,6 +24,7 @@
 namespace {
 
 using namespace lumivox;
+using light_propagation_volumes::ClosedFaces;
 
 constexpr int kCells = 32, kIterations = 8;
 constexpr int kRepeats = 15, kQuickRepeats = 1;
@@ -29,10 +32,11 @@ constexpr float kAlbedo = 0.7f;     // of the room
 constexpr double kRounding = 1e-5;  // of the norm, as in the test of the two shaders
 
 /// Lit surfaces: all cells of the three planes of a corner, everything else empty.
-ShGrid cornerOfLight(gpu::Device& device) {
+std::pair<ShGrid, ClosedFaces> cornerOfLight(gpu::Device& device) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> flux(0.5f, 1.0f);
   ShGrid result;
+  ClosedFaces faces;
   for (int number = 0; number < 2; ++number) {
     gpu::TextureDescription description;
     description.kind = gpu::TextureKind::d3;
@@ -54,13 +58,15 @@ ShGrid cornerOfLight(gpu::Device& device) {
     }
     description.format = gpu::Format::rgba8;
     description.width = description.height = description.depth = kCells + 1;
-    level.closed = std::make_shared<gpu::Texture>(device, description, "closed faces");
-    level.closed->clear(glm::vec4(0.0f));
-    level.moved = std::make_shared<gpu::Texture>(device, description, "moved surfaces");
-    level.moved->clear(glm::vec4(0.0f));
+    const ClosedFaces::Level open{
+        level.grid, std::make_shared<gpu::Texture>(device, description, "closed faces"),
+        std::make_shared<gpu::Texture>(device, description, "moved surfaces"), nullptr};
+    open.closed->clear(glm::vec4(0.0f));
+    open.moved->clear(glm::vec4(0.0f));
     result.levels.push_back(level);
+    faces.levels.push_back(open);
   }
-  return result;
+  return {result, faces};
 }
 
 double median(std::vector<double> values) {
@@ -120,7 +126,7 @@ bool propagation(gpu::Device& device, TechniqueSet& techniques, int repeats) {
   Scene scene;
   scene.cameras.emplace_back();
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  const ShGrid light = cornerOfLight(device);
+  const auto [light, faces] = cornerOfLight(device);
   const char* const methods[] = {"plain", "folded"};
   std::vector<std::unique_ptr<PassHarness>> passes;
   for (const char* method : methods) {
@@ -129,6 +135,7 @@ bool propagation(gpu::Device& device, TechniqueSet& techniques, int repeats) {
     passes.back()->setParameter("method", std::string(method));
     passes.back()->setParameter("iterations", kIterations);
     passes.back()->setInput("light", light);
+    passes.back()->setInput("faces", faces);
     passes.back()->run();  // compiles
   }
   std::vector<double> times[2];

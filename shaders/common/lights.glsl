@@ -1,4 +1,4 @@
-// Direct light: an array of point samples with shadow views. C++ side: framework/include/lumivox/pipeline/light_samples.h, port ShadowMap.
+// Direct light: an array of point samples with shadow views. C++ side: framework/include/lumivox/toolkit/light_samples.h, port ShadowMap.
 #ifndef LUMIVOX_LIGHTS
 #define LUMIVOX_LIGHTS
 #include "common/constants.glsl"
@@ -9,12 +9,15 @@ const int kLightSpot = 2;
 const int kLightArea = 3;  // one sample of an emissive triangle
 
 struct LightSample {
-  vec4 positionKind;    // xyz posWorld, w kind
-  vec4 directionLayer;  // xyz the way the light travels (area: normal of the front side), w first shadow layer, -1 without shadow
-  vec4 power;           // directional: irradiance W/m^2; point, spot: intensity W/sr; area: radiance times area W/sr;
-                        // w: shadow views, 1 or the 6 faces of a cube
-  vec4 shape;           // x cos inner, y cos outer of a spot; z width of a shadow texel, in metres (directional) or per metre of
-                        // distance; w squared radius of the patch that an area sample stands for
+  vec3 position;             // posWorld
+  int kind;
+  vec3 direction;            // the way the light travels; area: normal of the front side
+  int firstView;             // its first shadow layer, -1 without shadow
+  vec3 power;                // directional: irradiance W/m^2; point, spot: intensity W/sr; area: radiance times area W/sr
+  int viewCount;             // shadow layers: 1, or the 6 faces of a cube
+  float cosInner, cosOuter;  // of a spot
+  float texelWidth;          // of a shadow texel: m (directional), or m per metre of distance
+  float patchRadiusSquared;  // of the patch that an area sample stands for, m^2
 };
 
 layout(std430, binding = 5) readonly buffer Lights { LightSample lights[]; };
@@ -26,24 +29,24 @@ layout(binding = 7) uniform sampler2DArrayShadow shadowDepth;
 // Irradiance on a plane perpendicular to the arriving light, W/m^2, without visibility; toLight is made unit length. A point in which the
 // light itself lies has no direction to it: both are 0.
 vec3 arrivingIrradiance(LightSample light, vec3 posWorld, out vec3 toLight) {
-  int kind = int(light.positionKind.w);
+  int kind = light.kind;
   if (kind == kLightDirectional) {
-    toLight = -light.directionLayer.xyz;
-    return light.power.rgb;
+    toLight = -light.direction;
+    return light.power;
   }
-  vec3 path = light.positionKind.xyz - posWorld;
+  vec3 path = light.position - posWorld;
   if (dot(path, path) == 0.0) {
     toLight = vec3(0.0);
     return vec3(0.0);
   }
   toLight = normalize(path);
   // A disc of radius r seen from its axis at distance d gives pi r^2 L / (d^2 + r^2); for a point r is 0.
-  float distanceSquared = dot(path, path) + light.shape.w;
-  float cosLight = dot(-toLight, light.directionLayer.xyz);
+  float distanceSquared = dot(path, path) + light.patchRadiusSquared;
+  float cosLight = dot(-toLight, light.direction);
   float shape = 1.0;
-  if (kind == kLightSpot) shape = smoothstep(light.shape.y, light.shape.x, cosLight);
+  if (kind == kLightSpot) shape = smoothstep(light.cosOuter, light.cosInner, cosLight);
   if (kind == kLightArea) shape = max(0.0, cosLight);
-  return light.power.rgb * (shape / distanceSquared);
+  return light.power * (shape / distanceSquared);
 }
 
 // Face of a cube map that holds a direction: +x -x +y -y +z -z.
@@ -58,14 +61,14 @@ int cubeFace(vec3 direction) {
 // Visible fraction in [0,1]. The point is moved along its normal by a texel of the shadow view, so that a surface does not shadow
 // itself (normal offset); geometricNormal faces the side that is lit.
 float visibility(LightSample light, vec3 posWorld, vec3 geometricNormal, vec3 toLight) {
-  int layer = int(light.directionLayer.w);
+  int layer = light.firstView;
   if (layer < 0) return 1.0;
-  int kind = int(light.positionKind.w);
-  vec3 path = posWorld - light.positionKind.xyz;
-  float texel = light.shape.z * (kind == kLightDirectional ? 1.0 : length(path));
+  int kind = light.kind;
+  vec3 path = posWorld - light.position;
+  float texel = light.texelWidth * (kind == kLightDirectional ? 1.0 : length(path));
   float sine = sqrt(max(0.0, 1.0 - dot(geometricNormal, toLight) * dot(geometricNormal, toLight)));
   vec3 lookup = posWorld + geometricNormal * (texel * (0.5 + 1.5 * sine));
-  if (light.power.w > 1.0) layer += cubeFace(lookup - light.positionKind.xyz);
+  if (light.viewCount > 1) layer += cubeFace(lookup - light.position);
   vec4 clip = views[layer] * vec4(lookup, 1.0);
   if (clip.w <= 0.0) return 1.0;
   vec3 projected = clip.xyz / clip.w;

@@ -1,4 +1,4 @@
-// Items of a list longer than a row of work groups may be. C++ side: framework/include/lumivox/pipeline/list_dispatch.h. Included after
+// Items of a list longer than a row of work groups may be. C++ side: framework/include/lumivox/toolkit/list_dispatch.h. Included after
 // the local size, which is along x alone.
 #ifndef LUMIVOX_LIST
 #define LUMIVOX_LIST

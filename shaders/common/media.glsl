@@ -1,5 +1,5 @@
 // Participating media: where they are, how dense, and the optical depth along rays. C++ side:
-// framework/include/lumivox/pipeline/media.h. Where the includer has an axis MEDIUM whose word `varying` is chosen, there are densities in
+// framework/include/lumivox/toolkit/media.h. Where the includer has an axis MEDIUM whose word `varying` is chosen, there are densities in
 // textures; without it only even media can be asked about their depth.
 #ifndef LUMIVOX_MEDIA
 #define LUMIVOX_MEDIA
@@ -46,11 +46,11 @@ vec2 insideMedia(vec3 origin, vec3 direction, float reach) {
 
 // Where the light of a sample comes from: the way to it and how long that is.
 void wayToLight(LightSample light, vec3 posWorld, out vec3 direction, out float reach) {
-  if (int(light.positionKind.w) == kLightDirectional) {
-    direction = -light.directionLayer.xyz;
+  if (light.kind == kLightDirectional) {
+    direction = -light.direction;
     reach = kNoReach;
   } else {
-    vec3 path = light.positionKind.xyz - posWorld;
+    vec3 path = light.position - posWorld;
     reach = length(path);
     direction = path / max(reach, 1e-30);
   }

@@ -1,5 +1,5 @@
 // Voxel addressing and the fragment list. Voxel (i,j,k) covers gridLow + [i,i+1] x [j,j+1] x [k,k+1] voxel sizes.
-// C++ side: GridPlacement and VoxelFragments in framework/include/lumivox/pipeline/ports.h.
+// C++ side: GridPlacement and VoxelFragments in framework/include/lumivox/pipeline/ports/.
 #ifndef LUMIVOX_VOXEL
 #define LUMIVOX_VOXEL
 
@@ -15,9 +15,6 @@ struct VoxelFragment {
 
 // A triangle with sharper corners than this, in radians, is a needle: its plane and its enlarged corners are mostly rounding.
 const float kNeedle = 1e-3;
-
-// Shares of averages are added up as integers of this unit, so that a full sum fits into 32 bits.
-const float kFixedPoint = 2147483648.0;  // 2^31
 
 uint packVoxel(ivec3 voxel) { return uint(voxel.x) | uint(voxel.y) << 10 | uint(voxel.z) << 20; }
 ivec3 unpackVoxel(uint packed) { return ivec3(packed & 1023u, packed >> 10 & 1023u, packed >> 20 & 1023u); }

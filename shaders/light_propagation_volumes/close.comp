@@ -8,6 +8,7 @@
 #include "bricks.glsl"
 
 layout(local_size_x = 64) in;
+#include "common/fragments.glsl"
 
 layout(std140, binding = 0) uniform Parameters {
   vec3 listLow;       // m, of the grid of the fragments
@@ -16,8 +17,6 @@ layout(std140, binding = 0) uniform Parameters {
   float cellSize;     // m
   ivec3 resolution;   // of the parts: one more than the cells
 };
-layout(std430, binding = 0) readonly buffer FragmentCount { uint fragmentCount; };
-layout(std430, binding = 1) readonly buffer Fragments { VoxelFragment fragments[]; };
 // For each axis, parts of the face towards the lower neighbour.
 layout(binding = 0, r32ui) uniform uimage3D partsX;
 layout(binding = 1, r32ui) uniform uimage3D partsY;
@@ -33,7 +32,7 @@ void mark(int axis, ivec3 face, uint parts) {
 }
 
 void main() {
-  uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  uint index = listIndex();
   if (index >= fragmentCount) return;
   VoxelFragment fragment = fragments[index];
   vec3 position = (listLow + (vec3(unpackVoxel(fragment.voxel)) + unpackOffset(fragment.offset)) * listVoxel - gridLow) / cellSize;

@@ -10,6 +10,7 @@
 #endif
 
 layout(local_size_x = 64) in;
+#include "common/fragments.glsl"
 
 layout(std140, binding = 0) uniform Parameters {
   vec3 listLow;      // m, of the grid of the fragments
@@ -19,8 +20,6 @@ layout(std140, binding = 0) uniform Parameters {
   ivec3 resolution;
   int twoSided;
 };
-layout(std430, binding = 0) readonly buffer FragmentCount { uint fragmentCount; };
-layout(std430, binding = 1) readonly buffer Fragments { VoxelFragment fragments[]; };
 layout(binding = 5) uniform sampler3D closed;
 
 // Listing 4.27: contrast of a colour in 7 bits, behind it the colour in 8 bits each.
@@ -31,22 +30,22 @@ uint packWinner(vec3 albedo) {
 
 void add(ivec3 cell, vec3 position, vec3 normal, vec3 albedo, uint parts) {
   if (parts == 0u || any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, resolution))) return;
-  int voxel = ((cell.z * resolution.y + cell.y) * resolution.x + cell.x) * kWordsOfVoxel;
-  int group = voxel + kGroup + groupOf(normal) * kWordsOfGroup;
+  int voxel = (cell.z * resolution.y + cell.y) * resolution.x + cell.x, group = groupOf(normal);
   uint weight = uint(bitCount(parts));
 #if STEP == STEP_WEIGH
-  if (atomicAdd(voxels[voxel + kWeight], weight) == 0u) markBrick(cell, resolution);
-  atomicAdd(voxels[group + kGroupWeight], weight);
+  if (atomicAdd(voxels[voxel].weight, weight) == 0u) markBrick(cell, resolution);
+  atomicAdd(voxels[voxel].groups[group].weight, weight);
 #else
-  float ofVoxel = float(voxels[voxel + kWeight]) / float(weight), ofGroup = float(voxels[group + kGroupWeight]) / float(weight);
+  float ofVoxel = float(voxels[voxel].weight) / float(weight);
+  float ofGroup = float(voxels[voxel].groups[group].weight) / float(weight);
   vec3 offset = clamp((position - vec3(cell) - 0.5) / kPositionRange, -1.0, 1.0);
   for (int i = 0; i < 3; ++i) {
-    atomicAdd(voxels[voxel + kAlbedo + i], shareOf(albedo[i], ofVoxel));
-    atomicAdd(voxels[group + kGroupNormal + i], shareOf(normal[i], ofGroup));
-    atomicAdd(voxels[group + kGroupPosition + i], shareOf(offset[i], ofGroup));
+    atomicAdd(voxels[voxel].albedo[i], signedShareOf(albedo[i] * (1.0 / ofVoxel)));
+    atomicAdd(voxels[voxel].groups[group].normal[i], signedShareOf(normal[i] * (1.0 / ofGroup)));
+    atomicAdd(voxels[voxel].groups[group].position[i], signedShareOf(offset[i] * (1.0 / ofGroup)));
   }
-  atomicOr(voxels[group + kGroupParts], parts);
-  atomicMax(voxels[voxel + kWinner], packWinner(albedo));
+  atomicOr(voxels[voxel].groups[group].parts, parts);
+  atomicMax(voxels[voxel].winner, packWinner(albedo));
 #endif
 }
 
@@ -59,7 +58,7 @@ bool endsBefore(ivec3 home, int axis, int column) {
 }
 
 void main() {
-  uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  uint index = listIndex();
   if (index >= fragmentCount) return;
   VoxelFragment fragment = fragments[index];
   vec2 blueCoverage = unpackHalf2x16(fragment.albedoBCoverage);

@@ -28,13 +28,13 @@ void main() {
   vec3 normal = texelFetch(rsmNormal, texel, 0).xyz;
   vec3 position = (texelFetch(rsmPosition, texel, 0).xyz - gridLow) / cellSize;
   ivec3 cell = cellBeside(position, normal);
-  int word = wordsOf(cell, resolution);
-  if (word < 0) return;
+  int place = sumsOf(cell, resolution);
+  if (place < 0) return;
 #if STEP == STEP_WEIGH
   // The order of the bits of numbers from 0 on is that of the numbers.
-  atomicMax(sums[word + kBrightest], floatBitsToUint(largestOf(flux)));
-  if (atomicAdd(sums[word + kLights], 1u) == 0u) markBrick(cell, resolution);
+  atomicMax(sums[place].brightest, floatBitsToUint(largestOf(flux)));
+  if (atomicAdd(sums[place].lights, 1u) == 0u) markBrick(cell, resolution);
 #else
-  addVirtualLight(word, flux, normal);
+  addVirtualLight(place, flux, normal);
 #endif
 }

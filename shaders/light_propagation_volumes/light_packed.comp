@@ -16,7 +16,7 @@ layout(std140, binding = 0) uniform Parameters {
   float largestFlux;  // W
   int lightCount;
 };
-layout(std430, binding = 3) readonly buffer Words { uint words[]; };
+layout(std430, binding = 3) readonly buffer Words { PackedVoxel words[]; };
 layout(binding = 0, rgba32f) uniform writeonly image3D red;
 layout(binding = 1, rgba32f) uniform writeonly image3D green;
 layout(binding = 2, rgba32f) uniform writeonly image3D blue;
@@ -25,10 +25,10 @@ void main() {
   ivec3 cell = ivec3(gl_GlobalInvocationID);
   if (any(greaterThanEqual(cell, resolution))) return;
   vec4 channels[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
-  int first = ((cell.z * resolution.y + cell.y) * resolution.x + cell.x) * kWordsOfPacked;
-  uint albedo = words[first];
+  int voxel = (cell.z * resolution.y + cell.y) * resolution.x + cell.x;
+  uint albedo = words[voxel].albedo;
   if (albedo != 0u) {
-    uvec4 directions = uvec4(words[first + 1], words[first + 2], words[first + 3], words[first + 4]);
+    uvec4 directions = uvec4(words[voxel].directions[0], words[voxel].directions[1], words[voxel].directions[2], words[voxel].directions[3]);
     vec3 centre = gridLow + (vec3(cell) + 0.5) * cellSize;
     for (int l = 0; l < lightCount; ++l) {
       LightSample light = lights[l];

@@ -31,26 +31,25 @@ vec3 irradianceFrom(LightSample light, vec3 posWorld, vec3 normal) {
 void main() {
   ivec3 cell = listedCell();
   if (any(greaterThanEqual(cell, resolution))) return;
-  int voxel = ((cell.z * resolution.y + cell.y) * resolution.x + cell.x) * kWordsOfVoxel;
-  if (voxels[voxel + kWeight] == 0u) return;
-  vec3 albedo = meanOf(voxels[voxel + kAlbedo], voxels[voxel + kAlbedo + 1], voxels[voxel + kAlbedo + 2]);
-  uint winner = voxels[voxel + kWinner];
+  int voxel = (cell.z * resolution.y + cell.y) * resolution.x + cell.x;
+  if (voxels[voxel].weight == 0u) return;
+  vec3 albedo = signedMeanOf(voxels[voxel].albedo[0], voxels[voxel].albedo[1], voxels[voxel].albedo[2]);
+  uint winner = voxels[voxel].winner;
   if (contrastAlbedo != 0) albedo = vec3(winner >> 16 & 255u, winner >> 8 & 255u, winner & 255u) / 255.0;
 
   vec3 centre = gridLow + (vec3(cell) + 0.5) * cellSize;
   vec3 normals[4], positions[4], irradiance[4];
   float areas[4];
   for (int i = 0; i < kGroups; ++i) {
-    int group = voxel + kGroup + i * kWordsOfGroup;
-    vec3 mean = meanOf(voxels[group + kGroupNormal], voxels[group + kGroupNormal + 1], voxels[group + kGroupNormal + 2]);
+    SurfaceGroup group = voxels[voxel].groups[i];
+    vec3 mean = signedMeanOf(group.normal[0], group.normal[1], group.normal[2]);
     float size = length(mean);
     normals[i] = size > 0.0 ? mean / size : vec3(0.0);
     // Parts are counted on the plane of faces: the surface is longer by the slant.
     vec3 slant = abs(normals[i]);
-    uint parts = size > 0.0 ? (wholeFaces != 0 ? 16u : uint(bitCount(voxels[group + kGroupParts]))) : 0u;
+    uint parts = size > 0.0 ? (wholeFaces != 0 ? 16u : uint(bitCount(group.parts))) : 0u;
     areas[i] = parts == 0u ? 0.0 : float(parts) / 16.0 * cellSize * cellSize / max(slant.x, max(slant.y, slant.z));
-    positions[i] = centre + meanOf(voxels[group + kGroupPosition], voxels[group + kGroupPosition + 1],
-                                   voxels[group + kGroupPosition + 2]) * (kPositionRange * cellSize);
+    positions[i] = centre + signedMeanOf(group.position[0], group.position[1], group.position[2]) * (kPositionRange * cellSize);
     irradiance[i] = vec3(0.0);
   }
   for (int l = 0; l < lightCount; ++l) {
@@ -75,8 +74,8 @@ void main() {
     fluxes[i] = min(albedo * irradiance[i] * areas[i], largestFlux);
     brightest = max(brightest, largestOf(fluxes[i]));
   }
-  int word = wordsOf(cell, resolution);
-  sums[word + kBrightest] = floatBitsToUint(brightest);
-  sums[word + kLights] = uint(kGroups);
-  for (int i = 0; i < kGroups; ++i) addVirtualLight(word, fluxes[i], normals[i]);
+  int place = sumsOf(cell, resolution);
+  sums[place].brightest = floatBitsToUint(brightest);
+  sums[place].lights = uint(kGroups);
+  for (int i = 0; i < kGroups; ++i) addVirtualLight(place, fluxes[i], normals[i]);
 }

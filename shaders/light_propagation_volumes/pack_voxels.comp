@@ -1,10 +1,10 @@
 #version 450
 // Surfaces into voxels as printed (thesis 004 Listings 4.27 to 4.29): the front of each in the voxel that it lies in, and the largest word
 // wins.
-#include "common/voxel.glsl"
 #include "packed_voxels.glsl"
 
 layout(local_size_x = 64) in;
+#include "common/fragments.glsl"
 
 layout(std140, binding = 0) uniform Parameters {
   vec3 listLow;      // m, of the grid of the fragments
@@ -13,21 +13,19 @@ layout(std140, binding = 0) uniform Parameters {
   float cellSize;    // m
   ivec3 resolution;
 };
-layout(std430, binding = 0) readonly buffer FragmentCount { uint fragmentCount; };
-layout(std430, binding = 1) readonly buffer Fragments { VoxelFragment fragments[]; };
-layout(std430, binding = 3) buffer Words { uint words[]; };
+layout(std430, binding = 3) buffer Words { PackedVoxel words[]; };
 
 void main() {
-  uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  uint index = listIndex();
   if (index >= fragmentCount) return;
   VoxelFragment fragment = fragments[index];
   vec3 position = (listLow + (vec3(unpackVoxel(fragment.voxel)) + unpackOffset(fragment.offset)) * listVoxel - gridLow) / cellSize;
   ivec3 cell = ivec3(floor(position));
   if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, resolution))) return;
-  int first = ((cell.z * resolution.y + cell.y) * resolution.x + cell.x) * kWordsOfPacked;
+  int voxel = (cell.z * resolution.y + cell.y) * resolution.x + cell.x;
   vec3 albedo = vec3(unpackHalf2x16(fragment.albedoRg), unpackHalf2x16(fragment.albedoBCoverage).x);
   vec3 normal = unpackNormal(fragment.normal);
   int face = groupOf(normal);
-  atomicMax(words[first], packAlbedo(albedo));
-  atomicMax(words[first + 1 + face], packDirection(normal, face));
+  atomicMax(words[voxel].albedo, packAlbedo(albedo));
+  atomicMax(words[voxel].directions[face], packDirection(normal, face));
 }

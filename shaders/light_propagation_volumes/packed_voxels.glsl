@@ -5,7 +5,10 @@
 #include "common/constants.glsl"
 #include "tetrahedron.glsl"
 
-const int kWordsOfPacked = 5;
+struct PackedVoxel {
+  uint albedo;
+  uint directions[4];
+};
 const uint kOccupied = 1u << 31;
 
 uint packAlbedo(vec3 albedo) {

@@ -6,7 +6,7 @@
 #include "propagation.glsl"
 #if OCCLUSION == OCCLUSION_NORMALS
 #include "packed_voxels.glsl"
-layout(std430, binding = 3) readonly buffer Words { uint words[]; };
+layout(std430, binding = 3) readonly buffer Words { PackedVoxel words[]; };
 #endif
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
@@ -22,9 +22,9 @@ const ivec3 kOffsets[6] =
 #if OCCLUSION == OCCLUSION_NORMALS
 // Coefficients of what a cell holds back of the light that leaves it in a direction; nothing where it has no surface.
 vec4 occlusionOf(ivec3 cell, vec3 direction) {
-  int first = ((cell.z * resolution.y + cell.y) * resolution.x + cell.x) * kWordsOfPacked;
-  if (words[first] == 0u) return vec4(0.0);
-  return shClampedCosine(closestNormal(uvec4(words[first + 1], words[first + 2], words[first + 3], words[first + 4]), direction));
+  int voxel = (cell.z * resolution.y + cell.y) * resolution.x + cell.x;
+  if (words[voxel].albedo == 0u) return vec4(0.0);
+  return shClampedCosine(closestNormal(uvec4(words[voxel].directions[0], words[voxel].directions[1], words[voxel].directions[2], words[voxel].directions[3]), direction));
 }
 #endif
 

@@ -19,13 +19,13 @@ layout(binding = 2, rgba32f) uniform writeonly image3D blue;
 void main() {
   ivec3 cell = listedCell();
   if (any(greaterThanEqual(cell, resolution))) return;
-  int word = wordsOf(cell, resolution);
+  int place = sumsOf(cell, resolution);
   // fluxAcross the face behind the light is 0: kCrossing0 Y0 = kCrossing1 m Y1.
   float cosine = meanCosine > 0.0 ? meanCosine : kCrossing0 * kY0 / (kCrossing1 * kY1);
-  vec4 unit = vec4(kY0, vec3(cosine * kY1)) * (fullFlux(word) / (0.5 * kFixedPoint));
+  vec4 unit = vec4(kY0, vec3(cosine * kY1)) * (fullFlux(place) / kSignedFixedPoint);
   vec4 channels[3];
   for (int i = 0; i < 3; ++i) {
-    ivec4 sum = ivec4(sums[word + 4 * i], sums[word + 4 * i + 1], sums[word + 4 * i + 2], sums[word + 4 * i + 3]);
+    ivec4 sum = ivec4(sums[place].shares[4 * i], sums[place].shares[4 * i + 1], sums[place].shares[4 * i + 2], sums[place].shares[4 * i + 3]);
     channels[i] = vec4(sum).xzwy * unit;  // x, y, z to the order of the harmonics
   }
   imageStore(red, cell, channels[0]);

@@ -3,7 +3,7 @@
 // at least two voxels, taken where a step of half their width begins; the opacity's exponent is half the diameter over the first one; what
 // was gathered is multiplied by the opacity anew in each step. Listing 4.37 fades samples by their distance and the result by the surface's
 // distance to the eye.
-#include "common/constants.glsl"
+#include "common/cones.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -39,7 +39,7 @@ vec3 traceCone(vec3 apex, vec3 direction, float ratio) {
   while (distance <= reach && opacity < 1.0) {
     float diameter = max(leastDiameter, ratio * distance);
     vec4 value = textureLod(radianceGrid, (apex + direction * distance - gridLow) / gridExtent, log2(diameter / voxelSize)) * fadeAt(distance);
-    float stepOpacity = 1.0 - pow(max(1.0 - value.a, 0.0), 0.5 * diameter / firstDiameter);
+    float stepOpacity = stepOpacityOf(max(1.0 - value.a, 0.0), 0.5 * diameter / firstDiameter);
     radiance = radiance * opacity + (1.0 - opacity) * stepOpacity * value.rgb;
     opacity += (1.0 - opacity) * stepOpacity;
     distance += 0.5 * diameter;
@@ -58,8 +58,7 @@ void main() {
       vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
       vec3 mirror = reflect(normalize(position.xyz - eyeWorld), normal);
       // The diameter of a cone over its height is the user's in the print. Here the cone has the solid angle of the lobe, 2 pi / (n + 1).
-      float cosHalfAngle = max(1.0 - 1.0 / (specular.w + 1.0), 0.5);
-      float ratio = 2.0 * sqrt(1.0 - cosHalfAngle * cosHalfAngle) / cosHalfAngle;
+      float ratio = 2.0 * tanOfHalfAngle(cosHalfAngleOfLobe(specular.w));
       float atSurface = fade == kFadeNone ? 1.0 : 1.0 - clamp(distance(position.xyz, eyeWorld) / fadeDistance, 0.0, 1.0);
       glossy = specular.rgb * (max(dot(mirror, normal), 0.0) * atSurface) * traceCone(position.xyz, mirror, ratio);
     }

@@ -48,19 +48,19 @@ SurfaceLight lightAt(ivec3 texel) {
 // constant map. As published the weight is xi1^2 over the sum of all xi1^2, so that the samples together stand for what the pattern
 // covers: of a view alone, the disc in its plane, of any perspective; of a cube, of which the print has no word, a cap of the sphere.
 vec3 aroundProjection(LightSample light, vec3 posWorld, vec3 normal) {
-  bool directional = int(light.positionKind.w) == kLightDirectional, published = publishedScale > 0.0;
-  bool inView = !directional && published && light.power.w == 1.0;
-  int firstLayer = int(light.directionLayer.w);
+  bool directional = light.kind == kLightDirectional, published = publishedScale > 0.0;
+  bool inView = !directional && published && light.viewCount == 1;
+  int firstLayer = light.firstView;
   vec2 centre = vec2(0.0);
   if (inView) {
     vec4 clip = views[firstLayer] * vec4(posWorld, 1.0);
     if (clip.w <= 0.0) return vec3(0.0);  // behind the light there is no projection
     centre = vec2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
   }
-  vec3 axis = directional ? light.directionLayer.xyz : normalize(posWorld - light.positionKind.xyz);
+  vec3 axis = directional ? light.direction : normalize(posWorld - light.position);
   vec3 helper = abs(axis.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
   vec3 tangent = normalize(cross(helper, axis)), bitangent = cross(axis, tangent);
-  float largest = directional ? reach * light.shape.z * float(width) : reach * kPi;
+  float largest = directional ? reach * light.texelWidth * float(width) : reach * kPi;
   // Of the disc, m^2, in texels where it lies in the view; of the cap, sr.
   float covered = directional ? kPi * largest * largest : 2.0 * kPi * (1.0 - cos(largest));
   if (inView) covered = kPi * reach * reach * float(width) * float(width);
@@ -73,8 +73,8 @@ vec3 aroundProjection(LightSample light, vec3 posWorld, vec3 normal) {
     vec2 texcoord = centre + reach * xi1 * vec2(cos(angle), sin(angle));
     if (!inView) {
       vec3 side = tangent * cos(angle) + bitangent * sin(angle);
-      vec3 target = directional ? posWorld + side * distance : light.positionKind.xyz + axis * cos(distance) + side * sin(distance);
-      if (light.power.w > 1.0) layer += cubeFace(target - light.positionKind.xyz);
+      vec3 target = directional ? posWorld + side * distance : light.position + axis * cos(distance) + side * sin(distance);
+      if (light.viewCount > 1) layer += cubeFace(target - light.position);
       vec4 clip = views[layer] * vec4(target, 1.0);
       if (clip.w <= 0.0) continue;
       vec2 projected = clip.xy / clip.w;
@@ -83,9 +83,9 @@ vec3 aroundProjection(LightSample light, vec3 posWorld, vec3 normal) {
     if (any(lessThan(texcoord, vec2(0.0))) || any(greaterThanEqual(texcoord, vec2(1.0)))) continue;
     SurfaceLight patchLight = lightAt(ivec3(ivec2(texcoord * float(width)), layer));
     // Texels that one sample stands for: its part of the plane or of the sphere over that of a texel.
-    float texelSize = light.shape.z * light.shape.z;
+    float texelSize = light.texelWidth * light.texelWidth;
     if (!directional) {
-      vec2 onPlane = (texcoord - 0.5) * float(width) * light.shape.z;
+      vec2 onPlane = (texcoord - 0.5) * float(width) * light.texelWidth;
       float secantSquared = 1.0 + dot(onPlane, onPlane);
       texelSize /= secantSquared * sqrt(secantSquared);
     }

@@ -53,11 +53,11 @@ void main() {
 
   // Cross-section of the light that falls into the texel. In perspective a texel at (u, v) on the plane at distance 1, w wide, has the
   // solid angle w^2 / (1 + u^2 + v^2)^(3/2).
-  float crossSection = light.shape.z * light.shape.z;
-  if (int(light.positionKind.w) != kLightDirectional) {
-    vec2 onPlane = (gl_FragCoord.xy - halfSize) * light.shape.z;
+  float crossSection = light.texelWidth * light.texelWidth;
+  if (light.kind != kLightDirectional) {
+    vec2 onPlane = (gl_FragCoord.xy - halfSize) * light.texelWidth;
     float secantSquared = 1.0 + dot(onPlane, onPlane);
-    vec3 path = light.positionKind.xyz - posWorld;
+    vec3 path = light.position - posWorld;
     crossSection *= dot(path, path) / (secantSquared * sqrt(secantSquared));
   }
   outPosition = vec4(posWorld, 1.0);

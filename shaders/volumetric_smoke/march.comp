@@ -77,11 +77,11 @@ vec3 depthToLight(int i, vec3 posWorld) {
 // "Importance sampling techniques for path tracing in participating media", Sec. 4.1): steps may be longer than the way to the light.
 float placeInStep(LightSample light, vec3 direction, float near, float stride, float share, out float factor) {
   factor = 1.0;
-  if (int(light.positionKind.w) == kLightDirectional) return near + share * stride;
-  vec3 path = light.positionKind.xyz - eyeWorld;
+  if (light.kind == kLightDirectional) return near + share * stride;
+  vec3 path = light.position - eyeWorld;
   float along = dot(path, direction);
   vec3 side = path - along * direction;
-  float heightSquared = dot(side, side) + light.shape.w, height = sqrt(max(heightSquared, 1e-20));
+  float heightSquared = dot(side, side) + light.patchRadiusSquared, height = sqrt(max(heightSquared, 1e-20));
   float first = atan((near - along) / height), last = atan((near + stride - along) / height);
   float place = clamp(along + height * tan(mix(first, last, share)), near, near + stride);
   factor = (last - first) * (heightSquared + (place - along) * (place - along)) / (height * stride);

@@ -68,8 +68,8 @@ void main() {
         if (visibility(light, posWorld, toLight, toLight) <= 0.0) continue;
         float cosine = dot(direction, toLight);
         if (cosineIsPublished != 0) {
-          bool directional = int(light.positionKind.w) == kLightDirectional;  // which has no place: a unit towards it
-          vec3 lightPosition = directional ? toLight : (light.positionKind.xyz - sceneCentre) / unit;
+          bool directional = light.kind == kLightDirectional;  // which has no place: a unit towards it
+          vec3 lightPosition = directional ? toLight : (light.position - sceneCentre) / unit;
           cosine = dot(direction * (rayLength / unit), lightPosition);
         }
         scattered += scattering(cosine, g) * irradiance;

@@ -1,5 +1,5 @@
 // Which voxels are occupied, and where the sums of each lie, without a volume of sums: a bit for each voxel, in bricks of 4 x 4 x 4, and for
-// each brick the place of its first occupied voxel's sums. C++ side: OccupiedBricks in framework/include/lumivox/pipeline/ports.h.
+// each brick the place of its first occupied voxel's sums. C++ side: OccupiedBricks in framework/include/lumivox/pipeline/ports/.
 struct Brick {
   uint low, high;  // 64 bits: voxel (x, y, z) of the brick is bit x + 4 y + 16 z
   uint first;      // the sums of its first occupied voxel; those of the others follow in the order of their bits

@@ -18,11 +18,14 @@
 #if OCCUPIED
 #include "common/voxel.glsl"
 layout(local_size_x = 64) in;
+#include "common/list.glsl"
 layout(std430, binding = 0) readonly buffer BrickList { uint brickList[]; };
 layout(std430, binding = 1) readonly buffer BrickCount { uint listed; };
 #else
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #endif
+
+#include "common/cones.glsl"
 
 const int kFacing = 0, kAverage = 1, kTrilinear = 2;
 layout(constant_id = 0) const int rule = kFacing;
@@ -48,8 +51,6 @@ vec4 slab(vec4 value, float length) {
   float opacity = 1.0 - pow(1.0 - value.a, length);
   return vec4(value.rgb * (opacity / value.a), opacity);
 }
-
-vec4 over(vec4 front, vec4 back) { return front + (1.0 - front.a) * back; }
 
 // The usual case, two whole children along each axis, without loops: the mean over four columns, each seen from both its ends.
 vec4 pair(vec4 a, vec4 b) { return over(a, b) + over(b, a); }
@@ -104,7 +105,7 @@ vec4 lookThrough(ivec3 cell, int axis, ivec3 first, ivec3 last, vec3 ratio) {
 
 void main() {
 #if OCCUPIED
-  uint item = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  uint item = listIndex();
   uint perBrick = fineLevel == 0 ? 8u : 1u;
   if (item / perBrick >= listed) return;
   ivec3 brick = unpackVoxel(brickList[item / perBrick]);

@@ -6,7 +6,7 @@
 #pragma lumivox axis ENVIRONMENT 0 1
 #pragma lumivox axis MEDIUM none even varying
 #pragma lumivox require DIFFUSE || GLOSSY
-#include "common/constants.glsl"
+#include "common/cones.glsl"
 #include "common/random.glsl"
 #if MEDIUM != MEDIUM_NONE
 #include "common/media.glsl"
@@ -51,16 +51,8 @@ layout(binding = 1, rgba32f) uniform writeonly image2D glossyImage;
 #endif
 
 const int kMediumSteps = 8;   // most steps through a medium that varies, within one step of a cone
-const float kOpaque = 0.999;  // what lies behind this opacity adds less than a thousandth
 
-// Where a ray enters the grid and where it leaves it, m along it; a ray that misses it leaves before it enters.
-vec2 insideGrid(vec3 origin, vec3 direction) {
-  const vec3 kLevel = vec3(1e-12);  // keeps products finite; a ray does not move along an axis by that much
-  vec3 slope = mix(direction, kLevel, lessThan(abs(direction), kLevel));
-  vec3 toLow = (gridLow - origin) / slope, toHigh = (gridLow + gridExtent - origin) / slope;
-  vec3 near = min(toLow, toHigh), far = max(toLow, toHigh);
-  return vec2(max(near.x, max(near.y, near.z)), min(far.x, min(far.y, far.z)));
-}
+vec2 insideGrid(vec3 origin, vec3 direction) { return insideVolume(gridLow, gridExtent, origin, direction); }
 
 // How far a cone's first sample is moved, [0, 1): by the pixel, the cone and the seed.
 float shiftOf(uint cone) {
@@ -98,23 +90,14 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta, ui
     vec3 thickness = opticalDepth(sampled, direction, stride, kMediumSteps);
     passed *= exp(-0.5 * thickness);
 #endif
-    float size = max(wanted / voxelSize, 1.0);
-    float level = min(floor(log2(size)), coarsest);
-    float blend = level < coarsest ? size * exp2(-level) - 1.0 : 0.0;
+    float blend, level = levelOf(max(wanted / voxelSize, 1.0), coarsest, blend);
     vec4 value = textureLod(radianceGrid, texcoord, level + blend);
     if (value.a > 0.0) {
-      // Opacity correction (thesis Sec. 4.2.1): the transmittance T of a known length is raised to the step in such lengths. Pre-multiplied
-      // radiance scales with the opacity; listing 4.13 mixes pre-multiplied and plain radiance, which this does not.
+      // Pre-multiplied radiance scales with the opacity; listing 4.13 mixes pre-multiplied and plain radiance, which this does not. Plain means
+      // keep the opacity of a uniform medium at every level: it stays that of a finest voxel.
       float through = max(1.0 - value.a, 0.0);
-      float stepOpacity;
-      if (opacityOfFinestVoxel != 0) {
-        // Plain means keep the opacity of a uniform medium at every level: it stays that of a finest voxel.
-        stepOpacity = 1.0 - pow(through, stride / voxelSize);
-      } else {
-        // The blend of two levels of a medium with transmittance T per voxel of the finer one is (1-f) T + f T^2: solved for T.
-        float perVoxel = 2.0 * through / (1.0 - blend + sqrt((1.0 - blend) * (1.0 - blend) + 4.0 * blend * through));
-        stepOpacity = 1.0 - pow(perVoxel, stride / (exp2(level) * voxelSize));
-      }
+      float stepOpacity = opacityOfFinestVoxel != 0 ? stepOpacityOf(through, stride / voxelSize)
+                                                    : stepOpacityOf(throughVoxel(through, blend), stride / (exp2(level) * voxelSize));
       radiance += passed * ((1.0 - opacity) * stepOpacity / value.a * value.rgb);
       opacity += (1.0 - opacity) * stepOpacity;
     }
@@ -151,7 +134,7 @@ vec3 traceConeAsPublished(vec3 apex, vec3 direction, float ratio, uint cone) {
 #if MEDIUM != MEDIUM_NONE
     value.rgb *= exp(-opticalDepth(apex, direction, distance, kMediumSteps));
 #endif
-    float stepOpacity = 1.0 - pow(max(1.0 - value.a, 0.0), (diameter / 2.0) / firstDiameter);
+    float stepOpacity = stepOpacityOf(max(1.0 - value.a, 0.0), (diameter / 2.0) / firstDiameter);
     radiance = radiance * opacity + (1.0 - opacity) * (stepOpacity * value.rgb);
     opacity += stepOpacity * (1.0 - opacity);
     distance += diameter / 2.0;
@@ -170,8 +153,7 @@ vec3 traceConeAsPublished(vec3 apex, vec3 direction, float ratio, uint cone) {
 #if DIFFUSE
 // Mean of the arriving radiance over the hemisphere, weighted by the cosine; the weights sum to 1, but not those as published.
 vec3 gatherDiffuse(vec3 apex, vec3 normal) {
-  vec3 helper = abs(normal.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
-  vec3 tangent = normalize(cross(helper, normal)), bitangent = cross(normal, tangent);
+  vec3 tangent = tangentTo(normal), bitangent = cross(normal, tangent);
   // Listing 4.12: one cone along the normal and four at 45 degrees, weighted by the cosine.
   if (asPublished != 0) {
     const float kPrintedWeight = 0.707;
@@ -194,16 +176,11 @@ vec3 gatherDiffuse(vec3 apex, vec3 normal) {
     }
     return sum / (1.0 + 4.0 * kTilted);
   }
-  // Cones of equal weight: a spiral over the unit disc, lifted onto the hemisphere (Malley's method), is distributed as the cosine. Each
-  // stands for the solid angle pi / (n cos theta), and its half angle is that of a circular cone of this solid angle.
   vec3 sum = vec3(0.0);
   for (int i = 0; i < coneCount; ++i) {
-    float radiusSquared = (float(i) + 0.5) / float(coneCount);
-    float radius = sqrt(radiusSquared), angle = float(i) * kGoldenAngle;
-    float cosTheta = sqrt(1.0 - radiusSquared);
-    vec3 direction = tangent * (radius * cos(angle)) + bitangent * (radius * sin(angle)) + normal * cosTheta;
-    float cosHalfAngle = max(1.0 - 0.5 / (float(coneCount) * cosTheta), 0.5);
-    sum += traceCone(apex, direction, sqrt(1.0 - cosHalfAngle * cosHalfAngle) / cosHalfAngle, cosTheta, uint(i));
+    float cosTheta, tanHalfAngle;
+    vec3 direction = cosineCone(i, coneCount, tangent, bitangent, normal, cosTheta, tanHalfAngle);
+    sum += traceCone(apex, direction, tanHalfAngle, cosTheta, uint(i));
   }
   return sum / float(coneCount);
 }
@@ -226,10 +203,8 @@ void main() {
     vec4 specular = texelFetch(gSpecular, pixel, 0);
     if (any(greaterThan(specular.rgb, vec3(0.0)))) {
       vec3 mirror = reflect(normalize(position.xyz - eyeWorld), normal);
-      // The lobe cos^n has the solid angle 2 pi / (n + 1): that of a cone with 1 - cos(half angle) = 1 / (n + 1).
-      // Its integral with the cosine of the surface is specular times the cosine of the mirror direction.
-      float cosHalfAngle = max(1.0 - 1.0 / (specular.w + 1.0), 0.5);
-      float tanHalfAngle = sqrt(1.0 - cosHalfAngle * cosHalfAngle) / cosHalfAngle;
+      // The integral of the lobe with the cosine of the surface is specular times the cosine of the mirror direction.
+      float tanHalfAngle = tanOfHalfAngle(cosHalfAngleOfLobe(specular.w));
       const uint kGlossyCone = 0xffffu;
       float cosMirror = max(dot(mirror, normal), 0.0);
       vec3 arriving = asPublished != 0 ? traceConeAsPublished(apex, mirror, 2.0 * tanHalfAngle, kGlossyCone)

@@ -8,7 +8,6 @@
 #pragma lumivox require !SHADOWS || LIGHTS
 #pragma lumivox require MEDIUM == none || LIGHTS
 #include "common/constants.glsl"
-#include "common/voxel.glsl"
 #include "bricks.glsl"
 #if SHADOWS
 #define SHADOW_VIEWS
@@ -21,6 +20,7 @@
 #endif
 
 layout(local_size_x = 64) in;
+#include "common/fragments.glsl"
 
 layout(std140, binding = 0) uniform Grid {
   vec3 gridLow;     // m
@@ -32,8 +32,6 @@ layout(std140, binding = 0) uniform Grid {
   ivec3 brickCount;
   float ambient;        // irradiance of all surfaces besides that of the lights, W/m^2
 };
-layout(std430, binding = 0) readonly buffer FragmentCount { uint fragmentCount; };
-layout(std430, binding = 1) readonly buffer Fragments { VoxelFragment fragments[]; };
 layout(std430, binding = 2) writeonly buffer Radiances { float radiances[]; };  // three of each fragment, W/(sr m^2)
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
 layout(std430, binding = 4) buffer Sums { VoxelSums sums[]; };
@@ -43,7 +41,7 @@ layout(std430, binding = 7) readonly buffer Reflected { uint reflected[]; };
 #endif
 
 void main() {
-  uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  uint index = listIndex();
   if (index >= fragmentCount) return;
   VoxelFragment fragment = fragments[index];
   ivec3 voxel = unpackVoxel(fragment.voxel);

@@ -1,17 +1,15 @@
 #version 450
 // Marks the voxels that fragments lie in, a bit each.
-#include "common/voxel.glsl"
 #include "bricks.glsl"
 
 layout(local_size_x = 64) in;
+#include "common/fragments.glsl"
 
 layout(std140, binding = 0) uniform Size { ivec3 brickCount; };
-layout(std430, binding = 0) readonly buffer FragmentCount { uint fragmentCount; };
-layout(std430, binding = 1) readonly buffer Fragments { VoxelFragment fragments[]; };
 layout(std430, binding = 3) buffer Bricks { Brick bricks[]; };
 
 void main() {
-  uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  uint index = listIndex();
   if (index >= fragmentCount) return;
   ivec3 voxel = unpackVoxel(fragments[index].voxel);
   uint brick = brickOf(voxel, brickCount), bit = bitOf(voxel), mask = 1u << (bit & 31u);

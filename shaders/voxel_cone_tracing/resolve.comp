@@ -11,6 +11,7 @@
 
 #include "common/voxel.glsl"
 #include "bricks.glsl"
+#include "common/integer_mean.glsl"
 #if MEDIUM != MEDIUM_NONE
 #if LIGHTS
 #define SHADOW_VIEWS
@@ -20,6 +21,7 @@
 
 #if MEDIUM == MEDIUM_NONE
 layout(local_size_x = 64) in;
+#include "common/list.glsl"
 #else
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #endif
@@ -40,7 +42,7 @@ layout(std430, binding = 4) readonly buffer Sums { VoxelSums sums[]; };
 layout(binding = 0) uniform writeonly image3D radianceImage;  // of whatever float format the grid has
 
 vec4 surfacesIn(VoxelSums sum) {
-  vec4 value = vec4(uvec4(sum.red, sum.green, sum.blue, sum.coverage)) / kFixedPoint;
+  vec4 value = meanOf(uvec4(sum.red, sum.green, sum.blue, sum.coverage));
   if (coverageSum != 0) {
     // The sums hold means over the fragments; radiance keeps its share of the opacity.
     float opacity = min(value.a * float(sum.fragments), 1.0);
@@ -55,7 +57,7 @@ layout(std430, binding = 0) readonly buffer BrickList { uint brickList[]; };
 layout(std430, binding = 1) readonly buffer BrickCount { uint listed; };
 
 void main() {
-  uint item = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  uint item = listIndex();
   if (item / 64u >= listed) return;
   ivec3 voxel = voxelOf(unpackVoxel(brickList[item / 64u]), item % 64u);
   Brick brick = bricks[brickOf(voxel, brickCount)];

@@ -2,6 +2,8 @@
 // triangle and the place on it. Including files declare grid_corner.glsl before.
 // Deviates: the atlas does not hold positions that are drawn into it anew when something moves, but places on triangles, which stay; and
 // the list of its texels was made with it, so that nothing is read back.
+#include "common/list.glsl"
+
 layout(std430, binding = 9) readonly buffer TexelTriangles { uint texelTriangles[]; };
 layout(std430, binding = 10) readonly buffer TexelPlaces { uint texelPlaces[]; };  // barycentric: second and third corner, 16 bits each
 layout(std140, binding = 2) uniform Texels {
@@ -26,6 +28,6 @@ SurfacePlace placeOf(int texel) {
 
 // The texel of this thread, or -1.
 int texelOfThread() {
-  int item = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
+  int item = int(listIndex());
   return item < texelCount ? firstTexel + item : -1;
 }

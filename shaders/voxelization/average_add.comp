@@ -1,15 +1,12 @@
 #version 450
-// Each fragment adds its share of the average as integers, and integer sums do not depend on the order:
-//   sum over n fragments of round(value / range * coverage * 2^31 / n),  0 <= value <= range,  which fits into 32 bits for any n.
-// The range of emission is the voxel's own.
+// Each fragment adds its share of the averages over its voxel (common/integer_mean.glsl). The range of emission is the voxel's own.
 #pragma lumivox axis ATTRIBUTES 0 1
 #pragma lumivox axis EMISSION 0 1
 #pragma lumivox require !EMISSION || ATTRIBUTES
 #define AVERAGING
 #include "average.glsl"
+#include "common/fragments.glsl"
 
-layout(std430, binding = 0) readonly buffer FragmentCount { uint fragmentCount; };
-layout(std430, binding = 1) readonly buffer Fragments { VoxelFragment fragments[]; };
 layout(std430, binding = 4) readonly buffer FragmentsOfSlot { uint fragmentsOfSlot[]; };
 layout(std430, binding = 5) buffer CoverageSums { uint coverageSums[]; };
 #if ATTRIBUTES
@@ -23,7 +20,7 @@ layout(std430, binding = 9) readonly buffer Brightest { uint brightest[]; };
 layout(binding = 0, r32ui) uniform readonly uimage3D slots;
 
 void main() {
-  uint index = itemIndex();
+  uint index = listIndex();
   if (index >= fragmentCount) return;
   VoxelFragment fragment = fragments[index];
   uint slot = imageLoad(slots, unpackVoxel(fragment.voxel)).r - 1u;
@@ -31,18 +28,18 @@ void main() {
   vec2 blueCoverage = unpackHalf2x16(fragment.albedoBCoverage);
   float covered = clamp(blueCoverage.y, 0.0, 1.0), weight = covered / float(fragmentsOfSlot[slot]);
   uint full = fullShare(fragmentsOfSlot[slot]);
-  atomicAdd(coverageSums[slot], covered < 1.0 ? uint(weight * kFixedPoint + 0.5) : full);
+  atomicAdd(coverageSums[slot], covered < 1.0 ? shareOf(weight) : full);
 #if ATTRIBUTES
   vec3 albedo = clamp(vec3(unpackHalf2x16(fragment.albedoRg), blueCoverage.x), 0.0, 1.0);
   vec3 normal = unpackNormal(fragment.normal);
   for (int c = 0; c < 3; ++c) {
-    atomicAdd(albedoSums[3u * slot + uint(c)], uint(albedo[c] * weight * kFixedPoint + 0.5));
-    atomicAdd(normalSums[3u * slot + uint(c)], int(round(normal[c] * weight * kSignedFixedPoint)));
+    atomicAdd(albedoSums[3u * slot + uint(c)], shareOf(albedo[c] * weight));
+    atomicAdd(normalSums[3u * slot + uint(c)], signedShareOf(normal[c] * weight));
   }
 #endif
 #if EMISSION
   float range = uintBitsToFloat(brightest[slot]);
   vec3 emission = range > 0.0 ? min(unpackShared(fragment.emission) / range, 1.0) : vec3(0.0);
-  for (int c = 0; c < 3; ++c) atomicAdd(emissionSums[3u * slot + uint(c)], uint(emission[c] * weight * kFixedPoint + 0.5));
+  for (int c = 0; c < 3; ++c) atomicAdd(emissionSums[3u * slot + uint(c)], shareOf(emission[c] * weight));
 #endif
 }

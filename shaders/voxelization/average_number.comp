@@ -8,7 +8,7 @@ layout(std430, binding = 4) writeonly buffer FragmentsOfSlot { uint fragmentsOfS
 layout(binding = 0, r32ui) uniform uimage3D slots;
 
 void main() {
-  uint slot = itemIndex();
+  uint slot = listIndex();
   if (slot >= slotCount) return;
   ivec3 voxel = unpackVoxel(slotVoxels[slot]);
   fragmentsOfSlot[slot] = imageLoad(slots, voxel).r;

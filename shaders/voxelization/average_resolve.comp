@@ -27,7 +27,7 @@ layout(binding = 3, r8) uniform writeonly image3D opacityImage;
 #endif
 
 void main() {
-  uint slot = itemIndex();
+  uint slot = listIndex();
   if (slot >= slotCount) return;
   ivec3 voxel = unpackVoxel(slotVoxels[slot]);
   // Against what full coverages add up to, rounded as each of them was: a voxel that all of its fragments fill is opaque, exactly.
@@ -40,13 +40,13 @@ void main() {
 #if ATTRIBUTES
   // Coverages of nothing at all leave no average.
   float inverse = mean > 0.0 ? kFixedPoint / float(coverageSums[slot]) : 0.0;
-  vec3 albedo = vec3(albedoSums[3u * slot], albedoSums[3u * slot + 1u], albedoSums[3u * slot + 2u]) / kFixedPoint;
-  vec3 normal = vec3(normalSums[3u * slot], normalSums[3u * slot + 1u], normalSums[3u * slot + 2u]) / kSignedFixedPoint;
+  vec3 albedo = meanOf(albedoSums[3u * slot], albedoSums[3u * slot + 1u], albedoSums[3u * slot + 2u]);
+  vec3 normal = signedMeanOf(normalSums[3u * slot], normalSums[3u * slot + 1u], normalSums[3u * slot + 2u]);
   imageStore(albedoImage, voxel, vec4(albedo * inverse, opacity));
   imageStore(normalImage, voxel, vec4(normal * inverse, 0.0));
 #endif
 #if EMISSION
-  vec3 emission = vec3(emissionSums[3u * slot], emissionSums[3u * slot + 1u], emissionSums[3u * slot + 2u]) / kFixedPoint;
+  vec3 emission = meanOf(emissionSums[3u * slot], emissionSums[3u * slot + 1u], emissionSums[3u * slot + 2u]);
   imageStore(emissionImage, voxel, vec4(emission * inverse * uintBitsToFloat(brightest[slot]), opacity));
 #endif
 }

@@ -3,6 +3,7 @@
 #include "common/voxel.glsl"
 
 layout(local_size_x = 64) in;
+#include "common/list.glsl"
 
 layout(std430, binding = 0) readonly buffer BaseCount { uint baseCount; };
 layout(std430, binding = 1) readonly buffer BaseFragments { VoxelFragment baseFragments[]; };
@@ -10,7 +11,7 @@ layout(std430, binding = 2) writeonly buffer Count { uint fragmentCount; };
 layout(std430, binding = 3) writeonly buffer Fragments { VoxelFragment fragments[]; };
 
 void main() {
-  uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  uint index = listIndex();
   if (index == 0u) fragmentCount = baseCount;
   if (index < baseCount) fragments[index] = baseFragments[index];
 }

@@ -9,6 +9,7 @@
 #include "common/random.glsl"
 
 layout(local_size_x = 64) in;
+#include "common/list.glsl"
 
 layout(std140, binding = 2) uniform Points {
   int firstTriangle;  // of this draw
@@ -76,7 +77,7 @@ void main() {
     for (int n = lane; n < count; n += lanes) place(triangle, corners, n, count);
   }
 #else
-  int item = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
+  int item = int(listIndex());
   if (item >= triangleCount) return;
   int triangle = firstTriangle + item;
   vec3 corners[3] = vec3[3](cornerInGrid(triangle, 0), cornerInGrid(triangle, 1), cornerInGrid(triangle, 2));

@@ -20,28 +20,28 @@ layout(std430, binding = 1) writeonly buffer Fragments { VoxelFragment fragments
 layout(std430, binding = 2) writeonly buffer Reflected { uint reflected[]; };
 layout(binding = 4) uniform sampler2D direct;  // W/(sr m^2): what leaves the surface towards the camera without indirect light
 #endif
-layout(binding = 0) uniform sampler2D position;
-layout(binding = 1) uniform sampler2D normal;
-layout(binding = 2) uniform sampler2D diffuse;
+layout(binding = 0) uniform sampler2D gPosition;
+layout(binding = 1) uniform sampler2D gNormal;
+layout(binding = 2) uniform sampler2D gDiffuse;
 #if EMISSION
-layout(binding = 3) uniform sampler2D emission;
+layout(binding = 3) uniform sampler2D gEmission;
 #endif
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, textureSize(position, 0)))) return;
-  vec4 posWorld = texelFetch(position, pixel, 0);
+  if (any(greaterThanEqual(pixel, textureSize(gPosition, 0)))) return;
+  vec4 posWorld = texelFetch(gPosition, pixel, 0);
   if (posWorld.w == 0.0) return;
   vec3 posGrid = (posWorld.xyz - gridLow) / voxelSize;
   ivec3 voxel = ivec3(floor(posGrid));
   if (any(lessThan(voxel, ivec3(0))) || any(greaterThanEqual(voxel, resolution))) return;
 
   // A fragment keeps the normal of the front side; the g-buffer's faces the camera.
-  vec4 facing = texelFetch(normal, pixel, 0);
-  vec3 albedo = texelFetch(diffuse, pixel, 0).rgb;
+  vec4 facing = texelFetch(gNormal, pixel, 0);
+  vec3 albedo = texelFetch(gDiffuse, pixel, 0).rgb;
   vec3 radiance = vec3(0.0);
 #if EMISSION
-  radiance = texelFetch(emission, pixel, 0).rgb;
+  radiance = texelFetch(gEmission, pixel, 0).rgb;
 #endif
   uint index = atomicAdd(fragmentCount, 1u);
   if (index >= uint(capacity)) return;

@@ -10,6 +10,7 @@
 #include "common/scene.glsl"
 
 layout(local_size_x = 64) in;
+#include "common/list.glsl"
 
 layout(std140, binding = 1) uniform Grid {
   vec3 gridLow;     // m
@@ -77,7 +78,7 @@ void main() {
     for (int n = lane; n < p.size.x * p.size.y; n += lanes) flip(p, p.low + ivec2(n % p.size.x, n / p.size.x));
   }
 #else
-  int item = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
+  int item = int(listIndex());
   if (item >= triangleCount) return;
   int triangle = int(triangles[firstTriangle + item]);
   Projected p = project(triangle);

@@ -4,24 +4,15 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "direct_lighting_shaders.h"
-#include "lumivox/pipeline/gpu_scene.h"
-#include "lumivox/pipeline/light_samples.h"
-#include "lumivox/pipeline/media.h"
 #include "lumivox/plugin/technique.h"
+#include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/light_views.h"
+#include "lumivox/toolkit/media.h"
 
 namespace lumivox::direct_lighting {
 namespace {
 
-namespace gbufferShader = shaders::direct_lighting::gbuffer;
-namespace shadowShader = shaders::direct_lighting::shadow_map;
-namespace shadeShader = shaders::direct_lighting::shade;
-namespace composeShader = shaders::direct_lighting::compose;
-
-constexpr glm::ivec3 kImageGroup{8, 8, 1};  // local size of the picture-sized compute shaders
-
-glm::ivec3 pixelsOf(const SceneSnapshot& snapshot) {
-  return {snapshot.camera.width, snapshot.camera.height, 1};
-}
+using namespace shaders::direct_lighting;
 
 /// World to clip space of a camera, z in [0,1]. Depth is clamped when drawing, so that near only sets the
 /// precision.
@@ -57,11 +48,9 @@ class GBufferPass : public Pass {
     result.diffuse = floatImage(frame, "g-buffer diffuse albedo");
     if (traits.glossy) result.specular = floatImage(frame, "g-buffer specular");
     if (traits.emission) result.emission = floatImage(frame, "g-buffer emission");
-    gpu::TextureDescription depth;
-    depth.format = gpu::Format::depth32f;
-    depth.width = frame.snapshot().camera.width;
-    depth.height = frame.snapshot().camera.height;
-    const gpu::TextureRef depthTexture = frame.texture(depth, "g-buffer depth");
+    const glm::ivec3 size = pixels(frame);
+    const gpu::TextureRef depth =
+        frame.texture({gpu::TextureKind::d2, gpu::Format::depth32f, size.x, size.y, 1, 1}, "g-buffer depth");
 
     gpu::RenderTargets targets;
     for (const gpu::TextureRef& texture : {result.position, result.normal, result.geometricNormal,
@@ -69,7 +58,7 @@ class GBufferPass : public Pass {
       targets.colours.push_back({texture.get(), -1});
     }
     while (targets.colours.back().texture == nullptr) targets.colours.pop_back();
-    targets.depth = depthTexture.get();
+    targets.depth = depth.get();
     gpu::RasterState state;
     state.depthTest = state.depthWrite = state.depthClamp = true;
     drawScene(frame, targets, state);
@@ -78,102 +67,53 @@ class GBufferPass : public Pass {
 
   static void drawScene(PassContext& frame, const gpu::RenderTargets& targets,
                         const gpu::RasterState& state) {
-    const SceneTraits& traits = frame.traits();
-    const gbufferShader::View view{worldToClip(frame.snapshot())};
-    const gbufferShader::Eye eye{frame.snapshot().camera.eye, glm::vec2(pixelsOf(frame.snapshot()))};
-    GpuScene& scene = frame.scene();
+    const auto view = gbuffer::view({worldToClip(frame.snapshot())});
+    const auto eye = gbuffer::eye({frame.snapshot().camera.eye, glm::vec2(pixels(frame))});
     const gpu::Drawing drawing = frame.device().drawTo(targets, state);
-    for (const SceneDraw& draw : scene.draws()) {
-      // A draw uses the variant that its own material needs; with --keep-everything all do everything, with
-      // neutral textures.
-      const bool keep = frame.keepsEverything();
-      gbufferShader::Variant variant;
-      variant.textures = keep || draw.diffuseTexture != nullptr;
-      variant.masks = keep || draw.maskTexture != nullptr;
-      variant.glossy = traits.glossy;
-      variant.emission = traits.emission;
-      const gpu::Texture& diffuse =
-          draw.diffuseTexture != nullptr ? *draw.diffuseTexture : scene.whiteTexture();
-      const gpu::Texture& mask = draw.maskTexture != nullptr ? *draw.maskTexture : scene.whiteTexture();
-      frame.shaders().drawIndexed(
-          frame.program(gbufferShader::kProgram, variant.key()),
-          {gbufferShader::positions(scene.positions()), gbufferShader::normals(scene.normals()),
-           gbufferShader::texcoords(scene.texcoords()), gbufferShader::objects(scene.objects()),
-           gbufferShader::materials(scene.materials()), gbufferShader::view(view), gbufferShader::eye(eye),
-           gbufferShader::draw({draw.object, draw.material}),
-           gbufferShader::diffuseTexture(diffuse, gpu::Sampling::linearMipsRepeat),
-           gbufferShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)},
-          scene.indices(), draw.firstIndex, draw.indexCount);
+    for (const SceneDraw& draw : frame.scene().draws()) {
+      const SceneBinding scene(frame, draw);
+      const gbuffer::Variant variant{.textures = scene.textures,
+                                     .masks = scene.masks,
+                                     .glossy = frame.traits().glossy,
+                                     .emission = frame.traits().emission};
+      drawPart(frame, frame.program(variant), {scene, view, eye}, draw);
     }
   }
 };
 
 class ShadowMapPass : public Pass {
-  Param<int> size{this, "size", 512, {16, 8192}, "texels along a side of the view of a light without extent"};
-  Param<int> areaSamples{
-      this, "area_samples", 16, {1, 1024}, "point samples that stand for all emissive triangles together"};
-  Param<int> areaSize{
-      this, "area_size", 128, {16, 4096}, "texels along a side of each cube face of an area sample"};
+  Param<int> size{this, "size", 512, within(16, 8192),
+                  "texels along a side of the view of a light without extent"};
+  Param<int> areaSamples{this, "area_samples", 16, within(1, 1024),
+                         "point samples that stand for all emissive triangles together"};
+  Param<int> areaSize{this, "area_size", 128, within(16, 4096),
+                      "texels along a side of each cube face of an area sample"};
   Out<ShadowMap> depth{this, "depth", "every light as point samples, with depth seen from each"};
 
   Reads readsFrom() const override { return Reads::geometry | Reads::materials | Reads::lights; }
   Needs needs() const override { return Needs::anyLight; }
 
   void run(PassContext& frame) override {
-    const Scene& description = frame.sceneDescription();
-    // One array holds all layers, so that they share one size: the larger one when both kinds of light are
-    // there.
-    const bool onlyArea = frame.snapshot().lights.empty();
-    const int side = onlyArea ? static_cast<int>(areaSize) : static_cast<int>(size);
-    const LightSet set = sampleLights(description, frame.snapshot(), areaSamples, side);
-
-    ShadowMap result;
-    result.lightCount = static_cast<int>(set.samples.size());
-    result.layerCount = static_cast<int>(set.views.size());
-    result.lights =
-        frame.buffer(std::max<std::size_t>(set.samples.size(), 1) * sizeof(LightSampleData), "light samples");
-    result.views =
-        frame.buffer(std::max<std::size_t>(set.views.size(), 1) * sizeof(glm::mat4), "shadow views");
-    std::vector<glm::mat4> matrices;
-    for (const LightView& view : set.views) matrices.push_back(view.worldToClip);
-    if (!set.samples.empty()) result.lights->upload(std::as_bytes(std::span(set.samples)));
-    if (!matrices.empty()) result.views->upload(std::as_bytes(std::span(matrices)));
-
-    gpu::TextureDescription layers;
-    layers.kind = gpu::TextureKind::d2Array;
-    layers.format = gpu::Format::depth32f;
-    layers.width = layers.height = side;
-    layers.depth = std::max(result.layerCount, 1);
-    result.depth = frame.texture(layers, "shadow depth");
-    for (int layer = 0; layer < result.layerCount; ++layer)
-      drawLayer(frame, result, set.views[static_cast<std::size_t>(layer)], layer);
-    depth = result;
-  }
-
-  static void drawLayer(PassContext& frame, const ShadowMap& result, const LightView& view, int layer) {
-    GpuScene& scene = frame.scene();
-    gpu::RenderTargets targets;
-    targets.depth = result.depth.get();
-    targets.depthLayer = layer;
+    const LightViews views = placeLightViews(frame, areaSamples, size, areaSize);
+    const ShadowMap result{views.lights, views.views,
+                           views.layers(frame, gpu::Format::depth32f, "shadow depth"), views.lightCount(),
+                           views.layerCount()};
     gpu::RasterState state;
     state.depthTest = state.depthWrite = state.depthClamp = true;
     state.depthBiasSlope = 1.5f;
     state.depthBiasConstant = 2.0f;
-    const gpu::Drawing drawing = frame.device().drawTo(targets, state);
-    const std::size_t count = view.used ? scene.draws().size() : 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const SceneDraw& draw = scene.draws()[i];
-      shadowShader::Variant variant;
-      variant.masks = frame.keepsEverything() || draw.maskTexture != nullptr;
-      const gpu::Texture& mask = draw.maskTexture != nullptr ? *draw.maskTexture : scene.whiteTexture();
-      frame.shaders().drawIndexed(
-          frame.program(shadowShader::kProgram, variant.key()),
-          {shadowShader::positions(scene.positions()), shadowShader::texcoords(scene.texcoords()),
-           shadowShader::objects(scene.objects()), shadowShader::view({view.worldToClip}),
-           shadowShader::draw({draw.object, draw.material}),
-           shadowShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)},
-          scene.indices(), draw.firstIndex, draw.indexCount);
-    }
+    const auto targets = [&](int layer) {
+      gpu::RenderTargets one;
+      one.depth = result.depth.get();
+      one.depthLayer = layer;
+      return one;
+    };
+    drawLightViews(frame, views, state, targets, [&](const LightViewDrawn& drawn, const SceneDraw& draw) {
+      const SceneBinding scene(frame, draw);
+      drawPart(frame, frame.program(shadow_map::Variant{scene.masks}),
+               {scene, shadow_map::view({drawn.view.worldToClip})}, draw);
+    });
+    depth = result;
   }
 };
 
@@ -183,8 +123,8 @@ class ShadePass : public Pass {
                        "lights and their visibility; without it only emission is seen"};
   In<ScatteringGrid> media{this, "media", Presence::optional,
                            "media between lights and surfaces, which dim the light on its way"};
-  Param<int> mediumSteps{
-      this, "medium_steps", 32, {1, 1024}, "most steps through a medium that varies, towards a light"};
+  Param<int> mediumSteps{this, "medium_steps", 32, within(1, 1024),
+                         "most steps through a medium that varies, towards a light"};
   Param<bool> shadows{this, "shadows", true, "test visibility; off: lights shine through everything"};
   Out<Image> radiance{this, "radiance", Contributes::direct, Needs::nothing,
                       "emission and light that is reflected once, W/(sr m^2)"};
@@ -192,42 +132,23 @@ class ShadePass : public Pass {
   Reads readsFrom() const override { return Reads::camera | Reads::lights | Reads::environment; }
 
   void run(PassContext& frame) override {
-    const SceneTraits& traits = frame.traits();
-    shadeShader::Variant variant;
-    variant.lights = shadow.present();
-    variant.shadows = variant.lights && shadows;
-    variant.glossy = gbuffer->specular != nullptr;
-    variant.emission = traits.emission;
-    shadeShader::Parameters parameters{};
-    parameters.eyeWorld = frame.snapshot().camera.eye;
-    parameters.lightCount = shadow.present() ? shadow->lightCount : 0;
-    parameters.environment = frame.sceneDescription().environment;
-    parameters.mediumSteps = mediumSteps;
+    const LightBinding lights(shadow);
     MediaBinding bound;
-    if (variant.lights != 0 && media.present()) {
-      bound = MediaBinding(frame, *media);
-      variant.medium =
-          bound.varying() ? shadeShader::Variant::mediumVarying : shadeShader::Variant::mediumEven;
-    }
-    Image result{floatImage(frame, "direct radiance")};
-    using gpu::Sampling;
-    std::vector<gpu::ResourceBinding> bindings{
-        shadeShader::parameters(parameters),
-        shadeShader::gPosition(*gbuffer->position, Sampling::nearest),
-        shadeShader::gNormal(*gbuffer->normal, Sampling::nearest),
-        shadeShader::gGeometricNormal(*gbuffer->geometricNormal, Sampling::nearest),
-        shadeShader::gDiffuse(*gbuffer->diffuse, Sampling::nearest),
-        shadeShader::radianceImage(*result.texture)};
-    if (variant.glossy) bindings.push_back(shadeShader::gSpecular(*gbuffer->specular, Sampling::nearest));
-    if (variant.emission) bindings.push_back(shadeShader::gEmission(*gbuffer->emission, Sampling::nearest));
-    if (variant.lights) bindings.push_back(shadeShader::lights(*shadow->lights));
-    if (variant.shadows) {
-      bindings.push_back(shadeShader::views(*shadow->views));
-      bindings.push_back(shadeShader::shadowDepth(*shadow->depth, Sampling::shadow));
-    }
-    bound.addTo(bindings);
-    frame.dispatch(frame.program(shadeShader::kProgram, variant.key()), bindings, pixelsOf(frame.snapshot()),
-                   kImageGroup);
+    if (shadow.present()) bound = MediaBinding(frame, media);
+    shade::Variant variant;
+    variant.lights = shadow.present();
+    variant.shadows = shadow.present() && shadows;
+    variant.glossy = gbuffer->specular != nullptr;
+    variant.emission = frame.traits().emission;
+    variant.medium = bound.axis;
+    const Image result{floatImage(frame, "direct radiance")};
+    frame.dispatch(frame.program(variant),
+                   {shade::parameters({.eyeWorld = frame.snapshot().camera.eye,
+                                       .lightCount = lights.count,
+                                       .environment = frame.sceneDescription().environment,
+                                       .mediumSteps = mediumSteps}),
+                    GBufferBinding(*gbuffer), lights, bound, shade::radianceImage(result.texture)},
+                   pixels(frame));
     radiance = result;
   }
 };
@@ -243,26 +164,21 @@ class ComposePass : public Pass {
                       "sum of the components, W/(sr m^2)"};
 
   void run(PassContext& frame) override {
-    composeShader::Variant variant;
-    variant.diffuse = diffuse.present();
-    variant.glossy = glossy.present();
-    variant.transmittance = transmittance.present();
-    variant.scattered = scattered.present();
-    Image result{floatImage(frame, "final radiance")};
+    const compose::Variant variant{.diffuse = diffuse.present(),
+                                   .glossy = glossy.present(),
+                                   .transmittance = transmittance.present(),
+                                   .scattered = scattered.present()};
+    const auto read = [](const In<Image>& input) { return input.present() ? input->texture : nullptr; };
+    const Image result{floatImage(frame, "final radiance")};
     using gpu::Sampling;
-    std::vector<gpu::ResourceBinding> bindings{
-        composeShader::directRadiance(*direct->texture, Sampling::nearest),
-        composeShader::radianceImage(*result.texture)};
-    if (variant.diffuse)
-      bindings.push_back(composeShader::diffuseRadiance(*diffuse->texture, Sampling::nearest));
-    if (variant.glossy)
-      bindings.push_back(composeShader::glossyRadiance(*glossy->texture, Sampling::nearest));
-    if (variant.transmittance)
-      bindings.push_back(composeShader::mediaTransmittance(*transmittance->texture, Sampling::nearest));
-    if (variant.scattered)
-      bindings.push_back(composeShader::scatteredRadiance(*scattered->texture, Sampling::nearest));
-    frame.dispatch(frame.program(composeShader::kProgram, variant.key()), bindings,
-                   pixelsOf(frame.snapshot()), kImageGroup);
+    frame.dispatch(frame.program(variant),
+                   {compose::directRadiance(direct->texture, Sampling::nearest),
+                    compose::diffuseRadiance(read(diffuse), Sampling::nearest),
+                    compose::glossyRadiance(read(glossy), Sampling::nearest),
+                    compose::mediaTransmittance(read(transmittance), Sampling::nearest),
+                    compose::scatteredRadiance(read(scattered), Sampling::nearest),
+                    compose::radianceImage(result.texture)},
+                   pixels(frame));
     radiance = result;
   }
 };

@@ -10,50 +10,50 @@
 namespace lumivox::light_propagation_volumes {
 namespace {
 
-namespace gatherShader = shaders::light_propagation_volumes::gather;
-namespace traceShader = shaders::light_propagation_volumes::trace;
-namespace reflectShader = shaders::light_propagation_volumes::reflect;
-namespace publishedReflectShader = shaders::light_propagation_volumes::reflect_published;
+using namespace shaders::light_propagation_volumes;
 
 constexpr float kBlendCells = 4.0f;  // width of the seam between two grids, Listing 4.36
 // Listing 4.36: the finer of two grids of 32 cells counts alone up to 12 of them from the eye, and not at all
 // from 16 on.
 constexpr float kInnerReach = 12.0f / 32.0f, kOuterReach = 16.0f / 32.0f;
 
+float longestSide(const GridPlacement& grid) {
+  const glm::ivec3& cells = grid.resolution;
+  return grid.voxelSize * static_cast<float>(std::max({cells.x, cells.y, cells.z}));
+}
+
 class GatherPass : public Pass {
+  enum class Negative { closure, clip };
+  friend constexpr auto words(Negative) { return std::array{"closure", "clip"}; }
+  enum class Lookup { reachable, filtered };
+  friend constexpr auto words(Lookup) { return std::array{"reachable", "filtered"}; }
+  enum class Lobe { arriving, normal };
+  friend constexpr auto words(Lobe) { return std::array{"arriving", "normal"}; }
+  enum class Seam { border, radial };
+  friend constexpr auto words(Seam) { return std::array{"border", "radial"}; }
+
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<ShGrid> light{this, "light", "all light that passed each cell"};
-  Param<float> blend{this,          "blend", kBlendCells,
-                     {0.5f, 64.0f}, "",      "cells over which a grid is blended into the coarser one"};
-  Param<float> offset{this,         "offset", 1.0f,
-                      {0.0f, 4.0f}, "",       "of the lookup from the surface along its normal, in cells"};
+  In<ClosedFaces> faces{this, "faces", Presence::optional,
+                        "what surfaces close; needed with 'lookup reachable'"};
+  Param<float> blend{this, "blend", kBlendCells, within(0.5f, 64.0f),
+                     "cells over which a grid is blended into the coarser one"};
+  Param<float> offset{this, "offset", 1.0f, within(0.0f, 4.0f),
+                      "of the lookup from the surface along its normal, in cells"};
   Param<float> exponent{
-      this, "exponent",
-      1.0f, {0.1f, 10.0f},
-      "",   "of the radiance before the albedo, a matter of taste (Listing 4.36); 1 conserves energy"};
-  Param<std::string> negative{
-      this,
-      "negative",
-      "closure",
-      {"closure", "clip"},
+      this, "exponent", 1.0f, within(0.1f, 10.0f),
+      "of the radiance before the albedo, a matter of taste (Listing 4.36); 1 conserves energy"};
+  Param<Negative> negative{
+      this, "negative", Negative::closure,
       "two bands can make irradiance negative: keep what the two sides of a surface differ by, and neither below 0; or cut off"};
-  Param<std::string> lookup{
-      this,
-      "lookup",
-      "reachable",
-      {"reachable", "filtered"},
+  Param<Lookup> lookup{
+      this, "lookup", Lookup::reachable,
       "cells that can be reached from the surface, at the offset; or, as published (Listing 4.35), filtered at the surface whatever lies between, half a cell too low along z"};
-  Param<std::string> lobe{
-      this,
-      "lobe",
-      "arriving",
-      {"arriving", "normal"},
+  Param<Lobe> lobe{
+      this, "lobe", Lobe::arriving,
       "what counts is light that comes in; or, as published (Listing 4.35), the lobe around the normal itself, light per face of a cell"};
-  Param<std::string> seam{
-      this,
-      "seam",
-      "border",
-      {"border", "radial"},
+  Param<Seam> seam{
+      this, "seam", Seam::border,
       "grids are blended before the finer one's border; or, as published (Listing 4.36), from 12/32 to 16/32 of its side around the eye"};
   Param<bool> asPublished{
       this, "as_published", false,
@@ -65,45 +65,39 @@ class GatherPass : public Pass {
       "radiance that two bands made negative, before it was mended, as positive values, W/(sr m^2)"};
 
   void run(PassContext& frame) override {
-    const bool filtered = asPublished || lookup == "filtered";
-    if (!filtered) requireFaces(*light);
-    Image result{frame.image(gpu::Format::rgba32f, "indirect diffuse radiance")};
-    Image cut{frame.image(gpu::Format::rgba32f, "clipped radiance")};
-    gatherShader::Constants constants;
-    constants.filtered = filtered ? 1 : 0;
-    constants.ownLobe = asPublished || lobe == "normal" ? 1 : 0;
-    constants.radialBlend = asPublished || seam == "radial" ? 1 : 0;
-    constants.closure = negative == "closure" && !asPublished ? 1 : 0;
-    using gpu::Sampling;
-    for (std::size_t i = light->levels.size(); i-- > 0;) {
+    requireFlux(*light);
+    const bool filtered = asPublished || lookup == Lookup::filtered;
+    if (!filtered) requireFaces(*light, faces);
+    const Image result{frame.image(gpu::Format::rgba32f, "indirect diffuse radiance")};
+    const Image cut{frame.image(gpu::Format::rgba32f, "clipped radiance")};
+    gather::Constants constants;
+    constants.filtered = filtered;
+    constants.ownLobe = asPublished || lobe == Lobe::normal;
+    constants.radialBlend = asPublished || seam == Seam::radial;
+    constants.closure = negative == Negative::closure && !asPublished;
+    const std::size_t levels = light->levels.size();
+    for (std::size_t i = levels; i-- > 0;) {
       const ShGrid::Level& level = light->levels[i];
-      gatherShader::Parameters parameters{};
-      parameters.gridLow = level.grid.low;
-      parameters.cellSize = level.grid.voxelSize;
-      parameters.resolution = level.grid.resolution;
-      parameters.blend = blend;
-      parameters.offset = offset;
-      parameters.exponent = exponent;
-      parameters.first = i + 1 == light->levels.size() ? 1 : 0;
-      parameters.last = i == 0 ? 1 : 0;
-      parameters.eye = frame.snapshot().camera.eye;
-      const glm::ivec3& cells = level.grid.resolution;
-      const float side = level.grid.voxelSize * static_cast<float>(std::max({cells.x, cells.y, cells.z}));
-      parameters.innerReach = kInnerReach * side;
-      parameters.outerReach = kOuterReach * side;
-      frame.dispatch(frame.program(gatherShader::kProgram, {}, constants.values()),
-                     {gatherShader::parameters(parameters),
-                      gatherShader::gPosition(*gbuffer->position, Sampling::nearest),
-                      gatherShader::gNormal(*gbuffer->normal, Sampling::nearest),
-                      gatherShader::gGeometricNormal(*gbuffer->geometricNormal, Sampling::nearest),
-                      gatherShader::gDiffuse(*gbuffer->diffuse, Sampling::nearest),
-                      gatherShader::red(*level.coefficients[0], Sampling::linear),
-                      gatherShader::green(*level.coefficients[1], Sampling::linear),
-                      gatherShader::blue(*level.coefficients[2], Sampling::linear),
-                      gatherShader::closed(facesOrUnread(level.closed, level), Sampling::nearest),
-                      gatherShader::moved(facesOrUnread(level.moved, level), Sampling::nearest),
-                      gatherShader::diffuseImage(*result.texture), gatherShader::clippedImage(*cut.texture)},
-                     {frame.snapshot().camera.width, frame.snapshot().camera.height, 1}, kImageGroup);
+      const ClosedFaces::Level surfaces =
+          faces.present() && i < faces->levels.size() ? faces->levels[i] : ClosedFaces::Level{};
+      const float side = longestSide(level.grid);
+      frame.dispatch(frame.program(gather::Variant{}, constants),
+                     {gather::parameters({.gridLow = level.grid.low,
+                                          .cellSize = level.grid.voxelSize,
+                                          .resolution = level.grid.resolution,
+                                          .blend = blend,
+                                          .offset = offset,
+                                          .exponent = exponent,
+                                          .first = i + 1 == levels,
+                                          .last = i == 0,
+                                          .eye = frame.snapshot().camera.eye,
+                                          .innerReach = kInnerReach * side,
+                                          .outerReach = kOuterReach * side}),
+                      GBufferBinding(*gbuffer), sampled(level, gpu::Sampling::linear),
+                      gather::closed(facesOrUnread(surfaces.closed, level), gpu::Sampling::nearest),
+                      gather::moved(facesOrUnread(surfaces.moved, level), gpu::Sampling::nearest),
+                      gather::diffuseImage(result.texture), gather::clippedImage(cut.texture)},
+                     pixels(frame));
     }
     if (frame.inspects()) tellShare(frame, *result.texture, *cut.texture);
     diffuse = result;
@@ -129,8 +123,8 @@ class GatherPass : public Pass {
 class ReflectPass : public Pass {
   In<AttributeGrid> surfaces{this, "surfaces", "surfaces of the reflection grid"};
   In<ShGrid> light{this, "light", "all light that passed each cell"};
-  Param<float> fade{
-      this, "fade", 0.0f, {0.0f, 1024.0f}, "", "voxels before the border over which the grid fades out"};
+  Param<float> fade{this, "fade", 0.0f, within(0.0f, 1024.0f),
+                    "voxels before the border over which the grid fades out"};
   Param<bool> asPublished{
       this, "as_published", false,
       "Listing 4.34: albedo times the mean of all light in the finest cells, half a voxel off along z, fading out with the distance to the eye; in place of what crosses the face before a surface, and of fade"};
@@ -140,16 +134,12 @@ class ReflectPass : public Pass {
   Reads readsFrom() const override { return asPublished ? Reads::camera : Reads::nothing; }
 
   void run(PassContext& frame) override {
+    requireFlux(*light);
     RadianceGrid result;
     result.grid = surfaces->grid;
-    gpu::TextureDescription description;
-    description.kind = gpu::TextureKind::d3;
-    description.format = gpu::Format::rgba32f;
-    description.width = result.grid.resolution.x;
-    description.height = result.grid.resolution.y;
-    description.depth = result.grid.resolution.z;
-    description.levels = gpu::fullLevelCount(description.width, description.height, description.depth);
-    result.radiance = frame.texture(description, "reflection grid");
+    const glm::ivec3& size = result.grid.resolution;
+    result.radiance = frame.volume(size, gpu::Format::rgba32f, "reflection grid",
+                                   gpu::fullLevelCount(size.x, size.y, size.z));
     result.filledLevels = 1;
     if (asPublished)
       reflectAsPublished(frame, result);
@@ -160,64 +150,54 @@ class ReflectPass : public Pass {
 
   void reflectAsPublished(PassContext& frame, const RadianceGrid& result) {
     const ShGrid::Level& level = light->levels.front();
-    const glm::ivec3& voxels = result.grid.resolution;
-    publishedReflectShader::Parameters parameters{};
-    parameters.gridLow = level.grid.low;
-    parameters.cellSize = level.grid.voxelSize;
-    parameters.resolution = level.grid.resolution;
-    parameters.fadeDistance =
-        0.5f * result.grid.voxelSize * static_cast<float>(std::max({voxels.x, voxels.y, voxels.z}));
-    parameters.reflectionLow = result.grid.low;
-    parameters.voxelSize = result.grid.voxelSize;
-    parameters.centre = frame.snapshot().camera.eye;
-    using gpu::Sampling;
-    frame.dispatch(frame.program(publishedReflectShader::kProgram),
-                   {publishedReflectShader::parameters(parameters),
-                    publishedReflectShader::red(*level.coefficients[0], Sampling::linear),
-                    publishedReflectShader::green(*level.coefficients[1], Sampling::linear),
-                    publishedReflectShader::blue(*level.coefficients[2], Sampling::linear),
-                    publishedReflectShader::surfaceAlbedo(*surfaces->albedo, Sampling::nearest),
-                    publishedReflectShader::radianceImage(*result.radiance)},
-                   voxels, kCellGroup);
+    frame.dispatch(frame.program(reflect_published::kProgram),
+                   {reflect_published::parameters({.gridLow = level.grid.low,
+                                                   .cellSize = level.grid.voxelSize,
+                                                   .resolution = level.grid.resolution,
+                                                   .fadeDistance = 0.5f * longestSide(result.grid),
+                                                   .reflectionLow = result.grid.low,
+                                                   .voxelSize = result.grid.voxelSize,
+                                                   .centre = frame.snapshot().camera.eye}),
+                    sampled(level, gpu::Sampling::linear),
+                    reflect_published::surfaceAlbedo(surfaces->albedo, gpu::Sampling::nearest),
+                    reflect_published::radianceImage(result.radiance)},
+                   result.grid.resolution);
   }
 
   void reflectCrossing(PassContext& frame, const RadianceGrid& result) {
-    using gpu::Sampling;
-    for (std::size_t i = light->levels.size(); i-- > 0;) {
+    const std::size_t levels = light->levels.size();
+    for (std::size_t i = levels; i-- > 0;) {
       const ShGrid::Level& level = light->levels[i];
-      reflectShader::Parameters parameters{};
-      parameters.gridLow = level.grid.low;
-      parameters.cellSize = level.grid.voxelSize;
-      parameters.resolution = level.grid.resolution;
-      parameters.blend = kBlendCells;
-      parameters.reflectionLow = result.grid.low;
-      parameters.voxelSize = result.grid.voxelSize;
-      parameters.first = i + 1 == light->levels.size() ? 1 : 0;
-      parameters.last = i == 0 ? 1 : 0;
-      parameters.fades = fade > 0.0f ? 1 : 0;
-      parameters.fadeWidth = fade;
-      frame.dispatch(frame.program(reflectShader::kProgram),
-                     {reflectShader::parameters(parameters),
-                      reflectShader::red(*level.coefficients[0], Sampling::linear),
-                      reflectShader::green(*level.coefficients[1], Sampling::linear),
-                      reflectShader::blue(*level.coefficients[2], Sampling::linear),
-                      reflectShader::surfaceAlbedo(*surfaces->albedo, Sampling::nearest),
-                      reflectShader::surfaceNormal(*surfaces->normal, Sampling::nearest),
-                      reflectShader::radianceImage(*result.radiance)},
-                     result.grid.resolution, kCellGroup);
+      frame.dispatch(frame.program(reflect::kProgram),
+                     {reflect::parameters({.gridLow = level.grid.low,
+                                           .cellSize = level.grid.voxelSize,
+                                           .resolution = level.grid.resolution,
+                                           .blend = kBlendCells,
+                                           .reflectionLow = result.grid.low,
+                                           .voxelSize = result.grid.voxelSize,
+                                           .first = i + 1 == levels,
+                                           .last = i == 0,
+                                           .fades = fade > 0.0f,
+                                           .fadeWidth = fade}),
+                      sampled(level, gpu::Sampling::linear),
+                      reflect::surfaceAlbedo(surfaces->albedo, gpu::Sampling::nearest),
+                      reflect::surfaceNormal(surfaces->normal, gpu::Sampling::nearest),
+                      reflect::radianceImage(result.radiance)},
+                     result.grid.resolution);
     }
   }
 };
 
 class TracePass : public Pass {
+  enum class Fade { falls, grows, none };
+  friend constexpr auto words(Fade) { return std::array{"falls", "grows", "none"}; }
+
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<RadianceGrid> grid{this, "grid", "the reflection grid with its mips"};
-  Param<float> reach{this, "reach", 0.0f, {0.0f, 1e9f}, "m", "of a cone; 0: the longest side of the grid"};
-  Param<std::string> fade{
-      this,
-      "fade",
-      "falls",
-      {"falls", "grows", "none"},
+  Param<float> reach{
+      this, "reach", 0.0f, within(0.0f, 1e9f), "m", "of a cone; 0: the longest side of the grid"};
+  Param<Fade> fade{
+      this, "fade", Fade::falls,
       "of samples along a cone: to nothing at its reach; or, as published (Listing 4.37), from nothing at its start; with both the whole reflection falls to nothing half a side of the grid from the eye"};
   Param<bool> asPublished{this, "as_published", false, "Listing 4.37 to the letter: fade grows"};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::glossyMaterial,
@@ -226,31 +206,26 @@ class TracePass : public Pass {
   Reads readsFrom() const override { return Reads::camera; }
 
   void run(PassContext& frame) override {
-    const GridPlacement& place = grid->grid;
     // The texture may be larger than the grid: rows of whole mips.
-    const gpu::TextureDescription& description = grid->radiance->description();
-    const glm::vec3 cells(description.width, description.height, description.depth);
-    const float side = place.voxelSize * std::max({cells.x, cells.y, cells.z});
-    traceShader::Parameters parameters{};
-    parameters.gridLow = place.low;
-    parameters.voxelSize = place.voxelSize;
-    parameters.gridExtent = cells * place.voxelSize;
-    parameters.reach = reach > 0.0f ? static_cast<float>(reach) : side;
-    parameters.eyeWorld = frame.snapshot().camera.eye;
-    parameters.fadeDistance = 0.5f * side;
-    parameters.unit = grid->unit;
-    traceShader::Constants constants;
-    constants.fade = asPublished || fade == "grows" ? 2 : fade == "falls" ? 1 : 0;
+    const gpu::TextureDescription& texture = grid->radiance->description();
+    const GridPlacement place{
+        grid->grid.low, grid->grid.voxelSize, {texture.width, texture.height, texture.depth}};
+    const float side = longestSide(place);
+    trace::Constants constants;
+    constants.fade = asPublished || fade == Fade::grows ? 2 : fade == Fade::falls ? 1 : 0;
     const Image result{frame.image(gpu::Format::rgba32f, "indirect glossy radiance")};
-    using gpu::Sampling;
     frame.dispatch(
-        frame.program(traceShader::kProgram, {}, constants.values()),
-        {traceShader::parameters(parameters), traceShader::gPosition(*gbuffer->position, Sampling::nearest),
-         traceShader::gNormal(*gbuffer->normal, Sampling::nearest),
-         traceShader::gSpecular(*gbuffer->specular, Sampling::nearest),
-         traceShader::radianceGrid(*grid->radiance, Sampling::linearMipsBorder),
-         traceShader::glossyImage(*result.texture)},
-        {frame.snapshot().camera.width, frame.snapshot().camera.height, 1}, kImageGroup);
+        frame.program(trace::Variant{}, constants),
+        {trace::parameters({.gridLow = place.low,
+                            .voxelSize = place.voxelSize,
+                            .gridExtent = glm::vec3(place.resolution) * place.voxelSize,
+                            .reach = reach > 0.0f ? reach + 0.0f : side,
+                            .eyeWorld = frame.snapshot().camera.eye,
+                            .fadeDistance = 0.5f * side,
+                            .unit = grid->unit}),
+         GBufferBinding(*gbuffer), trace::radianceGrid(grid->radiance, gpu::Sampling::linearMipsBorder),
+         trace::glossyImage(result.texture)},
+        pixels(frame));
     glossy = result;
   }
 };

@@ -12,19 +12,8 @@
 namespace lumivox::light_propagation_volumes {
 namespace {
 
-namespace closeShader = shaders::light_propagation_volumes::close;
-namespace fillShader = shaders::light_propagation_volumes::fill_corners;
-namespace resolveClosedShader = shaders::light_propagation_volumes::resolve_closed;
-namespace rsmShader = shaders::light_propagation_volumes::inject_rsm;
-namespace collectShader = shaders::light_propagation_volumes::collect_voxels;
-namespace lightShader = shaders::light_propagation_volumes::light_voxels;
-namespace resolveShader = shaders::light_propagation_volumes::resolve_lights;
-namespace packShader = shaders::light_propagation_volumes::pack_voxels;
-namespace lightPackedShader = shaders::light_propagation_volumes::light_packed;
+using namespace shaders::light_propagation_volumes;
 
-constexpr std::uint64_t kSumBytes = 14 * sizeof(std::uint32_t);    // of a cell, virtual_lights.glsl
-constexpr std::uint64_t kVoxelBytes = 37 * sizeof(std::uint32_t);  // of a cell, lit_voxel.glsl
-constexpr std::uint64_t kPackedBytes = 5 * sizeof(std::uint32_t);  // of a cell, packed_voxels.glsl
 constexpr int kLargestVoxelGrid = 96;  // cells along a side whose voxels fit into 128 MiB, which every driver
                                        // can address
 
@@ -52,13 +41,15 @@ BrickList emptyBricks(PassContext& frame, const glm::ivec3& cells) {
 }
 
 /// An invocation for each cell of the listed bricks, and a barrier.
-void walkBricks(PassContext& frame, const shader::BoundProgram& program,
-                const std::vector<gpu::ResourceBinding>& bindings, const BrickList& bricks) {
-  frame.shaders().dispatchIndirect(program, bindings, *bricks.list, 0);
-  frame.device().barrier();
+void walkBricks(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
+                const BrickList& bricks) {
+  frame.dispatchIndirect(program, {bindings, shader::StorageSlot{"BrickList"}(bricks.list)}, *bricks.list);
 }
 
 class Inject : public Pass {
+  enum class Lobe { forward, cosine };
+  friend constexpr auto words(Lobe) { return std::array{"forward", "cosine"}; }
+
  public:
   Reads readsFrom() const override { return Reads::partOfCamera | Reads::geometry | Reads::lights; }
   /// The grids move with the camera, but by whole cells and not out of the scene.
@@ -73,107 +64,93 @@ class Inject : public Pass {
 
   void run(PassContext& frame) override {
     ShGrid result;
+    ClosedFaces surfaces;
     for (const GridPlacement& grid : placeGrids(frame.snapshot(), levels, resolution, extent)) {
-      ShGrid::Level level{grid, coefficientTextures(frame, grid.resolution, "coefficients"), nullptr,
-                          nullptr};
-      if (findsFaces()) findFaces(frame, level);
-      fillCells(frame, level);
+      const ShGrid::Level level{grid, coefficientTextures(frame, grid.resolution, "coefficients")};
+      ClosedFaces::Level closed{grid, nullptr, nullptr, nullptr};
+      if (findsFaces()) findFaces(frame, closed);
+      fillCells(frame, level, closed);
       result.levels.push_back(level);
+      surfaces.levels.push_back(closed);
     }
     light = result;
+    faces = surfaces;
   }
 
  protected:
   /// What surfaces close; without it nothing but the packed voxels occludes.
   virtual bool findsFaces() const { return true; }
   /// Virtual lights to the coefficients of the cells.
-  virtual void fillCells(PassContext& frame, ShGrid::Level& level) {
+  virtual void fillCells(PassContext& frame, const ShGrid::Level& level, ClosedFaces::Level& surfaces) {
     const GridPlacement& grid = level.grid;
-    const gpu::BufferRef sums = frame.buffer(cellCount(grid) * kSumBytes, "virtual lights");
+    const gpu::BufferRef sums = frame.elements(resolve_lights::sums, cellCount(grid), "virtual lights");
     sums->clear();
     const BrickList lit = emptyBricks(frame, grid.resolution);
-    addLights(frame, level, *sums, lit);
+    addLights(frame, grid, surfaces, sums, lit);
     for (const gpu::TextureRef& channel : level.coefficients) channel->clear(glm::vec4(0.0f));
-    resolveShader::Parameters parameters{};
-    parameters.resolution = grid.resolution;
     // A clamped cosine has the mean cosine 2/3; 0 asks for that of the default lobe.
-    parameters.meanCosine = lobe == "cosine" ? 2.0f / 3.0f : 0.0f;
-    walkBricks(frame, frame.program(resolveShader::kProgram),
-               {resolveShader::parameters(parameters), resolveShader::sums(*sums),
-                resolveShader::brickList(*lit.list), resolveShader::red(*level.coefficients[0]),
-                resolveShader::green(*level.coefficients[1]), resolveShader::blue(*level.coefficients[2])},
+    const float meanCosine = lobe == Lobe::cosine ? 2.0f / 3.0f : 0.0f;
+    walkBricks(frame, frame.program(resolve_lights::kProgram),
+               {resolve_lights::parameters({grid.resolution, meanCosine}), resolve_lights::sums(sums),
+                images(level.coefficients)},
                lit);
   }
   /// Adds virtual lights to the sums of the cells, marks their bricks, and a barrier.
-  virtual void addLights(PassContext& frame, const ShGrid::Level& level, const gpu::Buffer& sums,
-                         const BrickList& lit) = 0;
+  virtual void addLights(PassContext& frame, const GridPlacement& grid, const ClosedFaces::Level& surfaces,
+                         const gpu::BufferRef& sums, const BrickList& lit) = 0;
 
   In<VoxelFragments> fragments{this, "fragments",
                                "surface samples; their voxels no larger than the finest cells"};
-  Param<int> levels{this, "levels", 2, {1, 10}, "nested grids, each of twice the size of the one inside"};
-  Param<int> resolution{this, "resolution", 32, {8, 128}, "cells along a side of each grid"};
+  Param<int> levels{this, "levels", 2, within(1, 10),
+                    "nested grids, each of twice the size of the one inside"};
+  Param<int> resolution{this, "resolution", 32, within(8, 128), "cells along a side of each grid"};
   Param<float> extent{
       this, "extent",
-      0.0f, {0.0f, 1e9f},
+      0.0f, within(0.0f, 1e9f),
       "m",  "side of the finest grid, around the camera; 0: as large as lets the coarsest hold the scene"};
-  Param<std::string> lobe{
-      this,
-      "lobe",
-      "forward",
-      {"forward", "cosine"},
+  Param<Lobe> lobe{
+      this, "lobe", Lobe::forward,
       "what a virtual light sends out: nothing backwards, or, as published, a clamped cosine, of which two bands let a seventh out at the back"};
-  Out<ShGrid> light{this, "light", "virtual point lights, W/sr, and closed faces"};
+  Out<ShGrid> light{this, "light", "virtual point lights, W/sr"};
+  Out<ClosedFaces> faces{this, "faces", "what surfaces close of the faces between the cells"};
 
  private:
   /// The faces that surfaces close, and how far these were moved.
-  void findFaces(PassContext& frame, ShGrid::Level& level) {
+  void findFaces(PassContext& frame, ClosedFaces::Level& level) {
     const GridPlacement& grid = level.grid;
     if (fragments->grid.voxelSize > grid.voxelSize * 1.001f)
       frame.warn(
           fmt::format("the fragments have voxels of {} m and the cells {} m: surfaces have holes; voxelise "
                       "with a higher resolution",
                       fragments->grid.voxelSize, grid.voxelSize));
-    const glm::ivec3 faces = grid.resolution + 1;
-    std::array<gpu::TextureRef, 3> parts, filled;
+    const glm::ivec3 size = grid.resolution + 1;
+    const auto empty = [&](gpu::Format format, const char* label) {
+      gpu::TextureRef texture = frame.volume(size, format, label);
+      texture->clear(glm::vec4(0.0f));
+      return texture;
+    };
+    Channels parts, filled;  // of the three axes
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      parts[axis] = cellTexture(frame, faces, gpu::Format::r32ui, "parts of faces");
-      parts[axis]->clear(glm::vec4(0.0f));
-      filled[axis] = cellTexture(frame, faces, gpu::Format::r32ui, "parts of faces, corners filled");
-      filled[axis]->clear(glm::vec4(0.0f));
+      parts[axis] = empty(gpu::Format::r32ui, "parts of faces");
+      filled[axis] = empty(gpu::Format::r32ui, "parts of faces, corners filled");
     }
-    const BrickList bricks = emptyBricks(frame, faces);
-    closeShader::Parameters parameters{};
-    parameters.listLow = fragments->grid.low;
-    parameters.listVoxel = fragments->grid.voxelSize;
-    parameters.gridLow = grid.low;
-    parameters.cellSize = grid.voxelSize;
-    parameters.resolution = faces;
-    frame.shaders().dispatchIndirect(
-        frame.program(closeShader::kProgram),
-        {closeShader::parameters(parameters), closeShader::fragmentCount(*fragments->count),
-         closeShader::fragments(*fragments->fragments), closeShader::partsX(*parts[0]),
-         closeShader::partsY(*parts[1]), closeShader::partsZ(*parts[2]),
-         closeShader::brickFlags(*bricks.flags), closeShader::brickList(*bricks.list)},
-        *fragments->count, sizeof(std::uint32_t));
-    frame.device().barrier();
+    const BrickList bricks = emptyBricks(frame, size);
+    forEachFragment(
+        frame, frame.program(close::kProgram),
+        {close::parameters({fragments->grid.low, fragments->grid.voxelSize, grid.low, grid.voxelSize, size}),
+         images(parts, kParts), close::brickFlags(bricks.flags), close::brickList(bricks.list)},
+        *fragments);
     for (int round = 0; round < 2; ++round) {
-      walkBricks(
-          frame, frame.program(fillShader::kProgram),
-          {fillShader::brickList(*bricks.list), fillShader::partsX(*parts[0]), fillShader::partsY(*parts[1]),
-           fillShader::partsZ(*parts[2]), fillShader::filledX(*filled[0]), fillShader::filledY(*filled[1]),
-           fillShader::filledZ(*filled[2])},
-          bricks);
+      walkBricks(frame, frame.program(fill_corners::kProgram),
+                 {images(parts, kParts), images(filled, kFilled)}, bricks);
       std::swap(parts, filled);
     }
-    level.closed = cellTexture(frame, faces, gpu::Format::rgba8, "closed faces");
-    level.moved = cellTexture(frame, faces, gpu::Format::rgba8, "moved surfaces");
-    level.closed->clear(glm::vec4(0.0f));
-    level.moved->clear(glm::vec4(0.0f));
-    walkBricks(frame, frame.program(resolveClosedShader::kProgram),
-               {resolveClosedShader::brickList(*bricks.list), resolveClosedShader::partsX(*parts[0]),
-                resolveClosedShader::partsY(*parts[1]), resolveClosedShader::partsZ(*parts[2]),
-                resolveClosedShader::closed(*level.closed), resolveClosedShader::moved(*level.moved)},
-               bricks);
+    level.closed = empty(gpu::Format::rgba8, "closed faces");
+    level.moved = empty(gpu::Format::rgba8, "moved surfaces");
+    walkBricks(
+        frame, frame.program(resolve_closed::kProgram),
+        {images(parts, kParts), resolve_closed::closed(level.closed), resolve_closed::moved(level.moved)},
+        bricks);
   }
 };
 
@@ -181,51 +158,41 @@ class InjectRsmPass : public Inject {
   In<ReflectiveShadowMap> map{this, "map", Presence::optional,
                               "what the lights see; without it only the environment shines"};
 
-  void addLights(PassContext& frame, const ShGrid::Level& level, const gpu::Buffer& sums,
-                 const BrickList& lit) override {
+  void addLights(PassContext& frame, const GridPlacement& grid, const ClosedFaces::Level& surfaces,
+                 const gpu::BufferRef& sums, const BrickList& lit) override {
     if (!map.present() || map->lightCount == 0) return;
-    const GridPlacement& grid = level.grid;
-    using gpu::Sampling;
     const gpu::TextureDescription& layers = map->flux->description();
-    for (const int step : {rsmShader::Variant::stepWeigh, rsmShader::Variant::stepAdd}) {
-      rsmShader::Variant variant;
-      variant.step = step;
-      std::vector<gpu::ResourceBinding> bindings{
-          rsmShader::parameters({grid.low, grid.voxelSize, grid.resolution}),
-          rsmShader::rsmPosition(*map->position, Sampling::nearest),
-          rsmShader::rsmNormal(*map->normal, Sampling::nearest),
-          rsmShader::rsmFlux(*map->flux, Sampling::nearest),
-          rsmShader::moved(*level.moved, Sampling::nearest),
-          rsmShader::sums(sums)};
-      if (step == rsmShader::Variant::stepWeigh) {
-        bindings.push_back(rsmShader::brickFlags(*lit.flags));
-        bindings.push_back(rsmShader::brickList(*lit.list));
-      }
-      frame.dispatch(frame.program(rsmShader::kProgram, variant.key()), bindings,
-                     {layers.width, layers.height, layers.depth}, kImageGroup);
-    }
+    using Variant = inject_rsm::Variant;
+    for (const int step : {Variant::stepWeigh, Variant::stepAdd})
+      frame.dispatch(
+          frame.program(Variant{step}),
+          {inject_rsm::parameters({grid.low, grid.voxelSize, grid.resolution}),
+           ReflectiveShadowMapBinding(*map), inject_rsm::moved(surfaces.moved, gpu::Sampling::nearest),
+           inject_rsm::sums(sums), inject_rsm::brickFlags(lit.flags), inject_rsm::brickList(lit.list)},
+          {layers.width, layers.height, layers.depth});
   }
 };
 
 class InjectVoxelsPass : public Inject {
+  enum class Albedo { mean, contrast };
+  friend constexpr auto words(Albedo) { return std::array{"mean", "contrast"}; }
+  enum class Normals { all, closest };
+  friend constexpr auto words(Normals) { return std::array{"all", "closest"}; }
+  enum class Area { covered, whole };
+  friend constexpr auto words(Area) { return std::array{"covered", "whole"}; }
+  enum class Voxels { mean, packed };
+  friend constexpr auto words(Voxels) { return std::array{"mean", "packed"}; }
+
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
                        "lights and their visibility; without it only the environment shines"};
-  Param<std::string> albedo{
-      this, "albedo", "mean", {"mean", "contrast"}, "of a voxel; as published: its most contrasting one"};
-  Param<std::string> normals{this,
-                             "normals",
-                             "all",
-                             {"all", "closest"},
-                             "that a light reaches; as published: only the one closest to its direction"};
-  Param<std::string> area{
-      this, "area", "covered", {"covered", "whole"}, "of a surface; as published: all of its voxel"};
+  Param<Albedo> albedo{this, "albedo", Albedo::mean, "of a voxel; as published: its most contrasting one"};
+  Param<Normals> normals{this, "normals", Normals::all,
+                         "that a light reaches; as published: only the one closest to its direction"};
+  Param<Area> area{this, "area", Area::covered, "of a surface; as published: all of its voxel"};
   Param<bool> twoSided{this, "two_sided", true,
                        "light on the back of a triangle counts; off, as published: only the front"};
-  Param<std::string> voxels{
-      this,
-      "voxels",
-      "mean",
-      {"mean", "packed"},
+  Param<Voxels> voxels{
+      this, "voxels", Voxels::mean,
       "what a voxel keeps of its surfaces: means, in the cells in front of them; or, as published (Listings 4.26 to 4.31), what wins an atomic maximum in the voxel that they lie in, lit at its centre: then lobe, albedo, normals, area and two_sided are the printed ones too"};
   Param<bool> asPublished{
       this, "as_published", false,
@@ -238,86 +205,58 @@ class InjectVoxelsPass : public Inject {
   }
 
   bool findsFaces() const override { return !asPublished; }
-  bool packed() const { return asPublished || voxels == "packed"; }
+  bool packed() const { return asPublished || voxels == Voxels::packed; }
 
-  void fillCells(PassContext& frame, ShGrid::Level& level) override {
-    if (!packed()) return Inject::fillCells(frame, level);
+  void fillCells(PassContext& frame, const ShGrid::Level& level, ClosedFaces::Level& surfaces) override {
+    if (!packed()) return Inject::fillCells(frame, level, surfaces);
     const GridPlacement& grid = level.grid;
-    level.packed = frame.buffer(cellCount(grid) * kPackedBytes, "packed voxels");
-    level.packed->clear();
-    frame.shaders().dispatchIndirect(
-        frame.program(packShader::kProgram),
-        {packShader::parameters(
-             {fragments->grid.low, fragments->grid.voxelSize, grid.low, grid.voxelSize, grid.resolution}),
-         packShader::fragmentCount(*fragments->count), packShader::fragments(*fragments->fragments),
-         packShader::words(*level.packed)},
-        *fragments->count, sizeof(std::uint32_t));
-    frame.device().barrier();
-    if (!shadow.present() || shadow->lightCount == 0) {
+    surfaces.packed = frame.elements(pack_voxels::words, cellCount(grid), "packed voxels");
+    surfaces.packed->clear();
+    forEachFragment(frame, frame.program(pack_voxels::kProgram),
+                    {pack_voxels::parameters({fragments->grid.low, fragments->grid.voxelSize, grid.low,
+                                              grid.voxelSize, grid.resolution}),
+                     pack_voxels::words(surfaces.packed)},
+                    *fragments);
+    const LightBinding lights(shadow);
+    if (lights.count == 0) {
       for (const gpu::TextureRef& channel : level.coefficients) channel->clear(glm::vec4(0.0f));
       return;
     }
-    lightPackedShader::Parameters parameters{};
-    parameters.gridLow = grid.low;
-    parameters.cellSize = grid.voxelSize;
-    parameters.resolution = grid.resolution;
-    parameters.largestFlux = largestFlux(frame.sceneDescription(), frame.snapshot());
-    parameters.lightCount = shadow->lightCount;
     frame.dispatch(
-        frame.program(lightPackedShader::kProgram),
-        {lightPackedShader::parameters(parameters), lightPackedShader::words(*level.packed),
-         lightPackedShader::lights(*shadow->lights), lightPackedShader::views(*shadow->views),
-         lightPackedShader::shadowDepth(*shadow->depth, gpu::Sampling::shadow),
-         lightPackedShader::red(*level.coefficients[0]), lightPackedShader::green(*level.coefficients[1]),
-         lightPackedShader::blue(*level.coefficients[2])},
-        grid.resolution, kCellGroup);
+        frame.program(light_packed::kProgram),
+        {light_packed::parameters({grid.low, grid.voxelSize, grid.resolution,
+                                   largestFlux(frame.sceneDescription(), frame.snapshot()), lights.count}),
+         light_packed::words(surfaces.packed), lights, images(level.coefficients)},
+        grid.resolution);
   }
 
-  void addLights(PassContext& frame, const ShGrid::Level& level, const gpu::Buffer& sums,
-                 const BrickList& lit) override {
-    if (!shadow.present() || shadow->lightCount == 0) return;
-    const GridPlacement& grid = level.grid;
-    const gpu::BufferRef collected = frame.buffer(cellCount(grid) * kVoxelBytes, "lit voxels");
+  void addLights(PassContext& frame, const GridPlacement& grid, const ClosedFaces::Level& surfaces,
+                 const gpu::BufferRef& sums, const BrickList& lit) override {
+    const LightBinding lights(shadow);
+    if (lights.count == 0) return;
+    const gpu::BufferRef collected = frame.elements(collect_voxels::voxels, cellCount(grid), "lit voxels");
     collected->clear();
-    collectShader::Parameters collect{};
-    collect.listLow = fragments->grid.low;
-    collect.listVoxel = fragments->grid.voxelSize;
-    collect.gridLow = grid.low;
-    collect.cellSize = grid.voxelSize;
-    collect.resolution = grid.resolution;
-    collect.twoSided = twoSided ? 1 : 0;
-    for (const int step : {collectShader::Variant::stepWeigh, collectShader::Variant::stepAdd}) {
-      collectShader::Variant variant;
-      variant.step = step;
-      std::vector<gpu::ResourceBinding> bindings{
-          collectShader::parameters(collect),
-          collectShader::fragmentCount(*fragments->count),
-          collectShader::fragments(*fragments->fragments),
-          collectShader::voxels(*collected),
-          collectShader::moved(*level.moved, gpu::Sampling::nearest),
-          collectShader::closed(*level.closed, gpu::Sampling::nearest)};
-      if (step == collectShader::Variant::stepWeigh) {
-        bindings.push_back(collectShader::brickFlags(*lit.flags));
-        bindings.push_back(collectShader::brickList(*lit.list));
-      }
-      frame.shaders().dispatchIndirect(frame.program(collectShader::kProgram, variant.key()), bindings,
-                                       *fragments->count, sizeof(std::uint32_t));
-      frame.device().barrier();
-    }
-    lightShader::Parameters parameters{};
-    parameters.gridLow = grid.low;
-    parameters.cellSize = grid.voxelSize;
-    parameters.resolution = grid.resolution;
-    parameters.largestFlux = largestFlux(frame.sceneDescription(), frame.snapshot());
-    parameters.lightCount = shadow->lightCount;
-    parameters.contrastAlbedo = albedo == "contrast" ? 1 : 0;
-    parameters.closestNormal = normals == "closest" ? 1 : 0;
-    parameters.wholeFaces = area == "whole" ? 1 : 0;
+    using Variant = collect_voxels::Variant;
+    for (const int step : {Variant::stepWeigh, Variant::stepAdd})
+      forEachFragment(
+          frame, frame.program(Variant{step}),
+          {collect_voxels::parameters({fragments->grid.low, fragments->grid.voxelSize, grid.low,
+                                       grid.voxelSize, grid.resolution, twoSided}),
+           collect_voxels::voxels(collected), collect_voxels::moved(surfaces.moved, gpu::Sampling::nearest),
+           collect_voxels::closed(surfaces.closed, gpu::Sampling::nearest),
+           collect_voxels::brickFlags(lit.flags), collect_voxels::brickList(lit.list)},
+          *fragments);
     walkBricks(
-        frame, frame.program(lightShader::kProgram),
-        {lightShader::parameters(parameters), lightShader::brickList(*lit.list),
-         lightShader::voxels(*collected), lightShader::sums(sums), lightShader::lights(*shadow->lights),
-         lightShader::views(*shadow->views), lightShader::shadowDepth(*shadow->depth, gpu::Sampling::shadow)},
+        frame, frame.program(light_voxels::kProgram),
+        {light_voxels::parameters({.gridLow = grid.low,
+                                   .cellSize = grid.voxelSize,
+                                   .resolution = grid.resolution,
+                                   .largestFlux = largestFlux(frame.sceneDescription(), frame.snapshot()),
+                                   .lightCount = lights.count,
+                                   .contrastAlbedo = albedo == Albedo::contrast,
+                                   .closestNormal = normals == Normals::closest,
+                                   .wholeFaces = area == Area::whole}),
+         light_voxels::voxels(collected), light_voxels::sums(sums), lights},
         lit);
   }
 };

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "lumivox/base/error.h"
-#include "lumivox/pipeline/light_samples.h"
 
 namespace lumivox::light_propagation_volumes {
 namespace {
@@ -66,62 +65,57 @@ std::vector<GridPlacement> placeGrids(const SceneSnapshot& snapshot, int levels,
   return grids;
 }
 
-float largestFlux(const Scene& scene, const SceneSnapshot& snapshot) {
-  const float radius = 0.5f * glm::length(snapshot.bounds.high - snapshot.bounds.low) * 1.01f;
-  constexpr int kEmitters = 64;  // samples of the emissive triangles: only their sum counts
-  float sum = 0.0f;
-  for (const LightSampleData& light : sampleLights(scene, snapshot, kEmitters, 1).samples) {
-    const float power = std::max({light.power.x, light.power.y, light.power.z});
-    const auto kind = static_cast<LightSampleKind>(static_cast<int>(light.positionKind.w));
-    // Through the sphere around the scene; over all directions; over the half sphere of a Lambert emitter.
-    if (kind == LightSampleKind::directional) sum += power * glm::pi<float>() * radius * radius;
-    if (kind == LightSampleKind::point || kind == LightSampleKind::spot)
-      sum += power * 4.0f * glm::pi<float>();
-    // Samples go by luminance: twice, for emitters of other colours.
-    if (kind == LightSampleKind::area) sum += 2.0f * power * glm::pi<float>();
-  }
-  return sum > 0.0f && std::isfinite(sum) ? sum : 1.0f;
-}
-
-gpu::TextureRef cellTexture(PassContext& frame, const glm::ivec3& resolution, gpu::Format format,
-                            const std::string& label) {
-  gpu::TextureDescription description;
-  description.kind = gpu::TextureKind::d3;
-  description.format = format;
-  description.width = resolution.x;
-  description.height = resolution.y;
-  description.depth = resolution.z;
-  return frame.texture(description, label);
-}
-
-std::array<gpu::TextureRef, 3> coefficientTextures(PassContext& frame, const glm::ivec3& resolution,
-                                                   const std::string& label) {
-  std::array<gpu::TextureRef, 3> result;
-  const char* const channels[] = {"red ", "green ", "blue "};
+Channels coefficientTextures(PassContext& frame, const glm::ivec3& resolution, const std::string& label) {
+  Channels result;
   for (std::size_t i = 0; i < 3; ++i)
-    result[i] = cellTexture(frame, resolution, gpu::Format::rgba32f, channels[i] + label);
+    result[i] = frame.volume(resolution, gpu::Format::rgba32f, kRgb[i] + (" " + label));
   return result;
 }
 
-const gpu::Texture& facesOrUnread(const gpu::TextureRef& faces, const ShGrid::Level& level) {
-  return faces ? *faces : *level.coefficients[0];
+shader::BindingSet sampled(const Channels& channels, gpu::Sampling sampling,
+                           const std::array<const char*, 3>& names) {
+  shader::BindingSet set;
+  for (std::size_t i = 0; i < 3; ++i) set.add(shader::SampledSlot{names[i]}(channels[i], sampling));
+  return set;
 }
 
-void requireFaces(const ShGrid& light) {
+shader::BindingSet sampled(const ShGrid::Level& level, gpu::Sampling sampling) {
+  return sampled(Channels{level.channel(0), level.channel(1), level.channel(2)}, sampling);
+}
+
+shader::BindingSet images(const Channels& channels, const std::array<const char*, 3>& names) {
+  shader::BindingSet set;
+  for (std::size_t i = 0; i < 3; ++i) set.add(shader::ImageSlot{names[i]}(channels[i]));
+  return set;
+}
+
+const gpu::TextureRef& facesOrUnread(const gpu::TextureRef& faces, const ShGrid::Level& level) {
+  return faces ? faces : level.coefficients[0];
+}
+
+void requireFlux(const ShGrid& light) {
+  if (light.quantity != ShGrid::Quantity::flux || light.unit != 1.0f)
+    throw Error(fmt::format(
+        "input 'light' holds {} in units of {}; expected the flux of each cell in units of 1 W/sr, "
+        "as light_propagation_volumes.inject_rsm and propagate make it",
+        name(light.quantity), light.unit));
+}
+
+void requireFaces(const ShGrid& light, const In<ClosedFaces>& faces) {
   for (std::size_t i = 0; i < light.levels.size(); ++i)
-    if (!light.levels[i].closed || !light.levels[i].moved)
+    if (!faces.present() || i >= faces->levels.size() || !faces->levels[i].closed || !faces->levels[i].moved)
       throw Error(fmt::format(
-          "level {} of the light has no closed faces or no moved surfaces; expected both, from an injection "
-          "without 'as_published on'",
+          "level {} of the light has no closed faces or no moved surfaces; expected both at input 'faces', from "
+          "an injection without 'as_published on'",
           i));
 }
 
-void requirePackedVoxels(const ShGrid& light) {
+void requirePackedVoxels(const ShGrid& light, const In<ClosedFaces>& faces) {
   for (std::size_t i = 0; i < light.levels.size(); ++i)
-    if (!light.levels[i].packed)
+    if (!faces.present() || i >= faces->levels.size() || !faces->levels[i].packed)
       throw Error(fmt::format(
-          "level {} of the light has no packed voxels, whose normals occlude as published; expected an "
-          "injection by inject_voxels with 'voxels packed' or 'as_published on'",
+          "level {} of the light has no packed voxels, whose normals occlude as published; expected them at "
+          "input 'faces', from an injection by inject_voxels with 'voxels packed' or 'as_published on'",
           i));
 }
 

@@ -4,14 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "lumivox/pipeline/grid_placement.h"
+#include "closed_faces.h"
 #include "lumivox/plugin/technique.h"
+#include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/grid_placement.h"
+#include "lumivox/toolkit/light_bounds.h"
 
 namespace lumivox::light_propagation_volumes {
 
-inline constexpr glm::ivec3 kCellGroup{4, 4, 4};   // local size of the passes over cells
-inline constexpr glm::ivec3 kImageGroup{8, 8, 1};  // and over pixels
-inline constexpr int kBrick = 4;                   // cells along a side of a brick, see propagate.comp
+inline constexpr int kBrick = 4;  // cells along a side of a brick, see propagate.comp
 
 /// The grids, finest first. Without an extent the coarsest holds the scene, and the finer ones lie around the
 /// camera, but no further out than the scene: what the camera cannot reach needs no cells. With an extent all
@@ -19,24 +20,32 @@ inline constexpr int kBrick = 4;                   // cells along a side of a br
 std::vector<GridPlacement> placeGrids(const SceneSnapshot& snapshot, int levels, int resolution,
                                       float finestExtent);
 
-/// The largest flux that the surfaces of the scene can reflect: all that its lights emit towards it, W, in
-/// the brightest channel; above 0.
-float largestFlux(const Scene& scene, const SceneSnapshot& snapshot);
+/// One volume for each colour channel.
+using Channels = std::array<gpu::TextureRef, 3>;
 
-gpu::TextureRef cellTexture(PassContext& frame, const glm::ivec3& resolution, gpu::Format format,
-                            const std::string& label);
+/// Coefficients, rgba32f.
+Channels coefficientTextures(PassContext& frame, const glm::ivec3& resolution, const std::string& label);
 
-/// One volume of coefficients for each colour channel, rgba32f.
-std::array<gpu::TextureRef, 3> coefficientTextures(PassContext& frame, const glm::ivec3& resolution,
-                                                   const std::string& label);
+/// Names of the bindings of all channels: to be read, written, summed up, and of the next coarser grid.
+inline constexpr std::array<const char*, 3> kRgb{"red", "green", "blue"},
+    kNext{"redNext", "greenNext", "blueNext"}, kTotal{"redTotal", "greenTotal", "blueTotal"},
+    kOutside{"redOutside", "greenOutside", "blueOutside"}, kParts{"partsX", "partsY", "partsZ"},
+    kFilled{"filledX", "filledY", "filledZ"};
+shader::BindingSet sampled(const Channels& channels, gpu::Sampling sampling,
+                           const std::array<const char*, 3>& names = kRgb);
+shader::BindingSet images(const Channels& channels, const std::array<const char*, 3>& names = kRgb);
+/// Of a grid that another technique may have made, without colour.
+shader::BindingSet sampled(const ShGrid::Level& level, gpu::Sampling sampling);
 
 /// For a binding whose texture is read only where there are faces: these, or any other volume in their place.
-const gpu::Texture& facesOrUnread(const gpu::TextureRef& faces, const ShGrid::Level& level);
+const gpu::TextureRef& facesOrUnread(const gpu::TextureRef& faces, const ShGrid::Level& level);
 
-/// Refuses light that no injection pass has made: without faces nobody knows what surfaces close.
-void requireFaces(const ShGrid& light);
+/// Refuses light that is not the flux of its cells, W/sr.
+void requireFlux(const ShGrid& light);
+/// Refuses light without faces for all of its levels: without them nobody knows what surfaces close.
+void requireFaces(const ShGrid& light, const In<ClosedFaces>& faces);
 /// Refuses light without the packed voxels that it was injected from.
-void requirePackedVoxels(const ShGrid& light);
+void requirePackedVoxels(const ShGrid& light, const In<ClosedFaces>& faces);
 
 /// Each registers the passes of its file.
 void addInject(TechniqueRegistry& registry);

@@ -8,11 +8,7 @@
 namespace lumivox::light_propagation_volumes {
 namespace {
 
-namespace startShader = shaders::light_propagation_volumes::start;
-namespace foldedShader = shaders::light_propagation_volumes::propagate;
-namespace plainShader = shaders::light_propagation_volumes::propagate_plain;
-
-using Channels = std::array<gpu::TextureRef, 3>;
+using namespace shaders::light_propagation_volumes;
 
 /// Mean projected area of a cube of side 1, a quarter of its surface (Cauchy): light of the same radiance L
 /// everywhere passes a cell of size h with the intensity L 3/2 h^2.
@@ -25,48 +21,44 @@ struct Travelling {
 };
 
 class PropagatePass : public Pass {
-  In<ShGrid> injected{this, "light", "virtual point lights and closed faces"};
-  Param<int> iterations{
-      this, "iterations", 64, {1, 4096}, "steps from cell to cell; light that has not arrived then is lost"};
-  Param<std::string> lobe{
-      this,
-      "lobe",
-      "straight",
-      {"straight", "cosine"},
+  enum class Lobe { straight, cosine };
+  friend constexpr auto words(Lobe) { return std::array{"straight", "cosine"}; }
+  enum class Border { open, mirror };
+  friend constexpr auto words(Border) { return std::array{"open", "mirror"}; }
+  enum class Method { folded, plain };
+  friend constexpr auto words(Method) { return std::array{"folded", "plain"}; }
+  enum class Transfer { conserving, published };
+  friend constexpr auto words(Transfer) { return std::array{"conserving", "published"}; }
+  enum class Occlusion { faces, normals };
+  friend constexpr auto words(Occlusion) { return std::array{"faces", "normals"}; }
+  enum class Grids { nested, apart };
+  friend constexpr auto words(Grids) { return std::array{"nested", "apart"}; }
+
+  In<ShGrid> injected{this, "light", "virtual point lights"};
+  In<ClosedFaces> faces{this, "faces", Presence::optional,
+                        "what surfaces close, from the same injection; always needed"};
+  Param<int> iterations{this, "iterations", 64, within(1, 4096),
+                        "steps from cell to cell; light that has not arrived then is lost"};
+  Param<Lobe> lobe{
+      this, "lobe", Lobe::straight,
       "flux goes on in the direction in which it came, or, as published, leaves as a clamped cosine around the face"};
-  Param<float> fluxAmplifier{
-      this, "flux_amplifier", 1.0f, {0.0f, 100.0f}, "", "factor of every step; 1 conserves energy"};
-  Param<float> occlusionAmplifier{this, "occlusion_amplifier",
-                                  1.0f, {0.0f, 100.0f},
-                                  "",   "factor of the closed share of a face; 0: nothing occludes"};
-  Param<std::string> border{this,
-                            "border",
-                            "open",
-                            {"open", "mirror"},
-                            "of the coarsest grid; a mirror loses no light, for checks of energy"};
-  Param<std::string> method{
-      this,
-      "method",
-      "folded",
-      {"folded", "plain"},
+  Param<float> fluxAmplifier{this, "flux_amplifier", 1.0f, within(0.0f, 100.0f),
+                             "factor of every step; 1 conserves energy"};
+  Param<float> occlusionAmplifier{this, "occlusion_amplifier", 1.0f, within(0.0f, 100.0f),
+                                  "factor of the closed share of a face; 0: nothing occludes"};
+  Param<Border> border{this, "border", Border::open,
+                       "of the coarsest grid; a mirror loses no light, for checks of energy"};
+  Param<Method> method{
+      this, "method", Method::folded,
       "of computing the same; plain: face by face as in Listing 4.32, slow, and the only one of the published transfer and occlusion"};
-  Param<std::string> transfer{
-      this,
-      "transfer",
-      "conserving",
-      {"conserving", "published"},
+  Param<Transfer> transfer{
+      this, "transfer", Transfer::conserving,
       "what leaves a cell arrives; or Listing 4.32: a quarter of it, as clamped cosines, none that is negative, and the cell keeps its light: the sum grows to 5/4 and more in every iteration"};
-  Param<std::string> occlusion{
-      this,
-      "occlusion",
-      "faces",
-      {"faces", "normals"},
+  Param<Occlusion> occlusion{
+      this, "occlusion", Occlusion::faces,
       "by the closed share of faces; or, as published (Listing 4.33), by a lobe around the normal in the sending voxel that is closest to the way: needs an injection with voxels packed"};
-  Param<std::string> grids{
-      this,
-      "grids",
-      "nested",
-      {"nested", "apart"},
+  Param<Grids> grids{
+      this, "grids", Grids::nested,
       "light comes in from the next coarser grid and from the environment; or, as published, every grid is alone"};
   Param<bool> asPublished{this, "as_published", false,
                           "Listings 4.32 and 4.33: the printed settings of transfer, occlusion and grids"};
@@ -76,20 +68,18 @@ class PropagatePass : public Pass {
   Reads readsFrom() const override { return Reads::environment; }
 
   void run(PassContext& frame) override {
-    if (occludesByNormals())
-      requirePackedVoxels(*injected);
-    else
-      requireFaces(*injected);
+    requireFlux(*injected);
+    if (occludesByNormals()) requirePackedVoxels(*injected, faces);
     // Light that comes in from outside passes the faces of the border.
-    if (!gridsApart()) requireFaces(*injected);
+    if (!occludesByNormals() || !gridsApart()) requireFaces(*injected, faces);
     ShGrid total = *injected, left = *injected;
     // From the coarsest to the finest: what comes into a grid from outside is in the coarser one.
     for (std::size_t i = injected->levels.size(); i-- > 0;) {
       const ShGrid::Level& level = injected->levels[i];
       const ShGrid::Level* outside = i + 1 < injected->levels.size() ? &total.levels[i + 1] : nullptr;
-      Channels sum = coefficientTextures(frame, level.grid.resolution, "sum of light");
-      const Travelling state = start(frame, level, outside, sum);
-      const int last = iterate(frame, level, state, sum);
+      const Channels sum = coefficientTextures(frame, level.grid.resolution, "sum of light");
+      const Travelling state = start(frame, level, faces->levels[i], outside, sum);
+      const int last = iterate(frame, level, faces->levels[i], state, sum);
       left.levels[i].coefficients = state.light[static_cast<std::size_t>(last)];
       // Where light stays in its cell, the last state is the sum already.
       total.levels[i].coefficients = publishedTransfer() ? left.levels[i].coefficients : sum;
@@ -98,104 +88,78 @@ class PropagatePass : public Pass {
     travelling = left;
   }
 
-  bool publishedTransfer() const { return asPublished || transfer == "published"; }
-  bool occludesByNormals() const { return asPublished || occlusion == "normals"; }
-  bool gridsApart() const { return asPublished || grids == "apart"; }
+  bool publishedTransfer() const { return asPublished || transfer == Transfer::published; }
+  bool occludesByNormals() const { return asPublished || occlusion == Occlusion::normals; }
+  bool gridsApart() const { return asPublished || grids == Grids::apart; }
 
-  Travelling start(PassContext& frame, const ShGrid::Level& level, const ShGrid::Level* outside,
-                   const Channels& sum) {
+  Travelling start(PassContext& frame, const ShGrid::Level& level, const ClosedFaces::Level& surfaces,
+                   const ShGrid::Level* outside, const Channels& sum) {
     const glm::ivec3 resolution = level.grid.resolution;
     Travelling result;
     for (std::size_t i = 0; i < 2; ++i) {
       result.light[i] = coefficientTextures(frame, resolution, "travelling light");
-      result.stamps[i] = cellTexture(frame, (resolution + kBrick - 1) / kBrick, gpu::Format::r32ui, "stamps");
+      result.stamps[i] = frame.volume((resolution + kBrick - 1) / kBrick, gpu::Format::r32ui, "stamps");
       result.stamps[i]->clear(glm::vec4(0.0f));
     }
     for (const gpu::TextureRef& texture : result.light[1]) texture->clear(glm::vec4(0.0f));
 
-    startShader::Variant variant;
-    startShader::Parameters parameters{};
-    parameters.resolution = resolution;
-    parameters.occlusion = occlusionAmplifier;
-    using gpu::Sampling;
-    std::vector<gpu::ResourceBinding> bindings{
-        startShader::red(*level.coefficients[0], Sampling::nearest),
-        startShader::green(*level.coefficients[1], Sampling::nearest),
-        startShader::blue(*level.coefficients[2], Sampling::nearest),
-        startShader::closed(facesOrUnread(level.closed, level), Sampling::nearest),
-        startShader::redNext(*result.light[0][0]),
-        startShader::greenNext(*result.light[0][1]),
-        startShader::blueNext(*result.light[0][2]),
-        startShader::redTotal(*sum[0]),
-        startShader::greenTotal(*sum[1]),
-        startShader::blueTotal(*sum[2]),
-        startShader::stampsNext(*result.stamps[0])};
+    start::Variant variant;
+    start::Parameters parameters{.resolution = resolution, .occlusion = occlusionAmplifier};
+    shader::BindingSet fromOutside;
     const float cell = level.grid.voxelSize;
     if (outside != nullptr && !gridsApart()) {
-      variant.outside = startShader::Variant::outsideGrid;
+      variant.outside = start::Variant::outsideGrid;
       const glm::vec3 size = glm::vec3(outside->grid.resolution) * outside->grid.voxelSize;
       // The same radiance passes cells in proportion to their faces.
       parameters.outsideShare = std::pow(cell / outside->grid.voxelSize, 2.0f);
       parameters.cellInOutside = glm::vec3(cell) / size;
       parameters.lowInOutside = (level.grid.low - outside->grid.low) / size;
-      bindings.push_back(startShader::redOutside(*outside->coefficients[0], Sampling::linear));
-      bindings.push_back(startShader::greenOutside(*outside->coefficients[1], Sampling::linear));
-      bindings.push_back(startShader::blueOutside(*outside->coefficients[2], Sampling::linear));
-    } else if (outside == nullptr && frame.traits().environment && border == "open" && !gridsApart()) {
-      variant.outside = startShader::Variant::outsideEnvironment;
+      fromOutside = sampled(outside->coefficients, gpu::Sampling::linear, kOutside);
+    } else if (outside == nullptr && frame.traits().environment && border == Border::open && !gridsApart()) {
+      variant.outside = start::Variant::outsideEnvironment;
       parameters.environment =
           glm::vec4(frame.sceneDescription().environment * (kMeanProjection * cell * cell), 0.0f);
     }
-    bindings.push_back(startShader::parameters(parameters));
-    startShader::Constants constants;
-    constants.cosineLobe = lobe == "cosine" ? 1 : 0;
-    frame.dispatch(frame.program(startShader::kProgram, variant.key(), constants.values()), bindings,
-                   resolution, kCellGroup);
+    start::Constants constants;
+    constants.cosineLobe = lobe == Lobe::cosine;
+    frame.dispatch(frame.program(variant, constants),
+                   {start::parameters(parameters), sampled(level, gpu::Sampling::nearest), fromOutside,
+                    start::closed(facesOrUnread(surfaces.closed, level), gpu::Sampling::nearest),
+                    images(result.light[0], kNext), images(sum, kTotal), start::stampsNext(result.stamps[0])},
+                   resolution);
     return result;
   }
 
   /// Which of the two sets holds the light after the last iteration.
-  int iterate(PassContext& frame, const ShGrid::Level& level, const Travelling& state, const Channels& sum) {
-    const bool plain = publishedTransfer() || occludesByNormals() || method == "plain";
-    plainShader::Variant variant;
-    if (occludesByNormals()) variant.occlusion = plainShader::Variant::occlusionNormals;
-    foldedShader::Constants foldedConstants;
-    plainShader::Constants plainConstants;
-    foldedConstants.cosineLobe = plainConstants.cosineLobe = lobe == "cosine" ? 1 : 0;
-    plainConstants.publishedTransfer = publishedTransfer() ? 1 : 0;
+  int iterate(PassContext& frame, const ShGrid::Level& level, const ClosedFaces::Level& surfaces,
+              const Travelling& state, const Channels& sum) {
+    const bool plain = publishedTransfer() || occludesByNormals() || method == Method::plain;
+    propagate_plain::Variant variant;
+    if (occludesByNormals()) variant.occlusion = propagate_plain::Variant::occlusionNormals;
+    propagate::Constants folded;
+    propagate_plain::Constants faceByFace;
+    folded.cosineLobe = faceByFace.cosineLobe = lobe == Lobe::cosine;
+    faceByFace.publishedTransfer = publishedTransfer();
     const shader::BoundProgram& program =
-        plain ? frame.program(plainShader::kProgram, variant.key(), plainConstants.values())
-              : frame.program(foldedShader::kProgram, {}, foldedConstants.values());
-    foldedShader::Parameters parameters{};
-    parameters.resolution = level.grid.resolution;
-    parameters.amplifier = fluxAmplifier;
-    parameters.occlusion = occlusionAmplifier;
-    parameters.mirrors = border == "mirror" ? 1 : 0;
-    using gpu::Sampling;
+        plain ? frame.program(variant, faceByFace) : frame.program(propagate::Variant{}, folded);
+    const glm::ivec3 wholeBricks = (level.grid.resolution + kBrick - 1) / kBrick * kBrick;
     for (int i = 0; i < iterations; ++i) {
       const auto now = static_cast<std::size_t>(i % 2), next = 1 - now;
-      parameters.stamp = i + 1;
       // What the last iteration brings has not passed its cell yet: it is still travelling.
-      parameters.addToTotal = i + 1 < iterations && !publishedTransfer() ? 1 : 0;
-      const Channels &from = state.light[now], &to = state.light[next];
-      std::vector<gpu::ResourceBinding> bindings{
-          foldedShader::parameters(parameters),
-          foldedShader::red(*from[0], Sampling::nearest),
-          foldedShader::green(*from[1], Sampling::nearest),
-          foldedShader::blue(*from[2], Sampling::nearest),
-          foldedShader::closed(facesOrUnread(level.closed, level), Sampling::nearest),
-          foldedShader::stamps(*state.stamps[now], Sampling::nearest),
-          foldedShader::redNext(*to[0]),
-          foldedShader::greenNext(*to[1]),
-          foldedShader::blueNext(*to[2]),
-          foldedShader::redTotal(*sum[0]),
-          foldedShader::greenTotal(*sum[1]),
-          foldedShader::blueTotal(*sum[2]),
-          foldedShader::stampsNext(*state.stamps[next])};
-      if (occludesByNormals()) bindings.push_back(plainShader::words(*level.packed));
-      const glm::ivec3 bricks = (level.grid.resolution + kBrick - 1) / kBrick;
-      frame.shaders().dispatch(program, bindings, glm::uvec3(bricks));
-      frame.device().barrier();
+      const bool passes = i + 1 < iterations && !publishedTransfer();
+      frame.dispatch(program,
+                     {propagate::parameters({.resolution = level.grid.resolution,
+                                             .stamp = i + 1,
+                                             .amplifier = fluxAmplifier,
+                                             .occlusion = occlusionAmplifier,
+                                             .mirrors = border == Border::mirror,
+                                             .addToTotal = passes}),
+                      sampled(state.light[now], gpu::Sampling::nearest),
+                      propagate::closed(facesOrUnread(surfaces.closed, level), gpu::Sampling::nearest),
+                      propagate::stamps(state.stamps[now], gpu::Sampling::nearest),
+                      images(state.light[next], kNext), images(sum, kTotal),
+                      propagate::stampsNext(state.stamps[next]), propagate_plain::words(surfaces.packed)},
+                     wholeBricks);
     }
     return iterations % 2;
   }

@@ -8,38 +8,32 @@
 namespace lumivox::volumetric_smoke {
 namespace {
 
-namespace marchShader = shaders::volumetric_smoke::march_as_published;
+namespace code = shaders::volumetric_smoke::march_as_published;
 
 class MarchAsPublishedPass : public Pass {
+  enum class Dither { asPublished, bayer };
+  friend constexpr auto words(Dither) { return std::array{"as_published", "bayer"}; }
+  enum class Cosine { asPublished, unitVectors };
+  friend constexpr auto words(Cosine) { return std::array{"as_published", "unit_vectors"}; }
+  enum class Phase { asPublished, normalised };
+  friend constexpr auto words(Phase) { return std::array{"as_published", "normalised"}; }
+
   In<GBuffer> gbuffer{this, "gbuffer", "where the rays end"};
   In<ScatteringGrid> media{this, "media",
                            "what they go through; of particles the count in a voxel is looked up"};
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
                        "lights and their visibility; without it nothing is scattered"};
-  Param<std::string> resolution{this,
-                                "resolution",
-                                "half",
-                                {"full", "half"},
-                                "one ray a pixel, or one for 2 x 2 pixels, to be upsampled"};
-  Param<int> steps{
-      this, "steps", 32, {1, 4096}, "steps from the camera to the surface, wherever the media are"};
-  Param<std::string> dither{this,
-                            "dither",
-                            "as_published",
-                            {"as_published", "bayer"},
-                            "the matrix of Listing 4.51 with its entry 0.22, or with 0.25 in its place"};
-  Param<std::string> cosine{
-      this,
-      "cosine",
-      "as_published",
-      {"as_published", "unit_vectors"},
+  Param<Resolution> resolution{this, "resolution", Resolution::half,
+                               "one ray a pixel, or one for 2 x 2 pixels, to be upsampled"};
+  Param<int> steps{this, "steps", 32, within(1, 4096),
+                   "steps from the camera to the surface, wherever the media are"};
+  Param<Dither> dither{this, "dither", Dither::asPublished,
+                       "the matrix of Listing 4.51 with its entry 0.22, or with 0.25 in its place"};
+  Param<Cosine> cosine{
+      this, "cosine", Cosine::asPublished,
       "that of Listing 4.52, of the ray's whole way, with half the longest side of the scene for a unit, and the light's position, or of "
       "unit vectors"};
-  Param<std::string> phase{this,
-                           "phase",
-                           "as_published",
-                           {"as_published", "normalised"},
-                           "the factor (1-g)^2 of Listing 4.53, or (1-g^2)"};
+  Param<Phase> phase{this, "phase", Phase::asPublished, "the factor (1-g)^2 of Listing 4.53, or (1-g^2)"};
   Out<Image> scattered{
       this, "scattered", Contributes::scattered, Needs::medium,
       "mean over the steps of irradiance times the phase function where there is light; with "
@@ -52,27 +46,24 @@ class MarchAsPublishedPass : public Pass {
 
   void run(PassContext& frame) override {
     const CameraView& camera = frame.snapshot().camera;
-    const int pixels = resolution == "half" ? 2 : 1;
-    const glm::ivec2 size = samplesOf(camera, pixels);
-    const Result result(frame, size.x, size.y);
+    const int perSample = resolution == Resolution::half ? 2 : 1;
+    const glm::ivec2 size = samplesOf(camera, perSample);
+    const Result result(frame, size);
     result.transmittance->clear(glm::vec4(1.0f));
     scattered = Image{result.scattered};
     transmittance = Image{result.transmittance};
-    if (!shadow.present() || shadow->lightCount == 0) {
+    const LightBinding lights(shadow);
+    if (lights.count == 0) {
       result.scattered->clear(glm::vec4(0.0f));
       return;
     }
     const MediaBinding bound(frame, *media);
-    marchShader::Variant variant;
-    variant.medium = bound.varying() ? marchShader::Variant::mediumVarying : marchShader::Variant::mediumEven;
-    marchShader::Constants constants;
+    code::Constants constants;
     constants.stepCount = steps;
-    constants.ditherIsPublished = dither == "as_published" ? 1 : 0;
-    constants.cosineIsPublished = cosine == "as_published" ? 1 : 0;
-    constants.phaseIsPublished = phase == "as_published" ? 1 : 0;
-    marchShader::Parameters parameters{};
-    parameters.size = size;
-    parameters.lightCount = shadow->lightCount;
+    constants.ditherIsPublished = dither == Dither::asPublished;
+    constants.cosineIsPublished = cosine == Cosine::asPublished;
+    constants.phaseIsPublished = phase == Phase::asPublished;
+    code::Parameters parameters{.size = size, .lightCount = lights.count};
     const Bounds& scene = frame.snapshot().gridBounds;
     const glm::vec3 extent = scene.high - scene.low;
     parameters.sceneCentre = 0.5f * (scene.low + scene.high);
@@ -85,17 +76,11 @@ class MarchAsPublishedPass : public Pass {
       if (i < all.size() && all[i].particles > 0 && all[i].radius > 0.0)
         amount = static_cast<float>(std::pow(double(medium.grid.voxelSize), 3.0) / particleMass(all[i]));
     }
-    using gpu::Sampling;
-    std::vector<gpu::ResourceBinding> bindings{marchShader::view(viewOf<marchShader::View>(camera, pixels)),
-                                               marchShader::parameters(parameters),
-                                               marchShader::gPosition(*gbuffer->position, Sampling::nearest),
-                                               marchShader::lights(*shadow->lights),
-                                               marchShader::views(*shadow->views),
-                                               marchShader::shadowDepth(*shadow->depth, Sampling::shadow),
-                                               marchShader::scatteredImage(*result.scattered)};
-    bound.addTo(bindings);
-    frame.dispatch(frame.program(marchShader::kProgram, variant.key(), constants.values()), bindings,
-                   {size, 1}, kImageGroup);
+    const code::Variant variant{bound.axis == MediaBinding::varying};
+    frame.dispatch(frame.program(variant, constants),
+                   {code::view(viewOf<code::View>(camera, perSample)), code::parameters(parameters),
+                    GBufferBinding(*gbuffer), lights, bound, code::scatteredImage(result.scattered)},
+                   {size, 1});
   }
 };
 

@@ -8,34 +8,15 @@
 #include <cmath>
 
 #include "lumivox/base/error.h"
-#include "lumivox/pipeline/grid_placement.h"
-#include "lumivox/pipeline/list_dispatch.h"
+#include "lumivox/toolkit/grid_placement.h"
 #include "volumetric_smoke_shaders.h"
 
 namespace lumivox::volumetric_smoke {
 namespace {
 
-namespace particlesShader = shaders::volumetric_smoke::particles;
-namespace insertShader = shaders::volumetric_smoke::insert;
-namespace densityShader = shaders::volumetric_smoke::density;
-namespace lightDepthShader = shaders::volumetric_smoke::light_depth;
-namespace marchShader = shaders::volumetric_smoke::march;
-namespace upsampleShader = shaders::volumetric_smoke::upsample;
-
-constexpr glm::ivec3 kParticleGroup{64, 1, 1};  // local sizes of the shaders
-constexpr glm::ivec3 kVoxelGroup{4, 4, 4};
+using namespace shaders::volumetric_smoke;
 
 constexpr double kUnitsPerParticle = 16777216.0;  // kUnits in insert.comp
-
-gpu::TextureDescription volumeOf(const glm::ivec3& size, gpu::Format format) {
-  gpu::TextureDescription description;
-  description.kind = gpu::TextureKind::d3;
-  description.format = format;
-  description.width = size.x;
-  description.height = size.y;
-  description.depth = size.z;
-  return description;
-}
 
 /// Sec. 4.5: the particle system. Table 2 calls it particle update.
 class ParticlesPass : public Pass {
@@ -51,22 +32,20 @@ class ParticlesPass : public Pass {
       const Medium& medium = media[i];
       if (medium.particles == 0) continue;
       const ParticleClock clock = particleClock(medium, frame.snapshot().time);
-      particlesShader::Parameters parameters{};
-      parameters.count = static_cast<std::uint32_t>(medium.particles);
-      parameters.seed = medium.seed;
-      parameters.lives = clock.lives;
-      parameters.share = clock.share;
-      parameters.life = static_cast<float>(medium.life);
-      parameters.spread = static_cast<float>(medium.spread);
-      parameters.drift = static_cast<float>(medium.drift);
-      parameters.rise = static_cast<float>(medium.rise);
+      const auto count = static_cast<std::uint32_t>(medium.particles);
       Particles::Group group{static_cast<int>(i), medium.particles, {}};
-      group.offsets =
-          frame.buffer(static_cast<std::uint64_t>(medium.particles) * sizeof(glm::vec4), "particles");
-      frame.dispatch(frame.program(particlesShader::kProgram),
-                     {particlesShader::parameters(parameters), particlesShader::offsets(*group.offsets)},
-                     listItems(static_cast<std::uint64_t>(medium.particles), kParticleGroup.x),
-                     kParticleGroup);
+      group.offsets = frame.elements(particles::offsets, count, "particles");
+      frame.dispatchList(frame.program(particles::kProgram),
+                         {particles::parameters({.count = count,
+                                                 .seed = medium.seed,
+                                                 .lives = clock.lives,
+                                                 .share = clock.share,
+                                                 .life = static_cast<float>(medium.life),
+                                                 .spread = static_cast<float>(medium.spread),
+                                                 .drift = static_cast<float>(medium.drift),
+                                                 .rise = static_cast<float>(medium.rise)}),
+                          particles::offsets(group.offsets)},
+                         count);
       result.groups.push_back(std::move(group));
     }
     particles = result;
@@ -75,20 +54,17 @@ class ParticlesPass : public Pass {
 
 /// Sec. 4.5, Listing 4.50: particles into the grid. Even media and volume files join here.
 class InsertPass : public Pass {
+  enum class Deposit { clouds, counts };
+  friend constexpr auto words(Deposit) { return std::array{"clouds", "counts"}; }
+
   In<Particles> particles{this, "particles", Presence::optional, "where the particles are"};
   In<OccupancyGrid> space{this, "space", Presence::optional,
                           "voxels that are solid: particles share out their mass among the free ones",
                           Needs::particles};
-  Param<int> resolution{this,
-                        "resolution",
-                        64,
-                        {8, kLargestGrid},
+  Param<int> resolution{this, "resolution", 64, within(8, kLargestGrid),
                         "voxels along the longest side of the box that holds all particles of a medium"};
-  Param<std::string> deposit{
-      this,
-      "deposit",
-      "clouds",
-      {"clouds", "counts"},
+  Param<Deposit> deposit{
+      this, "deposit", Deposit::clouds,
       "a particle as the cloud that it is, or all of it in the one voxel that holds its middle, as published"};
   Out<ScatteringGrid> media{this, "media", "density, extinction and scattering of every medium"};
 
@@ -129,7 +105,7 @@ class InsertPass : public Pass {
                    volume.resolution};
     result.density = frame.kept("density of medium " + result.name, &volume, [&] {
       const gpu::TextureRef texture =
-          frame.texture(volumeOf(volume.resolution, gpu::Format::r32f), "density of a volume file");
+          frame.volume(volume.resolution, gpu::Format::r32f, "density of a volume file");
       texture->uploadFloats(0, volume.values);
       return texture;
     });
@@ -143,82 +119,70 @@ class InsertPass : public Pass {
     // Trilinear densities end half a voxel outside of the grid.
     result.bounds.low = result.grid.low - 0.5f * voxelSize;
     result.bounds.high = result.grid.low + voxelSize * (glm::vec3(size) + 0.5f);
-    const gpu::TextureRef low = frame.texture(volumeOf(size, gpu::Format::r32ui), "particle units");
-    const gpu::TextureRef high =
-        frame.texture(volumeOf(size, gpu::Format::r32ui), "particle units, high words");
+    const gpu::TextureRef low = frame.volume(size, gpu::Format::r32ui, "particle units"),
+                          high = frame.volume(size, gpu::Format::r32ui, "particle units, high words");
     low->clear(glm::vec4(0.0f));
     high->clear(glm::vec4(0.0f));
-    insertShader::Parameters parameters{};
-    parameters.source = glm::vec3(medium.source - frame.snapshot().origin);
-    parameters.count = static_cast<std::uint32_t>(group.count);
-    parameters.gridLow = result.grid.low;
-    parameters.voxelSize = voxelSize;
-    parameters.resolution = size;
-    // A cloud smaller than a voxel could miss all centres.
-    parameters.radius = std::max(static_cast<float>(medium.radius), voxelSize);
-    insertShader::Variant variant;
-    variant.space = space.present();
-    variant.deposit =
-        deposit == "counts" ? insertShader::Variant::depositCounts : insertShader::Variant::depositClouds;
-    std::vector<gpu::ResourceBinding> bindings{insertShader::offsets(*group.offsets),
-                                               insertShader::lowWords(*low), insertShader::highWords(*high)};
-    if (variant.space) {
+    insert::Parameters parameters{.source = glm::vec3(medium.source - frame.snapshot().origin),
+                                  .count = static_cast<std::uint32_t>(group.count),
+                                  .gridLow = result.grid.low,
+                                  .voxelSize = voxelSize,
+                                  .resolution = size,
+                                  // A cloud smaller than a voxel could miss all centres.
+                                  .radius = std::max(static_cast<float>(medium.radius), voxelSize)};
+    gpu::TextureRef occupancy;
+    if (space.present()) {
       parameters.spaceLow = space->grid.low;
       parameters.spaceVoxelSize = space->grid.voxelSize;
-      bindings.push_back(insertShader::occupancy(*space->opacity, gpu::Sampling::nearest));
+      occupancy = space->opacity;
     }
-    bindings.push_back(insertShader::parameters(parameters));
-    frame.dispatch(frame.program(insertShader::kProgram, variant.key()), bindings,
-                   listItems(static_cast<std::uint64_t>(group.count), kParticleGroup.x), kParticleGroup);
+    using Variant = insert::Variant;
+    const Variant variant{space.present(),
+                          deposit == Deposit::counts ? Variant::depositCounts : Variant::depositClouds};
+    frame.dispatchList(frame.program(variant),
+                       {insert::parameters(parameters), insert::offsets(group.offsets), insert::lowWords(low),
+                        insert::highWords(high), insert::occupancy(occupancy, gpu::Sampling::nearest)},
+                       static_cast<std::uint64_t>(group.count));
 
-    result.density = frame.texture(volumeOf(size, gpu::Format::r32f), "density of particles");
+    result.density = frame.volume(size, gpu::Format::r32f, "density of particles");
     const double voxelVolume = std::pow(static_cast<double>(voxelSize), 3.0);
     const auto densityPerUnit = static_cast<float>(particleMass(medium) / kUnitsPerParticle / voxelVolume);
-    frame.dispatch(frame.program(densityShader::kProgram),
-                   {densityShader::parameters({size, densityPerUnit}), densityShader::lowWords(*low),
-                    densityShader::highWords(*high), densityShader::densityImage(*result.density)},
-                   size, kVoxelGroup);
+    frame.dispatch(frame.program(density::kProgram),
+                   {density::parameters({size, densityPerUnit}), density::lowWords(low),
+                    density::highWords(high), density::densityImage(result.density)},
+                   size);
   }
 };
 
 class MarchPass : public Pass {
+  enum class LightDepth { volume, march };
+  friend constexpr auto words(LightDepth) { return std::array{"volume", "march"}; }
+  enum class Start { dithered, middle };
+  friend constexpr auto words(Start) { return std::array{"dithered", "middle"}; }
+  enum class Phase { normalised, asPublished };
+  friend constexpr auto words(Phase) { return std::array{"normalised", "as_published"}; }
+
   In<GBuffer> gbuffer{this, "gbuffer", "where the rays end"};
   In<ScatteringGrid> media{this, "media", "what they go through"};
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
                        "lights and their visibility; without it media only dim"};
-  Param<std::string> resolution{this,
-                                "resolution",
-                                "half",
-                                {"full", "half"},
-                                "one ray a pixel, or one for 2 x 2 pixels, to be upsampled"};
-  Param<int> steps{this, "steps", 32, {1, 4096}, "steps along a ray's way through the media"};
-  Param<std::string> lightDepth{this,
-                                "light_depth",
-                                "volume",
-                                {"volume", "march"},
-                                "optical depth between media that vary and the lights: once a frame for a "
-                                "grid of points, or for every step of every ray"};
-  Param<int> lightResolution{
-      this, "light_resolution", 32, {4, 256}, "points along each side of that grid, for each light"};
+  Param<Resolution> resolution{this, "resolution", Resolution::half,
+                               "one ray a pixel, or one for 2 x 2 pixels, to be upsampled"};
+  Param<int> steps{this, "steps", 32, within(1, 4096), "steps along a ray's way through the media"};
+  Param<LightDepth> lightDepth{this, "light_depth", LightDepth::volume,
+                               "optical depth between media that vary and the lights: once a frame for a "
+                               "grid of points, or for every step of every ray"};
+  Param<int> lightResolution{this, "light_resolution", 32, within(4, 256),
+                             "points along each side of that grid, for each light"};
   Param<int> cells{
-      this,
-      "cells",
-      8,
-      {0, 1024},
+      this, "cells", 8, within(0, 1024),
       "cubes between voxels over which densities are integrated exactly, from every place of a step "
       "towards the eye and towards the lights; 0: looked at once a step, as published"};
-  Param<int> lightSteps{this, "light_steps", 32, {1, 1024}, "most steps of a march towards a light"};
-  Param<std::string> start{
-      this,
-      "start",
-      "dithered",
-      {"dithered", "middle"},
-      "where each step is looked at: another place in neighbouring pixels, or the middle"};
-  Param<std::string> phase{
-      this,
-      "phase",
-      "normalised",
-      {"normalised", "as_published"},
+  Param<int> lightSteps{this, "light_steps", 32, within(1, 1024), "most steps of a march towards a light"};
+  Param<Start> start{this, "start", Start::dithered,
+                     "where each step is looked at: another place in neighbouring pixels, or the middle"};
+  Param<Phase> phase{
+      this, "phase", Phase::normalised,
       "Henyey-Greenstein with the factor (1-g^2), or (1-g)^2, with which scattering loses energy"};
   Out<Image> scattered{
       this, "scattered", Contributes::scattered, Needs::medium,
@@ -232,53 +196,37 @@ class MarchPass : public Pass {
 
   void run(PassContext& frame) override {
     const CameraView& camera = frame.snapshot().camera;
-    const int pixels = resolution == "half" ? 2 : 1;
-    const glm::ivec2 size = samplesOf(camera, pixels);
-    const Result result(frame, size.x, size.y);
+    const int perSample = resolution == Resolution::half ? 2 : 1;
+    const glm::ivec2 size = samplesOf(camera, perSample);
+    const Result result(frame, size);
     const MediaBinding bound(frame, *media);
-
-    marchShader::Variant variant;
-    variant.medium = bound.varying() ? marchShader::Variant::mediumVarying : marchShader::Variant::mediumEven;
-    variant.lights = shadow.present() && shadow->lightCount > 0;
-    marchShader::Constants constants;
+    const LightBinding lights(shadow);
+    march::Constants constants;
     constants.stepCount = steps;
     constants.lightSteps = lightSteps;
     constants.exactCells = cells;
-    constants.dithered = start == "dithered" ? 1 : 0;
-    constants.phaseIsPublished = phase == "as_published" ? 1 : 0;
-    marchShader::Parameters parameters{};
-    parameters.size = size;
-    parameters.lightCount = variant.lights != 0 ? shadow->lightCount : 0;
-
-    using gpu::Sampling;
+    constants.dithered = start == Start::dithered;
+    constants.phaseIsPublished = phase == Phase::asPublished;
+    march::Parameters parameters{.size = size, .lightCount = lights.count};
     gpu::TextureRef transmittances;
-    std::vector<gpu::ResourceBinding> bindings{marchShader::view(viewOf<marchShader::View>(camera, pixels)),
-                                               marchShader::gPosition(*gbuffer->position, Sampling::nearest),
-                                               marchShader::scatteredImage(*result.scattered),
-                                               marchShader::transmittanceImage(*result.transmittance)};
-    if (variant.lights != 0) {
-      bindings.push_back(marchShader::lights(*shadow->lights));
-      bindings.push_back(marchShader::views(*shadow->views));
-      bindings.push_back(marchShader::shadowDepth(*shadow->depth, Sampling::shadow));
-      if (bound.varying() && lightDepth == "volume")
-        transmittances = makeTransmittances(frame, bound, parameters);
-    }
-    if (transmittances) {
-      variant.lightDepth = marchShader::Variant::lightDepthVolume;
-      bindings.push_back(marchShader::lightTransmittance(*transmittances, Sampling::linear));
-    }
-    bindings.push_back(marchShader::parameters(parameters));
-    bound.addTo(bindings);
-    frame.dispatch(frame.program(marchShader::kProgram, variant.key(), constants.values()), bindings,
-                   {size, 1}, kImageGroup);
+    if (lights.count > 0 && bound.axis == MediaBinding::varying && lightDepth == LightDepth::volume)
+      transmittances = makeTransmittances(frame, bound, lights, parameters);
+    const march::Variant variant{bound.axis == MediaBinding::varying, lights.count > 0,
+                                 transmittances != nullptr};
+    frame.dispatch(frame.program(variant, constants),
+                   {march::view(viewOf<march::View>(camera, perSample)), march::parameters(parameters),
+                    GBufferBinding(*gbuffer), lights, bound,
+                    march::lightTransmittance(transmittances, gpu::Sampling::linear),
+                    march::scatteredImage(result.scattered), march::transmittanceImage(result.transmittance)},
+                   {size, 1});
     scattered = Image{result.scattered};
     transmittance = Image{result.transmittance};
   }
 
   /// Those to all lights side by side along z. Null where so many lights do not fit into a texture.
   gpu::TextureRef makeTransmittances(PassContext& frame, const MediaBinding& bound,
-                                     marchShader::Parameters& parameters) {
-    const int lightCount = parameters.lightCount;
+                                     const LightBinding& lights, march::Parameters& parameters) {
+    const int lightCount = lights.count;
     constexpr float kSpacings = 2.0f;
     constexpr int kFewest = 4;  // points along a side that are still a grid
     const int side = std::min<int>(lightResolution, frame.device().info().maxTextureSize3d / lightCount);
@@ -300,21 +248,12 @@ class MarchPass : public Pass {
     const glm::vec3 spacing = (box.high - box.low) / static_cast<float>(side);
     parameters.nearReach = cells > 0 ? kSpacings * std::max({spacing.x, spacing.y, spacing.z}) : 0.0f;
     const glm::ivec3 size(side, side, side * lightCount);
-    gpu::TextureRef transmittances =
-        frame.texture(volumeOf(size, gpu::Format::rgba32f), "transmittances to the lights");
-    lightDepthShader::Variant variant;
-    variant.medium = lightDepthShader::Variant::mediumVarying;
-    lightDepthShader::Parameters values{};
-    values.boxLow = box.low;
-    values.side = side;
-    values.boxHigh = box.high;
-    values.lightCount = lightCount;
-    values.mostSteps = lightSteps;
-    std::vector<gpu::ResourceBinding> bindings{lightDepthShader::parameters(values),
-                                               lightDepthShader::lights(*shadow->lights),
-                                               lightDepthShader::transmittanceImage(*transmittances)};
-    bound.addTo(bindings);
-    frame.dispatch(frame.program(lightDepthShader::kProgram, variant.key()), bindings, size, kVoxelGroup);
+    gpu::TextureRef transmittances = frame.volume(size, gpu::Format::rgba32f, "transmittances to the lights");
+    using Variant = light_depth::Variant;
+    frame.dispatch(frame.program(Variant{Variant::mediumVarying}),
+                   {light_depth::parameters({box.low, side, box.high, lightCount, lightSteps}), lights, bound,
+                    light_depth::transmittanceImage(transmittances)},
+                   size);
     return transmittances;
   }
 };
@@ -325,11 +264,7 @@ class UpsamplePass : public Pass {
   In<Image> scatteredSamples{this, "scattered", "of the march"};
   In<Image> transmittanceSamples{this, "transmittance", "of the march"};
   Param<float> similarity{
-      this,
-      "similarity",
-      0.05f,
-      {1e-4f, 10.0f},
-      "",
+      this, "similarity", 0.05f, within(1e-4f, 10.0f),
       "difference of the ends of two rays, as a share of their length, from which on they "
       "are no longer alike"};
   Out<Image> scattered{this, "scattered", Contributes::scattered, Needs::medium,
@@ -344,21 +279,16 @@ class UpsamplePass : public Pass {
     const CameraView& camera = frame.snapshot().camera;
     // By either side: half of one pixel is one.
     const gpu::TextureDescription& samples = scatteredSamples->texture->description();
-    const int pixels = samples.width < camera.width || samples.height < camera.height ? 2 : 1;
-    const Result result(frame, camera.width, camera.height);
-    const MediaBinding bound(frame, *media);
-    using gpu::Sampling;
-    std::vector<gpu::ResourceBinding> bindings{
-        upsampleShader::view(viewOf<upsampleShader::View>(camera, pixels)),
-        upsampleShader::parameters({similarity}),
-        upsampleShader::gPosition(*gbuffer->position, Sampling::nearest),
-        upsampleShader::scatteredSamples(*scatteredSamples->texture, Sampling::nearest),
-        upsampleShader::transmittanceSamples(*transmittanceSamples->texture, Sampling::nearest),
-        upsampleShader::scatteredImage(*result.scattered),
-        upsampleShader::transmittanceImage(*result.transmittance)};
-    bound.addTo(bindings);
-    frame.dispatch(frame.program(upsampleShader::kProgram), bindings, {camera.width, camera.height, 1},
-                   kImageGroup);
+    const int perSample = samples.width < camera.width || samples.height < camera.height ? 2 : 1;
+    const Result result(frame, {camera.width, camera.height});
+    frame.dispatch(
+        frame.program(upsample::kProgram),
+        {upsample::view(viewOf<upsample::View>(camera, perSample)), upsample::parameters({similarity}),
+         GBufferBinding(*gbuffer), MediaBinding(frame, *media),
+         upsample::scatteredSamples(scatteredSamples->texture, gpu::Sampling::nearest),
+         upsample::transmittanceSamples(transmittanceSamples->texture, gpu::Sampling::nearest),
+         upsample::scatteredImage(result.scattered), upsample::transmittanceImage(result.transmittance)},
+        pixels(frame));
     scattered = Image{result.scattered};
     transmittance = Image{result.transmittance};
   }

@@ -1,12 +1,17 @@
 // What the marches through media share.
 #pragma once
 
-#include "lumivox/pipeline/media.h"
 #include "lumivox/plugin/technique.h"
+#include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/media.h"
 
 namespace lumivox::volumetric_smoke {
 
-inline constexpr glm::ivec3 kImageGroup{8, 8, 1};  // local size of the shaders
+// Of both marches.
+enum class Resolution { full, half };
+constexpr auto words(Resolution) {
+  return std::array{"full", "half"};
+}
 
 /// Block View of range.glsl. Its mirrors in the shaders' headers have the same members.
 template <class View>
@@ -28,13 +33,10 @@ inline glm::ivec2 samplesOf(const CameraView& camera, int pixelsPerSample) {
 /// Two images: scattered radiance and transmittance.
 struct Result {
   gpu::TextureRef scattered, transmittance;
-  Result(PassContext& frame, int width, int height) {
-    gpu::TextureDescription description;
-    description.format = gpu::Format::rgba32f;
-    description.width = width;
-    description.height = height;
-    scattered = frame.texture(description, "scattered radiance");
-    transmittance = frame.texture(description, "transmittance");
+  Result(PassContext& frame, const glm::ivec2& size) {
+    const gpu::TextureDescription image{gpu::TextureKind::d2, gpu::Format::rgba32f, size.x, size.y, 1, 1};
+    scattered = frame.texture(image, "scattered radiance");
+    transmittance = frame.texture(image, "transmittance");
   }
 };
 

@@ -19,9 +19,8 @@ void Aside::clear() {
 }
 
 void Aside::workOff(PassContext& frame, const shader::BoundProgram& program,
-                    const std::vector<gpu::ResourceBinding>& bindings) const {
-  frame.shaders().dispatchIndirect(program, bindings, *buffer_);
-  frame.device().barrier();
+                    const shader::BindingSet& bindings) const {
+  frame.dispatchIndirect(program, bindings, *buffer_);
 }
 
 }  // namespace lumivox::voxelization

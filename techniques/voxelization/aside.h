@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "lumivox/pipeline/pass.h"
 
@@ -15,12 +14,12 @@ class Aside {
   /// Room for so many items.
   Aside(PassContext& frame, std::uint64_t mostItems);
 
-  const gpu::Buffer& buffer() const { return *buffer_; }
+  const gpu::BufferRef& buffer() const { return buffer_; }
   /// Before the dispatch that puts items aside.
   void clear();
   /// Behind that dispatch and its barrier; a barrier follows.
   void workOff(PassContext& frame, const shader::BoundProgram& program,
-               const std::vector<gpu::ResourceBinding>& bindings) const;
+               const shader::BindingSet& bindings) const;
 
  private:
   gpu::BufferRef buffer_;

@@ -4,6 +4,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "lumivox/base/log.h"
+#include "voxelization_shaders.h"
 
 namespace lumivox::voxelization {
 
@@ -29,6 +30,13 @@ void AtlasTexels::update(PassContext& frame, double texelSize) {
   triangles_ = uploaded(triangles, "atlas texels: triangles");
   places_ = uploaded(places, "atlas texels: places");
   texelSize_ = texelSize;
+}
+
+shader::BindingSet AtlasTexels::bindings(const AtlasPart& texels) const {
+  using Texels = shaders::voxelization::Texels;
+  return {shader::StorageSlot{"TexelTriangles"}(triangles_), shader::StorageSlot{"TexelPlaces"}(places_),
+          shader::UniformSlot<Texels>{"Texels"}(
+              {static_cast<int>(texels.firstTexel), static_cast<int>(texels.texelCount)})};
 }
 
 AtlasPart AtlasTexels::texelsOf(PassContext& frame, const SceneDraw& draw) const {

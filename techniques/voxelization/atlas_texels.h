@@ -13,8 +13,8 @@ class AtlasTexels {
   /// For texels of this size at rest, in metres.
   void update(PassContext& frame, double texelSize);
 
-  const gpu::Buffer& triangles() const { return *triangles_; }
-  const gpu::Buffer& places() const { return *places_; }
+  /// Of all texels; `texels` are those that are looked at.
+  shader::BindingSet bindings(const AtlasPart& texels) const;
   /// Those of one draw of the scene.
   AtlasPart texelsOf(PassContext& frame, const SceneDraw& draw) const;
 

@@ -10,11 +10,7 @@
 namespace lumivox::voxelization {
 namespace {
 
-namespace claimShader = shaders::voxelization::average_claim;
-namespace numberShader = shaders::voxelization::average_number;
-namespace brightestShader = shaders::voxelization::average_brightest;
-namespace addShader = shaders::voxelization::average_add;
-namespace resolveShader = shaders::voxelization::average_resolve;
+using namespace shaders::voxelization;
 
 class AveragePass : public Pass {
   In<VoxelFragments> fragments{this, "fragments", "surface samples"};
@@ -40,7 +36,7 @@ class AveragePass : public Pass {
 
   static gpu::TextureRef emptyVolume(PassContext& frame, const GridPlacement& grid, gpu::Format format,
                                      const char* label) {
-    gpu::TextureRef texture = frame.texture(volumeOf(grid, format), label);
+    gpu::TextureRef texture = frame.volume(grid.resolution, format, label);
     texture->clear(glm::vec4(0.0f));
     return texture;
   }
@@ -50,15 +46,11 @@ class AveragePass : public Pass {
     slots.numbers = emptyVolume(frame, fragments->grid, gpu::Format::r32ui, "slots of voxels");
     slots.count = countBuffer(frame, "slot count");
     slots.count->clear();
-    slots.voxels = frame.buffer(std::max<std::uint64_t>(fragments->capacity, 1) * sizeof(std::uint32_t),
-                                "voxels of slots");
-    frame.shaders().dispatchIndirect(
-        frame.program(claimShader::kProgram),
-        {claimShader::fragmentCount(*fragments->count), claimShader::fragments(*fragments->fragments),
-         claimShader::slotCount(*slots.count), claimShader::slotVoxels(*slots.voxels),
-         claimShader::slots(*slots.numbers)},
-        *fragments->count, kGroupsOffset);
-    frame.device().barrier();
+    slots.voxels = frame.elements(average_claim::slotVoxels, fragments->capacity, "voxels of slots");
+    const shader::BindingSet claimed{average_claim::slotVoxels(slots.voxels),
+                                     average_claim::slotCount(slots.count),
+                                     average_claim::slots(slots.numbers)};
+    forEachFragment(frame, frame.program(average_claim::kProgram), claimed, *fragments);
     // A first guess: surfaces fill about as many voxels as six sides of the grid, some in two layers; never
     // more than there are fragments.
     const glm::ivec3& size = fragments->grid.resolution;
@@ -71,93 +63,60 @@ class AveragePass : public Pass {
       room_ = inSteps(count);
       return false;
     });
-    slots.fragments = frame.buffer(slots.room * sizeof(std::uint32_t), "fragments of slots");
-    frame.shaders().dispatchIndirect(
-        frame.program(numberShader::kProgram),
-        {numberShader::slotCount(*slots.count), numberShader::slotVoxels(*slots.voxels),
-         numberShader::fragmentsOfSlot(*slots.fragments), numberShader::slots(*slots.numbers)},
-        *slots.count, kGroupsOffset);
-    frame.device().barrier();
+    slots.fragments = frame.elements(average_number::fragmentsOfSlot, slots.room, "fragments of slots");
+    frame.dispatchIndirect(frame.program(average_number::kProgram),
+                           {claimed, average_number::fragmentsOfSlot(slots.fragments)}, *slots.count,
+                           kGroupsOffset);
     return slots;
-  }
-
-  /// The largest emission of a fragment of each slot.
-  gpu::BufferRef brightestOfSlots(PassContext& frame, const Slots& slots) const {
-    gpu::BufferRef brightest = frame.buffer(slots.room * sizeof(std::uint32_t), "brightest of slots");
-    brightest->clear();
-    frame.shaders().dispatchIndirect(
-        frame.program(brightestShader::kProgram),
-        {brightestShader::fragmentCount(*fragments->count), brightestShader::fragments(*fragments->fragments),
-         brightestShader::brightest(*brightest), brightestShader::slots(*slots.numbers)},
-        *fragments->count, kGroupsOffset);
-    frame.device().barrier();
-    return brightest;
   }
 
   void sumAndResolve(PassContext& frame) {
     const Slots slots = claimSlots(frame);
-    const bool withAttributes = attributes.wanted();
-    const bool withEmission = withAttributes && frame.traits().emission;
-    const auto zeroed = [&](std::uint64_t wordsPerSlot, const char* label) {
+    const GridPlacement& grid = fragments->grid;
+    const int withAttributes = attributes.wanted(), withEmission = withAttributes && frame.traits().emission;
+    const auto zeroed = [&](bool needed, std::uint64_t wordsPerSlot, const char* label) -> gpu::BufferRef {
+      if (!needed) return nullptr;
       gpu::BufferRef buffer = frame.buffer(slots.room * wordsPerSlot * sizeof(std::uint32_t), label);
       buffer->clear();
       return buffer;
     };
-    const gpu::BufferRef coverage = zeroed(1, "sums of coverage");
-    gpu::BufferRef albedo, normal, emission, brightest;
-    const GridPlacement& grid = fragments->grid;
-    addShader::Variant adding;
-    resolveShader::Variant resolving;
-    adding.attributes = resolving.attributes = withAttributes;
-    adding.emission = resolving.emission = withEmission;
-    resolving.opacity = opacity.wanted();
-    const addShader::Averaging averaging{grid.resolution,
-                                         fragments->coverage == VoxelFragments::Coverage::sum ? 1 : 0};
-    std::vector<gpu::ResourceBinding> add{addShader::averaging(averaging),
-                                          addShader::fragmentCount(*fragments->count),
-                                          addShader::fragments(*fragments->fragments),
-                                          addShader::fragmentsOfSlot(*slots.fragments),
-                                          addShader::coverageSums(*coverage),
-                                          addShader::slots(*slots.numbers)};
-    std::vector<gpu::ResourceBinding> resolve{
-        resolveShader::averaging(averaging), resolveShader::slotCount(*slots.count),
-        resolveShader::slotVoxels(*slots.voxels), resolveShader::fragmentsOfSlot(*slots.fragments),
-        resolveShader::coverageSums(*coverage)};
+    const gpu::BufferRef brightest = zeroed(withEmission, 1, "brightest of slots"),
+                         coverage = zeroed(true, 1, "sums of coverage"),
+                         albedo = zeroed(withAttributes, 3, "sums of albedo"),
+                         normal = zeroed(withAttributes, 3, "sums of normals"),
+                         emission = zeroed(withEmission, 3, "sums of emission");
+    AttributeGrid averages{grid, nullptr, nullptr, nullptr};
+    OccupancyGrid covered{grid, nullptr};
     if (withAttributes) {
-      AttributeGrid result;
-      result.grid = grid;
-      result.albedo = emptyVolume(frame, grid, gpu::Format::rgba16f, "mean albedo");
-      result.normal = emptyVolume(frame, grid, gpu::Format::rgba16f, "mean normal");
-      albedo = zeroed(3, "sums of albedo");
-      normal = zeroed(3, "sums of normals");
-      add.insert(add.end(), {addShader::albedoSums(*albedo), addShader::normalSums(*normal)});
-      resolve.insert(resolve.end(), {resolveShader::albedoSums(*albedo), resolveShader::normalSums(*normal),
-                                     resolveShader::albedoImage(*result.albedo),
-                                     resolveShader::normalImage(*result.normal)});
-      if (withEmission) {
-        result.emission = emptyVolume(frame, grid, gpu::Format::rgba32f, "mean emission");
-        emission = zeroed(3, "sums of emission");
-        brightest = brightestOfSlots(frame, slots);
-        add.insert(add.end(), {addShader::emissionSums(*emission), addShader::brightest(*brightest)});
-        resolve.insert(resolve.end(),
-                       {resolveShader::emissionSums(*emission), resolveShader::brightest(*brightest),
-                        resolveShader::emissionImage(*result.emission)});
-      }
-      attributes = result;
+      averages.albedo = emptyVolume(frame, grid, gpu::Format::rgba16f, "mean albedo");
+      averages.normal = emptyVolume(frame, grid, gpu::Format::rgba16f, "mean normal");
     }
-    if (opacity.wanted()) {
-      OccupancyGrid result;
-      result.grid = grid;
-      result.opacity = emptyVolume(frame, grid, gpu::Format::r8, "opacity");
-      resolve.push_back(resolveShader::opacityImage(*result.opacity));
-      opacity = result;
+    if (withEmission) {
+      averages.emission = emptyVolume(frame, grid, gpu::Format::rgba32f, "mean emission");
+      forEachFragment(frame, frame.program(average_brightest::kProgram),
+                      {average_brightest::brightest(brightest), average_brightest::slots(slots.numbers)},
+                      *fragments);
     }
-    frame.shaders().dispatchIndirect(frame.program(addShader::kProgram, adding.key()), add, *fragments->count,
-                                     kGroupsOffset);
-    frame.device().barrier();
-    frame.shaders().dispatchIndirect(frame.program(resolveShader::kProgram, resolving.key()), resolve,
-                                     *slots.count, kGroupsOffset);
-    frame.device().barrier();
+    if (opacity.wanted()) covered.opacity = emptyVolume(frame, grid, gpu::Format::r8, "opacity");
+    const shader::BindingSet sums{
+        average_add::averaging({grid.resolution, fragments->coverage == VoxelFragments::Coverage::sum}),
+        average_add::fragmentsOfSlot(slots.fragments),
+        average_add::coverageSums(coverage),
+        average_add::albedoSums(albedo),
+        average_add::normalSums(normal),
+        average_add::emissionSums(emission),
+        average_add::brightest(brightest)};
+    forEachFragment(frame, frame.program(average_add::Variant{withAttributes, withEmission}),
+                    {sums, average_add::slots(slots.numbers)}, *fragments);
+    const average_resolve::Variant resolving{withAttributes, withEmission, opacity.wanted()};
+    frame.dispatchIndirect(
+        frame.program(resolving),
+        {sums, average_resolve::slotCount(slots.count), average_resolve::slotVoxels(slots.voxels),
+         average_resolve::albedoImage(averages.albedo), average_resolve::normalImage(averages.normal),
+         average_resolve::emissionImage(averages.emission), average_resolve::opacityImage(covered.opacity)},
+        *slots.count, kGroupsOffset);
+    if (withAttributes) attributes = averages;
+    if (opacity.wanted()) opacity = covered;
   }
 
   void run(PassContext& frame) override {

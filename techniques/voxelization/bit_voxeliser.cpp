@@ -29,24 +29,13 @@ const gpu::Texture& BitVoxeliser::surfaceOf(const Words& words) {
 }
 
 gpu::TextureRef bitWords(PassContext& frame, const GridPlacement& grid, const char* label) {
-  gpu::TextureDescription description;
-  description.kind = gpu::TextureKind::d3;
-  description.format = gpu::Format::r32ui;
-  const glm::ivec3 size = wordCount(grid);
-  description.width = size.x;
-  description.height = size.y;
-  description.depth = size.z;
-  gpu::TextureRef words = frame.texture(description, label);
+  gpu::TextureRef words = frame.volume(wordCount(grid), gpu::Format::r32ui, label);
   words->clear(glm::vec4(0.0f));
   return words;
 }
 
 void markFragments(PassContext& frame, const VoxelFragments& fragments, const gpu::Texture& words) {
-  frame.shaders().dispatchIndirect(frame.program(markShader::kProgram),
-                                   {markShader::count(*fragments.count),
-                                    markShader::fragments(*fragments.fragments), markShader::words(words)},
-                                   *fragments.count, sizeof(std::uint32_t));
-  frame.device().barrier();
+  forEachFragment(frame, frame.program(markShader::kProgram), {markShader::words(words)}, fragments);
 }
 
 gpu::TextureRef BitVoxeliser::wordsOf(PassContext& frame, const GridPlacement& grid) {
@@ -61,8 +50,7 @@ gpu::TextureRef BitVoxeliser::wordsOf(PassContext& frame, const GridPlacement& g
   if (moving.empty()) return first;
   const gpu::TextureRef words = bitWords(frame, grid, "bits");
   frame.dispatch(frame.program(copyShader::kProgram),
-                 {copyShader::source(*first), copyShader::target(*words)}, wordCount(grid),
-                 copyShader::kGroupSize);
+                 {copyShader::source(*first), copyShader::target(*words)}, wordCount(grid));
   mark(frame, grid, *words, moving);
   return words;
 }
@@ -92,16 +80,15 @@ BinaryGrid binaryGridOf(PassContext& frame, const GridPlacement& grid, const gpu
   description.levels = gpu::fullLevelCount(grid.resolution.x, grid.resolution.y);
   result.stacks = frame.texture(description, "voxel stacks");
   frame.dispatch(
-      frame.program(stackShader::kProgram, stackShader::Variant{surface != nullptr}.key()),
+      frame.program(stackShader::Variant{surface != nullptr}),
       {stackShader::words(voxels), stackShader::surfaceWords(surface != nullptr ? *surface : voxels),
        stackShader::stacks(*result.stacks)},
-      {description.width, description.height, description.depth}, stackShader::kGroupSize);
+      {description.width, description.height, description.depth});
   for (int level = 1; level < description.levels; ++level)
     frame.dispatch(frame.program(mipShader::kProgram),
                    {mipShader::finer(*result.stacks, level - 1), mipShader::coarser(*result.stacks, level)},
                    {std::max(description.width >> level, 1), std::max(description.height >> level, 1),
-                    description.depth},
-                   mipShader::kGroupSize);
+                    description.depth});
   return result;
 }
 
@@ -109,18 +96,11 @@ OccupancyGrid BitVoxeliser::opacityOf(PassContext& frame, const GridPlacement& g
                                       const Words& words) const {
   OccupancyGrid result;
   result.grid = grid;
-  gpu::TextureDescription description;
-  description.kind = gpu::TextureKind::d3;
-  description.format = gpu::Format::r8;
-  description.width = grid.resolution.x;
-  description.height = grid.resolution.y;
-  description.depth = grid.resolution.z;
-  result.opacity = frame.texture(description, "opacity");
-  frame.dispatch(
-      frame.program(opacityShader::kProgram, opacityShader::Variant{words.surface != nullptr}.key()),
-      {opacityShader::words(*words.voxels), opacityShader::surfaceWords(surfaceOf(words)),
-       opacityShader::opacity(*result.opacity)},
-      grid.resolution, opacityShader::kGroupSize);
+  result.opacity = frame.volume(grid.resolution, gpu::Format::r8, "opacity");
+  frame.dispatch(frame.program(opacityShader::Variant{words.surface != nullptr}),
+                 {opacityShader::words(*words.voxels), opacityShader::surfaceWords(surfaceOf(words)),
+                  opacityShader::opacity(*result.opacity)},
+                 grid.resolution);
   return result;
 }
 
@@ -131,11 +111,10 @@ VoxelFragments BitVoxeliser::fragmentsOf(PassContext& frame, const GridPlacement
   if (room_ == 0) room_ = 6 * side * side;
   const VoxelFragments list = listBehind(frame, grid, surface(), room_);
   frame.dispatch(
-      frame.program(fragmentShader::kProgram, fragmentShader::Variant{words.surface != nullptr}.key()),
+      frame.program(fragmentShader::Variant{words.surface != nullptr}),
       {fragmentShader::parameters({static_cast<int>(list.capacity)}), fragmentShader::words(*words.voxels),
-       fragmentShader::surfaceWords(surfaceOf(words)), fragmentShader::count(*list.count),
-       fragmentShader::fragments(*list.fragments)},
-      wordCount(grid), fragmentShader::kGroupSize);
+       fragmentShader::surfaceWords(surfaceOf(words)), appending(list)},
+      wordCount(grid));
   finishList(frame, list);
   frame.judgeLater(
       list.count, kWantedOffset,

@@ -34,17 +34,16 @@ BatchesByTextures batchesOf(const std::vector<const SceneDraw*>& draws) {
 }
 
 class ConservativePass : public Voxeliser {
-  Param<std::string> depth{
-      this,
-      "depth",
-      "conservative",
-      {"conservative", "centre"},
+  enum class Depth { conservative, centre };
+  friend constexpr auto words(Depth) { return std::array{"conservative", "centre"}; }
+  enum class Method { automatic, raster, compute };
+  friend constexpr auto words(Method) { return std::array{"automatic", "raster", "compute"}; }
+
+  Param<Depth> depth{
+      this, "depth", Depth::conservative,
       "voxels along the projection: all that the triangle crosses, or only the one at the pixel's centre"};
-  Param<std::string> method{
-      this,
-      "method",
-      "automatic",
-      {"automatic", "raster", "compute"},
+  Param<Method> method{
+      this, "method", Method::automatic,
       "who finds the voxels, which are the same: the rasteriser, a compute shader, or what is faster"};
 
   /// Rows of tiles that fit into the list of large triangles; what does not is done without it.
@@ -54,7 +53,7 @@ class ConservativePass : public Voxeliser {
                                  kRowHeadBytes = 4 * sizeof(std::uint32_t);
 
   void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) override {
-    if (method == "raster" || (method == "automatic" && !prefersCompute(frame, draws))) {
+    if (method == Method::raster || (method == Method::automatic && !prefersCompute(frame, draws))) {
       rasterise(frame, list, draws);
     } else {
       compute(frame, list, draws);
@@ -72,35 +71,20 @@ class ConservativePass : public Voxeliser {
   }
 
   void rasterise(PassContext& frame, const VoxelFragments& list, const Draws& draws) {
-    GpuScene& scene = frame.scene();
     gpu::RenderTargets targets;
     targets.width = targets.height =
         std::max({list.grid.resolution.x, list.grid.resolution.y, list.grid.resolution.z});
     const gpu::Drawing drawing = frame.device().drawTo(targets, {});
-    rasterShader::Grid grid{};
-    grid.gridLow = list.grid.low;
-    grid.voxelSize = list.grid.voxelSize;
-    grid.resolution = list.grid.resolution;
-    grid.capacity = static_cast<int>(list.capacity);
     rasterShader::Constants constants;
-    constants.depthRange = depth == "conservative" ? 1 : 0;
+    constants.depthRange = depth == Depth::conservative;
     for (const SceneDraw* draw : draws) {
-      grid.firstIndex = static_cast<int>(draw->firstIndex);
-      rasterShader::Variant variant;
-      variant.textures = frame.keepsEverything() || draw->diffuseTexture != nullptr;
-      variant.masks = frame.keepsEverything() || draw->maskTexture != nullptr;
-      const gpu::Texture& diffuse =
-          draw->diffuseTexture != nullptr ? *draw->diffuseTexture : scene.whiteTexture();
-      const gpu::Texture& mask = draw->maskTexture != nullptr ? *draw->maskTexture : scene.whiteTexture();
+      const SceneBinding scene(frame, *draw);
+      const rasterShader::Variant variant{scene.textures, scene.masks};
       frame.shaders().draw(
-          frame.program(rasterShader::kProgram, variant.key(), constants.values()),
-          {rasterShader::positions(scene.positions()), rasterShader::normals(scene.normals()),
-           rasterShader::texcoords(scene.texcoords()), rasterShader::objects(scene.objects()),
-           rasterShader::materials(scene.materials()), rasterShader::indices(scene.indices()),
-           rasterShader::grid(grid), rasterShader::draw({draw->object, draw->material}),
-           rasterShader::count(*list.count), rasterShader::fragments(*list.fragments),
-           rasterShader::diffuseTexture(diffuse, gpu::Sampling::linearMipsRepeat),
-           rasterShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)},
+          frame.program(variant, constants),
+          {scene, appending(list),
+           rasterShader::grid({list.grid.low, list.grid.voxelSize, list.grid.resolution,
+                               static_cast<int>(draw->firstIndex), static_cast<int>(list.capacity)})},
           draw->indexCount);
     }
   }
@@ -112,53 +96,30 @@ class ConservativePass : public Voxeliser {
       const std::span<const Batch> all(batches);
       for (std::size_t first = 0; first < all.size(); first += kBatchesAtOnce) {
         computeBatches(frame, list, textures.first, textures.second,
-                       all.subspan(first, std::min(all.size() - first, kBatchesAtOnce)), *rows);
+                       all.subspan(first, std::min(all.size() - first, kBatchesAtOnce)), rows);
       }
     }
   }
 
   void computeBatches(PassContext& frame, const VoxelFragments& list, const gpu::Texture* diffuse,
-                      const gpu::Texture* mask, std::span<const Batch> batches, gpu::Buffer& rows) {
-    GpuScene& scene = frame.scene();
+                      const gpu::Texture* mask, std::span<const Batch> batches, const gpu::BufferRef& rows) {
     const std::array<std::uint32_t, 4> noRows{0, 0, 1, 1};
-    rows.uploadValues(std::span<const std::uint32_t>(noRows));
-    computeShader::Grid grid{};
-    grid.gridLow = list.grid.low;
-    grid.voxelSize = list.grid.voxelSize;
-    grid.resolution = list.grid.resolution;
-    grid.capacity = static_cast<int>(list.capacity);
-    grid.rowCapacity = static_cast<int>(kRowCapacity);
+    rows->uploadValues(std::span<const std::uint32_t>(noRows));
     computeShader::Batches table{};
     std::copy(batches.begin(), batches.end(), std::begin(table.batches));
-    computeShader::Variant variant;
-    variant.textures = frame.keepsEverything() || diffuse != nullptr;
-    variant.masks = frame.keepsEverything() || mask != nullptr;
+    const SceneBinding scene(frame, diffuse, mask);
+    computeShader::Variant variant{scene.textures, scene.masks};
     computeShader::Constants constants;
-    constants.depthRange = depth == "conservative" ? 1 : 0;
-    const std::vector<gpu::ResourceBinding> bindings{
-        computeShader::positions(scene.positions()),
-        computeShader::normals(scene.normals()),
-        computeShader::texcoords(scene.texcoords()),
-        computeShader::objects(scene.objects()),
-        computeShader::materials(scene.materials()),
-        computeShader::indices(scene.indices()),
-        computeShader::grid(grid),
-        computeShader::batches(table),
-        computeShader::count(*list.count),
-        computeShader::fragments(*list.fragments),
-        computeShader::rows(rows),
-        computeShader::diffuseTexture(diffuse != nullptr ? *diffuse : scene.whiteTexture(),
-                                      gpu::Sampling::linearMipsRepeat),
-        computeShader::maskTexture(mask != nullptr ? *mask : scene.whiteTexture(),
-                                   gpu::Sampling::linearMipsRepeat)};
-    frame.shaders().dispatch(frame.program(computeShader::kProgram, variant.key(), constants.values()),
-                             bindings, {static_cast<std::uint32_t>(batches.size()), 1, 1});
+    constants.depthRange = depth == Depth::conservative;
+    const shader::BindingSet bindings{
+        scene, appending(list), computeShader::batches(table), computeShader::rows(rows),
+        computeShader::grid({list.grid.low, list.grid.voxelSize, list.grid.resolution,
+                             static_cast<int>(list.capacity), static_cast<int>(kRowCapacity)})};
+    frame.shaders().dispatch(frame.program(variant, constants), bindings,
+                             {static_cast<std::uint32_t>(batches.size()), 1, 1});
     frame.device().barrier();
     variant.large = 1;
-    frame.shaders().dispatchIndirect(
-        frame.program(computeShader::kProgram, variant.key(), constants.values()), bindings, rows,
-        sizeof(std::uint32_t));
-    frame.device().barrier();
+    frame.dispatchIndirect(frame.program(variant, constants), bindings, *rows, sizeof(std::uint32_t));
   }
 };
 

@@ -9,22 +9,18 @@
 namespace lumivox::voxelization {
 namespace {
 
-namespace peelShader = shaders::voxelization::depth_peeling;
-namespace appendShader = shaders::voxelization::depth_peeling_append;
+using namespace shaders::voxelization;
 
 class DepthPeelingPass : public Voxeliser {
-  Param<int> layers{this, "layers", 64, {1, 4096}, "most layers that are peeled from one view"};
+  Param<int> layers{this, "layers", 64, within(1, 4096), "most layers that are peeled from one view"};
 
   struct Layer {
     gpu::TextureRef depth, surface, depthInGrid;
   };
 
   static Layer makeLayer(PassContext& frame, int side) {
-    gpu::TextureDescription description;
-    description.width = description.height = side;
     const auto texture = [&](gpu::Format format, const char* label) {
-      description.format = format;
-      return frame.texture(description, label);
+      return frame.texture({gpu::TextureKind::d2, format, side, side, 1, 1}, label);
     };
     return {texture(gpu::Format::depth32f, "depth of a layer"),
             texture(gpu::Format::rgba32ui, "surface of a layer"),
@@ -52,15 +48,14 @@ class DepthPeelingPass : public Voxeliser {
       for (int index = 0; index < peeled; ++index) {
         const Layer &now = pair[static_cast<std::size_t>(index % 2)],
                     &before = pair[static_cast<std::size_t>((index + 1) % 2)];
-        peel(frame, view, draws, now, index == 0 ? nullptr : before.depth.get());
-        frame.dispatch(
-            frame.program(appendShader::kProgram),
-            {appendShader::view(view), appendShader::layer({index}), appendShader::deepest(*deepest),
-             appendShader::count(*list.count), appendShader::fragments(*list.fragments),
-             appendShader::layerDepth(*now.depth, gpu::Sampling::nearest),
-             appendShader::layerSurface(*now.surface, gpu::Sampling::nearest),
-             appendShader::layerDepthInGrid(*now.depthInGrid, gpu::Sampling::nearest)},
-            {side, side, 1}, appendShader::kGroupSize);
+        peel(frame, view, draws, now, index == 0 ? nullptr : before.depth);
+        frame.dispatch(frame.program(depth_peeling_append::kProgram),
+                       {viewBinding(view), appending(list), depth_peeling_append::layer({index}),
+                        depth_peeling_append::deepest(deepest),
+                        depth_peeling_append::layerDepth(now.depth, gpu::Sampling::nearest),
+                        depth_peeling_append::layerSurface(now.surface, gpu::Sampling::nearest),
+                        depth_peeling_append::layerDepthInGrid(now.depthInGrid, gpu::Sampling::nearest)},
+                       {side, side, 1});
       }
       frame.judgeLater(deepest, static_cast<std::uint64_t>(axis) * sizeof(std::uint32_t),
                        [this, &plan, axis](PassContext& done, std::uint32_t count) {
@@ -86,7 +81,7 @@ class DepthPeelingPass : public Voxeliser {
   }
 
   static void peel(PassContext& frame, const OrthogonalView& view, const Draws& draws, const Layer& layer,
-                   const gpu::Texture* before) {
+                   const gpu::TextureRef& before) {
     gpu::RenderTargets targets;
     targets.colours = {{layer.surface.get()}, {layer.depthInGrid.get()}};
     targets.depth = layer.depth.get();
@@ -94,14 +89,10 @@ class DepthPeelingPass : public Voxeliser {
     state.depthTest = state.depthWrite = true;
     const gpu::Drawing drawing = frame.device().drawTo(targets, state);
     for (const SceneDraw* draw : draws) {
-      peelShader::Variant variant;
-      variant.textures = frame.keepsEverything() || draw->diffuseTexture != nullptr;
-      variant.masks = frame.keepsEverything() || draw->maskTexture != nullptr;
-      variant.first = before == nullptr ? 1 : 0;
-      std::vector<gpu::ResourceBinding> bindings = viewBindings(frame, view, *draw);
-      if (before != nullptr) bindings.push_back(peelShader::layerBefore(*before, gpu::Sampling::nearest));
-      frame.shaders().drawIndexed(frame.program(peelShader::kProgram, variant.key()), bindings,
-                                  frame.scene().indices(), draw->firstIndex, draw->indexCount);
+      const SceneBinding scene(frame, *draw);
+      const depth_peeling::Variant variant{scene.textures, scene.masks, before == nullptr};
+      drawPart(frame, frame.program(variant),
+               {scene, viewBinding(view), depth_peeling::layerBefore(before, gpu::Sampling::nearest)}, *draw);
     }
     frame.device().barrier();
   }

@@ -6,7 +6,6 @@
 #include <cassert>
 
 #include "lumivox/base/error.h"
-#include "lumivox/pipeline/list_dispatch.h"
 #include "voxelization_shaders.h"
 
 namespace lumivox::voxelization {
@@ -14,13 +13,6 @@ namespace lumivox::voxelization {
 namespace copyShader = shaders::voxelization::copy;
 namespace countShader = shaders::voxelization::copy_count;
 namespace finishShader = shaders::voxelization::finish;
-
-glm::uvec3 workGroupsFor(std::uint64_t items) {
-  const std::uint64_t groups = std::max<std::uint64_t>((items + kWorkGroupSize - 1) / kWorkGroupSize, 1);
-  const std::uint64_t rows = (groups + kMostGroupsAlong - 1) / kMostGroupsAlong;
-  return {static_cast<std::uint32_t>(std::min(groups, kMostGroupsAlong)), static_cast<std::uint32_t>(rows),
-          1u};
-}
 
 namespace {
 
@@ -36,7 +28,7 @@ gpu::BufferRef countBuffer(PassContext& frame, const char* label) {
 
 void copyCount(PassContext& frame, const gpu::Buffer& from, const gpu::Buffer& to) {
   frame.dispatch(frame.program(countShader::kProgram), {countShader::from(from), countShader::to(to)},
-                 {1, 1, 1}, {1, 1, 1});
+                 {1, 1, 1});
 }
 
 std::uint64_t roomFor(std::uint64_t wanted, bool moves) {
@@ -59,12 +51,10 @@ VoxelFragments listBehind(PassContext& frame, const GridPlacement& grid, const V
   assert(base->workGroupSize == kWorkGroupSize);
   list.coverage = base->coverage;
   list.reflected = base->reflected;  // of the first fragments, which are the same
-  frame.shaders().dispatchIndirect(
+  frame.dispatchIndirect(
       frame.program(copyShader::kProgram),
-      {copyShader::baseCount(*base->count), copyShader::baseFragments(*base->fragments),
-       copyShader::count(*list.count), copyShader::fragments(*list.fragments)},
-      *base->count, sizeof(std::uint32_t));
-  frame.device().barrier();
+      {copyShader::baseCount(base->count), copyShader::baseFragments(base->fragments), appending(list)},
+      *base->count, VoxelFragments::kArgumentsBytes);
   return list;
 }
 
@@ -72,7 +62,7 @@ void finishCount(PassContext& frame, const gpu::Buffer& count, std::uint64_t roo
   frame.dispatch(
       frame.program(finishShader::kProgram),
       {finishShader::count(count), finishShader::parameters({static_cast<int>(room), kWorkGroupSize})},
-      {1, 1, 1}, {1, 1, 1});
+      {1, 1, 1});
 }
 
 void finishList(PassContext& frame, const VoxelFragments& list) {

@@ -15,15 +15,11 @@ namespace countShader = shaders::voxelization::msaa_opacity_count;
 namespace copyShader = shaders::voxelization::bits_copy;
 
 class MsaaOpacityPass : public Voxeliser {
-  Param<int> samples{this, "samples", 8, {2, 8}, "per pixel; at most what the device has"};
-  Param<float> thickness{this, "thickness",
-                         0.5f, {0.0f, 1.0f},
-                         "",   "how thick a surface is seen from the side, in voxels; 0: as thin as it is"};
+  Param<int> samples{this, "samples", 8, within(2, 8), "per pixel; at most what the device has"};
+  Param<float> thickness{this, "thickness", 0.5f, within(0.0f, 1.0f),
+                         "how thick a surface is seen from the side, in voxels; 0: as thin as it is"};
   Param<int> supersampling{
-      this,
-      "supersampling",
-      1,
-      {1, 16},
+      this, "supersampling", 1, within(1, 16),
       "most pixels along a voxel for triangles that few samples meet, so that the coverage of small things does "
       "not change by leaps as they move; the largest power of two that is no more; 1: none"};
   Out<OccupancyGrid> opacity{this, "opacity", "of the most opaque side of each voxel"};
@@ -58,13 +54,11 @@ class MsaaOpacityPass : public Voxeliser {
     while (2 * mostScale <= supersampling) mostScale *= 2;
     for (int scale = 1; scale <= mostScale; scale *= 2)
       rasterise(frame, list.grid, draws, static_cast<int>(list.capacity), msaaShader::Variant::targetList,
-                {msaaShader::count(*list.count), msaaShader::fragments(*list.fragments)}, scale, mostScale);
+                appending(list), scale, mostScale);
   }
 
   void rasterise(PassContext& frame, const GridPlacement& placement, const Draws& draws, int capacity,
-                 int target, const std::vector<gpu::ResourceBinding>& results, int scale = 1,
-                 int mostScale = 1) const {
-    GpuScene& scene = frame.scene();
+                 int target, const shader::BindingSet& results, int scale = 1, int mostScale = 1) const {
     gpu::RenderTargets targets;
     targets.width = targets.height = scale * viewSide(placement);
     targets.samples = sampleCount_;
@@ -82,16 +76,10 @@ class MsaaOpacityPass : public Voxeliser {
     const gpu::Drawing drawing = frame.device().drawTo(targets, {});
     for (const SceneDraw* draw : draws) {
       grid.firstIndex = static_cast<int>(draw->firstIndex);
-      msaaShader::Variant variant;
-      variant.textures = frame.keepsEverything() || draw->diffuseTexture != nullptr;
-      variant.masks = frame.keepsEverything() || draw->maskTexture != nullptr;
-      variant.target = target;
-      std::vector<gpu::ResourceBinding> bindings = viewBindings(frame, {}, *draw);
-      std::erase_if(bindings,
-                    [](const gpu::ResourceBinding& one) { return std::string(one.name) == "View"; });
-      bindings.insert(bindings.end(), {msaaShader::indices(scene.indices()), msaaShader::sampleGrid(grid)});
-      bindings.insert(bindings.end(), results.begin(), results.end());
-      frame.shaders().draw(frame.program(msaaShader::kProgram, variant.key()), bindings, draw->indexCount);
+      const SceneBinding scene(frame, *draw);
+      const msaaShader::Variant variant{scene.textures, scene.masks, target};
+      frame.shaders().draw(frame.program(variant), {scene, msaaShader::sampleGrid(grid), results},
+                           draw->indexCount);
     }
     frame.device().barrier();
   }
@@ -105,16 +93,15 @@ class MsaaOpacityPass : public Voxeliser {
     const gpu::TextureRef first =
         frame.kept("samples of what stands still", stillKey(frame, grid, still), [&, &draws = still] {
           gpu::TextureRef masks =
-              frame.texture(volumeOf(grid, gpu::Format::r32ui), "samples of what stands still");
+              frame.volume(grid.resolution, gpu::Format::r32ui, "samples of what stands still");
           masks->clear(glm::vec4(0.0f));
           mark(*masks, draws);
           return masks;
         });
     if (moving.empty()) return first;
-    const gpu::TextureRef masks = frame.texture(volumeOf(grid, gpu::Format::r32ui), "samples");
+    const gpu::TextureRef masks = frame.volume(grid.resolution, gpu::Format::r32ui, "samples");
     frame.dispatch(frame.program(copyShader::kProgram),
-                   {copyShader::source(*first), copyShader::target(*masks)}, grid.resolution,
-                   copyShader::kGroupSize);
+                   {copyShader::source(*first), copyShader::target(*masks)}, grid.resolution);
     mark(*masks, moving);
     return masks;
   }
@@ -126,13 +113,11 @@ class MsaaOpacityPass : public Voxeliser {
     for (int side = 0; side < 4; ++side) {
       Out<OccupancyGrid>& output = *outputs[static_cast<std::size_t>(side)];
       if (!output.wanted()) continue;
-      OccupancyGrid result;
-      result.grid = grid;
-      result.opacity = frame.texture(volumeOf(grid, gpu::Format::r8), output.name());
+      const OccupancyGrid result{grid, frame.volume(grid.resolution, gpu::Format::r8, output.name())};
       frame.dispatch(frame.program(countShader::kProgram),
                      {countShader::sides({sampleCount_, side}), countShader::sampleMasks(*masks),
                       countShader::opacity(*result.opacity)},
-                     grid.resolution, countShader::kGroupSize);
+                     grid.resolution);
       output = result;
     }
   }

@@ -4,9 +4,6 @@
 
 namespace lumivox::voxelization {
 
-// The programs of all views bind the same things at the same places.
-namespace viewShader = shaders::voxelization::slicing;
-
 int viewSide(const GridPlacement& grid) {
   return std::max({grid.resolution.x, grid.resolution.y, grid.resolution.z});
 }
@@ -24,20 +21,8 @@ OrthogonalView viewAlong(const VoxelFragments& list, int axis, float depthLow, f
   return view;
 }
 
-std::vector<gpu::ResourceBinding> viewBindings(PassContext& frame, const OrthogonalView& view,
-                                               const SceneDraw& draw) {
-  GpuScene& scene = frame.scene();
-  const gpu::Texture& diffuse = draw.diffuseTexture != nullptr ? *draw.diffuseTexture : scene.whiteTexture();
-  const gpu::Texture& mask = draw.maskTexture != nullptr ? *draw.maskTexture : scene.whiteTexture();
-  return {viewShader::positions(scene.positions()),
-          viewShader::normals(scene.normals()),
-          viewShader::texcoords(scene.texcoords()),
-          viewShader::objects(scene.objects()),
-          viewShader::materials(scene.materials()),
-          viewShader::view(view),
-          viewShader::draw({draw.object, draw.material}),
-          viewShader::diffuseTexture(diffuse, gpu::Sampling::linearMipsRepeat),
-          viewShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)};
+gpu::ResourceBinding viewBinding(const OrthogonalView& view) {
+  return shader::UniformSlot<OrthogonalView>{"View"}(view);
 }
 
 }  // namespace lumivox::voxelization

@@ -14,8 +14,7 @@ int viewSide(const GridPlacement& grid);
 /// What lies between two depths, in voxels, along axis 0, 1 or 2.
 OrthogonalView viewAlong(const VoxelFragments& list, int axis, float depthLow, float depthHigh);
 
-/// The bindings of the programs that draw a view, for one draw.
-std::vector<gpu::ResourceBinding> viewBindings(PassContext& frame, const OrthogonalView& view,
-                                               const SceneDraw& draw);
+/// The view's block.
+gpu::ResourceBinding viewBinding(const OrthogonalView& view);
 
 }  // namespace lumivox::voxelization

@@ -6,30 +6,28 @@
 #include <optional>
 
 #include "aside.h"
-#include "fragment_list.h"
+#include "voxeliser.h"
 #include "voxelization_shaders.h"
 
 namespace lumivox::voxelization {
 namespace {
 
-namespace pointsShader = shaders::voxelization::points;
+namespace code = shaders::voxelization::points;
 
 class PointsPass : public Voxeliser {
+  enum class Spread { random, regular };
+  friend constexpr auto words(Spread) { return std::array{"random", "regular"}; }
   // The paper's figures are made with 19 points; it finds 12 to 19 nearly perfect in most scenes.
-  Param<int> points{this, "points", 19, {1, 65536}, "random points on each triangle"};
+  Param<int> points{this, "points", 19, within(1, 65536), "random points on each triangle"};
   Param<bool> adaptive{this, "adaptive", false,
                        "as many points as the triangle's area asks for, whatever `points` says"};
   // A voxel that a plane crosses squarely is missed with probability e^-8 = 3 in 10000.
-  Param<float> density{
-      this, "density", 8.0f, {0.001f, 1000.0f}, "", "adaptive: points per squared voxel size of area"};
+  Param<float> density{this, "density", 8.0f, within(0.001f, 1000.0f),
+                       "adaptive: points per squared voxel size of area"};
 
-  Param<std::string> spread{
-      this,
-      "spread",
-      "random",
-      {"random", "regular"},
-      "random points; or the middles of equal parts of the triangle, of which there are "
-      "the next square number"};
+  Param<Spread> spread{this, "spread", Spread::random,
+                       "random points; or the middles of equal parts of the triangle, of which there are "
+                       "the next square number"};
 
   // Of one triangle; a grid around a camera may see a small part of a huge one.
   static constexpr int kMostPoints = 1 << 24;
@@ -39,7 +37,7 @@ class PointsPass : public Voxeliser {
     const auto each = static_cast<std::uint64_t>(points);
     std::uint64_t side = 1;
     while (side * side < each) ++side;
-    return scene.triangleCount() * (spread == "regular" ? side * side : each);
+    return scene.triangleCount() * (spread == Spread::regular ? side * side : each);
   }
 
   /// As many as the scene's triangles ask for, or as a grid that is a small part of it may hold.
@@ -50,11 +48,11 @@ class PointsPass : public Voxeliser {
       all += std::clamp(asked, 1.0, double{kMostPoints});
     });
     // A part in 64 for squares, and for areas that the device rounds otherwise.
-    all *= spread == "regular" ? 1.5 : 1.0 + 1.0 / 64.0;
+    all *= spread == Spread::regular ? 1.5 : 1.0 + 1.0 / 64.0;
     // Surfaces fill about as many voxels as six sides of the grid, twice.
     const double held = 12.0 * resolution * resolution * static_cast<double>(density) +
                         static_cast<double>(scene.triangleCount());
-    return static_cast<std::uint64_t>(around == "scene" ? all : std::min(all, held));
+    return static_cast<std::uint64_t>(around == Around::scene ? all : std::min(all, held));
   }
 
   /// Of every triangle of the scene at rest, m^2.
@@ -99,44 +97,21 @@ class PointsPass : public Voxeliser {
   }
 
   void appendDraw(PassContext& frame, const VoxelFragments& list, const SceneDraw& draw, Aside& aside) {
-    GpuScene& scene = frame.scene();
-    pointsShader::Variant variant;
-    variant.textures = frame.keepsEverything() || draw.diffuseTexture != nullptr;
-    variant.masks = frame.keepsEverything() || draw.maskTexture != nullptr;
-    const gpu::Texture& diffuse =
-        draw.diffuseTexture != nullptr ? *draw.diffuseTexture : scene.whiteTexture();
-    const gpu::Texture& mask = draw.maskTexture != nullptr ? *draw.maskTexture : scene.whiteTexture();
-    pointsShader::Constants constants;
-    constants.regular = spread == "regular" ? 1 : 0;
-    const std::uint64_t seed = frame.seed();
-    const auto triangles = static_cast<int>(draw.indexCount / 3);
-    const std::vector<gpu::ResourceBinding> bindings{
-        pointsShader::positions(scene.positions()),
-        pointsShader::normals(scene.normals()),
-        pointsShader::texcoords(scene.texcoords()),
-        pointsShader::objects(scene.objects()),
-        pointsShader::materials(scene.materials()),
-        pointsShader::indices(scene.indices()),
-        pointsShader::draw({draw.object, draw.material}),
-        pointsShader::grid(
+    const SceneBinding scene(frame, draw);
+    code::Variant variant{scene.textures, scene.masks};
+    code::Constants constants;
+    constants.regular = spread == Spread::regular;
+    const std::uint32_t triangles = draw.indexCount / 3;
+    const shader::BindingSet bindings{
+        scene, appending(list), code::aside(aside.buffer()),
+        code::grid(
             {list.grid.low, list.grid.voxelSize, list.grid.resolution, static_cast<int>(list.capacity)}),
-        pointsShader::points({static_cast<int>(draw.firstIndex / 3),
-                              triangles,
-                              points,
-                              adaptive ? density + 0.0f : 0.0f,
-                              {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)},
-                              kMostPoints}),
-        pointsShader::count(*list.count),
-        pointsShader::fragments(*list.fragments),
-        pointsShader::aside(aside.buffer()),
-        pointsShader::diffuseTexture(diffuse, gpu::Sampling::linearMipsRepeat),
-        pointsShader::maskTexture(mask, gpu::Sampling::linearMipsRepeat)};
+        code::points({static_cast<int>(draw.firstIndex / 3), static_cast<int>(triangles), points,
+                      adaptive ? density + 0.0f : 0.0f, seedWords(frame), kMostPoints})};
     aside.clear();
-    frame.shaders().dispatch(frame.program(pointsShader::kProgram, variant.key(), constants.values()),
-                             bindings, workGroupsFor(static_cast<std::uint64_t>(triangles)));
-    frame.device().barrier();
+    frame.dispatchList(frame.program(variant, constants), bindings, triangles);
     variant.many = 1;
-    aside.workOff(frame, frame.program(pointsShader::kProgram, variant.key(), constants.values()), bindings);
+    aside.workOff(frame, frame.program(variant, constants), bindings);
   }
 
   std::optional<double> largestTriangle_;  ///< m^2, once it was needed

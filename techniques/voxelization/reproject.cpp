@@ -10,7 +10,7 @@
 namespace lumivox::voxelization {
 namespace {
 
-namespace reprojectShader = shaders::voxelization::reproject;
+namespace code = shaders::voxelization::reproject;
 
 class ReprojectPass : public GridPass {
   In<GBuffer> gbuffer{this, "gbuffer", "what the camera sees"};
@@ -29,29 +29,18 @@ class ReprojectPass : public GridPass {
     VoxelFragments list = listBehind(
         frame, base.present() ? base->grid : placement(frame), base.present() ? &*base : nullptr,
         std::uint64_t{static_cast<unsigned>(picture.width)} * static_cast<unsigned>(picture.height));
-    reprojectShader::Variant variant;
-    variant.emission = gbuffer->emission != nullptr;
-    variant.reflected = direct.present();
-    std::vector<gpu::ResourceBinding> bindings{
-        reprojectShader::grid(
-            {list.grid.low, list.grid.voxelSize, list.grid.resolution, static_cast<int>(list.capacity)}),
-        reprojectShader::count(*list.count),
-        reprojectShader::fragments(*list.fragments),
-        reprojectShader::position(*gbuffer->position, gpu::Sampling::nearest),
-        reprojectShader::normal(*gbuffer->normal, gpu::Sampling::nearest),
-        reprojectShader::diffuse(*gbuffer->diffuse, gpu::Sampling::nearest)};
-    if (gbuffer->emission != nullptr)
-      bindings.push_back(reprojectShader::emission(*gbuffer->emission, gpu::Sampling::nearest));
     if (direct.present()) {
       requireFits(list, picture);
-      list.reflected = frame.buffer(std::max<std::uint64_t>(list.capacity, 1) * sizeof(std::uint32_t),
-                                    "direct light that fragments reflect");
+      list.reflected = frame.elements(code::reflected, list.capacity, "direct light that fragments reflect");
       list.reflected->clear(VoxelFragments::kNotKnown);
-      bindings.push_back(reprojectShader::reflected(*list.reflected));
-      bindings.push_back(reprojectShader::direct(*direct->texture, gpu::Sampling::nearest));
     }
-    frame.dispatch(frame.program(reprojectShader::kProgram, variant.key()), bindings,
-                   {picture.width, picture.height, 1}, reprojectShader::kGroupSize);
+    const code::Variant variant{gbuffer->emission != nullptr, direct.present()};
+    frame.dispatch(frame.program(variant),
+                   {code::grid({list.grid.low, list.grid.voxelSize, list.grid.resolution,
+                                static_cast<int>(list.capacity)}),
+                    appending(list), GBufferBinding(*gbuffer), code::reflected(list.reflected),
+                    code::direct(direct.present() ? direct->texture : nullptr, gpu::Sampling::nearest)},
+                   {picture.width, picture.height, 1});
     finishList(frame, list);
     fragments = list;
   }

@@ -1,4 +1,4 @@
-// Fang et al. 2000, "Hardware accelerated voxelization": one pass of the whole scene per slice of the grid,
+// Fang & Chen 2000, "Hardware accelerated voxelization": one pass of the whole scene per slice of the grid,
 // between two clip planes.
 #include <map>
 
@@ -7,13 +7,10 @@
 namespace lumivox::voxelization {
 namespace {
 
-namespace slicingShader = shaders::voxelization::slicing;
+namespace code = shaders::voxelization::slicing;
 
 class SlicingPass : public Voxeliser {
-  Param<int> axes{this,
-                  "axes",
-                  1,
-                  {1, 3},
+  Param<int> axes{this, "axes", 1, within(1, 3),
                   "1: slices along z, as published; 3: along all axes, so that no surface is lost"};
 
   std::string checkParameters() const override {
@@ -54,14 +51,9 @@ class SlicingPass : public Voxeliser {
   static void drawSlice(PassContext& frame, const VoxelFragments& list, const Draws& draws,
                         const OrthogonalView& view) {
     for (const SceneDraw* draw : draws) {
-      slicingShader::Variant variant;
-      variant.textures = frame.keepsEverything() || draw->diffuseTexture != nullptr;
-      variant.masks = frame.keepsEverything() || draw->maskTexture != nullptr;
-      std::vector<gpu::ResourceBinding> bindings = viewBindings(frame, view, *draw);
-      bindings.push_back(slicingShader::count(*list.count));
-      bindings.push_back(slicingShader::fragments(*list.fragments));
-      frame.shaders().drawIndexed(frame.program(slicingShader::kProgram, variant.key()), bindings,
-                                  frame.scene().indices(), draw->firstIndex, draw->indexCount);
+      const SceneBinding scene(frame, *draw);
+      drawPart(frame, frame.program(code::Variant{scene.textures, scene.masks}),
+               {scene, viewBinding(view), appending(list)}, *draw);
     }
   }
 
@@ -71,7 +63,7 @@ class SlicingPass : public Voxeliser {
 }  // namespace
 
 void addSlicing(TechniqueRegistry& registry) {
-  registry.add<SlicingPass>("slicing", "One clipped pass of the scene per slice (Fang et al. 2000)");
+  registry.add<SlicingPass>("slicing", "One clipped pass of the scene per slice (Fang & Chen 2000)");
 }
 
 }  // namespace lumivox::voxelization

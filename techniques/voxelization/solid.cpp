@@ -6,15 +6,13 @@
 
 #include "aside.h"
 #include "bit_voxeliser.h"
-#include "fragment_list.h"
 #include "lumivox/scene/topology.h"
 #include "voxelization_shaders.h"
 
 namespace lumivox::voxelization {
 namespace {
 
-namespace flipShader = shaders::voxelization::solid_flip;
-namespace fillShader = shaders::voxelization::solid_fill;
+using namespace shaders::voxelization;
 
 /// The closed surfaces of an object.
 struct ClosedSurface {
@@ -38,13 +36,13 @@ Columns columnsOf(const Bounds& bounds, const glm::mat4& toWorld, const GridPlac
 }
 
 class SolidPass : public BitVoxeliser {
+  enum class Inwards { leave, fill };
+  friend constexpr auto words(Inwards) { return std::array{"leave", "fill"}; }
+
   In<VoxelFragments> base{this, "fragments", Presence::optional,
                           "surface samples that the inside is added to; the grid is theirs then"};
-  Param<std::string> inwards{
-      this,
-      "inwards",
-      "leave",
-      {"leave", "fill"},
+  Param<Inwards> inwards{
+      this, "inwards", Inwards::leave,
       "closed surfaces whose front sides look inwards: rooms, which hold air, or solid like the others"};
 
   static constexpr std::size_t kMostNames = 8;  // of objects in one message
@@ -59,7 +57,7 @@ class SolidPass : public BitVoxeliser {
     for (const SceneDraw* draw : draws) {
       const ClosedSurface& closed = surfaces_[static_cast<std::size_t>(draw->object)];
       if (closed.triangleCount == 0 || objects.count(draw->object) == 1) continue;
-      if (!closed.room || inwards == "fill")
+      if (!closed.room || inwards == Inwards::fill)
         objects.insert(draw->object);
       else if (const std::string name = "'" + closed.name + "'"; rooms.empty() || rooms.back() != name)
         rooms.push_back(name);
@@ -80,25 +78,19 @@ class SolidPass : public BitVoxeliser {
     const Columns columns = state.positions.empty() ? columnsOf(closed.bounds, state.toWorld, grid)
                                                     : Columns{{0, 0}, {grid.resolution.x, grid.resolution.y}};
     if (columns.size.x <= 0 || columns.size.y <= 0) return;
-    const std::vector<gpu::ResourceBinding> bindings{
-        flipShader::positions(frame.scene().positions()),
-        flipShader::objects(frame.scene().objects()),
-        flipShader::indices(frame.scene().indices()),
-        flipShader::draw({object, 0}),
-        flipShader::grid({grid.low, grid.voxelSize, grid.resolution, static_cast<int>(closed.firstTriangle),
+    const shader::BindingSet bindings{
+        SceneBinding(frame, SceneDraw{object}),
+        solid_flip::grid({grid.low, grid.voxelSize, grid.resolution, static_cast<int>(closed.firstTriangle),
                           static_cast<int>(closed.triangleCount)}),
-        flipShader::triangles(*triangles_),
-        flipShader::aside(aside.buffer()),
-        flipShader::parity(parity)};
+        solid_flip::triangles(triangles_), solid_flip::aside(aside.buffer()), solid_flip::parity(parity)};
     aside.clear();
-    frame.shaders().dispatch(frame.program(flipShader::kProgram, flipShader::Variant{0}.key()), bindings,
-                             workGroupsFor(closed.triangleCount));
-    frame.device().barrier();
-    aside.workOff(frame, frame.program(flipShader::kProgram, flipShader::Variant{1}.key()), bindings);
-    frame.dispatch(frame.program(fillShader::kProgram),
-                   {fillShader::parameters({columns.low, columns.size, grid.resolution.z}),
-                    fillShader::parity(parity), fillShader::words(words)},
-                   {columns.size, 1}, fillShader::kGroupSize);
+    using Variant = solid_flip::Variant;
+    frame.dispatchList(frame.program(Variant{0}), bindings, closed.triangleCount);
+    aside.workOff(frame, frame.program(Variant{1}), bindings);
+    frame.dispatch(frame.program(solid_fill::kProgram),
+                   {solid_fill::parameters({columns.low, columns.size, grid.resolution.z}),
+                    solid_fill::parity(parity), solid_fill::words(words)},
+                   {columns.size, 1});
   }
 
   /// Once a scene: how surfaces hang together does not change while they move.

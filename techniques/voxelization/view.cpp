@@ -5,12 +5,13 @@
 namespace lumivox::voxelization {
 namespace {
 
-namespace viewShader = shaders::voxelization::view;
+namespace code = shaders::voxelization::view;
 
 class ViewPass : public Pass {
   In<VoxelFragments> fragments{this, "fragments", "voxels"};
-  Param<float> cut{this,         "cut", 0.0f,
-                   {0.0f, 1e9f}, "m",   "distance before the camera up to which everything is cut away"};
+  Param<float> cut{this, "cut",
+                   0.0f, within(0.0f, 1e9f),
+                   "m",  "distance before the camera up to which everything is cut away"};
   Out<Image> picture{this, "picture", "cubes where the voxels are, not light"};
 
   Reads readsFrom() const override { return Reads::camera; }
@@ -20,21 +21,20 @@ class ViewPass : public Pass {
     const gpu::TextureRef words = bitWords(frame, grid, "bits");
     markFragments(frame, *fragments, *words);
     const CameraView& camera = frame.snapshot().camera;
-    viewShader::Parameters parameters{};
-    parameters.eyeGrid = (camera.eye - grid.low) / grid.voxelSize;
-    parameters.pixelWidth = 2.0f * camera.tanHalfFov / static_cast<float>(camera.height);
-    parameters.right = camera.right;
-    parameters.up = camera.up;
-    parameters.forward = camera.forward;
-    parameters.cut = cut / grid.voxelSize;
-    parameters.pictureWidth = static_cast<float>(camera.width);
-    parameters.pictureHeight = static_cast<float>(camera.height);
-    parameters.resolution = grid.resolution;
     const Image result{frame.image(gpu::Format::rgba32f, "picture of voxels")};
     frame.dispatch(
-        frame.program(viewShader::kProgram),
-        {viewShader::parameters(parameters), viewShader::words(*words), viewShader::picture(*result.texture)},
-        {camera.width, camera.height, 1}, viewShader::kGroupSize);
+        frame.program(code::kProgram),
+        {code::parameters({.eyeGrid = (camera.eye - grid.low) / grid.voxelSize,
+                           .pixelWidth = 2.0f * camera.tanHalfFov / static_cast<float>(camera.height),
+                           .right = camera.right,
+                           .pictureWidth = static_cast<float>(camera.width),
+                           .up = camera.up,
+                           .pictureHeight = static_cast<float>(camera.height),
+                           .forward = camera.forward,
+                           .cut = cut / grid.voxelSize,
+                           .resolution = grid.resolution}),
+         code::words(words), code::picture(result.texture)},
+        pixels(frame));
     picture = result;
   }
 };

@@ -9,14 +9,8 @@
 
 namespace lumivox::voxelization {
 
-gpu::TextureDescription volumeOf(const GridPlacement& grid, gpu::Format format) {
-  gpu::TextureDescription description;
-  description.kind = gpu::TextureKind::d3;
-  description.format = format;
-  description.width = grid.resolution.x;
-  description.height = grid.resolution.y;
-  description.depth = grid.resolution.z;
-  return description;
+shader::BindingSet appending(const VoxelFragments& list) {
+  return {shader::StorageSlot{"Count"}(list.count), shader::StorageSlot{"Fragments"}(list.fragments)};
 }
 
 Bounds boundsInGrid(const Bounds& bounds, const glm::mat4& toWorld, const GridPlacement& grid) {
@@ -34,17 +28,17 @@ Bounds boundsInGrid(const Bounds& bounds, const glm::mat4& toWorld, const GridPl
 
 Reads GridPass::readsSurface() const {
   const Reads surface = Reads::geometry | Reads::materials;
-  return around == "camera" ? surface | Reads::camera : surface;
+  return around == Around::camera ? surface | Reads::camera : surface;
 }
 
 std::string GridPass::checkParameters() const {
-  if (around == "camera" && !(extent > 0.0f)) return "around camera needs an extent above 0 m";
+  if (around == Around::camera && !(extent > 0.0f)) return "around camera needs an extent above 0 m";
   return {};
 }
 
 GridPlacement GridPass::placement(PassContext& frame) const {
   const SceneSnapshot& snapshot = frame.snapshot();
-  if (around == "camera") return placeGridAround(snapshot.camera.eye, extent, resolution);
+  if (around == Around::camera) return placeGridAround(snapshot.camera.eye, extent, resolution);
   return placeGrid(snapshot.gridBounds, resolution);
 }
 
@@ -112,7 +106,7 @@ void Voxeliser::run(PassContext& frame) {
   frame.device().barrier();
   finishList(frame, list);
   // Where nothing moves, the next list from nothing will be as long as this one.
-  const bool repeats = moving.empty() && around == "scene";
+  const bool repeats = moving.empty() && around == Around::scene;
   frame.judgeLater(list.count, kWantedOffset,
                    [this, repeats, capacity = list.capacity](PassContext&, std::uint32_t count) {
                      const bool fits = count <= capacity;

@@ -6,16 +6,22 @@
 #include <utility>
 #include <vector>
 
-#include "lumivox/pipeline/gpu_scene.h"
-#include "lumivox/pipeline/grid_placement.h"
 #include "lumivox/plugin/technique.h"
+#include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/grid_placement.h"
 
 namespace lumivox::voxelization {
 
 inline constexpr int kWorkGroupSize = 64;  // of the passes that read a list of fragments
 
-/// One texel a voxel.
-gpu::TextureDescription volumeOf(const GridPlacement& grid, gpu::Format format);
+/// Where the grid lies: around the whole scene, or around the camera, moving with it by whole voxels.
+enum class Around { scene, camera };
+constexpr auto words(Around) {
+  return std::array{"scene", "camera"};
+}
+
+/// What appends to a list of fragments is bound to: the count and the fragments.
+shader::BindingSet appending(const VoxelFragments& list);
 
 /// Bounds of what lies within `bounds` in object space, in voxels; a voxel more on every side, since the
 /// device's arithmetic may round otherwise.
@@ -40,15 +46,13 @@ class GridPass : public Pass {
   using StillKey = std::pair<GridPlacement, std::vector<glm::mat4>>;
   static StillKey stillKey(const PassContext& frame, const GridPlacement& grid, const Draws& still);
 
-  Param<int> resolution{
-      this, "resolution", 64, {1, kLargestGrid}, "voxels along the longest side of the grid"};
-  Param<std::string> around{this,
-                            "around",
-                            "scene",
-                            {"scene", "camera"},
-                            "the grid holds the whole scene, or moves with the camera by whole voxels"};
-  Param<float> extent{this,         "extent", 0.0f,
-                      {0.0f, 1e9f}, "m",      "side of a grid around the camera; needed there, unused else"};
+  Param<int> resolution{this, "resolution", 64, within(1, kLargestGrid),
+                        "voxels along the longest side of the grid"};
+  Param<Around> around{this, "around", Around::scene,
+                       "the grid holds the whole scene, or moves with the camera by whole voxels"};
+  Param<float> extent{this, "extent",
+                      0.0f, within(0.0f, 1e9f),
+                      "m",  "side of a grid around the camera; needed there, unused else"};
 };
 
 /// A list of fragments begins with those of what stands still, and what moves is written behind them in every

@@ -112,6 +112,15 @@ PointRecord measured(const std::string& pass, const Scene& scene, const ReportOp
 
 }  // namespace
 
+TEST_CASE("nothing is black, but for ambient occlusion, where it is that nothing is occluded") {
+  SceneBuilder builder;
+  builder.quad({-9, 0, 9}, {18, 0, 0}, {0, 0, -18}, builder.lambert(0.5f, 0.25f));
+  builder.look({0, 1, 0}, {0, 0, 0}, {0, 0, -1}, 0.5, 8, 8);
+  experiment::Truth truth(builder.scene, quietly(4, 2));
+  CHECK(truth.errorOfNothing("ambient_occlusion").rmse.value == 0.0);
+  CHECK(truth.errorOfNothing("direct").rmse.value == Approx(0.25));
+}
+
 TEST_CASE(
     "a picture that stays right while the camera moves does not flicker, and a scene at rest is not asked") {
   const ReportOptions options = quickOptions();

@@ -4,6 +4,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/experiment/report.h"
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/results/text.h"
 #include "support/support.h"
 

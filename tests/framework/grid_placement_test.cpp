@@ -1,5 +1,5 @@
 // Where voxel grids lie: around the scene with a margin, around the camera on whole voxels, nested.
-#include "lumivox/pipeline/grid_placement.h"
+#include "lumivox/toolkit/grid_placement.h"
 
 #include <cmath>
 #include <vector>

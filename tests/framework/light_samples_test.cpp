@@ -1,5 +1,5 @@
 // How lights become point samples: every lamp has some, and they carry its light.
-#include "lumivox/pipeline/light_samples.h"
+#include "lumivox/toolkit/light_samples.h"
 
 #include <cmath>
 
@@ -28,7 +28,7 @@ struct LampSamples {
 LampSamples samplesOf(const LightSet& set, const SceneSnapshot& snapshot, std::size_t lamp) {
   LampSamples result;
   for (const LightSampleData& sample : set.samples) {
-    if (static_cast<std::size_t>((sample.positionKind.x + snapshot.origin.x) / 2.0) != lamp) continue;
+    if (static_cast<std::size_t>((sample.position.x + snapshot.origin.x) / 2.0) != lamp) continue;
     ++result.count;
     result.power += sample.power.x;
   }
@@ -111,7 +111,7 @@ TEST_CASE("a lamp whose mask leaves a share of it gives that share of the light,
       double power = 0.0;
       for (const LightSampleData& sample : set.samples) {
         power += sample.power.x;
-        CHECK(sample.positionKind.x + snapshot.origin.x <= share + 1e-4);
+        CHECK(sample.position.x + snapshot.origin.x <= share + 1e-4);
       }
       CHECK(power == Approx(3.0 * share).epsilon(0.01));
     }
@@ -126,10 +126,10 @@ TEST_CASE("samples of a masked lamp fill what is left of it evenly") {
   const LightSet set = sampleLights(scene, snapshot, 1024, 64);
   double x = 0.0, squares = 0.0, z = 0.0;
   for (const LightSampleData& sample : set.samples) {
-    const double place = sample.positionKind.x + snapshot.origin.x;
+    const double place = sample.position.x + snapshot.origin.x;
     x += place / 1024.0;
     squares += place * place / 1024.0;
-    z += (sample.positionKind.z + snapshot.origin.z) / 1024.0;
+    z += (sample.position.z + snapshot.origin.z) / 1024.0;
   }
   CHECK(x == Approx(0.25).epsilon(0.02));
   CHECK(squares - x * x == Approx(0.25 / 12.0).epsilon(0.04));

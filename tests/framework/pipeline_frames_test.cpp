@@ -55,6 +55,15 @@ class Feedback : public Toy {
   }
 };
 
+/// Light of a medium that changes with time: none where there is no medium.
+class Flicker : public Toy {
+ public:
+  using Toy::Toy;
+  Out<Image> scattered{this, "scattered", Contributes::scattered, Needs::medium};
+  Reads readsFrom() const override { return Reads::time; }
+  void run(PassContext& frame) override { scattered = paint(frame, 0.0f); }
+};
+
 /// A sum that leads back to its own first term.
 const char* const kFeedback =
     "pass light toy.paint { value 1 }\n"
@@ -82,6 +91,7 @@ struct FramesFixture : Fixture {
   FramesFixture() {
     techniques.add<Progressive>("toy", "progressive");
     techniques.add<Feedback>("toy", "feedback");
+    techniques.add<Flicker>("toy", "flicker");
   }
 };
 
@@ -172,7 +182,9 @@ TEST_CASE("leaving out and keeping everything give the same bits in every frame 
       std::string(kProgressive) +
       "\npass fog toy.fog { }\npass clock toy.feedback { light view  previous fin.sum }\n"
       "pass fin toy.add { first a.mean  second fog }\noutput c clock.radiance\n"
-      "pass unread toy.progressive { source fin.sum }";
+      "pass unread toy.progressive { source fin.sum }\n"
+      "pass flicker toy.flicker { }\npass lit toy.add { first still  second flicker }\n"
+      "pass d toy.progressive { source lit.sum }\noutput d d.mean";
   PipelineExecutor lean = f.executor(text, accumulating()), whole = f.executor(text, accumulating(true));
   SceneSnapshot snapshot = snapshotOf(f.scene, 0.0);
   for (int n = 0; n < 12; ++n) {
@@ -186,8 +198,10 @@ TEST_CASE("leaving out and keeping everything give the same bits in every frame 
     if (n == 10) snapshot.camera.width = 6;
     CAPTURE(n);
     const FrameResult a = lean.render(snapshot, n / 2), b = whole.render(snapshot, n / 2);
-    REQUIRE(a.outputs.size() == 3);
+    REQUIRE(a.outputs.size() == 4);
     CHECK(valuesOf(a) == valuesOf(b));
+    // The medium is not there, so that time alone does not begin the mean of d anew.
+    if (n == 4) CHECK(first(a, "d") == 3.0f + 0.5f * 4.0f);
   }
 }
 
@@ -609,6 +623,16 @@ TEST_CASE("another scene runs again what reads what differs, with the bits of a 
   PipelineExecutor withCamera = f.executor(text, named);
   CHECK_THAT(messageOf<Error>([&] { withCamera.setScene(lacking); }), Contains("main"));
   CHECK(valuesOf(withCamera.render(0.0)).size() == 5 * 4 * 4 * 3);
+}
+
+TEST_CASE("an output models as many bounces as its pass or the one before it that models most") {
+  FramesFixture f;
+  if (!f) return;
+  PipelineExecutor executor = f.executor(
+      "pass a toy.paint { }\npass b toy.progressive { source a }\npass c toy.add { first a  second b }\n"
+      "output one a.radiance\noutput three b.mean\noutput sum c.sum");
+  CHECK(executor.render(0.0).indirectBounces ==
+        std::map<std::string, int>{{"one", 1}, {"three", 3}, {"sum", 3}});
 }
 
 // ---- useless inputs ------------------------------------------------------------------------------------

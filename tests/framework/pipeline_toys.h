@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "support/support.h"
 
@@ -98,11 +99,13 @@ class Voxels : public Toy {
   Param<int> resolution{this, "resolution", 8, {1, 64}, "voxels along each side"};
   Param<float> width{this, "width", 1.0f, {0.1f, 100.0f}, "m", "of the grid"};
   Param<bool> smooth{this, "smooth", false, "whether it is smoothed"};
-  Param<std::string> layout{this, "layout", "dense", {"dense", "sparse"}, "of the memory"};
+  enum class Layout { dense, sparse };
+  friend constexpr auto words(Layout) { return std::array{"dense", "sparse"}; }
+  Param<Layout> layout{this, "layout", Layout::dense, "of the memory"};
   Out<RadianceGrid> grid{this, "grid", "radiance"};
   Reads readsFrom() const override { return Reads::geometry; }
   std::string checkParameters() const override {
-    return smooth && layout == "sparse" ? "a sparse grid cannot be smooth" : "";
+    return smooth && layout == Layout::sparse ? "a sparse grid cannot be smooth" : "";
   }
   void run(PassContext& frame) override {
     note();

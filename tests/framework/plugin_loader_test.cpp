@@ -5,7 +5,9 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/plugin/loader.h"
+#include "lumivox/plugin/technique.h"
 #include "support/support.h"
 
 using namespace lumivox;
@@ -65,7 +67,7 @@ TEST_CASE("a technique library opens on first use and gives its passes") {
   const std::unique_ptr<Pass> pass = technique->find("paint")->make();
   REQUIRE(pass->outputs().size() == 1);
   CHECK(pass->outputs()[0]->name() == "radiance");
-  CHECK(pass->outputs()[0]->portKind() == "Image");
+  CHECK(pass->outputs()[0]->kind().name == "Image");
   CHECK(pass->parameters()[0]->defaultText() == "1");
   CHECK(set.technique("good") == technique);
   CHECK(set.skipped().empty());
@@ -79,6 +81,22 @@ TEST_CASE("a library of another interface version is skipped before anything of 
 
 TEST_CASE("a library of another compiler is skipped with both names") {
   CHECK_THAT(reasonFor("wrong_build"), Contains("the compiler is 'xxx") && Contains("expected 'gcc"));
+}
+
+TEST_CASE("a library that was compiled with other headers is skipped, with both hashes") {
+  CHECK_THAT(reasonFor("stale_headers"), Contains("the hash of the public headers is '0123456789abcdef'") &&
+                                             Contains(std::string("expected '") + kHeadersHash));
+}
+
+TEST_CASE("a program that is older than its library is told so before it does anything") {
+  TechniqueVersionRecord program = techniqueVersionHere();
+  CHECK_NOTHROW(requireLibraryOf(program));
+  program.headers[0] = program.headers[0] == '0' ? '1' : '0';
+  CHECK_THAT(messageOf<Error>([&] { requireLibraryOf(program); }),
+             Contains("different sources") && Contains("the hash of the public headers is"));
+  program = techniqueVersionHere();
+  program.portsSize += 8;
+  CHECK_THAT(messageOf<Error>([&] { requireLibraryOf(program); }), Contains("the size of the ports is"));
 }
 
 TEST_CASE("a shared library that is no technique is skipped with the symbol that it lacks") {

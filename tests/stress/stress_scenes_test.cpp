@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "lumivox/base/error.h"
-#include "lumivox/pipeline/grid_placement.h"
+#include "lumivox/toolkit/grid_placement.h"
 #include "stress/scene_pieces.h"
 #include "support/scene_builder.h"
 #include "support/support.h"

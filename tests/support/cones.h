@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "../../techniques/light_propagation_volumes/closed_faces.h"
+#include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 
@@ -44,23 +46,33 @@ inline gpu::TextureRef filledPixels(const glm::vec4& value) {
   return texture;
 }
 
+using light_propagation_volumes::ClosedFaces;
+
+/// Light with the faces that surfaces close.
+struct LitCells : ShGrid {
+  ClosedFaces faces;
+};
+
 /// A grid of [-1,1]^3 with the same light in all channels; `closed` gives xyz shares of (n+1)^3 faces.
-inline ShGrid gridOf(int n, const Cells& cells, const std::vector<float>& closed = {}) {
+inline LitCells gridOf(int n, const Cells& cells, const std::vector<float>& closed = {}) {
   ShGrid::Level level;
   level.grid = {glm::vec3(-1.0f), 2.0f / static_cast<float>(n), glm::ivec3(n)};
   for (gpu::TextureRef& texture : level.coefficients) {
     texture = volume(n, gpu::Format::rgba32f);
     texture->uploadFloats(0, cells);
   }
-  level.closed = volume(n + 1, gpu::Format::rgba8);
-  level.moved = volume(n + 1, gpu::Format::rgba8);
+  const ClosedFaces::Level faces{level.grid, volume(n + 1, gpu::Format::rgba8),
+                                 volume(n + 1, gpu::Format::rgba8), nullptr};
   if (!closed.empty()) {
     std::vector<std::byte> bytes;
     for (const float share : closed)
       bytes.push_back(static_cast<std::byte>(static_cast<int>(share * 255.0f + 0.5f)));
-    level.closed->upload(0, bytes);
+    faces.closed->upload(0, bytes);
   }
-  return {{level}};
+  LitCells result;
+  result.levels.push_back(level);
+  result.faces.levels.push_back(faces);
+  return result;
 }
 
 /// A virtual light of flux 1: c0 = Y0, c1 = m Y1 along the direction.
@@ -114,8 +126,10 @@ class Propagation {
     harness_.setParameter(name, std::string(word));
     return *this;
   }
-  Propagation& run(const ShGrid& light) {
+  Propagation& run(const LitCells& light) { return run(light, light.faces); }
+  Propagation& run(const ShGrid& light, const ClosedFaces& faces) {
     harness_.setInput("light", light);
+    harness_.setInput("faces", faces);
     harness_.run();
     return *this;
   }

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 

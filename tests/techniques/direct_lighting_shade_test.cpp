@@ -1,5 +1,5 @@
 // Shading of surfaces and shadow maps that are made here.
-#include "lumivox/pipeline/light_samples.h"
+#include "lumivox/toolkit/light_samples.h"
 #include "support/marching.h"
 
 using namespace lumivox;
@@ -30,9 +30,10 @@ GBuffer floorSeen() {
 /// Light from above, pi W/m^2, whose one shadow view holds |x| < 0.5, |z| < 0.5 and is shadowed everywhere.
 ShadowMap darkSquare() {
   LightSampleData light{};
-  light.directionLayer = {0, -1, 0, 0};
-  light.power = glm::vec4(glm::vec3(static_cast<float>(kPi)), 1.0f);
-  light.shape.z = 0.25f;  // m, width of a texel
+  light.direction = {0, -1, 0};
+  light.power = glm::vec3(static_cast<float>(kPi));
+  light.viewCount = 1;
+  light.texelWidth = 0.25f;  // m, width of a texel
   glm::mat4 view(0.0f);
   view[0][0] = view[2][1] = 2.0f;
   view[3] = {0, 0, 0.5f, 1};

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "lumivox/pipeline/light_samples.h"
+#include "lumivox/toolkit/light_samples.h"
 #include "support/light_cells.h"
 #include "support/made_fragments.h"
 
@@ -18,6 +18,9 @@ constexpr int kSide = 8;       // cells
 constexpr float kSize = 0.5f;  // m
 constexpr double kFace = kSize * kSize;
 
+/// What an injection makes of one grid.
+struct Injected : ShGrid::Level, ClosedFaces::Level {};
+
 /// An injection pass over cells of half a metre.
 struct Injection {
   explicit Injection(const std::string& pass)
@@ -28,10 +31,10 @@ struct Injection {
     harness.setParameter("resolution", kSide);
     harness.setParameter("extent", kSide * kSize);
   }
-  ShGrid::Level run(const std::vector<FragmentData>& squares) {
+  Injected run(const std::vector<FragmentData>& squares) {
     harness.setInput("fragments", listOver(grid(), squares));
     harness.run();
-    return harness.output<ShGrid>("light").levels[0];
+    return {harness.output<ShGrid>("light").levels[0], harness.output<ClosedFaces>("faces").levels[0]};
   }
   /// Where the cells lie: around the eye, on whole cells.
   static GridPlacement grid() {
@@ -46,8 +49,9 @@ struct Injection {
 /// A directional light of this irradiance without shadows.
 ShadowMap sunFrom(const glm::vec3& towards, float irradiance) {
   LightSampleData light{};
-  light.directionLayer = glm::vec4(-glm::normalize(towards), -1.0f);
-  light.power = glm::vec4(glm::vec3(irradiance), 1.0f);
+  light.direction = -glm::normalize(towards);
+  light.firstView = -1;
+  light.power = glm::vec3(irradiance);
   ShadowMap map;
   map.lights = std::make_shared<gpu::Buffer>(device(), sizeof(light), "lights");
   map.lights->uploadValues(std::span<const LightSampleData>(&light, 1));
@@ -76,12 +80,12 @@ std::size_t faceAt(const glm::ivec3& face) {
 }
 
 /// Closed sixteenths of the faces of an axis, of one or of all.
-int closedParts(const ShGrid::Level& level, int axis, const glm::ivec3& face) {
+int closedParts(const Injected& level, int axis, const glm::ivec3& face) {
   const auto byte =
       static_cast<int>(level.closed->download(0)[faceAt(face) + static_cast<std::size_t>(axis)]);
   return static_cast<int>(std::lround(byte * 16.0 / 255.0));
 }
-int allClosedParts(const ShGrid::Level& level, int axis) {
+int allClosedParts(const Injected& level, int axis) {
   const std::vector<std::byte> bytes = level.closed->download(0);
   int sum = 0;
   for (std::size_t i = static_cast<std::size_t>(axis); i < bytes.size(); i += 4)
@@ -132,7 +136,7 @@ TEST_CASE("a texel of flux F alone in its brick lights the cell in front of it: 
         const glm::vec3 flux(0.01f, 0.0025f, 0.03f), normal = unit(axis, sign);
         inject.harness.setInput("map",
                                 mapOf({{position, normal, flux}, {position, normal, glm::vec3(0.0f)}}));
-        const ShGrid::Level level = inject.run({});
+        const Injected level = inject.run({});
         INFO("axis " << axis << ", sign " << sign << ", at " << place);
         for (int channel = 0; channel < 3; ++channel) {
           const Cells cells = level.coefficients[static_cast<std::size_t>(channel)]->downloadFloats(0);
@@ -167,7 +171,7 @@ TEST_CASE(
         place[axis] = 3.0 + one.beyond;
         glm::ivec3 face(4);
         face[axis] = 3;
-        const ShGrid::Level level =
+        const Injected level =
             inject.run({squareAt(place, unit(axis, one.sign) + one.slope * unit(tilted, 1.0f))});
         INFO("axis " << axis << ", beyond " << one.beyond << ", sign " << one.sign << ", slope "
                      << one.slope);
@@ -216,7 +220,7 @@ TEST_CASE(
           glm::ivec3 ofFloor = face, ofWall = face;
           if (up < 0.0f) ofFloor[across] = 4;
           if (right < 0.0f) ofWall[side] = 3;
-          const ShGrid::Level level = inject.run(squares);
+          const Injected level = inject.run(squares);
           INFO("floor " << up << " of axis " << across << ", wall " << right << " of axis " << side);
           INFO("gap " << gap);
           const bool meets = gap < 3;
@@ -296,7 +300,7 @@ TEST_CASE("a surface with holes closes its share of a face, to the nearest sixte
       glm::ivec3 face(3);
       face[(axis + 1) % 3] = 4;
       face[(axis + 2) % 3] = 5;
-      const ShGrid::Level level = inject.run(squares);
+      const Injected level = inject.run(squares);
       INFO("axis " << axis << ", sixteenths " << sixteenths);
       CHECK(closedParts(level, axis, face) == std::lround(sixteenths));
       CHECK(allClosedParts(level, axis) == std::lround(sixteenths));
@@ -317,7 +321,7 @@ TEST_CASE(
         beside[(axis + 1) % 3] = 4.75;
         inject.harness.setParameter("two_sided", std::string(twoSided ? "on" : "off"));
         inject.harness.setInput("shadow", sunFrom(unit(axis, side), 0.8f));
-        const ShGrid::Level level =
+        const Injected level =
             inject.run({squareAt(place, unit(axis, 1.0f), glm::vec3(0.75f, 0.5f, 1.25f)),
                         squareAt(beside, unit(axis, 1.0f), glm::vec3(0.25f, 0.5f, 1.5f), 0.5f)});
         const Cells cells = level.coefficients[0]->downloadFloats(0);
@@ -348,7 +352,7 @@ TEST_CASE(
       std::vector<FragmentData> squares{squareAt({4.25, 3.1, 5.25}, {0, 1, 0}, glm::vec3(pair.wins)),
                                         squareAt({4.75, 3.1, 5.25}, {0, 1, 0}, glm::vec3(pair.loses))};
       if (!first) std::swap(squares[0], squares[1]);
-      const ShGrid::Level level = inject.run(squares);
+      const Injected level = inject.run(squares);
       for (int channel = 0; channel < 3; ++channel) {
         const double albedo =
             std::round(glm::dvec3(squares[first ? 0 : 1].albedo())[channel] * 255.0) / 255.0;
@@ -367,7 +371,7 @@ TEST_CASE("each surface of a long list lights its own cell and closes its own fa
                  {0, 1, 0}));
   Injection inject("inject_voxels");
   inject.harness.setInput("shadow", sunFrom({0, 1, 0}, 0.8f));
-  const ShGrid::Level level = inject.run(squares);
+  const Injected level = inject.run(squares);
   const Cells cells = level.coefficients[0]->downloadFloats(0);
   REQUIRE(cells.size() == 4 * squares.size());
   for (std::size_t i = 0; i < cells.size(); i += 4)
@@ -388,10 +392,10 @@ TEST_CASE("a surface is lit by a lamp at its true place and not at the middle of
           const glm::dvec3 lamp = glm::dvec3(4.9, 4.7, 5.1) + 3.0 * glm::dvec3(unit(axis, sign));
           ShadowMap shadow = sunFrom({0, 1, 0}, 0.0f);
           LightSampleData light{};
-          light.positionKind =
-              glm::vec4(Injection::grid().low + kSize * glm::vec3(lamp), float(LightSampleKind::point));
-          light.directionLayer.w = -1.0f;
-          light.power = glm::vec4(0.3f);
+          light.position = Injection::grid().low + kSize * glm::vec3(lamp);
+          light.kind = LightSampleKind::point;
+          light.firstView = -1;
+          light.power = glm::vec3(0.3f);
           shadow.lights->uploadValues(std::span<const LightSampleData>(&light, 1));
           inject.harness.setInput("shadow", shadow);
           const Cells cells =
@@ -435,7 +439,7 @@ TEST_CASE(
   inject.harness.setParameter("voxels", std::string("packed"));
   for (const glm::dvec3 albedo : {glm::dvec3(1, 0.1, 0.1), glm::dvec3(0.2, 0.6, 0.9), glm::dvec3(0, 0.5, 0),
                                   glm::dvec3(0.4), glm::dvec3(2, 0.1, 0.1)}) {
-    const ShGrid::Level level = inject.run({squareAt({3.3, 4.2, 5.1}, {0, 1, 0}, glm::vec3(albedo))});
+    const Injected level = inject.run({squareAt({3.3, 4.2, 5.1}, {0, 1, 0}, glm::vec3(albedo))});
     const glm::dvec3 d = glm::pow(glm::min(albedo, glm::dvec3(1.0)), glm::dvec3(1.0 / 2.2));
     const double contrast =
         glm::length(glm::dvec3(d.r - d.g, d.r - d.b, d.g - d.b)) / (std::sqrt(2.0) + d.r + d.g + d.b);

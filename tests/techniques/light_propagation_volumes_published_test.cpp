@@ -65,7 +65,7 @@ Cells growing(int n, int axis) {
 }
 
 /// Radiance that a white surface at a place reflects, through `gather` with these words set.
-double gathered(const ShGrid& light, const glm::vec3& position, const glm::vec3& normal,
+double gathered(const LitCells& light, const glm::vec3& position, const glm::vec3& normal,
                 const std::vector<std::pair<const char*, const char*>>& settings) {
   const SceneBuilder builder = emptyScene();
   PassHarness gather(device(), techniques(), "light_propagation_volumes", "gather", builder.scene,
@@ -74,7 +74,8 @@ double gathered(const ShGrid& light, const glm::vec3& position, const glm::vec3&
   const gpu::TextureRef normals = filledPixels(glm::vec4(normal, 1.0f));
   gather.setInput("gbuffer", GBuffer{filledPixels(glm::vec4(position, 1.0f)), normals, normals,
                                      filledPixels(glm::vec4(1.0f)), nullptr, nullptr});
-  gather.setInput("light", light);
+  gather.setInput<ShGrid>("light", light);
+  gather.setInput("faces", light.faces);
   gather.run();
   return pictureOf(*gather.output<Image>("diffuse").texture).at(4, 4, 0);
 }
@@ -175,9 +176,9 @@ TEST_CASE("a printed normal holds light back by a quarter and half the cosine, i
   constexpr int n = 11, centre = 5;
   const SceneBuilder builder = emptyScene();
   Cells cells = oneCell(n, glm::ivec3(centre), 0.0);
-  ShGrid light = gridOf(n, cells);
-  light.levels[0].packed = emptyVoxels(n);
-  addSurface(*light.levels[0].packed, n, glm::ivec3(centre), {1, 0, 0});
+  LitCells light = gridOf(n, cells);
+  light.faces.levels[0].packed = emptyVoxels(n);
+  addSurface(*light.faces.levels[0].packed, n, glm::ivec3(centre), {1, 0, 0});
   const auto sent = [&](float amplifier) {
     Propagation step(builder.scene);
     step.set("occlusion", "normals").set("iterations", 1).set("occlusion_amplifier", amplifier).run(light);
@@ -193,8 +194,8 @@ TEST_CASE("a printed normal holds light back by a quarter and half the cosine, i
   CHECK(halved[at(n, centre + 1, centre, centre)] == Approx(0.5 * (all + facing)).epsilon(1e-4));
   CHECK(free[at(n, centre + 1, centre, centre)] == Approx(all).epsilon(1e-4));
   // A surface in the cell that receives holds nothing back.
-  light.levels[0].packed = emptyVoxels(n);
-  addSurface(*light.levels[0].packed, n, {centre + 1, centre, centre}, {-1, 0, 0});
+  light.faces.levels[0].packed = emptyVoxels(n);
+  addSurface(*light.faces.levels[0].packed, n, {centre + 1, centre, centre}, {-1, 0, 0});
   CHECK(sent(1.0f)[at(n, centre + 1, centre, centre)] == Approx(all).epsilon(1e-4));
 }
 
@@ -213,10 +214,11 @@ TEST_CASE("grids that are apart get nothing from the coarser one, nor from the e
   const SceneBuilder builder = emptyScene(0.5f);
   Cells lit = empty(n);
   for (int z = 0; z < n; ++z) addLight(lit, n, {1, 4, z}, {1, 0, 0}, forwardCosine());
-  ShGrid light = gridOf(n, empty(n));
-  ShGrid coarse = gridOf(n, lit);
+  LitCells light = gridOf(n, empty(n));
+  const LitCells coarse = gridOf(n, lit);
   light.levels[0].grid = {glm::vec3(-0.5f), 1.0f / n, glm::ivec3(n)};
   light.levels.push_back(coarse.levels[0]);
+  light.faces.levels.push_back(coarse.faces.levels[0]);
   for (const char* grids : {"nested", "apart"}) {
     Propagation step(builder.scene);
     step.set("grids", grids).set("iterations", 20).run(light);
@@ -258,7 +260,8 @@ TEST_CASE(
   const double cosine = 1.0 / std::sqrt(1.0 + 0.09 + 0.04);
   const double radiance = std::floor(0.6 / kPi * 255.0) / 255.0 * 3.0 * cosine;
   const Cells cells = level.coefficients[0]->downloadFloats(0);
-  const std::vector<std::uint32_t> words = level.packed->downloadValues<std::uint32_t>();
+  const std::vector<std::uint32_t> words =
+      inject.output<ClosedFaces>("faces").levels[0].packed->downloadValues<std::uint32_t>();
   REQUIRE(words.size() == cells.size() / 4 * 5);
   int lit = 0;
   for (std::size_t i = 0; i < cells.size(); i += 4) {
@@ -372,7 +375,8 @@ TEST_CASE("grids are blended as printed from 12 to 16 cells around the eye, what
   const glm::vec3 eye = snapshotOf(emptyScene().scene, 0.0).camera.eye;
   fine.grid = {eye - 0.5f, 1.0f / n, glm::ivec3(n)};  // 1 m around it
   coarse.grid = {eye - 1.0f, 2.0f / n, glm::ivec3(n)};
-  const ShGrid light{{fine, coarse}};
+  LitCells light;
+  light.levels = {fine, coarse};
   const double h = fine.grid.voxelSize, whole = kPrinted0 / (h * h) / kPi;
   const auto at = [&](float distance) {
     return gathered(light, eye + distance * glm::normalize(glm::vec3(1, 2, -1)), {0, 1, 0},

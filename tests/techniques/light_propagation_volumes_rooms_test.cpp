@@ -9,7 +9,7 @@ using namespace lumivox::test;
 namespace {
 
 /// One grid of 32 cells before the propagation, from surface samples with this many voxels along a side.
-ShGrid injected(const Scene& scene, const std::string& pass, int voxelResolution = 0) {
+LitCells injected(const Scene& scene, const std::string& pass, int voxelResolution = 0) {
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshot);
   if (voxelResolution > 0) voxels.setParameter("resolution", voxelResolution);
@@ -28,7 +28,8 @@ ShGrid injected(const Scene& scene, const std::string& pass, int voxelResolution
   else
     inject.setInput("shadow", shadow.output<ShadowMap>("depth"));
   inject.run();
-  return inject.output<ShGrid>("light");
+  LitCells result{inject.output<ShGrid>("light"), inject.output<ClosedFaces>("faces")};
+  return result;
 }
 
 /// The red coefficients.
@@ -95,7 +96,7 @@ TEST_CASE("light in the middle of a closed room stays in it, wherever its walls 
   for (const float shift : kShifts) {
     INFO("shift " << shift);
     const ClosedRoom room(shift);
-    ShGrid light = injected(room.builder.scene, "inject_rsm", 64);
+    LitCells light = injected(room.builder.scene, "inject_rsm", 64);
     ShGrid::Level& level = light.levels[0];
     const SceneSnapshot snapshot = snapshotOf(room.builder.scene, 0.0);
     const glm::ivec3 size = level.grid.resolution,
@@ -106,7 +107,8 @@ TEST_CASE("light in the middle of a closed room stays in it, wherever its walls 
     for (const gpu::TextureRef& texture : level.coefficients) texture->uploadFloats(0, cells);
     PassHarness propagate(device(), techniques(), "light_propagation_volumes", "propagate",
                           room.builder.scene, snapshot);
-    propagate.setInput("light", light);
+    propagate.setInput<ShGrid>("light", light);
+    propagate.setInput("faces", light.faces);
     propagate.run();
     const auto [inside, outside] = room.insideAndOutside(propagate.output<ShGrid>("light").levels[0]);
     CHECK(inside > 1.0);

@@ -37,7 +37,7 @@ Picture indirect(const Scene& scene, const char* name, const std::vector<std::st
 }
 
 /// Largest difference between the folded shader and the one that goes face by face, as a share of the norm.
-double differenceOfMethods(const ShGrid& light, Propagation& folded, Propagation& plain) {
+double differenceOfMethods(const LitCells& light, Propagation& folded, Propagation& plain) {
   double worst = 0.0;
   folded.run(light);
   plain.run(light);
@@ -136,10 +136,12 @@ TEST_CASE("no iteration of a thousand amplifies, whatever is closed") {
         if (occluded && std::string(border) == "open") continue;
         Propagation step(builder.scene);
         step.set("lobe", lobe).set("border", border).set("iterations", 1);
-        ShGrid state = gridOf(n, randomLight(n, 7), occluded ? randomFaces(n, 3) : std::vector<float>{});
+        const LitCells first =
+            gridOf(n, randomLight(n, 7), occluded ? randomFaces(n, 3) : std::vector<float>{});
+        ShGrid state = first;
         double before = norm(state.levels[0].coefficients[0]->downloadFloats(0)), largest = 0.0;
         for (int i = 0; i < 1000; ++i) {
-          state = step.run(state).grid("travelling");
+          state = step.run(state, first.faces).grid("travelling");
           const double now = norm(state.levels[0].coefficients[0]->downloadFloats(0));
           if (before < 1e-20) break;  // all has left
           largest = std::max(largest, now / before);
@@ -248,7 +250,8 @@ TEST_CASE(
   constexpr float kRadiance = 0.7f;
   const SceneBuilder builder = emptyScene(kRadiance);
   Propagation step(builder.scene);
-  step.set("iterations", 300).run(gridOf(n, empty(n)));
+  const LitCells lit = gridOf(n, empty(n));
+  step.set("iterations", 300).run(lit);
   const ShGrid light = step.grid("light");
   const double h = light.levels[0].grid.voxelSize;
   const Cells cells = step.cells("light");
@@ -270,6 +273,7 @@ TEST_CASE(
   gather.setInput("gbuffer", GBuffer{filled({0.1f, -0.2f, 0.3f, 1}), filled(normal), filled(normal),
                                      filled(glm::vec4(1.0f)), nullptr, nullptr});
   gather.setInput("light", light);
+  gather.setInput("faces", lit.faces);
   gather.run();
   CHECK(pictureOf(*gather.output<Image>("diffuse").texture).at(4, 4, 0) == Approx(kRadiance).epsilon(0.01));
 }
@@ -277,9 +281,45 @@ TEST_CASE(
 TEST_CASE("light without faces is refused, and told where faces come from") {
   const SceneBuilder builder = emptyScene();
   Propagation step(builder.scene);
-  ShGrid light = gridOf(4, empty(4));
-  light.levels[0].closed = nullptr;
+  LitCells light = gridOf(4, empty(4));
+  light.faces.levels[0].closed = nullptr;
   CHECK_THROWS_WITH(step.run(light), Catch::Contains("level 0 of the light") && Catch::Contains("injection"));
+  light.faces.levels.clear();
+  CHECK_THROWS_WITH(step.run(light), Catch::Contains("level 0 of the light") && Catch::Contains("'faces'"));
+}
+
+TEST_CASE("light of another quantity than flux is refused by name, at every pass that takes it") {
+  const SceneBuilder builder = emptyScene();
+  LitCells light = gridOf(4, empty(4));
+  light.quantity = ShGrid::Quantity::radiance;
+  Propagation step(builder.scene);
+  CHECK_THROWS_WITH(step.run(light),
+                    Catch::Contains("holds radiance") && Catch::Contains("expected the flux"));
+  for (const char* pass : {"gather", "reflect"}) {
+    PassHarness harness(device(), techniques(), "light_propagation_volumes", pass, builder.scene,
+                        snapshotOf(builder.scene, 0.0));
+    const gpu::TextureRef pixels = filledPixels(glm::vec4(1.0f));
+    if (std::string(pass) == "gather")
+      harness.setInput("gbuffer", GBuffer{pixels, pixels, pixels, pixels, nullptr, nullptr});
+    else
+      harness.setInput("surfaces", AttributeGrid{light.levels[0].grid, volume(4, gpu::Format::rgba16f),
+                                                 volume(4, gpu::Format::rgba16f), nullptr});
+    harness.setInput<ShGrid>("light", light);
+    CHECK_THROWS_WITH(harness.run(), Catch::Contains("holds radiance"));
+  }
+}
+
+TEST_CASE("light without colour may be one volume alone, and propagates as three of the same") {
+  constexpr int n = 8;
+  const SceneBuilder builder = emptyScene();
+  LitCells light = gridOf(n, randomLight(n, 11), randomFaces(n, 5));
+  Propagation three(builder.scene), one(builder.scene);
+  three.set("iterations", 5).run(light);
+  light.levels[0].coefficients[1] = light.levels[0].coefficients[2] = nullptr;
+  one.set("iterations", 5).run(light);
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    CHECK(one.grid("light").levels[0].coefficients[channel]->downloadFloats() ==
+          three.grid("light").levels[0].coefficients[channel]->downloadFloats());
 }
 
 TEST_CASE("nested grids hold the same radiance on both sides of their seam") {
@@ -297,7 +337,7 @@ TEST_CASE("nested grids hold the same radiance on both sides of their seam") {
   inject.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
   inject.run();
   Propagation step(builder.scene);
-  step.set("iterations", 400).run(inject.output<ShGrid>("light"));
+  step.set("iterations", 400).run(inject.output<ShGrid>("light"), inject.output<ClosedFaces>("faces"));
   const ShGrid light = step.grid("light");
   REQUIRE(light.levels.size() == 3);
   for (std::size_t i = 0; i < 3; ++i) {

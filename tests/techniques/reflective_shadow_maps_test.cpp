@@ -2,8 +2,9 @@
 #include <optional>
 
 #include "lumivox/measure/metrics.h"
-#include "lumivox/pipeline/light_samples.h"
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/reference/path_tracer.h"
+#include "lumivox/toolkit/light_samples.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 
@@ -238,7 +239,8 @@ TEST_CASE("the pattern lies where the light sees the surface point: texels elsew
     Light& light = builder.light(kind, glm::vec3(1.0f), {0.2, 1.6, -0.1}, {0, -1, 0});
     if (kind == LightKind::spot) light.innerAngle = light.outerAngle = 0.6f;
     ReflectiveShadowMap map = render(builder.scene, kSide).value;
-    const double texel = map.lights->downloadValues<LightSampleData>().front().shape.z, width = texel * kSide;
+    const double texel = map.lights->downloadValues<LightSampleData>().front().texelWidth,
+                 width = texel * kSide;
     const std::vector<float> seen = map.position->downloadFloats(0);
     const gpu::TextureDescription description = map.flux->description();
     map.position = std::make_shared<gpu::Texture>(device(), description, "places");
@@ -344,7 +346,7 @@ TEST_CASE(
     lights.run();
     ReflectiveShadowMap map = lights.output<ReflectiveShadowMap>("map");
     REQUIRE(map.lightCount == 1);
-    const double texel = map.lights->downloadValues<LightSampleData>().front().shape.z;
+    const double texel = map.lights->downloadValues<LightSampleData>().front().texelWidth;
     const double width = texel * kSide;  // of the view: m, or on the plane one metre away
     const gpu::TextureDescription description = map.flux->description();
     map.position = std::make_shared<gpu::Texture>(device(), description, "places");

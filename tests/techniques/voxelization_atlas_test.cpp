@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "lumivox/base/error.h"
+#include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 #include "support/voxel_fragments.h"

@@ -4,7 +4,8 @@
 #include <glm/gtc/packing.hpp>
 #include <random>
 
-#include "lumivox/pipeline/light_samples.h"
+#include "lumivox/pipeline/pass.h"
+#include "lumivox/toolkit/light_samples.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 #include "support/voxel_fragments.h"

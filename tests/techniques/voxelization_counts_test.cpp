@@ -2,6 +2,7 @@
 // it, and a frame whose guess was too small is never given out.
 #include <cmath>
 
+#include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 #include "support/voxel_fragments.h"

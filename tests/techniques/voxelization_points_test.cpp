@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 #include "support/voxel_fragments.h"

@@ -4,6 +4,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/scene/topology.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"

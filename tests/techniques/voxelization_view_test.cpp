@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 
+#include "lumivox/pipeline/pass.h"
 #include "support/made_fragments.h"
 #include "support/scene_builder.h"
 

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 #include "support/voxel_fragments.h"

@@ -76,24 +76,55 @@ std::vector<fs::path> guides() {
   return files;
 }
 
+/// A text without what stands from "<!-- reproduced" to "<!-- end -->".
+std::string withoutGenerated(std::string text) {
+  static const std::string kBegin = "<!-- reproduced ", kEnd = "<!-- end -->";
+  for (std::size_t from = text.find(kBegin); from != std::string::npos; from = text.find(kBegin, from)) {
+    const std::size_t end = text.find(kEnd, from);
+    if (end == std::string::npos) break;
+    text.erase(from, end + kEnd.size() - from);
+  }
+  return text;
+}
+
+/// A template as `lumivox new technique ambient` writes it out: the example of the guide.
+std::string named(std::string text) {
+  static const std::string placeholder = "technique_name";
+  for (std::size_t at = text.find(placeholder); at != std::string::npos; at = text.find(placeholder, at))
+    text.replace(at, placeholder.size(), "ambient");
+  return text;
+}
+
+/// A file that a command in a guide names: of the tree; SCENES stands for its installed scenes; or of the
+/// technique that the guide writes.
+bool isThere(std::string file) {
+  if (file.rfind("SCENES/", 0) == 0) file.replace(0, 6, "scenes");
+  const std::string example = "ambient";
+  std::string ofTemplate = file;
+  if (const std::size_t at = ofTemplate.find(example); at != std::string::npos)
+    ofTemplate.replace(at, example.size(), "technique_name");
+  return fs::exists(test::sourceDirectory() / file) ||
+         fs::exists(test::sourceDirectory() / "templates/technique" / ofTemplate);
+}
+
 /// Where quotes of a language may come from.
 std::string sourcesOf(const std::string& language) {
   static const std::vector<
       std::pair<std::set<std::string>, std::pair<std::set<std::string>, std::vector<std::string>>>>
       homes = {{{"scene"}, {{".scene"}, {"scenes", "docs/examples"}}},
-               {{"pipeline"}, {{".pipeline"}, {"scenes", "docs/examples"}}},
+               {{"pipeline"}, {{".pipeline"}, {"scenes", "docs/examples", "templates"}}},
                {{"sweep"}, {{".sweep"}, {"scenes"}}},
                {{"reproduction"}, {{".reproduction"}, {"scenes"}}},
-               {{"cpp"}, {{".cpp", ".h"}, {"techniques", "framework/include", "tests"}}},
-               {{"glsl"}, {{".glsl", ".vert", ".geom", ".frag", ".comp"}, {"shaders"}}},
-               {{"cmake"}, {{".txt", ".cmake"}, {"techniques", "cmake"}}}};
+               {{"cpp"}, {{".cpp", ".h"}, {"techniques", "framework/include", "tests", "templates"}}},
+               {{"glsl"}, {{".glsl", ".vert", ".geom", ".frag", ".comp"}, {"shaders", "templates"}}},
+               {{"cmake"}, {{".txt", ".cmake"}, {"techniques", "cmake", "templates"}}}};
   std::string all;
   for (const auto& [languages, where] : homes) {
     if (languages.count(language) == 0) continue;
     for (const std::string& folder : where.second)
       for (const auto& entry : fs::recursive_directory_iterator(test::sourceDirectory() / folder))
         if (entry.is_regular_file() && where.first.count(entry.path().extension().string()) != 0)
-          all += withoutLayout(readFile(entry.path())) + '\n';
+          all += withoutLayout(named(readFile(entry.path()))) + '\n';
   }
   return all;
 }
@@ -141,12 +172,69 @@ TEST_CASE("the commands that the guides show exist, and the files that they name
       for (std::sregex_iterator match(quote.text.begin(), quote.text.end(), file), end; match != end;
            ++match) {
         INFO(guide << ": " << match->str());
-        CHECK(fs::exists(test::sourceDirectory() / match->str()));
+        CHECK(isThere(match->str()));
       }
     }
   REQUIRE(commands.size() >= 5);
   for (const std::string& command : commands) {
     INFO(command);
     CHECK(test::runCommand("lumivox " + command + " --help").exitCode == 0);
+  }
+}
+
+TEST_CASE("the guide to techniques shows every file of the one that `lumivox new technique` writes, whole") {
+  const fs::path root = test::sourceDirectory() / "templates/technique";
+  std::set<std::string> quoted;
+  for (const Quote& quote : quotesOf(readFile(test::sourceDirectory() / "docs/writing_a_technique.md")))
+    quoted.insert(withoutLayout(quote.text));
+  std::size_t shown = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(root)) {
+    // Of the card it tells what belongs there; a picture is no text.
+    if (!entry.is_regular_file() || entry.path().extension() == ".md" || entry.path().extension() == ".png")
+      continue;
+    INFO(entry.path());
+    CHECK(quoted.count(withoutLayout(named(readFile(entry.path())))) == 1);
+    ++shown;
+  }
+  CHECK(shown == 5);
+}
+
+TEST_CASE("a paper card begins with a picture of the technique and its three headline deviations") {
+  std::vector<fs::path> cards;
+  for (const char* folder : {"techniques", "templates/technique/techniques"})
+    for (const auto& entry : fs::directory_iterator(test::sourceDirectory() / folder))
+      if (entry.is_directory()) cards.push_back(entry.path() / "README.md");
+  REQUIRE(cards.size() >= 7);
+  for (const fs::path& card : cards) {
+    INFO(card);
+    const std::string text = readFile(card), top = text.substr(0, text.find("\n\n", text.find("\n1. ")));
+    std::smatch picture;
+    REQUIRE(std::regex_search(top, picture,
+                              std::regex("^# \\w+\n\n!\\[[^\\]]+\\]\\(([^)]+\\.png)\\)\n\n1\\. \\*\\*")));
+    REQUIRE(fs::exists(card.parent_path() / picture[1].str()));
+    CHECK(fs::file_size(card.parent_path() / picture[1].str()) < 60'000);
+    for (const char* number : {"\n1. **", "\n2. **", "\n3. **"}) CHECK(top.find(number) != std::string::npos);
+    CHECK(top.find("\n4. ") == std::string::npos);
+  }
+}
+
+TEST_CASE("no line of a guide or card is longer than 140 characters, but for what is generated") {
+  constexpr std::size_t kLongest = 140;
+  std::vector<fs::path> texts = guides();
+  for (const char* folder : {"techniques", "templates/technique/techniques"})
+    for (const auto& entry : fs::directory_iterator(test::sourceDirectory() / folder))
+      if (entry.is_directory()) texts.push_back(entry.path() / "README.md");
+  for (const fs::path& file : texts) {
+    if (file.filename() == "reference.md") continue;  // lumivox describe --markdown
+    // What lumivox reproduce --cards writes between its marks.
+    const std::string text = withoutGenerated(readFile(file));
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      // Characters, not bytes.
+      const auto length =
+          std::count_if(line.begin(), line.end(), [](unsigned char c) { return (c & 0xC0) != 0x80; });
+      INFO(file << ": " << line);
+      CHECK(static_cast<std::size_t>(length) <= kLongest);
+    }
   }
 }

@@ -104,8 +104,8 @@ std::vector<Include> includesOf(const std::string& text) {
 // ------------------------------------------------------------------------------------------------------
 
 /// For each part of the framework those that it may include: base <- dsl <- scene; base <- gpu <- shader;
-/// those <- pipeline <- plugin; scene <- reference; base <- measure; those <- results <- analysis, roofline;
-/// analysis <- page; all but page <- experiment; all <- stress.
+/// those <- pipeline <- toolkit, plugin; scene <- reference; base <- measure; those <- results <- analysis,
+/// roofline; analysis <- page; all but page <- experiment; all <- stress.
 const std::map<std::string, std::set<std::string>>& houseOrder() {
   static const std::map<std::string, std::set<std::string>> order = {
       {"base", {}},
@@ -114,6 +114,7 @@ const std::map<std::string, std::set<std::string>>& houseOrder() {
       {"gpu", {"base"}},
       {"shader", {"base", "gpu"}},
       {"pipeline", {"base", "dsl", "scene", "gpu", "shader"}},
+      {"toolkit", {"base", "dsl", "scene", "gpu", "shader", "pipeline"}},
       {"plugin", {"base", "dsl", "scene", "gpu", "shader", "pipeline"}},
       {"volume", {"base", "scene"}},
       {"reference", {"base", "dsl", "scene"}},
@@ -123,12 +124,12 @@ const std::map<std::string, std::set<std::string>>& houseOrder() {
       {"analysis", {"base", "measure", "results"}},
       {"roofline", {"base", "gpu", "shader", "measure", "results"}},
       {"experiment",
-       {"base", "dsl", "scene", "gpu", "shader", "pipeline", "plugin", "reference", "measure", "results",
-        "analysis", "roofline"}},
+       {"base", "dsl", "scene", "gpu", "shader", "pipeline", "toolkit", "plugin", "reference", "measure",
+        "results", "analysis", "roofline"}},
       {"page", {"base", "measure", "results", "analysis"}},
       {"stress",
-       {"base", "dsl", "scene", "gpu", "shader", "pipeline", "plugin", "reference", "measure", "results",
-        "experiment", "page"}}};
+       {"base", "dsl", "scene", "gpu", "shader", "pipeline", "toolkit", "plugin", "reference", "measure",
+        "results", "experiment", "page"}}};
   return order;
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <random>
 
+#include "../../techniques/light_propagation_volumes/closed_faces.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 #include "tools/cli_support.h"
@@ -31,6 +32,7 @@ struct Content {
   AttributeGrid attributes;
   RadianceGrid radiance;
   ShGrid harmonics;
+  light_propagation_volumes::ClosedFaces faces;
   ScatteringGrid media;
 };
 Content& content() {
@@ -119,7 +121,7 @@ void makeContent() {
                      randomVolume(gpu::Format::rgba32f, size, 1, 4)};
   made.radiance.grid = made.grid;
   made.radiance.radiance = randomVolume(gpu::Format::rgba32f, size, 5, 6);
-  ShGrid::Level fine{made.grid, {}, {}, {}}, coarse{made.grid, {}, {}, {}};
+  ShGrid::Level fine{made.grid, {}}, coarse{made.grid, {}};
   coarse.grid.voxelSize *= 2.0f;
   for (std::size_t channel = 0; channel < 3; ++channel) {
     fine.coefficients[channel] =
@@ -127,7 +129,7 @@ void makeContent() {
     coarse.coefficients[channel] =
         randomVolume(gpu::Format::rgba16f, size, 1, 30 + static_cast<unsigned>(channel));
   }
-  fine.closed = randomVolume(gpu::Format::rgba8, size + 1, 1, 40);
+  made.faces.levels = {{made.grid, randomVolume(gpu::Format::rgba8, size + 1, 1, 40), nullptr, nullptr}};
   made.harmonics.levels = {fine, coarse};
   ScatteringGrid::Medium smoke, fog;
   smoke.name = "smoke";
@@ -151,6 +153,7 @@ class EveryKind : public Pass {
   Out<AttributeGrid> attributes{this, "attributes"};
   Out<RadianceGrid> radiance{this, "radiance"};
   Out<ShGrid> harmonics{this, "harmonics"};
+  Out<light_propagation_volumes::ClosedFaces> faces{this, "faces"};  // a kind that a technique brought
   Out<ScatteringGrid> media{this, "media"};
   Out<Image> picture{this, "picture", Contributes::direct};
   void run(PassContext& frame) override {
@@ -161,6 +164,7 @@ class EveryKind : public Pass {
     attributes = made.attributes;
     radiance = made.radiance;
     harmonics = made.harmonics;
+    faces = made.faces;
     media = made.media;
     if (picture.wanted()) picture = {frame.image(gpu::Format::rgba32f, "picture")};
   }
@@ -322,7 +326,7 @@ TEST_CASE("every value of every kind of port reads back from the file as the dev
   checkComponent(grids, "all.media.density_smoke", made.media.media[0].density, 0, 0);
   checkVoxels<openvdb::FloatGrid>(grids, "all.media.density_fog", glm::ivec3(8),
                                   [](const glm::ivec3&) { return std::pair(1.0f, true); });
-  checkRgb(grids, "all.harmonics.closed", made.harmonics.levels[0].closed, 0);
+  checkRgb(grids, "all.faces.closed", made.faces.levels[0].closed, 0);
 
   const std::array<const char*, 4> coefficients{"Y00", "Y1-1", "Y10", "Y11"};
   for (int level = 0; level < 2; ++level) {

@@ -31,4 +31,8 @@ TextKind kindOfText(const std::filesystem::path& file) {
       "{}: no text of ours; expected a block 'scene', 'pipeline', 'sweep' or 'reproduction'", file.string()));
 }
 
+std::string stem(const std::string& file) {
+  return std::filesystem::path(file).stem().string();
+}
+
 }  // namespace lumivox::command

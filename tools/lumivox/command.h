@@ -35,9 +35,13 @@ void addVoxelsCommand(Commands& commands);     // voxels
 void addExplainCommand(Commands& commands);    // explain
 void addDeviceCommand(Commands& commands);     // device
 void addShadersCommand(Commands& commands);    // shaders
+void addNewCommand(Commands& commands);        // new
 
 enum class TextKind { scene, pipeline, sweep, reproduction };
 /// By the extension, else by the blocks; Error when it is none of them.
 TextKind kindOfText(const std::filesystem::path& file);
+
+/// "cornell" for scenes/cornell.scene: how tables name texts.
+std::string stem(const std::string& file);
 
 }  // namespace lumivox::command

@@ -71,10 +71,6 @@ std::string bytesText(std::uint64_t first, std::uint64_t second) {
   return a + "/" + b;
 }
 
-std::string stem(const std::string& file) {
-  return std::filesystem::path(file).stem().string();
-}
-
 constexpr std::size_t kColumns = 100;  // of a terminal that this fits into
 
 std::size_t widest(const std::string& text) {

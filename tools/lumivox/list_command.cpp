@@ -6,8 +6,10 @@
 #include "command.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/base/installation.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/experiment/report.h"
+#include "lumivox/pipeline/pass.h"
 
 namespace lumivox::command {
 namespace {
@@ -22,18 +24,24 @@ std::string titleOf(const fs::path& file) {
   return {};
 }
 
+/// Those of the project here, and those that come with the program.
 Json texts(const std::string& extension, const fs::path& subfolder) {
-  const auto scenes = committedScenes();
-  if (!scenes)
+  std::vector<fs::path> folders;
+  std::error_code failure;
+  for (const auto& scenes : {committedScenes(), programData("scenes")})
+    if (scenes && std::none_of(folders.begin(), folders.end(), [&](const fs::path& known) {
+          return fs::equivalent(known, *scenes, failure);
+        }))
+      folders.push_back(*scenes);
+  if (folders.empty())
     throw AbsentError(
         "no project here: no folder scenes/pipelines in this folder or above, nor beside the program");
   std::vector<fs::path> files;
-  const fs::path folder = *scenes / subfolder;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.path().extension() == extension && entry.is_regular_file()) files.push_back(entry.path());
+  for (const fs::path& folder : folders)
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder / subfolder, failure))
+      if (entry.path().extension() == extension && entry.is_regular_file()) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   Json list = Json::array();
-  std::error_code failure;
   for (const fs::path& file : files) {
     const fs::path shown = fs::proximate(file, failure);
     list.push_back({{"name", file.stem().string()},

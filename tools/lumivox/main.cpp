@@ -1,5 +1,7 @@
 // lumivox: the command line of the laboratory.
 #include "command.h"
+#include "common/manual.h"
+#include "lumivox/plugin/technique.h"
 
 namespace {
 
@@ -7,6 +9,7 @@ using namespace lumivox;
 using namespace lumivox::command;
 
 int run(int count, char** arguments) {
+  requireLibraryOf(techniqueVersionHere());
   CLI::App app{
       "A laboratory for real-time global illumination: a scene and a pipeline in; pictures, their error and "
       "their time out."};
@@ -35,6 +38,8 @@ int run(int count, char** arguments) {
   addExplainCommand(commands);
   addDeviceCommand(commands);
   addShadersCommand(commands);
+  addNewCommand(commands);
+  addDescriptionOptions(app, LUMIVOX_VERSION);
 
   if (const auto done = parseOptions(app, global, count, arguments)) return *done;
   return commands.chosen();

@@ -5,15 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "command.h"
 #include "lumivox/base/file.h"
 #include "measure_options.h"
 
 namespace lumivox::command {
 namespace {
-
-std::string stem(const std::string& file) {
-  return std::filesystem::path(file).stem().string();
-}
 
 std::string quoted(const std::string& field) {
   if (field.find_first_of(",\"\r\n") == std::string::npos) return field;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 
+#include "command.h"
 #include "common/command_line.h"
 #include "lumivox/results/stress_cells.h"
 
@@ -29,10 +30,6 @@ const char* mark(StressOutcome outcome) {
       return "BROKEN";
   }
   return "";
-}
-
-std::string stem(const std::string& file) {
-  return std::filesystem::path(file).stem().string();
 }
 
 std::string matrix(const std::vector<StressCell>& cells) {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "command.h"
@@ -11,6 +12,7 @@
 #include "lumivox/dsl/document.h"
 #include "lumivox/dsl/schema.h"
 #include "lumivox/experiment/reproduce.h"
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/sweep_text.h"
 #include "lumivox/results/reproduction.h"
 #include "lumivox/scene/text.h"
@@ -129,7 +131,7 @@ std::string rangeText(const ParamBase& parameter) {
 
 std::string inputText(const InBase& input) {
   const std::string need = unmetNeed(input.needs(), SceneTraits{});
-  return fmt::format("{}{}{}", input.portKind(),
+  return fmt::format("{}{}{}", input.kind().name,
                      input.presence() == Presence::optional  ? ", may be left out"
                      : input.presence() == Presence::history ? ", of the frame before, may be left out"
                                                              : "",
@@ -138,8 +140,8 @@ std::string inputText(const InBase& input) {
 
 std::string outputText(const OutBase& output) {
   return output.contributes() == Contributes::nothing
-             ? output.portKind()
-             : fmt::format("{}, {}", output.portKind(), name(output.contributes()));
+             ? output.kind().name
+             : fmt::format("{}, {}", output.kind().name, name(output.contributes()));
 }
 
 std::string meaningAfter(const std::string& meaning) {
@@ -149,6 +151,9 @@ std::string meaningAfter(const std::string& meaning) {
 std::string passText(const std::string& technique, const PassEntry& entry) {
   const std::unique_ptr<Pass> pass = entry.make();
   std::string text = fmt::format("pass NAME {}.{}\n  {}\n", technique, entry.name, entry.meaning);
+  if (pass->indirectBounces() != 1)
+    text += fmt::format("  models {} bounces of indirect light\n", pass->indirectBounces());
+  if (pass->worksOnHost()) text += "  works on the host\n";
   const auto section = [&](const char* title, const auto& members, const auto& line) {
     if (members.empty()) return;
     text += fmt::format("  {}\n", title);
@@ -169,6 +174,34 @@ void forEachPass(TechniqueSet& techniques, const Visit& visit) {
   for (const std::string& name : techniques.available())
     if (const Technique* technique = techniques.technique(name))
       for (const PassEntry& entry : technique->passes) visit(*technique, entry);
+}
+
+/// The framework's kinds of port, and those that techniques brought.
+std::vector<const PortKind*> portKinds(TechniqueSet& techniques, std::vector<std::unique_ptr<Pass>>& passes) {
+  std::vector<const PortKind*> kinds = FrameworkPorts::kinds();
+  const auto add = [&](const PortBase* port) {
+    if (std::none_of(kinds.begin(), kinds.end(),
+                     [&](const PortKind* kind) { return kind->isSameType(port->kind()); }))
+      kinds.push_back(&port->kind());
+  };
+  forEachPass(techniques, [&](const Technique&, const PassEntry& entry) {
+    passes.push_back(entry.make());
+    for (const InBase* input : passes.back()->inputs()) add(input);
+    for (const OutBase* output : passes.back()->outputs()) add(output);
+  });
+  return kinds;
+}
+
+/// "rgb radiance, W/(sr m^2)", with what the health scan and the exporter make of it.
+std::string kindText(const PortKind& kind) {
+  std::string text = fmt::format("port kind {}\n  {}\n", kind.name, kind.meaning);
+  for (const PortResource& one : kind.resources)
+    text += fmt::format("  holds {} ({}): {}{}\n", one.name, one.shape, one.meaning,
+                        one.sign == PortResource::Sign::any ? "; may be negative" : "");
+  for (const PortField& one : kind.fields)
+    text += fmt::format("  exported as {} ({}): {}\n", one.name, one.unit, one.quantity);
+  if (!kind.occupancy.empty()) text += fmt::format("  occupied: {}\n", kind.occupancy);
+  return text;
 }
 
 /// Everything among the techniques that has this name; adds all names to `known`.
@@ -220,12 +253,17 @@ int describe(const std::string& word, const GlobalOptions& global) {
     if (!found.empty()) text += found + (found.back() == '\n' ? "\n" : "\n\n");
     for (const std::string& one : dsl::words(*specifications)) known.push_back(one);
   }
+  std::vector<std::unique_ptr<Pass>> passes;
+  for (const PortKind* kind : portKinds(techniques, passes)) {
+    known.push_back(kind->name);
+    if (kind->name == word) text += kindText(*kind) + "\n";
+  }
   text += describeInTechniques(techniques, word, known);
   if (text.empty()) {
     const std::string nearest = nearestWord(word, known);
     throw Error(fmt::format(
-        "nothing is called '{}'; expected a block, property, technique, pass, port or parameter{}", word,
-        nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+        "nothing is called '{}'; expected a block, property, port kind, technique, pass, port or parameter{}",
+        word, nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
   }
   text.erase(text.find_last_not_of('\n') + 1);
   print(text + "\n");
@@ -238,6 +276,55 @@ std::string markdownCell(std::string text) {
   return text;
 }
 
+std::string kindsAsMarkdown(TechniqueSet& techniques) {
+  std::string text =
+      "\n## Port kinds\n\nWhat flows between passes. A number below 0 is a finding of the health scan where `any sign` does not say "
+      "otherwise. A technique brings a kind of its own by the same table (`pipeline/port.h`).\n\n"
+      "| Kind | Holds | Exported | Occupied |\n|---|---|---|---|\n";
+  std::vector<std::unique_ptr<Pass>> passes;
+  for (const PortKind* kind : portKinds(techniques, passes)) {
+    std::vector<std::string> holds, fields;
+    for (const PortResource& one : kind->resources)
+      holds.push_back(fmt::format("`{}` ({}{}): {}", one.name, one.shape,
+                                  one.sign == PortResource::Sign::any ? ", any sign" : "", one.meaning));
+    for (const PortField& one : kind->fields)
+      fields.push_back(fmt::format("`{}`: {}, {}", one.name, one.quantity, one.unit));
+    text += fmt::format("| `{}`: {} | {} | {} | {} |\n", kind->name, markdownCell(kind->meaning),
+                        markdownCell(fmt::format("{}", fmt::join(holds, "<br>"))),
+                        markdownCell(fmt::format("{}", fmt::join(fields, "<br>"))),
+                        markdownCell(kind->occupancy));
+  }
+  return text;
+}
+
+/// The numbers of bindings that the shaders of several techniques agree on: those of shaders/common.
+std::string bindingsAsMarkdown(TechniqueSet& techniques) {
+  using Key = std::pair<shader::BindingKind, std::string>;
+  struct Use {
+    std::set<std::uint32_t> numbers;
+    std::set<std::string> techniques;
+  };
+  std::map<Key, Use> uses;
+  for (const std::string& name : techniques.available())
+    if (const Technique* technique = techniques.technique(name))
+      for (const shader::PackedProgram& program : technique->shaders.programs)
+        for (const shader::PackedBinding& binding : program.bindings) {
+          Use& use = uses[{binding.kind, binding.name}];
+          use.numbers.insert(binding.binding);
+          use.techniques.insert(name);
+        }
+  std::map<std::pair<shader::BindingKind, std::uint32_t>, std::vector<std::string>> claimed;
+  for (const auto& [key, use] : uses)
+    if (use.numbers.size() == 1 && use.techniques.size() > 1)
+      claimed[{key.first, *use.numbers.begin()}].push_back("`" + key.second + "`");
+  std::string text =
+      "\n## Claimed bindings\n\nNumbers that the files of `shaders/common` take: a shader that includes one leaves its numbers "
+      "free. Each kind of binding counts by itself.\n\n| Kind | Number | Bindings |\n|---|---|---|\n";
+  for (const auto& [place, names] : claimed)
+    text += fmt::format("| {} | {} | {} |\n", name(place.first), place.second, fmt::join(names, ", "));
+  return text;
+}
+
 int describeAsMarkdown(const GlobalOptions& global) {
   TechniqueSet techniques = global.techniqueSet();
   std::string text =
@@ -245,8 +332,8 @@ int describeAsMarkdown(const GlobalOptions& global) {
   text += "## Scene texts\n\n" + dsl::describeAsMarkdown(sceneSpecifications()) + "\n";
   text += "## Pipeline texts\n\n" + dsl::describeAsMarkdown(pipelineSpecifications()) + "\n";
   text += "## Sweep texts\n\n" + dsl::describeAsMarkdown(sweepSpecifications()) + "\n";
-  text +=
-      "## Published tables\n\n" + dsl::describeAsMarkdown(reproductionSpecifications()) + "\n## Techniques\n";
+  text += "## Published tables\n\n" + dsl::describeAsMarkdown(reproductionSpecifications());
+  text += kindsAsMarkdown(techniques) + bindingsAsMarkdown(techniques) + "\n## Techniques\n";
   std::string technique;
   forEachPass(techniques, [&](const Technique& owner, const PassEntry& entry) {
     if (owner.name != technique)
@@ -296,8 +383,8 @@ void addTextCommands(Commands& commands) {
     auto* command = commands.app.add_subcommand("describe", "tells what a word of the texts means");
     auto word = std::make_shared<std::string>();
     auto markdown = std::make_shared<bool>(false);
-    auto* positional =
-        command->add_option("WORD", *word, "a block, property, technique, pass, port or parameter");
+    auto* positional = command->add_option(
+        "WORD", *word, "a block, property, port kind, technique, pass, port or parameter");
     command->add_flag("--markdown", *markdown, "print the whole reference")->excludes(positional);
     commands.onChosen(command, [=, &global] {
       if (*markdown) return describeAsMarkdown(global);

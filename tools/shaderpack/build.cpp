@@ -235,6 +235,7 @@ class Merger {
       for (const Job* job : variant.jobs) {
         for (std::size_t i = 0; i < job->artifact.bindings.size(); ++i) {
           const std::uint32_t index = binding(*job, job->artifact.bindings[i], job->artifact.layouts[i]);
+          interface_.elementBytes[job->artifact.bindings[i].name] = job->artifact.elementBytes[i];
           auto& used = packed.bindingsUsed;
           if (job->artifact.used[i] != 0 && std::find(used.begin(), used.end(), index) == used.end())
             used.push_back(index);

@@ -22,7 +22,8 @@ struct BuildOptions {
 
 /// What the generated header needs of a program beyond the pack.
 struct ProgramInterface {
-  std::vector<StructLayout> structs;     ///< nested ones first
+  std::vector<StructLayout> structs;                  ///< nested ones first
+  std::map<std::string, std::uint32_t> elementBytes;  ///< of storage blocks that end with an open array
   std::vector<std::uint32_t> groupSize;  ///< empty: no compute shader, or not the same in every variant
 };
 

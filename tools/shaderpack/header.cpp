@@ -78,13 +78,17 @@ std::string variantText(const shader::PackedProgram& program) {
     list += (list.empty() ? "" : ", ") + member;
   }
   if (!list.empty()) list = "{" + list + "}";
-  return fmt::format("struct Variant {{\n{}{}  std::array<int, {}> key() const {{ return {{{}}}; }}\n}};\n",
-                     enumerations, members, program.axes.size(), list);
+  return fmt::format(
+      "struct Variant {{\n  static constexpr shader::ProgramName kOf = kProgram;\n{}{}  std::array<int, {}> key() const {{ return {{{}}}; }}\n}};\n",
+      enumerations, members, program.axes.size(), list);
 }
 
 std::string constantsText(const shader::PackedProgram& program) {
   std::string members, list;
-  for (const shader::PackedConstant& constant : program.constants) {
+  // By their numbers, so that the order of the members is that of the shader's author.
+  std::vector<shader::PackedConstant> constants = program.constants;
+  std::sort(constants.begin(), constants.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  for (const shader::PackedConstant& constant : constants) {
     const std::uint32_t bits = constant.defaultBits;
     switch (constant.type) {
       case ConstantType::boolean:
@@ -114,7 +118,7 @@ std::string constantsText(const shader::PackedProgram& program) {
       members, program.constants.size(), list);
 }
 
-std::string slotText(const shader::PackedBinding& binding) {
+std::string slotText(const shader::PackedBinding& binding, std::uint32_t elementBytes) {
   const char* type = nullptr;
   switch (binding.kind) {
     case shader::BindingKind::sampled:
@@ -131,8 +135,9 @@ std::string slotText(const shader::PackedBinding& binding) {
       break;
   }
   const std::string argument = binding.kind == shader::BindingKind::uniform ? "<" + binding.name + ">" : "";
-  return fmt::format("inline constexpr shader::{}{} {}{{\"{}\", {}}};  // {}\n", type, argument,
-                     slotName(binding), binding.name, binding.binding, binding.type);
+  const std::string elements = elementBytes > 0 ? fmt::format(", {}", elementBytes) : "";
+  return fmt::format("inline constexpr shader::{}{} {}{{\"{}\", {}{}}};  // {}\n", type, argument,
+                     slotName(binding), binding.name, binding.binding, elements, binding.type);
 }
 
 void checkSlotNames(const std::string& technique, const shader::PackedProgram& program) {
@@ -198,7 +203,8 @@ std::string generateHeader(const BuildResult& result) {
     }
     std::set<std::string> written;  // a binding whose format follows an axis is there once per format
     for (const shader::PackedBinding& binding : program.bindings) {
-      if (written.insert(binding.name).second) text += slotText(binding);
+      if (written.insert(binding.name).second)
+        text += slotText(binding, interface.elementBytes.at(binding.name));
     }
     text += fmt::format("\n}}  // namespace {}\n\n", program.name);
   }

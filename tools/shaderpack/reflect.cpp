@@ -96,6 +96,8 @@ class Reflection {
     }
     for (const PackedBinding& binding : artifact_.bindings)
       artifact_.layouts.push_back(layouts_[binding.name]);
+    for (const PackedBinding& binding : artifact_.bindings)
+      artifact_.elementBytes.push_back(elementBytes_[binding.name]);
     markUsed();
     constants();
     stageVariables();
@@ -172,6 +174,10 @@ class Reflection {
     }
     binding.minimumBytes = declared_.get_declared_struct_size(type);
     layouts_[binding.name] = layoutOf(type);
+    const auto last = static_cast<std::uint32_t>(type.member_types.size() - 1);
+    const SPIRType& lastType = declared_.get_type(type.member_types[last]);
+    if (kind == BindingKind::storage && !lastType.array.empty() && lastType.array.back() == 0)
+      elementBytes_[binding.name] = declared_.type_struct_member_array_stride(type, last);
     return binding;
   }
 
@@ -381,7 +387,8 @@ class Reflection {
   spirv_cross::Compiler declared_, optimised_;
   const StageSource& source_;
   Artifact& artifact_;
-  std::map<std::string, std::string> layouts_;  // of blocks, by name
+  std::map<std::string, std::string> layouts_;         // of blocks, by name
+  std::map<std::string, std::uint32_t> elementBytes_;  // of storage blocks, by name
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace lumivox::shaderpack {
 namespace {
 
 // Counts up whenever this program makes something else of the same source.
-constexpr int kArtifactVersion = 5;
+constexpr int kArtifactVersion = 6;
 
 // Line numbers follow from "#line N "file"" directives, which need this extension.
 constexpr const char* kPreamble =
@@ -206,6 +206,7 @@ void exchange(Archive& archive, SomeArtifact& a) {
     archive.value(b.minimumBytes);
   });
   archive.value(a.layouts);
+  archive.value(a.elementBytes);
   archive.value(a.used);
   archive.each(a.structs, [&](auto& s) {
     archive.value(s.name);

@@ -41,6 +41,8 @@ struct Artifact {
   std::vector<shader::PackedBinding> bindings;  ///< as declared
   std::vector<std::string>
       layouts;  ///< per binding: offsets and types of a block's members; empty for textures
+  /// Per binding: of the array of open length at the end of a storage block, from one element to the next.
+  std::vector<std::uint32_t> elementBytes;
   std::vector<std::uint8_t> used;     ///< per binding: still there after optimisation
   std::vector<StructLayout> structs;  ///< of uniform blocks; nested ones before those that hold them
   std::vector<shader::PackedConstant> constants;

@@ -18,6 +18,23 @@ RenderOptions gridsAlone(RenderOptions options) {
   return options;
 }
 
+bool isExportable(const PortKind& kind) {
+  return !kind.fields.empty();
+}
+
+/// "VoxelFragments, OccupancyGrid": the framework's kinds that can be exported, and those of the pipeline.
+std::string exportableText(const Pipeline& pipeline, const PipelineExecutor& executor) {
+  std::vector<std::string> names;
+  const auto add = [&](const PortKind& kind) {
+    if (isExportable(kind) && std::find(names.begin(), names.end(), kind.name) == names.end())
+      names.push_back(kind.name);
+  };
+  for (const PortKind* kind : FrameworkPorts::kinds()) add(*kind);
+  for (const PassText& pass : pipeline.passes)
+    for (const OutBase* output : executor.pass(pass.name).outputs()) add(output->kind());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 const Source& findSource(const std::vector<Source>& sources, const std::string& wanted,
                          const Pipeline& pipeline, const PipelineExecutor& executor) {
   std::vector<std::string> names;
@@ -29,7 +46,7 @@ const Source& findSource(const std::vector<Source>& sources, const std::string& 
     for (const OutBase* output : executor.pass(pass.name).outputs())
       if (wanted == pass.name + "." + output->name())
         throw Error(fmt::format("--grid '{}': is of kind {}; expected one of the kinds {}", wanted,
-                                output->portKind(), fmt::join(exportableKinds(), ", ")));
+                                output->kind().name, exportableText(pipeline, executor)));
   const std::string nearest = nearestWord(wanted, names);
   throw Error(fmt::format("--grid '{}': no output PASS.PORT of {}; expected {}{}", wanted,
                           pipeline.file.string(),
@@ -74,9 +91,9 @@ std::vector<Source> exportableSources(const Pipeline& pipeline, TechniqueSource&
       if (entry.name != text.pass) continue;
       const std::unique_ptr<Pass> pass = entry.make();
       for (const OutBase* output : pass->outputs())
-        if (isExportable(output->portKind()))
+        if (isExportable(output->kind()))
           sources.push_back(
-              {text.name, output->name(), text.technique, text.pass, output->portKind(), output->meaning()});
+              {text.name, output->name(), text.technique, text.pass, output->kind().name, output->meaning()});
     }
   return sources;
 }
@@ -97,7 +114,7 @@ Exporter::Exporter(gpu::Device& device, TechniqueSource& techniques, const Scene
   if (request_.grids.empty()) sources_ = all;
   if (sources_.empty())
     throw Error(fmt::format("{}: has no voxel grid to export; expected an output of one of the kinds {}",
-                            pipeline.file.string(), fmt::join(exportableKinds(), ", ")));
+                            pipeline.file.string(), exportableText(pipeline, executor_)));
   for (const Source& source : sources_) executor_.keepOutput(source.pass, source.port);
 }
 
@@ -121,7 +138,7 @@ void Exporter::dropCopies(std::vector<Source>& sources) const {
     const std::size_t fields = fieldsOf(*output).size();
     for (std::size_t k = 0; k < sources.size(); ++k) {
       const OutBase* other = k == i ? nullptr : outputOf(sources[k]);
-      if (other == nullptr || other->portKind() != output->portKind() ||
+      if (other == nullptr || !other->kind().isSameType(output->kind()) ||
           other->textures() != output->textures())
         continue;
       const std::size_t others = fieldsOf(*other).size();

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-#include <cassert>
+#include <map>
 
 #include "lumivox/base/error.h"
+#include "lumivox/pipeline/ports.h"
 #include "vdbexport/texels.h"
 
 namespace lumivox::vdb {
@@ -20,179 +22,15 @@ openvdb::Vec3f vdbVector(const glm::vec3& v) {
   return {v.x, v.y, v.z};
 }
 
-/// The place of a level: all levels cover the same box.
-Field fieldAt(const GridPlacement& grid, const glm::ivec3& resolution, int level) {
-  Field field;
-  field.level = level;
-  field.low = glm::dvec3(grid.low);
-  field.voxelSize = static_cast<double>(grid.voxelSize) *
-                    (glm::dvec3(grid.resolution) / glm::dvec3(glm::max(resolution, glm::ivec3(1))));
-  field.resolution = resolution;
-  return field;
-}
-
-/// Fields that come from texels of the same volumes.
-template <std::size_t kCount>
-class FieldsOfTexels {
- public:
-  FieldsOfTexels(const GridPlacement& grid, const std::array<gpu::TextureRef, kCount>& textures, int level)
-      : place_(fieldAt(grid, levelResolution(grid.resolution, level), level)) {
-    for (std::size_t i = 0; i < kCount; ++i) {
-      texels_[i] = std::make_shared<Texels>(textures[i], level);
-      place_.deviceBytes += texels_[i]->sizeBytes();
-    }
-    assert(texels_[0]->layout().resolution == place_.resolution);
-  }
-
-  template <class GridType, class Select>
-  Field make(const std::string& name, const std::string& quantity, const std::string& unit,
-             const Select& select) const {
-    Field field = place_;
-    field.name = name;
-    field.type = openvdb::typeNameAsString<typename GridType::ValueType>();
-    field.quantity = quantity;
-    field.unit = unit;
-    field.values = [texels = texels_, name, select]() -> openvdb::GridBase::Ptr {
-      return gridOf<GridType>(texels, name, select);
-    };
-    return field;
-  }
-
- private:
-  Field place_;
-  std::array<TexelsRef, kCount> texels_;
-};
-
-using OneTexel = std::array<glm::vec4, 1>;
-float red(const OneTexel& texel) {
-  return texel[0].r;
-}
-float alpha(const OneTexel& texel) {
-  return texel[0].a;
-}
-openvdb::Vec3f rgb(const OneTexel& texel) {
-  return vdbVector(glm::vec3(texel[0]));
-}
-
-Field asFog(Field field) {
-  field.gridClass = openvdb::GRID_FOG_VOLUME;
-  return field;
-}
-
-// ---- one function for each kind of port ----------------------------------------------------------------
-
-std::vector<Field> fields(const OccupancyGrid& port) {
-  const FieldsOfTexels<1> texels(port.grid, {port.opacity}, 0);
-  return {asFog(texels.make<FloatGrid>("opacity", "opacity", "1", red))};
-}
-
-std::vector<Field> fields(const AttributeGrid& port) {
-  const FieldsOfTexels<1> albedo(port.grid, {port.albedo}, 0), normal(port.grid, {port.normal}, 0);
-  std::vector<Field> result{
-      albedo.make<Vec3fGrid>("albedo", "mean diffuse albedo of the surface in the voxel", "1", rgb),
-      asFog(albedo.make<FloatGrid>("coverage", "covered fraction", "1", alpha)),
-      normal.make<Vec3fGrid>("normal", "mean of the unit normals, not normalised", "1", rgb)};
-  result.back().vectorType = openvdb::VEC_COVARIANT;
-  if (port.emission) {
-    const FieldsOfTexels<1> emission(port.grid, {port.emission}, 0);
-    result.push_back(emission.make<Vec3fGrid>("emission", "mean emitted radiance", "W/(sr m^2)", rgb));
-  }
-  return result;
-}
-
-std::vector<Field> fields(const RadianceGrid& port) {
-  const int all = port.radiance->description().levels;
-  const int filled = port.filledLevels == 0 ? all : port.filledLevels;
-  std::vector<Field> result;
-  const auto radiance = [unit = port.unit](const OneTexel& texel) { return rgb(texel) * unit; };
-  for (int level = 0; level < filled; ++level) {
-    const FieldsOfTexels<1> texels(port.grid, {port.radiance}, level);
-    result.push_back(texels.make<Vec3fGrid>("radiance", "outgoing radiance, multiplied by the opacity",
-                                            "W/(sr m^2)", radiance));
-    result.push_back(asFog(texels.make<FloatGrid>("opacity", "opacity", "1", alpha)));
-  }
-  return result;
-}
-
-/// Of each real spherical harmonic up to band 1 the coefficients of red, green and blue.
-std::vector<Field> fields(const ShGrid& port) {
-  constexpr std::array<const char*, 4> kCoefficients = {"Y00", "Y1-1", "Y10", "Y11"};
-  std::vector<Field> result;
-  for (std::size_t level = 0; level < port.levels.size(); ++level) {
-    const ShGrid::Level& one = port.levels[level];
-    const FieldsOfTexels<3> texels(one.grid, one.coefficients, 0);
-    for (int i = 0; i < static_cast<int>(kCoefficients.size()); ++i) {
-      const auto coefficient = [i](const std::array<glm::vec4, 3>& channels) {
-        return openvdb::Vec3f(channels[0][i], channels[1][i], channels[2][i]);
-      };
-      const char* harmonic = kCoefficients[static_cast<std::size_t>(i)];
-      Field field = texels.make<Vec3fGrid>(
-          harmonic,
-          fmt::format("coefficients of the spherical harmonic {} for red, green and blue", harmonic),
-          "of the port's quantity", coefficient);
-      field.level = static_cast<int>(level);  // each level is a grid of its own
-      result.push_back(std::move(field));
-    }
-    if (!one.closed) continue;
-    GridPlacement faces = one.grid;
-    faces.resolution += 1;
-    Field closed = FieldsOfTexels<1>(faces, {one.closed}, 0)
-                       .make<Vec3fGrid>("closed",
-                                        "shares of the faces to the voxels at lower x, y and z that surfaces "
-                                        "close",
-                                        "1", rgb);
-    closed.level = static_cast<int>(level);
-    result.push_back(std::move(closed));
-  }
-  return result;
-}
-
-/// Density 1 in a box: one leaf, which becomes one tile, with voxels shaped like the box.
-Field homogeneousDensity(const Bounds& bounds) {
-  Field field;
-  field.low = glm::dvec3(bounds.low);
-  field.resolution = glm::ivec3(kLeaf);
-  field.voxelSize = (glm::dvec3(bounds.high) - field.low) / static_cast<double>(kLeaf);
-  field.type = openvdb::typeNameAsString<float>();
-  field.unit = "1";
-  field.gridClass = openvdb::GRID_FOG_VOLUME;
-  field.values = [resolution = field.resolution]() -> openvdb::GridBase::Ptr {
-    using Node = FloatGrid::TreeType::LeafNodeType;
-    const auto everywhere = [](std::size_t) { return true; };
-    const auto fill = [](std::size_t, Node& node) { node.fill(1.0f, true); };
-    return sparseGrid<FloatGrid>(LeafLayout(resolution), "density", everywhere, fill);
-  };
-  return field;
-}
-
-std::vector<Field> fields(const ScatteringGrid& port) {
-  std::vector<Field> result;
-  for (const ScatteringGrid::Medium& medium : port.media) {
-    if (!medium.density && medium.bounds.empty) continue;
-    Field field;
-    if (medium.density) {
-      const FieldsOfTexels<1> texels(medium.grid, {medium.density}, 0);
-      field = asFog(texels.make<FloatGrid>({}, {}, "1", red));
-    } else {
-      field = homogeneousDensity(medium.bounds);
-    }
-    field.name = port.media.size() == 1 ? "density" : "density_" + medium.name;
-    field.quantity = "density, a factor of the medium's extinction";
-    field.constants.insertMeta("lumivox.medium", openvdb::StringMetadata(medium.name));
-    field.constants.insertMeta("lumivox.extinction", openvdb::Vec3SMetadata(vdbVector(medium.extinction)));
-    field.constants.insertMeta("lumivox.extinction_unit", openvdb::StringMetadata("/m at density 1"));
-    field.constants.insertMeta("lumivox.albedo", openvdb::Vec3SMetadata(vdbVector(medium.albedo)));
-    field.constants.insertMeta("lumivox.anisotropy", openvdb::FloatMetadata(medium.anisotropy));
-    field.mediumDensity = true;
-    result.push_back(std::move(field));
-  }
-  return result;
+glm::ivec3 unpackedVoxel(std::uint32_t packed) {
+  return {static_cast<int>(packed & 1023u), static_cast<int>(packed >> 10 & 1023u),
+          static_cast<int>(packed >> 20 & 1023u)};
 }
 
 constexpr int kWordBits = 32;  // of a component of a stack
 
 /// Bits of stacks along z; mip levels halve x and y alone.
-openvdb::GridBase::Ptr binaryGrid(const gpu::Texture& texture, int level, const glm::ivec3& resolution) {
+openvdb::GridBase::Ptr gridOfBits(const gpu::Texture& texture, int level, const glm::ivec3& resolution) {
   const gpu::TextureDescription& description = texture.description();
   const glm::ivec3 texels = levelResolution({description.width, description.height, 1}, level);
   const std::uint64_t sizeBytes =
@@ -225,154 +63,258 @@ openvdb::GridBase::Ptr binaryGrid(const gpu::Texture& texture, int level, const 
   return sparseGrid<BoolGrid>(layout, "occupancy", occupied, fill);
 }
 
-std::vector<Field> fields(const BinaryGrid& port) {
-  std::vector<Field> result;
-  for (int level = 0; level < port.stacks->description().levels; ++level) {
-    glm::ivec3 resolution = levelResolution(port.grid.resolution, level);
-    resolution.z = port.grid.resolution.z;
-    Field field = fieldAt(port.grid, resolution, level);
-    field.name = "occupancy";
-    field.type = openvdb::typeNameAsString<bool>();
-    field.quantity = "whether a surface touches the voxel";
-    field.unit = "1";
-    const glm::u64vec3 texels(resolution.x, resolution.y, port.stacks->description().depth);
-    field.deviceBytes =
-        texels.x * texels.y * texels.z * gpu::bytesPerTexel(port.stacks->description().format);
-    field.values = [texture = port.stacks, level, resolution] {
-      return binaryGrid(*texture, level, resolution);
-    };
-    result.push_back(std::move(field));
-  }
-  return result;
+glm::ivec3 voxelOf(std::uint32_t packed) {
+  return unpackedVoxel(packed);
+}
+const glm::ivec3& voxelOf(const VoxelsRead::Voxel& read) {
+  return read.voxel;
 }
 
-/// The voxels of a list of fragments, sorted by leaf.
-class FragmentCounts {
+/// Items in voxels, in no order, sorted by leaf.
+template <class Item>
+class SortedVoxels {
  public:
-  explicit FragmentCounts(const VoxelFragments& port) : port_(port), layout_(port.grid.resolution) {}
+  explicit SortedVoxels(const glm::ivec3& resolution) : layout_(resolution) {}
 
-  template <class GridType>
-  openvdb::GridBase::Ptr grid(std::string_view what) {
-    if (first_.empty()) load();
+  /// Item `i` of `count` is `itemOf(i)`; Error for one outside the grid.
+  template <class ItemOf>
+  void sort(std::uint64_t count, const ItemOf& itemOf) {
+    first_.assign(layout_.count() + 1, 0);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const glm::ivec3 voxel = voxelOf(itemOf(i)), size = layout_.resolution;
+      if (glm::any(glm::lessThan(voxel, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(voxel, size)))
+        throw Error(fmt::format("fragment {} lies in voxel ({}, {}, {}), outside its grid of {} x {} x {}", i,
+                                voxel.x, voxel.y, voxel.z, size.x, size.y, size.z));
+      ++first_[leafOf(voxel) + 1];
+    }
+    for (std::size_t leaf = 0; leaf < layout_.count(); ++leaf) first_[leaf + 1] += first_[leaf];
+    items_.resize(count);
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for (std::uint64_t i = 0; i < count; ++i) items_[next[leafOf(voxelOf(itemOf(i)))]++] = itemOf(i);
+  }
+  bool sorted() const { return !first_.empty(); }
+  const LeafLayout& layout() const { return layout_; }
+
+  /// `set(node, offset, item)` for every item.
+  template <class GridType, class Set>
+  openvdb::GridBase::Ptr grid(std::string_view what, const Set& set) const {
     using Node = typename GridType::TreeType::LeafNodeType;
-    using Value = typename GridType::ValueType;
     const auto occupied = [&](std::size_t leaf) { return first_[leaf] != first_[leaf + 1]; };
     const auto fill = [&](std::size_t leaf, Node& node) {
       for (std::size_t i = first_[leaf]; i < first_[leaf + 1]; ++i) {
-        const glm::ivec3 voxel = unpacked(voxels_[i]);
-        const openvdb::Index offset = Node::coordToOffset({voxel.x, voxel.y, voxel.z});
-        node.setValueOn(offset, static_cast<Value>(node.getValue(offset) + 1));
+        const glm::ivec3 voxel = voxelOf(items_[i]);
+        set(node, Node::coordToOffset({voxel.x, voxel.y, voxel.z}), items_[i]);
       }
     };
     return sparseGrid<GridType>(layout_, what, occupied, fill);
   }
 
  private:
-  /// VoxelFragment::voxel: i, j, k in 10 bits each.
-  static glm::ivec3 unpacked(std::uint32_t packed) {
-    return {static_cast<int>(packed & 1023u), static_cast<int>(packed >> 10 & 1023u),
-            static_cast<int>(packed >> 20 & 1023u)};
-  }
   std::size_t leafOf(const glm::ivec3& voxel) const {
     const glm::u64vec3 leaf(voxel / kLeaf), leaves(layout_.leaves);
     return leaf.x + leaves.x * (leaf.y + leaves.y * leaf.z);
   }
-  void load();
-
-  VoxelFragments port_;
   LeafLayout layout_;
-  std::vector<std::size_t> first_;     ///< of each leaf in voxels_, and the end
-  std::vector<std::uint32_t> voxels_;  ///< one word a fragment
+  std::vector<std::size_t> first_;  ///< of each leaf in items_, and the end
+  std::vector<Item> items_;
 };
 
-void FragmentCounts::load() {
-  const std::vector<std::byte> head = port_.count->download(0, sizeof(std::uint32_t));
-  const std::uint64_t count =
-      std::min<std::uint64_t>(detail::readAs<std::uint32_t>(head.data()), port_.capacity);
-  const std::uint64_t listBytes = count * VoxelFragments::kFragmentBytes;
-  requireMemory(listBytes + count * sizeof(std::uint32_t) + layout_.count() * sizeof(std::size_t),
-                "sorting voxel fragments");
-  std::vector<std::byte> list;
-  if (count > 0) list = port_.fragments->download(0, listBytes);
-  const auto voxelOf = [&](std::uint64_t i) {
-    return detail::readAs<std::uint32_t>(list.data() + i * VoxelFragments::kFragmentBytes);
+/// The voxels of a list on the device, downloaded when they are first needed.
+class ListedVoxels {
+ public:
+  ListedVoxels(VoxelList list, const glm::ivec3& resolution) : list_(std::move(list)), voxels_(resolution) {}
+
+  /// With the value true, or the number of items.
+  template <class GridType>
+  openvdb::GridBase::Ptr grid(std::string_view what) {
+    if (!voxels_.sorted()) load();
+    using Value = typename GridType::ValueType;
+    return voxels_.grid<GridType>(what, [](auto& node, openvdb::Index offset, std::uint32_t) {
+      node.setValueOn(offset, static_cast<Value>(node.getValue(offset) + 1));
+    });
+  }
+
+ private:
+  void load() {
+    const std::vector<std::byte> head = list_.count->download(0, sizeof(std::uint32_t));
+    const std::uint64_t count =
+        std::min<std::uint64_t>(detail::readAs<std::uint32_t>(head.data()), list_.capacity);
+    const std::uint64_t listBytes = count * list_.itemBytes;
+    requireMemory(listBytes + count * sizeof(std::uint32_t) + voxels_.layout().count() * sizeof(std::size_t),
+                  "sorting voxel fragments");
+    std::vector<std::byte> items;
+    if (count > 0) items = list_.items->download(0, listBytes);
+    voxels_.sort(count, [&](std::uint64_t i) {
+      return detail::readAs<std::uint32_t>(items.data() + i * list_.itemBytes);
+    });
+  }
+
+  VoxelList list_;
+  SortedVoxels<std::uint32_t> voxels_;
+};
+
+openvdb::GridBase::Ptr gridOfRead(const VoxelsRead& source, const glm::ivec3& resolution,
+                                  const std::string& what) {
+  const std::vector<VoxelsRead::Voxel> read = source.read();
+  SortedVoxels<VoxelsRead::Voxel> voxels(resolution);
+  voxels.sort(read.size(), [&](std::uint64_t i) { return read[i]; });
+  if (source.components == 1)
+    return voxels.grid<FloatGrid>(what, [](auto& node, openvdb::Index offset, const VoxelsRead::Voxel& one) {
+      node.setValueOn(offset, one.value.x);
+    });
+  return voxels.grid<Vec3fGrid>(what, [](auto& node, openvdb::Index offset, const VoxelsRead::Voxel& one) {
+    node.setValueOn(offset, vdbVector(one.value));
+  });
+}
+
+/// The value 1 everywhere: of a box of one leaf that becomes one tile.
+openvdb::GridBase::Ptr filledGrid(const glm::ivec3& resolution, const std::string& what) {
+  using Node = FloatGrid::TreeType::LeafNodeType;
+  const LeafLayout layout(resolution);
+  const auto everywhere = [](std::size_t) { return true; };
+  const auto fill = [&](std::size_t leaf, Node& node) {
+    forEachVoxel<Node>(layout, leaf,
+                       [&](const glm::ivec3&, openvdb::Index offset) { node.setValueOn(offset, 1.0f); });
   };
-  first_.assign(layout_.count() + 1, 0);
-  for (std::uint64_t i = 0; i < count; ++i) {
-    const glm::ivec3 voxel = unpacked(voxelOf(i)), size = layout_.resolution;
-    if (glm::any(glm::greaterThanEqual(voxel, size)))
-      throw Error(fmt::format("fragment {} lies in voxel ({}, {}, {}), outside its grid of {} x {} x {}", i,
-                              voxel.x, voxel.y, voxel.z, size.x, size.y, size.z));
-    ++first_[leafOf(voxel) + 1];
-  }
-  for (std::size_t leaf = 0; leaf < layout_.count(); ++leaf) first_[leaf + 1] += first_[leaf];
-  voxels_.resize(count);
-  std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-  for (std::uint64_t i = 0; i < count; ++i) {
-    const std::uint32_t voxel = voxelOf(i);
-    voxels_[next[leafOf(unpacked(voxel))]++] = voxel;
-  }
+  return sparseGrid<FloatGrid>(layout, what, everywhere, fill);
 }
 
-std::vector<Field> fields(const VoxelFragments& port) {
-  const auto counts = std::make_shared<FragmentCounts>(port);
-  Field occupancy = fieldAt(port.grid, port.grid.resolution, 0);
-  occupancy.deviceBytes = port.fragments->sizeBytes() + port.count->sizeBytes();
-  occupancy.unit = "1";
-  Field number = occupancy;
-  occupancy.name = "occupancy";
-  occupancy.type = openvdb::typeNameAsString<bool>();
-  occupancy.quantity = "whether a surface touches the voxel";
-  occupancy.values = [counts] { return counts->grid<BoolGrid>("occupancy"); };
-  number.name = "fragments";
-  number.type = openvdb::typeNameAsString<std::int32_t>();
-  number.quantity = "surface samples in the voxel";
-  number.values = [counts] { return counts->grid<Int32Grid>("fragments"); };
-  return {occupancy, number};
-}
+/// Type, size on the device and values of a field, by what they come from. Fields of the same textures or
+/// lists share what is downloaded.
+class FieldMaker {
+ public:
+  Field make(const PortContents::Field& from) {
+    Field field;
+    field.name = from.name;
+    field.level = from.level;
+    field.quantity = from.what->quantity;
+    field.unit = from.unit;
+    field.low = from.box.low;
+    field.voxelSize = from.box.voxelSize;
+    field.resolution = from.box.resolution;
+    const PortField::Role role = from.what->role;
+    field.mediumDensity = role == PortField::Role::density;
+    if (role == PortField::Role::fog || role == PortField::Role::density)
+      field.gridClass = openvdb::GRID_FOG_VOLUME;
+    if (role == PortField::Role::direction) field.vectorType = openvdb::VEC_COVARIANT;
+    for (const auto& [name, value] : from.constants) addConstant(field, "lumivox." + name, value);
+    std::visit([&](const auto& source) { values(field, source); }, from.source);
+    return field;
+  }
 
-// ---- finding the function for a port -------------------------------------------------------------------
+ private:
+  template <class GridType>
+  static void setType(Field& field) {
+    field.type = openvdb::typeNameAsString<typename GridType::ValueType>();
+  }
 
-struct PortKind {
-  const char* name;
-  std::vector<Field> (*fieldsOf)(const OutBase&);
+  static void addConstant(Field& field, const std::string& name,
+                          const std::variant<std::string, float, glm::vec3>& value) {
+    if (const auto* text = std::get_if<std::string>(&value))
+      field.constants.insertMeta(name, openvdb::StringMetadata(*text));
+    else if (const auto* vector = std::get_if<glm::vec3>(&value))
+      field.constants.insertMeta(name, openvdb::Vec3SMetadata(vdbVector(*vector)));
+    else
+      field.constants.insertMeta(name, openvdb::FloatMetadata(std::get<float>(value)));
+  }
+
+  void values(Field& field, const VoxelTexels& source) {
+    if (source.textures.size() == 1) return texels<1>(field, source);
+    if (source.textures.size() == 3) return texels<3>(field, source);
+    throw Error(fmt::format("field '{}' is made of {} textures; expected 1 or 3", field.name,
+                            source.textures.size()));
+  }
+
+  template <std::size_t kCount>
+  void texels(Field& field, const VoxelTexels& source) {
+    std::array<TexelsRef, kCount> sources;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      TexelsRef& known = texels_[{source.textures[i].get(), source.level}];
+      if (known == nullptr) known = std::make_shared<Texels>(source.textures[i], source.level);
+      sources[i] = known;
+      field.deviceBytes += known->sizeBytes();
+      if (known->layout().resolution != field.resolution)
+        throw Error(fmt::format("field '{}' is of {} x {} x {} voxels, but its texture of {} x {} x {}",
+                                field.name, field.resolution.x, field.resolution.y, field.resolution.z,
+                                known->layout().resolution.x, known->layout().resolution.y,
+                                known->layout().resolution.z));
+    }
+    const auto component = [channels = source.channels, unit = source.unit](
+                               const std::array<glm::vec4, kCount>& texel, std::size_t i) {
+      return texel[static_cast<std::size_t>(channels[i].texture)][channels[i].component] * unit;
+    };
+    if (source.channels.size() == 1) {
+      setType<FloatGrid>(field);
+      field.values = [sources, component, name = field.name]() -> openvdb::GridBase::Ptr {
+        return gridOf<FloatGrid>(sources, name, [&](const auto& texel) { return component(texel, 0); });
+      };
+    } else if (source.channels.size() == 3) {
+      setType<Vec3fGrid>(field);
+      field.values = [sources, component, name = field.name]() -> openvdb::GridBase::Ptr {
+        return gridOf<Vec3fGrid>(sources, name, [&](const auto& texel) {
+          return openvdb::Vec3f(component(texel, 0), component(texel, 1), component(texel, 2));
+        });
+      };
+    } else {
+      throw Error(
+          fmt::format("field '{}' has {} components; expected 1 or 3", field.name, source.channels.size()));
+    }
+  }
+
+  void values(Field& field, const VoxelBits& source) {
+    setType<BoolGrid>(field);
+    const gpu::TextureDescription& description = source.stacks->description();
+    const glm::u64vec3 size(levelResolution({description.width, description.height, 1}, source.level));
+    field.deviceBytes = size.x * size.y * static_cast<std::uint64_t>(description.depth) *
+                        gpu::bytesPerTexel(description.format);
+    field.values = [source, resolution = field.resolution] {
+      return gridOfBits(*source.stacks, source.level, resolution);
+    };
+  }
+
+  void values(Field& field, const VoxelList& source) {
+    std::shared_ptr<ListedVoxels>& known = lists_[source.items.get()];
+    if (known == nullptr) known = std::make_shared<ListedVoxels>(source, field.resolution);
+    field.deviceBytes = source.items->sizeBytes() + source.count->sizeBytes();
+    if (source.counts) {
+      setType<Int32Grid>(field);
+      field.values = [known, name = field.name] { return known->grid<Int32Grid>(name); };
+    } else {
+      setType<BoolGrid>(field);
+      field.values = [known, name = field.name] { return known->grid<BoolGrid>(name); };
+    }
+  }
+
+  void values(Field& field, const VoxelsFilled&) {
+    setType<FloatGrid>(field);
+    field.values = [resolution = field.resolution, name = field.name] {
+      return filledGrid(resolution, name);
+    };
+  }
+
+  void values(Field& field, const VoxelsRead& source) {
+    if (source.components == 1)
+      setType<FloatGrid>(field);
+    else
+      setType<Vec3fGrid>(field);
+    field.deviceBytes = source.deviceBytes;
+    field.values = [source, resolution = field.resolution, name = field.name] {
+      return gridOfRead(source, resolution, name);
+    };
+  }
+
+  std::map<std::pair<const gpu::Texture*, int>, TexelsRef> texels_;
+  std::map<const gpu::Buffer*, std::shared_ptr<ListedVoxels>> lists_;
 };
-
-template <class Port>
-PortKind kindOf() {
-  return {Port::kPortKind,
-          [](const OutBase& output) { return fields(static_cast<const Out<Port>&>(output).value()); }};
-}
-
-const std::array<PortKind, 7>& kinds() {
-  static const std::array<PortKind, 7> table = {
-      kindOf<VoxelFragments>(), kindOf<OccupancyGrid>(), kindOf<BinaryGrid>(),    kindOf<AttributeGrid>(),
-      kindOf<RadianceGrid>(),   kindOf<ShGrid>(),        kindOf<ScatteringGrid>()};
-  return table;
-}
-
-const PortKind* findKind(const std::string& name) {
-  for (const PortKind& kind : kinds())
-    if (name == kind.name) return &kind;
-  return nullptr;
-}
 
 }  // namespace
 
-std::vector<std::string> exportableKinds() {
-  std::vector<std::string> names;
-  for (const PortKind& kind : kinds()) names.emplace_back(kind.name);
-  return names;
-}
-
-bool isExportable(const std::string& portKind) {
-  return findKind(portKind) != nullptr;
-}
-
 std::vector<Field> fieldsOf(const OutBase& output) {
-  const PortKind* kind = findKind(output.portKind());
-  assert(kind != nullptr && output.hasValue());
-  return kind->fieldsOf(output);
+  const PortContents contents = output.contents();
+  std::vector<Field> fields;
+  FieldMaker maker;
+  for (const PortContents::Field& field : contents.fields()) fields.push_back(maker.make(field));
+  return fields;
 }
 
 }  // namespace lumivox::vdb

@@ -1,4 +1,4 @@
-// What the ports of passes hold, as fields that can become OpenVDB grids: one function for each kind of port.
+// The fields of ports, as their kinds tell them (pipeline/port.h), ready to become OpenVDB grids.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -32,10 +32,6 @@ struct Field {
   /// Downloads and converts; no transform or metadata yet. Call it once.
   std::function<openvdb::GridBase::Ptr()> values;
 };
-
-/// The kinds of port that can be exported.
-std::vector<std::string> exportableKinds();
-bool isExportable(const std::string& portKind);
 
 /// All fields at all levels of an output that has a value. Only Field::values downloads anything.
 std::vector<Field> fieldsOf(const OutBase& output);

@@ -1,5 +1,7 @@
 // vdbexport: voxel grids of a pipeline as OpenVDB files, and what such files hold.
 #include "common/command_line.h"
+#include "common/manual.h"
+#include "lumivox/plugin/technique.h"
 #include "vdbexport/commands.h"
 
 namespace {
@@ -8,6 +10,7 @@ using namespace lumivox;
 using namespace lumivox::command;
 
 int run(int count, char** arguments) {
+  requireLibraryOf(techniqueVersionHere());
   CLI::App app{
       "Exports the voxel grids of a pipeline as OpenVDB files; lists what can be exported and what a file "
       "holds; compares two files."};
@@ -20,6 +23,7 @@ int run(int count, char** arguments) {
   global.addTo(app);
   vdb::Options options;
   options.addTo(app);
+  addDescriptionOptions(app, LUMIVOX_VERSION);
   if (const auto done = parseOptions(app, global, count, arguments)) return *done;
   if (options.list) return vdb::list(options, global);
   if (options.diff) return vdb::diff(options, global);

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "lumivox/base/error.h"
+#include "lumivox/pipeline/port.h"
 
 namespace lumivox::vdb {
 namespace {
@@ -45,10 +46,6 @@ glm::vec4 decode(const std::byte* texel) {
 }
 
 }  // namespace
-
-glm::ivec3 levelResolution(const glm::ivec3& finest, int level) {
-  return glm::max(glm::ivec3(finest.x >> level, finest.y >> level, finest.z >> level), glm::ivec3(1));
-}
 
 Texels::Texels(gpu::TextureRef texture, int level)
     : texture_(std::move(texture)),

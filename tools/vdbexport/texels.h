@@ -63,9 +63,6 @@ class Texels {
 };
 using TexelsRef = std::shared_ptr<Texels>;
 
-/// Voxels along each axis of a mip level.
-glm::ivec3 levelResolution(const glm::ivec3& finest, int level);
-
 namespace detail {
 
 template <class T>

@@ -27,7 +27,7 @@ class Truth {
   /// The truth `frame` frames of an animation later, for flicker: with a quarter of the samples, which are
   /// others in every frame, so that its noise is independent. Frame 0 is this one.
   Truth& later(const Scene& scene, int frame);
-  /// The error of a black picture against it.
+  /// The error of a picture of nothing against it: black, or 1 for ambient occlusion.
   const PictureError& errorOfNothing(const std::string& name);
   /// At which every picture judged against this component's full truth is shown.
   float exposure(const std::string& name);

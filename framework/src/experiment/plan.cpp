@@ -9,6 +9,8 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/base/installation.h"
+#include "lumivox/pipeline/pass.h"
 
 namespace lumivox {
 namespace {
@@ -93,8 +95,7 @@ std::optional<fs::path> committedScenes(const fs::path& start) {
     if (auto found = scenesAbove(start)) return found;
   std::error_code ignored;
   if (auto found = scenesAbove(fs::current_path(ignored))) return found;
-  if (const fs::path program = fs::read_symlink("/proc/self/exe", ignored); !program.empty())
-    return scenesAbove(program.parent_path());
+  if (const auto pipelines = programData("scenes/pipelines")) return pipelines->parent_path();
   return std::nullopt;
 }
 

@@ -102,10 +102,10 @@ const PictureError& Truth::errorOfNothing(const std::string& name) {
   auto found = nothing_.find(name);
   if (found == nothing_.end()) {
     const TruthLayer& truth = *layer(name);
-    Picture nothing(truth.mean.width(), truth.mean.height(), truth.mean.channels());
-    const Contributes component =
-        name == "ambient_occlusion" ? Contributes::ambientOcclusion : Contributes::final;
-    std::fill(nothing.values().begin(), nothing.values().end(), neutralElement(component));
+    const Contributes component = name == lumivox::name(Contributes::ambientOcclusion)
+                                      ? Contributes::ambientOcclusion
+                                      : Contributes::final;
+    const Picture nothing = neutralPicture(truth.mean.width(), truth.mean.height(), component);
     found = nothing_.emplace(name, compare(nothing, truth.mean, truth.variance)).first;
   }
   return found->second;

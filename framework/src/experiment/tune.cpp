@@ -12,6 +12,7 @@
 #include "lumivox/analysis/comparison.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
+#include "lumivox/pipeline/pass.h"
 
 namespace lumivox {
 namespace {

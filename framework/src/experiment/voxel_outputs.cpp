@@ -11,29 +11,41 @@
 namespace lumivox {
 namespace {
 
-OccupiedVoxels voxelsIn(const VoxelFragments& list) {
-  OccupiedVoxels result{list.grid, VoxelSet(list.grid.resolution), 0, 0};
+/// Reads the voxels of one kind of source.
+class Reader {
+ public:
+  explicit Reader(OccupiedVoxels& result) : result_(result) {}
+  void operator()(const VoxelTexels& source);
+  void operator()(const VoxelBits& source);
+  void operator()(const VoxelList& source);
+  void operator()(const VoxelsFilled&);
+  void operator()(const VoxelsRead& source);
+
+ private:
+  OccupiedVoxels& result_;
+};
+
+void Reader::operator()(const VoxelList& list) {
   std::uint32_t count = 0;
   const std::vector<std::byte> word = list.count->download(0, sizeof(count));
   std::memcpy(&count, word.data(), sizeof(count));
-  result.fragments = std::min<std::uint64_t>(count, list.capacity);
-  result.bytes = result.fragments * VoxelFragments::kFragmentBytes;
-  if (result.fragments == 0) return result;
+  result_.fragments = std::min<std::uint64_t>(count, list.capacity);
+  result_.bytes = result_.fragments * list.itemBytes;
+  if (result_.fragments == 0) return;
   // Through a small buffer: a list may be as large as the device's memory.
-  constexpr std::uint64_t kAtOnce = std::uint64_t{1} << 18;  // fragments
-  for (std::uint64_t first = 0; first < result.fragments; first += kAtOnce) {
-    const std::uint64_t some = std::min(result.fragments - first, kAtOnce);
-    const std::vector<std::byte> bytes = list.fragments->download(first * VoxelFragments::kFragmentBytes,
-                                                                  some * VoxelFragments::kFragmentBytes);
+  constexpr std::uint64_t kAtOnce = std::uint64_t{1} << 18;  // items
+  std::vector<std::uint32_t> words(list.itemBytes / sizeof(std::uint32_t));
+  for (std::uint64_t first = 0; first < result_.fragments; first += kAtOnce) {
+    const std::uint64_t some = std::min(result_.fragments - first, kAtOnce);
+    const std::vector<std::byte> bytes = list.items->download(first * list.itemBytes, some * list.itemBytes);
     for (std::uint64_t i = 0; i < some; ++i) {
-      std::uint32_t words[VoxelFragments::kFragmentBytes / sizeof(std::uint32_t)];
-      std::memcpy(words, bytes.data() + i * sizeof(words), sizeof(words));
-      const std::uint32_t packed = words[0], coverage = words[4] >> 16;  // a half; its sign bit is never set
+      std::memcpy(words.data(), bytes.data() + i * list.itemBytes, list.itemBytes);
+      const std::uint32_t packed = words[0];
       const glm::ivec3 voxel(packed & 1023u, packed >> 10 & 1023u, packed >> 20 & 1023u);
-      if (coverage != 0 && result.voxels.inside(voxel)) result.voxels.insert(voxel);
+      if ((list.fills == nullptr || list.fills(words.data())) && result_.voxels.inside(voxel))
+        result_.voxels.insert(voxel);
     }
   }
-  return result;
 }
 
 /// Whether a value that a texture holds is above 0.
@@ -62,70 +74,70 @@ bool isPositive(gpu::Format format, const std::byte* texel, int channel) {
   }
 }
 
-/// Voxels whose value in one channel of a texture is above 0; read through a small buffer.
-OccupiedVoxels voxelsIn(const GridPlacement& grid, const gpu::Texture& texture, int channel) {
-  OccupiedVoxels result{grid, VoxelSet(grid.resolution), 0, 0};
+/// Voxels whose value in the one channel is above 0; read through a small buffer.
+void Reader::operator()(const VoxelTexels& source) {
+  const gpu::Texture& texture = *source.textures.at(0);
   const gpu::Format format = texture.description().format;
+  const glm::ivec3& size = result_.grid.resolution;
   const std::size_t texelBytes = gpu::bytesPerTexel(format);
-  std::vector<std::byte> slice(texelBytes * static_cast<std::size_t>(grid.resolution.x) *
-                               static_cast<std::size_t>(grid.resolution.y));
-  for (int z = 0; z < grid.resolution.z; ++z) {
-    texture.downloadSlices(0, z, 1, slice);
+  std::vector<std::byte> slice(texelBytes * static_cast<std::size_t>(size.x) *
+                               static_cast<std::size_t>(size.y));
+  for (int z = 0; z < size.z; ++z) {
+    texture.downloadSlices(source.level, z, 1, slice);
     const std::byte* texel = slice.data();
-    for (int y = 0; y < grid.resolution.y; ++y)
-      for (int x = 0; x < grid.resolution.x; ++x, texel += texelBytes)
-        if (isPositive(format, texel, channel)) result.voxels.insert({x, y, z});
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x, texel += texelBytes)
+        if (isPositive(format, texel, source.channels.at(0).component)) result_.voxels.insert({x, y, z});
   }
-  return result;
 }
 
-OccupiedVoxels voxelsIn(const BinaryGrid& binary) {
-  OccupiedVoxels result{binary.grid, VoxelSet(binary.grid.resolution), 0, 0};
-  const gpu::TextureDescription& description = binary.stacks->description();
-  const std::vector<std::byte> bytes = binary.stacks->download();
+void Reader::operator()(const VoxelBits& source) {
+  const gpu::TextureDescription& description = source.stacks->description();
+  const std::vector<std::byte> bytes = source.stacks->download(source.level);
   std::vector<std::uint32_t> words(bytes.size() / sizeof(std::uint32_t));
   std::memcpy(words.data(), bytes.data(), words.size() * sizeof(std::uint32_t));
   constexpr int kWords = BinaryGrid::kStack / 32;
-  for (int z = 0; z < binary.grid.resolution.z; ++z)
-    for (int y = 0; y < binary.grid.resolution.y; ++y)
-      for (int x = 0; x < binary.grid.resolution.x; ++x) {
+  const glm::ivec3& size = result_.grid.resolution;
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x) {
         const int layer = z / BinaryGrid::kStack, bit = z % BinaryGrid::kStack;
         const std::size_t texel = (static_cast<std::size_t>(layer) * description.height + y) *
                                       static_cast<std::size_t>(description.width) +
                                   static_cast<std::size_t>(x);
         if (words[texel * kWords + static_cast<std::size_t>(bit / 32)] >> (bit % 32) & 1u)
-          result.voxels.insert({x, y, z});
+          result_.voxels.insert({x, y, z});
       }
-  return result;
 }
 
-template <class Port>
-const Port* as(const OutBase& output) {
-  return output.portKind() == Port::kPortKind && output.hasValue()
-             ? &static_cast<const Out<Port>&>(output).value()
-             : nullptr;
+void Reader::operator()(const VoxelsFilled&) {
+  const glm::ivec3& size = result_.grid.resolution;
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x) result_.voxels.insert({x, y, z});
+}
+
+void Reader::operator()(const VoxelsRead& source) {
+  for (const VoxelsRead::Voxel& one : source.read())
+    if (glm::any(glm::greaterThan(one.value, glm::vec3(0.0f))) && result_.voxels.inside(one.voxel))
+      result_.voxels.insert(one.voxel);
 }
 
 }  // namespace
 
-bool holdsVoxels(const std::string& portKind) {
-  return portKind == VoxelFragments::kPortKind || portKind == OccupancyGrid::kPortKind ||
-         portKind == BinaryGrid::kPortKind || portKind == AttributeGrid::kPortKind;
+bool holdsVoxels(const PortKind& kind) {
+  return !kind.occupancy.empty();
 }
 
 std::optional<OccupiedVoxels> occupiedVoxels(const OutBase& output) {
-  std::optional<OccupiedVoxels> result;
-  std::vector<gpu::TextureRef> textures = output.textures();
-  if (const auto* list = as<VoxelFragments>(output)) return voxelsIn(*list);
-  if (const auto* grid = as<OccupancyGrid>(output)) result = voxelsIn(grid->grid, *grid->opacity, 0);
-  if (const auto* grid = as<AttributeGrid>(output)) result = voxelsIn(grid->grid, *grid->albedo, 3);
-  if (const auto* grid = as<BinaryGrid>(output)) {
-    result = voxelsIn(*grid);
-    textures = {grid->stacks};
-  }
-  if (result)
-    for (const gpu::TextureRef& texture : textures)
-      if (texture) result->bytes += texture->sizeBytes();
+  const PortContents contents = output.contents();
+  const PortContents::Occupancy* occupancy = contents.occupancy();
+  if (occupancy == nullptr) return std::nullopt;
+  OccupiedVoxels result{occupancy->grid, VoxelSet(occupancy->grid.resolution), 0, 0};
+  std::visit(Reader(result), occupancy->source);
+  if (std::holds_alternative<VoxelList>(occupancy->source)) return result;
+  for (const PortContents::Resource& resource : contents.resources())
+    result.bytes += resource.texture ? resource.texture->sizeBytes() : resource.buffer->sizeBytes();
   return result;
 }
 

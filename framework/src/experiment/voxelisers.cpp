@@ -14,7 +14,8 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/report.h"
-#include "lumivox/pipeline/grid_placement.h"
+#include "lumivox/pipeline/pass.h"
+#include "lumivox/toolkit/grid_placement.h"
 
 namespace lumivox {
 
@@ -191,19 +192,21 @@ class Measurement {
     bool any = false;
     for (const PassText& pass : pipeline.passes)
       for (const OutBase* output : executor->pass(pass.name).outputs()) {
-        if (!holdsVoxels(output->portKind()) || isRead(pipeline, pass.name, output->name())) continue;
+        if (!holdsVoxels(output->kind()) || isRead(pipeline, pass.name, output->name())) continue;
         any = true;
         candidates.push_back({blank, nullptr, pass.name, output->name(), {}});
         candidates.back().record.output = pass.name + "." + output->name();
-        candidates.back().record.kind = output->portKind();
+        candidates.back().record.kind = output->kind().name;
         start(scene, executor, candidates.back());
       }
     return any;
   }
 
   static std::string kindsText() {
-    return fmt::format("{}, {}, {} or {} that no other pass reads", VoxelFragments::kPortKind,
-                       OccupancyGrid::kPortKind, BinaryGrid::kPortKind, AttributeGrid::kPortKind);
+    std::vector<std::string> names;
+    for (const PortKind* kind : FrameworkPorts::kinds())
+      if (holdsVoxels(*kind)) names.push_back(kind->name);
+    return fmt::format("a kind that holds voxels ({}) that no other pass reads", fmt::join(names, ", "));
   }
 
   /// Renders the warm-up frame and judges its voxels.

@@ -165,6 +165,8 @@ Program::Program(Device& device, std::string name, std::span<const StageCode> st
   glGetProgramiv(handle_, GL_LINK_STATUS, &linked);
   if (linked == GL_FALSE) fail("the driver cannot link the stages: " + infoLog(handle_, true));
   release();
+  if (stages.size() == 1 && stages.front().stage == Stage::compute)
+    glGetProgramiv(handle_, GL_COMPUTE_WORK_GROUP_SIZE, &groupSize_[0]);
   glObjectLabel(GL_PROGRAM, handle_, static_cast<GLsizei>(std::min<std::size_t>(name_.size(), 200)),
                 name_.c_str());
 }

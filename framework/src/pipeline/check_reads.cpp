@@ -39,11 +39,11 @@ std::string differenceOf(const OutBase& output, const OutBase& scratch) {
 std::string differenceOfPictures(const OutBase& whole, const OutBase* lean) {
   if (whole.contributes() == Contributes::nothing || whole.textures().empty()) return {};
   // The fourth channel of a radiance holds nothing.
-  const int channels = whole.contributes() == Contributes::ambientOcclusion ? 1 : 3;
+  const int channels = channelsOf(whole.contributes());
   const Picture picture = pictureOf(*whole.textures().front(), channels);
-  Picture other(picture.width(), picture.height(), channels);
-  std::fill(other.values().begin(), other.values().end(), neutralElement(whole.contributes()));
-  if (lean != nullptr) other = pictureOf(*lean->textures().front(), channels);
+  const Picture other = lean != nullptr
+                            ? pictureOf(*lean->textures().front(), channels)
+                            : neutralPicture(picture.width(), picture.height(), whole.contributes());
   if (!picture.sameShape(other)) return "its size is another one";
   std::size_t different = 0;
   for (std::size_t i = 0; i < picture.values().size(); ++i)
@@ -76,7 +76,7 @@ class Comparison {
     forEachOutput([&](std::size_t pass, const OutBase&, OutputIndex index) -> std::string {
       const OutBase &less = lean.output(index), &everything = whole.output(index);
       const OutputPlan& planned = plan_.output(index);
-      if (!everything.hasValue() || everything.portKind() != Image::kPortKind) return {};
+      if (!everything.hasValue() || !everything.kind().isSameType(portKind<Image>())) return {};
       // What nobody would read may be anything where its inputs are left out.
       if (!planned.wanted && (planned.lacksNeed || (planned.impossible && isShown(index)))) {
         const std::string difference = differenceOfPictures(everything, nullptr);

@@ -21,15 +21,17 @@ double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-int channelsOf(Contributes component) {
-  return component == Contributes::ambientOcclusion ? 1 : 3;
-}
-
-/// Of the size of the frame, for an output that was left out.
-Picture neutralPicture(const SceneSnapshot& snapshot, Contributes component) {
-  Picture picture(snapshot.camera.width, snapshot.camera.height, channelsOf(component));
-  std::fill(picture.values().begin(), picture.values().end(), neutralElement(component));
-  return picture;
+/// Per pass: the most bounces that it or a pass before it models.
+std::vector<int> bouncesOf(const BoundGraph& graph) {
+  std::vector<int> bounces(graph.passes.size(), 0);
+  for (const int position : graph.order) {
+    const auto index = static_cast<std::size_t>(position);
+    bounces[index] = graph.passes[index].object->indirectBounces();
+    for (const OutputIndex source : graph.passes[index].sources)
+      if (source.valid())
+        bounces[index] = std::max(bounces[index], bounces[static_cast<std::size_t>(source.pass)]);
+  }
+  return bounces;
 }
 
 }  // namespace
@@ -112,6 +114,7 @@ const PrunePlan& PipelineExecutor::State::planned() {
     if (!plan->passes[pass].kept) context.memory().forgetKept(graph.passes[pass].name);
     if (earlierPlan && plannedOtherwise(graph.passes[pass], pass, *earlierPlan, *plan)) mustRun[pass] = true;
   }
+  if (options.accumulate) countedSources = sourcesThatCount();
   if (!earlierPlan) complete = false;
   earlierPlan.reset();
   return *plan;
@@ -340,14 +343,17 @@ void PipelineExecutor::State::collectPictures(FrameResult& result, Pictures pict
   if (pictures == Pictures::yes && graph.outputs.empty() && request.forced.empty())
     throw Error(
         fmt::format("pipeline \"{}\" makes no picture; expected output NAME pass.port", pipeline.name));
+  const std::vector<int> bounces = bouncesOf(graph);
   for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
     if (!request.wanted[i]) continue;
     const BoundOutput& bound = graph.outputs[i];
     const OutBase& output = graph.output(bound.source);
     result.components[bound.name] = output.contributes();
+    result.indirectBounces[bound.name] = bounces[static_cast<std::size_t>(bound.source.pass)];
     if (pictures == Pictures::no) continue;
     if (!output.hasValue()) {
-      result.outputs[bound.name] = neutralPicture(*last, output.contributes());
+      result.outputs[bound.name] =
+          neutralPicture(last->camera.width, last->camera.height, output.contributes());
       continue;
     }
     const std::vector<gpu::TextureRef> textures = output.textures();

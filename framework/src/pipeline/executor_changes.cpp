@@ -8,12 +8,24 @@ namespace lumivox {
 
 // ---- histories -----------------------------------------------------------------------------------------
 
-void PipelineExecutor::State::countStillFrames(Reads changed, const SceneSnapshot& snapshot) {
-  if (!options.accumulate) return;
-  // With --keep-everything passes must count like those of a run that leaves out what it can.
+std::vector<std::vector<OutputIndex>> PipelineExecutor::State::sourcesThatCount() {
   PruneRequest lean = request;
   lean.keepEverything = false;
   lean.traits = sceneTraits;
+  const PrunePlan leanPlan = prune(graph, lean);
+  std::vector<std::vector<OutputIndex>> result;
+  for (const BoundPass& pass : graph.passes) {
+    std::vector<OutputIndex> sources = sourcesRead(pass, lean);
+    const std::vector<OutputIndex> before = historiesRead(pass, lean);
+    sources.insert(sources.end(), before.begin(), before.end());
+    std::erase_if(sources, [&](const OutputIndex source) { return !leanPlan.output(source).wanted; });
+    result.push_back(std::move(sources));
+  }
+  return result;
+}
+
+void PipelineExecutor::State::countStillFrames(Reads changed, const SceneSnapshot& snapshot) {
+  if (!options.accumulate) return;
   std::vector<bool> disturbed(graph.passes.size());
   for (std::size_t pass = 0; pass < graph.passes.size(); ++pass)
     disturbed[pass] = mustRun[pass] || readsWhatChanged(pass, changed & ~Reads::history, snapshot);
@@ -22,9 +34,7 @@ void PipelineExecutor::State::countStillFrames(Reads changed, const SceneSnapsho
     again = false;
     for (std::size_t pass = 0; pass < graph.passes.size(); ++pass) {
       if (disturbed[pass]) continue;
-      std::vector<OutputIndex> sources = sourcesRead(graph.passes[pass], lean);
-      const std::vector<OutputIndex> before = historiesRead(graph.passes[pass], lean);
-      sources.insert(sources.end(), before.begin(), before.end());
+      const std::vector<OutputIndex>& sources = countedSources[pass];
       disturbed[pass] = std::any_of(sources.begin(), sources.end(), [&](const OutputIndex source) {
         return disturbed[static_cast<std::size_t>(source.pass)];
       });

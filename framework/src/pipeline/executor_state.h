@@ -39,7 +39,8 @@ struct PipelineExecutor::State {
   std::map<std::size_t, std::vector<float>> lastOfCamera;  ///< Pass::readsOfCamera(), the same
   /// Per pass, with RenderOptions::accumulate: PassContext::accumulated(). Empty when histories are.
   std::vector<int> stillFrames;
-  bool interrupted = false;  ///< an error ended the last frame
+  std::vector<std::vector<OutputIndex>> countedSources;  ///< per pass: sourcesThatCount() of this plan
+  bool interrupted = false;                              ///< an error ended the last frame
   gpu::PassTimers timers;
   /// Passes of the frames whose times are not read yet, and of those whose are and that nobody took.
   std::vector<std::vector<PassRecord>> awaited, timed;
@@ -60,6 +61,9 @@ struct PipelineExecutor::State {
   bool readsWhatChanged(std::size_t pass, Reads changed, const SceneSnapshot& snapshot) const;
 
   // ---- what is carried from frame to frame
+  /// What counts as a source for PassContext::accumulated(): with --keep-everything too, passes count like
+  /// those of a run that leaves out what it can.
+  std::vector<std::vector<OutputIndex>> sourcesThatCount();
   void countStillFrames(Reads changed, const SceneSnapshot& snapshot);
   void holdHistories();
   void emptyHistories();

@@ -32,7 +32,7 @@ int indexOf(const std::vector<Named*>& members, const std::string& name) {
 std::string portsText(const Pass& pass) {
   std::vector<std::string> texts;
   for (const OutBase* output : pass.outputs())
-    texts.push_back(fmt::format("{} ({})", output->name(), output->portKind()));
+    texts.push_back(fmt::format("{} ({})", output->name(), output->kind().name));
   return oneOf(texts, "nothing, since the pass has no outputs");
 }
 
@@ -144,8 +144,8 @@ class Binder {
     for (const InBase* input : pass.inputs()) {
       if (input->presence() == Presence::required && !given.contains(input->name())) {
         report(text, fmt::format("pass '{}' lacks its required input '{}'", text.name, input->name()),
-               fmt::format("{} PASS.PORT, where the port is of kind {}", input->name(), input->portKind()),
-               offer(index, input->name(), input->portKind()));
+               fmt::format("{} PASS.PORT, where the port is of kind {}", input->name(), input->kind().name),
+               offer(index, input->name(), input->kind()));
       }
     }
     if (findings_.size() == findingsBefore) {
@@ -158,12 +158,12 @@ class Binder {
 
   /// The one output of this kind that another pass has, as the text that would connect it; empty when there
   /// is none or a choice.
-  std::string offer(int reader, const std::string& input, const std::string& kind) const {
+  std::string offer(int reader, const std::string& input, const PortKind& kind) const {
     std::string found;
     for (std::size_t i = 0; i < graph_.passes.size(); ++i) {
       if (static_cast<int>(i) == reader || !graph_.passes[i].object) continue;
       for (const OutBase* output : graph_.passes[i].object->outputs()) {
-        if (output->portKind() != kind) continue;
+        if (!output->kind().isSameType(kind)) continue;
         if (!found.empty()) return {};
         found = fmt::format("{} {}.{}", input, graph_.passes[i].name, output->name());
       }
@@ -189,7 +189,7 @@ class Binder {
     }
     if (input >= 0) {
       bound.sources[static_cast<std::size_t>(input)] =
-          connect(property.values[0], bound.object->inputs()[static_cast<std::size_t>(input)]->portKind(),
+          connect(property.values[0], bound.object->inputs()[static_cast<std::size_t>(input)]->kind(),
                   fmt::format("input '{}' of pass '{}'", property.word, bound.name));
     } else {
       setParameter(*bound.object->parameters()[static_cast<std::size_t>(parameter)], property.values[0]);
@@ -199,7 +199,7 @@ class Binder {
   // ---- connections ---------------------------------------------------------------------------------------
 
   /// The output that a value names, for a reader that wants this kind; invalid after a finding.
-  OutputIndex connect(const dsl::Value& value, const std::string& kind, const std::string& reader) {
+  OutputIndex connect(const dsl::Value& value, const PortKind& kind, const std::string& reader) {
     const auto parts = splitDotted(value);
     if (!parts && !value.isPlainWord()) {
       report(value, fmt::format("{} is connected to no output", reader), "PASS.PORT");
@@ -210,7 +210,7 @@ class Binder {
   }
 
   OutputIndex connect(const SourcePlace& place, int length, const std::string& passName,
-                      const std::string& portName, const std::string& kind, const std::string& reader) {
+                      const std::string& portName, const PortKind& kind, const std::string& reader) {
     int source = -1;
     std::vector<std::string> names;
     for (std::size_t i = 0; i < graph_.passes.size(); ++i) {
@@ -234,26 +234,33 @@ class Binder {
     if (portName.empty()) {
       std::vector<int> fitting;
       for (std::size_t i = 0; i < outputs.size(); ++i) {
-        if (outputs[i]->portKind() == kind) fitting.push_back(static_cast<int>(i));
+        if (outputs[i]->kind().isSameType(kind)) fitting.push_back(static_cast<int>(i));
       }
       if (fitting.size() > 1 || (fitting.empty() && outputs.size() != 1)) {
         report(place, length,
-               fmt::format("pass '{}' has {} outputs of kind {}", passName, fitting.size(), kind),
+               fmt::format("pass '{}' has {} outputs of kind {}", passName, fitting.size(), kind.name),
                fmt::format("{}.PORT, where PORT is {}", passName, portsText(*pass)));
         return {};
       }
       port = fitting.empty() ? 0 : fitting.front();
     }
     const OutBase& output = *outputs[static_cast<std::size_t>(port)];
-    if (output.portKind() != kind) {
+    if (output.kind().name == kind.name && !output.kind().isSameType(kind)) {
+      report(place, length,
+             fmt::format("output '{}.{}' and {} both call their kind {}, but mean different types", passName,
+                         output.name(), reader, kind.name),
+             "techniques that share the header of the kind");
+      return {};
+    }
+    if (!output.kind().isSameType(kind)) {
       std::vector<std::string> fitting;
       for (const OutBase* other : outputs) {
-        if (other->portKind() == kind) fitting.push_back(passName + "." + other->name());
+        if (other->kind().isSameType(kind)) fitting.push_back(passName + "." + other->name());
       }
       report(place, length,
              fmt::format("output '{}.{}' is of kind {}, but {} takes {}", passName, output.name(),
-                         output.portKind(), reader, kind),
-             "an output of kind " + kind, fitting.size() == 1 ? fitting.front() : std::string());
+                         output.kind().name, reader, kind.name),
+             "an output of kind " + kind.name, fitting.size() == 1 ? fitting.front() : std::string());
       return {};
     }
     return {source, port};
@@ -263,7 +270,7 @@ class Binder {
     for (const Pipeline::Output& output : pipeline_.outputs) {
       const int length = static_cast<int>(output.pass.size() + 1 + output.port.size());
       graph_.outputs.push_back(
-          {output.name, connect(output.place, length, output.pass, output.port, Image::kPortKind,
+          {output.name, connect(output.place, length, output.pass, output.port, portKind<Image>(),
                                 fmt::format("output '{}' of the pipeline", output.name))});
     }
     if (pipeline_.outputs.empty()) requireNoPicture();

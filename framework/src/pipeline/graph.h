@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/pipeline.h"
 
 namespace lumivox {

@@ -82,8 +82,8 @@ Pass& PassHarness::holder() {
 void PassHarness::connectInput(const std::string& name, std::unique_ptr<OutBase> source) {
   for (InBase* input : state_->pass->inputs()) {
     if (input->name() != name) continue;
-    if (input->portKind() != source->portKind()) {
-      throw Error(fmt::format("input '{}' takes {}, not {}", name, input->portKind(), source->portKind()));
+    if (!input->kind().isSameType(source->kind())) {
+      throw Error(fmt::format("input '{}' takes {}, not {}", name, input->kind().name, source->kind().name));
     }
     input->connect(source.get());
     if (input->presence() == Presence::history) input->hold();

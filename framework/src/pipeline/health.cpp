@@ -24,12 +24,6 @@ bool isFloat(gpu::Format format) {
   }
 }
 
-/// Positions, normals and spherical-harmonic coefficients have signs; radiance, opacity and depth have none.
-bool mayBeNegative(const std::string& portKind) {
-  return portKind == GBuffer::kPortKind || portKind == ShGrid::kPortKind ||
-         portKind == ReflectiveShadowMap::kPortKind || portKind == AttributeGrid::kPortKind;
-}
-
 struct Bad {
   const char* what;
   std::size_t count = 0, firstTexel = 0;
@@ -54,9 +48,13 @@ std::string placeText(const gpu::TextureDescription& description, int level, std
 }  // namespace
 
 void scanHealth(const std::string& pass, const OutBase& output, std::vector<std::string>& findings) {
-  const std::vector<gpu::TextureRef> textures = output.textures();
+  const PortContents contents = output.contents();
+  std::vector<const PortContents::Resource*> textures;
+  for (const PortContents::Resource& resource : contents.resources())
+    if (resource.texture) textures.push_back(&resource);
   for (std::size_t number = 0; number < textures.size(); ++number) {
-    const gpu::Texture& texture = *textures[number];
+    const PortResource& what = *textures[number]->what;
+    const gpu::Texture& texture = *textures[number]->texture;
     const gpu::TextureDescription& description = texture.description();
     if (!isFloat(description.format)) continue;
     for (int level = 0; level < description.levels; ++level) {
@@ -72,16 +70,16 @@ void scanHealth(const std::string& pass, const OutBase& output, std::vector<std:
       for (std::size_t i = 0; i < values.size(); ++i) {
         const float value = values[i];
         if (std::isfinite(value) && value >= 0.0f) continue;
-        if (std::isfinite(value) && mayBeNegative(output.portKind())) continue;
+        if (std::isfinite(value) && what.sign == PortResource::Sign::any) continue;
         Bad& kind = bad[std::isnan(value) ? 0 : std::isinf(value) ? 1 : 2];
         if (kind.count++ == 0) kind.firstTexel = i / components;
       }
       for (const Bad& kind : bad) {
         if (kind.count == 0) continue;
-        // By number: a label may stem from an earlier use of the same memory.
-        const std::string resource = textures.size() > 1
-                                         ? fmt::format(" (texture {} of {})", number + 1, textures.size())
-                                         : std::string();
+        // Not by its label, which may stem from an earlier use of the same memory.
+        const std::string resource = textures.size() > 1 ? fmt::format(" ({}, texture {} of {})", what.name,
+                                                                       number + 1, textures.size())
+                                                         : std::string();
         findings.push_back(fmt::format("pass {}, port {}{}: {} {}, first at {}", pass, output.name(),
                                        resource, kind.count, kind.what,
                                        placeText(description, level, kind.firstTexel)));

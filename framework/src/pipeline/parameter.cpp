@@ -106,20 +106,19 @@ std::string Param<bool>::set(const std::string& word) {
 
 // ---- word ----------------------------------------------------------------------------------------------
 
-Param<std::string>::Param(Pass* pass, std::string name, std::string value, std::vector<std::string> choices,
-                          std::string meaning)
-    : ParamBase(pass, std::move(name), Type::word, std::move(meaning)),
-      value_(value),
-      default_(std::move(value)) {
-  choices_ = std::move(choices);
+WordParam::WordParam(Pass* pass, std::string name, std::size_t value, std::vector<std::string> words,
+                     std::string meaning)
+    : ParamBase(pass, std::move(name), Type::word, std::move(meaning)), value_(value), default_(value) {
+  assert(value < words.size());
+  choices_ = std::move(words);
 }
-std::string Param<std::string>::set(double) {
+std::string WordParam::set(double) {
   return fmt::format("must be one of {}", fmt::join(choices_, ", "));
 }
-std::string Param<std::string>::set(const std::string& word) {
-  for (const std::string& choice : choices_) {
-    if (word == choice) {
-      value_ = word;
+std::string WordParam::set(const std::string& word) {
+  for (std::size_t i = 0; i < choices_.size(); ++i) {
+    if (word == choices_[i]) {
+      value_ = i;
       return {};
     }
   }

@@ -1,6 +1,7 @@
 // The contract of a pass: ports that register themselves, and the small helpers of its context.
 #include "lumivox/pipeline/pass.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "lumivox/pipeline/technique_source.h"
@@ -32,6 +33,10 @@ float neutralElement(Contributes component) {
   return component == Contributes::ambientOcclusion ? 1.0f : 0.0f;
 }
 
+int channelsOf(Contributes component) {
+  return component == Contributes::ambientOcclusion ? 1 : 3;
+}
+
 std::string unmetNeed(Needs needs, const SceneTraits& traits) {
   struct Need {
     Needs flag;
@@ -61,93 +66,59 @@ std::string unmetNeed(Needs needs, const SceneTraits& traits) {
 
 // ---- ports ---------------------------------------------------------------------------------------------
 
-PortBase::PortBase(std::string name, std::string portKind, std::string meaning)
-    : name_(std::move(name)), portKind_(std::move(portKind)), meaning_(std::move(meaning)) {}
+PortBase::PortBase(std::string name, const PortKind& kind, std::string meaning)
+    : name_(std::move(name)), meaning_(std::move(meaning)), kind_(&kind) {}
 
-OutBase::OutBase(Pass* pass, std::string name, std::string portKind, Contributes contributes, Needs needs,
+OutBase::OutBase(Pass* pass, std::string name, const PortKind& kind, Contributes contributes, Needs needs,
                  std::string meaning)
-    : PortBase(std::move(name), std::move(portKind), std::move(meaning)),
-      contributes_(contributes),
-      needs_(needs) {
+    : PortBase(std::move(name), kind, std::move(meaning)), contributes_(contributes), needs_(needs) {
   pass->outputs_.push_back(this);
 }
 
-InBase::InBase(Pass* pass, std::string name, std::string portKind, Presence presence, std::string meaning,
+InBase::InBase(Pass* pass, std::string name, const PortKind& kind, Presence presence, std::string meaning,
                Needs needs)
-    : PortBase(std::move(name), std::move(portKind), std::move(meaning)), presence_(presence), needs_(needs) {
+    : PortBase(std::move(name), kind, std::move(meaning)), presence_(presence), needs_(needs) {
   pass->inputs_.push_back(this);
 }
 
 void InBase::connect(const OutBase* source) {
-  assert(source == nullptr || source->portKind() == portKind());
+  assert(source == nullptr || source->kind().isSameType(kind()));
   source_ = source;
 }
 
-namespace {
-
-std::vector<gpu::TextureRef> existing(std::initializer_list<gpu::TextureRef> textures) {
+std::vector<gpu::TextureRef> OutBase::textures() const {
   std::vector<gpu::TextureRef> result;
-  for (const gpu::TextureRef& texture : textures) {
-    if (texture) result.push_back(texture);
-  }
-  return result;
-}
-
-}  // namespace
-
-std::vector<gpu::TextureRef> texturesOf(const Image& image) {
-  return existing({image.texture});
-}
-std::vector<gpu::TextureRef> texturesOf(const GBuffer& buffer) {
-  return existing({buffer.position, buffer.normal, buffer.geometricNormal, buffer.diffuse, buffer.specular,
-                   buffer.emission});
-}
-std::vector<gpu::TextureRef> texturesOf(const ShadowMap& map) {
-  return existing({map.depth});
-}
-std::vector<gpu::TextureRef> texturesOf(const ReflectiveShadowMap& map) {
-  return existing({map.position, map.normal, map.flux});
-}
-std::vector<gpu::TextureRef> texturesOf(const VoxelFragments&) {
-  return {};
-}
-std::vector<gpu::TextureRef> texturesOf(const BinaryGrid&) {
-  return {};  // bits are never unhealthy
-}
-std::vector<gpu::TextureRef> texturesOf(const AttributeGrid& grid) {
-  return existing({grid.albedo, grid.normal, grid.emission});
-}
-std::vector<gpu::TextureRef> texturesOf(const OccupancyGrid& grid) {
-  return existing({grid.opacity});
-}
-std::vector<gpu::TextureRef> texturesOf(const RadianceGrid& grid) {
-  return existing({grid.radiance});
-}
-std::vector<gpu::TextureRef> texturesOf(const ShGrid& grid) {
-  std::vector<gpu::TextureRef> result;
-  for (const ShGrid::Level& level : grid.levels) {
-    for (const gpu::TextureRef& channel : level.coefficients) result.push_back(channel);
-  }
-  return result;
-}
-std::vector<gpu::TextureRef> texturesOf(const Particles&) {
-  return {};
-}
-std::vector<gpu::TextureRef> texturesOf(const ScatteringGrid& grid) {
-  std::vector<gpu::TextureRef> result;
-  for (const ScatteringGrid::Medium& medium : grid.media) {
-    if (medium.density) result.push_back(medium.density);
-  }
+  const PortContents held = contents();
+  for (const PortContents::Resource& resource : held.resources())
+    if (resource.texture) result.push_back(resource.texture);
   return result;
 }
 
 // ---- context -------------------------------------------------------------------------------------------
 
-void PassContext::dispatch(const shader::BoundProgram& program, shader::ShaderLibrary::Bindings bindings,
-                           glm::ivec3 items, glm::ivec3 groupSize) {
-  assert(groupSize.x > 0 && groupSize.y > 0 && groupSize.z > 0);
+void PassContext::dispatch(const shader::BoundProgram& program, const shader::BindingSet& bindings,
+                           glm::ivec3 items) {
   if (items.x <= 0 || items.y <= 0 || items.z <= 0) return;
-  shaders().dispatch(program, bindings, glm::uvec3((items + groupSize - 1) / groupSize));
+  const glm::ivec3& group = program.program->groupSize();
+  shaders().dispatch(program, bindings, glm::uvec3((items + group - 1) / group));
+  device().barrier();
+}
+
+void PassContext::dispatchList(const shader::BoundProgram& program, const shader::BindingSet& bindings,
+                               std::uint64_t items) {
+  // Work groups along an axis that OpenGL promises (4.5, table 23.72); kMostGroups of list.glsl.
+  constexpr std::uint64_t kMostGroups = 65535;
+  if (items == 0) return;
+  const auto group = static_cast<std::uint64_t>(program.program->groupSize().x);
+  const std::uint64_t groups = (items + group - 1) / group, rows = (groups + kMostGroups - 1) / kMostGroups;
+  assert(rows <= kMostGroups);
+  shaders().dispatch(program, bindings, glm::uvec3(std::min(groups, kMostGroups), rows, 1));
+  device().barrier();
+}
+
+void PassContext::dispatchIndirect(const shader::BoundProgram& program, const shader::BindingSet& bindings,
+                                   const gpu::Buffer& arguments, std::uint64_t offsetBytes) {
+  shaders().dispatchIndirect(program, bindings, arguments, offsetBytes);
   device().barrier();
 }
 
@@ -157,6 +128,17 @@ gpu::TextureRef PassContext::image(gpu::Format format, const std::string& label)
   description.width = snapshot().camera.width;
   description.height = snapshot().camera.height;
   return texture(description, label);
+}
+
+gpu::TextureRef PassContext::volume(const glm::ivec3& size, gpu::Format format, const std::string& label,
+                                    int levels) {
+  return texture({gpu::TextureKind::d3, format, size.x, size.y, size.z, levels}, label);
+}
+
+gpu::BufferRef PassContext::elements(const shader::StorageSlot& block, std::uint64_t count,
+                                     const std::string& label) {
+  assert(block.elementBytes > 0);
+  return buffer(std::max<std::uint64_t>(count, 1) * block.elementBytes, label);
 }
 
 const PassEntry* Technique::find(const std::string& pass) const {

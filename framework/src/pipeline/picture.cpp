@@ -9,6 +9,12 @@
 
 namespace lumivox {
 
+Picture neutralPicture(int width, int height, Contributes component) {
+  Picture picture(width, height, channelsOf(component));
+  std::fill(picture.values().begin(), picture.values().end(), neutralElement(component));
+  return picture;
+}
+
 Picture pictureOf(const gpu::Texture& texture, int channels) {
   const gpu::TextureDescription& description = texture.description();
   assert(description.kind == gpu::TextureKind::d2 && channels > 0);

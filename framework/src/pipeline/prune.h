@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "lumivox/pipeline/pass.h"
 #include "pipeline/graph.h"
 
 namespace lumivox {

@@ -12,6 +12,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
+#include "lumivox/plugin/technique.h"
 #include "plugin/elf_check.h"
 
 namespace lumivox {
@@ -45,33 +46,6 @@ class Registry : public TechniqueRegistry {
   Technique& technique_;
 };
 
-/// Compares member by member. The strings may lack their end in a broken record.
-void requireSameVersion(const TechniqueVersionRecord& theirs) {
-  static constexpr TechniqueVersionRecord ours = techniqueVersionHere();
-  // The size first: with another one, nothing behind it can be trusted.
-  const auto number = [](const char* what, std::uint32_t their, std::uint32_t our) {
-    if (their != our)
-      throw Unfit(fmt::format("built for another Lumivox: {} is {}, expected {}", what, their, our));
-  };
-  const auto word = [](const char* what, const char* their, const char* our, std::size_t size) {
-    if (std::strncmp(their, our, size) != 0) {
-      throw Unfit(fmt::format("built for another Lumivox: {} is '{}', expected '{}'", what,
-                              std::string_view(their, strnlen(their, size)), our));
-    }
-  };
-  number("the size of the version record", theirs.recordSize, ours.recordSize);
-  number("the API version", theirs.apiVersion, ours.apiVersion);
-  word("the compiler", theirs.compiler, ours.compiler, sizeof(ours.compiler));
-  word("the standard library", theirs.standardLibrary, ours.standardLibrary, sizeof(ours.standardLibrary));
-  word("the build type", theirs.buildType, ours.buildType, sizeof(ours.buildType));
-  number("the size of Pass", theirs.passSize, ours.passSize);
-  number("the size of PassContext", theirs.passContextSize, ours.passContextSize);
-  number("the size of Scene", theirs.sceneSize, ours.sceneSize);
-  number("the size of SceneSnapshot", theirs.snapshotSize, ours.snapshotSize);
-  number("the size of Device", theirs.deviceSize, ours.deviceSize);
-  number("the size of the ports", theirs.portsSize, ours.portsSize);
-}
-
 template <class Function>
 Function* symbol(void* handle, const char* name) {
   void* address = dlsym(handle, name);
@@ -95,7 +69,9 @@ std::unique_ptr<Technique> open(const std::string& name, const fs::path& library
     const char* reason = dlerror();
     throw Unfit(reason != nullptr ? reason : "the dynamic loader refused it");
   }
-  requireSameVersion(*symbol<const TechniqueVersionRecord*()>(handle, "lumivox_technique_version")());
+  const std::string difference =
+      versionDifference(*symbol<const TechniqueVersionRecord*()>(handle, "lumivox_technique_version")());
+  if (!difference.empty()) throw Unfit("built for another Lumivox: " + difference);
   Registry registry(*technique);
   symbol<void(TechniqueRegistry*)>(handle, "lumivox_technique_register")(&registry);
   if (technique->passes.empty()) throw Unfit("it registers no pass");

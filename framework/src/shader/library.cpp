@@ -216,8 +216,8 @@ void ShaderLibrary::selectInto(std::vector<ResourceBinding>& selected, const Bou
     const PackedBinding& expected = program.packed->bindings[index];
     // The number is compared first: names of others are not looked at.
     const auto given = std::find_if(bindings.begin(), bindings.end(), [&](const ResourceBinding& binding) {
-      return binding.binding == expected.binding && kindOf(binding) == expected.kind &&
-             expected.name == binding.name;
+      return (binding.binding == expected.binding || binding.binding == kByName) &&
+             kindOf(binding) == expected.kind && expected.name == binding.name;
     });
     const auto refuse = [&](const std::string& why) {
       throw Error(fmt::format("shader program {}: {} '{}' (binding {}): {}", programName(program),
@@ -229,6 +229,7 @@ void ShaderLibrary::selectInto(std::vector<ResourceBinding>& selected, const Bou
       const std::string wrong = std::visit(Mismatch{expected}, given->resource);
       if (!wrong.empty()) refuse(wrong);
       selected.push_back(*given);
+      selected.back().binding = expected.binding;
     }
   }
 }

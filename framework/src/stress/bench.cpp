@@ -33,29 +33,35 @@ void requireHealthy(const FrameResult& frame) {
                   (more == 0 ? std::string() : fmt::format(" (and {} more findings)", more)));
 }
 
-/// A list has no order; its content is the sorted fragments.
-void addContent(Hasher& hasher, const VoxelFragments& list) {
-  using Fragment = std::array<std::uint32_t, VoxelFragments::kFragmentBytes / sizeof(std::uint32_t)>;
+/// A list has no order; its content is the sorted items.
+void addContent(Hasher& hasher, const VoxelList& list) {
   std::uint32_t count = 0;
   const std::vector<std::byte> word = list.count->download(0, sizeof(count));
   std::memcpy(&count, word.data(), sizeof(count));
   count = static_cast<std::uint32_t>(std::min<std::uint64_t>(count, list.capacity));
   hasher.add(count);
   if (count == 0) return;
-  const std::vector<std::byte> bytes = list.fragments->download(0, count * sizeof(Fragment));
-  std::vector<Fragment> fragments(count);
-  std::memcpy(fragments.data(), bytes.data(), bytes.size());
-  std::sort(fragments.begin(), fragments.end());
-  hasher.bytes(fragments.data(), bytes.size());
+  const std::vector<std::byte> bytes = list.items->download(0, count * list.itemBytes);
+  std::vector<std::vector<std::uint32_t>> items(
+      count, std::vector<std::uint32_t>(list.itemBytes / sizeof(std::uint32_t)));
+  for (std::size_t i = 0; i < count; ++i)
+    std::memcpy(items[i].data(), bytes.data() + i * list.itemBytes, list.itemBytes);
+  std::sort(items.begin(), items.end());
+  for (const std::vector<std::uint32_t>& item : items) hasher.bytes(item.data(), list.itemBytes);
 }
 
+/// Textures, and the lists that the kind tells of; of other buffers nobody knows what in them counts.
 void addContent(Hasher& hasher, const OutBase& output) {
-  if (output.portKind() == VoxelFragments::kPortKind && output.hasValue())
-    addContent(hasher, static_cast<const Out<VoxelFragments>&>(output).value());
-  for (const gpu::TextureRef& texture : output.textures()) {
-    if (!texture) continue;
+  const PortContents contents = output.contents();
+  std::vector<const gpu::Buffer*> added;
+  for (const PortContents::Field& field : contents.fields())
+    if (const auto* list = std::get_if<VoxelList>(&field.source))
+      if (std::find(added.begin(), added.end(), list->items.get()) == added.end()) {
+        addContent(hasher, *list);
+        added.push_back(list->items.get());
+      }
+  for (const gpu::TextureRef& texture : output.textures())
     for (int level = 0; level < texture->description().levels; ++level) hasher.add(texture->download(level));
-  }
 }
 
 /// Voxels seen along z: the nearer the first one, the brighter.

@@ -19,12 +19,32 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? std::string() : text.substr(first, last - first + 1);
 }
 
-/// "| a | b | c |" as its cells.
-std::vector<std::string> cellsOf(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream stream(line.substr(1));
-  for (std::string cell; std::getline(stream, cell, '|');) cells.push_back(trimmed(cell));
-  return cells;
+/// Without the white space around it.
+std::string trimmedLine(const std::string& line) {
+  const std::size_t first = line.find_first_not_of(" \t\r"), last = line.find_last_not_of(" \t\r");
+  return first == std::string::npos ? std::string() : line.substr(first, last - first + 1);
+}
+
+/// Without the point at its end.
+std::string withoutPoint(const std::string& text) {
+  return !text.empty() && text.back() == '.' ? text.substr(0, text.size() - 1) : text;
+}
+
+/// "`case`, `pipeline/case_*`: what happens. *Why:* the reason." as a row; without names it speaks of no
+/// case.
+CardRow rowOf(const std::string& item) {
+  static const std::string kNamesEnd = "`: ", kWhy = "*Why:*";
+  CardRow row;
+  const std::size_t colon = item.find(kNamesEnd), why = item.find(kWhy);
+  const std::size_t from = colon == std::string::npos ? 0 : colon + kNamesEnd.size();
+  if (colon != std::string::npos) {
+    std::istringstream names(item.substr(0, colon + 1));
+    for (std::string name; std::getline(names, name, ',');) row.cases.push_back(trimmed(name));
+  }
+  row.what = withoutPoint(trimmedLine(item.substr(from, why == std::string::npos ? why : why - from)));
+  if (why != std::string::npos) row.why = withoutPoint(trimmedLine(item.substr(why + kWhy.size())));
+  row.numbers = boldNumbers(row.what);
+  return row;
 }
 
 /// A number that fills the text, and what one in its last written digit is worth; nullopt: it is none.
@@ -91,23 +111,19 @@ std::vector<CardNumber> boldNumbers(const std::string& text) {
 std::vector<CardRow> whereItBreaks(const std::string& card) {
   std::vector<CardRow> rows;
   std::istringstream lines(card);
-  bool inside = false, head = true;
+  std::string item;
+  const auto finish = [&] {
+    if (!item.empty()) rows.push_back(rowOf(item));
+    item.clear();
+  };
+  bool inside = false;
   for (std::string line; std::getline(lines, line);) {
-    if (line.rfind("## ", 0) == 0) {
-      inside = trimmed(line.substr(3)) == "Where it breaks";
-      head = true;
-    } else if (inside && line.rfind("|", 0) == 0) {
-      const std::vector<std::string> cells = cellsOf(line);
-      if (cells.size() < 3 || head || cells[0].find_first_not_of("-: ") == std::string::npos) {
-        head = false;
-        continue;
-      }
-      CardRow row{{}, cells[1], cells[2], boldNumbers(cells[1])};
-      std::istringstream names(cells[0]);
-      for (std::string name; std::getline(names, name, ',');) row.cases.push_back(trimmed(name));
-      rows.push_back(std::move(row));
-    }
+    const bool begins = line.rfind("- ", 0) == 0, goesOn = line.rfind("  ", 0) == 0 && !item.empty();
+    if (!goesOn) finish();
+    if (line.rfind("## ", 0) == 0) inside = trimmed(line.substr(3)) == "Where it breaks";
+    if (inside && (begins || goesOn)) item += (item.empty() ? "" : " ") + trimmedLine(line.substr(2));
   }
+  finish();
   return rows;
 }
 

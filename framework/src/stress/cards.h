@@ -20,7 +20,8 @@ struct CardNumber {
 /// All of a text. What is in bold and no number is passed over.
 std::vector<CardNumber> boldNumbers(const std::string& text);
 
-/// A row of the table below `## Where it breaks`.
+/// An item of the list below `## Where it breaks`:
+/// "- `case`, `pipeline_stem/case_*`: what happens, **0.31** of it. *Why:* the reason."
 struct CardRow {
   std::vector<std::string> cases;  ///< patterns: "case", "case_*", "pipeline_stem/case"
   std::string what, why;

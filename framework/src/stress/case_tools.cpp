@@ -7,6 +7,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/experiment/report.h"
+#include "lumivox/pipeline/pass.h"
 
 namespace lumivox::stress {
 
@@ -101,8 +102,7 @@ std::map<std::string, Measured> ratiosToNothing(Bench& bench, const Scene& scene
     const std::optional<TruthLayer> wanted = layer.empty() ? std::nullopt : truthLayer(truth, layer);
     if (!wanted || picture == frame.result.outputs.end() || !wanted->mean.sameShape(picture->second))
       continue;
-    Picture neutral(wanted->mean.width(), wanted->mean.height(), wanted->mean.channels());
-    std::fill(neutral.values().begin(), neutral.values().end(), neutralElement(component));
+    const Picture neutral = neutralPicture(wanted->mean.width(), wanted->mean.height(), component);
     const Measured nothing = compare(neutral, wanted->mean, wanted->variance).rmse;
     if (!(nothing.value > 0.0)) continue;
     const Measured error = compare(picture->second, wanted->mean, wanted->variance).rmse;

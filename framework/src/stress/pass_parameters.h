@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/pipeline.h"
 
 namespace lumivox::stress {

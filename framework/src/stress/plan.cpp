@@ -8,6 +8,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/experiment/voxelisers.h"
+#include "lumivox/pipeline/pass.h"
 #include "stress/cases.h"
 
 namespace lumivox {

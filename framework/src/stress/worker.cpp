@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "lumivox/base/error.h"
+#include "lumivox/base/installation.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/results/stress_cells.h"
 #include "stress/protocol.h"
@@ -59,10 +60,12 @@ void serveStress(const StressWorker& worker, TechniqueSource& techniques) {
   // A battery that is killed takes its workers with it.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   Answers answers;
-  const auto scenes = committedScenes();
-  if (!scenes) throw Error("no project with scenes is around here; stress cases are made from its scenes");
+  // Those that come with the program: a project of one's own has other scenes, or none.
+  const auto stress = programData("scenes/stress");
+  if (!stress) throw Error("the scenes that stress cases are made from are missing; expected scenes/stress");
   gpu::Device device(worker.device);
-  Ground ground{device, worker.device, techniques, worker.sceneLoad, *scenes, worker.program, false};
+  Ground ground{device,         worker.device, techniques, worker.sceneLoad, stress->parent_path(),
+                worker.program, false};
   answers.write(lineOf(workerDeviceOf(device)));
   for (std::string line; std::getline(std::cin, line);) {
     const AnyRequest request = requestOf(line);

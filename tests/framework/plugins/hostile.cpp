@@ -12,33 +12,34 @@ namespace {
 
 using namespace lumivox;
 
+enum class Deed { paint, abort, fault, spin, nan, refuse, exhaust, tire, rest };
+constexpr auto words(Deed) {
+  return std::array{"paint", "abort", "fault", "spin", "nan", "refuse", "exhaust", "tire", "rest"};
+}
+
 /// A white picture, unless the deed is something else.
 class Paint : public Pass {
  public:
-  Param<std::string> deed{this,
-                          "deed",
-                          "paint",
-                          {"paint", "abort", "fault", "spin", "nan", "refuse", "exhaust", "tire", "rest"},
-                          "what it does in place of painting"};
+  Param<Deed> deed{this, "deed", Deed::paint, "what it does in place of painting"};
   Param<float> value{this, "value", 1.0f, {0.0f, 10.0f}, "", "radiance"};
   Out<Image> radiance{this, "radiance", Contributes::direct};
   Reads readsFrom() const override { return Reads::camera; }
   void run(PassContext& frame) override {
-    if (deed == "abort") std::abort();
-    if (deed == "fault") *std::atomic<volatile int*>{nullptr}.load() = 1;
+    if (deed == Deed::abort) std::abort();
+    if (deed == Deed::fault) *std::atomic<volatile int*>{nullptr}.load() = 1;
     static std::atomic<bool> spinning;
-    if (deed == "spin")
+    if (deed == Deed::spin)
       for (spinning = true; spinning;) {
       }
-    if (deed == "refuse") throw Error("the pass refuses; expected a scene of another kind");
-    if (deed == "exhaust") throw std::bad_alloc();
-    if (deed == "rest") std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    if (deed == Deed::refuse) throw Error("the pass refuses; expected a scene of another kind");
+    if (deed == Deed::exhaust) throw std::bad_alloc();
+    if (deed == Deed::rest) std::this_thread::sleep_for(std::chrono::milliseconds(200));
     // Pictures and the frame to warm up are no trouble, timed frames are.
     static int painted = 0;
-    if (deed == "tire" && ++painted > 4) throw Error("the pass is tired; expected fewer frames");
+    if (deed == Deed::tire && ++painted > 4) throw Error("the pass is tired; expected fewer frames");
     Image image{frame.image(gpu::Format::rgba32f, "picture")};
     image.texture->clear(glm::vec4(value));
-    if (deed == "nan") {
+    if (deed == Deed::nan) {
       std::vector<float> values = image.texture->downloadFloats();
       const auto width = static_cast<std::size_t>(image.texture->description().width);
       constexpr std::size_t kX = 3, kY = 2;

@@ -15,9 +15,7 @@
 
 namespace lumivox {
 
-/// The occupied voxels of an output that holds some: of VoxelFragments those with a fragment of coverage
-/// above 0; of OccupancyGrid and AttributeGrid those with an opacity or covered fraction above 0; of
-/// BinaryGrid those whose bit is set.
+/// The occupied voxels of an output that holds some, as its kind says (PortKind::occupancy).
 struct OccupiedVoxels {
   GridPlacement grid;
   VoxelSet voxels;
@@ -26,7 +24,7 @@ struct OccupiedVoxels {
 };
 /// Nothing for an output of another kind. Downloads from the device.
 std::optional<OccupiedVoxels> occupiedVoxels(const OutBase& output);
-bool holdsVoxels(const std::string& portKind);
+bool holdsVoxels(const PortKind& kind);
 
 struct VoxeliserOptions {
   std::vector<std::filesystem::path> pipelines;  ///< files, or folders of them; none: the committed ones

@@ -185,12 +185,15 @@ class Program {
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
   const std::string& name() const { return name_; }
+  /// Invocations of a work group along each axis; 0 without a compute stage.
+  const glm::ivec3& groupSize() const { return groupSize_; }
   std::uint32_t handle() const { return handle_; }
 
  private:
   std::shared_ptr<DeviceState> device_;
   std::string name_;
   std::uint32_t handle_ = 0;
+  glm::ivec3 groupSize_{0};
 };
 
 // ---- commands

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <any>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
@@ -12,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "lumivox/pipeline/contributes.h"
 #include "lumivox/pipeline/ports.h"
 #include "lumivox/scene/scene.h"
 #include "lumivox/shader/library.h"
@@ -20,21 +22,6 @@ namespace lumivox {
 
 class GpuScene;
 class Pass;
-
-/// The component of the picture that an output holds; decides which truth it is judged against.
-enum class Contributes {
-  nothing,
-  direct,
-  indirectDiffuse,
-  indirectGlossy,
-  ambientOcclusion,
-  scattered,
-  final
-};
-const char* name(Contributes component);  ///< "direct", "indirect_diffuse", ...
-/// What an output shows where there is nothing to compute: 1 (nothing is occluded) for ambient occlusion,
-/// else 0 (black).
-float neutralElement(Contributes component);
 
 /// What the scene must have for an output (or a whole pass) to differ from its neutral element.
 enum class Needs : std::uint32_t {
@@ -88,21 +75,22 @@ constexpr bool reads(Reads set, Reads one) {
 /// Members of a pass register themselves with it, in the order of declaration.
 class PortBase {
  public:
-  PortBase(std::string name, std::string portKind, std::string meaning);
+  PortBase(std::string name, const PortKind& kind, std::string meaning);
   virtual ~PortBase() = default;
   PortBase(const PortBase&) = delete;
   PortBase& operator=(const PortBase&) = delete;
   const std::string& name() const { return name_; }
-  const std::string& portKind() const { return portKind_; }
+  const PortKind& kind() const { return *kind_; }
   const std::string& meaning() const { return meaning_; }
 
  private:
-  std::string name_, portKind_, meaning_;
+  std::string name_, meaning_;
+  const PortKind* kind_;
 };
 
 class OutBase : public PortBase {
  public:
-  OutBase(Pass* pass, std::string name, std::string portKind, Contributes contributes, Needs needs,
+  OutBase(Pass* pass, std::string name, const PortKind& kind, Contributes contributes, Needs needs,
           std::string meaning);
   Contributes contributes() const { return contributes_; }
   Needs needs() const { return needs_; }
@@ -111,7 +99,10 @@ class OutBase : public PortBase {
   bool wanted() const { return wanted_; }
   virtual bool hasValue() const = 0;
   virtual void reset() = 0;
-  virtual std::vector<gpu::TextureRef> textures() const = 0;  ///< for the health scan and downloads
+  /// What the value holds; nothing without one.
+  virtual PortContents contents() const = 0;
+  /// The textures among it.
+  std::vector<gpu::TextureRef> textures() const;
 
  private:
   friend class PipelineExecutor;
@@ -121,20 +112,6 @@ class OutBase : public PortBase {
   bool wanted_ = true;
 };
 
-/// The textures in a port value, found by overload for each port kind.
-std::vector<gpu::TextureRef> texturesOf(const Image&);
-std::vector<gpu::TextureRef> texturesOf(const GBuffer&);
-std::vector<gpu::TextureRef> texturesOf(const ShadowMap&);
-std::vector<gpu::TextureRef> texturesOf(const ReflectiveShadowMap&);
-std::vector<gpu::TextureRef> texturesOf(const VoxelFragments&);
-std::vector<gpu::TextureRef> texturesOf(const OccupancyGrid&);
-std::vector<gpu::TextureRef> texturesOf(const BinaryGrid&);
-std::vector<gpu::TextureRef> texturesOf(const AttributeGrid&);
-std::vector<gpu::TextureRef> texturesOf(const RadianceGrid&);
-std::vector<gpu::TextureRef> texturesOf(const ShGrid&);
-std::vector<gpu::TextureRef> texturesOf(const Particles&);
-std::vector<gpu::TextureRef> texturesOf(const ScatteringGrid&);
-
 /// An output: assigned by run() whenever it is wanted. The resources go back to the executor's pool after the
 /// last reader has run, unless a later frame may need them again.
 template <class Port>
@@ -142,7 +119,7 @@ class Out : public OutBase {
  public:
   Out(Pass* pass, std::string name, Contributes contributes = Contributes::nothing,
       Needs needs = Needs::nothing, std::string meaning = {})
-      : OutBase(pass, std::move(name), Port::kPortKind, contributes, needs, std::move(meaning)) {}
+      : OutBase(pass, std::move(name), portKind<Port>(), contributes, needs, std::move(meaning)) {}
   Out(Pass* pass, std::string name, std::string meaning)
       : Out(pass, std::move(name), Contributes::nothing, Needs::nothing, std::move(meaning)) {}
   Out& operator=(Port value) {
@@ -152,8 +129,10 @@ class Out : public OutBase {
   const Port& value() const { return *value_; }
   bool hasValue() const override { return value_.has_value(); }
   void reset() override { value_.reset(); }
-  std::vector<gpu::TextureRef> textures() const override {
-    return value_ ? texturesOf(*value_) : std::vector<gpu::TextureRef>{};
+  PortContents contents() const override {
+    PortContents result(kind());
+    if (value_) PortTraits<Port>::contents(*value_, result);
+    return result;
   }
 
  private:
@@ -167,7 +146,7 @@ enum class Presence { required, optional, history };
 
 class InBase : public PortBase {
  public:
-  InBase(Pass* pass, std::string name, std::string portKind, Presence presence, std::string meaning,
+  InBase(Pass* pass, std::string name, const PortKind& kind, Presence presence, std::string meaning,
          Needs needs);
   Presence presence() const { return presence_; }
   /// What the scene must have for this input to be read. Without it nothing is made for its sake.
@@ -197,11 +176,11 @@ template <class Port>
 class In : public InBase {
  public:
   In(Pass* pass, std::string name, std::string meaning = {})
-      : InBase(pass, std::move(name), Port::kPortKind, Presence::required, std::move(meaning),
+      : InBase(pass, std::move(name), portKind<Port>(), Presence::required, std::move(meaning),
                Needs::nothing) {}
   /// `needs` is for inputs that are not required: what the scene must have for the input to be read.
   In(Pass* pass, std::string name, Presence presence, std::string meaning = {}, Needs needs = Needs::nothing)
-      : InBase(pass, std::move(name), Port::kPortKind, presence, std::move(meaning), needs) {}
+      : InBase(pass, std::move(name), portKind<Port>(), presence, std::move(meaning), needs) {}
   const Port& operator*() const {
     return presence() == Presence::history ? *held_ : static_cast<const Out<Port>*>(source_)->value();
   }
@@ -256,6 +235,11 @@ template <class T>
 struct ParamRange {
   T low, high;
 };
+/// The range of a parameter, its ends included.
+template <class T>
+constexpr ParamRange<T> within(T low, T high) {
+  return {low, high};
+}
 
 template <class T>
 class Param;
@@ -279,6 +263,9 @@ class Param<float> : public ParamBase {
  public:
   Param(Pass* pass, std::string name, float value, ParamRange<float> range, std::string unit,
         std::string meaning);
+  /// A pure number.
+  Param(Pass* pass, std::string name, float value, ParamRange<float> range, std::string meaning)
+      : Param(pass, std::move(name), value, range, "", std::move(meaning)) {}
   operator float() const { return value_; }
   std::string valueText() const override;
   std::string defaultText() const override;
@@ -303,20 +290,35 @@ class Param<bool> : public ParamBase {
   bool value_, default_;
 };
 
-template <>
-class Param<std::string> : public ParamBase {
+class WordParam : public ParamBase {
  public:
-  Param(Pass* pass, std::string name, std::string value, std::vector<std::string> choices,
-        std::string meaning);
-  operator const std::string&() const { return value_; }
-  bool operator==(const char* other) const { return value_ == other; }
-  std::string valueText() const override { return value_; }
-  std::string defaultText() const override { return default_; }
+  std::string valueText() const override { return choices_[value_]; }
+  std::string defaultText() const override { return choices_[default_]; }
   std::string set(double number) override;
   std::string set(const std::string& word) override;
 
- private:
-  std::string value_, default_;
+ protected:
+  WordParam(Pass* pass, std::string name, std::size_t value, std::vector<std::string> words,
+            std::string meaning);
+  template <std::size_t kCount>
+  static std::vector<std::string> listed(const std::array<const char*, kCount>& words) {
+    return {words.begin(), words.end()};
+  }
+  std::size_t value_, default_;
+};
+
+/// One word out of a few. The enumeration counts from 0, and beside it stands what texts call its values:
+///   enum class Lobe { straight, cosine };
+///   constexpr auto words(Lobe) { return std::array{"straight", "cosine"}; }
+template <class Word>
+class Param : public WordParam {
+  static_assert(std::is_enum_v<Word>, "expected an enumeration, int, float or bool");
+
+ public:
+  Param(Pass* pass, std::string name, Word value, std::string meaning)
+      : WordParam(pass, std::move(name), static_cast<std::size_t>(value), listed(words(Word{})),
+                  std::move(meaning)) {}
+  operator Word() const { return static_cast<Word>(value_); }
 };
 
 /// A resource that a pass carries from frame to frame.
@@ -393,14 +395,33 @@ class PassContext {
                                       std::span<const gpu::SpecialisationValue> constants = {}) {
     return shaders().program(name, variant, constants);
   }
-  /// One invocation per item, in groups of `groupSize`; a barrier follows.
-  void dispatch(const shader::BoundProgram& program, shader::ShaderLibrary::Bindings bindings,
-                glm::ivec3 items, glm::ivec3 groupSize);
-  void dispatch(const shader::BoundProgram& program, shader::ShaderLibrary::BindingList bindings,
-                glm::ivec3 items, glm::ivec3 groupSize) {
-    dispatch(program, shader::ShaderLibrary::Bindings(bindings.begin(), bindings.end()), items, groupSize);
+  /// The program of a generated Variant, with its generated Constants.
+  template <class Variant>
+  requires requires { Variant::kOf; }
+  const shader::BoundProgram& program(const Variant& variant) {
+    return shaders().program(Variant::kOf, variant.key());
   }
+  template <class Variant, class Constants>
+  requires requires { Variant::kOf; }
+  const shader::BoundProgram& program(const Variant& variant, const Constants& constants) {
+    return shaders().program(Variant::kOf, variant.key(), constants.values());
+  }
+  /// One invocation per item along each axis, in work groups of the program's size; a barrier follows.
+  void dispatch(const shader::BoundProgram& program, const shader::BindingSet& bindings, glm::ivec3 items);
+  /// The same for the items of a list, which may be longer than a row of work groups: the shader counts with
+  /// listIndex() of shaders/common/list.glsl.
+  void dispatchList(const shader::BoundProgram& program, const shader::BindingSet& bindings,
+                    std::uint64_t items);
+  /// Work groups as the device has counted them: three words of `arguments`; a barrier follows.
+  void dispatchIndirect(const shader::BoundProgram& program, const shader::BindingSet& bindings,
+                        const gpu::Buffer& arguments, std::uint64_t offsetBytes = 0);
+
   gpu::TextureRef image(gpu::Format format, const std::string& label);  ///< picture-sized d2 texture
+  gpu::TextureRef volume(const glm::ivec3& size, gpu::Format format, const std::string& label,
+                         int levels = 1);
+  /// Room for so many elements of a storage block that ends with an array of open length, and for one at
+  /// least.
+  gpu::BufferRef elements(const shader::StorageSlot& block, std::uint64_t count, const std::string& label);
 
   /// What kept() holds under one name.
   struct Kept {

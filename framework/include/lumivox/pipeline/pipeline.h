@@ -12,11 +12,26 @@
 #include "lumivox/base/picture.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/dsl/schema.h"
-#include "lumivox/pipeline/pass.h"
+#include "lumivox/pipeline/contributes.h"
 #include "lumivox/pipeline/technique_source.h"
 #include "lumivox/scene/scene.h"
+#include "lumivox/shader/work.h"
 
 namespace lumivox {
+
+namespace gpu {
+class Device;
+class Texture;
+}  // namespace gpu
+namespace shader {
+class ShaderLibrary;
+}
+// Of pipeline/pass.h, which few of those need who load pipelines and run them.
+class OutBase;
+class Pass;
+class PassContext;
+template <class Port>
+class Out;
 
 /// One value of a pipeline parameter.
 struct ParameterValue {
@@ -124,6 +139,8 @@ struct FrameResult {
   std::map<std::string, Picture>
       outputs;  ///< rgb each (one channel for ambient occlusion); only when pictures were asked for
   std::map<std::string, Contributes> components;
+  /// Per output: the most bounces that its pass or one before it models (Pass::indirectBounces()).
+  std::map<std::string, int> indirectBounces;
   std::vector<PassRecord> passes;
   double frameMs = 0;          ///< whole frame, device idle before and after; with Timing::passes NaN
   double betweenPassesMs = 0;  ///< of the host, outside of the passes: what the framework itself costs
@@ -250,6 +267,9 @@ class PassHarness {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// What an output shows that was left out: its neutral element everywhere.
+Picture neutralPicture(int width, int height, Contributes component);
 
 /// A texture's picture as the framework stores pictures: row 0 on top.
 Picture pictureOf(const gpu::Texture& texture, int channels = 3);

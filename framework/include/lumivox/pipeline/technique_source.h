@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "lumivox/base/hash.h"
-#include "lumivox/pipeline/pass.h"
 #include "lumivox/shader/pack.h"
 
 namespace lumivox {
+
+class Pass;
 
 struct PassEntry {
   std::string name;

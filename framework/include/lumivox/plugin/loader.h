@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "lumivox/base/hash.h"
-#include "lumivox/plugin/technique.h"
+#include "lumivox/pipeline/technique_source.h"
 #include "lumivox/shader/pack.h"
 
 namespace lumivox {

@@ -11,10 +11,11 @@
 
 #include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/technique_source.h"
+#include "lumivox/plugin/headers_hash.h"
 
 namespace lumivox {
 
-inline constexpr std::uint32_t kTechniqueApiVersion = 2;
+inline constexpr std::uint32_t kTechniqueApiVersion = 3;
 
 /// Plain data, C layout: compared member by member before anything else is called.
 struct TechniqueVersionRecord {
@@ -23,6 +24,7 @@ struct TechniqueVersionRecord {
   char compiler[64];         ///< e.g. "gcc 12"
   char standardLibrary[32];  ///< "libstdc++ cxx11-abi 1"
   char buildType[32];        ///< "release", "debug", "sanitized": what changes the layout or the runtime
+  char headers[40];          ///< hash of the public headers that it was compiled with
   std::uint32_t passSize, passContextSize, sceneSize, snapshotSize, deviceSize, portsSize;
 };
 
@@ -56,15 +58,23 @@ consteval TechniqueVersionRecord techniqueVersionHere() {
 #else
   write(record.buildType, "release", -1);
 #endif
+  write(record.headers, kHeadersHash, -1);
   record.passSize = sizeof(Pass);
   record.passContextSize = sizeof(PassContext);
   record.sceneSize = sizeof(Scene);
   record.snapshotSize = sizeof(SceneSnapshot);
   record.deviceSize = sizeof(gpu::Device);
-  record.portsSize = sizeof(GBuffer) + sizeof(ShadowMap) + sizeof(VoxelFragments) + sizeof(OccupancyGrid) +
-                     sizeof(RadianceGrid) + sizeof(ShGrid) + sizeof(ScatteringGrid) + sizeof(Image);
+  record.portsSize = FrameworkPorts::bytes();
   return record;
 }
+
+/// What differs between a version record and the framework's own, in words: "the headers are '...', expected
+/// '...'"; empty when nothing does. Strings of a broken record may lack their end.
+std::string versionDifference(const TechniqueVersionRecord& theirs);
+
+/// For the start of a program: Error when it was compiled with other headers than the library that it runs
+/// with, as after building the library alone. Its numbers would be wrong without a word.
+void requireLibraryOf(const TechniqueVersionRecord& program);
 
 /// Filled by the technique: which passes it has.
 class TechniqueRegistry {

@@ -58,6 +58,13 @@ class ShaderLibrary {
                    std::uint32_t firstIndex, std::uint32_t indexCount) {
     drawIndexed(program, Bindings(bindings.begin(), bindings.end()), indices, firstIndex, indexCount);
   }
+  void drawIndexed(const BoundProgram& program, const BindingSet& bindings, const gpu::Buffer& indices,
+                   std::uint32_t firstIndex, std::uint32_t indexCount) {
+    drawIndexed(program, Bindings(bindings), indices, firstIndex, indexCount);
+  }
+  void draw(const BoundProgram& program, const BindingSet& bindings, std::uint32_t vertexCount) {
+    draw(program, Bindings(bindings), vertexCount);
+  }
   void draw(const BoundProgram& program, Bindings bindings, std::uint32_t vertexCount);
   void draw(const BoundProgram& program, BindingList bindings, std::uint32_t vertexCount) {
     draw(program, Bindings(bindings.begin(), bindings.end()), vertexCount);

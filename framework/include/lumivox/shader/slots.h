@@ -2,17 +2,31 @@
 // of these types, so that a binding with a wrong name, kind or block layout does not compile.
 #pragma once
 
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "lumivox/gpu/device.h"
 
 namespace lumivox::shader {
 
+/// In place of a binding's number: that of whatever program has a binding of this name and kind. For bindings
+/// that many shaders have under one name.
+inline constexpr std::uint32_t kByName = ~0u;
+
+// A slot takes the resource itself, or a reference that may be null: nothing is given then, which is an error
+// only where the variant needs it. Not one that would be gone before the command runs.
+
 struct SampledSlot {
   const char* name;
-  std::uint32_t binding;
+  std::uint32_t binding = kByName;
+  gpu::ResourceBinding operator()(const gpu::TextureRef& texture, gpu::Sampling sampling) const {
+    return {name, binding, gpu::ResourceBinding::Sampled{texture.get(), sampling}};
+  }
+  gpu::ResourceBinding operator()(gpu::TextureRef&& texture, gpu::Sampling sampling) const = delete;
   gpu::ResourceBinding operator()(const gpu::Texture& texture, gpu::Sampling sampling) const {
     return {name, binding, gpu::ResourceBinding::Sampled{&texture, sampling}};
   }
@@ -20,7 +34,11 @@ struct SampledSlot {
 
 struct ImageSlot {
   const char* name;
-  std::uint32_t binding;
+  std::uint32_t binding = kByName;
+  gpu::ResourceBinding operator()(const gpu::TextureRef& texture, int level = 0) const {
+    return {name, binding, gpu::ResourceBinding::StorageImage{texture.get(), level}};
+  }
+  gpu::ResourceBinding operator()(gpu::TextureRef&& texture, int level = 0) const = delete;
   gpu::ResourceBinding operator()(const gpu::Texture& texture, int level = 0) const {
     return {name, binding, gpu::ResourceBinding::StorageImage{&texture, level}};
   }
@@ -28,7 +46,12 @@ struct ImageSlot {
 
 struct StorageSlot {
   const char* name;
-  std::uint32_t binding;
+  std::uint32_t binding = kByName;
+  std::uint64_t elementBytes = 0;  ///< of the array of open length at its end, from one to the next; 0: none
+  gpu::ResourceBinding operator()(const gpu::BufferRef& buffer) const {
+    return {name, binding, gpu::ResourceBinding::Storage{buffer.get()}};
+  }
+  gpu::ResourceBinding operator()(gpu::BufferRef&& buffer) const = delete;
   gpu::ResourceBinding operator()(const gpu::Buffer& buffer) const {
     return {name, binding, gpu::ResourceBinding::Storage{&buffer}};
   }
@@ -39,11 +62,36 @@ struct StorageSlot {
 template <class Block>
 struct UniformSlot {
   const char* name;
-  std::uint32_t binding;
+  std::uint32_t binding = kByName;
   gpu::ResourceBinding operator()(const Block& block) const {
     const auto bytes = std::as_bytes(std::span(&block, 1));
     return {name, binding, gpu::ResourceBinding::Uniform{gpu::BlockBytes(bytes)}};
   }
+};
+
+/// What a command is given: bindings and sets of them, in braces. What the program's variant does not have is
+/// left out, so that all that is there may be given to every variant.
+class BindingSet {
+ public:
+  class Item {
+   public:
+    Item(gpu::ResourceBinding binding) : own_{std::move(binding)} {}
+    Item(const BindingSet& set) : own_(set.bindings_) {}
+
+   private:
+    friend class BindingSet;
+    std::vector<gpu::ResourceBinding> own_;
+  };
+
+  BindingSet() = default;
+  BindingSet(std::initializer_list<Item> items) {
+    for (const Item& item : items) add(item);
+  }
+  void add(const Item& item) { bindings_.insert(bindings_.end(), item.own_.begin(), item.own_.end()); }
+  operator std::span<const gpu::ResourceBinding>() const { return bindings_; }
+
+ private:
+  std::vector<gpu::ResourceBinding> bindings_;
 };
 
 /// Which compiled variant of a program: one value per declared axis, in the order of declaration.

@@ -1,4 +1,4 @@
-#include "lumivox/pipeline/grid_placement.h"
+#include "lumivox/toolkit/grid_placement.h"
 
 #include <algorithm>
 #include <cassert>

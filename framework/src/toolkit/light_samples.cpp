@@ -1,4 +1,4 @@
-#include "lumivox/pipeline/light_samples.h"
+#include "lumivox/toolkit/light_samples.h"
 
 #include <algorithm>
 #include <array>
@@ -28,7 +28,7 @@ float reachFrom(const Bounds& bounds, const glm::vec3& point) {
   return std::max(glm::length(farCorner), 1e-6f) * 1.01f;
 }
 
-constexpr float kCubeViews = 6.0f;
+constexpr int kCubeViews = 6;
 constexpr float kNearShare = 1e-3f;  // near plane of a perspective shadow view, as a share of its far plane
 
 float texelPerMetre(float halfAngle, int size) {
@@ -203,11 +203,9 @@ void addLamp(LightSet& set, const Lamp& lamp, int count, int& sequence, const Bo
         static_cast<float>(emitter.area / (probability * count));  // that the sample stands for
     // Nearer than the radius of its patch the inverse square law of a point does not hold for a sample.
     const float patchRadius = std::sqrt(area / glm::pi<float>());
-    set.samples.push_back(
-        {glm::vec4(position, static_cast<float>(LightSampleKind::area)),
-         glm::vec4(emitter.normal, static_cast<float>(set.views.size())),
-         glm::vec4(emitter.radiance * area, kCubeViews),
-         glm::vec4(0.0f, 0.0f, texelPerMetre(glm::radians(45.0f), shadowSize), patchRadius * patchRadius)});
+    set.samples.push_back({position, LightSampleKind::area, emitter.normal,
+                           static_cast<int>(set.views.size()), emitter.radiance * area, kCubeViews, 0.0f,
+                           0.0f, texelPerMetre(glm::radians(45.0f), shadowSize), patchRadius * patchRadius});
     addCube(set, position, bounds, &emitter.normal);
   }
 }
@@ -239,10 +237,9 @@ void addDirectional(LightSet& set, const LightState& light, const Bounds& bounds
   LightView view;
   view.worldToClip = glm::orthoRH_ZO(-radius, radius, -radius, radius, 0.0f, 2.0f * radius) *
                      glm::lookAtRH(centre - light.direction * radius, centre, helper);
-  set.samples.push_back({glm::vec4(0.0f, 0.0f, 0.0f, static_cast<float>(LightSampleKind::directional)),
-                         glm::vec4(light.direction, static_cast<float>(set.views.size())),
-                         glm::vec4(light.power, 1.0f),
-                         glm::vec4(0.0f, 0.0f, 2.0f * radius / static_cast<float>(shadowSize), 0.0f)});
+  set.samples.push_back({glm::vec3(0.0f), LightSampleKind::directional, light.direction,
+                         static_cast<int>(set.views.size()), light.power, 1, 0.0f, 0.0f,
+                         2.0f * radius / static_cast<float>(shadowSize), 0.0f});
   set.views.push_back(view);
 }
 
@@ -257,10 +254,9 @@ LightSet sampleLights(const Scene& scene, const SceneSnapshot& snapshot, int are
         addDirectional(set, light, snapshot.bounds, shadowSize);
         break;
       case LightKind::point:
-        set.samples.push_back({glm::vec4(light.position, static_cast<float>(LightSampleKind::point)),
-                               glm::vec4(0, 0, 0, static_cast<float>(set.views.size())),
-                               glm::vec4(light.power, kCubeViews),
-                               glm::vec4(0.0f, 0.0f, texelPerMetre(glm::radians(45.0f), shadowSize), 0.0f)});
+        set.samples.push_back({light.position, LightSampleKind::point, glm::vec3(0.0f),
+                               static_cast<int>(set.views.size()), light.power, kCubeViews, 0.0f, 0.0f,
+                               texelPerMetre(glm::radians(45.0f), shadowSize), 0.0f});
         addCube(set, light.position, snapshot.bounds, nullptr);
         break;
       case LightKind::spot: {
@@ -273,10 +269,9 @@ LightSet sampleLights(const Scene& scene, const SceneSnapshot& snapshot, int are
         // smoothstep needs distinct edges: a hard edge gets a width of one millionth.
         const float cosInner = std::cos(light.innerAngle),
                     cosOuter = std::min(std::cos(light.outerAngle), cosInner - 1e-6f);
-        set.samples.push_back({glm::vec4(light.position, static_cast<float>(LightSampleKind::spot)),
-                               glm::vec4(light.direction, static_cast<float>(set.views.size())),
-                               glm::vec4(light.power, wide ? kCubeViews : 1.0f),
-                               glm::vec4(cosInner, cosOuter, texelPerMetre(halfAngle, shadowSize), 0.0f)});
+        set.samples.push_back({light.position, LightSampleKind::spot, light.direction,
+                               static_cast<int>(set.views.size()), light.power, wide ? kCubeViews : 1,
+                               cosInner, cosOuter, texelPerMetre(halfAngle, shadowSize), 0.0f});
         if (wide) {
           addCube(set, light.position, snapshot.bounds, nullptr);
         } else {

@@ -9,15 +9,21 @@
 
 namespace lumivox {
 
-/// Mirror of LightSample in shaders/common/lights.glsl (std430).
-struct LightSampleData {
-  glm::vec4 positionKind;
-  glm::vec4 directionLayer;
-  glm::vec4 power;
-  glm::vec4 shape;
-};
+enum class LightSampleKind : std::int32_t { directional = 0, point = 1, spot = 2, area = 3 };
 
-enum class LightSampleKind { directional = 0, point = 1, spot = 2, area = 3 };
+/// Mirror of LightSample in shaders/common/lights.glsl (std430), where the members are explained.
+struct LightSampleData {
+  glm::vec3 position{0.0f};
+  LightSampleKind kind = LightSampleKind::directional;
+  glm::vec3 direction{0.0f};
+  std::int32_t firstView = 0;
+  glm::vec3 power{0.0f};
+  std::int32_t viewCount = 0;
+  float cosInner = 0.0f, cosOuter = 0.0f;
+  float texelWidth = 0.0f;
+  float patchRadiusSquared = 0.0f;
+};
+static_assert(sizeof(LightSampleData) == 64);
 
 /// What one light sample sees through one layer of a shadow array or of a reflective shadow map; an unused
 /// one (behind an area light) is left empty.

@@ -1,7 +1,8 @@
 // Where voxel grids go: around the scene, or around the camera.
 #pragma once
 
-#include "lumivox/pipeline/ports.h"
+#include "lumivox/scene/grid.h"
+#include "lumivox/scene/scene.h"
 
 namespace lumivox {
 

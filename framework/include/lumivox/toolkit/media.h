@@ -3,7 +3,6 @@
 
 #include <array>
 #include <glm/glm.hpp>
-#include <vector>
 
 #include "lumivox/pipeline/pass.h"
 #include "lumivox/scene/medium.h"
@@ -17,19 +16,20 @@ struct MediumData {
   glm::vec4 gridLowVoxel, gridExtent;
 };
 
-/// What a shader that includes common/media.glsl is bound to.
-class MediaBinding {
+/// What a shader that includes common/media.glsl is bound to; nothing without media.
+class MediaBinding : public shader::BindingSet {
  public:
-  MediaBinding() = default;  ///< without media: adds nothing
+  MediaBinding() = default;
   MediaBinding(PassContext& frame, const ScatteringGrid& media);
-  /// Whether there are densities in textures: the axis MEDIUM of the shader.
-  bool varying() const { return densities_.front() != nullptr; }
-  /// The bindings of common/media.glsl.
-  void addTo(std::vector<gpu::ResourceBinding>& bindings) const;
+  MediaBinding(PassContext& frame, const In<ScatteringGrid>& media)
+      : MediaBinding(media.present() ? MediaBinding(frame, *media) : MediaBinding()) {}
+  /// The axis `MEDIUM none even varying` of the shader.
+  enum Axis : int { none, even, varying };
+  Axis axis = none;
 
  private:
-  gpu::BufferRef media_;
   std::array<gpu::TextureRef, kMostVaryingMedia> densities_;  ///< all set where a medium varies, else null
+  gpu::BufferRef media_;
 };
 
 }  // namespace lumivox

@@ -1,4 +1,4 @@
-#include "lumivox/pipeline/media.h"
+#include "lumivox/toolkit/media.h"
 
 #include <algorithm>
 #include <cassert>
@@ -37,18 +37,12 @@ MediaBinding::MediaBinding(PassContext& frame, const ScatteringGrid& grid) {
   if (!data.empty()) std::memcpy(bytes.data() + kHeader, data.data(), data.size() * sizeof(MediumData));
   media_ = frame.buffer(bytes.size(), "media");
   media_->upload(bytes);
-}
-
-void MediaBinding::addTo(std::vector<gpu::ResourceBinding>& bindings) const {
-  if (media_ == nullptr) return;
-  // Names and numbers of common/media.glsl; every program checks them against its own.
-  bindings.push_back(shader::StorageSlot{"Media", 8}(*media_));
+  axis = textures > 0 ? varying : even;
+  add(shader::StorageSlot{"Media"}(media_));
   constexpr std::array<const char*, kMostVaryingMedia> kNames = {"density0", "density1", "density2",
                                                                  "density3"};
-  for (std::size_t i = 0; i < kNames.size() && varying(); ++i) {
-    bindings.push_back(shader::SampledSlot{kNames[i], 8 + static_cast<std::uint32_t>(i)}(
-        *densities_[i], gpu::Sampling::linearBorder));
-  }
+  for (std::size_t i = 0; i < kNames.size(); ++i)
+    add(shader::SampledSlot{kNames[i]}(densities_[i], gpu::Sampling::linearBorder));
 }
 
 }  // namespace lumivox

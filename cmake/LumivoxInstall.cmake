@@ -1,0 +1,67 @@
+# What `cmake --install build --prefix P` copies, after `ninja -C build sdk`: programs, libraries, headers, the CMake package, and below
+# share/lumivox what they read: shaders/common, scenes, templates, guides. Libraries are found relative to each other, and data relative to
+# the program, so that P may lie anywhere and be moved.
+include(CMakePackageConfigHelpers)
+
+set(data share/lumivox)
+set(package ${data}/cmake)  # one of the places where find_package looks
+set_target_properties(lumivox lumivox_lab lumivox_volume PROPERTIES INSTALL_RPATH $ORIGIN)
+set_target_properties(lumivox_command vdbexport PROPERTIES INSTALL_RPATH $ORIGIN/../lib/lumivox)
+install(TARGETS lumivox lumivox_lab lumivox_command vdbexport shaderpack EXPORT LumivoxTargets
+  RUNTIME DESTINATION bin LIBRARY DESTINATION lib/lumivox INCLUDES DESTINATION include)
+install(TARGETS lumivox_volume LIBRARY DESTINATION lib/lumivox)
+install(FILES ${CMAKE_BINARY_DIR}/lib/shaders/device.shaderpack DESTINATION lib/lumivox/shaders)
+install(DIRECTORY framework/include/lumivox DESTINATION include FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY ${CMAKE_BINARY_DIR}/generated/include/lumivox DESTINATION include OPTIONAL)
+
+install(EXPORT LumivoxTargets NAMESPACE Lumivox:: DESTINATION ${package})
+configure_package_config_file(cmake/LumivoxConfig.cmake.in ${CMAKE_BINARY_DIR}/generated/cmake/LumivoxConfig.cmake
+  INSTALL_DESTINATION ${package})
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/generated/cmake/LumivoxConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/generated/cmake/LumivoxConfig.cmake ${CMAKE_BINARY_DIR}/generated/cmake/LumivoxConfigVersion.cmake
+  cmake/LumivoxTechniques.cmake DESTINATION ${package})
+
+install(DIRECTORY shaders/common DESTINATION ${data}/shaders)
+install(DIRECTORY scenes templates DESTINATION ${data})
+# The guides link to each other and to the cards, as they do in the tree.
+install(DIRECTORY docs DESTINATION ${data})
+install(FILES README.md LICENSE DESTINATION ${data})
+install(DIRECTORY techniques DESTINATION ${data} FILES_MATCHING PATTERN "README.md" PATTERN "*.png")
+install(FILES LICENSE DESTINATION share/doc/lumivox RENAME copyright)
+
+# Written by the programs that were just installed, from their own descriptions.
+install(CODE [[
+  set(prefix $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX})
+  foreach(program lumivox vdbexport)
+    foreach(text IN ITEMS "--print-man;man/man1/${program}.1" "--print-completion=bash;bash-completion/completions/${program}"
+                          "--print-completion=zsh;zsh/site-functions/_${program}")
+      list(GET text 0 option)
+      list(GET text 1 file)
+      cmake_path(GET file PARENT_PATH folder)
+      file(MAKE_DIRECTORY ${prefix}/share/${folder})
+      message(STATUS "Installing: ${prefix}/share/${file}")
+      execute_process(COMMAND ${prefix}/bin/${program} ${option} OUTPUT_FILE ${prefix}/share/${file} COMMAND_ERROR_IS_FATAL ANY)
+    endforeach()
+  endforeach()
+]])
+
+# Everything that is installed, and none of the tests: `ninja -C build sdk && cmake --install build`, or `cd build && cpack -G DEB`.
+get_property(techniques GLOBAL PROPERTY LUMIVOX_TECHNIQUES)
+add_custom_target(sdk DEPENDS lumivox_command vdbexport shaderpack lumivox_volume shaders_device ${techniques})
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME lumivox)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "laboratory for real-time global illumination")
+set(CPACK_PACKAGE_DESCRIPTION "Techniques are shared libraries, scenes and pipelines two short texts: renders them, measures their error \
+against a path-traced reference and the time of every pass. With headers and a CMake package for techniques of one's own.")
+set(CPACK_PACKAGE_CONTACT "The Lumivox project <lumivox@localhost>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+# Libraries by what the programs and techniques link; besides them what is opened while they run, and what a technique is built with.
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libgl1-mesa-dri, libjs-chart.js")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "g++, cmake (>= 3.25), ninja-build, libglm-dev, libfmt-dev, nlohmann-json3-dev, catch2 (<< 3)")
+set(CPACK_STRIP_FILES ON)
+include(CPack)

@@ -1,0 +1,22 @@
+// Components of the picture, which outputs of passes hold and references are made of.
+#pragma once
+
+namespace lumivox {
+
+/// The component of the picture that an output holds; decides which truth it is judged against.
+enum class Contributes {
+  nothing,
+  direct,
+  indirectDiffuse,
+  indirectGlossy,
+  ambientOcclusion,
+  scattered,
+  final
+};
+const char* name(Contributes component);  ///< "direct", "indirect_diffuse", ...
+/// What an output shows where there is nothing to compute: 1 (nothing is occluded) for ambient occlusion,
+/// else 0 (black).
+float neutralElement(Contributes component);
+int channelsOf(Contributes component);  ///< of its pictures: 1 for ambient occlusion, else 3
+
+}  // namespace lumivox

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "lumivox/pipeline/port.h"
+
+namespace lumivox {
+
+/// A picture-sized result. rgba16f or rgba32f: radiance in W/(sr m^2) in rgb; ambient occlusion in r.
+struct Image {
+  gpu::TextureRef texture;
+};
+
+template <>
+struct PortTraits<Image> {
+  static PortKind kind() {
+    return {"Image",
+            "a picture-sized result",
+            {{"texture", "d2 rgba16f or rgba32f", "radiance in W/(sr m^2) in rgb; ambient occlusion in r"}}};
+  }
+  static void contents(const Image& port, PortContents& contents) {
+    contents.texture("texture", port.texture);
+  }
+};
+
+}  // namespace lumivox

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "lumivox/pipeline/port.h"
+
+namespace lumivox {
+
+/// Where in a volume anything is: a list of its occupied bricks, in no order.
+struct OccupiedBricks {
+  static constexpr int kSide = 4;  ///< finest voxels along a side of a brick
+  gpu::BufferRef bricks;           ///< words: i, j, k of each brick, in 10 bits each
+  gpu::BufferRef count;  ///< words: bricks; then x, y, z of the indirect dispatches of one thread for each
+                         ///< voxel in them at level 0, at level 1 and at level 2, in groups of kGroupSize
+  static constexpr int kGroupSize = 64;
+  /// Where the arguments of a level's dispatch lie in `count`.
+  static constexpr std::uint64_t argumentsBytes(int level) {
+    return (1 + 3 * static_cast<std::uint64_t>(level)) * sizeof(std::uint32_t);
+  }
+};
+
+/// Pre-filtered outgoing radiance, pre-multiplied by opacity, one mip per halving (Crassin et al. 2011).
+struct RadianceGrid {
+  GridPlacement grid;
+  gpu::TextureRef radiance;
+  float unit = 1.0f;     ///< W/(sr m^2): keeps very bright and very dark light within half floats
+  int filledLevels = 0;  ///< mip levels that hold values, finest first; 0: all that the texture has
+  /// What the opacity of a coarser voxel is that of: the whole of it, as seen through; or a path of one
+  /// finest voxel's length in it, which is what the plain mean of the children gives for a uniform medium.
+  enum class Opacity { ofVoxel, ofFinestVoxel } opacity = Opacity::ofVoxel;
+  bool holdsMedia = false;  ///< participating media are in the voxels beside the surfaces
+  /// Outside of these bricks the finest level is 0; null members: not known.
+  OccupiedBricks occupied;
+};
+
+template <>
+struct PortTraits<RadianceGrid> {
+  static PortKind kind() {
+    return {"RadianceGrid",
+            "outgoing radiance and opacity per voxel, one mip per halving",
+            {{"radiance", "d3 rgba16f or rgba32f with mips", "rgb radiance * opacity / unit, a opacity"},
+             {"bricks", "buffer", "i, j, k of each occupied brick of 4 x 4 x 4, in 10 bits each; or null"},
+             {"count", "buffer", "how many; then indirect dispatches over their voxels; or null"}},
+            {{"radiance", "outgoing radiance, multiplied by the opacity", "W/(sr m^2)"},
+             {"opacity", "opacity", "1", PortField::Role::fog}}};
+  }
+  static void contents(const RadianceGrid& port, PortContents& contents) {
+    contents.texture("radiance", port.radiance);
+    contents.buffer("bricks", port.occupied.bricks);
+    contents.buffer("count", port.occupied.count);
+    const int filled = port.filledLevels == 0 ? port.radiance->description().levels : port.filledLevels;
+    for (int level = 0; level < filled; ++level) {
+      const VoxelBox box = VoxelBox::of(port.grid, levelResolution(port.grid.resolution, level));
+      const VoxelTexels radiance{{port.radiance}, {{0, 0}, {0, 1}, {0, 2}}, level, port.unit};
+      contents.field("radiance", box, radiance, level);
+      contents.field("opacity", box, VoxelTexels{{port.radiance}, {{0, 3}}, level}, level);
+    }
+  }
+};
+
+}  // namespace lumivox

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "lumivox/pipeline/port.h"
+
+namespace lumivox {
+
+/// What each light sees, as a source of one-bounce light (Dachsbacher & Stamminger 2005): every texel is a
+/// small light. Lights and layers are those of a ShadowMap with the same settings; all layers have one size.
+struct ReflectiveShadowMap {
+  gpu::BufferRef lights;
+  gpu::BufferRef views;
+  gpu::TextureRef position;
+  gpu::TextureRef normal;
+  gpu::TextureRef flux;
+  int lightCount = 0;
+  int layerCount = 0;
+};
+
+template <>
+struct PortTraits<ReflectiveShadowMap> {
+  static PortKind kind() {
+    constexpr auto kAny = PortResource::Sign::any;
+    return {"ReflectiveShadowMap",
+            "what each light sees: every texel is a small light",
+            {{"lights", "buffer", "array of LightSample in shaders/common/lights.glsl"},
+             {"views", "buffer", "mat4 per layer: world to light clip space"},
+             {"position", "d2Array rgba32f", "posWorld; w = 1 where something was hit, else 0", kAny},
+             {"normal", "d2Array rgba32f",
+              "unit normal towards the light; w = the area of surface that the texel stands for, m^2", kAny},
+             {"flux", "d2Array rgba32f",
+              "diffusely reflected flux of the texel, W; w = the layer's light as a number"}}};
+  }
+  static void contents(const ReflectiveShadowMap& port, PortContents& contents) {
+    contents.buffer("lights", port.lights);
+    contents.buffer("views", port.views);
+    contents.texture("position", port.position);
+    contents.texture("normal", port.normal);
+    contents.texture("flux", port.flux);
+  }
+};
+
+}  // namespace lumivox

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+
+#include "lumivox/pipeline/port.h"
+
+namespace lumivox {
+
+/// Light in voxels as spherical-harmonic coefficients up to band 1, in one or more nested grids.
+struct ShGrid {
+  /// What a coefficient is one of. flux: of the intensity, W/sr, of the light that a voxel sends or that
+  /// passes it, which grows with the voxel's face. radiance: of the radiance there, W/(sr m^2).
+  enum class Quantity { flux, radiance };
+  struct Level {
+    GridPlacement grid;
+    /// One volume for each colour channel; or the first alone, for light without colour.
+    std::array<gpu::TextureRef, 3> coefficients;
+    const gpu::TextureRef& channel(std::size_t i) const {
+      return coefficients[i] ? coefficients[i] : coefficients[0];
+    }
+  };
+  std::vector<Level> levels;  ///< finest and smallest first
+  Quantity quantity = Quantity::flux;
+  float unit = 1.0f;  ///< that the number 1 stands for, in W/sr or W/(sr m^2)
+};
+
+/// "flux" or "radiance".
+inline const char* name(ShGrid::Quantity quantity) {
+  return quantity == ShGrid::Quantity::flux ? "flux" : "radiance";
+}
+
+template <>
+struct PortTraits<ShGrid> {
+  static PortKind kind() {
+    constexpr auto kAny = PortResource::Sign::any;
+    const char *const shape = "d3 rgba16f or rgba32f, for each level",
+                      *const quantity = "coefficients of the spherical harmonic ",
+                      *const unit = "W/sr for a flux, W/(sr m^2) for a radiance";
+    PortKind kind{"ShGrid",
+                  "flux or radiance per voxel as spherical harmonics up to band 1, in nested grids",
+                  {{"red", shape, "Y00, Y1-1, Y10, Y11", kAny},
+                   {"green", shape, "the same; null: as red", kAny},
+                   {"blue", shape, "the same; null: as red", kAny}}};
+    for (const char* harmonic : {"Y00", "Y1-1", "Y10", "Y11"})
+      kind.fields.push_back({harmonic, quantity + std::string(harmonic) + " for red, green and blue", unit});
+    return kind;
+  }
+  static void contents(const ShGrid& port, PortContents& contents) {
+    for (std::size_t i = 0; i < port.levels.size(); ++i) {
+      const ShGrid::Level& level = port.levels[i];
+      contents.texture("red", level.coefficients[0]);
+      contents.texture("green", level.coefficients[1]);
+      contents.texture("blue", level.coefficients[2]);
+      for (int k = 0; k < 4; ++k) {
+        const VoxelTexels texels{
+            {level.channel(0), level.channel(1), level.channel(2)}, {{0, k}, {1, k}, {2, k}}, 0, port.unit};
+        const std::string& harmonic = contents.kind().fields[static_cast<std::size_t>(k)].name;
+        contents.field(harmonic, VoxelBox::of(level.grid), texels, static_cast<int>(i)).unit =
+            port.quantity == ShGrid::Quantity::flux ? "W/sr" : "W/(sr m^2)";
+      }
+    }
+  }
+};
+
+}  // namespace lumivox

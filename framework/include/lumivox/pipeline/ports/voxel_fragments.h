@@ -1,0 +1,56 @@
+#pragma once
+
+#include "lumivox/pipeline/port.h"
+
+namespace lumivox {
+
+/// An unordered list of surface samples, one per triangle and voxel that it touches (Crassin & Green 2012).
+struct VoxelFragments {
+  static constexpr std::uint64_t kFragmentBytes = 6 * sizeof(std::uint32_t);
+  GridPlacement grid;
+  gpu::BufferRef fragments;
+  gpu::BufferRef count;
+  /// Direct light that fragments are known to reflect, since a renderer computed it where the camera sees
+  /// them (Mavridis & Papaioannou 2011, Sec. 3.2). Null: of none. Else a word for each of the first
+  /// fragments: their reflected radiance in W/(sr m^2), packed as `packShared` does, or kNotKnown; those
+  /// behind the end of the buffer are not known either.
+  gpu::BufferRef reflected;
+  static constexpr std::uint32_t kNotKnown = 0xffffffffu;
+  std::uint64_t capacity = 0;
+  int workGroupSize = 64;  ///< that the indirect dispatch assumes
+  /// How the coverages of the fragments in one voxel make its opacity: their mean (each triangle is judged by
+  /// itself, less than 1 only where a mask has holes), or their sum up to 1 (each covers a part of the
+  /// voxel).
+  enum class Coverage { mean, sum } coverage = Coverage::mean;
+
+  /// Where the arguments of the indirect dispatch lie in `count`.
+  static constexpr std::uint64_t kArgumentsBytes = sizeof(std::uint32_t);
+};
+
+template <>
+struct PortTraits<VoxelFragments> {
+  static PortKind kind() {
+    return {"VoxelFragments",
+            "an unordered list of surface samples, one per triangle and voxel that it touches",
+            {{"fragments", "buffer", "array of VoxelFragment in shaders/common/voxel.glsl"},
+             {"count", "buffer", "words: fragments written; then x, y, z of an indirect dispatch over them"},
+             {"reflected", "buffer", "a word a fragment: direct light that it is known to reflect; or null"}},
+            {{"occupancy", "whether a surface touches the voxel", "1"},
+             {"fragments", "surface samples in the voxel", "1"}},
+            "voxels with a fragment that covers anything of them"};
+  }
+  static void contents(const VoxelFragments& port, PortContents& contents) {
+    contents.buffer("fragments", port.fragments);
+    contents.buffer("count", port.count);
+    contents.buffer("reflected", port.reflected);
+    VoxelList list{port.fragments, port.count, VoxelFragments::kFragmentBytes, port.capacity};
+    const VoxelBox box = VoxelBox::of(port.grid);
+    contents.field("occupancy", box, list);
+    list.counts = true;
+    contents.field("fragments", box, list);
+    list.fills = [](const std::uint32_t* words) { return words[4] >> 16 != 0; };  // coverage, a half
+    contents.occupies(port.grid, list);
+  }
+};
+
+}  // namespace lumivox

@@ -1,0 +1,65 @@
+// What shaders that include a file of shaders/common are bound to, as sets that stand in the braces of a
+// dispatch or a draw beside the pass's own bindings. They go by name: each program has its own numbers.
+#pragma once
+
+#include "lumivox/pipeline/gpu_scene.h"
+#include "lumivox/pipeline/pass.h"
+
+namespace lumivox {
+
+/// One invocation a pixel of the picture.
+inline glm::ivec3 pixels(const PassContext& frame) {
+  return {frame.snapshot().camera.width, frame.snapshot().camera.height, 1};
+}
+
+/// The seed as shaders take it (common/random.glsl).
+inline glm::uvec2 seedWords(const PassContext& frame) {
+  return {static_cast<std::uint32_t>(frame.seed()), static_cast<std::uint32_t>(frame.seed() >> 32)};
+}
+
+/// The scene's geometry and materials (common/scene.glsl) for one draw, with a white texture in place of one
+/// that the draw does not have.
+class SceneBinding : public shader::BindingSet {
+ public:
+  SceneBinding(PassContext& frame, const SceneDraw& draw);
+  /// For shaders that take several draws at a time: those with these textures (null: none).
+  SceneBinding(PassContext& frame, const gpu::Texture* diffuse, const gpu::Texture* mask);
+  /// What the axes TEXTURES and MASKS of the shader are: whether the draw's own material needs them, and
+  /// always with --keep-everything.
+  int textures = 0, masks = 0;
+};
+
+/// Draws one part of the scene, whose SceneBinding is among the bindings.
+void drawPart(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
+              const SceneDraw& draw);
+
+/// A g-buffer: gPosition, gNormal, gGeometricNormal, gDiffuse, gSpecular, gEmission.
+class GBufferBinding : public shader::BindingSet {
+ public:
+  explicit GBufferBinding(const GBuffer& gbuffer);
+};
+
+/// Lights and their visibility (common/lights.glsl). An input that is not present binds nothing.
+class LightBinding : public shader::BindingSet {
+ public:
+  explicit LightBinding(const In<ShadowMap>& shadow);
+  int count = 0;  ///< of lights
+};
+
+/// What lights see (common/rsm.glsl): rsmPosition, rsmNormal, rsmFlux, and the lights with their views.
+class ReflectiveShadowMapBinding : public shader::BindingSet {
+ public:
+  explicit ReflectiveShadowMapBinding(const ReflectiveShadowMap& map);
+};
+
+/// A list of fragments and their number (common/fragments.glsl).
+class FragmentBinding : public shader::BindingSet {
+ public:
+  explicit FragmentBinding(const VoxelFragments& list);
+};
+
+/// An invocation for each fragment of a list, which is bound besides; a barrier follows.
+void forEachFragment(PassContext& frame, const shader::BoundProgram& program,
+                     const shader::BindingSet& bindings, const VoxelFragments& list);
+
+}  // namespace lumivox

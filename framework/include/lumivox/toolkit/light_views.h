@@ -1,0 +1,36 @@
+// What the lights see, drawn as layers of one array: the frame of shadow maps and of reflective shadow maps.
+#pragma once
+
+#include <functional>
+
+#include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/light_samples.h"
+
+namespace lumivox {
+
+/// All lights as point samples with their views, on the device too.
+struct LightViews {
+  LightSet set;
+  int side = 1;  ///< texels along a side of every view
+  gpu::BufferRef lights, views;
+  int lightCount() const { return static_cast<int>(set.samples.size()); }
+  int layerCount() const { return static_cast<int>(set.views.size()); }
+  /// An array with a layer for each view.
+  gpu::TextureRef layers(PassContext& frame, gpu::Format format, const std::string& label) const;
+};
+
+/// One array holds all layers, so that they share one size: `size`, or `areaSize` where there are no lights
+/// but emissive triangles.
+LightViews placeLightViews(PassContext& frame, int areaSamples, int size, int areaSize);
+
+/// One view while it is drawn.
+struct LightViewDrawn {
+  const LightView& view;
+  int light, layer;
+};
+/// Clears `targets(layer)` of every view and has all of the scene drawn into those that are used.
+void drawLightViews(PassContext& frame, const LightViews& views, const gpu::RasterState& state,
+                    const std::function<gpu::RenderTargets(int layer)>& targets,
+                    const std::function<void(const LightViewDrawn&, const SceneDraw&)>& draw);
+
+}  // namespace lumivox

@@ -1,0 +1,61 @@
+// Cones through pre-filtered voxels (Crassin et al. 2011): their axes and widths, the mip levels that they read, the opacity of a step, and
+// the composite of opacities. Radiance is pre-multiplied by opacity throughout.
+#ifndef LUMIVOX_CONES
+#define LUMIVOX_CONES
+#include "common/constants.glsl"
+
+const float kOpaque = 0.999;  // what lies behind this opacity adds less than a thousandth
+
+// What is seen through `front`.
+vec4 over(vec4 front, vec4 back) { return front + (1.0 - front.a) * back; }
+
+// Half of a cone's diameter over its height.
+float tanOfHalfAngle(float cosHalfAngle) { return sqrt(1.0 - cosHalfAngle * cosHalfAngle) / cosHalfAngle; }
+
+// A cone of the solid angle of the lobe cos^n, 2 pi / (n + 1) = 2 pi (1 - cos(half angle)); at most 60 degrees.
+float cosHalfAngleOfLobe(float exponent) { return max(1.0 - 1.0 / (exponent + 1.0), 0.5); }
+
+// A unit vector perpendicular to another.
+vec3 tangentTo(vec3 normal) {
+  vec3 helper = abs(normal.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+  return normalize(cross(helper, normal));
+}
+
+// Cones of equal weight: a spiral over the unit disc, lifted onto the hemisphere (Malley's method), is distributed as the cosine. Each
+// stands for the solid angle pi / (n cos theta), and its half angle is that of a circular cone of this solid angle. cosTheta is the cosine
+// between axis and normal.
+vec3 cosineCone(int i, int count, vec3 tangent, vec3 bitangent, vec3 normal, out float cosTheta, out float tanHalfAngle) {
+  float radiusSquared = (float(i) + 0.5) / float(count);
+  float radius = sqrt(radiusSquared), angle = float(i) * kGoldenAngle;
+  cosTheta = sqrt(1.0 - radiusSquared);
+  tanHalfAngle = tanOfHalfAngle(max(1.0 - 0.5 / (float(count) * cosTheta), 0.5));
+  return tangent * (radius * cos(angle)) + bitangent * (radius * sin(angle)) + normal * cosTheta;
+}
+
+// Where a ray enters a box and where it leaves it, m along it; a ray that misses it leaves before it enters.
+vec2 insideVolume(vec3 low, vec3 extent, vec3 origin, vec3 direction) {
+  const vec3 kLevel = vec3(1e-12);  // keeps products finite; a ray does not move along an axis by that much
+  vec3 slope = mix(direction, kLevel, lessThan(abs(direction), kLevel));
+  vec3 toLow = (low - origin) / slope, toHigh = (low + extent - origin) / slope;
+  vec3 near = min(toLow, toHigh), far = max(toLow, toHigh);
+  return vec2(max(near.x, max(near.y, near.z)), min(far.x, min(far.y, far.z)));
+}
+
+// The mip level for voxels of `size` finest voxels, 1 at least, and the share of the next one: between the levels l and l+1 the blend is
+// size / 2^l - 1.
+float levelOf(float size, float coarsest, out float blend) {
+  float level = min(floor(log2(size)), coarsest);
+  blend = level < coarsest ? size * exp2(-level) - 1.0 : 0.0;
+  return level;
+}
+
+// Transmittance of one finer voxel where two levels are blended: the blend of a medium with transmittance T per voxel of the finer one is
+// (1-f) T + f T^2, solved for T.
+float throughVoxel(float through, float blend) {
+  return 2.0 * through / (1.0 - blend + sqrt((1.0 - blend) * (1.0 - blend) + 4.0 * blend * through));
+}
+
+// Opacity correction (Crassin et al. 2011; thesis 004 Sec. 4.2.1): the transmittance of a known length is raised to the step in such lengths.
+float stepOpacityOf(float through, float lengths) { return 1.0 - pow(through, lengths); }
+
+#endif

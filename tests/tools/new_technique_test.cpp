@@ -1,0 +1,160 @@
+// `lumivox new technique`: what it writes and what it refuses; how the program describes itself to shells and
+// as a manual page. That what it writes is built and renders is tested by sdk_test.
+#include <algorithm>
+#include <set>
+
+#include "lumivox/base/file.h"
+#include "lumivox/base/installation.h"
+#include "tools/cli_support.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// All files below a folder, by their paths relative to it.
+std::set<std::string> filesBelow(const fs::path& folder) {
+  std::set<std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files.insert(entry.path().lexically_relative(folder).generic_string());
+  return files;
+}
+
+}  // namespace
+
+TEST_CASE("a new technique has one of each part, under its name, in a project of its own") {
+  const TemporaryDirectory work;
+  const CommandResult made = runCommand("lumivox new technique glow --in '" + work.path().string() + "/lab'");
+  INFO(made.errors);
+  REQUIRE(made.exitCode == 0);
+  const std::set<std::string> files = filesBelow(work.path() / "lab");
+  for (const char* file :
+       {"CMakeLists.txt", "techniques/glow/CMakeLists.txt", "techniques/glow/glow.cpp",
+        "techniques/glow/README.md", "techniques/glow/glow.png", "shaders/glow/gather.comp",
+        "scenes/pipelines/glow.pipeline", "tests/techniques/glow_test.cpp"}) {
+    INFO(file);
+    CHECK(files.count(file) == 1);
+  }
+  for (const std::string& file : files) {
+    INFO(file);
+    CHECK(contains(made.output, file));
+    CHECK_FALSE(contains(readFile(work.path() / "lab" / file), "technique_name"));
+  }
+  CHECK(runCommand("lumivox fmt --check '" + (work.path() / "lab/scenes/pipelines/glow.pipeline").string() +
+                   "'")
+            .exitCode == 0);
+  // A second one goes beside it and leaves the project as it is.
+  const std::string project = readFile(work.path() / "lab/CMakeLists.txt");
+  CHECK(runCommand("cd '" + work.path().string() + "/lab/techniques' && '" +
+                   (binaryDirectory() / "bin/lumivox").string() + "' new technique shine")
+            .exitCode == 0);
+  CHECK(fs::exists(work.path() / "lab/techniques/shine/shine.cpp"));
+  CHECK(readFile(work.path() / "lab/CMakeLists.txt") == project);
+}
+
+TEST_CASE("without a project around the working folder a new technique makes one of its own name") {
+  const TemporaryDirectory work;
+  REQUIRE(runCommand("cd '" + work.path().string() + "' && '" + (binaryDirectory() / "bin/lumivox").string() +
+                     "' new technique glow")
+              .exitCode == 0);
+  CHECK(fs::exists(work.path() / "glow/techniques/glow/glow.cpp"));
+}
+
+TEST_CASE("names that are no C++ namespace, no folder or taken are refused, and nothing is written") {
+  const TemporaryDirectory work;
+  const std::string in = " --in '" + work.path().string() + "/lab'";
+  for (const char* name : {"''", "Glow", "2d", "_glow", "glow_", "a__b", "a-b", "../up", "a/b", "ns::a",
+                           "class", "new", "common", "device", "shaders"}) {
+    INFO(name);
+    checkRefused(runCommand(std::string("lumivox new technique ") + name + in), "my_paper");
+  }
+  checkRefused(runCommand("lumivox new technique " + std::string(65, 'a') + in), "at most 64");
+  checkRefused(runCommand("lumivox new technique direct_lighting" + in), "already");
+  CHECK(filesBelow(work.path()).empty());
+}
+
+TEST_CASE("a folder that is no project, and a technique that exists, are refused and left as they were") {
+  const TemporaryDirectory work;
+  work.write("notes/today.txt", "mine");
+  checkRefused(runCommand("lumivox new technique glow --in '" + work.path().string() + "/notes'"), "notes");
+  CHECK(filesBelow(work.path()) == std::set<std::string>{"notes/today.txt"});
+
+  const std::string in = "lumivox new technique glow --in '" + work.path().string() + "/lab'";
+  REQUIRE(runCommand(in).exitCode == 0);
+  const std::set<std::string> before = filesBelow(work.path());
+  writeFileAtomically(work.path() / "lab/techniques/glow/glow.cpp", "mine");
+  checkRefused(runCommand(in), "techniques/glow");
+  CHECK(readFile(work.path() / "lab/techniques/glow/glow.cpp") == "mine");
+  CHECK(filesBelow(work.path()) == before);
+
+  // One of its files alone is enough to refuse it.
+  work.write("lab/scenes/pipelines/shine.pipeline", "mine");
+  checkRefused(runCommand("lumivox new technique shine --in '" + work.path().string() + "/lab'"),
+               "shine.pipeline");
+  CHECK_FALSE(fs::exists(work.path() / "lab/techniques/shine"));
+}
+
+TEST_CASE("data of an installed program is in share/lumivox of its prefix, that of a built one above it") {
+  const TemporaryDirectory work;
+  work.write("tree/templates/a", "");
+  work.write("tree/build/bin/lumivox", "");
+  CHECK(programData("templates", work.path() / "tree/build/bin/lumivox") == work.path() / "tree/templates");
+  CHECK_FALSE(programData("absent_data", work.path() / "tree/build/bin/lumivox"));
+  // The prefix comes first, whatever lies above it.
+  work.write("tree/prefix/bin/lumivox", "");
+  work.write("tree/prefix/share/lumivox/templates/a", "");
+  CHECK(programData("templates", work.path() / "tree/prefix/bin/lumivox") ==
+        work.path() / "tree/prefix/share/lumivox/templates");
+}
+
+TEST_CASE("the manual page has every command with its options, and troff takes it") {
+  const CommandResult page = runCommand("lumivox --print-man");
+  REQUIRE(page.exitCode == 0);
+  for (const char* part :
+       {".TH LUMIVOX 1", ".SH NAME\nlumivox \\- ", ".SS lumivox render\n", ".SS lumivox results list\n",
+        "\\fB\\-\\-keep\\-everything\\fR", ".SH EXIT STATUS"}) {
+    INFO(part);
+    CHECK(contains(page.output, part));
+  }
+  if (runCommand("command -v groff").exitCode != 0) return skip("groff is not installed");
+  const TemporaryDirectory work;
+  const std::string file = work.write("lumivox.1", page.output).string();
+  const CommandResult read = runCommand("groff -man -Tutf8 -ww '" + file + "'");
+  CHECK(read.exitCode == 0);
+  CHECK(read.errors.empty());
+}
+
+TEST_CASE("bash completes commands, options and the words that an option takes") {
+  const CommandResult script = runCommand("lumivox --print-completion bash");
+  REQUIRE(script.exitCode == 0);
+  const TemporaryDirectory work;
+  const std::string file = work.write("completion", script.output).string();
+  const auto completed = [&](const std::string& words, int at) {
+    const CommandResult result =
+        runCommand("bash -c '. \"" + file + "\"; COMP_WORDS=(" + words +
+                   "); COMP_CWORD=" + std::to_string(at) + "; _lumivox; echo \"${COMPREPLY[@]}\"'");
+    INFO(words << "\n" << result.errors);
+    CHECK(result.exitCode == 0);
+    CHECK(result.errors.empty());
+    return result.output;
+  };
+  CHECK(completed("lumivox ren", 1) == "render\n");
+  CHECK(completed("lumivox new t", 2) == "technique\n");
+  CHECK(completed("lumivox render --keep", 2) == "--keep-everything\n");
+  CHECK(completed("lumivox render --arith", 2) == "--arithmetic\n");  // of every command
+  CHECK(completed("lumivox render --arithmetic e", 3) == "exact\n");
+  CHECK(completed("lumivox --print-completion z", 2) == "zsh\n");
+  CHECK(completed("lumivox render scenes/co", 2) == "\n");  // left to the shell, which completes files
+}
+
+TEST_CASE("zsh takes its completion") {
+  const CommandResult script = runCommand("lumivox --print-completion zsh");
+  REQUIRE(script.exitCode == 0);
+  CHECK(script.output.rfind("#compdef lumivox\n", 0) == 0);
+  CHECK(contains(script.output, "'--keep-everything:"));
+  checkRefused(runCommand("lumivox --print-completion tcsh"), "tcsh");
+  if (runCommand("command -v zsh").exitCode != 0) return skip("zsh is not installed");
+  const TemporaryDirectory work;
+  CHECK(runCommand("zsh -n '" + work.write("_lumivox", script.output).string() + "'").exitCode == 0);
+}
