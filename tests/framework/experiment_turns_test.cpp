@@ -47,6 +47,8 @@ TEST_CASE("points that are timed in turns have all their repeats and frames, and
     CHECK(all[i].failure.empty());
     CHECK(points[i].frameMs.repeats == 3);
     CHECK(points[i].nextFrameMs.repeats == 2);
+    CHECK(points[i].stillFrameMs.repeats == 2);
+    CHECK(points[i].movedFrameMs.repeats == 2);
     CHECK(points[i].passOrder == std::vector<std::string>{"a"});
     CHECK(points[i].passDeviceMs.at("a").repeats == 3);
   }

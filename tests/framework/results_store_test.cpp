@@ -46,6 +46,9 @@ TEST_CASE("a stored run comes back with every number, NaN and 64-bit seeds inclu
   CHECK(back.point.healthFindings == run.point.healthFindings);
   CHECK(sameTime(back.point.frameMs, run.point.frameMs));
   CHECK(sameTime(back.point.nextFrameMs, run.point.nextFrameMs));
+  CHECK(sameTime(back.point.stillFrameMs, run.point.stillFrameMs));
+  CHECK(sameTime(back.point.movedFrameMs, run.point.movedFrameMs));
+  CHECK(back.point.whyNotCounted == run.point.whyNotCounted);
   CHECK(sameTime(back.point.passDeviceMs.at("gather"), run.point.passDeviceMs.at("gather")));
   CHECK(sameTime(back.point.passHostMs.at("gather"), run.point.passHostMs.at("gather")));
   CHECK(back.point.passOrder == run.point.passOrder);

@@ -111,6 +111,8 @@ TEST_CASE(
     CHECK(contains(made.output, "slow.pipeline: value=" + std::to_string(value)));
   }
   CHECK(contains(made.output, "no time for: "));
+  CHECK(scene.at("pruning").empty());
+  CHECK(scene.at("left_out_prunings").size() == 1);  // the tired pipeline has nothing to compare
   if (!canDrawPages()) return;
   const Json page = drawnPage(place.file("page.html"));
   CHECK(page.at("problems").empty());

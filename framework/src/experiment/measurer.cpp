@@ -178,10 +178,10 @@ std::string Measurer::waitingText(const std::vector<WantedPoint>& pending) const
   return fmt::format("waiting for {} points that others measure", pending.size());
 }
 
-void Measurer::control(const std::vector<WantedPoint>& points) {
+void Measurer::control(const std::vector<WantedPoint>& points, std::size_t most) {
   Batch batch;
   for (const WantedPoint& point : points) {
-    if (batch.size() == kBatch) break;
+    if (batch.size() == most) break;
     const std::optional<StoredRun> stored = store_.find(key(point));
     if (stored && stored->point.failure.empty()) batch.push_back({point.loaded, open(point)});
   }

@@ -23,6 +23,10 @@ struct WantedPoint {
 
 class Measurer {
  public:
+  /// Points whose timed frames take turns. Each keeps its resources while it waits, and an interruption loses
+  /// the batch.
+  static constexpr std::size_t kBatch = 6;
+
   enum class Pictures { no, kept };
   /// Pictures are kept in the store, beside the numbers, where they are wanted.
   Measurer(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options, ResultsStore& store,
@@ -42,9 +46,9 @@ class Measurer {
   /// told after each batch how many points were measured here and how many by others.
   std::vector<StoredRun> measure(const std::vector<WantedPoint>& points,
                                  const std::function<void(std::size_t, std::size_t)>& done = {});
-  /// Times the first of these points that the store holds once more, as many as are timed together, in the
-  /// same way: what differs is the machine's mood.
-  void control(const std::vector<WantedPoint>& points);
+  /// Times the first of these points that the store holds once more, at most as many as are timed together,
+  /// in the same way: what differs is the machine's mood.
+  void control(const std::vector<WantedPoint>& points, std::size_t most = kBatch);
   /// What the controls in a store say of this device.
   TimeFloor floor(const ResultsStore& store) const;
   TimeFloor floor() const { return floor(store_); }
@@ -61,10 +65,6 @@ class Measurer {
   Truth& truth() { return truth_.value(); }
   /// How long a point took that was measured here, its share of the batch's times included, s; 0: it was not.
   double secondsOf(const WantedPoint& point) const;
-
-  /// Points whose timed frames take turns. Each keeps its resources while it waits, and an interruption loses
-  /// the batch.
-  static constexpr std::size_t kBatch = 6;
 
  private:
   /// The options of one run: of its seeds.

@@ -142,18 +142,23 @@ class SceneReport {
     return !batch.empty();
   }
 
-  /// With and without leaving out, of every pipeline whose default point works.
-  void measurePrunings() {
-    for (const Point& point : points_)
-      if (point.wanted.point.isDefault && works(point)) measurePruning(*point.wanted.loaded);
+  /// With and without leaving out, of every pipeline whose default point works, as long as there is time.
+  void measurePrunings(const Budget& budget) {
+    for (const Point& point : points_) {
+      if (!point.wanted.point.isDefault || !works(point)) continue;
+      if (budget.allows(0.0))
+        measurePruning(*point.wanted.loaded);
+      else
+        leftOutPrunings_.push_back(point.wanted.loaded->shown);
+    }
   }
 
   /// Times points once more: how far apart times of the same thing are here.
-  void control() {
+  void control(std::size_t most) {
     std::vector<WantedPoint> wanted;
     for (const Point& point : points_)
       if (works(point)) wanted.push_back(point.wanted);
-    const std::string why = whyFailed([&] { measurer_.control(wanted); });
+    const std::string why = whyFailed([&] { measurer_.control(wanted, most); });
     if (!why.empty()) logWarning("{}: nothing could be timed twice: {}", shown_, why);
   }
 
@@ -177,6 +182,7 @@ class SceneReport {
         record.points.push_back(recordOf(point, ceilings));
     }
     record.pruning = std::move(pruning_);
+    record.leftOutPrunings = std::move(leftOutPrunings_);
     if (!whyNoTruth_.empty()) return record;
     record.truthSeconds = measurer_.truth().seconds();
     record.truthAttributes = measurer_.truth().layers().attributes;
@@ -271,9 +277,10 @@ class SceneReport {
   Measurer measurer_;
   std::vector<Point> points_;  ///< in the order of the pipelines and their sweeps
   std::vector<PruningRecord> pruning_;
+  std::vector<std::string> leftOutPrunings_;  ///< pipelines
 };
 
-/// Measures all scenes: the default points of all pipelines first, with what leaving out saves; sweeps share
+/// Measures all scenes: the default points of all pipelines first, then what leaving out saves; sweeps share
 /// what is left of the time.
 void measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options, const Budget& budget) {
   std::size_t finished = 0, total = 0;
@@ -285,12 +292,13 @@ void measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options, c
     options.progress(finished, total, budget.left(each * static_cast<double>(total - finished)));
   };
   for (SceneReport& scene : scenes) scene.measureDefaults(done);
-  for (SceneReport& scene : scenes) scene.measurePrunings();
+  for (SceneReport& scene : scenes) scene.measurePrunings(budget);
   for (bool more = true; more;) {
     more = false;
     for (SceneReport& scene : scenes) more = scene.measureMore(budget, done) || more;
   }
-  for (SceneReport& scene : scenes) scene.control();
+  // Where time is short one point tells of the machine's mood.
+  for (SceneReport& scene : scenes) scene.control(options.budgetSeconds > 0.0 ? 1 : Measurer::kBatch);
 }
 
 VoxeliserOptions voxeliserOptions(const ReportOptions& options, const SceneRecord& scene) {
@@ -384,6 +392,9 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
     for (const LeftOutPoint& point : scene.leftOutPoints)
       summary.leftOutPoints.push_back(
           fmt::format("{}, {}: {}", scene.file, point.pipeline, pointText(point.parameters)));
+    for (const std::string& pipeline : scene.leftOutPrunings)
+      summary.leftOutPoints.push_back(
+          fmt::format("{}, {}: with and without leaving out", scene.file, pipeline));
     for (const auto& [pipeline, why] : scene.unsuited)
       summary.unsuited.push_back(scene.file + ", " + pipeline + ": " + why);
   }

@@ -1,5 +1,6 @@
 #include "experiment/turns.h"
 
+#include <algorithm>
 #include <deque>
 #include <optional>
 #include <utility>
@@ -63,9 +64,11 @@ void timeInTurns(std::vector<Turn>& turns, int repeats, int nextFrames) {
     });
     for (int frame = 0; frame < nextFrames; ++frame)
       forEach(held, failed, [](Held& one) { one.point->timeNextFrame(); });
-    for (int frame = 0; frame < nextFrames; ++frame)
+    // What these are for needs no more than a claim does.
+    const int parts = std::min(nextFrames, kLeastRepeats);
+    for (int frame = 0; frame < parts; ++frame)
       forEach(held, failed, [](Held& one) { one.point->timeStillFrame(); });
-    for (int frame = 0; frame < nextFrames; ++frame)
+    for (int frame = 0; frame < parts; ++frame)
       forEach(held, failed, [](Held& one) { one.point->timeMovedFrame(); });
     forEach(held, failed, [](Held& one) { one.point->finish(); });
     if (held.size() > 1) again.insert(again.end(), failed.begin(), failed.end());

@@ -18,10 +18,11 @@ struct Turn {
   std::string failure = {};  ///< why it could not be timed, not even alone; empty when it was
 };
 
-/// Times `repeats` frames of each in which every kept pass runs, in turns, and then `nextFrames` each that
-/// follow 1/60 s after another, while nothing moves, and while the camera and the lights move. As many points
-/// are held at once as fit into memory: one that fails beside others is tried after them, in the end alone,
-/// so that a failure is its own. Other processes are held back meanwhile. A wrong text throws.
+/// Times `repeats` frames of each in which every kept pass runs, in turns, and then `nextFrames` that follow
+/// 1/60 s after another, and as many, at most kLeastRepeats, while nothing moves, and while the camera and
+/// the lights move. As many points are held at once as fit into memory: one that fails beside others is tried
+/// after them, in the end alone, so that a failure is its own. Other processes are held back meanwhile. A
+/// wrong text throws.
 void timeInTurns(std::vector<Turn>& turns, int repeats, int nextFrames);
 
 }  // namespace lumivox::experiment

@@ -255,6 +255,7 @@ Json toJson(const SceneRecord& scene) {
   for (const LeftOutPoint& point : scene.leftOutPoints)
     json["left_out_points"].push_back(
         {{"pipeline", point.pipeline}, {"sweep", point.sweep}, {"parameters", toJson(point.parameters)}});
+  json["left_out_prunings"] = scene.leftOutPrunings;
   json["unsuited"] = Json::array();
   for (const auto& [pipeline, why] : scene.unsuited)
     json["unsuited"].push_back({{"pipeline", pipeline}, {"why", why}});

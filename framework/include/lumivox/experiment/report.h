@@ -33,8 +33,8 @@ struct ReportOptions {
   /// Pipelines that accumulate are measured after 1, 2, 4 ... and this many frames of the still scene too, at
   /// their default parameters.
   int frames = 1;
-  /// s, for measuring after the references; 0: no limit. The default points are measured in any case, the
-  /// points of sweeps in turns as long as there is time.
+  /// s, for measuring after the references; 0: no limit. The default points are measured in any case, what
+  /// leaving out saves and the points of sweeps in turns as long as there is time.
   double budgetSeconds = 0.0;
   /// Told after points were measured: how many of how many, and about how many seconds the rest will take.
   std::function<void(std::size_t done, std::size_t total, double secondsLeft)> progress;
@@ -51,8 +51,9 @@ struct ReportSummary {
   std::vector<ReportPoint> points;
   std::size_t takenUp = 0;  ///< of them, those that an interrupted run had measured already
   std::vector<PruningRecord> pruning;
-  std::vector<std::string> unsuited;       ///< "scene, pipeline: why" for those left out by themselves
-  std::vector<std::string> leftOutPoints;  ///< "scene, pipeline: cones=6" for which there was no time
+  std::vector<std::string> unsuited;  ///< "scene, pipeline: why" for those left out by themselves
+  std::vector<std::string>
+      leftOutPoints;  ///< "scene, pipeline: cones=6" for which there was no time, or what leaving out saves
 };
 
 /// Measures, and gives the whole record to `write`, once. Error (before any work) when a text is wrong.

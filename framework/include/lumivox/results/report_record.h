@@ -64,6 +64,7 @@ struct SceneRecord {
   std::vector<PointRecord> points;
   std::vector<LeftOutPoint> leftOutPoints;
   std::vector<PruningRecord> pruning;
+  std::vector<std::string> leftOutPrunings;                   ///< pipelines for which there was no time
   std::vector<std::pair<std::string, std::string>> unsuited;  ///< pipeline, why
   TimeFloor floor;                                            ///< of the times of its points
 };

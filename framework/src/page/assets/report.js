@@ -262,6 +262,8 @@
           columns("Pass", ["as it runs, ms", "number"], ["everything kept, ms", "number"], ["saved, ms", "number"]),
           record.passes.map(pass => [pass.pass, timesOf(pass.ms) ? quartiles(pass.ms) : "left out", quartiles(pass.ms_keep_everything),
                                      number((pass.ms_keep_everything ? pass.ms_keep_everything.median : 0) - (pass.ms ? pass.ms.median : 0))])))]),
+      scene.left_out_prunings.length > 0 && h("p", null, "There was no time to measure this for: "
+        + scene.left_out_prunings.map(shortName).join(", ") + "."),
       scene.unsuited.length > 0 && [h("p", null, "Committed pipelines that do not suit this scene:"),
                                     list(scene.unsuited.map(one => shortName(one.pipeline) + ": " + one.why))]];
   }
