@@ -12,7 +12,7 @@ install(TARGETS lumivox lumivox_lab lumivox_command vdbexport shaderpack EXPORT 
 install(TARGETS lumivox_volume LIBRARY DESTINATION lib/lumivox)
 install(FILES ${CMAKE_BINARY_DIR}/lib/shaders/device.shaderpack DESTINATION lib/lumivox/shaders)
 install(DIRECTORY framework/include/lumivox DESTINATION include FILES_MATCHING PATTERN "*.h")
-install(DIRECTORY ${CMAKE_BINARY_DIR}/generated/include/lumivox DESTINATION include OPTIONAL)
+install(DIRECTORY ${LUMIVOX_GENERATED_INCLUDE}/lumivox DESTINATION include)
 
 install(EXPORT LumivoxTargets NAMESPACE Lumivox:: DESTINATION ${package})
 configure_package_config_file(cmake/LumivoxConfig.cmake.in ${CMAKE_BINARY_DIR}/generated/cmake/LumivoxConfig.cmake
@@ -22,7 +22,7 @@ install(FILES ${CMAKE_BINARY_DIR}/generated/cmake/LumivoxConfig.cmake ${CMAKE_BI
   cmake/LumivoxTechniques.cmake DESTINATION ${package})
 
 install(DIRECTORY shaders/common DESTINATION ${data}/shaders)
-install(DIRECTORY scenes templates DESTINATION ${data})
+install(DIRECTORY scenes templates examples DESTINATION ${data})
 # The guides link to each other and to the cards, as they do in the tree.
 install(DIRECTORY docs DESTINATION ${data})
 install(FILES README.md LICENSE DESTINATION ${data})

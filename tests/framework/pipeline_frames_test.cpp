@@ -696,6 +696,32 @@ TEST_CASE("an input that the parameters make useless is left out like one that t
   CHECK(first(foggy.render(0.0), "o") == 2.0f);
 }
 
+namespace {
+
+/// Needs a medium unless it is told not to.
+class Gated : public Paint {
+ public:
+  using Paint::Paint;
+  Param<bool> open{this, "open", true, "makes its picture without a medium, too"};
+  Needs needs() const override { return open ? Needs::nothing : Needs::medium; }
+};
+
+}  // namespace
+
+TEST_CASE("a reader runs again when a parameter of its source has that left out") {
+  FramesFixture f;
+  if (!f) return;
+  f.techniques.add<Gated>("toy", "gated");
+  PipelineExecutor executor = f.executor(
+      "param open on\npass one toy.paint { value 2 }\npass gate toy.gated { value 4  open $open }\n"
+      "pass sum toy.add { first one  second gate }\noutput o sum.sum");
+  CHECK(first(executor.render(0.0), "o") == 6.0f);
+  executor.setParameters({{"open", {0.0, "off", {}}}});
+  CHECK(first(executor.render(0.0), "o") == 2.0f);
+  executor.setParameters({});
+  CHECK(first(executor.render(0.0), "o") == 6.0f);
+}
+
 // ---- ambient occlusion, the host -----------------------------------------------------------------------
 
 namespace {

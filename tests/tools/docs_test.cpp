@@ -111,13 +111,14 @@ bool isThere(std::string file) {
 std::string sourcesOf(const std::string& language) {
   static const std::vector<
       std::pair<std::set<std::string>, std::pair<std::set<std::string>, std::vector<std::string>>>>
-      homes = {{{"scene"}, {{".scene"}, {"scenes", "docs/examples"}}},
-               {{"pipeline"}, {{".pipeline"}, {"scenes", "docs/examples", "templates"}}},
-               {{"sweep"}, {{".sweep"}, {"scenes"}}},
-               {{"reproduction"}, {{".reproduction"}, {"scenes"}}},
-               {{"cpp"}, {{".cpp", ".h"}, {"techniques", "framework/include", "tests", "templates"}}},
-               {{"glsl"}, {{".glsl", ".vert", ".geom", ".frag", ".comp"}, {"shaders", "templates"}}},
-               {{"cmake"}, {{".txt", ".cmake"}, {"techniques", "cmake", "templates"}}}};
+      homes = {
+          {{"scene"}, {{".scene"}, {"scenes", "docs/examples"}}},
+          {{"pipeline"}, {{".pipeline"}, {"scenes", "docs/examples", "templates"}}},
+          {{"sweep"}, {{".sweep"}, {"scenes"}}},
+          {{"reproduction"}, {{".reproduction"}, {"scenes"}}},
+          {{"cpp"}, {{".cpp", ".h"}, {"techniques", "framework/include", "tests", "templates", "examples"}}},
+          {{"glsl"}, {{".glsl", ".vert", ".geom", ".frag", ".comp"}, {"shaders", "templates"}}},
+          {{"cmake"}, {{".txt", ".cmake"}, {"techniques", "cmake", "templates"}}}};
   std::string all;
   for (const auto& [languages, where] : homes) {
     if (languages.count(language) == 0) continue;

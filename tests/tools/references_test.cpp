@@ -181,8 +181,8 @@ std::vector<fs::path> citingFiles() {
       ".cpp",  ".h",     ".md",       ".glsl",  ".comp",         ".vert", ".frag",
       ".geom", ".scene", ".pipeline", ".sweep", ".reproduction", ".json"};
   std::vector<fs::path> files = {test::sourceDirectory() / "README.md"};
-  for (const char* folder :
-       {"framework", "shaders", "techniques", "templates", "tools", "tests", "bench", "docs", "scenes"})
+  for (const char* folder : {"framework", "shaders", "techniques", "templates", "examples", "tools", "tests",
+                             "bench", "docs", "scenes"})
     for (const auto& entry : fs::recursive_directory_iterator(test::sourceDirectory() / folder))
       if (entry.is_regular_file() && extensions.count(entry.path().extension().string()) != 0 &&
           entry.path().filename() != "references_test.cpp")

@@ -120,10 +120,25 @@ TEST_CASE(
     }
   CHECK(isJudged);
 
-  installed.mustRun(lab, "vdbexport " + furnace + " " +
-                             (installed.data() / "scenes/pipelines/voxel_cone_tracing.pipeline").string() +
-                             " --grid grid.mips --set resolution=16 -o grid.vdb" + more);
-  CHECK(contains(installed.mustRun(lab, "vdbexport --list grid.vdb"), "grid"));
+  // A second technique, with a kind of port that the framework does not have: the installed example.
+  fs::copy(installed.data() / "examples/seen_voxels", lab, fs::copy_options::recursive);
+  installed.mustRun(lab, "cmake --build build");
+  CHECK(contains(installed.mustRun(lab, "ctest --test-dir build --output-on-failure"), "100% tests passed"));
+  const std::string cornell = (installed.data() / "scenes/cornell.scene").string();
+  installed.mustRun(lab, "lumivox render " + cornell + " scenes/pipelines/seen_voxels.pipeline --health" +
+                             " --output shown -o shown.exr" + more);
+  installed.mustRun(lab, "vdbexport " + cornell +
+                             " scenes/pipelines/seen_voxels.pipeline --grid mark.voxels -o grid.vdb" + more);
+  CHECK(contains(installed.mustRun(lab, "vdbexport --list grid.vdb"), "seen"));
+  CHECK(contains(installed.mustRun(lab, "lumivox describe SeenVoxels --techniques build/lib/techniques"),
+                 "voxels in which a surface is seen"));
+  // What the camera sees touches the surface: nearly all that is marked is right, and much is missed.
+  const nlohmann::json voxels = nlohmann::json::parse(
+      installed.mustRun(lab, "lumivox voxels " + cornell +
+                                 " --pipelines scenes/pipelines/seen_voxels.pipeline --resolution 16 --json" +
+                                 " --techniques build/lib/techniques"));
+  INFO(voxels.dump(1));
+  CHECK(voxels.dump().find("seen_voxels") != std::string::npos);
 
   // The technique is installed beside the others, and then found without being told where.
   installed.mustRun(lab, "cmake --install build --prefix " + installed.prefix().string());
@@ -166,8 +181,9 @@ TEST_CASE("the Debian package names its dependencies and holds programs, headers
         "./usr/lib/lumivox/techniques/direct_lighting.shaderpack\n",
         "./usr/include/lumivox/plugin/technique.h\n", "./usr/share/lumivox/cmake/LumivoxConfig.cmake\n",
         "./usr/share/lumivox/shaders/common/brdf.glsl\n", "./usr/share/lumivox/scenes/cornell.scene\n",
-        "./usr/share/lumivox/docs/writing_a_technique.md\n", "./usr/share/man/man1/lumivox.1",
-        "./usr/share/bash-completion/completions/lumivox\n"}) {
+        "./usr/share/lumivox/docs/writing_a_technique.md\n",
+        "./usr/share/lumivox/examples/seen_voxels/techniques/seen_voxels/seen_voxels.h\n",
+        "./usr/share/man/man1/lumivox.1", "./usr/share/bash-completion/completions/lumivox\n"}) {
     INFO(file);
     CHECK(contains(content, file));
   }
