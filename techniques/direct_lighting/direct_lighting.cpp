@@ -168,7 +168,10 @@ class ComposePass : public Pass {
                                    .glossy = glossy.present(),
                                    .transmittance = transmittance.present(),
                                    .scattered = scattered.present()};
-    const auto read = [](const In<Image>& input) { return input.present() ? input->texture : nullptr; };
+    const gpu::TextureRef none;
+    const auto read = [&](const In<Image>& input) -> const gpu::TextureRef& {
+      return input.present() ? input->texture : none;
+    };
     const Image result{floatImage(frame, "final radiance")};
     using gpu::Sampling;
     frame.dispatch(frame.program(variant),

@@ -34,12 +34,13 @@ class ReprojectPass : public GridPass {
       list.reflected = frame.elements(code::reflected, list.capacity, "direct light that fragments reflect");
       list.reflected->clear(VoxelFragments::kNotKnown);
     }
+    const gpu::TextureRef light = direct.present() ? direct->texture : nullptr;
     const code::Variant variant{gbuffer->emission != nullptr, direct.present()};
     frame.dispatch(frame.program(variant),
                    {code::grid({list.grid.low, list.grid.voxelSize, list.grid.resolution,
                                 static_cast<int>(list.capacity)}),
                     appending(list), GBufferBinding(*gbuffer), code::reflected(list.reflected),
-                    code::direct(direct.present() ? direct->texture : nullptr, gpu::Sampling::nearest)},
+                    code::direct(light, gpu::Sampling::nearest)},
                    {picture.width, picture.height, 1});
     finishList(frame, list);
     fragments = list;

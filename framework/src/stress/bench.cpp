@@ -3,14 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
+#include <variant>
 
 #include "experiment/measure.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/hash.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/experiment/voxelisers.h"
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/scene/text.h"
 #include "stress/elsewhere.h"
 #include "stress/pass_parameters.h"

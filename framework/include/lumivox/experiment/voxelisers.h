@@ -16,6 +16,8 @@
 
 namespace lumivox {
 
+struct PortKind;
+
 /// The occupied voxels of an output that holds some, as its kind says (PortKind::occupancy).
 struct OccupiedVoxels {
   GridPlacement grid;
