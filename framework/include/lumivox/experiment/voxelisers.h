@@ -11,7 +11,6 @@
 #include "lumivox/gpu/device.h"
 #include "lumivox/measure/voxels.h"
 #include "lumivox/pipeline/pipeline.h"
-#include "lumivox/pipeline/port.h"
 #include "lumivox/results/voxelisers.h"
 
 namespace lumivox {
