@@ -70,7 +70,7 @@ endfunction()
 # runs in the project's folder; ctest runs each of its test cases. Outside of the tree alone, whose own tests share a library.
 function(lumivox_add_technique_test name)
   find_package(Catch2 2 REQUIRED)
-  include(Catch)
+  include(${Catch2_DIR}/Catch.cmake)  # its config tells where only the first time
   add_executable(${name}_test ${PROJECT_SOURCE_DIR}/tests/techniques/${name}_test.cpp)
   set_target_properties(${name}_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin CXX_EXTENSIONS OFF)
   target_link_libraries(${name}_test PRIVATE Lumivox::lumivox Catch2::Catch2WithMain)

@@ -175,7 +175,7 @@ class Measurement {
         record.parameters = point.parameters;
         record.isDefault = point.isDefault;
         if (!addPoint(scene, pipeline, record, candidates))
-          return skip("it makes no voxels: no output of kind " + kindsText());
+          return skip("it makes no voxels: there is no output of " + kindsText());
       }
     } catch (const DiagnosticsError&) {
       throw;  // a wrong text
