@@ -46,6 +46,9 @@ TEST_CASE("a stored run comes back with every number, NaN and 64-bit seeds inclu
   CHECK(back.point.healthFindings == run.point.healthFindings);
   CHECK(sameTime(back.point.frameMs, run.point.frameMs));
   CHECK(sameTime(back.point.nextFrameMs, run.point.nextFrameMs));
+  CHECK(sameTime(back.point.stillFrameMs, run.point.stillFrameMs));
+  CHECK(sameTime(back.point.movedFrameMs, run.point.movedFrameMs));
+  CHECK(back.point.whyNotCounted == run.point.whyNotCounted);
   CHECK(sameTime(back.point.passDeviceMs.at("gather"), run.point.passDeviceMs.at("gather")));
   CHECK(sameTime(back.point.passHostMs.at("gather"), run.point.passHostMs.at("gather")));
   CHECK(back.point.passOrder == run.point.passOrder);
@@ -397,8 +400,12 @@ TEST_CASE("merging takes over what is not there, once") {
   ResultsStore mine(directory.path() / "mine.sqlite"), theirs(directory.path() / "theirs.sqlite");
   for (int number : {1, 2}) mine.add(runNumber(number));
   for (int number : {2, 3, 4}) theirs.add(runNumber(number));
+  theirs.addControl(runNumber(3).identity.key(), {12.0, 11.5, 12.5, 11.0, 13.0, 5}, {});
   CHECK(mine.merge(theirs).runs == 2);
   CHECK(mine.merge(theirs).runs == 0);
   CHECK(mine.runs().size() == 4);
+  const std::vector<RepeatedControl> controls = mine.controls(runNumber(3).identity);
+  REQUIRE(controls.size() == 1);
+  CHECK(controls[0].frameMsAgain.value == 12.0);
   CHECK(theirs.runs().size() == 3);
 }

@@ -152,9 +152,9 @@ TEST_CASE("in a steady frame no pass of a voxelizer waits for the device") {
                       snapshotOf(run.scene, 1.0));
   PassContext& context = harness.context();
   context.dispatch(context.program({"voxelization", "copy_count"}),
-                   {{"From", 0, gpu::ResourceBinding::Storage{list.count.get()}},
-                    {"To", 1, gpu::ResourceBinding::Storage{list.count.get()}}},
-                   {1, 1, 1}, {1, 1, 1});
+                   {gpu::ResourceBinding{"From", 0, gpu::ResourceBinding::Storage{list.count.get()}},
+                    gpu::ResourceBinding{"To", 1, gpu::ResourceBinding::Storage{list.count.get()}}},
+                   {1, 1, 1});
   list.count->download();
   CHECK(device().transfers().stalls == before + 1);
 }

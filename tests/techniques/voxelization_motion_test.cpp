@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 #include "support/voxel_fragments.h"

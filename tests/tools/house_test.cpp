@@ -219,6 +219,42 @@ const Confined kOpenVdb{"OpenVDB",
                         {"tools/vdbexport/", "framework/src/volume/", "tests/framework/scene_media_test.cpp",
                          "tests/tools/vdbexport_", "bench/"}};  // speed programs compare with it
 
+const Confined kSqlite{
+    "SQLite", "<sqlite3|\\bsqlite3_\\w+", {"framework/src/results/", "tests/framework/results_"}};
+
+/// Pages are built from the files of framework/src/page/assets; no C++ writes markup.
+Violations markup(const Sources& sources) {
+  Violations found;
+  static const std::regex pattern(
+      "</?(html|head|body|div|span|table|t[dhr]|p|h[1-6]|ul|li|img|canvas|style)[ >]");
+  for (const SourceFile& source : sources) {
+    if (!isCpp(source.path) || (!startsWith(source.path, "framework/") && !startsWith(source.path, "tools/")))
+      continue;
+    std::istringstream lines(withoutComments(source.text, Strings::keep));
+    int number = 0;
+    for (std::string line; std::getline(lines, line);) {
+      ++number;
+      if (line.rfind("#include", 0) != 0 && line.find('"') != std::string::npos &&
+          std::regex_search(line, pattern))
+        found.push_back(fmt::format("{}:{}: markup in C++", source.path, number));
+    }
+  }
+  return found;
+}
+
+/// Analysis works on records alone: no device, no store, no page.
+Violations boundAnalysis(const Sources& sources) {
+  Violations found;
+  for (const SourceFile& source : sources) {
+    if (partOf(source.path) != "analysis") continue;
+    for (const Include& include : includesOf(source.text))
+      if (endsWith(include.path, "results/store.h") || endsWith(include.path, "results/database.h"))
+        found.push_back(
+            fmt::format("{}:{}: analysis may not include {}", source.path, include.line, include.path));
+  }
+  return found;
+}
+
 // ---- techniques
 // --------------------------------------------------------------------------------------------------------------------
 
@@ -462,6 +498,18 @@ TEST_CASE("the scanner finds what breaks the rules of the house") {
   CHECK(escaped({{"framework/src/volume/a.cpp", "#include <openvdb/openvdb.h>\n"}}, kOpenVdb).empty());
   CHECK(escaped({{"bench/x/a.cpp", "#include <openvdb/openvdb.h>\n"}}, kOpenVdb).empty());
 
+  CHECK(
+      escaped({{"framework/src/page/a.cpp", "#include <sqlite3.h>\nsqlite3_open(f, &h);"}}, kSqlite).size() ==
+      2);
+  CHECK(escaped({{"framework/src/results/a.cpp", "#include <sqlite3.h>\n"}}, kSqlite).empty());
+  CHECK(markup({{"framework/src/page/a.cpp", "html += \"<td class=\\\"x\\\">\";\n"}}).size() == 1);
+  CHECK(markup({{"framework/src/page/a.cpp", "#include <span>\nstd::span<int> p; a = b < c; // \"<td>\"\n"}})
+            .empty());
+  CHECK(markup({{"tests/a.cpp", "CHECK(html == \"<p>\");\n"}}).empty());
+  CHECK(boundAnalysis({{"framework/src/analysis/a.cpp", "#include \"lumivox/results/store.h\"\n"}}).size() ==
+        1);
+  CHECK(boundAnalysis({{"framework/src/analysis/a.cpp", "#include \"lumivox/results/runs.h\"\n"}}).empty());
+
   const std::vector<std::string> two = {"cone_tracing", "shading"};
   CHECK(namedTechniques({{"framework/src/pipeline/a.cpp", "open(\"cone_tracing\");"}}, two).size() == 1);
   CHECK(namedTechniques({{"framework/src/pipeline/a.cpp", "ConeTracing t;"}}, two).size() == 1);
@@ -521,6 +569,12 @@ TEST_CASE("OpenGL stays in the gpu part, Embree in the reference and OpenVDB in 
   CHECK_NONE(escaped(projectSources(), kOpenGl));
   CHECK_NONE(escaped(projectSources(), kEmbree));
   CHECK_NONE(escaped(projectSources(), kOpenVdb));
+}
+
+TEST_CASE("SQLite stays in the results, markup in the assets of pages, and analysis knows neither") {
+  CHECK_NONE(escaped(projectSources(), kSqlite));
+  CHECK_NONE(markup(projectSources()));
+  CHECK_NONE(boundAnalysis(projectSources()));
 }
 
 TEST_CASE("the framework names no technique and no technique includes another") {

@@ -83,7 +83,7 @@ TEST_CASE("a technique's own kind of port is measured and exported like the fram
 }
 
 TEST_CASE("a technique's own kind of port is documented beside the framework's") {
-  const std::string techniques = " --techniques " + quoted(pluginDirectory());
+  const std::string techniques = " --techniques '" + pluginDirectory().string() + "'";
   const std::string word = runCommand("lumivox describe Leaves" + techniques).output;
   CHECK_THAT(word, Contains("port kind Leaves") && Contains("exported as radiance (W/(sr m^2))") &&
                        Contains("occupied: voxels in leaves that shine"));

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "lumivox/base/error.h"
+#include "lumivox/base/log.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/results/text.h"
 
@@ -28,6 +29,10 @@ void MeasureOptions::addTo(CLI::App& app, const std::string& store, const std::s
   app.add_option("--flicker-frames", options.flickerPairs,
                  "pairs of frames 1/24 s apart for the flicker of scenes that move (default 4; 0: none)")
       ->check(CLI::Range(0, 1000));
+  app.add_option(
+         "--frames", options.frames,
+         "pipelines that accumulate are measured after 1, 2, 4 ... N frames of the still scene (default 1)")
+      ->check(CLI::Range(1, 1 << 20));
   app.add_flag("--no-sweep", noSweep, "only the default parameters, not the points of the pipelines' sweeps");
   app.add_option("--store", options.store, store);
 }
@@ -42,7 +47,17 @@ ReportOptions MeasureOptions::asked(const GlobalOptions& global) const {
   asked.openSweeps = !noSweep;
   asked.commandLine = global.commandLine;
   asked.repeatArguments = repeatArguments(global);
+  asked.progress = [](std::size_t done, std::size_t total, double secondsLeft) {
+    logInformation("{} of {} points{}", done, total,
+                   done < total ? ", about " + durationText(secondsLeft) + " left" : std::string());
+  };
   return asked;
+}
+
+std::string durationText(double seconds) {
+  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  return fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
 std::vector<std::string> repeatArguments(const GlobalOptions& global) {

@@ -24,6 +24,7 @@ double millisecondsOf(const std::string& option, const std::string& text);
 /// A number above 0; Error with the option's name otherwise.
 double positiveNumberOf(const std::string& option, const std::string& text);
 
+std::string durationText(double seconds);                 ///< "12 s", "4 min", "1.5 h"
 std::string quartilesText(const TimingStatistics& time);  ///< "1.2 [1.1, 1.4]"; "-" when nothing was timed
 /// "cones=6 resolution=64"
 std::string parametersText(const std::map<std::string, std::string>& parameters);

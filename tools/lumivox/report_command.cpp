@@ -65,6 +65,7 @@ void printSummary(const ReportSummary& summary) {
   if (summary.takenUp > 0)
     text += fmt::format("{} of {} points were taken up from an interrupted report\n", summary.takenUp,
                         summary.points.size());
+  for (const std::string& point : summary.leftOutPoints) text += "no time for: " + point + "\n";
   for (const std::string& unsuited : summary.unsuited) text += "not run: " + unsuited + "\n";
   print(text);
 }
@@ -102,6 +103,12 @@ void addReportCommand(Commands& commands) {
   command->add_option("-o,--out", all->measure.options.output,
                       "the page; .csv and .json go beside it (default out/report/index.html)");
   all->measure.addTo(*command, "a results store that the measured points are added to (default: none)");
+  command
+      ->add_option(
+          "--budget", all->measure.options.budgetSeconds,
+          "seconds for measuring, counted when the references are there: all default points, then as many "
+          "points of the sweeps as there is time for (default: no limit)")
+      ->check(CLI::Range(0.001, 1e9));
   command
       ->add_option("--voxels", all->measure.options.voxelResolution,
                    "adds a section on the voxelisers at this resolution (default: none)")

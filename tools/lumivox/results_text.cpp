@@ -81,12 +81,6 @@ Json identityJson(const RunIdentity& identity) {
 
 }  // namespace
 
-std::string durationText(double seconds) {
-  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
-  return fmt::format("{:.1f} h", seconds / 3600.0);
-}
-
 Json jsonNumber(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
@@ -183,6 +177,8 @@ Json runsJson(const std::vector<StoredRun>& runs) {
                     {"identity", identityJson(run.identity)},
                     {"frame", timeJson(point.frameMs)},
                     {"next_frame", timeJson(point.nextFrameMs)},
+                    {"still_frame", timeJson(point.stillFrameMs)},
+                    {"moved_frame", timeJson(point.movedFrameMs)},
                     {"framework_share", jsonNumber(point.frameworkShare)},
                     {"peak_bytes", point.peakBytes},
                     {"passes", passes},

@@ -18,7 +18,4 @@ std::string runsTable(const std::vector<StoredRun>& runs);
 std::string runsCsv(const std::vector<StoredRun>& runs);
 Json runsJson(const std::vector<StoredRun>& runs);
 
-/// "12 s", "34 min", "5.6 h": what is left.
-std::string durationText(double seconds);
-
 }  // namespace lumivox::command

@@ -29,10 +29,6 @@ int sweep(const SweepCommand& command, const GlobalOptions& global) {
   scenes.erase(texts, scenes.end());
   options.retryFailed = command.retryFailed;
   options.planOnly = command.plan;
-  options.progress = [](std::size_t done, std::size_t total, double secondsLeft) {
-    logInformation("{} of {} points{}", done, total,
-                   done < total ? ", about " + durationText(secondsLeft) + " left" : std::string());
-  };
   const std::filesystem::path file =
       options.measure.store.empty() ? ResultsStore::defaultFile() : options.measure.store;
   ResultsStore store(file);

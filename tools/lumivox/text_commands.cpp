@@ -318,8 +318,9 @@ std::string bindingsAsMarkdown(TechniqueSet& techniques) {
     if (use.numbers.size() == 1 && use.techniques.size() > 1)
       claimed[{key.first, *use.numbers.begin()}].push_back("`" + key.second + "`");
   std::string text =
-      "\n## Claimed bindings\n\nNumbers that the files of `shaders/common` take: a shader that includes one leaves its numbers "
-      "free. Each kind of binding counts by itself.\n\n| Kind | Number | Bindings |\n|---|---|---|\n";
+      "\n## Claimed bindings\n\nNumbers that bindings of one name have in the shaders of several techniques: "
+      "those of `shaders/common`, which a shader that includes the file leaves free, and a few habits. Each kind "
+      "of binding counts by itself.\n\n| Kind | Number | Bindings |\n|---|---|---|\n";
   for (const auto& [place, names] : claimed)
     text += fmt::format("| {} | {} | {} |\n", name(place.first), place.second, fmt::join(names, ", "));
   return text;

@@ -245,13 +245,14 @@ PipelineComparison comparePipelines(const std::vector<const ReportPoint*>& point
   comparison.component = component;
   comparison.bias = bias;
   comparison.metric = metric;
+  std::set<std::string> truths;  // each technique is judged by its own model
   for (std::size_t source = 0; source < points.size(); ++source) {
     const ReportPoint& point = *points[source];
     const ComponentError* error = componentErrorOf(point, component, bias);
     if (error == nullptr || !point.failure.empty() || point.frameMs.repeats == 0) continue;
     const Measured number = errorNumber(*error, metric);
     if (!std::isfinite(number.value)) continue;
-    comparison.truth = error->truth;
+    truths.insert(error->truth);
     const auto same = [&](const ComparedPipeline& pipeline) { return pipeline.pipeline == point.pipeline; };
     auto pipeline = std::find_if(comparison.pipelines.begin(), comparison.pipelines.end(), same);
     if (pipeline == comparison.pipelines.end()) {
@@ -265,6 +266,7 @@ PipelineComparison comparePipelines(const std::vector<const ReportPoint*>& point
                                  {medianOf(point.frameMs), number},
                                  std::nullopt});
   }
+  comparison.truth = fmt::format("{}", fmt::join(truths, ", "));
   std::stable_sort(comparison.points.begin(), comparison.points.end(),
                    [](const ComparedPoint& a, const ComparedPoint& b) {
                      return a.tradeOff.timeMs.value < b.tradeOff.timeMs.value;

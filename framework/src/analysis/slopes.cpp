@@ -30,11 +30,17 @@ struct Series {
 
 std::vector<Series> seriesOf(const std::vector<const ReportPoint*>& points) {
   std::map<std::tuple<std::string, std::string, std::string>, Series> all;
+  std::set<std::string> progressive;  // pipelines; a point that does not say how many frames is one of one
+  for (const ReportPoint* point : points)
+    if (point->parameters.count(kAccumulatedFrames) != 0) progressive.insert(point->pipeline);
   for (const ReportPoint* point : points) {
     if (!point->failure.empty()) continue;
-    for (const auto& [name, value] : point->parameters) {
+    ParameterValues parameters = point->parameters;
+    if (progressive.count(point->pipeline) != 0)
+      parameters[kAccumulatedFrames].number = framesOf(point->parameters);
+    for (const auto& [name, value] : parameters) {
       if (!value.word.empty()) continue;
-      ParameterValues others = point->parameters;
+      ParameterValues others = parameters;
       others.erase(name);
       const std::string text = others.empty() ? std::string() : parametersText(others);
       Series& series = all[{point->pipeline, name, text}];

@@ -97,6 +97,26 @@ std::string PipelineChoice::missingTechnique(const Pipeline& pipeline) {
   return {};
 }
 
+std::vector<PlannedPoint> pointsFor(const LoadedPipeline& loaded, TechniqueSource& techniques,
+                                    const ReportOptions& options) {
+  std::vector<PlannedPoint> points = plannedPoints(loaded.pipeline, loaded.settings, options.openSweeps);
+  if (options.frames <= 1 || !isProgressive(loaded.pipeline, techniques)) return points;
+  const auto plain =
+      std::find_if(points.begin(), points.end(), [](const PlannedPoint& point) { return point.isDefault; });
+  PlannedPoint accumulating = *plain;
+  if (accumulating.parameters.count(kAccumulatedFrames) != 0)
+    throw Error(fmt::format("{}: a parameter may not be called '{}' where frames are accumulated",
+                            loaded.shown, kAccumulatedFrames));
+  accumulating.sweep = kAccumulatedFrames;
+  accumulating.isDefault = false;
+  for (int frames = 1; frames < options.frames;) {
+    frames = std::min(2 * frames, options.frames);
+    accumulating.parameters[kAccumulatedFrames].number = frames;
+    points.push_back(accumulating);
+  }
+  return points;
+}
+
 std::pair<int, int> measuredSize(const gpu::Device& device, const Scene& scene,
                                  const ReportOptions& options) {
   if (options.width > 0) return {options.width, options.height};

@@ -46,6 +46,11 @@ class PipelineChoice {
   std::map<std::filesystem::path, std::vector<LoadedPipeline>> committed_;
 };
 
+/// The points of a report, a sweep or a search: those of plannedPoints(), and of a progressive pipeline its
+/// default point after more and more frames.
+std::vector<PlannedPoint> pointsFor(const LoadedPipeline& loaded, TechniqueSource& techniques,
+                                    const ReportOptions& options);
+
 /// The size that is asked for, or the camera's, smaller on a software rasteriser.
 std::pair<int, int> measuredSize(const gpu::Device& device, const Scene& scene, const ReportOptions& options);
 ReferenceOptions truthOptionsOf(const ReportOptions& options, int width, int height);

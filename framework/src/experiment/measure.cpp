@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <optional>
 #include <span>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "lumivox/base/low_discrepancy.h"
-#include "lumivox/roofline/ceilings.h"
 #include "pipeline/changes.h"
 
 namespace lumivox::experiment {
@@ -27,6 +27,8 @@ struct Judged {
 RenderOptions renderOptions(const TimingContext& context, const ReportPoint& point) {
   RenderOptions options;
   options.parameters = point.parameters;
+  options.parameters.erase(kAccumulatedFrames);
+  options.accumulate = framesOf(point.parameters) > 1;
   options.seed = context.options.seed;
   options.camera = context.options.camera;
   options.width = context.width;
@@ -125,7 +127,7 @@ std::string whyFailed(const std::function<void()>& work) {
 }
 
 FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& centre, int positions,
-                           int frameIndex) {
+                           int frameIndex, int frames) {
   // The truth is filtered over the pixel, so that with one sample at its centre the silhouettes of bright
   // lamps would outweigh every other error. The camera turns by the fraction of a pixel, which shifts the
   // picture but for second order.
@@ -141,7 +143,13 @@ FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& cent
     CameraView& camera = shifted.camera;
     camera.forward =
         glm::normalize(camera.forward + pixel * (offset.x * camera.right + offset.y * camera.up));
-    FrameResult frame = executor.render(shifted, frameIndex);
+    if (frames > 1) {
+      executor.invalidate();
+      executor.emptyHistories();
+      for (int before = 0; before + 1 < frames; ++before)
+        executor.render(shifted, frameIndex + before, PipelineExecutor::Pictures::no);
+    }
+    FrameResult frame = executor.render(shifted, frameIndex + frames - 1);
     if (position == 0) {
       sum = std::move(frame);
       continue;
@@ -166,17 +174,46 @@ bool flickers(const Scene& scene, const ReportOptions& options) {
          SceneTraits::of(scene).particles;
 }
 
+std::map<std::string, int> bouncesOf(const PipelineExecutor& executor, const Pipeline& pipeline) {
+  std::map<std::string, int> bounces{{kWholePicture, 1}};
+  for (const Pipeline::Output& output : pipeline.outputs) {
+    const Pass& pass = executor.pass(output.pass);
+    int& own = bounces[output.name] = 1;
+    for (const OutBase* port : pass.outputs())
+      if (port->name() == output.port &&
+          (port->contributes() == Contributes::indirectDiffuse ||
+           port->contributes() == Contributes::indirectGlossy || port->contributes() == Contributes::final))
+        own = std::max(1, pass.indirectBounces());
+    bounces[kWholePicture] = std::max(bounces[kWholePicture], own);
+  }
+  return bounces;
+}
+
+bool isProgressive(const Pipeline& pipeline, TechniqueSource& techniques) {
+  return std::any_of(pipeline.passes.begin(), pipeline.passes.end(), [&](const PassText& text) {
+    const Technique* technique = techniques.technique(text.technique);
+    const PassEntry* entry = technique == nullptr ? nullptr : technique->find(text.pass);
+    if (entry == nullptr) return false;
+    const std::unique_ptr<Pass> pass = entry->make();
+    return reads(pass->readsFrom(), Reads::history) ||
+           std::any_of(pass->inputs().begin(), pass->inputs().end(),
+                       [](const InBase* input) { return input->presence() == Presence::history; });
+  });
+}
+
 void measureErrors(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
   RenderOptions options = renderOptions(context, record.point);
   std::vector<Judged> judged;
+  std::map<std::string, int> bounces;
   for (int seed = 0; seed < std::max(1, context.options.seeds); ++seed) {
     options.seed = context.options.seed + static_cast<std::uint64_t>(seed);
     options.health = seed == 0;
     options.interactive = true;
     PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
     FrameResult frame = renderFiltered(executor, snapshotAt(context, options, context.options.time),
-                                       context.options.subpixels);
+                                       context.options.subpixels, 0, framesOf(record.point.parameters));
     if (seed == 0) {
+      bounces = bouncesOf(executor, pipeline);
       record.point.healthFindings = frame.healthFindings;
       record.point.notes = frame.notes;
     }
@@ -188,8 +225,9 @@ void measureErrors(const MeasureContext& context, const Pipeline& pipeline, Poin
       break;
   }
 
+  for (const auto& [output, count] : bounces) context.truth.require(context.scene, count);
   for (const Judged& one : judged) {
-    const auto [biasLayer, missLayer] = truthLayers(one.component);
+    const auto [biasLayer, missLayer] = truthLayers(one.component, bounces.at(one.output));
     OutputPictures pictures;
     pictures.output = one.output;
     pictures.component = name(one.component);
@@ -269,18 +307,15 @@ void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, Poi
   }
 }
 
-void countWork(const TimingContext& context, const Pipeline& pipeline,
-               const std::vector<DeviceCeiling>& ceilings, ReportPoint& point, const KeptOutputs& kept) {
+void countWork(const TimingContext& context, const Pipeline& pipeline, ReportPoint& point,
+               const KeptOutputs& kept) {
   RenderOptions options = renderOptions(context, point);
   options.countWork = true;
   try {
     PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
     for (const auto& [pass, port] : kept) executor.keepOutput(pass, port);
     FrameResult frame = executor.render(context.options.time, 0, PipelineExecutor::Pictures::no);
-    for (PassRecord& pass : frame.passes) {
-      point.passBounds[pass.name] = lowerBounds(pass.work, ceilings);
-      point.passWork[pass.name] = std::move(pass.work);
-    }
+    for (PassRecord& pass : frame.passes) point.passWork[pass.name] = std::move(pass.work);
   } catch (const AbsentError& error) {
     point.whyNotCounted = error.what();
   }
@@ -288,27 +323,64 @@ void countWork(const TimingContext& context, const Pipeline& pipeline,
 
 struct TimedPoint::State {
   ReportPoint& point;
-  double time;                        ///< s
+  gpu::Device& device;
+  TechniqueSource& techniques;
+  const Scene& scene;
+  const Pipeline& pipeline;
+  RenderOptions options;
+  const KeptOutputs kept;
+  const double time;                  ///< s
+  const int frames;                   ///< accumulated by the point
   const std::uint64_t bytesOfOthers;  ///< of points that are timed at the same time
-  PipelineExecutor executor;
-  int nextFrames = 0;
-  std::vector<double> frameMs, shares, nextMs;
+  std::optional<PipelineExecutor> executor;
+  bool moving = false;  ///< the executor is that of moved frames
+  int index = 0;        ///< of the frame that was rendered last
+  double now = 0.0;     ///< its time, s
+  std::vector<double> frameMs, shares, nextMs, stillMs, movedMs;
   std::map<std::string, std::vector<double>> deviceMs, hostMs;
 
-  State(const TimingContext& context, const Pipeline& pipeline, ReportPoint& pointToTime)
+  State(const TimingContext& context, const Pipeline& pipelineToTime, ReportPoint& pointToTime,
+        KeptOutputs keptOutputs)
       : point(pointToTime),
+        device(context.device),
+        techniques(context.techniques),
+        scene(context.scene),
+        pipeline(pipelineToTime),
+        options(renderOptions(context, pointToTime)),
+        kept(std::move(keptOutputs)),
         time(context.options.time),
+        frames(framesOf(pointToTime.parameters)),
         bytesOfOthers(context.device.allocatedBytes()),
-        executor(context.device, context.techniques, context.scene, pipeline,
-                 renderOptions(context, pointToTime)) {}
+        now(time) {}
+
+  /// A new executor, with its first frame.
+  FrameResult warmUp() {
+    executor.reset();  // its memory first
+    executor.emplace(device, techniques, scene, pipeline, options);
+    for (const auto& [pass, port] : kept) executor->keepOutput(pass, port);
+    return executor->render(time, 0, PipelineExecutor::Pictures::no);
+  }
+
+  /// The point's frames from nothing; all that they took, ms, and the first one.
+  std::pair<double, FrameResult> fromNothing(PipelineExecutor::Timing timing) {
+    executor->invalidate();
+    executor->emptyHistories();
+    FrameResult first = executor->render(time, 0, PipelineExecutor::Pictures::no, timing);
+    double sum = first.frameMs;
+    for (index = 1; index < frames; ++index)
+      sum += executor->render(time, index, PipelineExecutor::Pictures::no, timing).frameMs;
+    index = frames - 1;
+    now = time;
+    return {sum, std::move(first)};
+  }
 };
 
 TimedPoint::TimedPoint(const TimingContext& context, const Pipeline& pipeline, ReportPoint& point,
                        const KeptOutputs& kept)
-    : state_(std::make_unique<State>(context, pipeline, point)) {
-  for (const auto& [pass, port] : kept) state_->executor.keepOutput(pass, port);
-  const FrameResult frame = state_->executor.render(state_->time, 0, PipelineExecutor::Pictures::no);
+    : state_(std::make_unique<State>(context, pipeline, point, kept)) {
+  const FrameResult frame = state_->warmUp();
   point.peakBytes = frame.peakBytes - state_->bytesOfOthers;
+  point.passOrder.clear();  // of an attempt that failed
   for (const PassRecord& pass : frame.passes) {
     point.passOrder.push_back(pass.name);
     point.passBytes[pass.name] = pass.bytes;
@@ -316,50 +388,80 @@ TimedPoint::TimedPoint(const TimingContext& context, const Pipeline& pipeline, R
 }
 
 const PipelineExecutor& TimedPoint::executor() const {
-  return state_->executor;
+  return *state_->executor;
 }
 
 TimedPoint::~TimedPoint() = default;
 TimedPoint::TimedPoint(TimedPoint&&) noexcept = default;
 
+namespace {
+constexpr double kNextFrame = 1.0 / 60.0;  // s
+}
+
 void TimedPoint::timeFrame() {
   State& s = *state_;
-  s.executor.invalidate();
-  const FrameResult frame = s.executor.render(s.time, 0, PipelineExecutor::Pictures::no);
-  s.frameMs.push_back(frame.frameMs);
-  if (frame.frameMs > 0.0) s.shares.push_back(frame.betweenPassesMs / frame.frameMs);
-  for (const PassRecord& pass : frame.passes) s.hostMs[pass.name].push_back(pass.hostMs);
-  // The passes in a frame of their own: their instruments are no part of the frame's time.
-  s.executor.invalidate();
-  s.executor.render(s.time, 0, PipelineExecutor::Pictures::no, PipelineExecutor::Timing::passes);
+  const auto [milliseconds, first] = s.fromNothing(PipelineExecutor::Timing::frame);
+  s.frameMs.push_back(milliseconds);
+  if (first.frameMs > 0.0) s.shares.push_back(first.betweenPassesMs / first.frameMs);
+  for (const PassRecord& pass : first.passes) s.hostMs[pass.name].push_back(pass.hostMs);
+  // The passes in frames of their own: their instruments are no part of the frame's time.
+  s.fromNothing(PipelineExecutor::Timing::passes);
 }
 
 void TimedPoint::timeNextFrame() {
-  constexpr double kNextFrame = 1.0 / 60.0;  // s
   State& s = *state_;
-  ++s.nextFrames;
-  s.nextMs.push_back(
-      s.executor.render(s.time + s.nextFrames * kNextFrame, s.nextFrames, PipelineExecutor::Pictures::no)
-          .frameMs);
+  s.now += kNextFrame;
+  s.nextMs.push_back(s.executor->render(s.now, ++s.index, PipelineExecutor::Pictures::no).frameMs);
+}
+
+void TimedPoint::timeStillFrame() {
+  State& s = *state_;
+  s.stillMs.push_back(s.executor->render(s.now, ++s.index, PipelineExecutor::Pictures::no).frameMs);
+}
+
+void TimedPoint::timeMovedFrame() {
+  constexpr float kStride = 1e-3f;  // of the scene
+  State& s = *state_;
+  if (!s.moving) {
+    finish();  // what the executor still holds
+    s.options.interactive = true;
+    s.moving = true;
+    s.warmUp();
+    s.index = 0;
+    s.now = s.time;
+  }
+  s.now += kNextFrame;
+  ++s.index;
+  SceneSnapshot moved = snapshotOf(s.scene, s.now, s.options.camera, s.options.width, s.options.height);
+  const float diagonal = moved.bounds.empty ? 1.0f : glm::length(moved.bounds.high - moved.bounds.low);
+  const glm::vec3 step = moved.camera.right * (static_cast<float>(s.index) * kStride * diagonal);
+  moved.camera.eye += step;
+  for (LightState& light : moved.lights) {
+    light.position += step;
+    light.direction =
+        glm::normalize(light.direction + moved.camera.right * (static_cast<float>(s.index) * kStride));
+  }
+  s.movedMs.push_back(s.executor->render(moved, s.index, PipelineExecutor::Pictures::no).frameMs);
 }
 
 void TimedPoint::finish() {
   State& s = *state_;
-  for (const std::vector<PassRecord>& frame : s.executor.timedPasses())
-    for (const PassRecord& pass : frame) s.deviceMs[pass.name].push_back(pass.deviceMs);
+  const std::vector<std::vector<PassRecord>> timed = s.executor->timedPasses();
+  // Of a point of several frames what each pass took in all of them.
+  for (std::size_t first = 0; first + static_cast<std::size_t>(s.frames) <= timed.size();
+       first += static_cast<std::size_t>(s.frames)) {
+    std::map<std::string, double> sums;
+    for (std::size_t frame = first; frame < first + static_cast<std::size_t>(s.frames); ++frame)
+      for (const PassRecord& pass : timed[frame]) sums[pass.name] += pass.deviceMs;
+    for (const auto& [name, ms] : sums) s.deviceMs[name].push_back(ms);
+  }
   s.point.frameMs = statisticsOf(s.frameMs);
   s.point.nextFrameMs = statisticsOf(s.nextMs);
+  s.point.stillFrameMs = statisticsOf(s.stillMs);
+  s.point.movedFrameMs = statisticsOf(s.movedMs);
   s.point.frameworkShare = s.shares.empty() ? 0.0 : statisticsOf(s.shares).median;
   for (const auto& [name, values] : s.deviceMs) s.point.passDeviceMs[name] = statisticsOf(values);
   for (const auto& [name, values] : s.hostMs) s.point.passHostMs[name] = statisticsOf(values);
-}
-
-void measureTimes(const TimingContext& context, const Pipeline& pipeline, PointRecord& record) {
-  TimedPoint timed(context, pipeline, record.point);
-  const int repeats = std::max(1, context.options.repeats);
-  for (int repeat = 0; repeat < repeats; ++repeat) timed.timeFrame();
-  for (int repeat = 0; repeat < repeats; ++repeat) timed.timeNextFrame();
-  timed.finish();
 }
 
 }  // namespace lumivox::experiment

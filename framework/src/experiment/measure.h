@@ -20,6 +20,8 @@ class Truth {
  public:
   Truth(const Scene& scene, const ReferenceOptions& options);
   const LayeredPicture& layers() const { return layers_; }
+  /// Sees to it that the layers of so many bounces are there; what layer() gave before is no more valid.
+  void require(const Scene& scene, int bounces);
   /// Null when the truth has no such layer.
   const TruthLayer* layer(const std::string& name);
   /// The truth `frame` frames of an animation later, for flicker: with a quarter of the samples, which are
@@ -58,9 +60,16 @@ struct MeasureContext : TimingContext {
 
 /// The picture that a pipeline converges to under sub-pixel motion of the camera (temporal anti-aliasing):
 /// the mean of the outputs over so many positions inside the pixel, the centre when there is one. The rest of
-/// the result is the first frame's; health findings are those of the first frame that has some.
+/// the result is the first frame's; health findings are those of the first frame that has some. At each
+/// position the picture is that of the last of `frames` frames, of which the first knows nothing from before.
 FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& centre, int positions,
-                           int frameIndex = 0);
+                           int frameIndex = 0, int frames = 1);
+
+/// How many indirect bounces each output of a pipeline models, by its name; kWholePicture: the most of them.
+std::map<std::string, int> bouncesOf(const PipelineExecutor& executor, const Pipeline& pipeline);
+/// Whether a pass goes on from what earlier frames left, so that the pipeline's pictures improve while
+/// nothing changes.
+bool isProgressive(const Pipeline& pipeline, TechniqueSource& techniques);
 
 /// Fills the errors, pictures and health of a point: executors of their own, one per seed.
 void measureErrors(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record);
@@ -72,10 +81,9 @@ bool flickers(const Scene& scene, const ReportOptions& options);
 void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record);
 /// Outputs, pass and port, that stay alive although no picture needs them.
 using KeptOutputs = std::vector<std::pair<std::string, std::string>>;
-/// Fills what the passes do, counted in a frame of its own, and what that takes at least: nothing without
-/// ceilings.
-void countWork(const TimingContext& context, const Pipeline& pipeline,
-               const std::vector<DeviceCeiling>& ceilings, ReportPoint& point, const KeptOutputs& kept = {});
+/// Fills what the passes do, counted in a frame of its own.
+void countWork(const TimingContext& context, const Pipeline& pipeline, ReportPoint& point,
+               const KeptOutputs& kept = {});
 
 /// One point that is timed frame by frame, so that the frames of several points can take turns: a machine
 /// that drifts then biases none of them. No pictures are taken.
@@ -86,18 +94,19 @@ class TimedPoint {
              const KeptOutputs& kept = {});
   ~TimedPoint();
   TimedPoint(TimedPoint&&) noexcept;
-  void timeFrame();      ///< every kept pass runs
-  void timeNextFrame();  ///< 1/60 s after the last one
-  void finish();         ///< fills the point's times; again after further frames
+  void timeFrame();       ///< every kept pass runs; of a point of several frames all of them, from nothing
+  void timeNextFrame();   ///< 1/60 s after the last one
+  void timeStillFrame();  ///< at the same time as the last one, nothing moves
+  /// The camera and every light have moved since the last one. The first call gives the resources of the
+  /// other frames back and warms up anew.
+  void timeMovedFrame();
+  void finish();  ///< fills the point's times; again after further frames
   const PipelineExecutor& executor() const;
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
-
-/// Times a point alone.
-void measureTimes(const TimingContext& context, const Pipeline& pipeline, PointRecord& record);
 
 /// The truth layers that were used, for the page.
 std::vector<TruthRecord> truthRecords(Truth& truth, const std::set<std::string>& used);

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 #include <thread>
 
 #include "base/process.h"
 #include "experiment/plan.h"
+#include "experiment/turns.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "lumivox/results/text.h"
@@ -15,9 +17,6 @@
 namespace lumivox::experiment {
 namespace {
 
-/// Points whose timed frames take turns. Each keeps its resources while it waits, and an interruption loses
-/// the batch.
-constexpr std::size_t kBatch = 6;
 /// Between two looks at what other processes do.
 constexpr std::chrono::milliseconds kPause{200};
 
@@ -47,26 +46,33 @@ std::string runText(const StoredRun& run) {
                      seed);
 }
 
-/// One point that does not fit into memory, say, must not cost the others.
-template <class Work>
-void guarded(StoredRun& run, const Work& work) {
-  if (!run.point.failure.empty()) return;
-  if (const std::string why = whyFailed(work); !why.empty()) {
-    fail(run.point, why);
-    logWarning("{}: {}", runText(run), why);
+std::vector<StoredPicture> storedPictures(const std::vector<OutputPictures>& outputs) {
+  std::vector<StoredPicture> stored;
+  for (const OutputPictures& one : outputs) {
+    stored.push_back({one.output, one.component, {}, 0.0, one.picture});
+    for (const OutputPictures::Against& map : one.against)
+      stored.push_back({one.output, one.component, map.truth, map.flip, map.flipMap});
   }
+  return stored;
+}
+
+/// One point that does not fit into memory, say, must not cost the others.
+void failed(StoredRun& run, const std::string& why) {
+  fail(run.point, why);
+  logWarning("{}: {}", runText(run), why);
 }
 
 }  // namespace
 
 Measurer::Measurer(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
-                   ResultsStore& store, Scene scene, std::string sceneShown)
+                   ResultsStore& store, Scene scene, std::string sceneShown, Pictures pictures)
     : device_(device),
       techniques_(techniques),
       options_(options),
       store_(store),
       scene_(std::move(scene)),
-      sceneShown_(std::move(sceneShown)) {
+      sceneShown_(std::move(sceneShown)),
+      pictures_(pictures) {
   std::tie(width_, height_) = measuredSize(device_, scene_, options_);
   truthOptions_ = truthOptionsOf(options_, width_, height_);
 }
@@ -124,7 +130,7 @@ Measurer::Batch Measurer::claimed(std::vector<WantedPoint>& pending, std::size_t
       store_.release({key});
       ++byOthers;
     } else {
-      batch.emplace_back(point.loaded, std::move(run));
+      batch.push_back({point.loaded, std::move(run)});
     }
   }
   pending = std::move(left);
@@ -142,17 +148,20 @@ std::vector<StoredRun> Measurer::measure(const std::vector<WantedPoint>& points,
     std::size_t byOthers = 0;
     Batch batch = claimed(pending, byOthers);
     own.clear();
-    for (const auto& entry : batch) own.push_back(entry.second.identity.key());
+    for (const Entry& entry : batch) own.push_back(entry.run.identity.key());
     if (batch.empty() && byOthers == 0) {
       if (!told) logInformation("{}", waitingText(pending));
       told = true;
       std::this_thread::sleep_for(kPause);
       continue;
     }
-    if (!batch.empty()) measureBatch(batch);
-    for (auto& [loaded, run] : batch) {
-      run.created = dateText();
-      store_.add(run);
+    if (!batch.empty()) {
+      makeTruth(points);
+      measureBatch(batch);
+    }
+    for (Entry& entry : batch) {
+      entry.run.created = dateText();
+      store_.add(entry.run, entry.pictures);
     }
     if (done) done(batch.size(), byOthers);
   }
@@ -169,27 +178,27 @@ std::string Measurer::waitingText(const std::vector<WantedPoint>& pending) const
   return fmt::format("waiting for {} points that others measure", pending.size());
 }
 
-void Measurer::control(const std::vector<WantedPoint>& points) {
+void Measurer::control(const std::vector<WantedPoint>& points, std::size_t most) {
   Batch batch;
   for (const WantedPoint& point : points) {
-    if (batch.size() == kBatch) break;
+    if (batch.size() == most) break;
     const std::optional<StoredRun> stored = store_.find(key(point));
-    if (stored && stored->point.failure.empty()) batch.emplace_back(point.loaded, open(point));
+    if (stored && stored->point.failure.empty()) batch.push_back({point.loaded, open(point)});
   }
   timeTogether(batch);
-  for (const auto& [loaded, run] : batch)
-    if (run.point.failure.empty())
-      store_.addControl(run.identity.key(), run.point.frameMs, run.point.nextFrameMs);
+  for (const Entry& entry : batch)
+    if (entry.run.point.failure.empty())
+      store_.addControl(entry.run.identity.key(), entry.run.point.frameMs, entry.run.point.nextFrameMs);
 }
 
-TimeFloor Measurer::floor() const {
+TimeFloor Measurer::floor(const ResultsStore& store) const {
   const DeviceIdentity here = identityOf(device_);
   RunIdentity where;
   where.device = here.device;
   where.driver = here.driver;
   where.shaderInput = here.shaderInput;
   where.host = here.host;
-  return timeFloorOf(store_.controls(where));
+  return timeFloorOf(store.controls(where));
 }
 
 std::vector<StoredRun> Measurer::fetch(const std::vector<WantedPoint>& points) {
@@ -203,48 +212,89 @@ std::vector<StoredRun> Measurer::fetch(const std::vector<WantedPoint>& points) {
   return result;
 }
 
-void Measurer::measureBatch(Batch& batch) {
-  std::vector<std::string> keys;
-  for (const auto& entry : batch) keys.push_back(entry.second.identity.key());
-  for (auto& entry : batch) {
-    const MachineLock working(MachineLock::For::work);
-    if (!truth_) truth_.emplace(scene_, truthOptions_);
-    logInformation("{}", runText(entry.second));
-    guarded(entry.second, [&] {
-      PointRecord record;
-      record.point = entry.second.point;
-      const ReportOptions options = optionsOf(entry.second.identity);
-      const MeasureContext context{{device_, techniques_, scene_, options, width_, height_}, *truth_};
-      measureErrors(context, entry.first->pipeline, record);
-      measureFlicker(context, entry.first->pipeline, record);
-      countWork(context, entry.first->pipeline, {}, record.point);
-      entry.second.point = std::move(record.point);
+void Measurer::makeTruth(const std::vector<WantedPoint>& points) {
+  if (truth_) return;
+  const MachineLock working(MachineLock::For::work);
+  std::set<int> layers;
+  std::set<const LoadedPipeline*> seen;
+  for (const WantedPoint& point : points) {
+    if (!seen.insert(point.loaded).second) continue;
+    RenderOptions options;
+    options.parameters = point.point.parameters;
+    options.parameters.erase(kAccumulatedFrames);
+    options.camera = options_.camera;
+    options.width = width_;
+    options.height = height_;
+    // A pipeline that fails is told so when it is measured.
+    whyFailed([&] {
+      const PipelineExecutor executor(device_, techniques_, scene_, point.loaded->pipeline, options);
+      for (const auto& [output, bounces] : bouncesOf(executor, point.loaded->pipeline))
+        if (bounces > 1) layers.insert(bounces);
     });
+  }
+  ReferenceOptions options = truthOptions_;
+  options.bounceLayers.assign(layers.begin(), layers.end());
+  truth_.emplace(scene_, options);
+}
+
+double Measurer::secondsOf(const WantedPoint& point) const {
+  const auto found = seconds_.find(key(point));
+  return found == seconds_.end() ? 0.0 : found->second;
+}
+
+void Measurer::measureBatch(Batch& batch) {
+  using Clock = std::chrono::steady_clock;
+  const auto secondsSince = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  Truth& reference = truth();
+  std::vector<std::string> keys;
+  for (const Entry& entry : batch) keys.push_back(entry.run.identity.key());
+  for (Entry& entry : batch) {
+    const MachineLock working(MachineLock::For::work);
+    const Clock::time_point start = Clock::now();
+    logInformation("{}", runText(entry.run));
+    const std::string why = whyFailed([&] {
+      PointRecord record;
+      record.point = entry.run.point;
+      const ReportOptions options = optionsOf(entry.run.identity);
+      const MeasureContext context{{device_, techniques_, scene_, options, width_, height_}, reference};
+      measureErrors(context, entry.loaded->pipeline, record);
+      measureFlicker(context, entry.loaded->pipeline, record);
+      countWork(context, entry.loaded->pipeline, record.point);
+      entry.run.point = std::move(record.point);
+      if (pictures_ == Pictures::kept) entry.pictures = storedPictures(record.pictures);
+    });
+    if (!why.empty()) failed(entry.run, why);
+    seconds_[entry.run.identity.key()] = secondsSince(start);
     store_.claim(keys);  // still at it
   }
+  const Clock::time_point start = Clock::now();
   timeTogether(batch);
+  // Each has as many frames as the others.
+  double frames = 0.0;
+  for (const Entry& entry : batch) frames += entry.run.point.frameMs.median;
+  for (const Entry& entry : batch)
+    if (frames > 0.0)
+      seconds_[entry.run.identity.key()] += secondsSince(start) * entry.run.point.frameMs.median / frames;
 }
 
 void Measurer::timeTogether(Batch& batch) {
-  struct Timed {
-    StoredRun& run;
-    TimedPoint point;
-  };
-  const MachineLock alone(MachineLock::For::timing);
-  std::vector<Timed> timed;
-  for (auto& entry : batch)
-    guarded(entry.second, [&] {
-      const ReportOptions options = optionsOf(entry.second.identity);
-      timed.push_back({entry.second, TimedPoint({device_, techniques_, scene_, options, width_, height_},
-                                                entry.first->pipeline, entry.second.point)});
-    });
+  std::vector<Turn> turns;
+  std::vector<Entry*> entries;
+  for (Entry& entry : batch) {
+    if (!entry.run.point.failure.empty()) continue;
+    entries.push_back(&entry);
+    turns.push_back({runText(entry.run), [&] {
+                       const ReportOptions options = optionsOf(entry.run.identity);
+                       return TimedPoint({device_, techniques_, scene_, options, width_, height_},
+                                         entry.loaded->pipeline, entry.run.point);
+                     }});
+  }
   const int repeats = std::max(1, options_.repeats);
-  for (int repeat = 0; repeat < repeats; ++repeat)
-    for (Timed& one : timed) guarded(one.run, [&] { one.point.timeFrame(); });
-  for (int repeat = 0; repeat < repeats; ++repeat)
-    for (Timed& one : timed) guarded(one.run, [&] { one.point.timeNextFrame(); });
-  for (Timed& one : timed)
-    if (one.run.point.failure.empty()) one.point.finish();
+  timeInTurns(turns, repeats, repeats);
+  for (std::size_t i = 0; i < turns.size(); ++i)
+    if (!turns[i].failure.empty()) failed(entries[i]->run, turns[i].failure);
 }
 
 }  // namespace lumivox::experiment

@@ -1,8 +1,9 @@
-// Measures points of one scene into a results store: errors and work apart from times, the timed frames
-// taking turns.
+// Measures points of one scene into a results store, for reports, sweeps and the search for the best: errors
+// and work apart from times, the timed frames taking turns (experiment/turns.h).
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,8 +23,14 @@ struct WantedPoint {
 
 class Measurer {
  public:
+  /// Points whose timed frames take turns. Each keeps its resources while it waits, and an interruption loses
+  /// the batch.
+  static constexpr std::size_t kBatch = 6;
+
+  enum class Pictures { no, kept };
+  /// Pictures are kept in the store, beside the numbers, where they are wanted.
   Measurer(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options, ResultsStore& store,
-           Scene scene, std::string sceneShown);
+           Scene scene, std::string sceneShown, Pictures pictures = Pictures::no);
 
   /// What the store holds of these points, in their order, before anything is measured. A failure counts as
   /// held unless `retryFailed`.
@@ -31,26 +38,43 @@ class Measurer {
   std::string key(const WantedPoint& point) const;
   std::string text(const WantedPoint& point) const;
 
-  /// Measures the points together and stores them; gives them back as they are in the store now. Points that
-  /// another process measures are left to it, and waited for at the end. `done` is told after each batch how
-  /// many points were measured here and how many by others.
+  /// A point before it is measured: what it depends on and how it is called.
+  StoredRun open(const WantedPoint& point) const;
+
+  /// Measures the points together, at most kBatch at once, and stores them; gives them back as they are in
+  /// the store now. Points that another process measures are left to it, and waited for at the end. `done` is
+  /// told after each batch how many points were measured here and how many by others.
   std::vector<StoredRun> measure(const std::vector<WantedPoint>& points,
                                  const std::function<void(std::size_t, std::size_t)>& done = {});
-  /// Times the first of these points that the store holds once more, as many as are timed together, in the
-  /// same way: what differs is the machine's mood.
-  void control(const std::vector<WantedPoint>& points);
-  /// What the controls in the store say of this device.
-  TimeFloor floor() const;
+  /// Times the first of these points that the store holds once more, at most as many as are timed together,
+  /// in the same way: what differs is the machine's mood.
+  void control(const std::vector<WantedPoint>& points, std::size_t most = kBatch);
+  /// What the controls in a store say of this device.
+  TimeFloor floor(const ResultsStore& store) const;
+  TimeFloor floor() const { return floor(store_); }
   /// Those that the store holds are taken from it, the others are measured.
   std::vector<StoredRun> fetch(const std::vector<WantedPoint>& points);
 
   const Scene& scene() const { return scene_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+  const ReferenceOptions& truthOptions() const { return truthOptions_; }
+  /// Makes it with all layers that these points are judged by; measure() does it for its own where it is not
+  /// there.
+  void makeTruth(const std::vector<WantedPoint>& points);
+  Truth& truth() { return truth_.value(); }
+  /// How long a point took that was measured here, its share of the batch's times included, s; 0: it was not.
+  double secondsOf(const WantedPoint& point) const;
 
  private:
-  StoredRun open(const WantedPoint& point) const;
   /// The options of one run: of its seeds.
   ReportOptions optionsOf(const RunIdentity& identity) const;
-  using Batch = std::vector<std::pair<const LoadedPipeline*, StoredRun>>;
+  struct Entry {
+    const LoadedPipeline* loaded;
+    StoredRun run;
+    std::vector<StoredPicture> pictures = {};
+  };
+  using Batch = std::vector<Entry>;
   /// Points that this process may measure now, at most a batch; takes them, and what others have stored
   /// meanwhile, out of `pending`.
   Batch claimed(std::vector<WantedPoint>& pending, std::size_t& byOthers);
@@ -64,9 +88,11 @@ class Measurer {
   ResultsStore& store_;
   Scene scene_;
   std::string sceneShown_;
+  Pictures pictures_;
   int width_ = 0, height_ = 0;
   ReferenceOptions truthOptions_;
-  std::optional<Truth> truth_;  ///< made when the first point is measured
+  std::optional<Truth> truth_;
+  std::map<std::string, double> seconds_;  ///< by key
 };
 
 }  // namespace lumivox::experiment

@@ -235,7 +235,9 @@ std::string repeatingCommand(const ReportOptions& options, const std::string& sc
                              int height, int samples) {
   std::string command =
       fmt::format("lumivox report {} --pipeline {}", shellQuoted(scene), shellQuoted(pipeline));
-  for (const auto& [name, value] : parameters) command += " --set " + shellQuoted(name + "=" + value.text());
+  for (const auto& [name, value] : parameters)
+    if (name != kAccumulatedFrames) command += " --set " + shellQuoted(name + "=" + value.text());
+  if (framesOf(parameters) > 1) command += fmt::format(" --frames {}", framesOf(parameters));
   command +=
       fmt::format(" --no-sweep --resolution {}x{} --spp {} --subpixels {} --repeats {} --seeds {} --seed {}",
                   width, height, samples, options.subpixels, options.repeats, options.seeds, options.seed);

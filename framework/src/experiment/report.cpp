@@ -4,17 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <deque>
 #include <set>
 
 #include "base/process.h"
 #include "experiment/choice.h"
-#include "experiment/measure.h"
+#include "experiment/measurer.h"
 #include "experiment/plan.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/voxelisers.h"
 #include "lumivox/results/store.h"
-#include "lumivox/results/stress_cells.h"
 #include "lumivox/results/text.h"
 #include "lumivox/roofline/ceilings.h"
 
@@ -22,16 +23,6 @@ namespace lumivox {
 namespace {
 
 using namespace experiment;
-
-std::vector<StoredPicture> storedPictures(const std::vector<OutputPictures>& outputs) {
-  std::vector<StoredPicture> stored;
-  for (const OutputPictures& one : outputs) {
-    stored.push_back({one.output, one.component, {}, 0.0, one.picture});
-    for (const OutputPictures::Against& map : one.against)
-      stored.push_back({one.output, one.component, map.truth, map.flip, map.flipMap});
-  }
-  return stored;
-}
 
 std::vector<OutputPictures> outputPictures(std::vector<StoredPicture> stored) {
   std::vector<OutputPictures> outputs;
@@ -43,113 +34,6 @@ std::vector<OutputPictures> outputPictures(std::vector<StoredPicture> stored) {
   }
   return outputs;
 }
-
-/// Measures the points of a report, and keeps each as soon as it is there.
-class ReportPoints {
- public:
-  ReportPoints(TechniqueSet& techniques, const std::vector<DeviceCeiling>& ceilings, ResultsStore& checkpoint,
-               ResultsStore* store)
-      : techniques_(techniques), ceilings_(ceilings), checkpoint_(checkpoint), store_(store) {}
-
-  /// From the checkpoint where an interrupted report has left it there. Without a truth it fails with the
-  /// reason for that.
-  PointRecord point(const MeasureContext& context, const LoadedPipeline& loaded, const PlannedPoint& planned,
-                    const std::string& sceneShown, int samples) {
-    StoredRun run = runOf(context, loaded, planned, sceneShown, samples);
-    PointRecord record;
-    record.isDefault = planned.isDefault;
-    record.point = run.point;
-    const std::string text =
-        fmt::format("{}, {}: {}", sceneShown, loaded.shown, pointText(planned.parameters));
-    if (std::optional<StoredRun> kept = checkpoint_.find(run.identity.key());
-        kept && kept->point.failure.empty()) {
-      logInformation("{}: taken up from {}", text, checkpoint_.file().string());
-      ++takenUp_;
-      takeUp(record, std::move(*kept));
-    } else {
-      logInformation("{}", text);
-      if (const std::string why = whyFailed([&] { measure(context, loaded, record); }); !why.empty()) {
-        fail(record.point, why);
-        record.pictures.clear();
-        logWarning("{}: {}", text, why);
-      }
-      run.created = dateText();
-      run.point = record.point;
-      checkpoint_.add(run, storedPictures(record.pictures));
-    }
-    run.created = run.created.empty() ? dateText() : run.created;
-    run.point = record.point;
-    if (store_ != nullptr) store_->add(run);
-    return record;
-  }
-
-  /// A point whose truth could not be made.
-  static PointRecord failed(const StoredRun& run, bool isDefault, const std::string& why) {
-    PointRecord record;
-    record.isDefault = isDefault;
-    record.point = run.point;
-    fail(record.point, why);
-    return record;
-  }
-
-  StoredRun runOf(const TimingContext& context, const LoadedPipeline& loaded, const PlannedPoint& planned,
-                  const std::string& sceneShown, int samples) const {
-    return storedRunOf(context.device, techniques_, context.scene, loaded, planned, context.options,
-                       context.width, context.height, samples, sceneShown);
-  }
-
-  /// Times a point of this report once more, and tells how far apart times of the same thing are here.
-  TimeFloor control(const TimingContext& context, const LoadedPipeline& loaded, const PlannedPoint& planned,
-                    const std::string& sceneShown, int samples) {
-    const StoredRun run = runOf(context, loaded, planned, sceneShown, samples);
-    PointRecord again;
-    again.point = run.point;
-    const std::string why = whyFailed([&] {
-      const MachineLock alone(MachineLock::For::timing);
-      measureTimes(context, loaded.pipeline, again);
-    });
-    if (!why.empty()) logWarning("{}, {}: it could not be timed twice: {}", sceneShown, loaded.shown, why);
-    for (ResultsStore* store : {&checkpoint_, store_})
-      if (store != nullptr && why.empty())
-        store->addControl(run.identity.key(), again.point.frameMs, again.point.nextFrameMs);
-    // The store of the user holds those of the checkpoint too.
-    return timeFloorOf((store_ != nullptr ? *store_ : checkpoint_).controls(run.identity));
-  }
-
-  std::size_t takenUp() const { return takenUp_; }
-
- private:
-  void measure(const MeasureContext& context, const LoadedPipeline& loaded, PointRecord& record) {
-    {
-      const MachineLock working(MachineLock::For::work);
-      measureErrors(context, loaded.pipeline, record);
-      measureFlicker(context, loaded.pipeline, record);
-      countWork(context, loaded.pipeline, ceilings_, record.point);
-    }
-    const MachineLock alone(MachineLock::For::timing);
-    measureTimes(context, loaded.pipeline, record);
-  }
-
-  void takeUp(PointRecord& record, StoredRun kept) const {
-    const std::string command = record.point.command;
-    const std::string scene = record.point.scene, pipeline = record.point.pipeline;
-    record.point = std::move(kept.point);
-    record.point.scene = scene;
-    record.point.pipeline = pipeline;
-    record.point.command = command;
-    for (const auto& [pass, work] : record.point.passWork)
-      record.point.passBounds[pass] = lowerBounds(work, ceilings_);
-    if (record.point.passWork.empty())
-      record.point.whyNotCounted = "nothing was counted before the report was interrupted";
-    record.pictures = outputPictures(checkpoint_.pictures(kept.identity.key()));
-  }
-
-  TechniqueSet& techniques_;
-  const std::vector<DeviceCeiling>& ceilings_;
-  ResultsStore& checkpoint_;
-  ResultsStore* store_;
-  std::size_t takenUp_ = 0;
-};
 
 /// Where points stay until the page is written: a store beside it, which goes when it is of no more use.
 class Checkpoint {
@@ -171,83 +55,251 @@ class Checkpoint {
   bool finished = false;
 };
 
-SceneRecord measureScene(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
-                         const Scene& scene, const std::vector<const LoadedPipeline*>& pipelines,
-                         const std::string& shown, ReportPoints& points) {
-  SceneRecord record;
-  record.file = shown;
-  record.name = scene.name;
-  record.hash = scene.hash.text();
-  record.camera = scene.camera(options.camera).name;
-  record.time = options.time;
-  record.triangles = scene.triangleCount();
-  std::tie(record.width, record.height) = measuredSize(device, scene, options);
-  const ReferenceOptions truthOptions = truthOptionsOf(options, record.width, record.height);
-  logInformation("{}: truth at {} x {}, {} samples per pixel", shown, record.width, record.height,
-                 truthOptions.samplesPerPixel);
-  record.truthSamples = truthOptions.samplesPerPixel;
-  const TimingContext timing{device, techniques, scene, options, record.width, record.height};
-  std::optional<Truth> made;
-  const std::string whyNoTruth = whyFailed([&] {
-    const MachineLock working(MachineLock::For::work);
-    made.emplace(scene, truthOptions);
-  });
-  if (!made) {
-    logWarning("{}: its truth could not be made: {}", shown, whyNoTruth);
+/// Time for measuring, from when it is made: after the references.
+class Budget {
+ public:
+  explicit Budget(double seconds) : seconds_(seconds) {}
+  double spent() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  bool allows(double seconds) const { return seconds_ <= 0.0 || spent() + seconds <= seconds_; }
+  /// At most this long it goes on.
+  double left(double seconds) const {
+    return seconds_ <= 0.0 ? seconds : std::clamp(seconds_ - spent(), 0.0, seconds);
+  }
+
+ private:
+  double seconds_;  ///< 0: no limit
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// One scene of a report, from its truth to its record.
+class SceneReport {
+ public:
+  SceneReport(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
+              ResultsStore& checkpoint, Scene scene, const std::string& shown,
+              const std::vector<const LoadedPipeline*>& pipelines)
+      : device_(device),
+        techniques_(techniques),
+        options_(options),
+        checkpoint_(checkpoint),
+        shown_(shown),
+        measurer_(device, techniques, options, checkpoint, std::move(scene), shown,
+                  Measurer::Pictures::kept) {
     for (const LoadedPipeline* loaded : pipelines)
-      for (const PlannedPoint& planned :
-           plannedPoints(loaded->pipeline, loaded->settings, options.openSweeps))
-        record.points.push_back(
-            ReportPoints::failed(points.runOf(timing, *loaded, planned, shown, record.truthSamples),
-                                 planned.isDefault, "the scene's truth could not be made: " + whyNoTruth));
+      for (PlannedPoint& planned : pointsFor(*loaded, techniques, options))
+        points_.push_back({{loaded, std::move(planned)}});
+  }
+
+  void makeTruth() {
+    logInformation("{}: truth at {} x {}, {} samples per pixel", shown_, measurer_.width(),
+                   measurer_.height(), measurer_.truthOptions().samplesPerPixel);
+    std::vector<WantedPoint> wanted;
+    for (const Point& point : points_) wanted.push_back(point.wanted);
+    whyNoTruth_ = whyFailed([&] { measurer_.makeTruth(wanted); });
+    if (!whyNoTruth_.empty()) logWarning("{}: its truth could not be made: {}", shown_, whyNoTruth_);
+    const std::vector<bool> held = measurer_.held(wanted, true);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (held[i]) points_[i].state = State::takenUp;
+      if (!whyNoTruth_.empty()) points_[i].state = State::withoutTruth;
+      if (points_[i].state == State::takenUp)
+        logInformation("{}: taken up from {}", measurer_.text(wanted[i]), checkpoint_.file().string());
+    }
+  }
+
+  const Scene& scene() const { return measurer_.scene(); }
+  std::size_t missing() const { return count(State::missing); }
+  std::size_t takenUp() const { return count(State::takenUp); }
+
+  void measureDefaults(const std::function<void(std::size_t)>& done) {
+    std::vector<Point*> defaults;
+    for (Point& point : points_)
+      if (point.state == State::missing && point.wanted.point.isDefault) defaults.push_back(&point);
+    measure(defaults, done);
+  }
+
+  /// Of each pipeline in turn the next point, as long as the time allows; false when nothing was left to do.
+  /// A point is expected to take as long as the longest of its pipeline's so far.
+  bool measureMore(const Budget& budget, const std::function<void(std::size_t)>& done) {
+    std::vector<Point*> batch;
+    double seconds = 0.0;
+    for (bool found = true; found && batch.size() < Measurer::kBatch;) {
+      found = false;
+      std::set<const LoadedPipeline*> had;
+      for (Point& point : points_) {
+        if (point.state != State::missing || std::find(batch.begin(), batch.end(), &point) != batch.end() ||
+            had.count(point.wanted.loaded) != 0 || batch.size() == Measurer::kBatch)
+          continue;
+        had.insert(point.wanted.loaded);
+        const double expected = secondsOf(*point.wanted.loaded);
+        if (!budget.allows(seconds + expected)) continue;
+        seconds += expected;
+        batch.push_back(&point);
+        found = true;
+      }
+    }
+    measure(batch, done);
+    return !batch.empty();
+  }
+
+  /// With and without leaving out, of every pipeline whose default point works, as long as there is time.
+  void measurePrunings(const Budget& budget) {
+    for (const Point& point : points_) {
+      if (!point.wanted.point.isDefault || !works(point)) continue;
+      if (budget.allows(0.0))
+        measurePruning(*point.wanted.loaded);
+      else
+        leftOutPrunings_.push_back(point.wanted.loaded->shown);
+    }
+  }
+
+  /// Times points once more: how far apart times of the same thing are here.
+  void control(std::size_t most) {
+    std::vector<WantedPoint> wanted;
+    for (const Point& point : points_)
+      if (works(point)) wanted.push_back(point.wanted);
+    const std::string why = whyFailed([&] { measurer_.control(wanted, most); });
+    if (!why.empty()) logWarning("{}: nothing could be timed twice: {}", shown_, why);
+  }
+
+  SceneRecord record(const std::vector<DeviceCeiling>& ceilings, const ResultsStore& controls) {
+    const Scene& scene = measurer_.scene();
+    SceneRecord record;
+    record.file = shown_;
+    record.name = scene.name;
+    record.hash = scene.hash.text();
+    record.camera = scene.camera(options_.camera).name;
+    record.time = options_.time;
+    record.triangles = scene.triangleCount();
+    record.width = measurer_.width();
+    record.height = measurer_.height();
+    record.truthSamples = measurer_.truthOptions().samplesPerPixel;
+    for (const Point& point : points_) {
+      if (point.state == State::missing)
+        record.leftOutPoints.push_back(
+            {point.wanted.loaded->shown, point.wanted.point.sweep, point.wanted.point.parameters});
+      else
+        record.points.push_back(recordOf(point, ceilings));
+    }
+    record.pruning = std::move(pruning_);
+    record.leftOutPrunings = std::move(leftOutPrunings_);
+    if (!whyNoTruth_.empty()) return record;
+    record.truthSeconds = measurer_.truth().seconds();
+    record.truthAttributes = measurer_.truth().layers().attributes;
+    std::set<std::string> used;
+    for (const PointRecord& point : record.points)
+      for (const ComponentError& error : point.point.errors) used.insert(error.truth);
+    record.truths = truthRecords(measurer_.truth(), used);
+    record.floor = measurer_.floor(controls);
     return record;
   }
-  Truth& truth = *made;
-  record.truthSeconds = truth.seconds();
-  record.truthAttributes = truth.layers().attributes;
 
-  const MeasureContext context{timing, truth};
-  std::optional<std::pair<const LoadedPipeline*, PlannedPoint>> first;
-  for (const LoadedPipeline* loaded : pipelines) {
-    bool defaultWorks = true;
-    for (const PlannedPoint& planned :
-         plannedPoints(loaded->pipeline, loaded->settings, options.openSweeps)) {
-      record.points.push_back(points.point(context, *loaded, planned, shown, record.truthSamples));
-      const bool works = record.points.back().point.failure.empty();
-      if (works && !first) first.emplace(loaded, planned);
-      if (planned.isDefault) defaultWorks = works;
-    }
-    if (!defaultWorks) continue;
-    RenderOptions renderOptions;
-    renderOptions.parameters = loaded->settings;
-    renderOptions.seed = options.seed;
-    renderOptions.camera = options.camera;
-    renderOptions.width = record.width;
-    renderOptions.height = record.height;
-    logInformation("{}, {}: with and without leaving out", shown, loaded->shown);
-    const std::string why = whyFailed([&] {
-      const MachineLock alone(MachineLock::For::timing);
-      PruningRecord pruning = measurePruning(device, techniques, scene, loaded->pipeline, renderOptions,
-                                             options.time, options.repeats);
-      pruning.scene = shown;
-      pruning.pipeline = loaded->shown;
-      record.pruning.push_back(std::move(pruning));
-    });
-    if (!why.empty())
-      logWarning("{}, {}: the unpruned pipeline could not be measured: {}", shown, loaded->shown, why);
+ private:
+  enum class State { missing, takenUp, measured, withoutTruth };
+  struct Point {
+    WantedPoint wanted;
+    State state = State::missing;
+  };
+
+  std::size_t count(State state) const {
+    return static_cast<std::size_t>(std::count_if(points_.begin(), points_.end(),
+                                                  [&](const Point& point) { return point.state == state; }));
   }
 
-  std::set<std::string> used;
-  for (const PointRecord& point : record.points)
-    for (const ComponentError& error : point.point.errors) used.insert(error.truth);
-  record.truths = truthRecords(truth, used);
-  if (first) record.floor = points.control(timing, *first->first, first->second, shown, record.truthSamples);
-  return record;
+  void measure(const std::vector<Point*>& some, const std::function<void(std::size_t)>& done) {
+    std::vector<WantedPoint> wanted;
+    for (const Point* point : some) wanted.push_back(point->wanted);
+    measurer_.measure(wanted, [&](std::size_t own, std::size_t others) { done(own + others); });
+    for (Point* point : some) point->state = State::measured;
+  }
+
+  double secondsOf(const LoadedPipeline& loaded) const {
+    double most = 0.0;
+    for (const Point& point : points_)
+      if (point.wanted.loaded == &loaded && point.state == State::measured)
+        most = std::max(most, measurer_.secondsOf(point.wanted));
+    return most;
+  }
+
+  bool works(const Point& point) const {
+    if (point.state != State::measured && point.state != State::takenUp) return false;
+    const std::optional<StoredRun> run = checkpoint_.find(measurer_.key(point.wanted));
+    return run && run->point.failure.empty();
+  }
+
+  void measurePruning(const LoadedPipeline& loaded) {
+    RenderOptions renderOptions;
+    renderOptions.parameters = loaded.settings;
+    renderOptions.seed = options_.seed;
+    renderOptions.camera = options_.camera;
+    renderOptions.width = measurer_.width();
+    renderOptions.height = measurer_.height();
+    logInformation("{}, {}: with and without leaving out", shown_, loaded.shown);
+    const std::string why = whyFailed([&] {
+      const MachineLock alone(MachineLock::For::timing);
+      PruningRecord pruning =
+          lumivox::measurePruning(device_, techniques_, measurer_.scene(), loaded.pipeline, renderOptions,
+                                  options_.time, options_.repeats);
+      pruning.scene = shown_;
+      pruning.pipeline = loaded.shown;
+      pruning_.push_back(std::move(pruning));
+    });
+    if (!why.empty())
+      logWarning("{}, {}: the unpruned pipeline could not be measured: {}", shown_, loaded.shown, why);
+  }
+
+  PointRecord recordOf(const Point& point, const std::vector<DeviceCeiling>& ceilings) const {
+    const StoredRun opened = measurer_.open(point.wanted);
+    PointRecord record;
+    record.isDefault = point.wanted.point.isDefault;
+    record.point = opened.point;
+    if (point.state == State::withoutTruth) {
+      fail(record.point, "the scene's truth could not be made: " + whyNoTruth_);
+      return record;
+    }
+    // Names and command are those of this report, whoever measured the point.
+    record.point = checkpoint_.find(opened.identity.key()).value().point;
+    record.point.scene = opened.point.scene;
+    record.point.pipeline = opened.point.pipeline;
+    record.point.sweep = opened.point.sweep;
+    record.point.command = opened.point.command;
+    for (const auto& [pass, work] : record.point.passWork)
+      record.point.passBounds[pass] = lowerBounds(work, ceilings);
+    record.pictures = outputPictures(checkpoint_.pictures(opened.identity.key()));
+    return record;
+  }
+
+  gpu::Device& device_;
+  TechniqueSet& techniques_;
+  const ReportOptions& options_;
+  ResultsStore& checkpoint_;
+  std::string shown_, whyNoTruth_;
+  Measurer measurer_;
+  std::vector<Point> points_;  ///< in the order of the pipelines and their sweeps
+  std::vector<PruningRecord> pruning_;
+  std::vector<std::string> leftOutPrunings_;  ///< pipelines
+};
+
+/// Measures all scenes: the default points of all pipelines first, then what leaving out saves; sweeps share
+/// what is left of the time.
+void measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options, const Budget& budget) {
+  std::size_t finished = 0, total = 0;
+  for (const SceneReport& scene : scenes) total += scene.missing();
+  const auto done = [&](std::size_t points) {
+    finished += points;
+    if (!options.progress || points == 0) return;
+    const double each = budget.spent() / static_cast<double>(finished);
+    options.progress(finished, total, budget.left(each * static_cast<double>(total - finished)));
+  };
+  for (SceneReport& scene : scenes) scene.measureDefaults(done);
+  for (SceneReport& scene : scenes) scene.measurePrunings(budget);
+  for (bool more = true; more;) {
+    more = false;
+    for (SceneReport& scene : scenes) more = scene.measureMore(budget, done) || more;
+  }
+  // Where time is short one point tells of the machine's mood.
+  for (SceneReport& scene : scenes) scene.control(options.budgetSeconds > 0.0 ? 1 : Measurer::kBatch);
 }
-
-}  // namespace
-
-namespace {
 
 VoxeliserOptions voxeliserOptions(const ReportOptions& options, const SceneRecord& scene) {
   VoxeliserOptions voxels;
@@ -276,6 +328,7 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
   data.commandLine = options.commandLine;
   data.equalTimesMs = options.equalTimesMs;
   data.equalErrors = options.equalErrors;
+  data.budgetSeconds = options.budgetSeconds;
   data.device = device.info();
   data.shaderInput = gpu::programRouteText(device);
   data.host = hostText();
@@ -295,15 +348,24 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
   }
 
   Checkpoint checkpoint(options.output);
-  ReportPoints points(techniques, data.ceilings, checkpoint.store, store ? &*store : nullptr);
-  std::set<std::string> pipelineFiles, techniqueNames;
+  std::deque<SceneReport> reports;  // a measurer stays where it is
   for (std::size_t i = 0; i < scenes.size(); ++i) {
-    data.scenes.push_back(measureScene(device, techniques, options, scenes[i], pipelines[i],
-                                       shownPath(options.scenes[i]), points));
+    reports.emplace_back(device, techniques, options, checkpoint.store, std::move(scenes[i]),
+                         shownPath(options.scenes[i]), pipelines[i]);
+    reports.back().makeTruth();
+    summary.takenUp += reports.back().takenUp();
+  }
+  const Budget budget(options.budgetSeconds);
+  measureAll(reports, options, budget);
+  data.measuringSeconds = budget.spent();
+  if (store) store->merge(checkpoint.store);
+  std::set<std::string> pipelineFiles, techniqueNames;
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    data.scenes.push_back(reports[i].record(data.ceilings, store ? *store : checkpoint.store));
     data.scenes.back().unsuited = unsuited[i];
     if (options.voxelResolution > 0) {
-      const std::vector<VoxeliserRecord> voxels =
-          measureVoxelisers(device, techniques, scenes[i], voxeliserOptions(options, data.scenes.back()));
+      const std::vector<VoxeliserRecord> voxels = measureVoxelisers(
+          device, techniques, reports[i].scene(), voxeliserOptions(options, data.scenes.back()));
       data.voxels.insert(data.voxels.end(), voxels.begin(), voxels.end());
     }
     for (const LoadedPipeline* loaded : pipelines[i]) {
@@ -321,13 +383,18 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
 
   write(data);
   checkpoint.finished = true;
-  summary.takenUp = points.takenUp();
 
   for (SceneRecord& scene : data.scenes) {
     for (PointRecord& point : scene.points) {
       summary.points.push_back(std::move(point.point));
     }
     for (PruningRecord& pruning : scene.pruning) summary.pruning.push_back(std::move(pruning));
+    for (const LeftOutPoint& point : scene.leftOutPoints)
+      summary.leftOutPoints.push_back(
+          fmt::format("{}, {}: {}", scene.file, point.pipeline, pointText(point.parameters)));
+    for (const std::string& pipeline : scene.leftOutPrunings)
+      summary.leftOutPoints.push_back(
+          fmt::format("{}, {}: with and without leaving out", scene.file, pipeline));
     for (const auto& [pipeline, why] : scene.unsuited)
       summary.unsuited.push_back(scene.file + ", " + pipeline + ": " + why);
   }

@@ -14,6 +14,7 @@
 #include "experiment/choice.h"
 #include "experiment/measure.h"
 #include "experiment/plan.h"
+#include "experiment/turns.h"
 #include "lumivox/analysis/judge.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
@@ -39,7 +40,6 @@ struct TimedSetUp {
   std::vector<std::pair<const PublishedSetUp*, MeasuredSetUp*>> answers;
   KeptOutputs kept;
   StoredRun run;
-  std::unique_ptr<TimedPoint> timed;
   std::string failure;
 };
 
@@ -92,19 +92,22 @@ class Reproduction {
 
  private:
   void time() {
-    const MachineLock alone(MachineLock::For::timing);
+    std::vector<Turn> turns;
     for (TimedSetUp& setUp : setUps_)
-      guarded(setUp, [&] {
-        setUp.timed =
-            std::make_unique<TimedPoint>(timingOf(setUp), setUp.loaded.pipeline, setUp.run.point, setUp.kept);
-      });
-    for (int repeat = 0; repeat < options_.repeats; ++repeat)
-      for (TimedSetUp& setUp : setUps_) guarded(setUp, [&] { setUp.timed->timeFrame(); });
-    for (TimedSetUp& setUp : setUps_) {
-      guarded(setUp, [&] {
-        setUp.timed->finish();
-        for (const auto& [published, measured] : setUp.answers) readOff(setUp, *published, *measured);
-      });
+      turns.push_back(
+          {setUp.loaded.shown,
+           [&] { return TimedPoint(timingOf(setUp), setUp.loaded.pipeline, setUp.run.point, setUp.kept); },
+           [&](TimedPoint& timed) {
+             for (const auto& [published, measured] : setUp.answers)
+               readOff(setUp, timed.executor(), *published, *measured);
+           }});
+    // A store takes the times of later frames too.
+    timeInTurns(turns, options_.repeats, store_ == nullptr ? 0 : options_.repeats);
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+      TimedSetUp& setUp = setUps_[i];
+      setUp.failure = turns[i].failure;
+      if (!setUp.failure.empty())
+        logWarning("{}: {}: {}", result_.published.id, setUp.loaded.shown, setUp.failure);
       for (const auto& [published, measured] : setUp.answers) {
         if (setUp.failure.empty()) continue;
         measured->whyNot = setUp.failure;
@@ -126,18 +129,9 @@ class Reproduction {
     return {device_, techniques_, *setUp.scene, setUp.options, setUp.width, setUp.height};
   }
 
-  /// What a sweep would store: the times, of later frames too, and errors and work, which are measured apart
-  /// from them. The verdict stands whether this succeeds or not.
+  /// What a sweep would store: the times, and errors and work, which are measured apart from them. The
+  /// verdict stands whether this succeeds or not.
   void store() {
-    {
-      const MachineLock alone(MachineLock::For::timing);
-      for (int repeat = 0; repeat < options_.repeats; ++repeat)
-        for (TimedSetUp& setUp : setUps_) guarded(setUp, [&] { setUp.timed->timeNextFrame(); });
-    }
-    for (TimedSetUp& setUp : setUps_) {
-      guarded(setUp, [&] { setUp.timed->finish(); });
-      setUp.timed.reset();  // its memory, which errors may need
-    }
     // A scene that was made finer here is none that a sweep could name.
     for (TimedSetUp& setUp : setUps_)
       if (setUp.subdivisions == 0) store(setUp);
@@ -160,7 +154,7 @@ class Reproduction {
         measureErrors(context, setUp.loaded.pipeline, record);
         measureFlicker(context, setUp.loaded.pipeline, record);
       }
-      countWork(timingOf(setUp), setUp.loaded.pipeline, {}, record.point, setUp.kept);
+      countWork(timingOf(setUp), setUp.loaded.pipeline, record.point, setUp.kept);
       run.point = std::move(record.point);
     });
     run.point.failure = setUp.failure;
@@ -309,12 +303,13 @@ class Reproduction {
     if (parameter.low) value.number = std::clamp(value.number, *parameter.low, *parameter.high);
   }
 
-  void readOff(TimedSetUp& setUp, const PublishedSetUp& row, MeasuredSetUp& measured) {
+  void readOff(const TimedSetUp& setUp, const PipelineExecutor& executor, const PublishedSetUp& row,
+               MeasuredSetUp& measured) {
     const ReportPoint& point = setUp.run.point;
     for (const std::string& pass : row.passes) {
       if (std::find(point.passOrder.begin(), point.passOrder.end(), pass) != point.passOrder.end()) continue;
       measured.whyNot = fmt::format("pass '{}' was left out", pass);
-      for (const LeftOut& leftOut : setUp.timed->executor().explain().leftOut)
+      for (const LeftOut& leftOut : executor.explain().leftOut)
         if (leftOut.level == LeftOut::Level::pass && leftOut.pass == pass)
           measured.whyNot += ": " + leftOut.why;
       return;
@@ -325,7 +320,7 @@ class Reproduction {
         measured.measured = row.passes.empty() ? point.frameMs : sumOf(point.passDeviceMs, row.passes);
         return;
       case PublishedQuantity::fragments:
-        measured.measured = exactly(fragmentsOf(setUp, row));
+        measured.measured = exactly(fragmentsOf(executor, row));
         return;
       case PublishedQuantity::memory: {
         constexpr double kMegabyte = 1e6;
@@ -354,8 +349,8 @@ class Reproduction {
     return sum;
   }
 
-  double fragmentsOf(const TimedSetUp& setUp, const PublishedSetUp& row) const {
-    const OutBase* output = setUp.timed->executor().output(row.pass, row.port);
+  static double fragmentsOf(const PipelineExecutor& executor, const PublishedSetUp& row) {
+    const OutBase* output = executor.output(row.pass, row.port);
     const std::optional<OccupiedVoxels> voxels = output == nullptr ? std::nullopt : occupiedVoxels(*output);
     if (!voxels || voxels->fragments == 0)
       throw Error(

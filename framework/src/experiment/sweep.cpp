@@ -37,7 +37,7 @@ class SweepPlan {
     ScenePlan& plan = planOf(file);
     std::vector<std::pair<std::string, std::string>> unsuited;
     for (const LoadedPipeline* loaded : choice.forScene(plan.measurer->scene(), unsuited))
-      addPoints(plan, loaded, plannedPoints(loaded->pipeline, loaded->settings, options_.measure.openSweeps));
+      addPoints(plan, loaded, pointsFor(*loaded, techniques_, options_.measure));
     for (const auto& [pipeline, why] : unsuited)
       summary.unsuited.push_back(fmt::format("{}, {}: {}", shownPath(file), pipeline, why));
   }
@@ -138,10 +138,10 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
     summary.measured += measured;
     summary.held += byOthers;
     finished += measured + byOthers;
-    if (!options.progress) return;
+    if (!measure.progress) return;
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const auto left = static_cast<double>(total - finished);
-    options.progress(finished, total, seconds / static_cast<double>(finished) * left);
+    measure.progress(finished, total, seconds / static_cast<double>(finished) * left);
   };
   ScenePlan* first = nullptr;
   for (ScenePlan& scene : plan.scenes()) {

@@ -1,4 +1,7 @@
 // The truth's layers as the components of a pipeline need them.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -14,20 +17,23 @@ void add(Picture& sum, const Picture& part) {
 
 }  // namespace
 
-std::pair<std::string, std::string> truthLayers(Contributes component) {
+std::pair<std::string, std::string> truthLayers(Contributes component, int bounces) {
+  const auto upTo = [&](const char* one, const char* lobe) {
+    return bounces == 1 ? std::string(one) : fmt::format("bounces_{}{}", bounces, lobe);
+  };
   switch (component) {
     case Contributes::direct:
       return {"direct", "direct"};
     case Contributes::indirectDiffuse:
-      return {"one_bounce_diffuse", "indirect_diffuse"};
+      return {upTo("one_bounce_diffuse", "_diffuse"), "indirect_diffuse"};
     case Contributes::indirectGlossy:
-      return {"one_bounce_glossy", "indirect_glossy"};
+      return {upTo("one_bounce_glossy", "_glossy"), "indirect_glossy"};
     case Contributes::ambientOcclusion:
       return {"ambient_occlusion", "ambient_occlusion"};
     case Contributes::scattered:
       return {"scattered_single", "scattered"};
     case Contributes::final:
-      return {"one_bounce", "full"};
+      return {upTo("one_bounce", ""), "full"};
     case Contributes::nothing:
       break;
   }
@@ -62,6 +68,13 @@ Truth::Truth(const Scene& scene, const ReferenceOptions& options) : options_(opt
   const auto start = std::chrono::steady_clock::now();
   layers_ = cachedReference(scene, options);
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void Truth::require(const Scene& scene, int bounces) {
+  std::vector<int>& layers = options_.bounceLayers;
+  if (bounces <= 1 || std::find(layers.begin(), layers.end(), bounces) != layers.end()) return;
+  layers.insert(std::upper_bound(layers.begin(), layers.end(), bounces), bounces);
+  *this = Truth(scene, options_);
 }
 
 Truth& Truth::later(const Scene& scene, int frame) {
@@ -106,10 +119,15 @@ float Truth::exposure(const std::string& name) {
 
 std::vector<TruthRecord> truthRecords(Truth& truth, const std::set<std::string>& used) {
   std::vector<TruthRecord> records;
-  // A one-bounce layer is shown at the exposure of the full one, so that all pictures of a component compare.
+  // A layer of some bounces is shown at the exposure of the full one, so that all pictures of a component
+  // compare.
   const auto exposureLayer = [](const std::string& name) -> std::string {
     if (name == "one_bounce_diffuse") return "indirect_diffuse";
     if (name == "one_bounce_glossy") return "indirect_glossy";
+    if (name.rfind("bounces_", 0) == 0)
+      return name.ends_with("_diffuse")  ? "indirect_diffuse"
+             : name.ends_with("_glossy") ? "indirect_glossy"
+                                         : "full";
     return name == "one_bounce" ? "full" : name;
   };
   for (const std::string& name : used) {

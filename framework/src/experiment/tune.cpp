@@ -193,6 +193,18 @@ class Search {
 
   void addNeighbours(const WantedPoint& wanted, std::vector<WantedPoint>& result) {
     const Pipeline& pipeline = wanted.loaded->pipeline;
+    if (options_.measure.frames > 1 && isProgressive(pipeline, techniques_)) {
+      const int now = framesOf(wanted.point.parameters);
+      for (const int frames : {2 * now, now / 2}) {
+        if (frames < 1 || frames > options_.measure.frames) continue;
+        WantedPoint neighbour = wanted;
+        neighbour.point.sweep = "tune";
+        neighbour.point.isDefault = false;
+        neighbour.point.parameters[kAccumulatedFrames].number = frames;
+        if (frames == 1) neighbour.point.parameters.erase(kAccumulatedFrames);
+        result.push_back(std::move(neighbour));
+      }
+    }
     for (const PipelineParameter& parameter : pipeline.parameters) {
       // What the command line sets stays.
       if (wanted.loaded->settings.count(parameter.name) != 0) continue;
@@ -266,7 +278,7 @@ TuneResult tune(gpu::Device& device, TechniqueSet& techniques, const TuneOptions
       unsuited.emplace_back(loaded->shown, fmt::format("it has no output '{}'", options.output));
       continue;
     }
-    for (PlannedPoint& point : plannedPoints(loaded->pipeline, loaded->settings, options.measure.openSweeps))
+    for (PlannedPoint& point : pointsFor(*loaded, techniques, options.measure))
       first.push_back({loaded, std::move(point)});
   }
   if (outputs.count(options.output) == 0)

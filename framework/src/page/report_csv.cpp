@@ -78,6 +78,10 @@ CsvRow csvRow(const SceneRecord& scene, const PointRecord& record, const Compone
   row.add("frame_ms_upper_quartile", point.frameMs.upperQuartile);
   row.add("repeats", static_cast<std::uint64_t>(point.frameMs.repeats));
   row.add("next_frame_ms", point.nextFrameMs.median);
+  const CostParts parts = costParts(point);
+  row.add("once_ms", parts.onceMs);
+  row.add("when_moving_ms", parts.movingMs);
+  row.add("every_frame_ms", parts.everyFrameMs);
   row.add("framework_share", point.frameworkShare);
   row.add("peak_bytes", point.peakBytes);
   row.add("health_findings", std::uint64_t{point.healthFindings.size()});

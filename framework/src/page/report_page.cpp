@@ -108,6 +108,8 @@ Json reportJson(const ReportRecord& record) {
   for (const SkippedTechnique& skipped : record.skipped)
     json["skipped"].push_back({{"library", skipped.library.string()}, {"reason", skipped.reason}});
   json["least_repeats"] = kLeastRepeats;
+  json["budget_s"] = record.budgetSeconds > 0.0 ? Json(record.budgetSeconds) : Json(nullptr);
+  json["measuring_s"] = numberJson(record.measuringSeconds);
   json["scenes"] = Json::array();
   for (const SceneRecord& scene : record.scenes) json["scenes"].push_back(sceneJson(record, scene));
   if (!record.voxels.empty()) {

@@ -100,6 +100,12 @@ Json toJson(const ReportPoint& point, bool isDefault) {
   if (!point.failure.empty()) json["failure"] = point.failure;
   json["frame_ms"] = toJson(point.frameMs);
   json["next_frame_ms"] = toJson(point.nextFrameMs);
+  json["still_frame_ms"] = toJson(point.stillFrameMs);
+  json["moved_frame_ms"] = toJson(point.movedFrameMs);
+  const CostParts parts = costParts(point);
+  json["once_ms"] = toJson(parts.onceMs);
+  json["when_moving_ms"] = toJson(parts.movingMs);
+  json["every_frame_ms"] = toJson(parts.everyFrameMs);
   json["framework_share"] = numberJson(point.frameworkShare);
   json["peak_bytes"] = point.peakBytes;
   Json passes = Json::array();
@@ -245,6 +251,11 @@ Json toJson(const SceneRecord& scene) {
                       {"largest", numberJson(truth.largest)},
                       {"display_exposure", numberJson(truth.exposure)}});
   json["truth"]["layers"] = std::move(layers);
+  json["left_out_points"] = Json::array();
+  for (const LeftOutPoint& point : scene.leftOutPoints)
+    json["left_out_points"].push_back(
+        {{"pipeline", point.pipeline}, {"sweep", point.sweep}, {"parameters", toJson(point.parameters)}});
+  json["left_out_prunings"] = scene.leftOutPrunings;
   json["unsuited"] = Json::array();
   for (const auto& [pipeline, why] : scene.unsuited)
     json["unsuited"].push_back({{"pipeline", pipeline}, {"why", why}});

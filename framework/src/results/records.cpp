@@ -1,6 +1,9 @@
 #include "lumivox/results/records.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "lumivox/results/report_record.h"
 #include "lumivox/results/voxelisers.h"
@@ -17,6 +20,26 @@ double saved(const TimingStatistics& pruned, const TimingStatistics& unpruned) {
 double ComponentError::ratioToNothing() const {
   return errorOfNothing.rmse.value > 0.0 ? error.rmse.value / errorOfNothing.rmse.value
                                          : std::numeric_limits<double>::quiet_NaN();
+}
+
+int framesOf(const ParameterValues& parameters) {
+  const auto found = parameters.find(kAccumulatedFrames);
+  return found == parameters.end() ? 1 : std::max(1, static_cast<int>(found->second.number));
+}
+
+CostParts costParts(const ReportPoint& point) {
+  // What is left of the longer time; a machine's mood may make it the shorter one.
+  const auto left = [](const TimingStatistics& all, const TimingStatistics& part) {
+    const Measured a = medianOf(all), b = medianOf(part);
+    return Measured{std::max(0.0, a.value - b.value), std::hypot(a.uncertainty, b.uncertainty)};
+  };
+  constexpr Measured kUnknown{std::numeric_limits<double>::quiet_NaN(), 0.0};
+  CostParts parts{kUnknown, kUnknown, kUnknown};
+  if (point.stillFrameMs.repeats == 0 || point.movedFrameMs.repeats == 0) return parts;
+  parts.everyFrameMs = medianOf(point.stillFrameMs);
+  parts.movingMs = left(point.movedFrameMs, point.stillFrameMs);
+  if (framesOf(point.parameters) == 1) parts.onceMs = left(point.frameMs, point.movedFrameMs);
+  return parts;
 }
 
 double PruningRecord::savedShare() const {

@@ -26,7 +26,8 @@ constexpr const char* kRunColumns =
     "key, created, version, scene, scene_name, pipeline, pipeline_name, sweep, is_default, camera, time, "
     "width, height, seed, seeds, repeats, subpixels, truth_samples, device, driver, shader_input, host, "
     "framework_share, failure, command";
-constexpr const char* kTimings[] = {"frame", "next_frame", "pass_device", "pass_host"};
+constexpr const char* kTimings[] = {"frame",     "next_frame",  "pass_device",
+                                    "pass_host", "still_frame", "moved_frame"};
 
 bool hasNamed(const std::string& wanted, const std::string& file, const std::string& title) {
   return wanted.empty() || wanted == title || results::namesFile(wanted, file);
@@ -156,6 +157,7 @@ void ResultsStore::State::insertNames(std::int64_t id, const StoredRun& run) {
   provenance.run(id, "framework", "lumivox", run.identity.framework);
   if (run.identity.flickerPairs > 0)
     provenance.run(id, "flicker", fmt::format("{} pairs", run.identity.flickerPairs), "");
+  if (!run.point.whyNotCounted.empty()) provenance.run(id, "not_counted", run.point.whyNotCounted, "");
   for (const std::string& output : run.identity.kept) provenance.run(id, "kept", output, "");
   for (const auto& [name, hash] : run.identity.techniques) provenance.run(id, "technique", name, hash);
   Statement health(database, "INSERT INTO health VALUES (?,?,?)");
@@ -175,6 +177,8 @@ void ResultsStore::State::insertTimes(std::int64_t id, const ReportPoint& point)
   };
   add(kTimings[0], "", point.frameMs);
   add(kTimings[1], "", point.nextFrameMs);
+  add(kTimings[4], "", point.stillFrameMs);
+  add(kTimings[5], "", point.movedFrameMs);
   for (const auto& [pass, time] : point.passDeviceMs) add(kTimings[2], pass, time);
   for (const auto& [pass, time] : point.passHostMs) add(kTimings[3], pass, time);
   Statement pass(database, "INSERT INTO passes VALUES (?,?,?)");
@@ -275,6 +279,7 @@ void ResultsStore::State::readNames(StoredRun& run) const {
   for (provenance.bind(run.id); provenance.step();) {
     const std::string kind = provenance.text(0), hash = provenance.text(2);
     if (kind == "flicker") run.identity.flickerPairs = std::atoi(provenance.text(1).c_str());
+    if (kind == "not_counted") run.point.whyNotCounted = provenance.text(1);
     if (kind == "kept") run.identity.kept.push_back(provenance.text(1));
     if (kind == "scene") run.identity.sceneHash = hash;
     if (kind == "pipeline") run.identity.pipelineHash = hash;
@@ -299,6 +304,8 @@ void ResultsStore::State::readTimes(StoredRun& run) const {
     if (what == kTimings[1]) point.nextFrameMs = time;
     if (what == kTimings[2]) point.passDeviceMs[pass] = time;
     if (what == kTimings[3]) point.passHostMs[pass] = time;
+    if (what == kTimings[4]) point.stillFrameMs = time;
+    if (what == kTimings[5]) point.movedFrameMs = time;
   }
   Statement pass(database, "SELECT name FROM passes WHERE run = ? ORDER BY position");
   for (pass.bind(run.id); pass.step();) point.passOrder.push_back(pass.text(0));
@@ -415,6 +422,7 @@ MergeCount ResultsStore::merge(const ResultsStore& other) {
       newer.push_back(ceiling);
   state_->addCeilings(newer);
   count.ceilings = newer.size();
+  state_->addControls(*other.state_);
   transaction.commit();
   return count;
 }

@@ -89,6 +89,20 @@ void ResultsStore::addControl(const std::string& key, const TimingStatistics& fr
   transaction.commit();
 }
 
+/// Inside a transaction.
+void ResultsStore::State::addControls(const State& other) {
+  if (other.schema < 4) return;
+  Statement row(
+      other.database,
+      "SELECT c.created, c.what, c.median_ms, c.lower_quartile_ms, c.upper_quartile_ms, c.repeats, r.key "
+      "FROM controls c JOIN runs r ON r.id = c.run");
+  Statement insert(database,
+                   "INSERT OR IGNORE INTO controls SELECT id, ?, ?, ?, ?, ?, ? FROM runs WHERE key = ?");
+  while (row.step())
+    insert.run(row.text(0), row.text(1), row.number(2), row.number(3), row.number(4), row.integer(5),
+               row.text(6));
+}
+
 std::vector<RepeatedControl> ResultsStore::controls(const RunIdentity& where) const {
   std::vector<RepeatedControl> controls;
   if (state_->schema < 4) return controls;

@@ -31,6 +31,7 @@ struct ResultsStore::State {
   bool add(const StoredRun& run, const std::vector<StoredPicture>& pictures = {});
   void addCells(const std::vector<StressCell>& cells);
   void addCeilings(const std::vector<DeviceCeiling>& ceilings);
+  void addControls(const State& other);  ///< of runs that are here
   StoredRun runAt(const results::Statement& row) const;
   void readTimes(StoredRun& run) const;
   void readWork(StoredRun& run) const;

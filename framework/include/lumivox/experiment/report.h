@@ -30,6 +30,14 @@ struct ReportOptions {
   int repeats = 5, seeds = kLeastRepeats;
   /// Pairs of frames 1/24 s apart whose flicker is measured where the scene moves; 0: none.
   int flickerPairs = 4;
+  /// Pipelines that accumulate are measured after 1, 2, 4 ... and this many frames of the still scene too, at
+  /// their default parameters.
+  int frames = 1;
+  /// s, for measuring after the references; 0: no limit. The default points are measured in any case, what
+  /// leaving out saves and the points of sweeps in turns as long as there is time.
+  double budgetSeconds = 0.0;
+  /// Told after points were measured: how many of how many, and about how many seconds the rest will take.
+  std::function<void(std::size_t done, std::size_t total, double secondsLeft)> progress;
   bool openSweeps = true;                         ///< false: only the default point
   int voxelResolution = 0;                        ///< of a section on the committed voxelisers; 0: none
   std::filesystem::path store;                    ///< results store that the points are added to; empty: none
@@ -44,6 +52,8 @@ struct ReportSummary {
   std::size_t takenUp = 0;  ///< of them, those that an interrupted run had measured already
   std::vector<PruningRecord> pruning;
   std::vector<std::string> unsuited;  ///< "scene, pipeline: why" for those left out by themselves
+  std::vector<std::string>
+      leftOutPoints;  ///< "scene, pipeline: cones=6" for which there was no time, or what leaving out saves
 };
 
 /// Measures, and gives the whole record to `write`, once. Error (before any work) when a text is wrong.
@@ -54,9 +64,10 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
                          const std::function<Scene(const std::filesystem::path&)>& loadScene,
                          const std::function<void(const ReportRecord&)>& write);
 
-/// The truth layer that a component's bias is measured against, and the one for what the viewer misses.
-/// Empty names: a component without a truth.
-std::pair<std::string, std::string> truthLayers(Contributes component);
+/// The truth layer that a component's bias is measured against, that of so many indirect bounces as its
+/// technique models (Pass::indirectBounces()), and the one for what the viewer misses. Empty names: a
+/// component without a truth.
+std::pair<std::string, std::string> truthLayers(Contributes component, int bounces = 1);
 
 /// One layer of a truth and its variance. Where the truth has no layer "one_bounce", direct and both
 /// one-bounce layers are added up; nullopt when it is not there.

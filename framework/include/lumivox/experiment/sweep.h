@@ -11,14 +11,12 @@
 namespace lumivox {
 
 struct SweepOptions {
-  ReportOptions measure;  ///< what a report measures; `output` is not used
+  ReportOptions measure;  ///< what a report measures; neither `output` nor the budget is used
   /// Texts of their own that name scenes, pipelines, parameters and seeds; with them the scenes above may be
   /// none. Settings pin their axes too.
   std::vector<std::filesystem::path> texts;
   bool retryFailed = false;  ///< measure points anew that the store holds as failed
   bool planOnly = false;     ///< say what would be measured, and measure nothing
-  /// Told after each point: how many of how many, and the seconds that the rest will take about (0: unknown).
-  std::function<void(std::size_t done, std::size_t total, double secondsLeft)> progress;
 };
 
 struct SweepSummary {

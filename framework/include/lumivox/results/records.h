@@ -47,12 +47,19 @@ struct WorkBound {
   double ms = 0.0;
 };
 
+/// The axis of a progressive pipeline: how many frames of the still scene it accumulates, as a parameter of
+/// the points that take more than one.
+inline constexpr const char* kAccumulatedFrames = "frames";
+int framesOf(const ParameterValues& parameters);  ///< 1 without the axis
+
 /// One sweep point: both error and time, in one record.
 struct ReportPoint {
   std::string scene, pipeline, sweep;  ///< scene and pipeline as given files; sweep empty: the default point
   ParameterValues parameters;          ///< all parameters of the pipeline at this point
-  TimingStatistics frameMs;            ///< every kept pass runs
+  TimingStatistics frameMs;            ///< every kept pass runs; of several frames all of them, from nothing
   TimingStatistics nextFrameMs;        ///< 1/60 s later, only what changed runs
+  TimingStatistics stillFrameMs;       ///< of a frame that follows another while nothing moves
+  TimingStatistics movedFrameMs;       ///< of one before which the camera and every light have moved
   std::map<std::string, TimingStatistics> passDeviceMs, passHostMs;
   std::map<std::string, std::uint64_t> passBytes;
   /// What each pass does, counted in a frame of its own.
@@ -70,6 +77,13 @@ struct ReportPoint {
   std::string failure;  ///< why it has no numbers (it did not fit into memory, ...); empty when it has
   std::string command;  ///< that repeats it
 };
+
+/// What a frame costs, apart: once (preprocessing), when something moves, and every time. NaN where that is
+/// not known: it was not measured, or the point is one of several frames.
+struct CostParts {
+  Measured onceMs, movingMs, everyFrameMs;
+};
+CostParts costParts(const ReportPoint& point);
 
 /// What leaving out saves, measured: the pruned and the unpruned pipeline timed alternately in one run.
 struct PruningRecord {

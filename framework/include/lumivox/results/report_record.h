@@ -46,6 +46,12 @@ struct PipelineRecord {
   std::string file, name, hash;
 };
 
+/// A point of a sweep for which there was no time.
+struct LeftOutPoint {
+  std::string pipeline, sweep;
+  ParameterValues parameters;
+};
+
 struct SceneRecord {
   std::string file, name, hash, camera;
   int width = 0, height = 0;
@@ -56,7 +62,9 @@ struct SceneRecord {
   std::map<std::string, std::string> truthAttributes;
   std::vector<TruthRecord> truths;
   std::vector<PointRecord> points;
+  std::vector<LeftOutPoint> leftOutPoints;
   std::vector<PruningRecord> pruning;
+  std::vector<std::string> leftOutPrunings;                   ///< pipelines for which there was no time
   std::vector<std::pair<std::string, std::string>> unsuited;  ///< pipeline, why
   TimeFloor floor;                                            ///< of the times of its points
 };
@@ -68,6 +76,8 @@ struct TechniqueRecord {
 struct ReportRecord {
   std::string commandLine, date;                  ///< as typed; when it was made
   std::vector<double> equalTimesMs, equalErrors;  ///< of the tables; empty: round numbers from the data
+  double budgetSeconds = 0.0;                     ///< for measuring after the references; 0: no limit
+  double measuringSeconds = 0.0;                  ///< that it took
   gpu::DeviceInfo device;
   std::string shaderInput, host;
   std::vector<PipelineRecord> pipelines;

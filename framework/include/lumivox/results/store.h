@@ -87,8 +87,8 @@ class ResultsStore {
   std::vector<StoredRun> runs(const RunFilter& filter = {}) const;
   /// How many were removed.
   std::size_t remove(const RunFilter& filter);
-  /// Takes over the runs of another store that are not here, and the cells and ceilings that are not here or
-  /// are older here. In one transaction.
+  /// Takes over the runs of another store that are not here, its controls, and the cells and ceilings that
+  /// are not here or are older here. In one transaction.
   MergeCount merge(const ResultsStore& other);
 
   /// Cells of the stress battery. A cell with the same key takes the place of the older one.

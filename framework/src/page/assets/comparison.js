@@ -238,6 +238,9 @@ const comparisonSection = (function () {
         + "both on it. The grey steps bound all points by their values alone. Coloured lines join the points of one pipeline that none "
         + "of its own beats: the tables interpolate along them. The dashed grey line is the error of leaving the component out. Down and "
         + "to the left is better." + basis(scene)),
+      scene.left_out_points.length > 0 && lumivox.folded(
+        `For ${scene.left_out_points.length} points of the sweeps there was no time within the budget of ${data.budget_s} s`,
+        list(scene.left_out_points.map(point => shortName(point.pipeline) + ": " + parametersText(point.parameters)))),
       h("p", null, comparisons.length > 0 && chooser("Measure", "metric", metrics, choose("metric")),
         comparisons.some(one => one.against === "bias") && chooser("Against", "against", against, choose("against")),
         h("span", { class: "caption" }, "A few very bright pixels, such as the edges of a lamp, can rule the RMSE; the 95th percentile "

@@ -191,7 +191,10 @@
                                  point => of(point, name) ? bytes(of(point, name).bytes) : "-")),
        row("whole frame; most memory at once", point => quartiles(point.frame_ms), point => bytes(point.peak_bytes), "total"),
        row("between passes (the framework)", point => percent(point.framework_share), () => ""),
-       row("next frame, only what changed", point => quartiles(point.next_frame_ms), () => "")]);
+       row("next frame, only what changed", point => quartiles(point.next_frame_ms), () => ""),
+       row("done once (preprocessing)", point => measured(point.once_ms, milliseconds), () => ""),
+       row("done when the camera or a light moves", point => measured(point.when_moving_ms, milliseconds), () => ""),
+       row("done in every frame", point => measured(point.every_frame_ms, milliseconds), () => "")]);
   }
 
   /** The operations that there are most of: "12.3 M texture samples d3 rgba16f mips; 4.56 M buffer reads". */
@@ -215,7 +218,9 @@
       h("h3", null, "Time and memory per pass"),
       caption("Medians over repeats of frames in which every kept pass runs; quartiles in brackets. Measured apart from the pictures above. "
         + "What a pass does was counted in a frame of its own; with the ceilings of this device it gives the time that the pass takes at "
-        + "least: on the resource that limits it, and on all of them one after the other, as a device that overlaps nothing would need."),
+        + "least: on the resource that limits it, and on all of them one after the other, as a device that overlaps nothing would need. The "
+        + "last three rows take a first frame apart: what is done once, what is done again when the camera and the lights have moved, and "
+        + "what every frame costs. A point of several accumulated frames holds all of them."),
       h("div", { class: "charts" },
         passChart(scene, pass => pass.device_ms ? pass.device_ms.median : 0, "ms", "time per pass, ms", "time"),
         passChart(scene, pass => pass.bytes / 1048576, "MiB", "memory taken per pass, MiB", "bytes")),
@@ -257,6 +262,8 @@
           columns("Pass", ["as it runs, ms", "number"], ["everything kept, ms", "number"], ["saved, ms", "number"]),
           record.passes.map(pass => [pass.pass, timesOf(pass.ms) ? quartiles(pass.ms) : "left out", quartiles(pass.ms_keep_everything),
                                      number((pass.ms_keep_everything ? pass.ms_keep_everything.median : 0) - (pass.ms ? pass.ms.median : 0))])))]),
+      scene.left_out_prunings.length > 0 && h("p", null, "There was no time to measure this for: "
+        + scene.left_out_prunings.map(shortName).join(", ") + "."),
       scene.unsuited.length > 0 && [h("p", null, "Committed pipelines that do not suit this scene:"),
                                     list(scene.unsuited.map(one => shortName(one.pipeline) + ": " + one.why))]];
   }
@@ -310,11 +317,14 @@
       data.command && [h("p", null, "This page was made by"), h("pre", null, data.command)]];
   }
 
+  const left = data.scenes.reduce((sum, scene) => sum + scene.left_out_points.length, 0);
+  const outOfTime = left === 0 ? "" : ` Measured within a budget of ${data.budget_s} s, default points first: for ${left} points of sweeps there `
+    + "was no time; they are named below.";
   const link = (id, title) => h("a", { href: "#" + id }, title);
   show(
     h("header", null, h("h1", null, "Lumivox report"),
       h("p", { class: "soft" }, "How wrong, how fast, and what was left out. Measured on " + data.device.renderer + ", " + data.date
-        + ". The same numbers stand in the .csv and .json files beside this page."),
+        + ". The same numbers stand in the .csv and .json files beside this page." + outOfTime),
       h("nav", null, link("summary", "Summary"), link("needed", "What was needed"),
         data.scenes.map((scene, index) => link("scene-" + index, sceneTitle(scene))), data.voxels && link("voxels", "Voxels"),
         data.stress && link("stress", "Where it breaks"), link("device", "Device and contents"))),

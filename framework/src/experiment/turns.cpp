@@ -1,0 +1,84 @@
+#include "experiment/turns.h"
+
+#include <algorithm>
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include "base/process.h"
+#include "lumivox/base/log.h"
+
+namespace lumivox::experiment {
+namespace {
+
+/// A point that keeps its resources while it waits for its next turn.
+struct Held {
+  Turn* turn;
+  std::optional<TimedPoint> point;  ///< none: it failed meanwhile
+};
+
+/// Takes points from the front as long as they fit beside each other; the first one in any case.
+std::vector<Held> holdTogether(std::deque<Turn*>& waiting) {
+  std::vector<Held> held;
+  while (!waiting.empty()) {
+    Turn* turn = waiting.front();
+    const std::string why = whyFailed([&] { held.push_back({turn, turn->open()}); });
+    if (!why.empty() && !held.empty()) {
+      logInformation("{}: timed after the {} points before it, beside which it fails: {}", turn->name,
+                     held.size(), why);
+      break;
+    }
+    waiting.pop_front();
+    if (!why.empty()) turn->failure = why;
+  }
+  return held;
+}
+
+/// One turn for each. What fails gives its resources back, and is appended to `failed` with the reason.
+template <class Work>
+void forEach(std::vector<Held>& held, std::vector<Turn*>& failed, const Work& work) {
+  for (Held& one : held) {
+    if (!one.point) continue;
+    one.turn->failure = whyFailed([&] { work(one); });
+    if (one.turn->failure.empty()) continue;
+    one.point.reset();
+    failed.push_back(one.turn);
+  }
+}
+
+}  // namespace
+
+void timeInTurns(std::vector<Turn>& turns, int repeats, int nextFrames) {
+  const MachineLock alone(MachineLock::For::timing);
+  std::deque<Turn*> waiting;
+  for (Turn& turn : turns) waiting.push_back(&turn);
+  std::vector<Turn*> again;  // they failed beside others
+  const auto time = [&](std::deque<Turn*>& some) {
+    std::vector<Held> held = holdTogether(some);
+    std::vector<Turn*> failed;
+    for (int repeat = 0; repeat < repeats; ++repeat)
+      forEach(held, failed, [](Held& one) { one.point->timeFrame(); });
+    forEach(held, failed, [](Held& one) {
+      one.point->finish();
+      if (one.turn->read) one.turn->read(*one.point);
+    });
+    for (int frame = 0; frame < nextFrames; ++frame)
+      forEach(held, failed, [](Held& one) { one.point->timeNextFrame(); });
+    // What these are for needs no more than a claim does.
+    const int parts = std::min(nextFrames, kLeastRepeats);
+    for (int frame = 0; frame < parts; ++frame)
+      forEach(held, failed, [](Held& one) { one.point->timeStillFrame(); });
+    for (int frame = 0; frame < parts; ++frame)
+      forEach(held, failed, [](Held& one) { one.point->timeMovedFrame(); });
+    forEach(held, failed, [](Held& one) { one.point->finish(); });
+    if (held.size() > 1) again.insert(again.end(), failed.begin(), failed.end());
+  };
+  while (!waiting.empty()) time(waiting);
+  for (Turn* turn : std::exchange(again, {})) {
+    logInformation("{}: timed again, alone: {}", turn->name, turn->failure);
+    std::deque<Turn*> one{turn};
+    time(one);
+  }
+}
+
+}  // namespace lumivox::experiment

@@ -1,0 +1,190 @@
+// Techniques that go on from frame to frame, or model several bounces: what they are judged by, and what
+// their time is.
+#include <cmath>
+
+#include "experiment/choice.h"
+#include "experiment/measure.h"
+#include "experiment/turns.h"
+#include "lumivox/analysis/slopes.h"
+#include "pipeline_toys.h"
+#include "support/scene_builder.h"
+#include "support/techniques.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+constexpr float kDirect = 1.0f;
+
+/// What it paints comes nearer to the truth with every frame.
+class Progressive : public Toy {
+ public:
+  using Toy::Toy;
+  Out<Image> radiance{this, "radiance", Contributes::direct};
+  Reads readsFrom() const override { return Reads::camera | Reads::history; }
+  void run(PassContext& frame) override {
+    note();
+    radiance = paint(frame, kDirect + 0.5f / static_cast<float>(1 + frame.accumulated()));
+  }
+};
+
+/// The light of two bounces in a furnace of albedo a and emission 1, where a is direct light: a² + a³.
+class TwoBounces : public Toy {
+ public:
+  using Toy::Toy;
+  Out<Image> radiance{this, "radiance", Contributes::indirectDiffuse};
+  Reads readsFrom() const override { return Reads::camera; }
+  int indirectBounces() const override { return 2; }
+  void run(PassContext& frame) override { radiance = paint(frame, 0.25f + 0.125f); }
+};
+
+Pipeline toyPipeline(const std::string& pass, const std::string& output) {
+  return Pipeline::parse(
+      "pipeline \"Toy\" {\n  pass a toys." + pass + " { }\n  output " + output + " a.radiance\n}\n",
+      "toy.pipeline");
+}
+
+class Toys : public TestTechniques {
+ public:
+  Toys() {
+    add<Progressive>("toys", "progressive");
+    add<TwoBounces>("toys", "two_bounces");
+    add<Paint>("toys", "paint");
+  }
+};
+
+Scene furnace(float albedo) {
+  SceneBuilder builder;
+  builder.box({-1, -1, -1}, {1, 1, 1}, builder.lambert(albedo, 1.0f), true);
+  builder.look({0, 0, 0.5}, {0, 0, -1}, {0, 1, 0}, 1.0, 12, 8);
+  return builder.scene;
+}
+
+ReportPoint measured(Toys& toys, const Scene& scene, const Pipeline& pipeline, int frames) {
+  ReportOptions options;
+  options.subpixels = 2;
+  options.seeds = 2;
+  ReferenceOptions truthOptions = quietly(64);
+  truthOptions.width = 12;
+  truthOptions.height = 8;
+  experiment::Truth truth(scene, truthOptions);
+  const experiment::MeasureContext context{{device(), toys, scene, options, 12, 8}, truth};
+  PointRecord record;
+  if (frames > 1) record.point.parameters[kAccumulatedFrames].number = frames;
+  experiment::measureErrors(context, pipeline, record);
+  return record.point;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a progressive pipeline is judged by its last frame, each position in the pixel accumulated from nothing") {
+  Toys toys;
+  const Scene scene = furnace(0.0f);
+  const Pipeline pipeline = toyPipeline("progressive", "direct");
+  for (const int frames : {1, 2, 5}) {
+    const ReportPoint point = measured(toys, scene, pipeline, frames);
+    INFO(frames);
+    REQUIRE_FALSE(point.errors.empty());
+    CHECK(point.errors.front().error.rmse.value == Approx(0.5 / frames).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("the time of a point of several frames is that of all of them, from nothing in each repeat") {
+  Toys toys;
+  const Scene scene = furnace(0.0f);
+  const Pipeline pipeline = toyPipeline("progressive", "direct");
+  const ReportOptions options;
+  const experiment::TimingContext context{device(), toys, scene, options, 12, 8};
+  for (const int frames : {1, 4}) {
+    ReportPoint point;
+    if (frames > 1) point.parameters[kAccumulatedFrames].number = frames;
+    experiment::TimedPoint timed(context, pipeline, point);
+    toys.takeRan();
+    timed.timeFrame();
+    // Frames alone, and again with the passes' instruments.
+    CHECK(toys.takeRan().size() == 2u * static_cast<std::size_t>(frames));
+    timed.timeFrame();
+    timed.timeStillFrame();
+    timed.timeMovedFrame();
+    timed.finish();
+    CHECK(point.frameMs.repeats == 2);
+    CHECK(point.passDeviceMs.at("a").repeats == 2);
+    CHECK(point.stillFrameMs.repeats == 1);
+    CHECK(point.movedFrameMs.repeats == 1);
+  }
+}
+
+TEST_CASE("points after more and more frames are planned for progressive pipelines alone") {
+  Toys toys;
+  ReportOptions options;
+  options.frames = 6;
+  const auto framesIn = [&](const std::string& pass, const std::string& output) {
+    const experiment::LoadedPipeline loaded = experiment::withSettings(toyPipeline(pass, output), {});
+    std::vector<int> frames;
+    for (const experiment::PlannedPoint& point : experiment::pointsFor(loaded, toys, options)) {
+      frames.push_back(framesOf(point.parameters));
+      CHECK(point.isDefault == (frames.back() == 1));
+    }
+    return frames;
+  };
+  CHECK(framesIn("progressive", "direct") == std::vector<int>{1, 2, 4, 6});
+  CHECK(framesIn("paint", "direct") == std::vector<int>{1});
+  options.frames = 1;
+  CHECK(framesIn("progressive", "direct") == std::vector<int>{1});
+}
+
+TEST_CASE(
+    "an output of two bounces is judged by two bounces for its bias and by all light for what is missing") {
+  Toys toys;
+  const ReportPoint point = measured(toys, furnace(0.5f), toyPipeline("two_bounces", "indirect"), 1);
+  std::map<std::string, Measured> difference;  // of the means; the truth has noise
+  for (const ComponentError& error : point.errors)
+    if (error.output == "indirect") difference[error.truth] = error.error.bias;
+  REQUIRE(difference.size() == 2);
+  const Measured bias = difference.at("bounces_2_diffuse"), missing = difference.at("indirect_diffuse");
+  CHECK(bias.value == Approx(0.0).margin(4.0 * bias.uncertainty));
+  CHECK(missing.value == Approx(-0.125).margin(4.0 * missing.uncertainty));  // a² + a³ - a² / (1 - a)
+  CHECK(missing.uncertainty < 0.05);
+  for (const ComponentError& error : point.errors)
+    if (error.output == kWholePicture && error.bias) CHECK(error.truth == "bounces_2");
+}
+
+TEST_CASE("convergence over frames begins with the point that says nothing of frames") {
+  std::vector<ReportPoint> points;
+  for (const int frames : {1, 2, 4, 8}) {
+    ReportPoint point;
+    point.pipeline = "toy.pipeline";
+    if (frames > 1) point.parameters[kAccumulatedFrames].number = frames;
+    ComponentError error;
+    error.output = "direct";
+    error.error.rmse.value = 1.0 / std::sqrt(frames);
+    point.errors = {error};
+    points.push_back(point);
+  }
+  std::vector<const ReportPoint*> all;
+  for (const ReportPoint& point : points) all.push_back(&point);
+  const std::vector<SweepSlope> slopes = slopesOf(all);
+  REQUIRE(slopes.size() == 1);
+  CHECK(slopes[0].parameter == "frames");
+  CHECK(slopes[0].low == 1.0);
+  CHECK(slopes[0].law.slope.value == Approx(-0.5));
+}
+
+TEST_CASE("what a frame costs is taken apart: once, when something moves, every time") {
+  ReportPoint point;
+  CHECK(std::isnan(costParts(point).everyFrameMs.value));
+  point.frameMs = statisticsOf({10.0, 10.0, 10.0});
+  point.movedFrameMs = statisticsOf({4.0, 4.0, 4.0});
+  point.stillFrameMs = statisticsOf({1.0, 1.0, 1.0});
+  const CostParts parts = costParts(point);
+  CHECK(parts.onceMs.value == 6.0);
+  CHECK(parts.movingMs.value == 3.0);
+  CHECK(parts.everyFrameMs.value == 1.0);
+  point.movedFrameMs = statisticsOf({0.5, 0.5, 0.5});  // a machine's mood
+  CHECK(costParts(point).movingMs.value == 0.0);
+  point.parameters[kAccumulatedFrames].number = 4;
+  CHECK(std::isnan(costParts(point).onceMs.value));
+  CHECK(costParts(point).everyFrameMs.value == 1.0);
+}
