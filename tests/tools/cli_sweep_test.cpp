@@ -107,6 +107,22 @@ TEST_CASE("the memory of a point does not count the points that are timed beside
   CHECK(bytesOf(one) > 0);
 }
 
+TEST_CASE(
+    "a point that fits into memory alone but not beside the others is timed after them, and is no failure") {
+  const TemporaryDirectory directory;
+  const CommandResult swept =
+      runCommand("lumivox --memory 64MiB sweep " + kScene + " --pipeline " +
+                 (sourceDirectory() / "scenes/pipelines/voxel_cone_tracing.pipeline").string() + " --store " +
+                 (directory.path() / "results.sqlite").string() +
+                 " --resolution 16x16 --spp 4 --subpixels 1 --seeds 1 --repeats 1 --json");
+  INFO(swept.errors);
+  REQUIRE(swept.exitCode == 0);
+  const Json summary = Json::parse(swept.output);
+  CHECK(summary["failed"] == 0);
+  CHECK(summary["measured"] == 4);
+  CHECK(swept.errors.find("timed after the 3 points before it") != std::string::npos);
+}
+
 TEST_CASE("results are listed, exported, merged and removed from the command line") {
   const Sweep sweep;
   REQUIRE(sweep.run().exitCode == 0);

@@ -78,6 +78,8 @@ ReportRecord badlyNamedReport() {
       const double ms = samples * (name == "one" ? 1.0 : 3.0);
       point.point.frameMs = statisticsOf({0.99 * ms, ms, 1.01 * ms});
       point.point.nextFrameMs = statisticsOf({ms, ms, ms});
+      point.point.movedFrameMs = statisticsOf({0.5 * ms, 0.5 * ms, 0.5 * ms});
+      point.point.stillFrameMs = statisticsOf({0.25 * ms, 0.25 * ms, 0.25 * ms});
       point.point.passOrder = {"paint"};
       point.point.passDeviceMs["paint"] = point.point.frameMs;
       point.point.passBytes["paint"] = 3u << 20;
@@ -230,7 +232,11 @@ TEST_CASE("the summary, the fronts and the matrix of what was needed say what th
   REQUIRE(slopes.size() > 2);
   CHECK(slopes[1][1] == "samples 1 .. 4");
   const Json passes = tableWith(page, {"Pass", "samples 1: ms"});
-  REQUIRE(passes.size() == 5);
+  REQUIRE(passes.size() == 8);
+  CHECK(passes[5][0] == "done once (preprocessing)");
+  CHECK(contains(passes[5][1], "0.5 ± "));
+  CHECK(contains(passes[6][1], "0.25 ± "));
+  CHECK(passes[7][1] == "0.25 ± 0");
   CHECK(passes[1][0] == "paint");
   CHECK(passes[1][4] == "3.0 MiB");
 }
