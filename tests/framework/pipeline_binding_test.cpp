@@ -125,8 +125,8 @@ TEST_CASE("a cycle between passes is refused, naming its passes in the order of 
   const std::string text = findings(
       "pass a toy.add { first c.sum }\npass b toy.add { first a.sum }\npass c toy.add { first b.sum }\n"
       "pass after toy.add { first c.sum }\npass self toy.add { first self.sum }\noutput o after.sum");
-  CHECK_THAT(text, Contains("test.pipeline:2:6: passes feed each other in a circle: a -> b -> c -> a"));
-  CHECK_THAT(text, Contains("test.pipeline:6:6: passes feed each other in a circle: self -> self"));
+  CHECK_THAT(text, Contains("test.pipeline:2:6: cyclic dependency: a -> b -> c -> a"));
+  CHECK_THAT(text, Contains("test.pipeline:6:6: cyclic dependency: self -> self"));
   CHECK_THAT(text, !Contains("after ->"));
 }
 
@@ -136,7 +136,7 @@ TEST_CASE("a cycle is accepted where it leads through the frame before, and nowh
   accept("pass a toy.echo { before a.sum }\npass b toy.add { first a.sum }\n" + output);
   CHECK_THAT(
       findings("pass a toy.echo { first b.sum  before b.sum }\npass b toy.add { first a.sum }\n" + output),
-      Contains("test.pipeline:2:6: passes feed each other in a circle: a -> b -> a; expected an order in "
+      Contains("test.pipeline:2:6: cyclic dependency: a -> b -> a; expected an order in "
                "which they can run; only an input that is a history may lead back"));
   CHECK_THAT(findings("pass v toy.voxels { }\npass a toy.echo { before v.grid }\noutput o a.sum"),
              Contains("output 'v.grid' is of kind RadianceGrid, but input 'before' of pass 'a' takes Image"));

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -12,6 +15,24 @@
 
 namespace lumivox::command {
 namespace {
+
+/// What there was no time for, "scene, pipeline: cones=6" each, in a line for each pipeline.
+std::string leftOutText(const std::vector<std::string>& leftOut) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  for (const std::string& one : leftOut) {
+    const std::size_t end = std::min(one.find(": "), one.size());
+    const std::string pipeline = one.substr(0, end);
+    const auto line = std::find_if(lines.begin(), lines.end(),
+                                   [&](const auto& candidate) { return candidate.first == pipeline; });
+    if (line == lines.end())
+      lines.emplace_back(pipeline, one);
+    else
+      line->second += ";" + one.substr(std::min(end + 1, one.size()));
+  }
+  std::string text;
+  for (const auto& [pipeline, line] : lines) text += "no time for: " + line + "\n";
+  return text.empty() ? text : text + "a longer --budget measures them too\n";
+}
 
 struct ReportCommand {
   MeasureOptions measure;
@@ -65,7 +86,7 @@ void printSummary(const ReportSummary& summary) {
   if (summary.takenUp > 0)
     text += fmt::format("{} of {} points were taken up from an interrupted report\n", summary.takenUp,
                         summary.points.size());
-  for (const std::string& point : summary.leftOutPoints) text += "no time for: " + point + "\n";
+  text += leftOutText(summary.leftOutPoints);
   for (const std::string& unsuited : summary.unsuited) text += "not run: " + unsuited + "\n";
   print(text);
 }

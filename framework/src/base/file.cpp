@@ -134,7 +134,7 @@ Target targetOf(const std::filesystem::path& path) {
       return target;
     }
     if (links == kMostLinks)
-      throw Error(fmt::format("{}: cannot write: its symbolic links lead in a circle", path.string()));
+      throw Error(fmt::format("{}: cannot write: its symbolic links are cyclic", path.string()));
     std::error_code error;
     const std::filesystem::path named = std::filesystem::read_symlink(target.path, error);
     if (error) throw Error(fmt::format("{}: cannot write: {}", path.string(), error.message()));

@@ -421,7 +421,7 @@ class Binder {
     std::string text;
     for (const std::size_t pass : cycle) text += graph_.passes[pass].name + " -> ";
     text += graph_.passes[cycle.front()].name;
-    report(pipeline_.passes[cycle.front()], "passes feed each other in a circle: " + text,
+    report(pipeline_.passes[cycle.front()], "cyclic dependency: " + text,
            "an order in which they can run; only an input that is a history may lead back");
   }
 
