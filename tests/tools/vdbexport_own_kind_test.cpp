@@ -3,8 +3,8 @@
 #include <openvdb/openvdb.h>
 
 #include "lumivox/base/error.h"
-#include "lumivox/plugin/loader.h"
 #include "lumivox/experiment/voxelisers.h"
+#include "lumivox/plugin/loader.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 #include "tools/cli_support.h"
