@@ -19,6 +19,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/voxelisers.h"
+#include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/ports.h"
 #include "lumivox/results/text.h"
 
