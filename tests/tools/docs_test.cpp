@@ -89,9 +89,10 @@ std::string withoutGenerated(std::string text) {
 
 /// A template as `lumivox new technique ambient` writes it out: the example of the guide.
 std::string named(std::string text) {
-  static const std::string placeholder = "technique_name";
-  for (std::size_t at = text.find(placeholder); at != std::string::npos; at = text.find(placeholder, at))
-    text.replace(at, placeholder.size(), "ambient");
+  static const std::string nameInTemplates = "technique_name";
+  for (std::size_t at = text.find(nameInTemplates); at != std::string::npos;
+       at = text.find(nameInTemplates, at))
+    text.replace(at, nameInTemplates.size(), "ambient");
   return text;
 }
 

@@ -37,10 +37,10 @@ const std::set<std::string>& reservedWords() {
 }
 
 std::string withName(std::string text, const std::string& name) {
-  const std::string placeholder = kNameInTemplates;
-  for (std::size_t at = text.find(placeholder); at != std::string::npos;
-       at = text.find(placeholder, at + name.size()))
-    text.replace(at, placeholder.size(), name);
+  const std::string nameInTemplates = kNameInTemplates;
+  for (std::size_t at = text.find(nameInTemplates); at != std::string::npos;
+       at = text.find(nameInTemplates, at + name.size()))
+    text.replace(at, nameInTemplates.size(), name);
   return text;
 }
 
