@@ -108,7 +108,7 @@ int main(int argc, char** argv) {
     std::vector<double> hostMs;
     for (int repeat = -1; repeat < repeats; ++repeat) {  // one as warm-up
       executor.invalidate();
-      const FrameResult frame = executor.render(0.0, 0, PipelineExecutor::Pictures::no);
+      const FrameResult frame = executor.render(0.0, 0, PipelineExecutor::Images::no);
       if (repeat >= 0) hostMs.push_back(frame.passes.front().hostMs);
     }
     fmt::print("{} draws on {}: host {:.1f} ms, {:.2f} us a draw (median of {})\n", draws,

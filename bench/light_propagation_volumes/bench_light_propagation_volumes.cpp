@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "../../techniques/light_propagation_volumes/closed_faces.h"
+#include "../../techniques/light_propagation_volumes/occluded_faces.h"
 #include "lumivox/base/error.h"
 #include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/pipeline.h"
@@ -24,7 +24,7 @@
 namespace {
 
 using namespace lumivox;
-using light_propagation_volumes::ClosedFaces;
+using light_propagation_volumes::OccludedFaces;
 
 constexpr int kCells = 32, kIterations = 8;
 constexpr int kRepeats = 15, kQuickRepeats = 1;
@@ -32,11 +32,11 @@ constexpr float kAlbedo = 0.7f;     // of the room
 constexpr double kRounding = 1e-5;  // of the norm, as in the test of the two shaders
 
 /// Lit surfaces: all cells of the three planes of a corner, everything else empty.
-std::pair<ShGrid, ClosedFaces> cornerOfLight(gpu::Device& device) {
+std::pair<ShGrid, OccludedFaces> cornerOfLight(gpu::Device& device) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> flux(0.5f, 1.0f);
   ShGrid result;
-  ClosedFaces faces;
+  OccludedFaces faces;
   for (int number = 0; number < 2; ++number) {
     gpu::TextureDescription description;
     description.kind = gpu::TextureKind::d3;
@@ -58,10 +58,10 @@ std::pair<ShGrid, ClosedFaces> cornerOfLight(gpu::Device& device) {
     }
     description.format = gpu::Format::rgba8;
     description.width = description.height = description.depth = kCells + 1;
-    const ClosedFaces::Level open{
-        level.grid, std::make_shared<gpu::Texture>(device, description, "closed faces"),
+    const OccludedFaces::Level open{
+        level.grid, std::make_shared<gpu::Texture>(device, description, "occluded faces"),
         std::make_shared<gpu::Texture>(device, description, "moved surfaces"), nullptr};
-    open.closed->clear(glm::vec4(0.0f));
+    open.occluded->clear(glm::vec4(0.0f));
     open.moved->clear(glm::vec4(0.0f));
     result.levels.push_back(level);
     faces.levels.push_back(open);

@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
       const lumivox::Scene scene = lumivox::loadScene(file);
       for (const int threads : {1, 0}) {
         lumivox::ReferenceOptions options;
-        // Small, because every ray is kept in memory for the bare loop; with many samples, as truths have
+        // Small, because every ray is kept in memory for the bare loop; with many samples, as references have
         // them.
         options.width = options.height = quick ? 16 : 64;
         options.samplesPerPixel = quick ? 4 : 64;

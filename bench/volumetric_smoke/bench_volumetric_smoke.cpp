@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
       for (Setting& setting : settings) {
         setting.executor->invalidate();
         setting.last = setting.executor->render(
-            3.0, 0, repeat == repeats - 1 ? PipelineExecutor::Pictures::yes : PipelineExecutor::Pictures::no,
+            3.0, 0, repeat == repeats - 1 ? PipelineExecutor::Images::yes : PipelineExecutor::Images::no,
             PipelineExecutor::Timing::passes);
         for (const std::vector<PassRecord>& frame : setting.executor->timedPasses()) {
           if (repeat < 0) continue;

@@ -1,4 +1,4 @@
-// Voxelisers that miss nothing, beside OpenVDB's conversion of a mesh to a narrow band and beside loops over
+// Voxelizers that miss nothing, beside OpenVDB's conversion of a mesh to a narrow band and beside loops over
 // triangles on the CPU, all in one run: the repeats alternate, so that a machine that grows slower meanwhile
 // does so for all.
 // usage: bench_voxelization [--quick] [--repeats N] [--resolution R]... [scene texts] (default: 9 repeats,
@@ -17,7 +17,7 @@
 #include "competitors.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
-#include "lumivox/experiment/voxelisers.h"
+#include "lumivox/experiment/voxelizers.h"
 #include "lumivox/measure/metrics.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/plugin/loader.h"
@@ -43,28 +43,28 @@ double clocked(const std::function<void()>& work) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// A voxeliser of the project, by its method.
-struct Voxeliser {
+/// A voxelizer of the project, by its method.
+struct Voxelizer {
   std::string method;
   std::unique_ptr<PipelineExecutor> executor;
 };
 
-Voxeliser voxeliser(gpu::Device& device, TechniqueSet& techniques, const Scene& scene, int resolution,
+Voxelizer voxelizer(gpu::Device& device, TechniqueSet& techniques, const Scene& scene, int resolution,
                     const std::string& method) {
   const Pipeline pipeline = Pipeline::parse(
       fmt::format("pipeline \"Conservative voxels, {0}\" {{\n"
                   "  pass voxels voxelization.conservative {{ resolution {1}  method {0} }}\n}}\n",
                   method, resolution),
       "bench_voxelization");
-  Voxeliser made{method,
+  Voxelizer made{method,
                  std::make_unique<PipelineExecutor>(device, techniques, scene, pipeline, RenderOptions{})};
   made.executor->keepOutput("voxels", "fragments");
-  made.executor->render(0.0, 0, PipelineExecutor::Pictures::no);
+  made.executor->render(0.0, 0, PipelineExecutor::Images::no);
   return made;
 }
 
-void judge(Candidate& candidate, const VoxelSet& occupied, const VoxelTruth& truth) {
-  const VoxelError error = compareVoxels(occupied, truth);
+void judge(Candidate& candidate, const VoxelSet& occupied, const VoxelReference& reference) {
+  const VoxelError error = compareVoxels(occupied, reference);
   candidate.recall = error.recall();
   candidate.precision = error.precision();
 }
@@ -111,37 +111,37 @@ void compare(gpu::Device& device, TechniqueSet& techniques, const std::filesyste
              int repeats) {
   const Scene scene = loadScene(file);
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  std::vector<Voxeliser> voxelisers;
+  std::vector<Voxelizer> voxelizers;
   for (const char* method : {"automatic", "compute", "raster"})
-    voxelisers.push_back(voxeliser(device, techniques, scene, resolution, method));
-  const auto first = occupiedVoxels(*voxelisers.front().executor->output("voxels", "fragments"));
-  const VoxelTruth truth = trueVoxels(scene, snapshot, first->grid);
+    voxelizers.push_back(voxelizer(device, techniques, scene, resolution, method));
+  const auto first = occupiedVoxels(*voxelizers.front().executor->output("voxels", "fragments"));
+  const VoxelReference reference = trueVoxels(scene, snapshot, first->grid);
   const Mesh mesh = meshOf(scene, snapshot, first->grid);
   CpuLoops loops(mesh);
   NarrowBand band(mesh);
 
   std::vector<Candidate> candidates;
-  for (Voxeliser& one : voxelisers) {
+  for (Voxelizer& one : voxelizers) {
     PipelineExecutor& executor = *one.executor;
     candidates.push_back({"conservative, " + one.method, [&executor] {
                             executor.invalidate();
-                            return executor.render(0.0, 0, PipelineExecutor::Pictures::no).frameMs;
+                            return executor.render(0.0, 0, PipelineExecutor::Images::no).frameMs;
                           }});
     const auto found = occupiedVoxels(*executor.output("voxels", "fragments"));
     candidates.back().made = found->fragments;
-    judge(candidates.back(), found->voxels, truth);
+    judge(candidates.back(), found->voxels, reference);
   }
   for (const int threads : {1, kThreads}) {
     const std::string suffix = threads == 1 ? ", 1 thread" : fmt::format(", {} threads", threads);
     candidates.push_back(
         {"CPU fragments" + suffix, [&, threads] { return clocked([&] { loops.fragments(threads); }); }});
     candidates.back().made = loops.fragments(threads);
-    judge(candidates.back(), voxelsOf(loops.list(), mesh.grid.resolution), truth);
+    judge(candidates.back(), voxelsOf(loops.list(), mesh.grid.resolution), reference);
     candidates.push_back(
         {"CPU bits alone" + suffix, [&, threads] { return clocked([&] { loops.bits(threads); }); }});
     loops.bits(threads);
     candidates.back().made = loops.occupied().count();
-    judge(candidates.back(), loops.occupied(), truth);
+    judge(candidates.back(), loops.occupied(), reference);
   }
   candidates.push_back({fmt::format("OpenVDB narrow band, {} threads", kThreads),
                         [&] { return clocked([&] { band.convert(kThreads); }); }});

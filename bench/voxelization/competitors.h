@@ -1,4 +1,4 @@
-// What the voxelisers are compared with: loops over triangles on the CPU, and OpenVDB.
+// What the voxelizers are compared with: loops over triangles on the CPU, and OpenVDB.
 #pragma once
 
 #include <cstdint>
@@ -25,14 +25,14 @@ struct Mesh {
 };
 Mesh meshOf(const Scene& scene, const SceneSnapshot& snapshot, const GridPlacement& grid);
 
-/// The words of a fragment as the voxelisers write them (shaders/common/voxel.glsl).
+/// The words of a fragment as the voxelizers write them (shaders/common/voxel.glsl).
 struct Fragment {
   std::uint32_t voxel, offset, normal, albedoRg, albedoBCoverage, emission;
 };
 
 /// Which voxels every triangle touches, in single precision: the test of Schwarz & Seidel 2010, one column of
 /// the dominant axis after the other, as the shaders do it. Memory is reserved before the clock starts and
-/// used again, as the voxelisers' is.
+/// used again, as the voxelizers' is.
 class CpuLoops {
  public:
   explicit CpuLoops(const Mesh& mesh);

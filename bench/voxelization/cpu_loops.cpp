@@ -153,7 +153,7 @@ std::uint32_t packSteps(const glm::vec3& offset) {
   return steps.x | steps.y << 10 | steps.z << 20;
 }
 
-/// Bilinear, at full resolution: less work than the voxelisers' mips.
+/// Bilinear, at full resolution: less work than the voxelizers' mips.
 glm::vec3 sampled(const SurfaceTexture& texture, const glm::vec2& at) {
   const float x = at.x * static_cast<float>(texture.width) - 0.5f,
               y = (1.0f - at.y) * static_cast<float>(texture.height) - 0.5f;

@@ -39,7 +39,7 @@ vec3 vertexNormalWorld() {
 }
 vec2 vertexTexcoord() {
   int i = 2 * gl_VertexID;
-  return vec2(texcoords[i], 1.0 - texcoords[i + 1]);  // row 0 of a picture is its top, v = 1
+  return vec2(texcoords[i], 1.0 - texcoords[i + 1]);  // row 0 of an image is its top, v = 1
 }
 #endif
 

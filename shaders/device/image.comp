@@ -21,14 +21,14 @@ layout(binding = 1, rgba32f) uniform image3D volume;
 layout(binding = 1, rgba16f) uniform image3D volume;
 #define target volume
 #elif FORMAT == FORMAT_R32UI
-layout(binding = 2, r32ui) uniform uimage2D pictureWords;
-#define target pictureWords
+layout(binding = 2, r32ui) uniform uimage2D imageWords;
+#define target imageWords
 #elif FORMAT == FORMAT_RGBA32F
-layout(binding = 3, rgba32f) uniform image2D picture;
-#define target picture
+layout(binding = 3, rgba32f) uniform image2D image;
+#define target image
 #else
-layout(binding = 3, rgba16f) uniform image2D picture;
-#define target picture
+layout(binding = 3, rgba16f) uniform image2D image;
+#define target image
 #endif
 #if ACCESS == ACCESS_READ
 layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };

@@ -16,7 +16,7 @@ layout(binding = 0) uniform sampler3D volume;
 #elif KIND == KIND_SHADOW
 layout(binding = 1) uniform sampler2DArrayShadow depths;
 #else
-layout(binding = 2) uniform sampler2D picture;
+layout(binding = 2) uniform sampler2D image;
 #endif
 layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };
 
@@ -39,7 +39,7 @@ vec4 take(vec3 position) {
 #elif KIND == KIND_SHADOW
   return vec4(texture(depths, vec4(position.xy, 0.0, position.z)));
 #else
-  return textureLod(picture, position.xy, level);
+  return textureLod(image, position.xy, level);
 #endif
 }
 

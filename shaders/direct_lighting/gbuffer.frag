@@ -10,7 +10,7 @@
 layout(std140, binding = 1) uniform View { mat4 worldToClip; };
 layout(std140, binding = 2) uniform Eye {
   vec3 eyeWorld;
-  vec2 pictureSize;  // pixels
+  vec2 imageSize;  // pixels
 };
 
 #if TEXTURES
@@ -37,14 +37,14 @@ layout(location = 4) out vec4 outSpecular;
 layout(location = 5) out vec4 outEmission;
 #endif
 
-// Whether the surface is not what this pixel's ray meets. A triangle whose plane holds the eye has no extent in the picture, but its
+// Whether the surface is not what this pixel's ray meets. A triangle whose plane holds the eye has no extent in the image, but its
 // corners are rounded to steps of the rasteriser, and what it covers then lies anywhere in its plane.
 bool isElsewhere() {
   const float kTolerance = 2.0;  // pixels: beyond what rounding moves a triangle that is seen
   // Share of the coordinates below which their rounding leaves no direction.
   const float kNearest = 1e-5;
   vec4 clip = worldToClip * vec4(posWorld, 1.0);
-  vec2 pixel = (0.5 + vec2(0.5, -0.5) * clip.xy / clip.w) * pictureSize;
+  vec2 pixel = (0.5 + vec2(0.5, -0.5) * clip.xy / clip.w) * imageSize;
   return !(clip.w > kNearest * (length(posWorld) + length(eyeWorld)) && all(lessThan(abs(pixel - gl_FragCoord.xy), vec2(kTolerance))));
 }
 

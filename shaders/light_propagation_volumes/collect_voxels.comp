@@ -20,7 +20,7 @@ layout(std140, binding = 0) uniform Parameters {
   ivec3 resolution;
   int twoSided;
 };
-layout(binding = 5) uniform sampler3D closed;
+layout(binding = 5) uniform sampler3D occluded;
 
 // Listing 4.27: contrast of a colour in 7 bits, behind it the colour in 8 bits each.
 uint packWinner(vec3 albedo) {
@@ -54,7 +54,7 @@ bool endsBefore(ivec3 home, int axis, int column) {
   if (column == home[axis]) return false;
   ivec3 face = home;
   if (column > home[axis]) ++face[axis];
-  return texelFetch(closed, clamp(face, ivec3(0), resolution), 0)[axis] > 0.5;
+  return texelFetch(occluded, clamp(face, ivec3(0), resolution), 0)[axis] > 0.5;
 }
 
 void main() {

@@ -5,7 +5,7 @@
 //   c2' = Y1 sum s I(d) (d across the step)           = across c2
 // where light keeps its direction d. Deviates from Kaplanyan & Dachsbacher 2010, Sec. 4.3, where it leaves again as a clamped cosine
 // around the normal of the face that it reaches (cosineLobe): see README, "propagation".
-// Both are stable whatever is closed: flux times 1 / sqrt(s) is an isometry of the coefficients, since the thirty directions integrate
+// Both are stable whatever is occluded: flux times 1 / sqrt(s) is an isometry of the coefficients, since the thirty directions integrate
 // the products of two harmonics exactly; an open share is at most 1; and adding up is the transpose of that isometry, or shorter.
 const float kStay0 = kCrossing0 * kY0;
 const float kGain = kCrossing1 * kY0;

@@ -30,7 +30,7 @@ layout(binding = 3) uniform sampler2D gDiffuse;
 layout(binding = 5) uniform sampler3D red;
 layout(binding = 6) uniform sampler3D green;
 layout(binding = 7) uniform sampler3D blue;
-layout(binding = 8) uniform sampler3D closed;
+layout(binding = 8) uniform sampler3D occluded;
 layout(binding = 0, rgba32f) uniform image2D diffuseImage;
 layout(binding = 1, rgba32f) uniform image2D clippedImage;
 
@@ -45,7 +45,7 @@ const float kMostRadiance = 1e30;
 float[8] openWays(ivec3 low, ivec3 base) {
   float open[24];
   for (int corner = 0; corner < 8; ++corner) {
-    vec3 share = texelFetch(closed, clamp(low + ivec3(corner & 1, corner >> 1 & 1, corner >> 2), ivec3(0), resolution), 0).xyz;
+    vec3 share = texelFetch(occluded, clamp(low + ivec3(corner & 1, corner >> 1 & 1, corner >> 2), ivec3(0), resolution), 0).xyz;
     for (int axis = 0; axis < 3; ++axis) open[3 * corner + axis] = min(2.0 * (1.0 - share[axis]), 1.0);
   }
   ivec3 start = clamp(base - low, ivec3(0), ivec3(1));

@@ -55,11 +55,11 @@ void main() {
   }
   ivec3 end = resolution - 1;
   ivec3 below = max(cell - 1, ivec3(0)), above = min(cell + 1, end);
-  vec3 closedBelow = texelFetch(closed, cell, 0).xyz;
-  vec3 openBelow = vec3(openShare(closedBelow.x), openShare(closedBelow.y), openShare(closedBelow.z));
-  vec3 openAbove = vec3(openShare(texelFetch(closed, ivec3(above.x, cell.yz), 0).x),
-                        openShare(texelFetch(closed, ivec3(cell.x, above.y, cell.z), 0).y),
-                        openShare(texelFetch(closed, ivec3(cell.xy, above.z), 0).z));
+  vec3 occludedBelow = texelFetch(occluded, cell, 0).xyz;
+  vec3 openBelow = vec3(openShare(occludedBelow.x), openShare(occludedBelow.y), openShare(occludedBelow.z));
+  vec3 openAbove = vec3(openShare(texelFetch(occluded, ivec3(above.x, cell.yz), 0).x),
+                        openShare(texelFetch(occluded, ivec3(cell.x, above.y, cell.z), 0).y),
+                        openShare(texelFetch(occluded, ivec3(cell.xy, above.z), 0).z));
   // Beyond the border there is nothing, or the image of this cell in it: the same light, turned round.
   vec3 turnBelow = vec3(1.0), turnAbove = vec3(1.0);
   bvec3 firstCell = equal(cell, ivec3(0)), lastCell = equal(cell, end);

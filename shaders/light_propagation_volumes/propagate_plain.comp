@@ -42,7 +42,7 @@ void main() {
 #if OCCLUSION == OCCLUSION_NORMALS
     vec4 occluding = outside ? vec4(0.0) : occlusionOf(source, -vec3(kOffsets[n]));
 #else
-    float open = outside ? 1.0 : openShare(texelFetch(closed, max(cell, source), 0)[n >> 1]);
+    float open = outside ? 1.0 : openShare(texelFetch(occluded, max(cell, source), 0)[n >> 1]);
 #endif
     for (int f = 0; f < 6; ++f) {
       // From the centre of the neighbour to the centre of a face of this cell.

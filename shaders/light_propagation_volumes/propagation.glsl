@@ -7,14 +7,14 @@ layout(std140, binding = 0) uniform Parameters {
   ivec3 resolution;
   int stamp;        // of the light that is read; see propagate.comp
   float amplifier;  // of flux
-  float occlusion;  // amplifier of the closed share of a face
+  float occlusion;  // amplifier of the occluded share of a face
   int mirrors;      // 1: what crosses the border of the grid comes back; 0: it is gone
   int addToTotal;   // 1: the new light also counts in the sum over all iterations
 };
 layout(binding = 0) uniform sampler3D red;
 layout(binding = 1) uniform sampler3D green;
 layout(binding = 2) uniform sampler3D blue;
-layout(binding = 3) uniform sampler3D closed;
+layout(binding = 3) uniform sampler3D occluded;
 layout(binding = 0, rgba32f) uniform writeonly image3D redNext;
 layout(binding = 1, rgba32f) uniform writeonly image3D greenNext;
 layout(binding = 2, rgba32f) uniform writeonly image3D blueNext;
@@ -42,4 +42,4 @@ void store(ivec3 cell, vec4 redSum, vec4 greenSum, vec4 blueSum) {
 }
 
 // Open share of a face that is closed to a share.
-float openShare(float closedShare) { return 1.0 - clamp(occlusion * closedShare, 0.0, 1.0); }
+float openShare(float occludedShare) { return 1.0 - clamp(occlusion * occludedShare, 0.0, 1.0); }

@@ -20,7 +20,7 @@ layout(std140, binding = 0) uniform Parameters {
 layout(binding = 0) uniform sampler3D red;
 layout(binding = 1) uniform sampler3D green;
 layout(binding = 2) uniform sampler3D blue;
-layout(binding = 3) uniform sampler3D closed;
+layout(binding = 3) uniform sampler3D occluded;
 #if OUTSIDE == OUTSIDE_GRID
 layout(binding = 4) uniform sampler3D redOutside;
 layout(binding = 5) uniform sampler3D greenOutside;
@@ -45,7 +45,7 @@ void main() {
     offset[axis] = side;
     ivec3 source = cell - offset;
     if (source[axis] >= 0 && source[axis] < resolution[axis]) continue;
-    float open = 1.0 - clamp(occlusion * texelFetch(closed, max(cell, source), 0)[axis], 0.0, 1.0);
+    float open = 1.0 - clamp(occlusion * texelFetch(occluded, max(cell, source), 0)[axis], 0.0, 1.0);
     vec4 along = vec4(0.0, vec3(offset.yzx));
 #if OUTSIDE == OUTSIDE_GRID
     vec3 texcoord = lowInOutside + (vec3(source) + 0.5) * cellInOutside;

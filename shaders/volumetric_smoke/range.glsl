@@ -6,7 +6,7 @@
 layout(std140, binding = 1) uniform View {
   vec3 eyeWorld;
   int pixelsPerSample;  // 1: a sample a pixel; 2: a sample for 2 x 2 pixels
-  vec3 cornerDirection; // of the picture's upper left corner; the forward component is 1
+  vec3 cornerDirection; // of the image's upper left corner; the forward component is 1
   vec3 perColumn;       // what a pixel to the right adds
   vec3 perRow;
 };

@@ -26,7 +26,7 @@ void main() {
   vec3 posGrid = place.corners[0] * place.weights.x + place.corners[1] * place.weights.y + place.corners[2] * place.weights.z;
   int depth = int(floor(posGrid.z));
   if (depth < 0 || depth >= resolution.z) return;
-  // Thesis 004 Sec. 4.4.3: a larger point closes holes of an atlas that is too small. It is a square in the picture of stacks and covers the
+  // Thesis 004 Sec. 4.4.3: a larger point closes holes of an atlas that is too small. It is a square in the image of stacks and covers the
   // pixels (i, j) whose centres i + 1/2 it reaches, |i + 1/2 - x| <= pointSize / 2; along the stacks it stays one voxel.
   float reach = 0.5 * (pointSize - 1.0);
   ivec2 low = max(ivec2(floor(posGrid.xy - reach)), ivec2(0)), high = min(ivec2(floor(posGrid.xy + reach)), resolution.xy - 1);

@@ -1,6 +1,6 @@
 // One bit per voxel in 32-bit words along z: bit b of texel (i, j, w) is voxel (i, j, 32 w + b).
 #pragma lumivox axis SURFACE 0 1
-layout(binding = 0, r32ui) uniform readonly uimage3D words;  // what was voxelised
+layout(binding = 0, r32ui) uniform readonly uimage3D words;  // what was voxelized
 #if SURFACE
 layout(binding = 1, r32ui) uniform readonly uimage3D surfaceWords;  // voxels of surface samples that were given
 #endif

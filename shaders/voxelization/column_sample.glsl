@@ -1,4 +1,4 @@
-// The fragment that a triangle leaves in the voxels of a column; the same to the bit for every voxeliser that goes by columns.
+// The fragment that a triangle leaves in the voxels of a column; the same to the bit for every voxelizer that goes by columns.
 // Including files declare the textures before, as the axes TEXTURES and MASKS say.
 #include "triangle.glsl"
 

@@ -1,5 +1,5 @@
 #version 450
-// Conservative voxelisation in the spirit of Schwarz & Seidel 2010, Sec. 4: data-parallel over triangles, without the rasteriser.
+// Conservative voxelization in the spirit of Schwarz & Seidel 2010, Sec. 4: data-parallel over triangles, without the rasteriser.
 // LARGE 0: one thread a triangle. It tests all voxels of the triangle's bounds first and notes them as bits, so that the threads that run in
 // lockstep share the tests, and then writes what it found, so that they share the writing. A triangle of more voxels than there are bits is
 // put aside in rows of tiles.

@@ -6,15 +6,15 @@ layout(std140, binding = 0) uniform Parameters {
   vec3 eyeGrid;  // voxels
   float pixelWidth;  // at distance 1
   vec3 right;
-  float pictureWidth;  // pixels
+  float imageWidth;  // pixels
   vec3 up;
-  float pictureHeight;
+  float imageHeight;
   vec3 forward;
   float cut;  // voxels: what lies nearer to the camera's plane is not seen
   ivec3 resolution;
 };
 layout(binding = 0, r32ui) uniform readonly uimage3D words;
-layout(binding = 1, rgba32f) uniform writeonly image2D picture;
+layout(binding = 1, rgba32f) uniform writeonly image2D image;
 
 const vec3 kNoVoxel = vec3(0.02);
 // Sides across x, y and z have a brightness each, and so has what the cut lays open.
@@ -32,8 +32,8 @@ vec3 shaded(int side, vec3 position, float pixel) {
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, imageSize(picture)))) return;
-  vec2 centre = vec2(pixel) + 0.5 - 0.5 * vec2(pictureWidth, pictureHeight);
+  if (any(greaterThanEqual(pixel, imageSize(image)))) return;
+  vec2 centre = vec2(pixel) + 0.5 - 0.5 * vec2(imageWidth, imageHeight);
   vec3 direction = normalize(forward + pixelWidth * (centre.x * right - centre.y * up));
   // A component of zero would divide by zero.
   direction = mix(direction, vec3(1e-6), lessThan(abs(direction), vec3(1e-6)));
@@ -57,5 +57,5 @@ void main() {
     next[side] += across[side];
     cell[side] += way[side];
   }
-  imageStore(picture, pixel, vec4(colour, 1.0));
+  imageStore(image, pixel, vec4(colour, 1.0));
 }

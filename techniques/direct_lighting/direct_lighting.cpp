@@ -28,7 +28,7 @@ glm::mat4 worldToClip(const SceneSnapshot& snapshot) {
          glm::lookAtRH(camera.eye, camera.eye + camera.forward, camera.up);
 }
 
-/// The picture-sized textures are kept in 32-bit floats: positions and radiances of any scale.
+/// The image-sized textures are kept in 32-bit floats: positions and radiances of any scale.
 gpu::TextureRef floatImage(PassContext& frame, const char* label) {
   return frame.image(gpu::Format::rgba32f, label);
 }

@@ -34,8 +34,8 @@ class GatherPass : public Pass {
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<ShGrid> light{this, "light", "all light that passed each cell"};
-  In<ClosedFaces> faces{this, "faces", Presence::optional,
-                        "what surfaces close; needed with 'lookup reachable'"};
+  In<OccludedFaces> faces{this, "faces", Presence::optional,
+                          "what surfaces close; needed with 'lookup reachable'"};
   Param<float> blend{this, "blend", kBlendCells, within(0.5f, 64.0f),
                      "cells over which a grid is blended into the coarser one"};
   Param<float> offset{this, "offset", 1.0f, within(0.0f, 4.0f),
@@ -78,8 +78,8 @@ class GatherPass : public Pass {
     const std::size_t levels = light->levels.size();
     for (std::size_t i = levels; i-- > 0;) {
       const ShGrid::Level& level = light->levels[i];
-      const ClosedFaces::Level surfaces =
-          faces.present() && i < faces->levels.size() ? faces->levels[i] : ClosedFaces::Level{};
+      const OccludedFaces::Level surfaces =
+          faces.present() && i < faces->levels.size() ? faces->levels[i] : OccludedFaces::Level{};
       const float side = longestSide(level.grid);
       frame.dispatch(frame.program(gather::Variant{}, constants),
                      {gather::parameters({.gridLow = level.grid.low,
@@ -94,7 +94,7 @@ class GatherPass : public Pass {
                                           .innerReach = kInnerReach * side,
                                           .outerReach = kOuterReach * side}),
                       GBufferBinding(*gbuffer), sampled(level, gpu::Sampling::linear),
-                      gather::closed(facesOrUnread(surfaces.closed, level), gpu::Sampling::nearest),
+                      gather::occluded(facesOrUnread(surfaces.occluded, level), gpu::Sampling::nearest),
                       gather::moved(facesOrUnread(surfaces.moved, level), gpu::Sampling::nearest),
                       gather::diffuseImage(result.texture), gather::clippedImage(cut.texture)},
                      pixels(frame));
@@ -104,7 +104,7 @@ class GatherPass : public Pass {
     clipped = cut;
   }
 
-  /// How much two bands made negative, of all that reaches the picture.
+  /// How much two bands made negative, of all that reaches the image.
   static void tellShare(PassContext& frame, const gpu::Texture& light, const gpu::Texture& cut) {
     const auto sum = [](const gpu::Texture& texture) {
       const std::vector<float> values = texture.downloadFloats();
@@ -115,7 +115,7 @@ class GatherPass : public Pass {
     const double all = sum(light), negative = sum(cut);
     if (all > 0.0)
       frame.note(
-          fmt::format("{:.2g} % of the light of the picture was negative in two bands before it was mended",
+          fmt::format("{:.2g} % of the light of the image was negative in two bands before it was mended",
                       100.0 * negative / all));
   }
 };

@@ -64,14 +64,14 @@ class Inject : public Pass {
 
   void run(PassContext& frame) override {
     ShGrid result;
-    ClosedFaces surfaces;
+    OccludedFaces surfaces;
     for (const GridPlacement& grid : placeGrids(frame.snapshot(), levels, resolution, extent)) {
       const ShGrid::Level level{grid, coefficientTextures(frame, grid.resolution, "coefficients")};
-      ClosedFaces::Level closed{grid, nullptr, nullptr, nullptr};
-      if (findsFaces()) findFaces(frame, closed);
-      fillCells(frame, level, closed);
+      OccludedFaces::Level occluded{grid, nullptr, nullptr, nullptr};
+      if (findsFaces()) findFaces(frame, occluded);
+      fillCells(frame, level, occluded);
       result.levels.push_back(level);
-      surfaces.levels.push_back(closed);
+      surfaces.levels.push_back(occluded);
     }
     light = result;
     faces = surfaces;
@@ -81,7 +81,7 @@ class Inject : public Pass {
   /// What surfaces close; without it nothing but the packed voxels occludes.
   virtual bool findsFaces() const { return true; }
   /// Virtual lights to the coefficients of the cells.
-  virtual void fillCells(PassContext& frame, const ShGrid::Level& level, ClosedFaces::Level& surfaces) {
+  virtual void fillCells(PassContext& frame, const ShGrid::Level& level, OccludedFaces::Level& surfaces) {
     const GridPlacement& grid = level.grid;
     const gpu::BufferRef sums = frame.elements(resolve_lights::sums, cellCount(grid), "virtual lights");
     sums->clear();
@@ -96,7 +96,7 @@ class Inject : public Pass {
                lit);
   }
   /// Adds virtual lights to the sums of the cells, marks their bricks, and a barrier.
-  virtual void addLights(PassContext& frame, const GridPlacement& grid, const ClosedFaces::Level& surfaces,
+  virtual void addLights(PassContext& frame, const GridPlacement& grid, const OccludedFaces::Level& surfaces,
                          const gpu::BufferRef& sums, const BrickList& lit) = 0;
 
   In<VoxelFragments> fragments{this, "fragments",
@@ -112,15 +112,15 @@ class Inject : public Pass {
       this, "lobe", Lobe::forward,
       "what a virtual light sends out: nothing backwards, or, as published, a clamped cosine, of which two bands let a seventh out at the back"};
   Out<ShGrid> light{this, "light", "virtual point lights, W/sr"};
-  Out<ClosedFaces> faces{this, "faces", "what surfaces close of the faces between the cells"};
+  Out<OccludedFaces> faces{this, "faces", "what surfaces close of the faces between the cells"};
 
  private:
   /// The faces that surfaces close, and how far these were moved.
-  void findFaces(PassContext& frame, ClosedFaces::Level& level) {
+  void findFaces(PassContext& frame, OccludedFaces::Level& level) {
     const GridPlacement& grid = level.grid;
     if (fragments->grid.voxelSize > grid.voxelSize * 1.001f)
       frame.warn(
-          fmt::format("the fragments have voxels of {} m and the cells {} m: surfaces have holes; voxelise "
+          fmt::format("the fragments have voxels of {} m and the cells {} m: surfaces have holes; voxelize "
                       "with a higher resolution",
                       fragments->grid.voxelSize, grid.voxelSize));
     const glm::ivec3 size = grid.resolution + 1;
@@ -145,12 +145,12 @@ class Inject : public Pass {
                  {images(parts, kParts), images(filled, kFilled)}, bricks);
       std::swap(parts, filled);
     }
-    level.closed = empty(gpu::Format::rgba8, "closed faces");
+    level.occluded = empty(gpu::Format::rgba8, "occluded faces");
     level.moved = empty(gpu::Format::rgba8, "moved surfaces");
-    walkBricks(
-        frame, frame.program(resolve_closed::kProgram),
-        {images(parts, kParts), resolve_closed::closed(level.closed), resolve_closed::moved(level.moved)},
-        bricks);
+    walkBricks(frame, frame.program(resolve_occluded::kProgram),
+               {images(parts, kParts), resolve_occluded::occluded(level.occluded),
+                resolve_occluded::moved(level.moved)},
+               bricks);
   }
 };
 
@@ -158,7 +158,7 @@ class InjectRsmPass : public Inject {
   In<ReflectiveShadowMap> map{this, "map", Presence::optional,
                               "what the lights see; without it only the environment shines"};
 
-  void addLights(PassContext& frame, const GridPlacement& grid, const ClosedFaces::Level& surfaces,
+  void addLights(PassContext& frame, const GridPlacement& grid, const OccludedFaces::Level& surfaces,
                  const gpu::BufferRef& sums, const BrickList& lit) override {
     if (!map.present() || map->lightCount == 0) return;
     const gpu::TextureDescription& layers = map->flux->description();
@@ -196,7 +196,7 @@ class InjectVoxelsPass : public Inject {
       "what a voxel keeps of its surfaces: means, in the cells in front of them; or, as published (Listings 4.26 to 4.31), what wins an atomic maximum in the voxel that they lie in, lit at its centre: then lobe, albedo, normals, area and two_sided are the printed ones too"};
   Param<bool> asPublished{
       this, "as_published", false,
-      "voxels packed, and no closed faces: propagate and gather must be as published too"};
+      "voxels packed, and no occluded faces: propagate and gather must be as published too"};
 
   std::string checkParameters() const override {
     if (resolution > kLargestVoxelGrid)
@@ -207,7 +207,7 @@ class InjectVoxelsPass : public Inject {
   bool findsFaces() const override { return !asPublished; }
   bool packed() const { return asPublished || voxels == Voxels::packed; }
 
-  void fillCells(PassContext& frame, const ShGrid::Level& level, ClosedFaces::Level& surfaces) override {
+  void fillCells(PassContext& frame, const ShGrid::Level& level, OccludedFaces::Level& surfaces) override {
     if (!packed()) return Inject::fillCells(frame, level, surfaces);
     const GridPlacement& grid = level.grid;
     surfaces.packed = frame.elements(pack_voxels::words, cellCount(grid), "packed voxels");
@@ -230,7 +230,7 @@ class InjectVoxelsPass : public Inject {
         grid.resolution);
   }
 
-  void addLights(PassContext& frame, const GridPlacement& grid, const ClosedFaces::Level& surfaces,
+  void addLights(PassContext& frame, const GridPlacement& grid, const OccludedFaces::Level& surfaces,
                  const gpu::BufferRef& sums, const BrickList& lit) override {
     const LightBinding lights(shadow);
     if (lights.count == 0) return;
@@ -243,7 +243,7 @@ class InjectVoxelsPass : public Inject {
           {collect_voxels::parameters({fragments->grid.low, fragments->grid.voxelSize, grid.low,
                                        grid.voxelSize, grid.resolution, twoSided}),
            collect_voxels::voxels(collected), collect_voxels::moved(surfaces.moved, gpu::Sampling::nearest),
-           collect_voxels::closed(surfaces.closed, gpu::Sampling::nearest),
+           collect_voxels::occluded(surfaces.occluded, gpu::Sampling::nearest),
            collect_voxels::brickFlags(lit.flags), collect_voxels::brickList(lit.list)},
           *fragments);
     walkBricks(

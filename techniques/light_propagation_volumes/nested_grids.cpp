@@ -101,16 +101,17 @@ void requireFlux(const ShGrid& light) {
         name(light.quantity), light.unit));
 }
 
-void requireFaces(const ShGrid& light, const In<ClosedFaces>& faces) {
+void requireFaces(const ShGrid& light, const In<OccludedFaces>& faces) {
   for (std::size_t i = 0; i < light.levels.size(); ++i)
-    if (!faces.present() || i >= faces->levels.size() || !faces->levels[i].closed || !faces->levels[i].moved)
+    if (!faces.present() || i >= faces->levels.size() || !faces->levels[i].occluded ||
+        !faces->levels[i].moved)
       throw Error(fmt::format(
-          "level {} of the light has no closed faces or no moved surfaces; expected both at input 'faces', from "
+          "level {} of the light has no occluded faces or no moved surfaces; expected both at input 'faces', from "
           "an injection without 'as_published on'",
           i));
 }
 
-void requirePackedVoxels(const ShGrid& light, const In<ClosedFaces>& faces) {
+void requirePackedVoxels(const ShGrid& light, const In<OccludedFaces>& faces) {
   for (std::size_t i = 0; i < light.levels.size(); ++i)
     if (!faces.present() || i >= faces->levels.size() || !faces->levels[i].packed)
       throw Error(fmt::format(

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "closed_faces.h"
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/grid_placement.h"
 #include "lumivox/toolkit/light_bounds.h"
+#include "occluded_faces.h"
 
 namespace lumivox::light_propagation_volumes {
 
@@ -43,9 +43,9 @@ const gpu::TextureRef& facesOrUnread(const gpu::TextureRef& faces, const ShGrid:
 /// Refuses light that is not the flux of its cells, W/sr.
 void requireFlux(const ShGrid& light);
 /// Refuses light without faces for all of its levels: without them nobody knows what surfaces close.
-void requireFaces(const ShGrid& light, const In<ClosedFaces>& faces);
+void requireFaces(const ShGrid& light, const In<OccludedFaces>& faces);
 /// Refuses light without the packed voxels that it was injected from.
-void requirePackedVoxels(const ShGrid& light, const In<ClosedFaces>& faces);
+void requirePackedVoxels(const ShGrid& light, const In<OccludedFaces>& faces);
 
 /// Each registers the passes of its file.
 void addInject(TechniqueRegistry& registry);

@@ -35,8 +35,8 @@ class PropagatePass : public Pass {
   friend constexpr auto words(Grids) { return std::array{"nested", "apart"}; }
 
   In<ShGrid> injected{this, "light", "virtual point lights"};
-  In<ClosedFaces> faces{this, "faces", Presence::optional,
-                        "what surfaces close, from the same injection; always needed"};
+  In<OccludedFaces> faces{this, "faces", Presence::optional,
+                          "what surfaces close, from the same injection; always needed"};
   Param<int> iterations{this, "iterations", 64, within(1, 4096),
                         "steps from cell to cell; light that has not arrived then is lost"};
   Param<Lobe> lobe{
@@ -45,7 +45,7 @@ class PropagatePass : public Pass {
   Param<float> fluxAmplifier{this, "flux_amplifier", 1.0f, within(0.0f, 100.0f),
                              "factor of every step; 1 conserves energy"};
   Param<float> occlusionAmplifier{this, "occlusion_amplifier", 1.0f, within(0.0f, 100.0f),
-                                  "factor of the closed share of a face; 0: nothing occludes"};
+                                  "factor of the occluded share of a face; 0: nothing occludes"};
   Param<Border> border{this, "border", Border::open,
                        "of the coarsest grid; a mirror loses no light, for checks of energy"};
   Param<Method> method{
@@ -56,7 +56,7 @@ class PropagatePass : public Pass {
       "what leaves a cell arrives; or Listing 4.32: a quarter of it, as clamped cosines, none that is negative, and the cell keeps its light: the sum grows to 5/4 and more in every iteration"};
   Param<Occlusion> occlusion{
       this, "occlusion", Occlusion::faces,
-      "by the closed share of faces; or, as published (Listing 4.33), by a lobe around the normal in the sending voxel that is closest to the way: needs an injection with voxels packed"};
+      "by the occluded share of faces; or, as published (Listing 4.33), by a lobe around the normal in the sending voxel that is closest to the way: needs an injection with voxels packed"};
   Param<Grids> grids{
       this, "grids", Grids::nested,
       "light comes in from the next coarser grid and from the environment; or, as published, every grid is alone"};
@@ -92,7 +92,7 @@ class PropagatePass : public Pass {
   bool occludesByNormals() const { return asPublished || occlusion == Occlusion::normals; }
   bool gridsApart() const { return asPublished || grids == Grids::apart; }
 
-  Travelling start(PassContext& frame, const ShGrid::Level& level, const ClosedFaces::Level& surfaces,
+  Travelling start(PassContext& frame, const ShGrid::Level& level, const OccludedFaces::Level& surfaces,
                    const ShGrid::Level* outside, const Channels& sum) {
     const glm::ivec3 resolution = level.grid.resolution;
     Travelling result;
@@ -124,14 +124,14 @@ class PropagatePass : public Pass {
     constants.cosineLobe = lobe == Lobe::cosine;
     frame.dispatch(frame.program(variant, constants),
                    {start::parameters(parameters), sampled(level, gpu::Sampling::nearest), fromOutside,
-                    start::closed(facesOrUnread(surfaces.closed, level), gpu::Sampling::nearest),
+                    start::occluded(facesOrUnread(surfaces.occluded, level), gpu::Sampling::nearest),
                     images(result.light[0], kNext), images(sum, kTotal), start::stampsNext(result.stamps[0])},
                    resolution);
     return result;
   }
 
   /// Which of the two sets holds the light after the last iteration.
-  int iterate(PassContext& frame, const ShGrid::Level& level, const ClosedFaces::Level& surfaces,
+  int iterate(PassContext& frame, const ShGrid::Level& level, const OccludedFaces::Level& surfaces,
               const Travelling& state, const Channels& sum) {
     const bool plain = publishedTransfer() || occludesByNormals() || method == Method::plain;
     propagate_plain::Variant variant;
@@ -155,7 +155,7 @@ class PropagatePass : public Pass {
                                              .mirrors = border == Border::mirror,
                                              .addToTotal = passes}),
                       sampled(state.light[now], gpu::Sampling::nearest),
-                      propagate::closed(facesOrUnread(surfaces.closed, level), gpu::Sampling::nearest),
+                      propagate::occluded(facesOrUnread(surfaces.occluded, level), gpu::Sampling::nearest),
                       propagate::stamps(state.stamps[now], gpu::Sampling::nearest),
                       images(state.light[next], kNext), images(sum, kTotal),
                       propagate::stampsNext(state.stamps[next]), propagate_plain::words(surfaces.packed)},

@@ -25,7 +25,7 @@ View viewOf(const CameraView& camera, int pixelsPerSample) {
   return view;
 }
 
-/// Samples of a march along either side of the picture, with one for 2 x 2 pixels or for each.
+/// Samples of a march along either side of the image, with one for 2 x 2 pixels or for each.
 inline glm::ivec2 samplesOf(const CameraView& camera, int pixelsPerSample) {
   return (glm::ivec2(camera.width, camera.height) + pixelsPerSample - 1) / pixelsPerSample;
 }

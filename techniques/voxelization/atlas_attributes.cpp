@@ -1,14 +1,14 @@
-// Fragments from a texture atlas of the surface (multi-valued voxelisation of Thiedemann et al. 2011).
+// Fragments from a texture atlas of the surface (multi-valued voxelization of Thiedemann et al. 2011).
 #include "atlas_texels.h"
-#include "voxeliser.h"
 #include "voxelization_shaders.h"
+#include "voxelizer.h"
 
 namespace lumivox::voxelization {
 namespace {
 
 namespace code = shaders::voxelization::atlas_attributes;
 
-class AtlasAttributesPass : public Voxeliser {
+class AtlasAttributesPass : public Voxelizer {
   Param<float> texelsPerVoxel{this, "texels_per_voxel",    kTexelsPerVoxel, kTexelsPerVoxelRange,
                               "",   kTexelsPerVoxelMeaning};
 

@@ -1,6 +1,6 @@
-// Bits from a texture atlas of the surface (binary voxelisation of Thiedemann et al. 2011).
+// Bits from a texture atlas of the surface (binary voxelization of Thiedemann et al. 2011).
 #include "atlas_texels.h"
-#include "bit_voxeliser.h"
+#include "bit_voxelizer.h"
 #include "voxelization_shaders.h"
 
 namespace lumivox::voxelization {
@@ -8,7 +8,7 @@ namespace {
 
 namespace code = shaders::voxelization::atlas_binary;
 
-class AtlasBinaryPass : public BitVoxeliser {
+class AtlasBinaryPass : public BitVoxelizer {
   Param<float> texelsPerVoxel{this, "texels_per_voxel",    kTexelsPerVoxel, kTexelsPerVoxelRange,
                               "",   kTexelsPerVoxelMeaning};
 

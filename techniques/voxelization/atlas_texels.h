@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lumivox/scene/atlas.h"
-#include "voxeliser.h"
+#include "voxelizer.h"
 
 namespace lumivox::voxelization {
 

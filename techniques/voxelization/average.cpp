@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "bit_voxeliser.h"
+#include "bit_voxelizer.h"
 #include "fragment_list.h"
 #include "voxelization_shaders.h"
 

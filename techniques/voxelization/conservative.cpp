@@ -5,8 +5,8 @@
 #include <map>
 
 #include "fragment_list.h"
-#include "voxeliser.h"
 #include "voxelization_shaders.h"
+#include "voxelizer.h"
 
 namespace lumivox::voxelization {
 namespace {
@@ -33,7 +33,7 @@ BatchesByTextures batchesOf(const std::vector<const SceneDraw*>& draws) {
   return result;
 }
 
-class ConservativePass : public Voxeliser {
+class ConservativePass : public Voxelizer {
   enum class Depth { conservative, centre };
   friend constexpr auto words(Depth) { return std::array{"conservative", "centre"}; }
   enum class Method { automatic, raster, compute };

@@ -11,7 +11,7 @@ namespace {
 
 using namespace shaders::voxelization;
 
-class DepthPeelingPass : public Voxeliser {
+class DepthPeelingPass : public Voxelizer {
   Param<int> layers{this, "layers", 64, within(1, 4096), "most layers that are peeled from one view"};
 
   struct Layer {
@@ -28,7 +28,7 @@ class DepthPeelingPass : public Voxeliser {
   }
 
   /// Layers that are peeled along each axis: as many as earlier frames found and one more, which must turn
-  /// out empty; of what stands still and of what moves.
+  /// out empty; of static geometry and of what moves.
   struct Plan {
     static constexpr int kFirst = 4;
     std::array<int, 3> peeled{kFirst, kFirst, kFirst};
@@ -40,7 +40,7 @@ class DepthPeelingPass : public Voxeliser {
     const std::array<Layer, 2> pair{makeLayer(frame, side), makeLayer(frame, side)};
     const gpu::BufferRef deepest = frame.buffer(3 * sizeof(std::uint32_t), "deepest layer along each axis");
     deepest->clear();
-    Plan& plan = draws.front()->moving ? moving_ : still_;
+    Plan& plan = draws.front()->moving ? moving_ : static_;
     for (int axis = 0; axis < 3; ++axis) {
       const OrthogonalView view = viewAlong(list, axis, 0.0f, static_cast<float>(list.grid.resolution[axis]));
       int& peeled = plan.peeled[static_cast<std::size_t>(axis)];
@@ -97,7 +97,7 @@ class DepthPeelingPass : public Voxeliser {
     frame.device().barrier();
   }
 
-  Plan still_, moving_;
+  Plan static_, moving_;
 };
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "voxeliser.h"
+#include "voxelizer.h"
 
 namespace lumivox::voxelization {
 

@@ -14,7 +14,7 @@ namespace msaaShader = shaders::voxelization::msaa_opacity;
 namespace countShader = shaders::voxelization::msaa_opacity_count;
 namespace copyShader = shaders::voxelization::bits_copy;
 
-class MsaaOpacityPass : public Voxeliser {
+class MsaaOpacityPass : public Voxelizer {
   Param<int> samples{this, "samples", 8, within(2, 8), "per pixel; at most what the device has"};
   Param<float> thickness{this, "thickness", 0.5f, within(0.0f, 1.0f),
                          "how thick a surface is seen from the side, in voxels; 0: as thin as it is"};
@@ -39,7 +39,7 @@ class MsaaOpacityPass : public Voxeliser {
                              static_cast<int>(samples), most));
     }
     positions_ = frame.device().samplePositions(sampleCount_);
-    Voxeliser::run(frame);
+    Voxelizer::run(frame);
     if (opacity.wanted() || opacityX.wanted() || opacityY.wanted() || opacityZ.wanted()) countSides(frame);
   }
 
@@ -84,16 +84,16 @@ class MsaaOpacityPass : public Voxeliser {
     frame.device().barrier();
   }
 
-  /// The covered samples of every voxel's three sides. Those of what stands still are kept.
+  /// The covered samples of every voxel's three sides. Those of static geometry are kept.
   gpu::TextureRef sideMasks(PassContext& frame, const GridPlacement& grid) {
     const auto [still, moving] = drawsByMotion(frame);
     const auto mark = [&](const gpu::Texture& masks, const Draws& draws) {
       rasterise(frame, grid, draws, 0, msaaShader::Variant::targetMasks, {msaaShader::sampleMasks(masks)});
     };
     const gpu::TextureRef first =
-        frame.kept("samples of what stands still", stillKey(frame, grid, still), [&, &draws = still] {
+        frame.kept("samples of static geometry", staticKey(frame, grid, still), [&, &draws = still] {
           gpu::TextureRef masks =
-              frame.volume(grid.resolution, gpu::Format::r32ui, "samples of what stands still");
+              frame.volume(grid.resolution, gpu::Format::r32ui, "samples of static geometry");
           masks->clear(glm::vec4(0.0f));
           mark(*masks, draws);
           return masks;

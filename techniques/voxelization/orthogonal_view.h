@@ -1,8 +1,8 @@
 // Views along the axes of a grid, one pixel a column of voxels: what slicing and depth peeling draw.
 #pragma once
 
-#include "voxeliser.h"
 #include "voxelization_shaders.h"
+#include "voxelizer.h"
 
 namespace lumivox::voxelization {
 

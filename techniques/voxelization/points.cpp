@@ -6,15 +6,15 @@
 #include <optional>
 
 #include "aside.h"
-#include "voxeliser.h"
 #include "voxelization_shaders.h"
+#include "voxelizer.h"
 
 namespace lumivox::voxelization {
 namespace {
 
 namespace code = shaders::voxelization::points;
 
-class PointsPass : public Voxeliser {
+class PointsPass : public Voxelizer {
   enum class Spread { random, regular };
   friend constexpr auto words(Spread) { return std::array{"random", "regular"}; }
   // The paper's figures are made with 19 points; it finds 12 to 19 nearly perfect in most scenes.

@@ -25,12 +25,12 @@ class ReprojectPass : public GridPass {
   Reads readsFrom() const override { return readsSurface(); }
 
   void run(PassContext& frame) override {
-    const gpu::TextureDescription& picture = gbuffer->position->description();
-    VoxelFragments list = listBehind(
-        frame, base.present() ? base->grid : placement(frame), base.present() ? &*base : nullptr,
-        std::uint64_t{static_cast<unsigned>(picture.width)} * static_cast<unsigned>(picture.height));
+    const gpu::TextureDescription& image = gbuffer->position->description();
+    VoxelFragments list =
+        listBehind(frame, base.present() ? base->grid : placement(frame), base.present() ? &*base : nullptr,
+                   std::uint64_t{static_cast<unsigned>(image.width)} * static_cast<unsigned>(image.height));
     if (direct.present()) {
-      requireFits(list, picture);
+      requireFits(list, image);
       list.reflected = frame.elements(code::reflected, list.capacity, "direct light that fragments reflect");
       list.reflected->clear(VoxelFragments::kNotKnown);
     }
@@ -41,16 +41,16 @@ class ReprojectPass : public GridPass {
                                 static_cast<int>(list.capacity)}),
                     appending(list), GBufferBinding(*gbuffer), code::reflected(list.reflected),
                     code::direct(light, gpu::Sampling::nearest)},
-                   {picture.width, picture.height, 1});
+                   {image.width, image.height, 1});
     finishList(frame, list);
     fragments = list;
   }
 
-  void requireFits(const VoxelFragments& list, const gpu::TextureDescription& picture) const {
+  void requireFits(const VoxelFragments& list, const gpu::TextureDescription& image) const {
     const gpu::TextureDescription& light = direct->texture->description();
-    if (light.width != picture.width || light.height != picture.height)
+    if (light.width != image.width || light.height != image.height)
       throw Error(fmt::format("input 'direct' has {} x {} texels; expected {} x {}, those of the g-buffer",
-                              light.width, light.height, picture.width, picture.height));
+                              light.width, light.height, image.width, image.height));
     if (list.reflected != nullptr)
       throw Error(
           "input 'fragments' brings direct light along already; expected input 'direct' at one "

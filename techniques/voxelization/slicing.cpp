@@ -9,13 +9,13 @@ namespace {
 
 namespace code = shaders::voxelization::slicing;
 
-class SlicingPass : public Voxeliser {
+class SlicingPass : public Voxelizer {
   Param<int> axes{this, "axes", 1, within(1, 3),
                   "1: slices along z, as published; 3: along all axes, so that no surface is lost"};
 
   std::string checkParameters() const override {
     if (axes == 2) return "axes must be 1 or 3";
-    return Voxeliser::checkParameters();
+    return Voxelizer::checkParameters();
   }
 
   void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) override {

@@ -1,11 +1,11 @@
-// The inside of closed meshes (solid voxelisation by parity along columns).
+// The inside of closed meshes (solid voxelization by parity along columns).
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
 
 #include "aside.h"
-#include "bit_voxeliser.h"
+#include "bit_voxelizer.h"
 #include "lumivox/scene/topology.h"
 #include "voxelization_shaders.h"
 
@@ -35,7 +35,7 @@ Columns columnsOf(const Bounds& bounds, const glm::mat4& toWorld, const GridPlac
   return {low, high - low};
 }
 
-class SolidPass : public BitVoxeliser {
+class SolidPass : public BitVoxelizer {
   enum class Inwards { leave, fill };
   friend constexpr auto words(Inwards) { return std::array{"leave", "fill"}; }
 

@@ -1,5 +1,5 @@
-// The voxels of any voxeliser as a picture, to look at.
-#include "bit_voxeliser.h"
+// The voxels of any voxelizer as an image, to look at.
+#include "bit_voxelizer.h"
 #include "voxelization_shaders.h"
 
 namespace lumivox::voxelization {
@@ -12,7 +12,7 @@ class ViewPass : public Pass {
   Param<float> cut{this, "cut",
                    0.0f, within(0.0f, 1e9f),
                    "m",  "distance before the camera up to which everything is cut away"};
-  Out<Image> picture{this, "picture", "cubes where the voxels are, not light"};
+  Out<Image> image{this, "image", "cubes where the voxels are, not light"};
 
   Reads readsFrom() const override { return Reads::camera; }
 
@@ -21,28 +21,28 @@ class ViewPass : public Pass {
     const gpu::TextureRef words = bitWords(frame, grid, "bits");
     markFragments(frame, *fragments, *words);
     const CameraView& camera = frame.snapshot().camera;
-    const Image result{frame.image(gpu::Format::rgba32f, "picture of voxels")};
+    const Image result{frame.image(gpu::Format::rgba32f, "image of voxels")};
     frame.dispatch(
         frame.program(code::kProgram),
         {code::parameters({.eyeGrid = (camera.eye - grid.low) / grid.voxelSize,
                            .pixelWidth = 2.0f * camera.tanHalfFov / static_cast<float>(camera.height),
                            .right = camera.right,
-                           .pictureWidth = static_cast<float>(camera.width),
+                           .imageWidth = static_cast<float>(camera.width),
                            .up = camera.up,
-                           .pictureHeight = static_cast<float>(camera.height),
+                           .imageHeight = static_cast<float>(camera.height),
                            .forward = camera.forward,
                            .cut = cut / grid.voxelSize,
                            .resolution = grid.resolution}),
-         code::words(words), code::picture(result.texture)},
+         code::words(words), code::image(result.texture)},
         pixels(frame));
-    picture = result;
+    image = result;
   }
 };
 
 }  // namespace
 
 void addView(TechniqueRegistry& registry) {
-  registry.add<ViewPass>("view", "The voxels of any voxeliser as cubes, to look at");
+  registry.add<ViewPass>("view", "The voxels of any voxelizer as cubes, to look at");
 }
 
 }  // namespace lumivox::voxelization

@@ -12,7 +12,7 @@ using namespace lumivox::test;
 
 namespace {
 
-/// A point with one time and, for the whole picture, an error of 1 % uncertainty against full transport.
+/// A point with one time and, for the whole image, an error of 1 % uncertainty against full transport.
 ReportPoint pointOf(const std::string& pipeline, double samples, double timeMs, double rmse) {
   ReportPoint point;
   point.scene = "scenes/room.scene";
@@ -21,10 +21,10 @@ ReportPoint pointOf(const std::string& pipeline, double samples, double timeMs, 
   point.frameMs = {timeMs, 0.99 * timeMs, 1.01 * timeMs, 0.9 * timeMs, 1.1 * timeMs, 9};
   for (const bool bias : {true, false}) {
     ComponentError error;
-    error.output = kWholePicture;
+    error.output = kWholeImage;
     error.component = "final";
     error.bias = bias;
-    error.truth = bias ? "one_bounce" : "full";
+    error.reference = bias ? "one_bounce" : "full";
     error.error.rmse = {bias ? 0.5 * rmse : rmse, 0.01 * rmse};
     error.seeds = 3;
     error.error.flip = rmse;
@@ -66,7 +66,8 @@ StoredRun storedAt(const ReportPoint& point, const std::string& created, const s
 
 }  // namespace
 
-TEST_CASE("the pipelines on the front are named by budget, and a beaten one is told with who beats it") {
+TEST_CASE(
+    "the pipelines on the Pareto front are named by budget, and a beaten one is told with who beats it") {
   const PipelineComparison comparison = compared(threePipelines());
   const std::size_t coarse = pipelineNamed(comparison, "coarse"), fine = pipelineNamed(comparison, "fine");
   const std::size_t poor = pipelineNamed(comparison, "poor");
@@ -121,7 +122,7 @@ TEST_CASE("equal time and equal error follow each pipeline's own measured points
   CHECK(fine.atError[1].reached.value.value == 20.0);
 }
 
-TEST_CASE("a comparison knows its truth and metric, and takes in only what was timed and judged") {
+TEST_CASE("a comparison knows its reference and metric, and takes in only what was timed and judged") {
   std::vector<ReportPoint> points = threePipelines();
   points.push_back(pointOf("fine", 16, 300.0, 0.001));
   points.back().failure = "it did not fit into memory";
@@ -130,8 +131,8 @@ TEST_CASE("a comparison knows its truth and metric, and takes in only what was t
   points.push_back(pointOf("fine", 256, 300.0, 0.001));
   points.back().errors.clear();
   CHECK(compared(points).points.size() == 6);
-  CHECK(compared(points).truth == "full");
-  CHECK(compared(points, {}, true).truth == "one_bounce");
+  CHECK(compared(points).reference == "full");
+  CHECK(compared(points, {}, true).reference == "one_bounce");
   CHECK(compared(points, {}, true).points[0].tradeOff.error.value == 0.2);
   CHECK(compared(points, {}, false, "flip").points[0].tradeOff.error.value == 0.4);
   CHECK(compared({}).points.empty());
@@ -141,13 +142,13 @@ TEST_CASE("a comparison knows its truth and metric, and takes in only what was t
         std::string::npos);
 }
 
-TEST_CASE("one truth that answers for bias and for what is missed is compared once") {
+TEST_CASE("one reference that answers for bias and for what is missed is compared once") {
   std::vector<ReportPoint> points = threePipelines();
   std::vector<const ReportPoint*> pointers;
   for (ReportPoint& point : points) pointers.push_back(&point);
   CHECK(compareComponents(pointers, {"rmse", "flip"}, {}).size() == 4);
   for (ReportPoint& point : points)
-    for (ComponentError& error : point.errors) error.truth = "full";
+    for (ComponentError& error : point.errors) error.reference = "full";
   CHECK(compareComponents(pointers, {"rmse", "flip"}, {}).size() == 2);
 }
 

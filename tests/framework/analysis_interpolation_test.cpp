@@ -26,7 +26,7 @@ double errorAt(const std::vector<TradeOff>& points, double timeMs) {
 }
 
 /// Relative spread of what the interpolation gives when its points are drawn from their uncertainties. With
-/// `sharedNoise` all errors move together, as they do by the noise of one truth.
+/// `sharedNoise` all errors move together, as they do by the noise of one reference.
 template <class Interpolate>
 double drawnSpread(const std::vector<TradeOff>& points, bool sharedNoise, Interpolate interpolate) {
   std::mt19937_64 random(7);
@@ -91,7 +91,7 @@ TEST_CASE("a point with more time and more error than another does not bend its 
 }
 
 TEST_CASE(
-    "the uncertainty of an interpolated error is that of random draws with the truth's noise in common") {
+    "the uncertainty of an interpolated error is that of random draws with the reference's noise in common") {
   const std::vector<TradeOff> points{at(10.0, 0.2, 0.2, 0.004), at(40.0, 0.05, 1.2, 0.002)};
   const std::vector<std::size_t> front{0, 1};
   for (const double time : {12.0, 20.0, 33.0}) {
@@ -107,7 +107,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "the uncertainty of an interpolated time is that of random draws with the truth's noise in common") {
+    "the uncertainty of an interpolated time is that of random draws with the reference's noise in common") {
   const std::vector<TradeOff> points{at(10.0, 0.2, 0.2, 0.004), at(40.0, 0.05, 1.2, 0.002)};
   const std::vector<std::size_t> front{0, 1};
   for (const double error : {0.17, 0.1, 0.06}) {
@@ -163,7 +163,7 @@ TEST_CASE("of too few repeats nothing is beaten, and a machine's mood is no diff
   CHECK(medianOf(statisticsOf({1.0, 2.0, 3.0})).enoughRepeats);
 }
 
-TEST_CASE("two points within their uncertainties are both on the front") {
+TEST_CASE("two points within their uncertainties are both on the Pareto front") {
   const TradeOff here = at(10.0, 0.1, 0.1, 0.01);
   CHECK_FALSE(beats(at(9.9, 0.099, 0.1, 0.01), here));
   CHECK_FALSE(beats(at(9.7, 0.1, 0.0, 0.01), here));  // certain, but within 5 % of the time

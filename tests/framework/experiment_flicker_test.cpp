@@ -24,7 +24,7 @@ class Painted : public Toy {
   Out<Image> radiance{this, "radiance", Contributes::direct};
   Reads readsFrom() const override { return Reads::camera | Reads::time; }
   void run(PassContext& frame) override {
-    Image image{frame.image(gpu::Format::rgba32f, "picture")};
+    Image image{frame.image(gpu::Format::rgba32f, "image")};
     const gpu::TextureDescription& d = image.texture->description();
     std::vector<float> values(static_cast<std::size_t>(d.width) * static_cast<std::size_t>(d.height) * 4,
                               1.0f);
@@ -86,7 +86,7 @@ Scene shiningRoom(bool moves) {
 ReportOptions quickOptions() {
   ReportOptions options;
   options.subpixels = 2;
-  options.truthSamples = 16;
+  options.referenceSamples = 16;
   options.seeds = 6;
   options.flickerPairs = 3;
   return options;
@@ -97,11 +97,11 @@ PointRecord measured(const std::string& pass, const Scene& scene, const ReportOp
   toys.add<Painted>("toys", "still");
   toys.add<Restless>("toys", "restless");
   toys.add<Patterned>("toys", "patterned");
-  ReferenceOptions truthOptions = quietly(options.truthSamples);
-  truthOptions.width = 24;
-  truthOptions.height = 16;
-  experiment::Truth truth(scene, truthOptions);
-  const experiment::MeasureContext context{{device(), toys, scene, options, 24, 16}, truth};
+  ReferenceOptions referenceOptions = quietly(options.referenceSamples);
+  referenceOptions.width = 24;
+  referenceOptions.height = 16;
+  experiment::SceneReference reference(scene, referenceOptions);
+  const experiment::MeasureContext context{{device(), toys, scene, options, 24, 16}, reference};
   PointRecord record;
   record.point.pipeline = "toy.pipeline";
   experiment::measureErrors(context, toyPipeline(pass), record);
@@ -116,13 +116,13 @@ TEST_CASE("nothing is black, but for ambient occlusion, where it is that nothing
   SceneBuilder builder;
   builder.quad({-9, 0, 9}, {18, 0, 0}, {0, 0, -18}, builder.lambert(0.5f, 0.25f));
   builder.look({0, 1, 0}, {0, 0, 0}, {0, 0, -1}, 0.5, 8, 8);
-  experiment::Truth truth(builder.scene, quietly(4, 2));
-  CHECK(truth.errorOfNothing("ambient_occlusion").rmse.value == 0.0);
-  CHECK(truth.errorOfNothing("direct").rmse.value == Approx(0.25));
+  experiment::SceneReference reference(builder.scene, quietly(4, 2));
+  CHECK(reference.errorOfNothing("ambient_occlusion").rmse.value == 0.0);
+  CHECK(reference.errorOfNothing("direct").rmse.value == Approx(0.25));
 }
 
 TEST_CASE(
-    "a picture that stays right while the camera moves does not flicker, and a scene at rest is not asked") {
+    "an image that stays right while the camera moves does not flicker, and a scene at rest is not asked") {
   const ReportOptions options = quickOptions();
   const Scene moving = shiningRoom(true), resting = shiningRoom(false);
   CHECK(experiment::flickers(moving, options));
@@ -141,7 +141,7 @@ TEST_CASE(
   const Scene scene = shiningRoom(true);
   const PointRecord restless = measured("restless", scene, quickOptions());
   for (const ComponentError& error : restless.point.errors) {
-    INFO(error.output << " against " << error.truth);
+    INFO(error.output << " against " << error.reference);
     CHECK(error.flicker.value == Approx(std::sqrt(2.0) * kSigma).epsilon(0.05));
   }
   for (const ComponentError& error : measured("patterned", scene, quickOptions()).point.errors)
@@ -151,7 +151,7 @@ TEST_CASE(
 TEST_CASE("the report tells a technique's noise from its bias") {
   const PointRecord record = measured("patterned", shiningRoom(false), quickOptions());
   for (const ComponentError& error : record.point.errors) {
-    INFO(error.output << " against " << error.truth);
+    INFO(error.output << " against " << error.reference);
     CHECK(error.parts.noise.value == Approx(kSigma).epsilon(0.05));
     CHECK(std::abs(error.parts.bias.value - 0.02) <= 3.0 * error.parts.bias.uncertainty);
     CHECK(error.parts.bias.uncertainty < 0.01);
@@ -168,10 +168,10 @@ TEST_CASE("every metric is a mean over the seeds, and its uncertainty holds thei
   const ReportOptions options = quickOptions();
   const PointRecord record = measured("patterned", shiningRoom(false), options);
   for (const ComponentError& error : record.point.errors) {
-    INFO(error.output << " against " << error.truth);
+    INFO(error.output << " against " << error.reference);
     CHECK(error.seeds == options.seeds);
     CHECK(error.enoughSeeds());
-    // The truth is 1 everywhere and has no noise. A picture's mean is 1.02 with the standard deviation
+    // The reference is 1 everywhere and has no noise. An image's mean is 1.02 with the standard deviation
     // sigma / sqrt(24 x 16 x 3), the mean over six of them is known to that / sqrt(6), and its estimate from
     // six to a factor of 1.6 either way (chi-squared with five degrees of freedom, 95 %: 0.41 to 1.6).
     const double deviation = kSigma / std::sqrt(24.0 * 16.0 * 3.0 * options.seeds);
@@ -256,8 +256,8 @@ TEST_CASE(
   ReportOptions options = quickOptions();
   options.seeds = 4;
   options.subpixels = 1;
-  ReferenceOptions truthOptions = quietly(16);
-  experiment::Truth truth(scene, truthOptions);
+  ReferenceOptions referenceOptions = quietly(16);
+  experiment::SceneReference reference(scene, referenceOptions);
   const auto noiseWith = [&](int points) {
     const Pipeline pipeline = Pipeline::parse(
         "pipeline \"Points\" {\n"
@@ -272,12 +272,12 @@ TEST_CASE(
             "  pass gather voxel_cone_tracing.gather { gbuffer gbuffer  grid grid.mips }\n"
             "  output direct direct.radiance\n  output indirect_diffuse gather.diffuse\n}\n",
         "points.pipeline");
-    const experiment::MeasureContext context{{device(), techniques(), scene, options, 24, 24}, truth};
+    const experiment::MeasureContext context{{device(), techniques(), scene, options, 24, 24}, reference};
     PointRecord record;
     experiment::measureErrors(context, pipeline, record);
     double noise = 0.0;
     for (const ComponentError& error : record.point.errors) {
-      INFO(error.output << " against " << error.truth);
+      INFO(error.output << " against " << error.reference);
       if (error.output == "direct") CHECK((error.deterministic && error.parts.noise.value == 0.0));
       if (error.output == "indirect_diffuse" && error.bias) {
         CHECK(error.parts.noise.value > error.parts.noise.uncertainty);

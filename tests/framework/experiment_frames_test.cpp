@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kDirect = 1.0f;
 
-/// What it paints comes nearer to the truth with every frame.
+/// What it paints comes nearer to the reference with every frame.
 class Progressive : public Toy {
  public:
   using Toy::Toy;
@@ -65,11 +65,11 @@ ReportPoint measured(Toys& toys, const Scene& scene, const Pipeline& pipeline, i
   ReportOptions options;
   options.subpixels = 2;
   options.seeds = 2;
-  ReferenceOptions truthOptions = quietly(64);
-  truthOptions.width = 12;
-  truthOptions.height = 8;
-  experiment::Truth truth(scene, truthOptions);
-  const experiment::MeasureContext context{{device(), toys, scene, options, 12, 8}, truth};
+  ReferenceOptions referenceOptions = quietly(64);
+  referenceOptions.width = 12;
+  referenceOptions.height = 8;
+  experiment::SceneReference reference(scene, referenceOptions);
+  const experiment::MeasureContext context{{device(), toys, scene, options, 12, 8}, reference};
   PointRecord record;
   if (frames > 1) record.point.parameters[kAccumulatedFrames].number = frames;
   experiment::measureErrors(context, pipeline, record);
@@ -139,16 +139,16 @@ TEST_CASE(
     "an output of two bounces is judged by two bounces for its bias and by all light for what is missing") {
   Toys toys;
   const ReportPoint point = measured(toys, furnace(0.5f), toyPipeline("two_bounces", "indirect"), 1);
-  std::map<std::string, Measured> difference;  // of the means; the truth has noise
+  std::map<std::string, Measured> difference;  // of the means; the reference has noise
   for (const ComponentError& error : point.errors)
-    if (error.output == "indirect") difference[error.truth] = error.error.bias;
+    if (error.output == "indirect") difference[error.reference] = error.error.bias;
   REQUIRE(difference.size() == 2);
   const Measured bias = difference.at("bounces_2_diffuse"), missing = difference.at("indirect_diffuse");
   CHECK(bias.value == Approx(0.0).margin(4.0 * bias.uncertainty));
   CHECK(missing.value == Approx(-0.125).margin(4.0 * missing.uncertainty));  // a² + a³ - a² / (1 - a)
   CHECK(missing.uncertainty < 0.05);
   for (const ComponentError& error : point.errors)
-    if (error.output == kWholePicture && error.bias) CHECK(error.truth == "bounces_2");
+    if (error.output == kWholeImage && error.bias) CHECK(error.reference == "bounces_2");
 }
 
 TEST_CASE("convergence over frames begins with the point that says nothing of frames") {

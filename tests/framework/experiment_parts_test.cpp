@@ -1,4 +1,4 @@
-// The report's decisions that need no device: truths, whole pictures, sizes, uncertainties, places.
+// The report's decisions that need no device: references, whole images, sizes, uncertainties, places.
 #include <cmath>
 
 #include "lumivox/base/error.h"
@@ -13,20 +13,20 @@ using namespace lumivox::test;
 
 namespace {
 
-Picture constant(float value) {
-  return Picture(2, 2, 3, value);
+ImageBuffer constant(float value) {
+  return ImageBuffer(2, 2, 3, value);
 }
 
-LayeredPicture truth() {
-  LayeredPicture picture;
+LayeredImage reference() {
+  LayeredImage image;
   float value = 1.0f;
   for (const char* name :
        {"direct", "one_bounce_diffuse", "one_bounce_glossy", "indirect_diffuse", "indirect_glossy", "full"}) {
-    picture.layers[name] = constant(value);
-    picture.layers[std::string(name) + ".variance"] = constant(0.01f * value);
+    image.layers[name] = constant(value);
+    image.layers[std::string(name) + ".variance"] = constant(0.01f * value);
     value *= 2.0f;
   }
-  return picture;
+  return image;
 }
 
 /// A pass whose one output needs a glossy material, and one that needs nothing.
@@ -40,7 +40,7 @@ class Plain : public Pass {
   Out<Image> radiance{this, "radiance", Contributes::direct};
   void run(PassContext&) override {}
 };
-/// Its picture comes from a required input.
+/// Its image comes from a required input.
 class Blur : public Pass {
  public:
   In<Image> source{this, "source"};
@@ -76,38 +76,38 @@ std::string why(const std::string& text, const SceneTraits& traits) {
 }  // namespace
 
 TEST_CASE("a component is judged by its own bounce for bias and by full transport for what it misses") {
-  CHECK(truthLayers(Contributes::direct) == std::pair<std::string, std::string>("direct", "direct"));
-  CHECK(truthLayers(Contributes::indirectDiffuse) ==
+  CHECK(referenceLayers(Contributes::direct) == std::pair<std::string, std::string>("direct", "direct"));
+  CHECK(referenceLayers(Contributes::indirectDiffuse) ==
         std::pair<std::string, std::string>("one_bounce_diffuse", "indirect_diffuse"));
-  CHECK(truthLayers(Contributes::final) == std::pair<std::string, std::string>("one_bounce", "full"));
-  CHECK(truthLayers(Contributes::nothing).first.empty());
+  CHECK(referenceLayers(Contributes::final) == std::pair<std::string, std::string>("one_bounce", "full"));
+  CHECK(referenceLayers(Contributes::nothing).first.empty());
 }
 
-TEST_CASE("the one-bounce picture is direct light and both first bounces, and their variances add") {
-  const auto layer = truthLayer(truth(), "one_bounce");
+TEST_CASE("the one-bounce image is direct light and both first bounces, and their variances add") {
+  const auto layer = referenceLayer(reference(), "one_bounce");
   REQUIRE(layer);
   CHECK(layer->mean.at(1, 1, 2) == 1.0f + 2.0f + 4.0f);
   CHECK(layer->variance.at(0, 1, 0) == Approx(0.07));
-  CHECK(truthLayer(truth(), "full")->mean.at(0, 0, 0) == 32.0f);
-  CHECK_FALSE(truthLayer(truth(), "scattered"));
-  LayeredPicture lacking = truth();
+  CHECK(referenceLayer(reference(), "full")->mean.at(0, 0, 0) == 32.0f);
+  CHECK_FALSE(referenceLayer(reference(), "scattered"));
+  LayeredImage lacking = reference();
   lacking.layers.erase("one_bounce_glossy");
-  CHECK_FALSE(truthLayer(lacking, "one_bounce"));
+  CHECK_FALSE(referenceLayer(lacking, "one_bounce"));
 }
 
-TEST_CASE("the whole picture is the output called final, else the sum of what is radiance") {
+TEST_CASE("the whole image is the output called final, else the sum of what is radiance") {
   FrameResult frame;
   frame.outputs["direct"] = constant(1.0f);
   frame.outputs["bounce"] = constant(0.5f);
-  frame.outputs["occlusion"] = Picture(2, 2, 1, 0.25f);
+  frame.outputs["occlusion"] = ImageBuffer(2, 2, 1, 0.25f);
   frame.components = {{"direct", Contributes::direct},
                       {"bounce", Contributes::indirectDiffuse},
                       {"occlusion", Contributes::ambientOcclusion}};
-  CHECK(compositePicture(frame).at(0, 1, 1) == 1.5f);
+  CHECK(compositeImage(frame).at(0, 1, 1) == 1.5f);
   frame.outputs["composed"] = constant(7.0f);
   frame.components["composed"] = Contributes::final;
-  CHECK(compositePicture(frame).at(0, 1, 1) == 7.0f);
-  CHECK(compositePicture(FrameResult{}).empty());
+  CHECK(compositeImage(frame).at(0, 1, 1) == 7.0f);
+  CHECK(compositeImage(FrameResult{}).empty());
 }
 
 TEST_CASE("an error is told as its share of leaving the light out, where there is light") {
@@ -119,7 +119,7 @@ TEST_CASE("an error is told as its share of leaving the light out, where there i
   CHECK(std::isnan(error.ratioToNothing()));
 }
 
-TEST_CASE("a picture is reduced to its limit with its aspect kept, and never enlarged") {
+TEST_CASE("an image is reduced to its limit with its aspect kept, and never enlarged") {
   CHECK(reducedResolution(256, 256, 128) == std::pair(128, 128));
   CHECK(reducedResolution(1920, 1080, 160) == std::pair(160, 90));
   CHECK(reducedResolution(100, 50, 160) == std::pair(100, 50));
@@ -135,10 +135,10 @@ TEST_CASE(
   CHECK(formatPercent(0.416) == "42 %");
 }
 
-TEST_CASE("the truth takes fewer samples per pixel the larger the picture, within bounds") {
-  CHECK(truthSamplesFor(64, 64) > truthSamplesFor(128, 128));
-  CHECK(truthSamplesFor(1, 1) <= 4096);
-  CHECK(truthSamplesFor(16384, 16384) >= 64);
+TEST_CASE("the reference takes fewer samples per pixel the larger the image, within bounds") {
+  CHECK(referenceSamplesFor(64, 64) > referenceSamplesFor(128, 128));
+  CHECK(referenceSamplesFor(1, 1) <= 4096);
+  CHECK(referenceSamplesFor(16384, 16384) >= 64);
 }
 
 TEST_CASE("a pipeline suits unless all that it adds to direct light needs what the scene lacks") {

@@ -8,7 +8,7 @@
 
 namespace lumivox::test {
 
-inline gpu::TextureDescription smallPicture(int side = 4) {
+inline gpu::TextureDescription smallImage(int side = 4) {
   gpu::TextureDescription description;
   description.format = gpu::Format::rgba32f;
   description.width = description.height = side;
@@ -27,7 +27,7 @@ class Progressive : public Toy {
   void run(PassContext& frame) override {
     note();
     const int before = frame.accumulated();
-    const History<gpu::TextureRef> sum = frame.history(smallPicture(side), "sum");
+    const History<gpu::TextureRef> sum = frame.history(smallImage(side), "sum");
     float value = valueOf(*source) + static_cast<float>(before);
     if (before > 0 && sum.previous) value += sum.previous->downloadFloats().front();
     sum.current->clear(glm::vec4(value));
@@ -90,8 +90,8 @@ struct FramesFixture : Fixture {
 
 inline std::vector<float> valuesOf(const FrameResult& frame) {
   std::vector<float> all;
-  for (const auto& [name, picture] : frame.outputs)
-    all.insert(all.end(), picture.values().begin(), picture.values().end());
+  for (const auto& [name, image] : frame.outputs)
+    all.insert(all.end(), image.values().begin(), image.values().end());
   return all;
 }
 

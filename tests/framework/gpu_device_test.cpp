@@ -98,7 +98,7 @@ TEST_CASE("bytes that are alive are counted, and so is their peak") {
   device().resetPeak();
   {
     // 8 x 8 + 4 x 4 + 2 x 2 + 1 = 85 texels of 8 bytes.
-    const Texture texture(device(), picture(Format::rgba16f, 8, 8, 4), "texture");
+    const Texture texture(device(), image(Format::rgba16f, 8, 8, 4), "texture");
     CHECK(texture.sizeBytes() == 85 * 8);
     const Buffer buffer(device(), 1000, "buffer");
     CHECK(device().allocatedBytes() == before + 85 * 8 + 1000);
@@ -127,17 +127,17 @@ TEST_CASE("what does not fit is refused before it is allocated, with its size") 
     CHECK_THAT(memory, Catch::Contains("huge grid") && Catch::Contains("GiB"));
   }
   CHECK_THROWS_AS(Buffer(device(), 0, "nothing"), Error);
-  CHECK_THROWS_AS(Texture(device(), picture(Format::r8, 0, 1), "nothing"), Error);
-  CHECK_THROWS_AS(Texture(device(), picture(Format::r8, 4, 4, 4), "too many levels"), Error);
+  CHECK_THROWS_AS(Texture(device(), image(Format::r8, 0, 1), "nothing"), Error);
+  CHECK_THROWS_AS(Texture(device(), image(Format::r8, 4, 4, 4), "too many levels"), Error);
 }
 
 TEST_CASE("resources that fit alone but not together are refused with what is held and with the limit") {
   constexpr std::uint64_t kLimit = 1 << 20;
   Device small({"auto", ShaderInput::glsl, kLimit});
   const Buffer first(small, kLimit / 4, "first");
-  auto second = std::make_unique<Texture>(small, picture(Format::rgba32f, 128, 128), "second");
+  auto second = std::make_unique<Texture>(small, image(Format::rgba32f, 128, 128), "second");
   REQUIRE(second->sizeBytes() == kLimit / 4);
-  const auto third = [&] { return Texture(small, picture(Format::rgba32f, 256, 160), "third").sizeBytes(); };
+  const auto third = [&] { return Texture(small, image(Format::rgba32f, 256, 160), "third").sizeBytes(); };
   CHECK_THAT(messageOf<Error>(third),
              Catch::Contains("texture 'third'") && Catch::Contains("needs 640.0 KiB") &&
                  Catch::Contains("only 512.0 KiB of the limit of 1.0 MiB are left") &&
@@ -210,7 +210,7 @@ TEST_CASE("the device time of a pass agrees with a clock around a finished devic
       for (int i = 0; i < 2000; ++i) x = sin(x) + gl_FragCoord.y;
       value = x;
     })"}});
-  const Texture target(device(), picture(Format::r32f, 128, 128), "target");
+  const Texture target(device(), image(Format::r32f, 128, 128), "target");
   const auto draw = [&] {
     {
       const Drawing drawing = device().drawTo({{{&target}}}, {});

@@ -10,7 +10,7 @@ using namespace lumivox;
 using namespace lumivox::gpu;
 using namespace lumivox::test;
 
-TEST_CASE("row 0 is the top of the picture in raster and in compute passes alike") {
+TEST_CASE("row 0 is the top of the image in raster and in compute passes alike") {
   const Program raster = program("raster rows", {{Stage::vertex, R"(
     layout(location = 0) out float clipY;
     layout(std140, binding = 0) uniform Block { float z; };
@@ -26,8 +26,8 @@ TEST_CASE("row 0 is the top of the picture in raster and in compute passes alike
     layout(local_size_x = 1) in;
     layout(rg32f, binding = 0) uniform image2D rows;
     void main() { imageStore(rows, ivec2(gl_GlobalInvocationID.xy), vec4(1.0 - (gl_GlobalInvocationID.y + 0.5) / 2.0, gl_GlobalInvocationID.y + 0.5, 0.0, 0.0)); })");
-  const Texture drawn(device(), picture(Format::rg32f, 1, 4), "drawn"),
-      computed(device(), picture(Format::rg32f, 1, 4), "computed");
+  const Texture drawn(device(), image(Format::rg32f, 1, 4), "drawn"),
+      computed(device(), image(Format::rg32f, 1, 4), "computed");
   {
     const Drawing drawing = device().drawTo({{{&drawn}}}, {});
     device().draw(raster, Bindings{uniform(0, Depth{})}, 3);
@@ -46,7 +46,7 @@ TEST_CASE("a triangle that is counter-clockwise with y up shows its front") {
   const Program facing = program("facing", {{Stage::vertex, kWholeTarget}, {Stage::fragment, R"(
     layout(location = 0) out float front;
     void main() { front = gl_FrontFacing ? 1.0 : 2.0; })"}});
-  const Texture target(device(), picture(Format::r32f, 2, 2), "facing");
+  const Texture target(device(), image(Format::r32f, 2, 2), "facing");
   {
     const Drawing drawing = device().drawTo({{{&target}}}, {});
     device().draw(facing, Bindings{uniform(0, Depth{})}, 3);  // (-1,-1), (3,-1), (-1,3): counter-clockwise
@@ -67,7 +67,7 @@ TEST_CASE("indexed draws pull their attributes by the index") {
       5, 5, 5, 0, 1, 4};  // from the fourth on: the upper quarter between two corners and the middle
   positions.uploadValues(std::span<const float>(corners));
   indices.uploadValues(std::span<const std::uint32_t>(triangle));
-  const Texture target(device(), picture(Format::r32f, 4, 4), "covered");
+  const Texture target(device(), image(Format::r32f, 4, 4), "covered");
   {
     const Drawing drawing = device().drawTo({{{&target}}}, {});
     device().drawIndexed(pulling, Bindings{storage(4, positions)}, indices, 3, 3);
@@ -83,8 +83,8 @@ TEST_CASE("the nearer surface wins the depth test, and clamped depth keeps what 
   const Program shading = program("depth", {{Stage::vertex, kWholeTarget}, {Stage::fragment, R"(
     layout(location = 0) out float depth;
     void main() { depth = gl_FragCoord.z; })"}});
-  const Texture target(device(), picture(Format::r32f, 1, 1), "target"),
-      depth(device(), picture(Format::depth32f, 1, 1), "depth");
+  const Texture target(device(), image(Format::r32f, 1, 1), "target"),
+      depth(device(), image(Format::depth32f, 1, 1), "depth");
   const auto draw = [&](std::vector<float> depths, RasterState state) {
     {
       const Drawing drawing = device().drawTo({{{&target}}, &depth}, state);
@@ -158,7 +158,7 @@ TEST_CASE("drawing without any target runs one fragment per pixel of the given s
 
 TEST_CASE("targets that cannot be drawn to together are an error, after which drawing works") {
   const Texture layers(device(), {TextureKind::d2Array, Format::r32f, 2, 2, 3, 1}, "layers"),
-      flat(device(), picture(Format::r32f, 2, 2), "flat");
+      flat(device(), image(Format::r32f, 2, 2), "flat");
   CHECK_THAT(test::messageOf<Error>([&] {
                const Drawing drawing = device().drawTo({{{&layers}, {&flat}}}, {});
              }),
@@ -167,7 +167,7 @@ TEST_CASE("targets that cannot be drawn to together are an error, after which dr
 }
 
 TEST_CASE("a drawing that an error leaves is over, and the next one begins") {
-  const Texture target(device(), picture(Format::r32f, 2, 2), "target");
+  const Texture target(device(), image(Format::r32f, 2, 2), "target");
   const Program filling = program("filling", {{Stage::vertex, kWholeTarget}, {Stage::fragment, R"(
     layout(location = 0) out float value;
     void main() { value = 3.0; })"}});
@@ -189,7 +189,7 @@ TEST_CASE("a texture that took the name of a deleted target is drawn to, and at 
     layout(location = 0) out float value;
     void main() { value = gl_FragCoord.x; })"}});
   for (const int side : {2, 5, 3}) {
-    const Texture target(device(), picture(Format::r32f, side, side), "short-lived");
+    const Texture target(device(), image(Format::r32f, side, side), "short-lived");
     for (int repeat = 0; repeat < 2; ++repeat) {  // the second finds the framebuffer of the first
       const Drawing drawing = device().drawTo({{{&target}}}, {});
       device().draw(filling, Bindings{uniform(0, Depth{})}, 3);

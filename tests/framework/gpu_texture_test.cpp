@@ -65,7 +65,7 @@ TEST_CASE("slices of a volume and layers of an array are the parts of the whole 
 TEST_CASE("every format is cleared to the value, at every level") {
   for (const Format format : kAllFormats) {
     CAPTURE(name(format));
-    Texture texture(device(), picture(format, 4, 4, format == Format::depth32f ? 1 : 3), "cleared");
+    Texture texture(device(), image(format, 4, 4, format == Format::depth32f ? 1 : 3), "cleared");
     texture.clear(glm::vec4(1.0f, 0.0f, 1.0f, 0.0f));
     for (int level = 0; level < texture.description().levels; ++level) {
       std::vector<float> values;
@@ -96,7 +96,7 @@ TEST_CASE("clearing one level leaves the others alone") {
 }
 
 TEST_CASE("half floats round to the nearest and keep infinity and subnormals") {
-  Texture texture(device(), picture(Format::r16f, 6, 1), "halves");
+  Texture texture(device(), image(Format::r16f, 6, 1), "halves");
   // 10 bits of fraction: the step at 1 is 2^-10. Greatest finite 65504, least subnormal 2^-24.
   const float step = std::ldexp(1.0f, -10);
   const float values[] = {
@@ -107,7 +107,7 @@ TEST_CASE("half floats round to the nearest and keep infinity and subnormals") {
 }
 
 TEST_CASE("a texture is read as its sampling says, inside and outside") {
-  Texture texture(device(), picture(Format::r32f, 2, 1, 2), "ramp");
+  Texture texture(device(), image(Format::r32f, 2, 1, 2), "ramp");
   const float level0[] = {1.0f, 3.0f}, level1[] = {10.0f};
   texture.uploadFloats(0, level0);
   texture.uploadFloats(1, level1);
@@ -150,7 +150,7 @@ TEST_CASE("a texture is read as its sampling says, inside and outside") {
 }
 
 TEST_CASE("generated levels are box-filtered halves") {
-  Texture texture(device(), picture(Format::r32f, 4, 2, 3), "mips");
+  Texture texture(device(), image(Format::r32f, 4, 2, 3), "mips");
   const float values[] = {0, 2, 4, 6, 8, 10, 12, 14};
   texture.uploadFloats(0, values);
   texture.generateLevels();

@@ -1,4 +1,4 @@
-// How lights become point samples: every lamp has some, and they carry its light.
+// How lights become point samples: every area light has some, and they carry its light.
 #include "lumivox/toolkit/light_samples.h"
 
 #include <cmath>
@@ -11,8 +11,8 @@ using namespace lumivox::test;
 
 namespace {
 
-/// Lamps of one square metre each in a row along x, two metres apart, facing down.
-Scene rowOfLamps(const std::vector<float>& radiances) {
+/// Area lights of one square metre each in a row along x, two metres apart, facing down.
+Scene rowOfAreaLights(const std::vector<float>& radiances) {
   SceneBuilder builder;
   for (std::size_t i = 0; i < radiances.size(); ++i)
     builder.quad({2.0f * static_cast<float>(i), 1, 0}, {1, 0, 0}, {0, 0, 1},
@@ -20,15 +20,15 @@ Scene rowOfLamps(const std::vector<float>& radiances) {
   return builder.scene;
 }
 
-struct LampSamples {
+struct AreaLightSamples {
   int count = 0;
   double power = 0.0;
 };
 
-LampSamples samplesOf(const LightSet& set, const SceneSnapshot& snapshot, std::size_t lamp) {
-  LampSamples result;
+AreaLightSamples samplesOf(const LightSet& set, const SceneSnapshot& snapshot, std::size_t areaLight) {
+  AreaLightSamples result;
   for (const LightSampleData& sample : set.samples) {
-    if (static_cast<std::size_t>((sample.position.x + snapshot.origin.x) / 2.0) != lamp) continue;
+    if (static_cast<std::size_t>((sample.position.x + snapshot.origin.x) / 2.0) != areaLight) continue;
     ++result.count;
     result.power += sample.power.x;
   }
@@ -37,28 +37,30 @@ LampSamples samplesOf(const LightSet& set, const SceneSnapshot& snapshot, std::s
 
 }  // namespace
 
-TEST_CASE("every lamp has samples, which carry radiance times area of it, beside one 10^6 times as bright") {
-  // The power of a lamp's samples, W/sr along its normal, is the integral of its radiance over its area.
+TEST_CASE(
+    "every area light has samples, which carry radiance times area of it, beside one 10^6 times as bright") {
+  // The power of an area light's samples, W/sr along its normal, is the integral of its radiance over its
+  // area.
   const std::vector<float> radiances{1.0f, 1e6f, 0.5f, 2e6f};
-  const Scene scene = rowOfLamps(radiances);
+  const Scene scene = rowOfAreaLights(radiances);
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   for (const int count : {4, 5, 16, 64}) {
     const LightSet set = sampleLights(scene, snapshot, count, 64);
     INFO(count << " samples");
     REQUIRE(set.samples.size() == static_cast<std::size_t>(count));
-    for (std::size_t lamp = 0; lamp < radiances.size(); ++lamp) {
-      const LampSamples found = samplesOf(set, snapshot, lamp);
-      INFO("lamp " << lamp << " has " << found.count);
+    for (std::size_t areaLight = 0; areaLight < radiances.size(); ++areaLight) {
+      const AreaLightSamples found = samplesOf(set, snapshot, areaLight);
+      INFO("area light " << areaLight << " has " << found.count);
       CHECK(found.count >= 1);
-      CHECK(found.power == Approx(radiances[lamp]).epsilon(1e-5));
+      CHECK(found.power == Approx(radiances[areaLight]).epsilon(1e-5));
     }
     // Beyond one each they go by power.
     CHECK(std::abs(samplesOf(set, snapshot, 3).count - 1 - 2 * (samplesOf(set, snapshot, 1).count - 1)) <= 2);
   }
 }
 
-TEST_CASE("more lamps than samples still give all light together, the brightest first") {
-  const Scene scene = rowOfLamps({1.0f, 8.0f, 1.0f});
+TEST_CASE("more area lights than samples still give all light together, the brightest first") {
+  const Scene scene = rowOfAreaLights({1.0f, 8.0f, 1.0f});
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   const LightSet set = sampleLights(scene, snapshot, 2, 64);
   REQUIRE(set.samples.size() == 2);
@@ -83,8 +85,8 @@ SurfaceTexture columnMask(int width, int firstHole) {
   return mask;
 }
 
-/// A lamp of one square metre at the height 1 that shines downwards, u along x.
-Scene maskedLamp(const SurfaceTexture& mask, float radiance) {
+/// An area light of one square metre at the height 1 that shines downwards, u along x.
+Scene maskedAreaLight(const SurfaceTexture& mask, float radiance) {
   SceneBuilder builder;
   builder.scene.textures.push_back(mask);
   Material material;
@@ -96,12 +98,12 @@ Scene maskedLamp(const SurfaceTexture& mask, float radiance) {
 
 }  // namespace
 
-TEST_CASE("a lamp whose mask leaves a share of it gives that share of the light, from there") {
+TEST_CASE("an area light whose mask leaves a share of it gives that share of the light, from there") {
   // Columns 0 to k-1 of n are opaque. Bilinearly between texel centres the coverage passes a half in the
   // middle between two columns, and around the repeat at u = 0 and u = 1 too: the opaque share is k / n.
   for (const int opaque : {1, 4, 5, 7}) {
     constexpr int kColumns = 8;
-    const Scene scene = maskedLamp(columnMask(kColumns, opaque), 3.0f);
+    const Scene scene = maskedAreaLight(columnMask(kColumns, opaque), 3.0f);
     const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
     const double share = double(opaque) / kColumns;
     for (const int count : {1, 7, 64}) {
@@ -118,10 +120,10 @@ TEST_CASE("a lamp whose mask leaves a share of it gives that share of the light,
   }
 }
 
-TEST_CASE("samples of a masked lamp fill what is left of it evenly") {
+TEST_CASE("samples of a masked area light fill what is left of it evenly") {
   // The mean of x over the opaque part [0, 1/2] is 1/4, its variance (1/2)^2 / 12; z knows nothing of the
   // mask.
-  const Scene scene = maskedLamp(columnMask(8, 4), 1.0f);
+  const Scene scene = maskedAreaLight(columnMask(8, 4), 1.0f);
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   const LightSet set = sampleLights(scene, snapshot, 1024, 64);
   double x = 0.0, squares = 0.0, z = 0.0;
@@ -136,8 +138,8 @@ TEST_CASE("samples of a masked lamp fill what is left of it evenly") {
   CHECK(z == Approx(0.5).epsilon(0.02));
 }
 
-TEST_CASE("a lamp that is all hole has no samples, beside one that is whole") {
-  Scene scene = maskedLamp(columnMask(8, 0), 5.0f);
+TEST_CASE("an area light that is all hole has no samples, beside one that is whole") {
+  Scene scene = maskedAreaLight(columnMask(8, 0), 5.0f);
   CHECK(sampleLights(scene, snapshotOf(scene, 0.0), 16, 64).samples.empty());
   scene.textures[0] = columnMask(8, 8);
   const LightSet set = sampleLights(scene, snapshotOf(scene, 0.0), 16, 64);

@@ -126,8 +126,8 @@ double filtered(const Image& image, int width, int height, int x, int y, std::si
   return sum;
 }
 
-std::vector<double> directFlip(const Picture& picture, const Picture& truth, double ppd) {
-  const int width = truth.width(), height = truth.height();
+std::vector<double> directFlip(const ImageBuffer& image, const ImageBuffer& reference, double ppd) {
+  const int width = reference.width(), height = reference.height();
   const Kernel achromatic = sensitivity(ppd, 1, 0.0047, 0, 1e-5),
                redGreen = sensitivity(ppd, 1, 0.0053, 0, 1e-5);
   const Kernel blueYellow = sensitivity(ppd, 34.1, 0.04, 13.5, 0.025);
@@ -135,7 +135,7 @@ std::vector<double> directFlip(const Picture& picture, const Picture& truth, dou
                               feature(ppd, false, false)};
   Image opponents[2];
   for (int which = 0; which < 2; ++which) {
-    const Picture& source = which == 0 ? picture : truth;
+    const ImageBuffer& source = which == 0 ? image : reference;
     for (std::size_t i = 0; i < source.pixelCount(); ++i) {
       Vector rgb{};
       for (std::size_t c = 0; c < 3; ++c) rgb[c] = std::clamp(double{source.values()[3 * i + c]}, 0.0, 1.0);
@@ -148,10 +148,10 @@ std::vector<double> directFlip(const Picture& picture, const Picture& truth, dou
       Vector lab[2];
       double edges[2], points[2];
       for (int which = 0; which < 2; ++which) {
-        const Image& image = opponents[which];
-        const Vector seen = {filtered(image, width, height, x, y, 0, achromatic),
-                             filtered(image, width, height, x, y, 1, redGreen),
-                             filtered(image, width, height, x, y, 2, blueYellow)};
+        const Image& opponent = opponents[which];
+        const Vector seen = {filtered(opponent, width, height, x, y, 0, achromatic),
+                             filtered(opponent, width, height, x, y, 1, redGreen),
+                             filtered(opponent, width, height, x, y, 2, blueYellow)};
         const double luminance = (seen[0] + 16) / 116;
         Vector rgb = rgbOf({(luminance + seen[1] / 500) * kWhite[0], luminance * kWhite[1],
                             (luminance - seen[2] / 200) * kWhite[2]});
@@ -159,7 +159,7 @@ std::vector<double> directFlip(const Picture& picture, const Picture& truth, dou
         lab[which] = huntLabOf(rgb);
         double strength[4];  // the filters see (Y + 16) / 116; the offset has no features, so Y / 116 does as
                              // well
-        for (int k = 0; k < 4; ++k) strength[k] = filtered(image, width, height, x, y, 0, features[k]) / 116;
+        for (int k = 0; k < 4; ++k) strength[k] = filtered(opponent, width, height, x, y, 0, features[k]) / 116;
         edges[which] = std::hypot(strength[0], strength[1]);
         points[which] = std::hypot(strength[2], strength[3]);
       }
@@ -170,40 +170,39 @@ std::vector<double> directFlip(const Picture& picture, const Picture& truth, dou
   return map;
 }
 
-// ---- pictures
+// ---- images
 
-Picture constant(int width, int height, const Vector& rgb) {
-  Picture picture(width, height, 3);
-  for (std::size_t i = 0; i < picture.values().size(); ++i)
-    picture.values()[i] = static_cast<float>(rgb[i % 3]);
-  return picture;
+ImageBuffer constant(int width, int height, const Vector& rgb) {
+  ImageBuffer image(width, height, 3);
+  for (std::size_t i = 0; i < image.values().size(); ++i) image.values()[i] = static_cast<float>(rgb[i % 3]);
+  return image;
 }
 
-Picture random(int width, int height, std::uint64_t seed, float scale = 1.0f) {
-  Picture picture(width, height, 3);
+ImageBuffer random(int width, int height, std::uint64_t seed, float scale = 1.0f) {
+  ImageBuffer image(width, height, 3);
   RandomStream stream(seed, 0);
-  for (float& value : picture.values()) value = scale * stream.uniform();
-  return picture;
+  for (float& value : image.values()) value = scale * stream.uniform();
+  return image;
 }
 
-double meanOf(const Picture& map) {
+double meanOf(const ImageBuffer& map) {
   double sum = 0;
   for (const float value : map.values()) sum += double{value};
   return sum / static_cast<double>(map.values().size());
 }
 
 /// A white half plane right of `edge`.
-Picture halfPlane(int width, int height, int edge) {
-  Picture picture = constant(width, height, {0, 0, 0});
+ImageBuffer halfPlane(int width, int height, int edge) {
+  ImageBuffer image = constant(width, height, {0, 0, 0});
   for (int y = 0; y < height; ++y) {
     for (int x = edge; x < width; ++x) {
-      for (int c = 0; c < 3; ++c) picture.at(x, y, c) = 1.0f;
+      for (int c = 0; c < 3; ++c) image.at(x, y, c) = 1.0f;
     }
   }
-  return picture;
+  return image;
 }
 
-bool allNear(const Picture& map, double expected, double tolerance) {
+bool allNear(const ImageBuffer& map, double expected, double tolerance) {
   return std::all_of(map.values().begin(), map.values().end(),
                      [&](float value) { return std::abs(double{value} - expected) <= tolerance; });
 }
@@ -216,18 +215,18 @@ double aces(double x) {
 
 }  // namespace
 
-TEST_CASE("FLIP of a picture and itself is zero") {
-  const Picture picture = random(31, 23, 1, 3.0f);
-  REQUIRE(allNear(flipLdr(picture, picture), 0.0, 0.0));
-  REQUIRE(allNear(flipHdr(picture, picture), 0.0, 0.0));
+TEST_CASE("FLIP of an image and itself is zero") {
+  const ImageBuffer image = random(31, 23, 1, 3.0f);
+  REQUIRE(allNear(flipLdr(image, image), 0.0, 0.0));
+  REQUIRE(allNear(flipHdr(image, image), 0.0, 0.0));
 }
 
 TEST_CASE("FLIP of black against white is that of a lightness difference of 100") {
-  // Constant pictures have no features, and filters of sum 1 leave them alone. L* differs by 100, chroma by
+  // Constant images have no features, and filters of sum 1 leave them alone. L* differs by 100, chroma by
   // nothing: 100^0.7 = 25.119 is above the knee 0.4 * largest. The largest distance is green (87.74,
   // -75.61, 72.98) to blue (32.30, 25.58, -34.84), after Hunt: 55.44 + sqrt(101.2^2 + 107.8^2) = 203.3;
   // 203.3^0.7 = 41.28; knee 16.51; 0.95 + 0.05 (25.12 - 16.51) / (41.28 - 16.51) = 0.9674.
-  const Picture black = constant(40, 30, {0, 0, 0}), white = constant(40, 30, {1, 1, 1});
+  const ImageBuffer black = constant(40, 30, {0, 0, 0}), white = constant(40, 30, {1, 1, 1});
   REQUIRE(allNear(flipLdr(black, white), 0.9674, 1e-4));
   REQUIRE(allNear(flipLdr(white, black), colourDifference({100, 0, 0}, {0, 0, 0}), 1e-6));
 }
@@ -247,16 +246,16 @@ TEST_CASE("FLIP of constant colours is the remapped HyAB distance of their Hunt-
   }
 }
 
-TEST_CASE("FLIP of any two pictures is its definition evaluated directly with two-dimensional kernels") {
+TEST_CASE("FLIP of any two images is its definition evaluated directly with two-dimensional kernels") {
   for (const double pixelsPerDegree : {67.0206, 25.0}) {
-    Picture truth = random(26, 19, 2), picture = truth;
+    ImageBuffer reference = random(26, 19, 2), image = reference;
     for (int y = 4; y < 12; ++y) {
       for (int x = 9; x < 20; ++x) {
-        for (int c = 0; c < 3; ++c) picture.at(x, y, c) = (c + 1) * 0.3f;
+        for (int c = 0; c < 3; ++c) image.at(x, y, c) = (c + 1) * 0.3f;
       }
     }
-    const Picture map = flipLdr(picture, truth, pixelsPerDegree);
-    const std::vector<double> expected = directFlip(picture, truth, pixelsPerDegree);
+    const ImageBuffer map = flipLdr(image, reference, pixelsPerDegree);
+    const std::vector<double> expected = directFlip(image, reference, pixelsPerDegree);
     double largest = 0, sum = 0;
     for (std::size_t i = 0; i < expected.size(); ++i) {
       largest = std::max(largest, std::abs(expected[i] - double{map.values()[i]}));
@@ -268,10 +267,10 @@ TEST_CASE("FLIP of any two pictures is its definition evaluated directly with tw
 }
 
 TEST_CASE("FLIP grows with the difference") {
-  const Picture truth = constant(20, 20, {0.3, 0.3, 0.3});
+  const ImageBuffer reference = constant(20, 20, {0.3, 0.3, 0.3});
   double before = 0.0;
   for (const double step : {0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7}) {
-    const double error = meanOf(flipLdr(constant(20, 20, {0.3 + step, 0.3 + step, 0.3 + step}), truth));
+    const double error = meanOf(flipLdr(constant(20, 20, {0.3 + step, 0.3 + step, 0.3 + step}), reference));
     REQUIRE(error > before);
     before = error;
   }
@@ -279,10 +278,10 @@ TEST_CASE("FLIP grows with the difference") {
 
 TEST_CASE("FLIP of a displaced edge grows with the displacement and stays near the edge") {
   constexpr int kWidth = 96, kHeight = 24, kEdge = 48;
-  const Picture truth = halfPlane(kWidth, kHeight, kEdge);
+  const ImageBuffer reference = halfPlane(kWidth, kHeight, kEdge);
   double before = 0.0;
   for (const int shift : {1, 2, 4, 8}) {
-    const Picture map = flipLdr(halfPlane(kWidth, kHeight, kEdge + shift), truth);
+    const ImageBuffer map = flipLdr(halfPlane(kWidth, kHeight, kEdge + shift), reference);
     REQUIRE(meanOf(map) > before);
     before = meanOf(map);
     // Beyond the reach of the filters (10 pixels at 67 pixels per degree) nothing differs.
@@ -292,100 +291,100 @@ TEST_CASE("FLIP of a displaced edge grows with the displacement and stays near t
   }
 }
 
-TEST_CASE("FLIP moves with the pictures and turns with them") {
+TEST_CASE("FLIP moves with the images and turns with them") {
   // The same small square on grey, at two places; then with rows and columns exchanged.
   const auto square = [](int left, int top, float value) {
-    Picture picture = constant(64, 64, {0.2, 0.2, 0.2});
+    ImageBuffer image = constant(64, 64, {0.2, 0.2, 0.2});
     for (int y = top; y < top + 3; ++y) {
-      for (int x = left; x < left + 7; ++x) picture.at(x, y, 0) = value;
+      for (int x = left; x < left + 7; ++x) image.at(x, y, 0) = value;
     }
-    return picture;
+    return image;
   };
-  const Picture one = flipLdr(square(20, 24, 0.9f), square(20, 24, 0.2f));
-  const Picture other = flipLdr(square(33, 29, 0.9f), square(33, 29, 0.2f));
+  const ImageBuffer one = flipLdr(square(20, 24, 0.9f), square(20, 24, 0.2f));
+  const ImageBuffer other = flipLdr(square(33, 29, 0.9f), square(33, 29, 0.2f));
   for (int y = 14; y < 38; ++y) {
     for (int x = 8; x < 40; ++x) REQUIRE(one.at(x, y, 0) == Approx(other.at(x + 13, y + 5, 0)).margin(1e-6));
   }
-  const auto turned = [](const Picture& picture) {
-    Picture result(picture.height(), picture.width(), picture.channels());
-    for (int y = 0; y < picture.height(); ++y) {
-      for (int x = 0; x < picture.width(); ++x) {
-        for (int c = 0; c < picture.channels(); ++c) result.at(y, x, c) = picture.at(x, y, c);
+  const auto turned = [](const ImageBuffer& image) {
+    ImageBuffer result(image.height(), image.width(), image.channels());
+    for (int y = 0; y < image.height(); ++y) {
+      for (int x = 0; x < image.width(); ++x) {
+        for (int c = 0; c < image.channels(); ++c) result.at(y, x, c) = image.at(x, y, c);
       }
     }
     return result;
   };
-  const Picture a = random(30, 22, 5), b = random(30, 22, 6);
-  const Picture expected = turned(flipLdr(a, b)), map = flipLdr(turned(a), turned(b));
+  const ImageBuffer a = random(30, 22, 5), b = random(30, 22, 6);
+  const ImageBuffer expected = turned(flipLdr(a, b)), map = flipLdr(turned(a), turned(b));
   for (std::size_t i = 0; i < map.values().size(); ++i)
     REQUIRE(map.values()[i] == Approx(expected.values()[i]).margin(1e-6));
 }
 
 TEST_CASE("one channel is grey") {
-  Picture greyA(12, 12, 1, 0.3f), greyB(12, 12, 1, 0.6f);
+  ImageBuffer greyA(12, 12, 1, 0.3f), greyB(12, 12, 1, 0.6f);
   REQUIRE(meanOf(flipLdr(greyA, greyB)) ==
           Approx(meanOf(flipLdr(constant(12, 12, {0.3, 0.3, 0.3}), constant(12, 12, {0.6, 0.6, 0.6})))));
 }
 
-TEST_CASE("HDR-FLIP of constant greys is LDR-FLIP at the exposure that shows the truth at 0.85") {
-  // Largest and median luminance agree, so every exposure maps the truth to 0.85. The exposed radiance x
-  // solves aces(x) = 0.85; the picture at twice the radiance is shown at aces(2 x).
+TEST_CASE("HDR-FLIP of constant greys is LDR-FLIP at the exposure that shows the reference at 0.85") {
+  // Largest and median luminance agree, so every exposure maps the reference to 0.85. The exposed radiance x
+  // solves aces(x) = 0.85; the image at twice the radiance is shown at aces(2 x).
   double low = 0, high = 100;
   for (int i = 0; i < 200; ++i) (aces((low + high) / 2) < 0.85 ? low : high) = (low + high) / 2;
   const double brighter = aces(2 * low);
   const double expected =
       colourDifference(huntLabOf({brighter, brighter, brighter}), huntLabOf({0.85, 0.85, 0.85}));
-  const Picture map = flipHdr(constant(8, 8, {7, 7, 7}), constant(8, 8, {3.5, 3.5, 3.5}));
+  const ImageBuffer map = flipHdr(constant(8, 8, {7, 7, 7}), constant(8, 8, {3.5, 3.5, 3.5}));
   REQUIRE(expected > 0.02);
   REQUIRE(allNear(map, expected, 1e-5));
 }
 
 TEST_CASE("HDR-FLIP does not depend on the unit of radiance") {
-  const Picture picture = random(24, 24, 8), truth = random(24, 24, 9);
-  Picture scaledPicture = picture, scaledTruth = truth;
-  for (float& value : scaledPicture.values()) value *= 1024.0f;
-  for (float& value : scaledTruth.values()) value *= 1024.0f;
-  const Picture map = flipHdr(picture, truth), scaledMap = flipHdr(scaledPicture, scaledTruth);
+  const ImageBuffer image = random(24, 24, 8), reference = random(24, 24, 9);
+  ImageBuffer scaledImage = image, scaledReference = reference;
+  for (float& value : scaledImage.values()) value *= 1024.0f;
+  for (float& value : scaledReference.values()) value *= 1024.0f;
+  const ImageBuffer map = flipHdr(image, reference), scaledMap = flipHdr(scaledImage, scaledReference);
   for (std::size_t i = 0; i < map.values().size(); ++i)
     REQUIRE(map.values()[i] == Approx(scaledMap.values()[i]).margin(1e-5));
 }
 
-TEST_CASE("HDR-FLIP sees a difference in the dark beside a bright lamp and one within the lamp") {
-  // A lamp of 1000 in a room of 1: no single exposure shows both errors.
-  Picture truth = constant(48, 32, {1, 1, 1});
+TEST_CASE("HDR-FLIP sees a difference in the dark beside a bright area light and one within the area light") {
+  // An area light of 1000 in a room of 1: no single exposure shows both errors.
+  ImageBuffer reference = constant(48, 32, {1, 1, 1});
   for (int y = 10; y < 20; ++y) {
     for (int x = 4; x < 12; ++x) {
-      for (int c = 0; c < 3; ++c) truth.at(x, y, c) = 1000.0f;
+      for (int c = 0; c < 3; ++c) reference.at(x, y, c) = 1000.0f;
     }
   }
-  Picture picture = truth;
+  ImageBuffer image = reference;
   for (int y = 12; y < 18; ++y) {
     for (int c = 0; c < 3; ++c) {
-      for (int x = 6; x < 10; ++x) picture.at(x, y, c) = 500.0f;
-      for (int x = 34; x < 40; ++x) picture.at(x, y, c) = 0.5f;
+      for (int x = 6; x < 10; ++x) image.at(x, y, c) = 500.0f;
+      for (int x = 34; x < 40; ++x) image.at(x, y, c) = 0.5f;
     }
   }
-  const Picture map = flipHdr(picture, truth);
+  const ImageBuffer map = flipHdr(image, reference);
   REQUIRE(map.at(8, 15, 0) > 0.1f);
   REQUIRE(map.at(37, 15, 0) > 0.1f);
   REQUIRE(map.at(24, 28, 0) < 1e-3f);
 }
 
 TEST_CASE("HDR-FLIP stays between 0 and 1 for black, mostly black, negative and enormous radiance") {
-  const auto inRange = [](const Picture& map) {
+  const auto inRange = [](const ImageBuffer& map) {
     return std::all_of(map.values().begin(), map.values().end(),
                        [](float value) { return value >= 0.0f && value <= 1.0f; });
   };
-  const Picture black = constant(16, 16, {0, 0, 0});
-  Picture mostlyBlack = black;
+  const ImageBuffer black = constant(16, 16, {0, 0, 0});
+  ImageBuffer mostlyBlack = black;
   mostlyBlack.at(3, 3, 1) = 2.0f;
-  Picture enormous = random(16, 16, 3, std::numeric_limits<float>::max());
-  Picture tiny = random(16, 16, 3, 1e-38f);
-  Picture negative = random(16, 16, 4);
+  ImageBuffer enormous = random(16, 16, 3, std::numeric_limits<float>::max());
+  ImageBuffer tiny = random(16, 16, 3, 1e-38f);
+  ImageBuffer negative = random(16, 16, 4);
   for (float& value : negative.values()) value = 0.5f - value;
-  const Picture* pictures[] = {&black, &mostlyBlack, &enormous, &tiny, &negative};
-  for (const Picture* a : pictures) {
-    for (const Picture* b : pictures) {
+  const ImageBuffer* images[] = {&black, &mostlyBlack, &enormous, &tiny, &negative};
+  for (const ImageBuffer* a : images) {
+    for (const ImageBuffer* b : images) {
       REQUIRE(inRange(flipHdr(*a, *b)));
       REQUIRE(inRange(flipLdr(*a, *b)));
     }
@@ -395,11 +394,12 @@ TEST_CASE("HDR-FLIP stays between 0 and 1 for black, mostly black, negative and 
 }
 
 TEST_CASE("a NaN pixel is marked in the FLIP map and does not spread") {
-  const Picture truth = random(40, 40, 11);
-  Picture picture = truth;
-  picture.at(20, 20, 1) = std::numeric_limits<float>::quiet_NaN();
-  picture.at(5, 6, 0) = std::numeric_limits<float>::infinity();
-  for (const Picture& map : {flipLdr(picture, truth), flipHdr(picture, truth), flipHdr(truth, picture)}) {
+  const ImageBuffer reference = random(40, 40, 11);
+  ImageBuffer image = reference;
+  image.at(20, 20, 1) = std::numeric_limits<float>::quiet_NaN();
+  image.at(5, 6, 0) = std::numeric_limits<float>::infinity();
+  for (const ImageBuffer& map :
+       {flipLdr(image, reference), flipHdr(image, reference), flipHdr(reference, image)}) {
     for (int y = 0; y < 40; ++y) {
       for (int x = 0; x < 40; ++x) {
         if ((x == 20 && y == 20) || (x == 5 && y == 6)) {
@@ -413,17 +413,17 @@ TEST_CASE("a NaN pixel is marked in the FLIP map and does not spread") {
 }
 
 TEST_CASE("FLIP gives the same bits on one thread and on many") {
-  const Picture picture = random(70, 50, 12, 5.0f), truth = random(70, 50, 13, 5.0f);
-  const Picture many = flipHdr(picture, truth);
+  const ImageBuffer image = random(70, 50, 12, 5.0f), reference = random(70, 50, 13, 5.0f);
+  const ImageBuffer many = flipHdr(image, reference);
   const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
-  const Picture one = flipHdr(picture, truth);
+  const ImageBuffer one = flipHdr(image, reference);
   REQUIRE(std::memcmp(many.values().data(), one.values().data(), many.values().size() * sizeof(float)) == 0);
 }
 
 TEST_CASE("FLIP refuses shapes that differ and impossible viewing distances") {
-  REQUIRE_THROWS_AS(flipLdr(Picture(4, 4, 3), Picture(4, 5, 3)), Error);
-  REQUIRE_THROWS_AS(flipLdr(Picture(4, 4, 2), Picture(4, 4, 2)), Error);
-  REQUIRE_THROWS_AS(flipHdr(Picture(), Picture()), Error);
-  REQUIRE_THROWS_AS(flipLdr(Picture(4, 4, 3), Picture(4, 4, 3), 0.0), Error);
-  REQUIRE_THROWS_AS(flipLdr(Picture(4, 4, 3), Picture(4, 4, 3), std::nan("")), Error);
+  REQUIRE_THROWS_AS(flipLdr(ImageBuffer(4, 4, 3), ImageBuffer(4, 5, 3)), Error);
+  REQUIRE_THROWS_AS(flipLdr(ImageBuffer(4, 4, 2), ImageBuffer(4, 4, 2)), Error);
+  REQUIRE_THROWS_AS(flipHdr(ImageBuffer(), ImageBuffer()), Error);
+  REQUIRE_THROWS_AS(flipLdr(ImageBuffer(4, 4, 3), ImageBuffer(4, 4, 3), 0.0), Error);
+  REQUIRE_THROWS_AS(flipLdr(ImageBuffer(4, 4, 3), ImageBuffer(4, 4, 3), std::nan("")), Error);
 }

@@ -1,4 +1,4 @@
-// Picture errors on vectors computed by hand, and their uncertainties against simulation.
+// Image errors on vectors computed by hand, and their uncertainties against simulation.
 #include <tbb/global_control.h>
 
 #include <cmath>
@@ -20,18 +20,19 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-Picture pictureOf(int width, int height, int channels, std::vector<float> values) {
-  Picture picture(width, height, channels);
-  REQUIRE(picture.values().size() == values.size());
-  picture.values() = std::move(values);
-  return picture;
+ImageBuffer imageOf(int width, int height, int channels, std::vector<float> values) {
+  ImageBuffer image(width, height, channels);
+  REQUIRE(image.values().size() == values.size());
+  image.values() = std::move(values);
+  return image;
 }
 
-Picture random(int width, int height, int channels, std::uint64_t seed, float low = 0.0f, float high = 1.0f) {
-  Picture picture(width, height, channels);
+ImageBuffer random(int width, int height, int channels, std::uint64_t seed, float low = 0.0f,
+                   float high = 1.0f) {
+  ImageBuffer image(width, height, channels);
   RandomStream stream(seed, 0);
-  for (float& value : picture.values()) value = low + (high - low) * stream.uniform();
-  return picture;
+  for (float& value : image.values()) value = low + (high - low) * stream.uniform();
+  return image;
 }
 
 /// A standard normal number (Box and Muller 1958).
@@ -43,10 +44,10 @@ float normal(RandomStream& stream) {
 }  // namespace
 
 TEST_CASE("errors of four grey pixels are those computed by hand") {
-  // Differences 1, -1, 0, 2: mean square 6/4, mean 2/4, ratio 12/10. The truth's mean is 2.5, so epsilon =
-  // 0.025: relative MSE = (1/(1 + e) + 1/(4 + e) + 0 + 4/(16 + e)) / 4 with e = 0.000625.
-  const Picture truth = pictureOf(2, 2, 1, {1, 2, 3, 4}), picture = pictureOf(2, 2, 1, {2, 1, 3, 6});
-  const PictureError error = compare(picture, truth);
+  // Differences 1, -1, 0, 2: mean square 6/4, mean 2/4, ratio 12/10. The reference's mean is 2.5, so epsilon
+  // = 0.025: relative MSE = (1/(1 + e) + 1/(4 + e) + 0 + 4/(16 + e)) / 4 with e = 0.000625.
+  const ImageBuffer reference = imageOf(2, 2, 1, {1, 2, 3, 4}), image = imageOf(2, 2, 1, {2, 1, 3, 6});
+  const ImageError error = compare(image, reference);
   CHECK(error.rmse.value == Approx(std::sqrt(1.5)));
   CHECK(error.bias.value == Approx(0.5));
   CHECK(error.meanRatio.value == Approx(1.2));
@@ -56,20 +57,20 @@ TEST_CASE("errors of four grey pixels are those computed by hand") {
   CHECK(error.percentile95 == Approx(1.85));
   CHECK(error.noiseFloor == 0.0);
   CHECK(error.rmse.uncertainty == 0.0);
-  CHECK(error.nonFinitePicture + error.nonFiniteTruth == 0);
+  CHECK(error.nonFiniteImage + error.nonFiniteReference == 0);
 }
 
 TEST_CASE("channels count alike in the RMSE and by luminance in the percentile; alpha counts nowhere") {
-  const Picture truth = pictureOf(1, 1, 4, {1, 1, 1, 1}), picture = pictureOf(1, 1, 4, {2, 1, 1, 0.25f});
-  const PictureError error = compare(picture, truth);
+  const ImageBuffer reference = imageOf(1, 1, 4, {1, 1, 1, 1}), image = imageOf(1, 1, 4, {2, 1, 1, 0.25f});
+  const ImageError error = compare(image, reference);
   CHECK(error.rmse.value == Approx(std::sqrt(1.0 / 3.0)));
   CHECK(error.meanRatio.value == Approx(4.0 / 3.0));
   CHECK(error.percentile95 == Approx(0.2126));
 }
 
-TEST_CASE("a picture against itself has no error") {
-  const Picture picture = random(20, 16, 3, 1);
-  const PictureError error = compare(picture, picture);
+TEST_CASE("an image against itself has no error") {
+  const ImageBuffer image = random(20, 16, 3, 1);
+  const ImageError error = compare(image, image);
   CHECK(error.rmse.value == 0.0);
   CHECK(error.relativeMse.value == 0.0);
   CHECK(error.meanRatio.value == 1.0);
@@ -81,37 +82,37 @@ TEST_CASE("a picture against itself has no error") {
 }
 
 TEST_CASE("NaN and infinite pixels are left out and counted, not spread") {
-  Picture truth = random(30, 30, 3, 2), picture = truth;
-  for (float& value : picture.values()) value *= 1.5f;
-  const PictureError clean = compare(picture, truth);
-  picture.at(4, 5, 2) = kNan;
-  picture.at(4, 5, 0) = kInfinity;  // the same pixel: counted once
-  picture.at(9, 9, 1) = -kInfinity;
-  truth.at(20, 3, 0) = kNan;
-  const PictureError error = compare(picture, truth);
-  CHECK(error.nonFinitePicture == 2);
-  CHECK(error.nonFiniteTruth == 1);
+  ImageBuffer reference = random(30, 30, 3, 2), image = reference;
+  for (float& value : image.values()) value *= 1.5f;
+  const ImageError clean = compare(image, reference);
+  image.at(4, 5, 2) = kNan;
+  image.at(4, 5, 0) = kInfinity;  // the same pixel: counted once
+  image.at(9, 9, 1) = -kInfinity;
+  reference.at(20, 3, 0) = kNan;
+  const ImageError error = compare(image, reference);
+  CHECK(error.nonFiniteImage == 2);
+  CHECK(error.nonFiniteReference == 1);
   CHECK(error.meanRatio.value == Approx(1.5));
   CHECK(error.rmse.value == Approx(clean.rmse.value).epsilon(0.01));
   CHECK(error.flip == Approx(clean.flip).epsilon(0.02));
   CHECK(error.ssim == Approx(clean.ssim).epsilon(0.02));
   // Where everything else is right, nothing else is wrong.
-  Picture hurt = truth;
+  ImageBuffer hurt = reference;
   hurt.at(15, 15, 0) = kNan;
-  const PictureError alone = compare(hurt, truth);
+  const ImageError alone = compare(hurt, reference);
   CHECK(alone.rmse.value == 0.0);
   CHECK(alone.flip == 0.0);
   CHECK(alone.ssim == Approx(1.0).epsilon(1e-12));
 }
 
 TEST_CASE("numbers that do not exist are NaN") {
-  const Picture black(8, 8, 3), grey(8, 8, 3, 0.5f);
-  const PictureError againstBlack = compare(grey, black);
+  const ImageBuffer black(8, 8, 3), grey(8, 8, 3, 0.5f);
+  const ImageError againstBlack = compare(grey, black);
   CHECK(std::isnan(againstBlack.meanRatio.value));
   CHECK(std::isnan(againstBlack.relativeMse.value));
   CHECK(againstBlack.rmse.value == Approx(0.5));
-  const PictureError nothing = compare(Picture(8, 8, 3, kNan), grey);
-  CHECK(nothing.nonFinitePicture == 64);
+  const ImageError nothing = compare(ImageBuffer(8, 8, 3, kNan), grey);
+  CHECK(nothing.nonFiniteImage == 64);
   CHECK(std::isnan(nothing.rmse.value));
   CHECK(std::isnan(nothing.flip));
   CHECK(std::isnan(nothing.ssim));
@@ -119,26 +120,28 @@ TEST_CASE("numbers that do not exist are NaN") {
 }
 
 TEST_CASE("what cannot be compared is refused with the shapes") {
-  REQUIRE_THAT(messageOf<Error>([] { compare(Picture(4, 4, 3), Picture(5, 4, 3)); }),
+  REQUIRE_THAT(messageOf<Error>([] { compare(ImageBuffer(4, 4, 3), ImageBuffer(5, 4, 3)); }),
                Contains("4 x 4") && Contains("5 x 4"));
-  REQUIRE_THROWS_AS(compare(Picture(4, 4, 2), Picture(4, 4, 2)), Error);
-  REQUIRE_THROWS_AS(compare(Picture(), Picture()), Error);
-  REQUIRE_THAT(messageOf<Error>([] { compare(Picture(4, 4, 3), Picture(4, 4, 3), Picture(4, 4, 1)); }),
+  REQUIRE_THROWS_AS(compare(ImageBuffer(4, 4, 2), ImageBuffer(4, 4, 2)), Error);
+  REQUIRE_THROWS_AS(compare(ImageBuffer(), ImageBuffer()), Error);
+  REQUIRE_THAT(
+      messageOf<Error>([] { compare(ImageBuffer(4, 4, 3), ImageBuffer(4, 4, 3), ImageBuffer(4, 4, 1)); }),
+      Contains("variance"));
+  REQUIRE_THAT(messageOf<Error>(
+                   [] { compare(ImageBuffer(4, 4, 1), ImageBuffer(4, 4, 1), ImageBuffer(4, 4, 1, -1.0f)); }),
                Contains("variance"));
-  REQUIRE_THAT(messageOf<Error>([] { compare(Picture(4, 4, 1), Picture(4, 4, 1), Picture(4, 4, 1, -1.0f)); }),
-               Contains("variance"));
-  REQUIRE_THROWS_AS(compare(Picture(4, 4, 1), Picture(4, 4, 1), Picture(4, 4, 1, kNan)), Error);
+  REQUIRE_THROWS_AS(compare(ImageBuffer(4, 4, 1), ImageBuffer(4, 4, 1), ImageBuffer(4, 4, 1, kNan)), Error);
 }
 
-TEST_CASE("the noise floor is the root of the mean variance, and a right but noiseless picture measures it") {
+TEST_CASE("the noise floor is the root of the mean variance, and a right but noiseless image measures it") {
   // x is exact, t = x + noise: the expected mean square is the mean variance. 4096 values: its relative
   // scatter is sqrt(2 / 4096) = 2.2 %, that of the root 1.1 %.
   constexpr int kSize = 64;
-  const Picture exact(kSize, kSize, 1, 2.0f), variance(kSize, kSize, 1, 0.04f);
-  Picture truth = exact;
+  const ImageBuffer exact(kSize, kSize, 1, 2.0f), variance(kSize, kSize, 1, 0.04f);
+  ImageBuffer reference = exact;
   RandomStream stream(5, 5);
-  for (float& value : truth.values()) value += 0.2f * normal(stream);
-  const PictureError error = compare(exact, truth, variance);
+  for (float& value : reference.values()) value += 0.2f * normal(stream);
+  const ImageError error = compare(exact, reference, variance);
   CHECK(error.noiseFloor == Approx(0.2));
   CHECK(error.rmse.value == Approx(0.2).epsilon(0.045));
   // The bias of n independent values of deviation s has the deviation s / sqrt(n).
@@ -146,51 +149,52 @@ TEST_CASE("the noise floor is the root of the mean variance, and a right but noi
   CHECK(error.meanRatio.uncertainty == Approx(0.1 / kSize).epsilon(0.01));
 }
 
-TEST_CASE("uncertainties of grey pictures by hand") {
+TEST_CASE("uncertainties of grey images by hand") {
   // One pixel: x = 3, t = 2, v = 0.01. RMSE = |x - t|: slope 1. Bias: slope 1. Ratio x / t: slope x / t^2 =
   // 0.75. Relative MSE (x - t)^2 / (t^2 (1 + 1e-4)): slope -2 (x - t) / (k t^2) - 2 (x - t)^2 / (k t^3) =
   // -(2/4 + 2/8) / k.
-  const PictureError error = compare(Picture(1, 1, 1, 3.0f), Picture(1, 1, 1, 2.0f), Picture(1, 1, 1, 0.01f));
+  const ImageError error =
+      compare(ImageBuffer(1, 1, 1, 3.0f), ImageBuffer(1, 1, 1, 2.0f), ImageBuffer(1, 1, 1, 0.01f));
   CHECK(error.rmse.uncertainty == Approx(0.1));
   CHECK(error.bias.uncertainty == Approx(0.1));
   CHECK(error.meanRatio.uncertainty == Approx(0.075));
   CHECK(error.relativeMse.uncertainty == Approx(0.075 / 1.0001).epsilon(1e-5));
-  // Equal pictures: the RMSE may be off by the noise floor.
-  CHECK(compare(Picture(2, 2, 1, 2.0f), Picture(2, 2, 1, 2.0f), Picture(2, 2, 1, 0.01f)).rmse.uncertainty ==
-        Approx(0.1));
+  // Equal images: the RMSE may be off by the noise floor.
+  CHECK(compare(ImageBuffer(2, 2, 1, 2.0f), ImageBuffer(2, 2, 1, 2.0f), ImageBuffer(2, 2, 1, 0.01f))
+            .rmse.uncertainty == Approx(0.1));
 }
 
-TEST_CASE("propagated uncertainties are the scatter that noisy truths really cause") {
+TEST_CASE("propagated uncertainties are the scatter that noisy references really cause") {
   enum class Noise { grey, sameInAllChannels, independentChannels };
   for (const Noise noise : {Noise::grey, Noise::sameInAllChannels, Noise::independentChannels}) {
     const int channels = noise == Noise::grey ? 1 : 3;
     constexpr int kSize = 6, kDraws = 800;
-    const Picture picture = random(kSize, kSize, channels, 21, 0.5f, 2.0f),
-                  exact = random(kSize, kSize, channels, 22, 0.5f, 2.0f);
-    Picture variance = random(kSize, kSize, channels, 23, 0.0001f, 0.0009f);
-    std::vector<std::function<Measured(const PictureError&)>> metrics = {
-        [](const PictureError& e) { return e.rmse; }, [](const PictureError& e) { return e.relativeMse; },
-        [](const PictureError& e) { return e.meanRatio; }, [](const PictureError& e) { return e.bias; }};
+    const ImageBuffer image = random(kSize, kSize, channels, 21, 0.5f, 2.0f),
+                      exact = random(kSize, kSize, channels, 22, 0.5f, 2.0f);
+    ImageBuffer variance = random(kSize, kSize, channels, 23, 0.0001f, 0.0009f);
+    std::vector<std::function<Measured(const ImageError&)>> metrics = {
+        [](const ImageError& e) { return e.rmse; }, [](const ImageError& e) { return e.relativeMse; },
+        [](const ImageError& e) { return e.meanRatio; }, [](const ImageError& e) { return e.bias; }};
     std::vector<double> sums(metrics.size()), squares(metrics.size());
     for (int draw = 0; draw < kDraws; ++draw) {
-      Picture truth = exact;
+      ImageBuffer reference = exact;
       RandomStream stream(31, static_cast<std::uint32_t>(draw));
-      for (std::size_t pixel = 0; pixel < truth.pixelCount(); ++pixel) {
+      for (std::size_t pixel = 0; pixel < reference.pixelCount(); ++pixel) {
         float g = normal(stream);
         for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c) {
           const std::size_t i = pixel * static_cast<std::size_t>(channels) + c;
           if (noise == Noise::independentChannels) g = normal(stream);
-          truth.values()[i] += g * std::sqrt(variance.values()[i]);
+          reference.values()[i] += g * std::sqrt(variance.values()[i]);
         }
       }
-      const PictureError error = compare(picture, truth);
+      const ImageError error = compare(image, reference);
       for (std::size_t m = 0; m < metrics.size(); ++m) {
         const double value = metrics[m](error).value;
         sums[m] += value;
         squares[m] += value * value;
       }
     }
-    const PictureError stated = compare(picture, exact, variance);
+    const ImageError stated = compare(image, exact, variance);
     for (std::size_t m = 0; m < metrics.size(); ++m) {
       const double mean = sums[m] / kDraws, scatter = std::sqrt(squares[m] / kDraws - mean * mean);
       const double uncertainty = metrics[m](stated).uncertainty;
@@ -207,37 +211,39 @@ TEST_CASE("propagated uncertainties are the scatter that noisy truths really cau
   }
 }
 
-TEST_CASE("FLIP, SSIM and the percentile state an uncertainty that shrinks with the truth's noise") {
-  const Picture truth = random(48, 48, 3, 41, 0.3f, 0.7f);
-  Picture picture = truth;
-  for (float& value : picture.values()) value *= 1.05f;
-  const PictureError without = compare(picture, truth);
+TEST_CASE("FLIP, SSIM and the percentile state an uncertainty that shrinks with the reference's noise") {
+  const ImageBuffer reference = random(48, 48, 3, 41, 0.3f, 0.7f);
+  ImageBuffer image = reference;
+  for (float& value : image.values()) value *= 1.05f;
+  const ImageError without = compare(image, reference);
   CHECK(without.flipUncertainty == 0.0);
-  const PictureError little = compare(picture, truth, Picture(48, 48, 3, 1e-8f));
-  const PictureError much = compare(picture, truth, Picture(48, 48, 3, 1e-2f));
+  const ImageError little = compare(image, reference, ImageBuffer(48, 48, 3, 1e-8f));
+  const ImageError much = compare(image, reference, ImageBuffer(48, 48, 3, 1e-2f));
   CHECK(little.flip == without.flip);
   CHECK(little.flipUncertainty < 0.01 * much.flipUncertainty);
   CHECK(little.flipLdrUncertainty < 0.01 * much.flipLdrUncertainty);
   CHECK(little.ssimUncertainty < 0.01 * much.ssimUncertainty);
   CHECK(little.percentile95Uncertainty < 0.01 * much.percentile95Uncertainty);
   CHECK(little.flipUncertainty > 0.0);
-  // What is stated covers what the noise does: the same comparison against a truth with noise of that size.
-  Picture noisy = truth;
+  // What is stated covers what the noise does: the same comparison against a reference with noise of that
+  // size.
+  ImageBuffer noisy = reference;
   RandomStream stream(43, 0);
   for (std::size_t pixel = 0; pixel < noisy.pixelCount(); ++pixel) {
     const float g = 0.1f * normal(stream);
     for (std::size_t c = 0; c < 3; ++c) noisy.values()[3 * pixel + c] += g;
   }
-  const PictureError seen = compare(picture, noisy);
+  const ImageError seen = compare(image, noisy);
   CHECK(std::abs(seen.flip - without.flip) < 1.3 * much.flipUncertainty);
   CHECK(std::abs(seen.percentile95 - without.percentile95) < 1.3 * much.percentile95Uncertainty);
 }
 
 TEST_CASE("all errors have the same bits on one thread and on many") {
-  const Picture picture = random(61, 47, 3, 51), truth = random(61, 47, 3, 52), variance(61, 47, 3, 0.01f);
-  const PictureError many = compare(picture, truth, variance);
+  const ImageBuffer image = random(61, 47, 3, 51), reference = random(61, 47, 3, 52),
+                    variance(61, 47, 3, 0.01f);
+  const ImageError many = compare(image, reference, variance);
   const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
-  const PictureError one = compare(picture, truth, variance);
+  const ImageError one = compare(image, reference, variance);
   CHECK(one.rmse.value == many.rmse.value);
   CHECK(one.rmse.uncertainty == many.rmse.uncertainty);
   CHECK(one.relativeMse.value == many.relativeMse.value);
@@ -248,22 +254,22 @@ TEST_CASE("all errors have the same bits on one thread and on many") {
   CHECK(one.percentile95Uncertainty == many.percentile95Uncertainty);
 }
 
-TEST_CASE("SSIM of constant pictures is its luminance term") {
+TEST_CASE("SSIM of constant images is its luminance term") {
   // No variance, no covariance: (2 a b + C1) / (a^2 + b^2 + C1), C1 = 0.01^2.
   for (const auto& [a, b] :
        {std::pair{0.2, 0.6}, std::pair{0.0, 1.0}, std::pair{0.5, 0.5}, std::pair{0.01, 0.02}}) {
     const double expected = (2 * a * b + 1e-4) / (a * a + b * b + 1e-4);
     for (const int size : {24, 7}) {  // larger and smaller than a window
-      CHECK(ssim(Picture(size, size, 1, static_cast<float>(a)),
-                 Picture(size, size, 1, static_cast<float>(b))) == Approx(expected).epsilon(1e-5));
+      CHECK(ssim(ImageBuffer(size, size, 1, static_cast<float>(a)),
+                 ImageBuffer(size, size, 1, static_cast<float>(b))) == Approx(expected).epsilon(1e-5));
     }
   }
 }
 
 TEST_CASE("SSIM of eleven by eleven pixels is the formula in one Gaussian window") {
-  // The only window that lies within the picture is centred on its middle: weights exp(-(x^2 + y^2) / (2
+  // The only window that lies within the image is centred on its middle: weights exp(-(x^2 + y^2) / (2
   // * 1.5^2)), normalised.
-  const Picture x = random(11, 11, 1, 61), y = random(11, 11, 1, 62);
+  const ImageBuffer x = random(11, 11, 1, 61), y = random(11, 11, 1, 62);
   double total = 0, meanX = 0, meanY = 0, xx = 0, yy = 0, xy = 0;
   for (int v = -5; v <= 5; ++v) {
     for (int u = -5; u <= 5; ++u) {
@@ -287,58 +293,58 @@ TEST_CASE("SSIM of eleven by eleven pixels is the formula in one Gaussian window
   CHECK(ssim(x, x) == Approx(1.0).epsilon(1e-12));
 }
 
-TEST_CASE("SSIM of a picture and its negative is below zero, and refuses several channels") {
-  const Picture x = random(40, 40, 1, 63);
-  Picture negative = x;
+TEST_CASE("SSIM of an image and its negative is below zero, and refuses several channels") {
+  const ImageBuffer x = random(40, 40, 1, 63);
+  ImageBuffer negative = x;
   for (float& value : negative.values()) value = 1.0f - value;
   CHECK(ssim(x, negative) < -0.5);
-  CHECK_THROWS_AS(ssim(Picture(12, 12, 3), Picture(12, 12, 3)), Error);
+  CHECK_THROWS_AS(ssim(ImageBuffer(12, 12, 3), ImageBuffer(12, 12, 3)), Error);
 }
 
-TEST_CASE("flicker is what changes without the truth's changing") {
-  const Picture truth0 = random(9, 9, 3, 71), truth1 = random(9, 9, 3, 72);
-  CHECK(flicker(truth0, truth1, truth0, truth1) == 0.0);
+TEST_CASE("flicker is what changes without the reference's changing") {
+  const ImageBuffer reference0 = random(9, 9, 3, 71), reference1 = random(9, 9, 3, 72);
+  CHECK(flicker(reference0, reference1, reference0, reference1) == 0.0);
   // A constant error does not flicker.
-  Picture frame0 = truth0, frame1 = truth1;
+  ImageBuffer frame0 = reference0, frame1 = reference1;
   for (float& value : frame0.values()) value += 0.5f;
   for (float& value : frame1.values()) value += 0.5f;
-  CHECK(flicker(frame0, frame1, truth0, truth1) == Approx(0.0).margin(1e-6));
+  CHECK(flicker(frame0, frame1, reference0, reference1) == Approx(0.0).margin(1e-6));
   // One of 243 values off by 3 in one frame: 3 / sqrt(243).
   frame1.at(4, 4, 1) += 3.0f;
-  CHECK(flicker(frame0, frame1, truth0, truth1) == Approx(3.0 / std::sqrt(243.0)).epsilon(1e-5));
+  CHECK(flicker(frame0, frame1, reference0, reference1) == Approx(3.0 / std::sqrt(243.0)).epsilon(1e-5));
   frame0.at(4, 4, 2) = kNan;  // the pixel is left out
-  CHECK(flicker(frame0, frame1, truth0, truth1) == Approx(0.0).margin(1e-6));
-  CHECK_THROWS_AS(flicker(frame0, frame1, truth0, Picture(9, 8, 3)), Error);
+  CHECK(flicker(frame0, frame1, reference0, reference1) == Approx(0.0).margin(1e-6));
+  CHECK_THROWS_AS(flicker(frame0, frame1, reference0, ImageBuffer(9, 8, 3)), Error);
 }
 
 TEST_CASE("the display exposure brings the 99th percentile of luminance to 0.8") {
-  Picture ramp(101, 1, 1);  // 0 to 100: the 99th percentile is 99
+  ImageBuffer ramp(101, 1, 1);  // 0 to 100: the 99th percentile is 99
   for (int x = 0; x <= 100; ++x) ramp.at(x, 0, 0) = static_cast<float>(x);
   CHECK(displayExposure(ramp) == Approx(0.8 / 99.0));
   ramp.at(100, 0, 0) = 1e6f;  // one brilliant pixel changes nothing
   CHECK(displayExposure(ramp) == Approx(0.8 / 99.0));
   ramp.at(100, 0, 0) = kNan;  // 0 to 99: the place 0.99 * 99 = 98.01
   CHECK(displayExposure(ramp) == Approx(0.8 / 98.01));
-  CHECK(displayExposure(Picture(4, 4, 3)) == 1.0f);
-  CHECK(displayExposure(Picture(4, 4, 3, kNan)) == 1.0f);
-  Picture spark(100, 100, 3);
+  CHECK(displayExposure(ImageBuffer(4, 4, 3)) == 1.0f);
+  CHECK(displayExposure(ImageBuffer(4, 4, 3, kNan)) == 1.0f);
+  ImageBuffer spark(100, 100, 3);
   spark.at(5, 5, 1) = 2.0f;
   CHECK(displayExposure(spark) == Approx(0.8 / (2.0 * 0.7152)));
 }
 
 TEST_CASE("luminance has the weights of Rec. 709, and white has luminance one") {
-  const Picture rgb = pictureOf(4, 1, 3, {1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1});
-  const Picture y = luminance(rgb);
+  const ImageBuffer rgb = imageOf(4, 1, 3, {1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1});
+  const ImageBuffer y = luminance(rgb);
   CHECK(y.values() == std::vector<float>{0.2126f, 0.7152f, 0.0722f, 1.0f});
   CHECK(luminance(y).values() == y.values());
-  CHECK_THROWS_AS(luminance(Picture(1, 1, 2)), Error);
+  CHECK_THROWS_AS(luminance(ImageBuffer(1, 1, 2)), Error);
 }
 
 TEST_CASE("the false colours' lightness grows in proportion to the value, within the display's range") {
   constexpr int kSteps = 512;
-  Picture map(kSteps + 1, 1, 1);
+  ImageBuffer map(kSteps + 1, 1, 1);
   for (int i = 0; i <= kSteps; ++i) map.at(i, 0, 0) = static_cast<float>(i) / kSteps;
-  const Picture colours = falseColour(map), y = luminance(colours);
+  const ImageBuffer colours = falseColour(map), y = luminance(colours);
   for (int i = 0; i <= kSteps; ++i) {
     // CIE 15: L* of the luminance.
     const double luminance = double{y.at(i, 0, 0)};
@@ -354,9 +360,9 @@ TEST_CASE("the false colours' lightness grows in proportion to the value, within
               4.0f / 255.0f);
     }
   }
-  const Picture outside = falseColour(pictureOf(3, 1, 1, {-1.0f, 2.0f, kNan}));
+  const ImageBuffer outside = falseColour(imageOf(3, 1, 1, {-1.0f, 2.0f, kNan}));
   CHECK(outside.at(0, 0, 0) == 0.0f);
   CHECK(outside.at(1, 0, 0) == colours.at(kSteps, 0, 0));
   CHECK(std::isnan(outside.at(2, 0, 1)));
-  CHECK_THROWS_AS(falseColour(Picture(2, 2, 3)), Error);
+  CHECK_THROWS_AS(falseColour(ImageBuffer(2, 2, 3)), Error);
 }

@@ -1,4 +1,4 @@
-// Bias, noise, flicker and slopes on pictures and series whose answers are known.
+// Bias, noise, flicker and slopes on images and series whose answers are known.
 #include <cmath>
 #include <numbers>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kSize = 64;
 
-/// Standard normal numbers (Box and Muller 1958), one stream per picture.
+/// Standard normal numbers (Box and Muller 1958), one stream per image.
 class Normal {
  public:
   explicit Normal(std::uint64_t seed) : stream_(seed, 7) {}
@@ -27,175 +27,178 @@ class Normal {
   RandomStream stream_;
 };
 
-Picture noisy(float mean, float sigma, std::uint64_t seed) {
-  Picture picture(kSize, kSize, 3, mean);
+ImageBuffer noisy(float mean, float sigma, std::uint64_t seed) {
+  ImageBuffer image(kSize, kSize, 3, mean);
   Normal normal(seed);
-  for (float& value : picture.values()) value += sigma * normal();
-  return picture;
+  for (float& value : image.values()) value += sigma * normal();
+  return image;
 }
 
-std::vector<Picture> seedsOf(int count, float mean, float sigma) {
-  std::vector<Picture> seeds;
+std::vector<ImageBuffer> seedsOf(int count, float mean, float sigma) {
+  std::vector<ImageBuffer> seeds;
   for (int seed = 0; seed < count; ++seed)
     seeds.push_back(noisy(mean, sigma, 100 + static_cast<std::uint64_t>(seed)));
   return seeds;
 }
 
-constexpr float kTruth = 1.0f, kBias = 0.03f, kNoise = 0.2f, kTruthNoise = 0.05f;
+constexpr float kReference = 1.0f, kBias = 0.03f, kNoise = 0.2f, kReferenceNoise = 0.05f;
 
-Picture truth() {
-  return noisy(kTruth, kTruthNoise, 1);
+ImageBuffer reference() {
+  return noisy(kReference, kReferenceNoise, 1);
 }
-Picture truthVariance() {
-  return Picture(kSize, kSize, 3, kTruthNoise * kTruthNoise);
+ImageBuffer referenceVariance() {
+  return ImageBuffer(kSize, kSize, 3, kReferenceNoise * kReferenceNoise);
 }
 
 }  // namespace
 
-TEST_CASE("a known bias and a known noise are told apart, and their squares add up with the truth's noise") {
-  const std::vector<Picture> seeds = seedsOf(8, kTruth + kBias, kNoise);
-  const ErrorParts parts = errorParts(seeds, truth(), truthVariance());
+TEST_CASE(
+    "a known bias and a known noise are told apart, and their squares add up with the reference's noise") {
+  const std::vector<ImageBuffer> seeds = seedsOf(8, kReference + kBias, kNoise);
+  const ErrorParts parts = errorParts(seeds, reference(), referenceVariance());
   // 12288 values: a square is known to sqrt(2/12288) = 1.3 % of what noise there is.
   CHECK(parts.noise.value == Approx(kNoise).epsilon(0.01));
   CHECK(std::abs(parts.bias.value - kBias) < 3.0 * parts.bias.uncertainty);
   CHECK(parts.bias.uncertainty < 0.5 * kBias);
   CHECK(parts.bias.uncertainty > 0.0);
-  CHECK(parts.truthNoise == Approx(kTruthNoise));
+  CHECK(parts.referenceNoise == Approx(kReferenceNoise));
   double square = 0.0;
-  for (const Picture& seed : seeds) {
-    const double rmse = compare(seed, truth(), truthVariance()).rmse.value;
+  for (const ImageBuffer& seed : seeds) {
+    const double rmse = compare(seed, reference(), referenceVariance()).rmse.value;
     square += rmse * rmse / static_cast<double>(seeds.size());
   }
   // Exact by construction, as long as no square was negative.
   CHECK(parts.bias.value * parts.bias.value + parts.noise.value * parts.noise.value +
-            parts.truthNoise * parts.truthNoise ==
+            parts.referenceNoise * parts.referenceNoise ==
         Approx(square).epsilon(1e-5));
 }
 
-TEST_CASE("a picture without bias has none within the uncertainty, however noisy it and its truth are") {
-  const ErrorParts parts = errorParts(seedsOf(6, kTruth, 0.5f), truth(), truthVariance());
+TEST_CASE("an image without bias has none within the uncertainty, however noisy it and its reference are") {
+  const ErrorParts parts = errorParts(seedsOf(6, kReference, 0.5f), reference(), referenceVariance());
   CHECK(parts.bias.value <= 3.0 * parts.bias.uncertainty);
-  // Averaging six pictures and looking would have said 0.2.
+  // Averaging six images and looking would have said 0.2.
   CHECK(parts.bias.value + parts.bias.uncertainty < 0.1);
 }
 
 TEST_CASE("noise that moves all pixels together does not make the bias look certain") {
-  // Each seed is the truth plus one number for all pixels: the mean of four is off by sigma / 2, and no
+  // Each seed is the reference plus one number for all pixels: the mean of four is off by sigma / 2, and no
   // number of pixels helps.
-  std::vector<Picture> seeds;
+  std::vector<ImageBuffer> seeds;
   Normal normal(11);
-  for (int seed = 0; seed < 4; ++seed) seeds.emplace_back(kSize, kSize, 3, kTruth + kNoise * normal());
-  const ErrorParts parts = errorParts(seeds, Picture(kSize, kSize, 3, kTruth));
+  for (int seed = 0; seed < 4; ++seed) seeds.emplace_back(kSize, kSize, 3, kReference + kNoise * normal());
+  const ErrorParts parts = errorParts(seeds, ImageBuffer(kSize, kSize, 3, kReference));
   CHECK(parts.bias.value - 0.0 <= 2.0 * parts.bias.uncertainty);
   CHECK(parts.bias.uncertainty > 0.2f * kNoise);
   CHECK(parts.noise.uncertainty > 0.1 * parts.noise.value);
-  const ErrorParts two = errorParts({seeds[0], seeds[1]}, Picture(kSize, kSize, 3, kTruth));
+  const ErrorParts two = errorParts({seeds[0], seeds[1]}, ImageBuffer(kSize, kSize, 3, kReference));
   CHECK(two.bias.uncertainty > 0.2 * two.noise.value);
 }
 
-TEST_CASE("a picture without noise has the truth's noise taken off its error, and one seed tells nothing") {
-  const Picture flat(kSize, kSize, 3, kTruth + kBias);
-  const ErrorParts parts = errorParts({flat, flat}, truth(), truthVariance(), true);
+TEST_CASE(
+    "an image without noise has the reference's noise taken off its error, and one seed tells nothing") {
+  const ImageBuffer flat(kSize, kSize, 3, kReference + kBias);
+  const ErrorParts parts = errorParts({flat, flat}, reference(), referenceVariance(), true);
   CHECK(std::abs(parts.bias.value - kBias) < 3.0 * parts.bias.uncertainty);
   CHECK(parts.bias.value == Approx(kBias).epsilon(0.1));
   CHECK(parts.noise.value == 0.0);
-  CHECK(std::isnan(errorParts({flat}, truth(), truthVariance()).bias.value));
-  CHECK(std::isnan(errorParts({flat}, truth(), truthVariance()).noise.value));
-  CHECK_THROWS_AS(errorParts({}, truth()), Error);
-  CHECK_THROWS_AS(errorParts({Picture(2, 2, 3)}, truth()), Error);
+  CHECK(std::isnan(errorParts({flat}, reference(), referenceVariance()).bias.value));
+  CHECK(std::isnan(errorParts({flat}, reference(), referenceVariance()).noise.value));
+  CHECK_THROWS_AS(errorParts({}, reference()), Error);
+  CHECK_THROWS_AS(errorParts({ImageBuffer(2, 2, 3)}, reference()), Error);
 }
 
 TEST_CASE("a value that is not finite in one seed does not count in any") {
-  std::vector<Picture> seeds = seedsOf(3, kTruth + kBias, kNoise);
+  std::vector<ImageBuffer> seeds = seedsOf(3, kReference + kBias, kNoise);
   seeds[1].values()[0] = std::nanf("");
-  const ErrorParts parts = errorParts(seeds, truth(), truthVariance());
+  const ErrorParts parts = errorParts(seeds, reference(), referenceVariance());
   CHECK(parts.noise.value == Approx(kNoise).epsilon(0.02));
 }
 
 TEST_CASE("a pixel that is not finite in one channel of one seed counts in no number of any seed") {
-  std::vector<Picture> seeds = seedsOf(3, kTruth + kBias, kNoise);
+  std::vector<ImageBuffer> seeds = seedsOf(3, kReference + kBias, kNoise);
   // The channels beside the broken one hold what would rule every number.
   seeds[1].at(5, 5, 0) = std::numeric_limits<float>::quiet_NaN();
-  for (Picture& seed : seeds) seed.at(5, 5, 1) = 1e4f;
-  std::vector<Picture> clean = seeds;
-  Picture cleanTruth = truth();
-  for (Picture& seed : clean)
-    for (int c = 0; c < 3; ++c) seed.at(5, 5, c) = cleanTruth.at(5, 5, c);
-  const SeedsError error = compareSeeds(seeds, truth(), truthVariance());
-  const SeedsError without = compareSeeds(clean, cleanTruth, truthVariance());
+  for (ImageBuffer& seed : seeds) seed.at(5, 5, 1) = 1e4f;
+  std::vector<ImageBuffer> clean = seeds;
+  ImageBuffer cleanReference = reference();
+  for (ImageBuffer& seed : clean)
+    for (int c = 0; c < 3; ++c) seed.at(5, 5, c) = cleanReference.at(5, 5, c);
+  const SeedsError error = compareSeeds(seeds, reference(), referenceVariance());
+  const SeedsError without = compareSeeds(clean, cleanReference, referenceVariance());
   const double values = kSize * kSize;
-  CHECK(error.mean.nonFinitePicture == 1);
+  CHECK(error.mean.nonFiniteImage == 1);
   CHECK(error.mean.rmse.value == Approx(without.mean.rmse.value * std::sqrt(values / (values - 1.0))));
   CHECK(error.mean.flip < 2.0 * without.mean.flip);
   CHECK(std::isnan(error.flipMap.at(5, 5, 0)));
-  const ErrorParts parts = errorParts(seeds, truth(), truthVariance());
+  const ErrorParts parts = errorParts(seeds, reference(), referenceVariance());
   CHECK(parts.noise.value == Approx(kNoise).epsilon(0.02));
   CHECK(parts.bias.value < 2.0 * kBias);
 }
 
 TEST_CASE(
-    "every number over seeds is the mean of each seed's own, and the spread is added to the truth's noise") {
-  const std::vector<Picture> seeds = seedsOf(4, kTruth + kBias, kNoise);
-  const SeedsError all = compareSeeds(seeds, truth(), truthVariance());
-  std::vector<PictureError> each;
-  for (const Picture& seed : seeds) each.push_back(compare(seed, truth(), truthVariance()));
+    "every number over seeds is the mean of each seed's own, and the spread is added to the reference's noise") {
+  const std::vector<ImageBuffer> seeds = seedsOf(4, kReference + kBias, kNoise);
+  const SeedsError all = compareSeeds(seeds, reference(), referenceVariance());
+  std::vector<ImageError> each;
+  for (const ImageBuffer& seed : seeds) each.push_back(compare(seed, reference(), referenceVariance()));
   const auto check = [&](const char* name, const auto& value, const auto& uncertainty) {
     INFO(name);
     std::vector<double> values;
-    for (const PictureError& one : each) values.push_back(value(one));
+    for (const ImageError& one : each) values.push_back(value(one));
     const Measured over = meanOverSeeds(values);
     CHECK(over.uncertainty > 0.0);
     CHECK(value(all.mean) == over.value);
     CHECK(uncertainty(all.mean) == Approx(std::hypot(uncertainty(each.front()), over.uncertainty)));
   };
   for (const auto& [name, number] :
-       {std::pair{"rmse", &PictureError::rmse}, std::pair{"relative MSE", &PictureError::relativeMse},
-        std::pair{"mean ratio", &PictureError::meanRatio}, std::pair{"bias", &PictureError::bias}})
+       {std::pair{"rmse", &ImageError::rmse}, std::pair{"relative MSE", &ImageError::relativeMse},
+        std::pair{"mean ratio", &ImageError::meanRatio}, std::pair{"bias", &ImageError::bias}})
     check(
-        name, [number = number](const PictureError& e) { return (e.*number).value; },
-        [number = number](const PictureError& e) { return (e.*number).uncertainty; });
+        name, [number = number](const ImageError& e) { return (e.*number).value; },
+        [number = number](const ImageError& e) { return (e.*number).uncertainty; });
   check(
-      "percentile", [](const PictureError& e) { return e.percentile95; },
-      [](const PictureError& e) { return e.percentile95Uncertainty; });
+      "percentile", [](const ImageError& e) { return e.percentile95; },
+      [](const ImageError& e) { return e.percentile95Uncertainty; });
   check(
-      "ssim", [](const PictureError& e) { return e.ssim; },
-      [](const PictureError& e) { return e.ssimUncertainty; });
+      "ssim", [](const ImageError& e) { return e.ssim; },
+      [](const ImageError& e) { return e.ssimUncertainty; });
   check(
-      "flip", [](const PictureError& e) { return e.flip; },
-      [](const PictureError& e) { return e.flipUncertainty; });
+      "flip", [](const ImageError& e) { return e.flip; },
+      [](const ImageError& e) { return e.flipUncertainty; });
   check(
-      "flip ldr", [](const PictureError& e) { return e.flipLdr; },
-      [](const PictureError& e) { return e.flipLdrUncertainty; });
-  CHECK(all.flipMap.values() == flipHdr(seeds.front(), truth()).values());
+      "flip ldr", [](const ImageError& e) { return e.flipLdr; },
+      [](const ImageError& e) { return e.flipLdrUncertainty; });
+  CHECK(all.flipMap.values() == flipHdr(seeds.front(), reference()).values());
 }
 
-TEST_CASE("a static picture does not flicker, and frames with noise of their own flicker by sqrt(2) sigma") {
-  const std::vector<Picture> truths{truth(), noisy(kTruth, kTruthNoise, 2), noisy(kTruth, kTruthNoise, 3)};
-  const std::vector<Picture> variances(3, truthVariance());
-  const Picture still(kSize, kSize, 3, kTruth);
-  const std::vector<Picture> exact(3, still);
+TEST_CASE("a static image does not flicker, and frames with noise of their own flicker by sqrt(2) sigma") {
+  const std::vector<ImageBuffer> references{reference(), noisy(kReference, kReferenceNoise, 2),
+                                            noisy(kReference, kReferenceNoise, 3)};
+  const std::vector<ImageBuffer> variances(3, referenceVariance());
+  const ImageBuffer still(kSize, kSize, 3, kReference);
+  const std::vector<ImageBuffer> exact(3, still);
   CHECK(flicker({still, still, still}, exact).value == 0.0);
-  // The truth's noise is taken off, so that against a noisy truth it is 0 within the uncertainty.
-  const Measured quiet = flicker({still, still, still}, truths, variances);
+  // The reference's noise is taken off, so that against a noisy reference it is 0 within the uncertainty.
+  const Measured quiet = flicker({still, still, still}, references, variances);
   CHECK(quiet.value <= 3.0 * quiet.uncertainty);
-  CHECK(quiet.value + quiet.uncertainty < 0.5 * kTruthNoise);
-  const Measured restless = flicker(seedsOf(3, kTruth, kNoise), truths, variances);
+  CHECK(quiet.value + quiet.uncertainty < 0.5 * kReferenceNoise);
+  const Measured restless = flicker(seedsOf(3, kReference, kNoise), references, variances);
   CHECK(restless.value == Approx(std::sqrt(2.0) * kNoise).epsilon(0.03));
   CHECK(restless.uncertainty < 0.03 * restless.value);
 }
 
 TEST_CASE(
-    "the truth's own motion is no flicker, and a picture that lags behind it flickers by what it missed") {
-  std::vector<Picture> truths, following, frozen;
+    "the reference's own motion is no flicker, and an image that lags behind it flickers by what it missed") {
+  std::vector<ImageBuffer> references, following, frozen;
   for (int f = 0; f < 5; ++f) {
-    truths.emplace_back(kSize, kSize, 3, kTruth + 0.1f * static_cast<float>(f));
+    references.emplace_back(kSize, kSize, 3, kReference + 0.1f * static_cast<float>(f));
     following.emplace_back(kSize, kSize, 3, 0.5f + 0.1f * static_cast<float>(f));  // wrong, but as steadily
-    frozen.emplace_back(kSize, kSize, 3, kTruth);
+    frozen.emplace_back(kSize, kSize, 3, kReference);
   }
-  CHECK(flicker(following, truths).value == Approx(0.0).margin(1e-6));
-  CHECK(flicker(frozen, truths).value == Approx(0.1).epsilon(1e-5));
-  CHECK(std::isnan(flicker({frozen[0]}, {truths[0]}).value));
-  CHECK_THROWS_AS(flicker(frozen, {truths[0]}), Error);
+  CHECK(flicker(following, references).value == Approx(0.0).margin(1e-6));
+  CHECK(flicker(frozen, references).value == Approx(0.1).epsilon(1e-5));
+  CHECK(std::isnan(flicker({frozen[0]}, {references[0]}).value));
+  CHECK_THROWS_AS(flicker(frozen, {references[0]}), Error);
 }
 
 TEST_CASE("the error c h^p gives the slope p exactly, of whatever sign") {

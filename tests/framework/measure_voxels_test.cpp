@@ -96,18 +96,19 @@ TEST_CASE("a set of voxels keeps what was inserted, and nothing lies outside it"
 
 TEST_CASE("a box between the faces of the voxels touches exactly its shell") {
   // From 2.5 to 12.5 it reaches 11 voxels along each side, and its surface fills all but the inner 9.
-  const VoxelTruth truth = trueVoxels(boxTriangles(glm::dvec3(2.5), glm::dvec3(12.5)), glm::ivec3(16));
-  CHECK(truth.certain.count() == cubed(11) - cubed(9));
-  CHECK(truth.certain == truth.possible);
+  const VoxelReference reference =
+      trueVoxels(boxTriangles(glm::dvec3(2.5), glm::dvec3(12.5)), glm::ivec3(16));
+  CHECK(reference.certain.count() == cubed(11) - cubed(9));
+  CHECK(reference.certain == reference.possible);
 }
 
 TEST_CASE("a box on the faces of the voxels touches those on both sides, and a tolerance leaves them open") {
   const std::vector<ExactTriangle> box = boxTriangles(glm::dvec3(3.0), glm::dvec3(9.0));
   // Closed voxels: those from 2 to 9 touch; those strictly within, from 4 to 7, do not.
-  const VoxelTruth exact = trueVoxels(box, glm::ivec3(16), 0.0);
+  const VoxelReference exact = trueVoxels(box, glm::ivec3(16), 0.0);
   CHECK(exact.certain.count() == cubed(8) - cubed(4));
   CHECK(exact.certain == exact.possible);
-  const VoxelTruth open = trueVoxels(box, glm::ivec3(16));
+  const VoxelReference open = trueVoxels(box, glm::ivec3(16));
   CHECK(open.certain.count() == 0);
   CHECK(open.possible == exact.possible);
 }
@@ -120,7 +121,7 @@ TEST_CASE("a sphere touches the voxels that its radius passes between, and no ot
   constexpr int kRows = 160;
   const double sagitta = 2.0 * kRadius * (1.0 - std::cos(glm::pi<double>() / kRows));
   const glm::ivec3 resolution(32);
-  const VoxelTruth truth = trueVoxels(sphereTriangles(centre, kRadius, kRows), resolution, 0.0);
+  const VoxelReference reference = trueVoxels(sphereTriangles(centre, kRadius, kRows), resolution, 0.0);
   std::uint64_t inner = 0, outer = 0, wrong = 0;
   forEachVoxel(resolution, [&](const glm::ivec3& voxel) {
     const glm::dvec3 low = glm::dvec3(voxel) - centre, high = low + 1.0;
@@ -130,15 +131,15 @@ TEST_CASE("a sphere touches the voxels that its radius passes between, and no ot
     const bool may = nearest <= kRadius && farthest >= kRadius - sagitta;
     inner += must;
     outer += may;
-    wrong += (must && !truth.certain.contains(voxel)) || (!may && truth.certain.contains(voxel));
+    wrong += (must && !reference.certain.contains(voxel)) || (!may && reference.certain.contains(voxel));
   });
   CHECK(wrong == 0);
-  CHECK(inner <= truth.certain.count());
-  CHECK(truth.certain.count() <= outer);
+  CHECK(inner <= reference.certain.count());
+  CHECK(reference.certain.count() <= outer);
   CHECK(static_cast<double>(outer - inner) < 0.02 * static_cast<double>(outer));
   // The number of voxels that a smooth surface touches tends to area times the mean of |nx|+|ny|+|nz| (its
   // crossings of the voxels' faces), 6 pi r^2 for a sphere; one voxel per crossing.
-  CHECK(static_cast<double>(truth.certain.count()) ==
+  CHECK(static_cast<double>(reference.certain.count()) ==
         Approx(6.0 * glm::pi<double>() * kRadius * kRadius).epsilon(0.02));
 }
 
@@ -152,7 +153,7 @@ TEST_CASE("random triangles touch every voxel that holds one of their points, an
     const glm::dvec3 at = 20.0 * glm::dvec3(uniform(generator), uniform(generator), uniform(generator));
     for (glm::dvec3& corner : triangle)
       corner = at + size * (glm::dvec3(uniform(generator), uniform(generator), uniform(generator)) - 0.5);
-    const VoxelTruth truth = trueVoxels(std::span(&triangle, 1), resolution, 0.0);
+    const VoxelReference reference = trueVoxels(std::span(&triangle, 1), resolution, 0.0);
     // Points of the triangle, none farther from the next than a hundredth of a voxel along each edge.
     const int steps = static_cast<int>(std::ceil(40.0 * size));
     VoxelSet sampled(resolution);
@@ -164,12 +165,12 @@ TEST_CASE("random triangles touch every voxel that holds one of their points, an
         const glm::ivec3 voxel(glm::floor(point));
         if (sampled.inside(voxel)) sampled.insert(voxel);
       }
-    CHECK(subset(sampled, truth.certain));
+    CHECK(subset(sampled, reference.certain));
     // What the samples miss is grazed: shrunk by two sample distances, the voxel is not touched any more.
-    const VoxelTruth deep = trueVoxels(std::span(&triangle, 1), resolution, 0.06);
+    const VoxelReference deep = trueVoxels(std::span(&triangle, 1), resolution, 0.06);
     CHECK(subset(deep.certain, sampled));
-    CHECK(subset(deep.certain, truth.certain));
-    CHECK(subset(truth.certain, deep.possible));
+    CHECK(subset(deep.certain, reference.certain));
+    CHECK(subset(reference.certain, deep.possible));
   }
 }
 
@@ -206,7 +207,7 @@ TEST_CASE("points, lines and needles touch the voxels along them") {
   }
   // One to a million: as wide as a thirty-thousandth of a voxel, so within the tolerance of the line.
   const ExactTriangle needle{from, to, to + glm::dvec3(3.3e-5, -3.3e-5, 0.0)}, line{from, to, to};
-  const VoxelTruth thin = trueVoxels(std::span(&needle, 1), resolution);
+  const VoxelReference thin = trueVoxels(std::span(&needle, 1), resolution);
   CHECK(thin.certain.count() <= faces + 1);
   CHECK(thin.possible.count() >= faces + 1);
   CHECK(subset(trueVoxels(std::span(&line, 1), resolution).certain, thin.possible));
@@ -231,19 +232,19 @@ TEST_CASE("what lies outside the grid or nowhere touches nothing, and what reach
   CHECK(trueVoxels(std::span(&behindCorner, 1), resolution).possible.count() == 0);
 }
 
-TEST_CASE("the truth of a scene follows the placement, the motion and the deformation of its objects") {
+TEST_CASE("the reference of a scene follows the placement, the motion and the deformation of its objects") {
   SceneBuilder builder;
   builder.box({-1, -1, -1}, {1, 1, 1}, builder.lambert(0.5f), false);
   for (Object& side : builder.scene.objects)
     side.motion = RigidMotion{{0, 1, 0}, 0.0, glm::dvec3(0), {2.0, 0, 0}};
   const GridPlacement grid{{-4.25f, -2.25f, -2.25f}, 0.5f, {20, 9, 9}};
-  const auto truthAt = [&](double time) {
+  const auto referenceAt = [&](double time) {
     SceneSnapshot snapshot = snapshotOf(builder.scene, time);
     for (ObjectState& state : snapshot.objects) state.toWorld[3] += glm::vec4(glm::vec3(snapshot.origin), 0);
     return trueVoxels(builder.scene, snapshot, grid).certain;
   };
   // A box of two metres from centre to centre of voxels of half a metre spans five of them.
-  const VoxelSet before = truthAt(0.0), after = truthAt(1.0);
+  const VoxelSet before = referenceAt(0.0), after = referenceAt(1.0);
   CHECK(before.count() == cubed(5) - cubed(3));
   CHECK(after.count() == before.count());
   std::uint64_t moved = 0;
@@ -280,13 +281,13 @@ TEST_CASE("of a masked surface the holes are empty, the rest is certain and the 
     builder.scene.texcoords[i] = glm::vec2(builder.scene.positions[i]) / 16.0f;
   SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
   snapshot.objects[0].toWorld = glm::mat4(1.0f);
-  const VoxelTruth truth = trueVoxels(builder.scene, snapshot, {{0, 0, 0}, 1.0f, {16, 16, 1}});
+  const VoxelReference reference = trueVoxels(builder.scene, snapshot, {{0, 0, 0}, 1.0f, {16, 16, 1}});
   // Four texels to a voxel. Half of the width is solid: voxels 0 to 7. The mask repeats, so the solid texel
   // at 0 is next to the hole's end at 16, where filtering reaches half a texel from both sides.
   for (int y = 0; y < 16; ++y) {
-    for (int x = 0; x < 8; ++x) CHECK(truth.certain.contains({x, y, 0}));
-    for (int x = 9; x < 15; ++x) CHECK(!truth.possible.contains({x, y, 0}));
-    for (const int x : {8, 15}) CHECK(truth.possible.contains({x, y, 0}));
+    for (int x = 0; x < 8; ++x) CHECK(reference.certain.contains({x, y, 0}));
+    for (int x = 9; x < 15; ++x) CHECK(!reference.possible.contains({x, y, 0}));
+    for (const int x : {8, 15}) CHECK(reference.possible.contains({x, y, 0}));
   }
 }
 
@@ -295,35 +296,36 @@ TEST_CASE("precision and recall count certain voxels, and undecided ones for nei
   const auto upTo = [&](int low, int high) {
     return filled(resolution, [&](const glm::ivec3& voxel) { return voxel.x >= low && voxel.x < high; });
   };
-  const VoxelTruth truth{upTo(2, 6), upTo(1, 7)};
-  const VoxelError error = compareVoxels(upTo(4, 9), truth);
+  const VoxelReference reference{upTo(2, 6), upTo(1, 7)};
+  const VoxelError error = compareVoxels(upTo(4, 9), reference);
   CHECK((error.truePositive == 2 && error.falsePositive == 2 && error.falseNegative == 2));
   CHECK((error.precision() == 0.5 && error.recall() == 0.5));
-  const VoxelError whole = compareVoxels(upTo(1, 7), truth), least = compareVoxels(upTo(2, 6), truth);
+  const VoxelError whole = compareVoxels(upTo(1, 7), reference), least = compareVoxels(upTo(2, 6), reference);
   CHECK((whole.precision() == 1.0 && whole.recall() == 1.0));
   CHECK((least.precision() == 1.0 && least.recall() == 1.0));
   const VoxelError nothing = compareVoxels(upTo(0, 0), {upTo(0, 0), upTo(0, 0)});
   CHECK((nothing.precision() == 1.0 && nothing.recall() == 1.0));
-  CHECK(compareVoxels(upTo(0, 0), truth).recall() == 0.0);
-  CHECK_THROWS_AS(compareVoxels(VoxelSet({1, 1, 1}), truth), Error);
+  CHECK(compareVoxels(upTo(0, 0), reference).recall() == 0.0);
+  CHECK_THROWS_AS(compareVoxels(VoxelSet({1, 1, 1}), reference), Error);
 }
 
 TEST_CASE("a wall between two layers of voxels may lie in either, but not in none") {
   const glm::ivec3 resolution(8, 8, 9);
-  const VoxelTruth truth = trueVoxels(parallelogram({1.5, 1.5, 4.0}, {5, 0, 0}, {0, 5, 0}), resolution);
-  CHECK(truth.certain.count() == 0);
-  CHECK(truth.possible.count() == 2 * 6 * 6);
+  const VoxelReference reference =
+      trueVoxels(parallelogram({1.5, 1.5, 4.0}, {5, 0, 0}, {0, 5, 0}), resolution);
+  CHECK(reference.certain.count() == 0);
+  CHECK(reference.possible.count() == 2 * 6 * 6);
   const auto layer = [&](int z) {
     return filled(resolution, [&](const glm::ivec3& v) {
       return v.z == z && v.x >= 1 && v.x <= 6 && v.y >= 1 && v.y <= 6;
     });
   };
   for (const int z : {3, 4}) {
-    const VoxelError error = compareVoxels(layer(z), truth);
+    const VoxelError error = compareVoxels(layer(z), reference);
     CHECK((error.recall() == 1.0 && error.precision() == 1.0));
   }
-  CHECK(compareVoxels(VoxelSet(resolution), truth).recall() == 0.0);
-  CHECK(compareVoxels(VoxelSet(resolution), truth).falseNegative == 2 * 6 * 6);
+  CHECK(compareVoxels(VoxelSet(resolution), reference).recall() == 0.0);
+  CHECK(compareVoxels(VoxelSet(resolution), reference).falseNegative == 2 * 6 * 6);
 }
 
 TEST_CASE("a missing voxel of a wall is a hole for as many rays as pass through it from face to face") {
@@ -333,9 +335,9 @@ TEST_CASE("a missing voxel of a wall is a hole for as many rays as pass through 
   const glm::ivec3 missing(11, 13, 4);
   const VoxelSet torn =
       filled(resolution, [&](const glm::ivec3& voxel) { return voxel.z == 4 && voxel != missing; });
-  const VoxelTruth truth{wall, wall};
+  const VoxelReference reference{wall, wall};
   constexpr int kRays = 1 << 21;
-  const RayHoles whole = rayHoles(wall, truth, kRays), holes = rayHoles(torn, truth, kRays);
+  const RayHoles whole = rayHoles(wall, reference, kRays), holes = rayHoles(torn, reference, kRays);
   CHECK((whole.axisHoles == 0 && whole.obliqueHoles == 0));
   // Along z there is one ray a voxel; along x and y one a row, and each of those meets occupied voxels.
   CHECK(holes.axisCrossings == kSide * kSide + 2 * kSide);
@@ -391,8 +393,8 @@ TEST_CASE("voxels and holes have the same bits on any number of threads") {
     for (glm::dvec3& corner : triangle) corner = {uniform(generator), uniform(generator), uniform(generator)};
   const glm::ivec3 resolution(64);
   const auto all = [&] { return trueVoxels(std::span(triangles).first(200), resolution); };
-  const VoxelTruth many = all();
-  VoxelTruth one;
+  const VoxelReference many = all();
+  VoxelReference one;
   RayHoles oneHoles;
   {
     const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);

@@ -1,4 +1,4 @@
-// A scene of one mesh and a picture, written for a test.
+// A scene of one mesh and an image, written for a test.
 #pragma once
 
 #include <filesystem>

@@ -26,7 +26,7 @@ MeasuredRow row(const std::string& name, double published, double median) {
 ShownPanel panel(const std::string& name, int width, int height, float radiance) {
   ShownPanel result;
   result.name = name;
-  result.picture = Picture(width, height, 3, radiance);
+  result.image = ImageBuffer(width, height, 3, radiance);
   result.meanLuminance = radiance;
   return result;
 }
@@ -76,7 +76,7 @@ ReproducedResult figure() {
 }
 
 /// How many pixels of a rectangle are as dark as letters.
-int ink(const Picture& sheet, int left, int top, int width, int height) {
+int ink(const ImageBuffer& sheet, int left, int top, int width, int height) {
   int count = 0;
   for (int y = top; y < top + height; ++y)
     for (int x = left; x < left + width; ++x) count += sheet.at(x, y, 0) == 0.0f ? 1 : 0;
@@ -95,7 +95,7 @@ TEST_CASE("a sheet shows all panels under one exposure, side by side, each with 
   result.panels[3].name = "absent";
   result.panels[3].whyNot = "directional voxels are not implemented";
   result.exposure = 0.25;
-  const Picture sheet = contactSheet(result);
+  const ImageBuffer sheet = contactSheet(result);
   // Two columns of 200 pixels with margins of 6; a line of title, then panels of 100 and a line of 16 with
   // two margins each.
   REQUIRE(sheet.width() == 2 * 206 + 6);
@@ -105,14 +105,14 @@ TEST_CASE("a sheet shows all panels under one exposure, side by side, each with 
     CHECK(sheet.at(x, first, 0) == 0.5f);
     CHECK(sheet.at(x, first + 99, 2) == 0.5f);
     CHECK(sheet.at(x + 206, first, 1) == 0.125f);
-    // A picture of half the size fills the same place.
+    // An image of half the size fills the same place.
     CHECK(sheet.at(x, second + 99, 0) == 0.25f);
   }
   CHECK(sheet.at(5, first, 0) == 1.0f);
   CHECK(ink(sheet, 6, 0, 400, 20) > 0);
   for (const int left : {6, 212})
     for (const int top : {first, second}) CHECK(ink(sheet, left, top + 100, 200, 16) > 0);
-  // Why there is none stands in the place of the picture; names differ.
+  // Why there is none stands in the place of the image; names differ.
   CHECK(ink(sheet, 212, second, 200, 100) > 0);
   CHECK(ink(sheet, 6, first, 200, 100) == 0);
   CHECK(ink(sheet, 6, second + 100, 200, 16) > ink(sheet, 6, first + 100, 200, 16));

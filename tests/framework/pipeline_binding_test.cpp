@@ -7,7 +7,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// Reads a picture of this frame and one of the frame before.
+/// Reads an image of this frame and one of the frame before.
 class Echo : public Toy {
  public:
   using Toy::Toy;
@@ -88,7 +88,7 @@ TEST_CASE("a port of the wrong kind is refused, naming both kinds") {
                       "expected an output of kind RadianceGrid"));
 }
 
-TEST_CASE("an output of the pipeline that is no picture is refused") {
+TEST_CASE("an output of the pipeline that is no image is refused") {
   CHECK_THAT(findings("pass v toy.voxels { }\noutput o v.grid"),
              Contains("output 'v.grid' is of kind RadianceGrid, but output 'o' of the pipeline takes Image"));
 }
@@ -245,7 +245,7 @@ TEST_CASE("a setting given to a pipeline must exist and fit") {
              Contains("has no output 'p'; expected o"));
 }
 
-TEST_CASE("a pipeline that makes no part of a picture needs no output, and one that makes some does") {
+TEST_CASE("a pipeline that makes no part of an image needs no output, and one that makes some does") {
   accept("pass voxels toy.voxels { }");
   CHECK_THAT(findings("pass voxels toy.voxels { }\npass gather toy.gather { grid voxels }"),
              Contains("test.pipeline:3:6: the pipeline has no output, so that nobody sees what "

@@ -14,7 +14,7 @@ class Counter : public Toy {
   using Toy::Toy;
   Param<int> wanted{this, "wanted", 1, {0, 1000000}, "how far it counts from frame 1 on"};
   Param<bool> learns{this, "learns", true, "whether it takes the room that it turned out to need"};
-  Out<Image> picture{this, "picture", Contributes::direct};
+  Out<Image> image{this, "image", Contributes::direct};
   Reads readsFrom() const override { return Reads::time; }
   void run(PassContext& frame) override {
     note();
@@ -22,7 +22,7 @@ class Counter : public Toy {
         77u, frame.frameIndex() == 0 ? 1u : static_cast<std::uint32_t>(wanted)};
     const gpu::BufferRef counts = frame.buffer(sizeof(words), "counts");
     counts->uploadValues(std::span<const std::uint32_t>(words));
-    picture = paint(frame, static_cast<float>(room_));
+    image = paint(frame, static_cast<float>(room_));
     frame.judgeLater(counts, sizeof(std::uint32_t), [this](PassContext& done, std::uint32_t count) {
       if (count <= room_) return true;
       if (learns) room_ = count;
@@ -39,16 +39,16 @@ class Counter : public Toy {
 class Double : public Toy {
  public:
   using Toy::Toy;
-  In<Image> half{this, "half", "a picture"};
-  Out<Image> picture{this, "picture", Contributes::direct};
+  In<Image> half{this, "half", "an image"};
+  Out<Image> image{this, "image", Contributes::direct};
   void run(PassContext& frame) override {
     note();
-    picture = paint(frame, 2.0f * valueOf(*half));
+    image = paint(frame, 2.0f * valueOf(*half));
   }
 };
 
 const char* const kCounted =
-    "pass counter toy.counter { wanted 5 }\npass twice toy.twice { half counter }\noutput direct twice.picture";
+    "pass counter toy.counter { wanted 5 }\npass twice toy.twice { half counter }\noutput direct twice.image";
 
 struct Counted : Fixture {
   Counted() {
@@ -65,7 +65,7 @@ TEST_CASE("a frame whose pass had too little room is rendered again before anyth
   PipelineExecutor executor = f.executor(kCounted);
   CHECK(first(executor.render(0.0, 0), "direct") == 2.0f);
   CHECK(f.techniques.takeRan() == std::vector<std::string>{"counter", "twice"});
-  // The count grows in the middle of the sequence: the picture is that of the room that it needs.
+  // The count grows in the middle of the sequence: the image is that of the room that it needs.
   CHECK(first(executor.render(0.1, 1), "direct") == 10.0f);
   CHECK(f.techniques.takeRan() == std::vector<std::string>{"counter", "twice", "counter", "twice"});
   // From then on there is room.
@@ -77,7 +77,7 @@ TEST_CASE("a pass that never has enough room ends in an error with its name, and
   Counted f;
   if (!f) return;
   PipelineExecutor executor =
-      f.executor("pass counter toy.counter { wanted 5 learns off }\noutput direct counter.picture");
+      f.executor("pass counter toy.counter { wanted 5 learns off }\noutput direct counter.image");
   executor.render(0.0, 0);
   CHECK_THROWS_WITH(executor.render(0.1, 1), Contains("pass counter: no room for what it counts (5)"));
   // The error left nothing behind: frame 0 is there again.

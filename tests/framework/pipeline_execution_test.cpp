@@ -41,34 +41,34 @@ class SteppedGrid : public Voxels {
 class Warner : public Toy {
  public:
   using Toy::Toy;
-  Out<Image> picture{this, "picture"};
+  Out<Image> image{this, "image"};
   Reads readsFrom() const override { return Reads::time; }
   void run(PassContext& frame) override {
     frame.warn("too dark");
     frame.note(frame.inspects() ? "inspected" : "not inspected");
-    picture = paint(frame, 1.0f);
+    image = paint(frame, 1.0f);
   }
 };
 
-/// Bad values at known places of a 4 x 4 picture.
+/// Bad values at known places of a 4 x 4 image.
 class Sick : public Toy {
  public:
   using Toy::Toy;
-  Out<Image> picture{this, "picture"};
+  Out<Image> image{this, "image"};
   void run(PassContext& frame) override {
-    Image image = paint(frame, 1.0f);
+    Image sick = paint(frame, 1.0f);
     std::vector<float> texels(4 * 4 * 4, 1.0f);
     texels[4 * (4 * 2 + 3)] = texels[4 * (4 * 3 + 0) + 1] = std::numeric_limits<float>::quiet_NaN();
     texels[4 * (4 * 1 + 2) + 2] = std::numeric_limits<float>::infinity();
     texels[4 * (4 * 0 + 1)] = -0.5f;
-    image.texture->uploadFloats(0, texels);
-    picture = image;
+    sick.texture->uploadFloats(0, texels);
+    image = sick;
   }
 };
 
 }  // namespace
 
-TEST_CASE("a pipeline renders its outputs as pictures with their components") {
+TEST_CASE("a pipeline renders its outputs as images with their components") {
   Fixture f;
   if (!f) return;
   PipelineExecutor executor = f.executor(kGather);
@@ -186,7 +186,7 @@ TEST_CASE("techniques that the pipeline does not name are listed as left out") {
   CHECK(find(explanation, LeftOut::Level::plugin, "toy") == nullptr);
 }
 
-TEST_CASE("keeping everything runs every pass in every frame and gives the same pictures") {
+TEST_CASE("keeping everything runs every pass in every frame and gives the same images") {
   Fixture f;
   if (!f) return;
   const std::string body = std::string(kGather) +
@@ -202,8 +202,7 @@ TEST_CASE("keeping everything runs every pass in every frame and gives the same 
     const FrameResult with = everything.render(0.0);
     CHECK(f.techniques.takeRan().size() == 6);
     REQUIRE(with.outputs.size() == without.outputs.size());
-    for (const auto& [name, picture] : with.outputs)
-      CHECK(picture.values() == without.outputs.at(name).values());
+    for (const auto& [name, image] : with.outputs) CHECK(image.values() == without.outputs.at(name).values());
   }
   const Explanation explanation = everything.explain();
   CHECK(explanation.passesKept == explanation.passesTotal);
@@ -211,11 +210,11 @@ TEST_CASE("keeping everything runs every pass in every frame and gives the same 
   CHECK(explanation.leftOut.empty());
 }
 
-TEST_CASE("nothing runs again while nothing changes, and the picture stays") {
+TEST_CASE("nothing runs again while nothing changes, and the image stays") {
   Fixture f;
   if (!f) return;
   PipelineExecutor executor = f.executor(kGather);
-  executor.render(0.0, 0, PipelineExecutor::Pictures::yes, PipelineExecutor::Timing::passes);
+  executor.render(0.0, 0, PipelineExecutor::Images::yes, PipelineExecutor::Timing::passes);
   f.techniques.takeRan();
   const FrameResult second = executor.render(1.0, 1);
   CHECK(f.techniques.takeRan().empty());
@@ -290,7 +289,7 @@ TEST_CASE("moving geometry runs what reads the geometry and what depends on that
   executor.render(0.0);
   f.techniques.takeRan();
   executor.render(0.5, 1);
-  // The view did not change, and its picture was kept because its reader runs again.
+  // The view did not change, and its image was kept because its reader runs again.
   CHECK(f.techniques.takeRan() == Ran{"voxels", "gather"});
 }
 
@@ -322,23 +321,23 @@ TEST_CASE(
 TEST_CASE("sharing memory between short-lived resources needs less of it") {
   Fixture f;
   if (!f) return;
-  // A chain of four sums: two pictures are alive at any time, and the last one stays.
+  // A chain of four sums: two images are alive at any time, and the last one stays.
   const std::string body =
       "pass a toy.paint { }\npass b toy.add { first a }\npass c toy.add { first b }\npass d toy.add { first "
       "c }\noutput o d.sum";
-  constexpr std::uint64_t kPicture = 4 * 4 * 16;
+  constexpr std::uint64_t kImage = 4 * 4 * 16;
   PipelineExecutor shared = f.executor(body);
   const FrameResult sharedFrame = shared.render(0.0);
-  CHECK(shared.explain().poolBytes == 2 * kPicture);
-  CHECK(shared.explain().sharedBytes == 2 * kPicture);
-  CHECK(find(shared.explain(), LeftOut::Level::resource, "memory of its own")->savedBytes == 2 * kPicture);
+  CHECK(shared.explain().poolBytes == 2 * kImage);
+  CHECK(shared.explain().sharedBytes == 2 * kImage);
+  CHECK(find(shared.explain(), LeftOut::Level::resource, "memory of its own")->savedBytes == 2 * kImage);
   RenderOptions options;
   options.keepEverything = true;
   PipelineExecutor separate = f.executor(body, options);
   const FrameResult separateFrame = separate.render(0.0);
-  CHECK(separate.explain().poolBytes == 4 * kPicture);
+  CHECK(separate.explain().poolBytes == 4 * kImage);
   CHECK(first(sharedFrame, "o") == first(separateFrame, "o"));
-  for (const PassRecord& pass : sharedFrame.passes) CHECK(pass.bytes == kPicture);
+  for (const PassRecord& pass : sharedFrame.passes) CHECK(pass.bytes == kImage);
 }
 
 TEST_CASE("frames of an animation do not need more and more memory") {
@@ -403,7 +402,7 @@ TEST_CASE("the passes of a frame are timed only where that is asked for, and eac
     // More frames than are under way at a time; the second one runs nothing.
     for (int frame = 0; frame < 7; ++frame) {
       if (frame != 1) executor.invalidate();
-      const FrameResult result = executor.render(0.0, 0, PipelineExecutor::Pictures::no, Timing::passes);
+      const FrameResult result = executor.render(0.0, 0, PipelineExecutor::Images::no, Timing::passes);
       CHECK(std::isnan(result.frameMs));
       if (frame == 3) executor.render(0.0);  // a frame that is not timed comes between
     }
@@ -431,13 +430,13 @@ namespace {
 class Interrupted : public Toy {
  public:
   using Toy::Toy;
-  Out<Image> picture{this, "picture"};
+  Out<Image> image{this, "image"};
   Reads readsFrom() const override { return Reads::time; }
   void run(PassContext& frame) override {
-    Image image = paint(frame, 1.0f);
-    const gpu::Drawing drawing = frame.device().drawTo({{{image.texture.get()}}}, {});
+    const Image painted = paint(frame, 1.0f);
+    const gpu::Drawing drawing = frame.device().drawTo({{{painted.texture.get()}}}, {});
     if (!std::exchange(failed_, true)) throw Error("the texture does not fit");
-    picture = image;
+    image = painted;
   }
 
  private:
@@ -455,14 +454,14 @@ TEST_CASE("a pass that fails while it draws fails alone: the next frame draws ag
     f.device->info();
     if (stamps) f.device->state()->info.timerQueriesTrusted = true;
     f.techniques.add<Interrupted>("toy", "interrupted");
-    PipelineExecutor executor = f.executor("pass one toy.interrupted { }\noutput picture one.picture");
+    PipelineExecutor executor = f.executor("pass one toy.interrupted { }\noutput image one.image");
     CHECK_THAT(
-        messageOf<Error>([&] { executor.render(0.0, 0, PipelineExecutor::Pictures::no, Timing::passes); }),
+        messageOf<Error>([&] { executor.render(0.0, 0, PipelineExecutor::Images::no, Timing::passes); }),
         Contains("pass one: the texture does not fit"));
     CHECK(executor.timedPasses().empty());
-    CHECK(executor.render(0.0, 0, PipelineExecutor::Pictures::no, Timing::passes).passes.size() == 1);
+    CHECK(executor.render(0.0, 0, PipelineExecutor::Images::no, Timing::passes).passes.size() == 1);
     CHECK(executor.timedPasses().size() == 1);
-    CHECK(first(executor.render(0.0), "picture") == 0.0f);  // the drawing cleared it
+    CHECK(first(executor.render(0.0), "image") == 0.0f);  // the drawing cleared it
   }
 }
 
@@ -470,7 +469,7 @@ TEST_CASE("a warning of a pass is told once per run") {
   Fixture f;
   if (!f) return;
   f.techniques.add<Warner>("toy", "warner");
-  PipelineExecutor executor = f.executor("pass dim toy.warner { }\noutput o dim.picture");
+  PipelineExecutor executor = f.executor("pass dim toy.warner { }\noutput o dim.image");
   const LogCapture log;
   executor.render(0.0);
   executor.render(1.0, 1);
@@ -482,7 +481,7 @@ TEST_CASE("what a pass tells about itself is kept only when the run is inspected
   Fixture f;
   if (!f) return;
   f.techniques.add<Warner>("toy", "warner");
-  const char* text = "pass dim toy.warner { }\noutput o dim.picture";
+  const char* text = "pass dim toy.warner { }\noutput o dim.image";
   PipelineExecutor plain = f.executor(text);
   CHECK(plain.render(0.0, 0).notes.empty());
   RenderOptions options;
@@ -498,12 +497,12 @@ TEST_CASE("the health scan names pass, port, count and first place of bad values
   f.techniques.add<Sick>("toy", "sick");
   RenderOptions options;
   options.health = true;
-  PipelineExecutor executor = f.executor("pass ill toy.sick { }\noutput o ill.picture", options);
+  PipelineExecutor executor = f.executor("pass ill toy.sick { }\noutput o ill.image", options);
   const FrameResult frame = executor.render(0.0);
   CHECK(frame.healthFindings ==
-        std::vector<std::string>{"pass ill, port picture: 2 NaN, first at pixel (3, 2)",
-                                 "pass ill, port picture: 1 infinite, first at pixel (2, 1)",
-                                 "pass ill, port picture: 1 negative, first at pixel (1, 0)"});
+        std::vector<std::string>{"pass ill, port image: 2 NaN, first at pixel (3, 2)",
+                                 "pass ill, port image: 1 infinite, first at pixel (2, 1)",
+                                 "pass ill, port image: 1 negative, first at pixel (1, 0)"});
   PipelineExecutor healthy = f.executor(kGather, options);
   CHECK(healthy.render(0.0).healthFindings.empty());
 }
@@ -516,7 +515,7 @@ TEST_CASE("an unknown camera is refused when the pipeline is bound") {
   CHECK_THAT(messageOf<Error>([&] { f.executor(kGather, options); }), Contains("main"));
 }
 
-TEST_CASE("the size of the picture can be chosen") {
+TEST_CASE("the size of the image can be chosen") {
   Fixture f;
   if (!f) return;
   RenderOptions options;
@@ -541,10 +540,10 @@ TEST_CASE("the harness runs one pass on inputs made by a test") {
   CHECK_THAT(messageOf<Error>([&] { harness.run(); }), Contains("required input 'first' was not set"));
   harness.setInput<Image>("first", constant(1.5f));
   harness.run();
-  CHECK(pictureOf(*harness.output<Image>("sum").texture).at(0, 0, 0) == 1.5f);
+  CHECK(imageOf(*harness.output<Image>("sum").texture).at(0, 0, 0) == 1.5f);
   harness.setInput<Image>("second", constant(2.0f));
   harness.run();
-  CHECK(pictureOf(*harness.output<Image>("sum").texture).at(3, 3, 2) == 3.5f);
+  CHECK(imageOf(*harness.output<Image>("sum").texture).at(3, 3, 2) == 3.5f);
   CHECK_THROWS_AS(harness.setInput<RadianceGrid>("first", RadianceGrid{}), Error);
   CHECK_THROWS_AS(harness.setInput<Image>("third", constant(0.0f)), Error);
   CHECK_THROWS_AS(harness.output<Image>("difference"), Error);

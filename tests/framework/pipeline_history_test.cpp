@@ -159,8 +159,8 @@ class Sporadic : public Toy {
   void run(PassContext& frame) override {
     float value = 0.0f;
     if (frame.history(64, "words").previous) value += 1.0f;
-    if (frame.frameIndex() % 3 != 2 && frame.history(smallPicture(), "picture").previous) value += 2.0f;
-    if (frame.history(smallPicture(frame.frameIndex() < 4 ? 4 : 8), "grows").previous) value += 4.0f;
+    if (frame.frameIndex() % 3 != 2 && frame.history(smallImage(), "image").previous) value += 2.0f;
+    if (frame.history(smallImage(frame.frameIndex() < 4 ? 4 : 8), "grows").previous) value += 4.0f;
     found = paint(frame, value);
   }
 };
@@ -187,7 +187,7 @@ class Cramped : public Toy {
   Reads readsFrom() const override { return Reads::history | Reads::time; }
   void run(PassContext& frame) override {
     note();
-    const History<gpu::TextureRef> kept = frame.history(smallPicture(), "sum");
+    const History<gpu::TextureRef> kept = frame.history(smallImage(), "sum");
     const float value = 1.0f + (kept.previous ? kept.previous->downloadFloats().front() : 0.0f);
     kept.current->clear(glm::vec4(value));
     const gpu::BufferRef count = frame.buffer(4, "count");
@@ -209,7 +209,7 @@ class Failing : public Toy {
   Out<Image> sum{this, "sum", Contributes::direct};
   Reads readsFrom() const override { return Reads::history; }
   void run(PassContext& frame) override {
-    const History<gpu::TextureRef> kept = frame.history(smallPicture(), "sum");
+    const History<gpu::TextureRef> kept = frame.history(smallImage(), "sum");
     if (++runs_ == 3) throw Error("it does not fit");
     sum = paint(frame, (kept.previous ? 1.0f : 0.0f) + 10.0f * static_cast<float>(frame.accumulated()));
   }
@@ -251,12 +251,12 @@ class Undeclared : public Toy {
  public:
   using Toy::Toy;
   Param<bool> counts{this, "counts", false, "asks for the number of frames"};
-  Out<Image> picture{this, "picture"};
+  Out<Image> image{this, "image"};
   void run(PassContext& frame) override {
     if (counts)
-      picture = paint(frame, static_cast<float>(frame.accumulated()));
+      image = paint(frame, static_cast<float>(frame.accumulated()));
     else
-      picture = Image{frame.history(smallPicture(), "x").current};
+      image = Image{frame.history(smallImage(), "x").current};
   }
 };
 
@@ -264,11 +264,11 @@ class Undeclared : public Toy {
 class Twice : public Toy {
  public:
   using Toy::Toy;
-  Out<Image> picture{this, "picture"};
+  Out<Image> image{this, "image"};
   Reads readsFrom() const override { return Reads::history; }
   void run(PassContext& frame) override {
-    frame.history(smallPicture(), "x");
-    picture = Image{frame.history(smallPicture(), "x").current};
+    frame.history(smallImage(), "x");
+    image = Image{frame.history(smallImage(), "x").current};
   }
 };
 
@@ -280,7 +280,7 @@ TEST_CASE("a pass that does not declare that it reads histories is refused them,
   f.techniques.add<Undeclared>("toy", "undeclared");
   f.techniques.add<Twice>("toy", "twice");
   const auto told = [&](const std::string& pass, const RenderOptions& options) {
-    PipelineExecutor executor = f.executor("pass a toy." + pass + "\noutput o a.picture", options);
+    PipelineExecutor executor = f.executor("pass a toy." + pass + "\noutput o a.image", options);
     return messageOf<Error>([&] { executor.render(0.0); });
   };
   CHECK(told("undeclared { }", {}) ==

@@ -1,4 +1,4 @@
-// A technique of trivial passes, made in the test: they paint constant pictures and write down that they ran.
+// A technique of trivial passes, made in the test: they paint constant images and write down that they ran.
 #pragma once
 
 #include <memory>
@@ -60,13 +60,13 @@ class Toy : public Pass {
 
  protected:
   void note() { ran_->push_back(kind_); }
-  /// A picture of one value.
+  /// An image of one value.
   static Image paint(PassContext& frame, float value) {
-    Image image{frame.image(gpu::Format::rgba32f, "picture")};
+    Image image{frame.image(gpu::Format::rgba32f, "image")};
     image.texture->clear(glm::vec4(value));
     return image;
   }
-  /// The value of a picture of one value.
+  /// The value of an image of one value.
   static float valueOf(const Image& image) { return image.texture->downloadFloats().front(); }
 
  private:
@@ -92,7 +92,7 @@ class PaintCamera : public Paint {
   Reads readsFrom() const override { return Reads::camera; }
 };
 
-/// Stands for the voxelisation of static geometry.
+/// Stands for the voxelization of static geometry.
 class Voxels : public Toy {
  public:
   using Toy::Toy;
@@ -137,7 +137,7 @@ class Gather : public Toy {
   }
 };
 
-/// The sum of a required and an optional picture.
+/// The sum of a required and an optional image.
 class Add : public Toy {
  public:
   using Toy::Toy;
@@ -222,7 +222,7 @@ struct Fixture {
   }
 };
 
-/// The first value of an output's picture.
+/// The first value of an output's image.
 inline float first(const FrameResult& frame, const std::string& output) {
   return frame.outputs.at(output).at(0, 0, 0);
 }

@@ -1,4 +1,4 @@
-// Truths are kept by the content of everything that they depend on.
+// References are kept by the content of everything that they depend on.
 #include "lumivox/reference/reference_cache.h"
 
 #include <fcntl.h>
@@ -42,7 +42,7 @@ ReferenceOptions cached() {
   return options;
 }
 
-bool sameBits(const LayeredPicture& a, const LayeredPicture& b) {
+bool sameBits(const LayeredImage& a, const LayeredImage& b) {
   if (a.layers.size() != b.layers.size()) return false;
   for (const auto& [name, layer] : a.layers) {
     const auto other = b.layers.find(name);
@@ -55,11 +55,11 @@ bool sameBits(const LayeredPicture& a, const LayeredPicture& b) {
 
 }  // namespace
 
-TEST_CASE("a kept truth has the bits and the provenance of the rendered one") {
+TEST_CASE("a kept reference has the bits and the provenance of the rendered one") {
   const OwnCache cache;
   const Scene scene = litRoom(12, 10);
-  const LayeredPicture rendered = renderReference(scene, cached());
-  const LayeredPicture first = cachedReference(scene, cached());
+  const LayeredImage rendered = renderReference(scene, cached());
+  const LayeredImage first = cachedReference(scene, cached());
   REQUIRE(cache.entries().size() == 1);
   const auto fileNumber = [&] {
     struct stat status {};
@@ -67,7 +67,7 @@ TEST_CASE("a kept truth has the bits and the provenance of the rendered one") {
     return status.st_ino;
   };
   const auto written = fileNumber();  // a file that is written anew is another one
-  const LayeredPicture second = cachedReference(scene, cached());
+  const LayeredImage second = cachedReference(scene, cached());
   CHECK(fileNumber() == written);
   CHECK(sameBits(rendered, first));
   CHECK(sameBits(rendered, second));
@@ -79,7 +79,7 @@ TEST_CASE("a kept truth has the bits and the provenance of the rendered one") {
   }
 }
 
-TEST_CASE("the cache tells apart everything that changes the picture, and nothing else") {
+TEST_CASE("the cache tells apart everything that changes the image, and nothing else") {
   const OwnCache cache;
   Scene scene = litRoom(6, 6);
   std::size_t expected = 0;
@@ -133,24 +133,24 @@ TEST_CASE("the cache tells apart everything that changes the picture, and nothin
   same("the cache switched off", options);
 }
 
-TEST_CASE("a damaged truth in the cache is made anew and said so") {
+TEST_CASE("a damaged reference in the cache is made anew and said so") {
   const OwnCache cache;
   const Scene scene = litRoom(12, 10);
-  const LayeredPicture good = cachedReference(scene, cached());
+  const LayeredImage good = cachedReference(scene, cached());
   REQUIRE(cache.entries().size() == 1);
   const std::filesystem::path entry = cache.entries()[0];
   const std::string bytes = readFile(entry);
 
   std::string flipped = bytes;
   flipped[bytes.size() / 2] = static_cast<char>(flipped[bytes.size() / 2] ^ 0x10);
-  LayeredPicture other = good;
+  LayeredImage other = good;
   other.layers.at("full").at(3, 3, 1) += 1.0f;
   writeExr(cache.directory.path() / "other.exr", other);
   const std::string altered = readFile(cache.directory.path() / "other.exr");
   std::filesystem::remove(cache.directory.path() / "other.exr");
 
   for (const std::string& damaged :
-       {std::string(), std::string("no picture"), bytes.substr(0, bytes.size() / 2), flipped, altered}) {
+       {std::string(), std::string("no image"), bytes.substr(0, bytes.size() / 2), flipped, altered}) {
     CAPTURE(damaged.size());
     std::ofstream(entry, std::ios::binary) << damaged;
     const LogCapture log;
@@ -164,14 +164,14 @@ namespace {
 
 /// What a stranger writes who knows how an entry is made: every statement of it is theirs, and its hash is
 /// right.
-void writeHostileEntry(const std::filesystem::path& file, LayeredPicture picture) {
+void writeHostileEntry(const std::filesystem::path& file, LayeredImage image) {
   Hasher hasher;
-  for (const auto& [name, layer] : picture.layers) {
+  for (const auto& [name, layer] : image.layers) {
     hasher.add(name).add(layer.width()).add(layer.height()).add(layer.channels()).add(layer.values());
   }
-  for (const auto& [name, value] : picture.attributes) hasher.add(name).add(value);
-  picture.attributes["content"] = hasher.finish().text();
-  writeExr(file, picture);
+  for (const auto& [name, value] : image.attributes) hasher.add(name).add(value);
+  image.attributes["content"] = hasher.finish().text();
+  writeExr(file, image);
 }
 
 }  // namespace
@@ -182,32 +182,32 @@ TEST_CASE("an entry of the cache that lies about itself is refused and made anew
   ReferenceOptions options = cached();
   options.progress = true;  // so that what it says of its bounces would be read
   const LogCapture quiet;
-  const LayeredPicture good = cachedReference(scene, options);
+  const LayeredImage good = cachedReference(scene, options);
   REQUIRE(cache.entries().size() == 1);
   const std::filesystem::path entry = cache.entries()[0];
   const std::string bytes = readFile(entry);
-  using Change = std::pair<std::string, std::function<void(LayeredPicture&)>>;
+  using Change = std::pair<std::string, std::function<void(LayeredImage&)>>;
   const std::vector<Change> changes{
-      {"no bounces", [](LayeredPicture& p) { p.attributes.erase("bounces"); }},
-      {"bounces that are no number", [](LayeredPicture& p) { p.attributes["bounces"] = "many"; }},
-      {"bounces beyond an int", [](LayeredPicture& p) { p.attributes["bounces"] = "99999999999999999999"; }},
-      {"no scene", [](LayeredPicture& p) { p.attributes.erase("scene"); }},
-      {"another scene", [](LayeredPicture& p) { p.attributes["hash"] = "00"; }},
-      {"an absurd cut-off", [](LayeredPicture& p) { p.attributes["cut_off"] = "1e300 -4"; }},
-      {"a cut-off of words", [](LayeredPicture& p) { p.attributes["cut_off"] = "much more"; }},
-      {"no cut-off", [](LayeredPicture& p) { p.attributes.erase("cut_off"); }},
-      {"no full transport", [](LayeredPicture& p) { p.layers.erase("full"); }},
-      {"a layer too many", [](LayeredPicture& p) { p.layers["x"] = p.layers["full"]; }},
-      {"another layer", [](LayeredPicture& p) { p.layers["x"] = p.layers["full"], p.layers.erase("full"); }},
-      {"one channel", [](LayeredPicture& p) { p.layers["full"] = Picture(12, 10, 1); }},
+      {"no bounces", [](LayeredImage& p) { p.attributes.erase("bounces"); }},
+      {"bounces that are no number", [](LayeredImage& p) { p.attributes["bounces"] = "many"; }},
+      {"bounces beyond an int", [](LayeredImage& p) { p.attributes["bounces"] = "99999999999999999999"; }},
+      {"no scene", [](LayeredImage& p) { p.attributes.erase("scene"); }},
+      {"another scene", [](LayeredImage& p) { p.attributes["hash"] = "00"; }},
+      {"an absurd cut-off", [](LayeredImage& p) { p.attributes["cut_off"] = "1e300 -4"; }},
+      {"a cut-off of words", [](LayeredImage& p) { p.attributes["cut_off"] = "much more"; }},
+      {"no cut-off", [](LayeredImage& p) { p.attributes.erase("cut_off"); }},
+      {"no full transport", [](LayeredImage& p) { p.layers.erase("full"); }},
+      {"a layer too many", [](LayeredImage& p) { p.layers["x"] = p.layers["full"]; }},
+      {"another layer", [](LayeredImage& p) { p.layers["x"] = p.layers["full"], p.layers.erase("full"); }},
+      {"one channel", [](LayeredImage& p) { p.layers["full"] = ImageBuffer(12, 10, 1); }},
       {"another size",
-       [](LayeredPicture& p) {
-         for (auto& [name, layer] : p.layers) layer = Picture(3, 2, layer.channels());
+       [](LayeredImage& p) {
+         for (auto& [name, layer] : p.layers) layer = ImageBuffer(3, 2, layer.channels());
        }},
   };
   for (const auto& [what, change] : changes) {
     CAPTURE(what);
-    LayeredPicture changed = good;
+    LayeredImage changed = good;
     change(changed);
     writeHostileEntry(entry, changed);
     const LogCapture log;
@@ -225,7 +225,7 @@ TEST_CASE("an entry of the cache that lies about itself is refused and made anew
 TEST_CASE("neither a FIFO nor a link in the cache is waited for, followed or kept") {
   const OwnCache cache;
   const Scene scene = litRoom(6, 6);
-  const LayeredPicture good = cachedReference(scene, cached());
+  const LayeredImage good = cachedReference(scene, cached());
   const std::filesystem::path entry = cache.entries().at(0);
   const TemporaryDirectory elsewhere;
   const std::filesystem::path victim = elsewhere.write("victim", "precious");
@@ -290,7 +290,7 @@ TEST_CASE("the cache keeps to its limit: what was not used for longest gives way
   CHECK(pruneReferences(0).removed == 2);
   CHECK(seeds().empty());
   CHECK(std::filesystem::exists(other));
-  setenv("LUMIVOX_CACHE_LIMIT", "10", 1);  // too small for any: the picture is made, and none is kept
+  setenv("LUMIVOX_CACHE_LIMIT", "10", 1);  // too small for any: the image is made, and none is kept
   CHECK(cachedReference(scene, withSeed(5)).layers.count("full") == 1);
   CHECK(seeds().empty());
   unsetenv("LUMIVOX_CACHE_LIMIT");

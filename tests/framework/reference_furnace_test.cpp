@@ -35,14 +35,14 @@ TEST_CASE("a closed furnace of albedo a returns E / (1 - a) within 0.2 %") {
     ReferenceOptions options =
         quietly(albedo < 0.9f ? 64 : 8, static_cast<int>(std::ceil(std::log(1e-5) / std::log(albedo))));
     options.roulette = false;
-    const LayeredPicture picture = renderReference(furnace(albedo, 2.0f, 32), options);
-    const Estimate full = estimateOf(picture, "full");
+    const LayeredImage image = renderReference(furnace(albedo, 2.0f, 32), options);
+    const Estimate full = estimateOf(image, "full");
     const double expected = 2.0 / (1.0 - albedo);
     CHECK(full.deviation < 0.0007 * expected);
     CHECK(full.mean == Approx(expected).epsilon(0.002));
     // No pixel stands out.
-    const auto [lowest, highest] = std::minmax_element(picture.layers.at("full").values().begin(),
-                                                       picture.layers.at("full").values().end());
+    const auto [lowest, highest] =
+        std::minmax_element(image.layers.at("full").values().begin(), image.layers.at("full").values().end());
     CHECK(*lowest == Approx(expected).epsilon(0.2));
     CHECK(*highest == Approx(expected).epsilon(0.2));
   }
@@ -56,7 +56,7 @@ TEST_CASE("a furnace of albedo 0.999 converges when enough bounces are allowed")
   CHECK(full == Approx(1000.0).epsilon(0.002));
 }
 
-TEST_CASE("a truth tells how much light lies beyond its last bounce") {
+TEST_CASE("a reference tells how much light lies beyond its last bounce") {
   // N bounces leave a^(N+2) of a furnace's light out.
   for (const float albedo : {0.5f, 0.9f, 0.95f, 0.99f}) {
     CAPTURE(albedo);
@@ -84,14 +84,14 @@ TEST_CASE("the furnace's layers are the terms of the geometric series") {
   const double albedo = 0.6;
   ReferenceOptions options = quietly(64, 3);
   options.roulette = false;
-  const LayeredPicture picture = renderReference(furnace(0.6f, 1.0f, 16), options);
-  CHECK(estimateOf(picture, "direct").mean == Approx(1.0 + albedo).epsilon(0.002));
-  CHECK(estimateOf(picture, "one_bounce_diffuse").mean == Approx(albedo * albedo).epsilon(0.004));
-  CHECK(estimateOf(picture, "indirect_diffuse").mean ==
+  const LayeredImage image = renderReference(furnace(0.6f, 1.0f, 16), options);
+  CHECK(estimateOf(image, "direct").mean == Approx(1.0 + albedo).epsilon(0.002));
+  CHECK(estimateOf(image, "one_bounce_diffuse").mean == Approx(albedo * albedo).epsilon(0.004));
+  CHECK(estimateOf(image, "indirect_diffuse").mean ==
         Approx(albedo * albedo * geometricSeries(albedo, 3)).epsilon(0.003));
-  CHECK(estimateOf(picture, "full").mean == Approx(geometricSeries(albedo, 5)).epsilon(0.002));
-  CHECK(estimateOf(picture, "one_bounce_glossy").mean == 0.0);
-  CHECK(estimateOf(picture, "indirect_glossy").mean == 0.0);
+  CHECK(estimateOf(image, "full").mean == Approx(geometricSeries(albedo, 5)).epsilon(0.002));
+  CHECK(estimateOf(image, "one_bounce_glossy").mean == 0.0);
+  CHECK(estimateOf(image, "indirect_glossy").mean == 0.0);
 }
 
 TEST_CASE("N bounces of a furnace of albedo a give the partial geometric sum 1 + a + ... + a^(N+1)") {
@@ -99,19 +99,19 @@ TEST_CASE("N bounces of a furnace of albedo a give the partial geometric sum 1 +
   ReferenceOptions options = quietly(64, 8);
   options.roulette = false;
   options.bounceLayers = {4, 1, 2, 4};
-  const LayeredPicture picture = renderReference(furnace(0.6f, 1.0f, 16), options);
+  const LayeredImage image = renderReference(furnace(0.6f, 1.0f, 16), options);
   for (const int bounces : {1, 2, 4}) {
     CAPTURE(bounces);
     const std::string layer = "bounces_" + std::to_string(bounces);
     // Emission, direct light, and N terms more.
-    CHECK(estimateOf(picture, layer).mean == Approx(geometricSeries(albedo, bounces + 2)).epsilon(0.002));
-    CHECK(estimateOf(picture, layer + "_diffuse").mean ==
+    CHECK(estimateOf(image, layer).mean == Approx(geometricSeries(albedo, bounces + 2)).epsilon(0.002));
+    CHECK(estimateOf(image, layer + "_diffuse").mean ==
           Approx(albedo * albedo * geometricSeries(albedo, bounces)).epsilon(0.003));
-    CHECK(estimateOf(picture, layer + "_glossy").mean == 0.0);
-    CHECK(estimateOf(picture, layer).deviation > 0.0);
+    CHECK(estimateOf(image, layer + "_glossy").mean == 0.0);
+    CHECK(estimateOf(image, layer).deviation > 0.0);
   }
-  CHECK(picture.layers.count("bounces_3") == 0);
-  CHECK(picture.attributes.at("bounce_layers") == "1 2 4");
+  CHECK(image.layers.count("bounces_3") == 0);
+  CHECK(image.attributes.at("bounce_layers") == "1 2 4");
 }
 
 TEST_CASE("layers of numbers of bounces leave the others as they are, and begin and end with them") {
@@ -124,32 +124,32 @@ TEST_CASE("layers of numbers of bounces leave the others as they are, and begin 
       scene.media[0].extinction = glm::vec3(0.5f);
       scene.media[0].albedo = glm::vec3(0.8f);
     }
-    const LayeredPicture plain = renderReference(scene, quietly(8, 4));
+    const LayeredImage plain = renderReference(scene, quietly(8, 4));
     ReferenceOptions options = quietly(8, 4);
     options.bounceLayers = {1, 2, 4};
-    const LayeredPicture picture = renderReference(scene, options);
+    const LayeredImage image = renderReference(scene, options);
     for (const auto& [name, layer] : plain.layers) {
       CAPTURE(name);
-      CHECK(picture.layers.at(name).values() == layer.values());
+      CHECK(image.layers.at(name).values() == layer.values());
     }
-    CHECK(picture.layers.size() == plain.layers.size() + 18);
+    CHECK(image.layers.size() == plain.layers.size() + 18);
     const auto difference = [&](const std::string& a, const std::string& b) {
       double largest = 0.0;
-      for (std::size_t i = 0; i < picture.layers.at(a).values().size(); ++i)
-        largest = std::max(largest, std::abs(static_cast<double>(picture.layers.at(a).values()[i]) -
-                                             static_cast<double>(picture.layers.at(b).values()[i])));
+      for (std::size_t i = 0; i < image.layers.at(a).values().size(); ++i)
+        largest = std::max(largest, std::abs(static_cast<double>(image.layers.at(a).values()[i]) -
+                                             static_cast<double>(image.layers.at(b).values()[i])));
       return largest;
     };
     // Sums in another order: within rounding.
-    const double full = estimateOf(picture, "full").mean;
+    const double full = estimateOf(image, "full").mean;
     CHECK(full > 0.0);
     CHECK(difference("bounces_4", "full") < 1e-4 * full);
     CHECK(difference("bounces_4_diffuse", "indirect_diffuse") < 1e-4 * full);
     CHECK(difference("bounces_4_glossy", "indirect_glossy") < 1e-4 * full);
-    CHECK(estimateOf(picture, "bounces_1_glossy").mean > 0.0);
+    CHECK(estimateOf(image, "bounces_1_glossy").mean > 0.0);
     // With media a scattering is a bounce, which one_bounce leaves out.
-    const double once = estimateOf(picture, "one_bounce").mean, first = estimateOf(picture, "bounces_1").mean,
-                 second = estimateOf(picture, "bounces_2").mean;
+    const double once = estimateOf(image, "one_bounce").mean, first = estimateOf(image, "bounces_1").mean,
+                 second = estimateOf(image, "bounces_2").mean;
     if (media) {
       CHECK(first > 1.001 * once);
     } else {
@@ -174,11 +174,11 @@ TEST_CASE("a number of bounces beyond those of the paths has no layer") {
 TEST_CASE("with one bounce the indirect layers are the one-bounce layers; with none they are black") {
   Scene scene = litRoom(16, 16);
   scene.environment = glm::vec3(0.5f);
-  const LayeredPicture one = renderReference(scene, quietly(4, 1));
+  const LayeredImage one = renderReference(scene, quietly(4, 1));
   CHECK(one.layers.at("indirect_diffuse").values() == one.layers.at("one_bounce_diffuse").values());
   CHECK(one.layers.at("indirect_glossy").values() == one.layers.at("one_bounce_glossy").values());
   CHECK(estimateOf(one, "one_bounce_glossy").mean > 0.0);
-  const LayeredPicture none = renderReference(scene, quietly(4, 0));
+  const LayeredImage none = renderReference(scene, quietly(4, 0));
   CHECK(estimateOf(none, "indirect_diffuse").mean == 0.0);
   CHECK(none.layers.at("full").values() == none.layers.at("direct").values());
 }

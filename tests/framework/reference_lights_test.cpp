@@ -114,7 +114,7 @@ TEST_CASE("a quad light over a point gives Lambert's polygon formula within 0.5 
 }
 
 TEST_CASE(
-    "a point a millimetre under a large lamp, where sampling the lamp alone would fail, is right within 0.5 "
+    "a point a millimetre under a large area light, where sampling the area light alone would fail, is right within 0.5 "
     "%") {
   const glm::vec3 corner(-1.0f, 0.001f, -1.0f), edge1(2.0f, 0, 0), edge2(0, 0, 2.0f);
   SceneBuilder builder = floorOnly();
@@ -143,7 +143,7 @@ TEST_CASE("an emissive surface shines from its front side only") {
 TEST_CASE("the form factors of unit squares are right within 0.5 %") {
   // A white receiver under an emitter of radiance 1 sends out E / pi, whose mean over the receiver is the
   // form factor from receiver to emitter. The camera stands half a metre over the receiver with a right angle
-  // of view: the square fills the picture, and the projection of a parallel plane is uniform, so the mean
+  // of view: the square fills the image, and the projection of a parallel plane is uniform, so the mean
   // over the pixels is the mean over the square.
   SceneBuilder builder;
   builder.quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, builder.lambert(1.0f));
@@ -175,7 +175,7 @@ TEST_CASE("the form factors of unit squares are right within 0.5 %") {
   }
 }
 
-TEST_CASE("masks let light and sight through their holes, and cut lamps") {
+TEST_CASE("masks let light and sight through their holes, and cut area lights") {
   SurfaceTexture mask;
   mask.mask = true;
   mask.width = 2, mask.height = 1;
@@ -196,7 +196,7 @@ TEST_CASE("masks let light and sight through their holes, and cut lamps") {
     CHECK(fromAbove(-0.5) == 0.0);  // the masked half is black
     CHECK(fromAbove(0.5) == Approx(kAlbedo / kPi).epsilon(0.001));
   }
-  SECTION("half a lamp gives the light of a lamp of half the size") {
+  SECTION("half an area light gives the light of an area light of half the size") {
     SceneBuilder builder = floorOnly();
     builder.scene.textures.push_back(mask);
     Material cut;

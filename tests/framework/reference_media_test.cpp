@@ -38,7 +38,7 @@ Medium volumeMedium(const glm::vec3& extinction, const glm::vec3& albedo, const 
   return medium;
 }
 
-/// A wall of radiance 1 that fills the picture, two metres in front of the camera.
+/// A wall of radiance 1 that fills the image, two metres in front of the camera.
 SceneBuilder shiningWall(int size) {
   SceneBuilder builder;
   builder.quad({-5, -5, -2}, {10, 0, 0}, {0, 10, 0}, builder.lambert(0.0f, 1.0f));
@@ -95,12 +95,12 @@ TEST_CASE("an even medium lets exp(-sigma_t d) through, in each channel, within 
   SceneBuilder builder = shiningWall(4);
   const glm::vec3 extinction(0.3f, 1.0f, 4.0f);
   builder.scene.media.push_back(evenMedium(extinction, glm::vec3(0.0f), 0, {-1, -1, -1.5}, {1, 1, -0.5}));
-  const LayeredPicture picture = renderReference(builder.scene, quietly(8));
+  const LayeredImage image = renderReference(builder.scene, quietly(8));
   for (int channel = 0; channel < 3; ++channel) {
     const double expected = std::exp(-extinction[channel]);  // 1 m of it; the camera looks straight
-    CHECK(picture.layers.at("transmittance").at(2, 2, channel) == Approx(expected).epsilon(0.001));
-    CHECK(picture.layers.at("full").at(2, 2, channel) == Approx(expected).epsilon(0.001));
-    CHECK(picture.layers.at("direct").at(2, 2, channel) == 1.0f);  // as it leaves the surface
+    CHECK(image.layers.at("transmittance").at(2, 2, channel) == Approx(expected).epsilon(0.001));
+    CHECK(image.layers.at("full").at(2, 2, channel) == Approx(expected).epsilon(0.001));
+    CHECK(image.layers.at("direct").at(2, 2, channel) == 1.0f);  // as it leaves the surface
   }
 }
 
@@ -111,15 +111,15 @@ TEST_CASE("a medium on a grid lets exp(-sigma_t d) through: ratio tracking has n
   SceneBuilder builder = shiningWall(64);
   builder.scene.media.push_back(
       volumeMedium(glm::vec3(0.5f, 1.0f, 3.0f), glm::vec3(0.0f), {-0.5, -0.5, -1.5}, 1.0, 0.7f));
-  const LayeredPicture picture = renderReference(builder.scene, quietly(128));
-  const Picture& transmittance = picture.layers.at("transmittance");
+  const LayeredImage image = renderReference(builder.scene, quietly(128));
+  const ImageBuffer& transmittance = image.layers.at("transmittance");
   for (int channel = 0; channel < 3; ++channel) {
     const double expected = std::exp(-0.7 * (channel == 0 ? 0.5 : channel == 1 ? 1.0 : 3.0));
     double mean = 0.0, variance = 0.0;
     for (int y = 0; y < 64; ++y)
       for (int x = 0; x < 64; ++x) {
         mean += transmittance.at(x, y, channel) / 4096.0;
-        variance += picture.layers.at("transmittance.variance").at(x, y, channel) / 4096.0 / 4096.0;
+        variance += image.layers.at("transmittance.variance").at(x, y, channel) / 4096.0 / 4096.0;
       }
     CAPTURE(channel, expected, mean, std::sqrt(variance));
     CHECK(std::abs(mean - expected) < 4.0 * std::sqrt(variance) + 1e-6);
@@ -163,12 +163,12 @@ TEST_CASE("a medium that absorbs nothing leaves a closed furnace as it is") {
                           volumeMedium({4.0f, 2.0f, 1.0f}, glm::vec3(1.0f), {0.1, 0.1, 0.2}, 0.8, 2.0f),
                           cloud};
   for (const Medium& medium : media) {
-    const LayeredPicture picture = renderReference(furnaceWith(medium, 16), quietly(128, 1000));
-    const Estimate full = estimateOf(picture, "full");
+    const LayeredImage image = renderReference(furnaceWith(medium, 16), quietly(128, 1000));
+    const Estimate full = estimateOf(image, "full");
     CAPTURE(medium.name, full.deviation);
     CHECK(full.deviation < 0.02);
     CHECK(std::abs(full.mean - 2.0) < 4.0 * full.deviation);
-    CHECK(estimateOf(picture, "scattered").mean > 0.05);
+    CHECK(estimateOf(image, "scattered").mean > 0.05);
   }
 }
 
@@ -182,8 +182,8 @@ TEST_CASE("two media in one place are the medium with the sum of their coefficie
     builder->light(LightKind::directional, glm::vec3(3.0f), {}, {0.3, -1, 0.2});
     builder->look({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 0.4, 24, 24);
   }
-  const LayeredPicture a = renderReference(together.scene, quietly(512)),
-                       b = renderReference(apart.scene, quietly(512));
+  const LayeredImage a = renderReference(together.scene, quietly(512)),
+                     b = renderReference(apart.scene, quietly(512));
   for (const char* layer : {"transmittance", "scattered_single", "scattered_multiple", "full"}) {
     const Estimate one = estimateOf(a, layer), two = estimateOf(b, layer);
     CAPTURE(layer, one.mean, two.mean);
@@ -198,9 +198,9 @@ TEST_CASE("the layers of a scene with media add up, whatever the number of threa
   scene.media.push_back(volumeMedium({4, 5, 6}, {0.9f, 0.8f, 0.7f}, {0.2, 0.2, 0.2}, 0.5, 1.0f));
   ReferenceOptions options = quietly(16);
   options.threads = 1;
-  const LayeredPicture one = renderReference(scene, options);
+  const LayeredImage one = renderReference(scene, options);
   options.threads = 3;
-  const LayeredPicture three = renderReference(scene, options);
+  const LayeredImage three = renderReference(scene, options);
   CHECK(one.layers.size() == 24);
   for (const auto& [name, layer] : one.layers) CHECK(layer.values() == three.layers.at(name).values());
   for (int y = 0; y < 24; ++y)
@@ -211,10 +211,10 @@ TEST_CASE("the layers of a scene with media add up, whatever the number of threa
                                                           .margin(1e-6));
 }
 
-TEST_CASE("emissive triangles and light samples agree in a medium: a lamp's scattering has no seam") {
-  // A lamp so near that phase-sampled rays often meet it, and its equivalent seen by next-event estimation
-  // alone is the integral over its face: single scattering at a point times the path, in an optically thin
-  // medium.
+TEST_CASE("emissive triangles and light samples agree in a medium: an area light's scattering has no seam") {
+  // An area light so near that phase-sampled rays often meet it, and its equivalent seen by next-event
+  // estimation alone is the integral over its face: single scattering at a point times the path, in an
+  // optically thin medium.
   SceneBuilder builder;
   builder.quad({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}, builder.lambert(0.0f, 2.0f));  // shines downwards
   builder.scene.media.push_back(

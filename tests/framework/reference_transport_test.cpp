@@ -48,13 +48,13 @@ TEST_CASE("a Phong lobe at normal incidence in a constant environment reflects i
   // Its integral is (n+2) times that of cos^(n+1) a sin a over a quarter turn, which is 1/(n+2).
   for (const float exponent : {0.0f, 1.0f, 20.0f, 1000.0f}) {
     CAPTURE(exponent);
-    const LayeredPicture picture =
+    const LayeredImage image =
         renderReference(planeInEnvironment(0.0f, 0.8f, exponent, 0.0), quietly(256, 1));
-    const Estimate glossy = estimateOf(picture, "one_bounce_glossy");
+    const Estimate glossy = estimateOf(image, "one_bounce_glossy");
     CHECK(glossy.deviation < 0.002);
     CHECK(glossy.mean == Approx(0.8).epsilon(0.005));
-    CHECK(estimateOf(picture, "one_bounce_diffuse").mean == 0.0);
-    CHECK(estimateOf(picture, "direct").mean == 0.0);
+    CHECK(estimateOf(image, "one_bounce_diffuse").mean == 0.0);
+    CHECK(estimateOf(image, "direct").mean == 0.0);
   }
 }
 
@@ -62,10 +62,10 @@ TEST_CASE("at oblique incidence the part of the Phong lobe below the horizon is 
   for (const float exponent : {1.0f, 8.0f, 60.0f}) {
     for (const double angle : {0.6, 1.2}) {
       CAPTURE(exponent, angle);
-      const LayeredPicture picture =
+      const LayeredImage image =
           renderReference(planeInEnvironment(0.3f, 0.7f, exponent, angle), quietly(512, 1));
-      const Estimate glossy = estimateOf(picture, "one_bounce_glossy"),
-                     diffuse = estimateOf(picture, "one_bounce_diffuse");
+      const Estimate glossy = estimateOf(image, "one_bounce_glossy"),
+                     diffuse = estimateOf(image, "one_bounce_diffuse");
       CHECK(std::abs(glossy.mean - 0.7 * lobeReflectance(exponent, angle)) < 4.0 * glossy.deviation + 1e-4);
       CHECK(glossy.deviation < 0.004);
       CHECK(std::abs(diffuse.mean - 0.3) < 4.0 * diffuse.deviation + 1e-4);
@@ -80,10 +80,9 @@ TEST_CASE(
   // lobe is 2/(2 pi) on it, so it reflects (1 + cos t)/2 of its albedo; the diffuse lobe all of its own.
   for (const double angle : {0.4, 0.9, 1.3}) {
     CAPTURE(angle);
-    const LayeredPicture picture =
-        renderReference(planeInEnvironment(0.3f, 0.7f, 0.0f, angle), quietly(1024, 1));
-    const Estimate glossy = estimateOf(picture, "one_bounce_glossy"),
-                   diffuse = estimateOf(picture, "one_bounce_diffuse");
+    const LayeredImage image = renderReference(planeInEnvironment(0.3f, 0.7f, 0.0f, angle), quietly(1024, 1));
+    const Estimate glossy = estimateOf(image, "one_bounce_glossy"),
+                   diffuse = estimateOf(image, "one_bounce_diffuse");
     CHECK(glossy.deviation < 0.003);
     CHECK(diffuse.deviation < 0.003);
     CHECK(std::abs(glossy.mean - 0.7 * 0.5 * (1.0 + std::cos(angle))) < 4.0 * glossy.deviation);
@@ -158,15 +157,15 @@ TEST_CASE("rays that miss see the environment, in the direct layer and unocclude
   builder.quad({-1, -5, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.5f));
   builder.scene.environment = {0.25f, 0.5f, 1.0f};
   builder.look({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 0.5, 8, 4);
-  const LayeredPicture picture = renderReference(builder.scene, quietly(3));
+  const LayeredImage image = renderReference(builder.scene, quietly(3));
   for (int y = 0; y < 4; ++y) {
     for (int x = 0; x < 8; ++x) {
-      CHECK(picture.layers.at("direct").at(x, y, 0) == 0.25f);
-      CHECK(picture.layers.at("direct").at(x, y, 2) == 1.0f);
-      CHECK(picture.layers.at("full").at(x, y, 1) == 0.5f);
-      CHECK(picture.layers.at("full.variance").at(x, y, 1) == 0.0f);
-      CHECK(picture.layers.at("indirect_diffuse").at(x, y, 1) == 0.0f);
-      CHECK(picture.layers.at("ambient_occlusion").at(x, y, 0) == 1.0f);
+      CHECK(image.layers.at("direct").at(x, y, 0) == 0.25f);
+      CHECK(image.layers.at("direct").at(x, y, 2) == 1.0f);
+      CHECK(image.layers.at("full").at(x, y, 1) == 0.5f);
+      CHECK(image.layers.at("full.variance").at(x, y, 1) == 0.0f);
+      CHECK(image.layers.at("indirect_diffuse").at(x, y, 1) == 0.0f);
+      CHECK(image.layers.at("ambient_occlusion").at(x, y, 0) == 1.0f);
     }
   }
 }
@@ -196,11 +195,11 @@ TEST_CASE("ambient occlusion under a ceiling at height h within distance d leave
   }
 }
 
-TEST_CASE("a moving object stands where its motion puts it at the time of the picture") {
+TEST_CASE("a moving object stands where its motion puts it at the time of the image") {
   SceneBuilder builder;
-  Object& lamp =
+  Object& areaLight =
       builder.quad({-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}, builder.lambert(0.0f, 3.0f));  // faces +z
-  lamp.motion = RigidMotion{{0, 1, 0}, 0.5 * kPi, {0, 0, 0}, {0, 2, 0}};
+  areaLight.motion = RigidMotion{{0, 1, 0}, 0.5 * kPi, {0, 0, 0}, {0, 2, 0}};
   const auto seenFrom = [&](double time, glm::dvec3 eye, glm::vec3 direction) {
     return referenceRadiance(builder.scene, time, eye, direction, quietly(1, 0)).x;
   };
@@ -226,15 +225,15 @@ TEST_CASE("the same scene far from the world's origin gives the same light") {
 TEST_CASE("two seeds agree within their own stated noise") {
   const Scene scene = litRoom(48, 48);
   ReferenceOptions options = quietly(128);
-  const LayeredPicture first = renderReference(scene, options);
+  const LayeredImage first = renderReference(scene, options);
   options.seed = 2;
-  const LayeredPicture second = renderReference(scene, options);
+  const LayeredImage second = renderReference(scene, options);
   for (const std::string layer :
        {"direct", "one_bounce_diffuse", "indirect_diffuse", "full", "ambient_occlusion"}) {
     CAPTURE(layer);
-    const Picture &a = first.layers.at(layer), &b = second.layers.at(layer);
-    const Picture &varianceA = first.layers.at(layer + ".variance"),
-                  &varianceB = second.layers.at(layer + ".variance");
+    const ImageBuffer &a = first.layers.at(layer), &b = second.layers.at(layer);
+    const ImageBuffer &varianceA = first.layers.at(layer + ".variance"),
+                      &varianceB = second.layers.at(layer + ".variance");
     CHECK(a.values() != b.values());
     // If the noise is stated honestly, the squared difference in units of its own variance has the
     // expectation 1.
@@ -260,7 +259,7 @@ TEST_CASE("two seeds agree within their own stated noise") {
 
 TEST_CASE("the stated noise halves with four times the samples, and the layers add up") {
   const Scene scene = litRoom(24, 24);
-  const LayeredPicture few = renderReference(scene, quietly(64)), many = renderReference(scene, quietly(256));
+  const LayeredImage few = renderReference(scene, quietly(64)), many = renderReference(scene, quietly(256));
   CHECK(estimateOf(few, "full").deviation / estimateOf(many, "full").deviation == Approx(2.0).epsilon(0.15));
   for (std::size_t i = 0; i < many.layers.at("full").values().size(); ++i) {
     const double sum = many.layers.at("direct").values()[i] + many.layers.at("indirect_diffuse").values()[i] +
@@ -273,13 +272,13 @@ TEST_CASE("the stated noise halves with four times the samples, and the layers a
   }
 }
 
-TEST_CASE("the picture does not depend on the number of threads") {
+TEST_CASE("the image does not depend on the number of threads") {
   const Scene scene = litRoom(40, 33);
   ReferenceOptions options = quietly(8);
   options.threads = 1;
-  const LayeredPicture one = renderReference(scene, options);
+  const LayeredImage one = renderReference(scene, options);
   options.threads = 2;
-  const LayeredPicture two = renderReference(scene, options);
+  const LayeredImage two = renderReference(scene, options);
   REQUIRE(one.layers.size() == 16);
   for (const auto& [name, layer] : one.layers) {
     CAPTURE(name);
@@ -289,7 +288,7 @@ TEST_CASE("the picture does not depend on the number of threads") {
   }
 }
 
-TEST_CASE("options that make no picture are refused by name") {
+TEST_CASE("options that make no image are refused by name") {
   const Scene scene = litRoom(4, 4);
   const auto message = [&](auto&& change) {
     ReferenceOptions options = quietly(4);

@@ -1,4 +1,4 @@
-// Stress cells and ceilings of devices in the results store.
+// Stress cells and peak rates of devices in the results store.
 #include <cmath>
 
 #include "lumivox/base/error.h"
@@ -12,7 +12,7 @@ using namespace lumivox::test;
 
 namespace {
 
-DeviceCeiling ceilingNamed(const std::string& name, double rate, const std::string& created) {
+PeakRate peakRateNamed(const std::string& name, double rate, const std::string& created) {
   return {name,    "writes/s", {rate, rate, rate, rate, rate, 3}, created, "0.1.0", "a device", "a driver",
           "spirv", "a host"};
 }
@@ -67,7 +67,7 @@ TEST_CASE("a newer cell takes the place of the older, and cells are chosen and r
   CHECK(store.stressCells()[0].techniques.size() == 2);
 }
 
-TEST_CASE("merging takes over stress cells and ceilings that are newer, once") {
+TEST_CASE("merging takes over stress cells and peak rates that are newer, once") {
   const TemporaryDirectory directory;
   ResultsStore mine(directory.path() / "mine.sqlite"), theirs(directory.path() / "theirs.sqlite");
   StressCell newer = cellNumber(2), older = cellNumber(3);
@@ -75,19 +75,19 @@ TEST_CASE("merging takes over stress cells and ceilings that are newer, once") {
   older.created = "2014-10-21 16:29:00 UTC";
   mine.add({cellNumber(1), cellNumber(2), cellNumber(3)});
   theirs.add({newer, older, cellNumber(4)});
-  mine.add({ceilingNamed("writes", 1.0, "2015"), ceilingNamed("atomics", 1.0, "2015")});
-  theirs.add({ceilingNamed("writes", 2.0, "2016"), ceilingNamed("atomics", 2.0, "2014"),
-              ceilingNamed("samples", 2.0, "2014")});
+  mine.add({peakRateNamed("writes", 1.0, "2015"), peakRateNamed("atomics", 1.0, "2015")});
+  theirs.add({peakRateNamed("writes", 2.0, "2016"), peakRateNamed("atomics", 2.0, "2014"),
+              peakRateNamed("samples", 2.0, "2014")});
   theirs.add(runNumber(1));
   const MergeCount first = mine.merge(theirs), second = mine.merge(theirs);
   CHECK(first.runs == 1);
   CHECK(first.cells == 2);
-  CHECK(first.ceilings == 2);
-  CHECK(second.runs + second.cells + second.ceilings == 0);
+  CHECK(first.peakRates == 2);
+  CHECK(second.runs + second.cells + second.peakRates == 0);
   CHECK(mine.stressCells().size() == 4);
-  for (const DeviceCeiling& ceiling : mine.ceilings("a device", "a driver", "spirv", "a host"))
-    CHECK(ceiling.rate.median == (ceiling.name == "atomics" ? 1.0 : 2.0));
-  CHECK(mine.ceilings("a device", "another driver", "spirv", "a host").empty());
+  for (const PeakRate& peakRate : mine.peakRates("a device", "a driver", "spirv", "a host"))
+    CHECK(peakRate.rate.median == (peakRate.name == "atomics" ? 1.0 : 2.0));
+  CHECK(mine.peakRates("a device", "another driver", "spirv", "a host").empty());
 }
 
 TEST_CASE("the newest cells are full ones where there are any") {

@@ -18,8 +18,19 @@ void execute(const std::filesystem::path& file, const std::string& sql) {
   sqlite3_close(handle);
 }
 
-/// What schema 3 lacks.
+/// Undoes schema 5.
+const std::string kWithout5 =
+    "ALTER TABLE images RENAME COLUMN reference TO truth; ALTER TABLE images RENAME TO pictures; "
+    "ALTER TABLE peak_rates RENAME TO ceilings; ALTER TABLE stress_cells RENAME COLUMN image TO picture; "
+    "UPDATE stress_cells SET family = 'picture_and_camera' WHERE family = 'image_and_camera'; "
+    "ALTER TABLE errors RENAME COLUMN reference TO truth; "
+    "ALTER TABLE runs RENAME COLUMN reference_samples TO truth_samples; "
+    "UPDATE metrics SET name = 'non_finite_truth' WHERE name = 'non_finite_reference'; "
+    "UPDATE metrics SET name = 'non_finite_picture' WHERE name = 'non_finite_image'; ";
+
+/// Undoes schemas 5 and 4.
 const std::string kWithout4 =
+    kWithout5 +
     "DROP TABLE notes; DROP TABLE pictures; DROP TABLE controls; DROP TABLE claims; "
     "ALTER TABLE errors DROP COLUMN per_seed; ";
 
@@ -59,11 +70,11 @@ TEST_CASE("a store of the schema before is read as it is, and gets the new table
     // Its RMSE is over the seeds, the other numbers are of the first seed alone.
     CHECK_FALSE(runs[0].point.errors[0].everyMetricPerSeed);
     CHECK(runs[0].point.notes.empty());
-    CHECK(store.pictures(runs[0].identity.key()).empty());
+    CHECK(store.images(runs[0].identity.key()).empty());
     CHECK(store.controls(runs[0].identity).empty());
     CHECK_FALSE(store.claimedByOther(runs[0].identity.key()));
     CHECK(store.stressCells().empty());
-    CHECK(store.ceilings().empty());
+    CHECK(store.peakRates().empty());
   }
   CHECK(schemaOf(file) == 1);
   // A merge reads it without touching it.
@@ -76,7 +87,7 @@ TEST_CASE("a store of the schema before is read as it is, and gets the new table
     store.add({cellNumber(1)});
     CHECK(store.stressCells().size() == 1);
   }
-  CHECK(schemaOf(file) == 4);
+  CHECK(schemaOf(file) == 5);
   CHECK(ResultsStore(file, ResultsStore::Mode::read).runs().size() == 1);
 }
 
@@ -90,7 +101,8 @@ TEST_CASE("the RMSE of a store of schema 3 is that over the seeds with both unce
     ResultsStore store(file);
     store.add(run);
   }
-  // As schema 3 was: the first seed's RMSE with the truth's noise, and beside it mean and spread over seeds.
+  // As schema 3 was: the first seed's RMSE with the reference's noise, and beside it mean and spread over
+  // seeds.
   execute(file, kWithout4 +
                     "UPDATE metrics SET value = 7, uncertainty = 0.03 WHERE name = 'rmse';"
                     "INSERT INTO metrics VALUES (1, 0, 'rmse_over_seeds', 8, 0.04, 1);"
@@ -111,7 +123,7 @@ TEST_CASE("the RMSE of a store of schema 3 is that over the seeds with both unce
   merged.merge(ResultsStore(file, ResultsStore::Mode::read));
   check(merged.runs().at(0));
   ResultsStore upgraded(file);
-  CHECK(schemaOf(file) == 4);
+  CHECK(schemaOf(file) == 5);
   check(upgraded.runs().at(0));
   upgraded.add(runNumber(2));
   CHECK(upgraded.runs().at(1).point.errors.at(0).everyMetricPerSeed);
@@ -136,13 +148,54 @@ TEST_CASE("a store without work is read as it is, and keeps work when it is writ
   }
   CHECK(schemaOf(file) == 2);
   ResultsStore store(file);
-  CHECK(schemaOf(file) == 4);
+  CHECK(schemaOf(file) == 5);
   CHECK(store.add(runNumber(2)));
   const std::vector<StoredRun> runs = store.runs();
   REQUIRE(runs.size() == 2);
   CHECK(runs[0].point.passWork.empty());
   CHECK(runs[1].point.passWork == runNumber(2).point.passWork);
   CHECK(store.stressCells().size() == 1);
+}
+
+TEST_CASE("a store of schema 4, which had other words for the same things, is read, merged and written on") {
+  const TemporaryDirectory directory;
+  const auto file = directory.path() / "old.sqlite";
+  StoredRun run = runNumber(1);
+  run.point.errors[0].error.nonFiniteReference = 3;
+  run.identity.referenceSamples = 37;
+  StressCell cell = cellNumber(1);
+  cell.family = "image_and_camera";
+  {
+    ResultsStore store(file);
+    store.add(run, {{"final", "full", "full", 0.25, "png"}});
+    store.add({cell});
+    PeakRate rate;
+    rate.name = "writes";
+    store.add(std::vector{rate});
+  }
+  execute(file, kWithout5 + "PRAGMA user_version = 4");
+  const auto check = [&](const ResultsStore& store) {
+    const StoredRun found = store.runs().at(0);
+    CHECK(found.identity.referenceSamples == 37);
+    CHECK(found.identity.key() == run.identity.key());
+    CHECK(found.point.errors.at(0).reference == run.point.errors[0].reference);
+    CHECK(found.point.errors.at(0).error.nonFiniteImage == 7);
+    CHECK(found.point.errors.at(0).error.nonFiniteReference == 3);
+    REQUIRE(store.images(run.identity.key()).size() == 1);
+    CHECK(store.images(run.identity.key())[0].reference == "full");
+    CHECK(store.stressCells().at(0).family == "image_and_camera");
+    CHECK(store.stressCells().at(0).image == cell.image);
+    CHECK(store.peakRates().at(0).name == "writes");
+  };
+  check(ResultsStore(file, ResultsStore::Mode::read));
+  CHECK(schemaOf(file) == 4);
+  ResultsStore merged(directory.path() / "new.sqlite");
+  merged.merge(ResultsStore(file, ResultsStore::Mode::read));
+  check(merged);
+  CHECK(schemaOf(file) == 4);
+  ResultsStore upgraded(file);
+  CHECK(schemaOf(file) == 5);
+  check(upgraded);
 }
 
 TEST_CASE("the guide names every table and column of the store") {

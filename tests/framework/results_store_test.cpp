@@ -93,7 +93,7 @@ TEST_CASE("a key changes with each thing that a result depends on and with nothi
   changed([](RunIdentity& i) { i.seeds += 1; });
   changed([](RunIdentity& i) { i.repeats += 1; });
   changed([](RunIdentity& i) { i.subpixels += 1; });
-  changed([](RunIdentity& i) { i.truthSamples += 1; });
+  changed([](RunIdentity& i) { i.referenceSamples += 1; });
   changed([](RunIdentity& i) { i.flickerPairs = 0; });
   changed([](RunIdentity& i) { i.flickerPairs += 1; });
   changed([](RunIdentity& i) { i.kept.pop_back(); });
@@ -183,7 +183,7 @@ TEST_CASE("a process that is killed while it writes leaves a whole store") {
   }
 }
 
-TEST_CASE("what passes say and the pictures of a run come back, and go with it") {
+TEST_CASE("what passes say and the images of a run come back, and go with it") {
   const TemporaryDirectory directory;
   const auto file = directory.path() / "results.sqlite";
   StoredRun run = runNumber(1);
@@ -194,16 +194,16 @@ TEST_CASE("what passes say and the pictures of a run come back, and go with it")
       store.add(run, {{"direct", "direct", "", 0.0, png}, {"direct", "direct", "one_bounce", 0.25, "map"}}));
   const std::string key = run.identity.key();
   CHECK(store.find(key)->point.notes == run.point.notes);
-  const std::vector<StoredPicture> pictures = store.pictures(key);
-  REQUIRE(pictures.size() == 2);
-  CHECK(pictures[0].png == png);
-  CHECK(pictures[0].truth.empty());
-  CHECK(pictures[1].truth == "one_bounce");
-  CHECK(pictures[1].flip == 0.25);
+  const std::vector<StoredImage> images = store.images(key);
+  REQUIRE(images.size() == 2);
+  CHECK(images[0].png == png);
+  CHECK(images[0].reference.empty());
+  CHECK(images[1].reference == "one_bounce");
+  CHECK(images[1].flip == 0.25);
   RunFilter filter;
   filter.scene = "cornell";
   CHECK(store.remove(filter) == 1);
-  CHECK(store.pictures(key).empty());
+  CHECK(store.images(key).empty());
 }
 
 TEST_CASE("times that were measured twice are kept with their run, the last twenty of a device") {

@@ -1,4 +1,4 @@
-// Models: OBJ, MTL and pictures, good and bad files.
+// Models: OBJ, MTL and images, good and bad files.
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -8,8 +8,8 @@
 
 #include "framework/one_mesh.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/image.h"
 #include "lumivox/base/log.h"
-#include "lumivox/base/picture.h"
 #include "lumivox/scene/scene.h"
 #include "support/support.h"
 
@@ -35,10 +35,10 @@ std::string gzip(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("a diffuse picture is decoded from sRGB to linear values with row 0 on top") {
+TEST_CASE("a diffuse image is decoded from sRGB to linear values with row 0 on top") {
   OneMesh mesh("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
-  mesh.directory.write("m.mtl", "newmtl a\nmap_Kd pictures\\p.tga\n");
-  mesh.directory.write("pictures/p.tga", tga(1, 2, 3, {255, 188, 0, 10, 20, 30}));
+  mesh.directory.write("m.mtl", "newmtl a\nmap_Kd images\\p.tga\n");
+  mesh.directory.write("images/p.tga", tga(1, 2, 3, {255, 188, 0, 10, 20, 30}));
   const Scene scene = mesh.load();
   REQUIRE(scene.textures.size() == 1);
   const SurfaceTexture& texture = scene.textures[0];
@@ -49,15 +49,15 @@ TEST_CASE("a diffuse picture is decoded from sRGB to linear values with row 0 on
   // IEC 61966-2-1: ((188/255 + 0.055) / 1.055)^2.4 = 0.502886
   CHECK(texture.values[1] == Approx(0.502886f).epsilon(1e-5));
   CHECK(texture.values[2] == 0.0f);
-  // A picture without Kd is the albedo itself.
+  // An image without Kd is the albedo itself.
   CHECK(scene.materials[0].diffuse == glm::vec3(1.0f));
 }
 
 TEST_CASE("a mask is taken from alpha where there is one and from the first channel otherwise") {
-  const auto maskOf = [](const std::string& picture, const std::string& dissolve) {
+  const auto maskOf = [](const std::string& image, const std::string& dissolve) {
     OneMesh mesh("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
     mesh.directory.write("m.mtl", "newmtl a\nKd 1 1 1\nmap_d p.tga\n" + dissolve);
-    mesh.directory.write("p.tga", picture);
+    mesh.directory.write("p.tga", image);
     const Scene scene = mesh.load();
     CHECK(SceneTraits::of(scene).masks);
     return scene.textures.at(0).values;
@@ -67,7 +67,7 @@ TEST_CASE("a mask is taken from alpha where there is one and from the first chan
   CHECK(maskOf(tga(2, 1, 1, {255, 0}), "d 0.75\n") == std::vector<float>{0.75f, 0.0f});
 }
 
-TEST_CASE("a picture that several materials use is read once, and unused ones are not read at all") {
+TEST_CASE("an image that several materials use is read once, and unused ones are not read at all") {
   OneMesh mesh("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\n");
   mesh.directory.write("m.mtl",
                        "newmtl a\nmap_Kd p.tga\nnewmtl b\nmap_Kd ./p.tga\nnewmtl c\nmap_Kd none.png\n");
@@ -77,7 +77,7 @@ TEST_CASE("a picture that several materials use is read once, and unused ones ar
   CHECK(scene.materials.size() == 2);
 }
 
-TEST_CASE("materials of the text may have pictures") {
+TEST_CASE("materials of the text may have images") {
   OneMesh mesh(kTriangle, "material cloth",
                "material cloth { diffuse 0.5  texture \"p.tga\"  mask \"p.tga\" }");
   mesh.directory.write("p.tga", tga(1, 1, 4, {255, 255, 255, 128}));
@@ -228,17 +228,17 @@ TEST_CASE("maps that the house does not know are named, once for a model") {
   CHECK_THAT(loadLogged(mesh).second, Contains("m.obj: not used: map_Ks, map_bump"));
 }
 
-TEST_CASE("missing, empty, truncated and malformed pictures are errors that name them") {
-  const auto errorOf = [](const std::optional<std::string>& picture) {
+TEST_CASE("missing, empty, truncated and malformed images are errors that name them") {
+  const auto errorOf = [](const std::optional<std::string>& image) {
     OneMesh mesh("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
     mesh.directory.write("m.mtl", "newmtl a\nmap_Kd p.png\n");
-    if (picture) mesh.directory.write("p.png", *picture);
+    if (image) mesh.directory.write("p.png", *image);
     return mesh.error();
   };
   CHECK_THAT(errorOf(std::nullopt), Contains("p.png"));
   CHECK_THAT(errorOf(""), Contains("p.png"));
-  CHECK_THAT(errorOf("this is no picture"), Contains("p.png"));
-  const std::string png = encodePng(Picture(8, 8, 3, 0.5f));
+  CHECK_THAT(errorOf("this is no image"), Contains("p.png"));
+  const std::string png = encodePng(ImageBuffer(8, 8, 3, 0.5f));
   CHECK_THAT(errorOf(png.substr(0, png.size() / 2)), Contains("p.png"));
 }
 

@@ -10,8 +10,8 @@
 
 #include "framework/one_mesh.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/image.h"
 #include "lumivox/base/log.h"
-#include "lumivox/base/picture.h"
 #include "lumivox/scene/scene.h"
 #include "support/support.h"
 
@@ -289,8 +289,8 @@ TEST_CASE(
       mesh.directory.write("i.scene", "camera second { eye 0 0 9  target 0 0 0 }\n");
       mesh.directory.write("v.vdb", "no volume");
       mesh.directory.write("m.mtl", "newmtl a\nmap_Kd p.png\nmap_d d.png\n");
-      for (const char* picture : {"p.png", "d.png"})
-        writePng(mesh.directory.path() / picture, Picture(8, 8, 3, 0.5f));
+      for (const char* image : {"p.png", "d.png"})
+        writePng(mesh.directory.path() / image, ImageBuffer(8, 8, 3, 0.5f));
       if (name != "v.vdb")  // what comes before the others
         mesh.file = mesh.directory.write(
             "a.scene", "scene \"x\" {\n" + camera + "mesh m { file \"m.obj\" }\ninclude \"i.scene\"\n}\n");
@@ -359,7 +359,7 @@ TEST_CASE("normals of a deforming mesh follow each frame") {
 }
 
 TEST_CASE(
-    "the hash changes with the text, an include, the model, its materials and its pictures, and with nothing "
+    "the hash changes with the text, an include, the model, its materials and its images, and with nothing "
     "else") {
   const auto hashOf = [](const std::string& changed) {
     const test::TemporaryDirectory directory;

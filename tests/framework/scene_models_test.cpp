@@ -37,7 +37,7 @@ void requireSound(const Scene& scene) {
   CHECK_FALSE((scene.lights.empty() && !SceneTraits::of(scene).emission));
 }
 
-/// The part of the picture that the bounds of what is there cover, in each direction, is not small.
+/// The part of the image that the bounds of what is there cover, in each direction, is not small.
 void requireSeen(const Scene& scene) {
   for (const Camera& camera : scene.cameras) {
     const SceneSnapshot snapshot = snapshotOf(scene, 0.0, camera.name);
@@ -65,12 +65,12 @@ void requireSeen(const Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("Crytek's Sponza has its 262266 triangles with area, 25 materials, pictures and masks") {
+TEST_CASE("Crytek's Sponza has its 262266 triangles with area, 25 materials, images and masks") {
   const auto scene = load("sponza_crytek");
   if (!scene) return;
   CHECK(scene->triangleCount() == 262266);  // 262267 in the file, one of zero area
   CHECK(scene->materials.size() == 25);
-  CHECK(scene->textures.size() == 27);  // 24 diffuse pictures in use and 3 masks
+  CHECK(scene->textures.size() == 27);  // 24 diffuse images in use and 3 masks
   const SceneTraits traits = SceneTraits::of(*scene);
   CHECK((traits.textures && traits.masks && traits.environment && traits.movingCamera));
   CHECK_FALSE((traits.glossy || traits.emission || traits.movingGeometry));
@@ -78,7 +78,7 @@ TEST_CASE("Crytek's Sponza has its 262266 triangles with area, 25 materials, pic
   requireSeen(*scene);
 }
 
-TEST_CASE("Dabrovic's Sponza has its 66453 triangles with area and 12 pictures") {
+TEST_CASE("Dabrovic's Sponza has its 66453 triangles with area and 12 images") {
   const auto scene = load("sponza_dabrovic");
   if (!scene) return;
   CHECK(scene->triangleCount() == 66453);
@@ -97,7 +97,7 @@ TEST_CASE("Sibenik lets light in through its panes of coverage 0.1") {
   requireSeen(*scene);
 }
 
-TEST_CASE("the Cornell boxes of the archive have their triangles and a lamp") {
+TEST_CASE("the Cornell boxes of the archive have their triangles and an area light") {
   for (const auto& [name, triangles] : {std::pair("cornell_original", 36), std::pair("cornell_sphere", 2188),
                                         std::pair("cornell_glossy_mcguire", 1112)}) {
     const auto scene = load(name);
@@ -110,7 +110,7 @@ TEST_CASE("the Cornell boxes of the archive have their triangles and a lamp") {
   }
 }
 
-TEST_CASE("bunny, dragon and teapot load smooth and stand in the picture") {
+TEST_CASE("bunny, dragon and teapot load smooth and stand in the image") {
   for (const auto& [name, triangles] :
        {std::pair("bunny", 69451 + 4), std::pair("dragon", 100000 + 4), std::pair("teapot", 6320 + 2)}) {
     const auto scene = load(name);

@@ -44,10 +44,10 @@ Scene triangle() {
 
 }  // namespace
 
-TEST_CASE("directions of the picture's corners follow the vertical angle and square pixels") {
+TEST_CASE("directions of the image's corners follow the vertical angle and square pixels") {
   const SceneSnapshot snapshot = snapshotOf(triangle(), 0.0);
   const CameraView& view = snapshot.camera;
-  // tan(90 deg / 2) = 1 up and down, twice that to the sides of a picture of 200 x 100.
+  // tan(90 deg / 2) = 1 up and down, twice that to the sides of an image of 200 x 100.
   near(view.direction(100, 50), {0, 0, -1});
   near(view.direction(0, 0), {-2, 1, -1});
   near(view.direction(200, 100), {2, -1, -1});
@@ -67,7 +67,7 @@ TEST_CASE("ambient occlusion looks as far as a tenth of the diagonal of what the
   CHECK(ambientOcclusionDistance(bounds) == Approx(0.3));
 }
 
-TEST_CASE("the origin is the centre of what stands still, and positions are relative to it") {
+TEST_CASE("the origin is the centre of static geometry, and positions are relative to it") {
   Scene scene = triangle();
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   CHECK(snapshot.origin == glm::dvec3(1, 1, 0));

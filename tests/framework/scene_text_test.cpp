@@ -75,10 +75,12 @@ TEST_CASE("the scene of the design is read with its units, names and kinds") {
   REQUIRE(scene.objects[0].motion.has_value());
   CHECK(scene.objects[0].motion->angularSpeed == Approx(std::numbers::pi / 6));
   CHECK_FALSE(scene.objects[1].motion.has_value());
-  const Material& lamp = scene.materials.at(static_cast<std::size_t>(scene.objects[1].parts.at(0).material));
-  CHECK(lamp.emission == glm::vec3(17, 12, 4));
-  CHECK(lamp.diffuse == glm::vec3(0.63f, 0.06f, 0.05f));
-  // The same material without a lamp does not shine; gold, which nothing uses, is no material of the scene.
+  const Material& areaLight =
+      scene.materials.at(static_cast<std::size_t>(scene.objects[1].parts.at(0).material));
+  CHECK(areaLight.emission == glm::vec3(17, 12, 4));
+  CHECK(areaLight.diffuse == glm::vec3(0.63f, 0.06f, 0.05f));
+  // The same material without an area light does not shine; gold, which nothing uses, is no material of the
+  // scene.
   CHECK_FALSE(scene.materials.at(static_cast<std::size_t>(scene.objects[0].parts.at(0).material)).emissive());
   CHECK(scene.materials.size() == 2);
   CHECK_FALSE(SceneTraits::of(scene).glossy);
@@ -191,7 +193,7 @@ TEST_CASE("a missing model beside the text is a finding with the nearest file na
   CHECK_THAT(
       text, Contains("a.scene:4:15: model file 'n.obj' does not exist") && Contains("did you mean 'm.obj'?"));
   CHECK_THAT(sceneWith("material b { texture \"none.png\" }"),
-             Contains("picture file 'none.png' does not exist"));
+             Contains("image file 'none.png' does not exist"));
 }
 
 TEST_CASE("a model in a folder that is not beside the text may be absent when the text is checked") {

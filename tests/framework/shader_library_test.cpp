@@ -270,7 +270,7 @@ TEST_CASE("what a variant uses must be given and must fit; what it does not use 
                  Catch::Contains("nothing is bound"));
   with[0] = volume::radiance(flat, Sampling::nearest);
   CHECK_THAT(test::messageOf<Error>([&] { shader::ShaderLibrary::select(plain, with); }),
-             Catch::Contains("'flat' is a picture"));
+             Catch::Contains("'flat' is an image"));
   with[0] = volume::radiance(radiance, Sampling::shadow);
   CHECK_THAT(test::messageOf<Error>([&] { shader::ShaderLibrary::select(plain, with); }),
              Catch::Contains("does not compare depth"));

@@ -14,12 +14,12 @@ inline ComponentError errorOf(double rmse) {
   ComponentError error;
   error.output = "indirect_diffuse";
   error.component = "indirect_diffuse";
-  error.truth = "one_bounce_diffuse";
+  error.reference = "one_bounce_diffuse";
   error.error.rmse = {rmse, 0.01 * rmse};
   error.error.meanRatio = {0.9, kNan};
   error.error.flip = 0.125;
   error.error.flipUncertainty = 0.001;
-  error.error.nonFinitePicture = 7;
+  error.error.nonFiniteImage = 7;
   error.seeds = 2;
   error.deterministic = true;
   error.parts.bias = {0.5 * rmse, 0.02};
@@ -92,7 +92,7 @@ inline StressCell cellNumber(int number) {
   cell.limit = 0.125;
   cell.detail = "pass a, port b: 1 NaN";
   cell.explanation = "the method has no sides";
-  cell.picture = "pictures/a.png";
+  cell.image = "images/a.png";
   cell.command = "lumivox stress --case a";
   cell.seconds = 1.5;
   cell.pipelineHash = "cafe";

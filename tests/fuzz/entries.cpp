@@ -10,8 +10,8 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/hash.h"
+#include "lumivox/base/image.h"
 #include "lumivox/base/log.h"
-#include "lumivox/base/picture.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/scene/scene.h"
@@ -156,17 +156,17 @@ void shaderPack(std::string_view input) {
   });
 }
 
-void exrPicture(std::string_view input) {
+void exrImage(std::string_view input) {
   const LogCapture silent;
   const fs::path file = folder().write("input.exr", input);
   taken([&] { readExrAttributes(file); });
   taken([&] {
-    const LayeredPicture picture = readExr(file);
-    require(!picture.layers.empty(), "a picture has layers");
-    for (const auto& [name, layer] : picture.layers)
-      require(layer.width() == picture.layers.begin()->second.width() &&
-                  layer.height() == picture.layers.begin()->second.height(),
-              "the layers of a picture are of one size");
+    const LayeredImage image = readExr(file);
+    require(!image.layers.empty(), "an image has layers");
+    for (const auto& [name, layer] : image.layers)
+      require(layer.width() == image.layers.begin()->second.width() &&
+                  layer.height() == image.layers.begin()->second.height(),
+              "the layers of an image are of one size");
   });
 }
 
@@ -175,7 +175,7 @@ const std::vector<Entry>& entries() {
                                       {"pipeline_text", pipelineText},
                                       {"obj_model", objModel},
                                       {"shader_pack", shaderPack},
-                                      {"exr_picture", exrPicture}};
+                                      {"exr_image", exrImage}};
   return all;
 }
 

@@ -20,8 +20,8 @@ void objModel(std::string_view input);
 /// hides nothing of what lies behind it.
 void shaderPack(std::string_view input);
 
-/// An EXR picture: what a cache of references may hold.
-void exrPicture(std::string_view input);
+/// An EXR image: what a cache of references may hold.
+void exrImage(std::string_view input);
 
 struct Entry {
   const char* name;  ///< of its folder of seeds

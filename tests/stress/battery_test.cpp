@@ -76,8 +76,8 @@ TEST_CASE("scale and place stay sound, and what is biased there is explained", "
 TEST_CASE("extreme lights stay sound, and what is biased there is explained", "[slow]") {
   checkQuickFamily("light");
 }
-TEST_CASE("extreme pictures and cameras stay sound, and what is biased there is explained", "[slow]") {
-  checkQuickFamily("picture_and_camera");
+TEST_CASE("extreme images and cameras stay sound, and what is biased there is explained", "[slow]") {
+  checkQuickFamily("image_and_camera");
 }
 TEST_CASE("jumps in time stay sound, and what is biased there is explained", "[slow]") {
   checkQuickFamily("time");
@@ -122,8 +122,8 @@ TEST_CASE("a pass that crashes or hangs costs one cell, and the battery goes on"
   REQUIRE(stored.size() == 7);
   CHECK(stored[0].outcome == StressOutcome::broken);
   CHECK(stored[0].device == stored[1].device);
-  CHECK(stored[6].picture == "pictures/nan__camera_on_surface.png");
-  CHECK(place.has("page/" + stored[6].picture));
+  CHECK(stored[6].image == "images/nan__camera_on_surface.png");
+  CHECK(place.has("page/" + stored[6].image));
   CellFilter broken;
   broken.outcome = StressOutcome::broken;
   CHECK(store.stressCells(broken).size() == 4);
@@ -141,7 +141,7 @@ TEST_CASE("a pass that crashes or hangs costs one cell, and the battery goes on"
   const std::string page = place.read("page/index.html");
   CHECK(contains(page, "Where each technique breaks"));
   CHECK(contains(page, "first at pixel (3, 2)"));
-  CHECK(contains(page, "\"picture\":\"pictures/nan__camera_on_surface.png\""));
+  CHECK(contains(page, "\"image\":\"images/nan__camera_on_surface.png\""));
   CHECK(Json::parse(place.read("page/index.json")).size() == 7);
   // The page can be made again from the store, without running anything.
   const CommandResult again = runCommand("lumivox stress --from '" + place.file("results.sqlite") + "' -o '" +
@@ -175,18 +175,18 @@ TEST_CASE("a report shows the stress cells of its store") {
   CHECK_FALSE(pageRecords(without).contains("stress"));
   CHECK(pageRecords(with).at("stress").size() == 2);
   CHECK(contains(with, "first at pixel (3, 2)"));
-  // Pictures lie beside another page.
-  CHECK_FALSE(contains(with, "pictures/nan"));
+  // Images lie beside another page.
+  CHECK_FALSE(contains(with, "images/nan"));
   CHECK(Json::parse(place.read("report/index.json")).at("stress").size() == 2);
 }
 
 TEST_CASE("unknown cases, families and techniques are refused before anything runs") {
-  checkRefused(runCommand("lumivox stress --case picture_1x2"), "did you mean 'picture_1x1'");
+  checkRefused(runCommand("lumivox stress --case image_1x2"), "did you mean 'image_1x1'");
   checkRefused(runCommand("lumivox stress --family parameter"), "did you mean 'parameters'");
   checkRefused(runCommand("lumivox stress voxel_cones"), "voxel_cones");
   checkRefused(runCommand("lumivox stress --pipeline absent.pipeline"), "absent.pipeline");
   // A worker that cannot start ends the battery with its own words.
-  checkRefused(runCommand("lumivox --quiet --device 99 stress --case picture_1x1 --pipeline " +
+  checkRefused(runCommand("lumivox --quiet --device 99 stress --case image_1x1 --pipeline " +
                           committedPipeline("direct_lighting")),
                "99");
 }

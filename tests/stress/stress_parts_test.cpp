@@ -44,7 +44,7 @@ TEST_CASE(
   CHECK(subject("direct_lighting_and_more.pipeline", both) == "direct_lighting");
   CHECK(subject("mine.pipeline", "  output direct direct.radiance") == "direct_lighting");
   CHECK(subject("mine.pipeline", "") == "reflective_shadow_maps");  // its last pass
-  for (const char* file : {"voxelisers/points", "voxelisers/reproject", "voxelisers/solid"})
+  for (const char* file : {"voxelizers/points", "voxelizers/reproject", "voxelizers/solid"})
     CHECK(techniqueOf(pipeline(file), techniques()) == "voxelization");
   CHECK(techniqueOf(pipeline("light_propagation_volumes_voxels"), techniques()) ==
         "light_propagation_volumes");

@@ -1,5 +1,5 @@
 // The scenes that the stress battery is made of: a case that measures a difference is worth no more than the
-// claim that there is none in the truth.
+// claim that there is none in the reference.
 #include <cmath>
 
 #include "lumivox/base/error.h"
@@ -13,7 +13,7 @@ using namespace lumivox::test;
 
 namespace {
 
-/// A lit room of 1 m with a lamp, a spot, something glossy and fog: all that moved() must move.
+/// A lit room of 1 m with a light, a spot, something glossy and fog: all that moved() must move.
 Scene furnishedRoom() {
   SceneBuilder builder = stress::closedRoom(0.6f);
   builder.quad({0.4f, 0.99f, 0.4f}, {0.2f, 0, 0}, {0, 0, 0.2f}, builder.lambert(0.5f, 4.0f));
@@ -30,20 +30,20 @@ Scene furnishedRoom() {
   return builder.scene;
 }
 
-Estimate truthOf(const Scene& scene, int samples, const std::string& camera = {}) {
+Estimate referenceOf(const Scene& scene, int samples, const std::string& camera = {}) {
   ReferenceOptions options = quietly(samples, 4);
   options.width = options.height = 24;
   options.camera = camera;
   return estimateOf(renderReference(scene, options), "full");
 }
 
-double meanOfTruth(const Scene& scene, const std::string& camera = {}) {
-  return truthOf(scene, 32, camera).mean;
+double meanOfReference(const Scene& scene, const std::string& camera = {}) {
+  return referenceOf(scene, 32, camera).mean;
 }
 
 }  // namespace
 
-TEST_CASE("a scene that is scaled, turned and moved with everything in it has the same truth") {
+TEST_CASE("a scene that is scaled, turned and moved with everything in it has the same reference") {
   const Scene scene = furnishedRoom();
   const auto movedBy = [&](double scale, double turn) {
     stress::Similarity by;
@@ -52,19 +52,19 @@ TEST_CASE("a scene that is scaled, turned and moved with everything in it has th
     by.translation = {1e4, -20.0, 1e4};
     return stress::moved(scene, by);
   };
-  CHECK(meanOfTruth(movedBy(1.0, 0.0)) == Approx(meanOfTruth(scene)).epsilon(0.001));
+  CHECK(meanOfReference(movedBy(1.0, 0.0)) == Approx(meanOfReference(scene)).epsilon(0.001));
   // The same random numbers: only rounding differs.
   for (const double turn : {0.0, 0.5 * kPi}) {
-    const double wanted = meanOfTruth(movedBy(1.0, turn));
+    const double wanted = meanOfReference(movedBy(1.0, turn));
     CHECK(wanted > 0.1);
     for (const double scale : {1e-3, 1e3}) {
       INFO("scale " << scale << ", turned by " << turn);
-      CHECK(meanOfTruth(movedBy(scale, turn)) == Approx(wanted).epsilon(0.001));
+      CHECK(meanOfReference(movedBy(scale, turn)) == Approx(wanted).epsilon(0.001));
     }
   }
   // Directions are drawn about axes of the world, so that a turn draws others: the means differ by their
   // noise, which is small enough here to tell a hundredth.
-  const Estimate still = truthOf(scene, 1024), turned = truthOf(movedBy(1.0, 0.5 * kPi), 1024);
+  const Estimate still = referenceOf(scene, 1024), turned = referenceOf(movedBy(1.0, 0.5 * kPi), 1024);
   const double noise = std::hypot(still.deviation, turned.deviation);
   CHECK(noise < 0.01 * still.mean);
   CHECK(std::abs(turned.mean - still.mean) < 3.0 * noise);
@@ -77,18 +77,19 @@ TEST_CASE("what cannot be turned without changing what it is is refused") {
         std::string::npos);
 }
 
-TEST_CASE("all light times a factor is the truth times the factor") {
+TEST_CASE("all light times a factor is the reference times the factor") {
   const Scene scene = furnishedRoom();
-  CHECK(meanOfTruth(stress::brighter(scene, 64.0f)) == Approx(64.0 * meanOfTruth(scene)).epsilon(1e-4));
-  CHECK(meanOfTruth(stress::brighter(scene, 0.0f)) == 0.0);
+  CHECK(meanOfReference(stress::brighter(scene, 64.0f)) ==
+        Approx(64.0 * meanOfReference(scene)).epsilon(1e-4));
+  CHECK(meanOfReference(stress::brighter(scene, 0.0f)) == 0.0);
 }
 
-TEST_CASE("the truth of the dark one of two rooms is black, whatever the wall between them") {
+TEST_CASE("the reference of the dark one of two rooms is black, whatever the wall between them") {
   for (const float wall : {0.0f, 0.01f}) {
     INFO("wall of " << wall << " m");
     const Scene scene = stress::twoRooms(wall);
-    CHECK(meanOfTruth(scene, "lit") > 0.1);
-    CHECK(meanOfTruth(scene, "dark") == 0.0);
+    CHECK(meanOfReference(scene, "lit") > 0.1);
+    CHECK(meanOfReference(scene, "dark") == 0.0);
   }
 }
 
@@ -105,10 +106,10 @@ TEST_CASE("a grid of triangles has the area of its parallelogram and faces one w
   CHECK(area == Approx(6.0).epsilon(1e-6));
 }
 
-TEST_CASE("doubled surfaces are all but those that shine, and the truth stays") {
+TEST_CASE("doubled surfaces are all but those that shine, and the reference stays") {
   const Scene scene = furnishedRoom(), twice = stress::doubled(scene);
   CHECK(twice.objects.size() == 2 * scene.objects.size() - 1);
-  CHECK(meanOfTruth(twice) == Approx(meanOfTruth(scene)).epsilon(0.02));
+  CHECK(meanOfReference(twice) == Approx(meanOfReference(scene)).epsilon(0.02));
 }
 
 TEST_CASE("the glowing speck lies within one voxel of the grids that it was made for") {

@@ -11,7 +11,7 @@
 
 namespace lumivox::test::cones {
 
-inline constexpr int kPixels = 8;  ///< along both sides of the pictures here
+inline constexpr int kPixels = 8;  ///< along both sides of the images here
 
 /// A g-buffer of one surface point in every pixel; with a specular albedo where its exponent, in w, is above
 /// 0.
@@ -111,18 +111,17 @@ auto gatherWith(const Scene& scene, const RadianceGrid& grid, const GBuffer& gbu
 }
 
 /// Indirect diffuse radiance at one surface point of albedo 1, in every pixel.
-inline Picture gatherPicture(const Scene& scene, const RadianceGrid& grid, const glm::vec3& position,
-                             const glm::vec3& normal, const GatherSettings& settings) {
-  return gatherWith(
-      scene, grid, surfacePoint(position, normal, glm::vec3(1.0f)), settings,
-      [](PassHarness& harness) { return pictureOf(*harness.output<Image>("diffuse").texture); });
+inline ImageBuffer gatherImage(const Scene& scene, const RadianceGrid& grid, const glm::vec3& position,
+                               const glm::vec3& normal, const GatherSettings& settings) {
+  return gatherWith(scene, grid, surfacePoint(position, normal, glm::vec3(1.0f)), settings,
+                    [](PassHarness& harness) { return imageOf(*harness.output<Image>("diffuse").texture); });
 }
-inline glm::vec3 pixelOf(const Picture& picture) {
-  return {picture.at(3, 3, 0), picture.at(3, 3, 1), picture.at(3, 3, 2)};
+inline glm::vec3 pixelOf(const ImageBuffer& image) {
+  return {image.at(3, 3, 0), image.at(3, 3, 1), image.at(3, 3, 2)};
 }
 inline glm::vec3 gather(const Scene& scene, const RadianceGrid& grid, const glm::vec3& position,
                         const glm::vec3& normal, const GatherSettings& settings) {
-  return pixelOf(gatherPicture(scene, grid, position, normal, settings));
+  return pixelOf(gatherImage(scene, grid, position, normal, settings));
 }
 
 /// Indirect glossy radiance at one surface point.
@@ -131,7 +130,7 @@ inline glm::vec3 gatherGlossy(const Scene& scene, const RadianceGrid& grid, cons
                               const GatherSettings& settings) {
   return gatherWith(
       scene, grid, surfacePoint(position, normal, glm::vec3(0.0f), specular), settings,
-      [](PassHarness& harness) { return pixelOf(pictureOf(*harness.output<Image>("glossy").texture)); });
+      [](PassHarness& harness) { return pixelOf(imageOf(*harness.output<Image>("glossy").texture)); });
 }
 
 struct InjectSettings {

@@ -46,7 +46,7 @@ gpu::ResourceBinding uniform(std::uint32_t binding, const Block& block) {
   return {"Block", binding, gpu::ResourceBinding::Uniform{{bytes.begin(), bytes.end()}}};
 }
 
-inline gpu::TextureDescription picture(gpu::Format format, int width, int height, int levels = 1) {
+inline gpu::TextureDescription image(gpu::Format format, int width, int height, int levels = 1) {
   return {gpu::TextureKind::d2, format, width, height, 1, levels};
 }
 

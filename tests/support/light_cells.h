@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../../techniques/light_propagation_volumes/closed_faces.h"
+#include "../../techniques/light_propagation_volumes/occluded_faces.h"
 #include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
@@ -36,7 +36,7 @@ inline gpu::TextureRef volume(int n, gpu::Format format) {
   return texture;
 }
 
-/// A picture of 8 x 8 pixels of one value, as a layer of a g-buffer.
+/// An image of 8 x 8 pixels of one value, as a layer of a g-buffer.
 inline gpu::TextureRef filledPixels(const glm::vec4& value) {
   gpu::TextureDescription description;
   description.format = gpu::Format::rgba32f;
@@ -46,28 +46,28 @@ inline gpu::TextureRef filledPixels(const glm::vec4& value) {
   return texture;
 }
 
-using light_propagation_volumes::ClosedFaces;
+using light_propagation_volumes::OccludedFaces;
 
 /// Light with the faces that surfaces close.
 struct LitCells : ShGrid {
-  ClosedFaces faces;
+  OccludedFaces faces;
 };
 
-/// A grid of [-1,1]^3 with the same light in all channels; `closed` gives xyz shares of (n+1)^3 faces.
-inline LitCells gridOf(int n, const Cells& cells, const std::vector<float>& closed = {}) {
+/// A grid of [-1,1]^3 with the same light in all channels; `occluded` gives xyz shares of (n+1)^3 faces.
+inline LitCells gridOf(int n, const Cells& cells, const std::vector<float>& occluded = {}) {
   ShGrid::Level level;
   level.grid = {glm::vec3(-1.0f), 2.0f / static_cast<float>(n), glm::ivec3(n)};
   for (gpu::TextureRef& texture : level.coefficients) {
     texture = volume(n, gpu::Format::rgba32f);
     texture->uploadFloats(0, cells);
   }
-  const ClosedFaces::Level faces{level.grid, volume(n + 1, gpu::Format::rgba8),
-                                 volume(n + 1, gpu::Format::rgba8), nullptr};
-  if (!closed.empty()) {
+  const OccludedFaces::Level faces{level.grid, volume(n + 1, gpu::Format::rgba8),
+                                   volume(n + 1, gpu::Format::rgba8), nullptr};
+  if (!occluded.empty()) {
     std::vector<std::byte> bytes;
-    for (const float share : closed)
+    for (const float share : occluded)
       bytes.push_back(static_cast<std::byte>(static_cast<int>(share * 255.0f + 0.5f)));
-    faces.closed->upload(0, bytes);
+    faces.occluded->upload(0, bytes);
   }
   LitCells result;
   result.levels.push_back(level);
@@ -127,7 +127,7 @@ class Propagation {
     return *this;
   }
   Propagation& run(const LitCells& light) { return run(light, light.faces); }
-  Propagation& run(const ShGrid& light, const ClosedFaces& faces) {
+  Propagation& run(const ShGrid& light, const OccludedFaces& faces) {
     harness_.setInput("light", light);
     harness_.setInput("faces", faces);
     harness_.run();

@@ -13,7 +13,7 @@
 
 namespace lumivox::test {
 
-inline constexpr int kPixels = 64;  ///< along both sides of the pictures here
+inline constexpr int kPixels = 64;  ///< along both sides of the images here
 
 inline gpu::TextureRef image(const std::vector<glm::vec4>& values) {
   gpu::TextureDescription description;
@@ -78,7 +78,7 @@ inline ScatteringGrid varyingMedium(float extinction, float albedo, float anisot
 }
 
 struct Marched {
-  Picture scattered, transmittance;
+  ImageBuffer scattered, transmittance;
 };
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
@@ -101,12 +101,12 @@ inline Marched march(const Scene& scene, const ScatteringGrid& media, const GBuf
     harness.setInput("shadow", shadow.output<ShadowMap>("depth"));
   }
   harness.run();
-  return {pictureOf(*harness.output<Image>("scattered").texture),
-          pictureOf(*harness.output<Image>("transmittance").texture)};
+  return {imageOf(*harness.output<Image>("scattered").texture),
+          imageOf(*harness.output<Image>("transmittance").texture)};
 }
 
-inline float valueOf(const Picture& picture, int pixel, int channel = 0) {
-  return picture.at(pixel % kPixels, pixel / kPixels, channel);
+inline float valueOf(const ImageBuffer& image, int pixel, int channel = 0) {
+  return image.at(pixel % kPixels, pixel / kPixels, channel);
 }
 
 inline double henyeyGreenstein(double g, double cosine) {

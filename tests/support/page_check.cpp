@@ -32,7 +32,7 @@ constexpr const char* kProbe = R"js(
     for (const value of values) other += value !== values[0];
     return other < 0.002 * values.length || values.length === 0;
   };
-  // Pictures are decoded beside the script; a busy machine takes its time.
+  // Images are decoded beside the script; a busy machine takes its time.
   for (let wait = 0; wait < 100 && canvases.some(canvas => isShown(canvas) && isBlank(canvas)); ++wait)
     await new Promise(resolve => setTimeout(resolve, 100));
   for (const canvas of canvases) {
@@ -101,7 +101,7 @@ constexpr const char* kProbe = R"js(
   for (const image of document.images) {
     ++found.images;
     await image.decode().catch(() => {});
-    if (image.naturalWidth === 0) wrong(image, "the picture does not show");
+    if (image.naturalWidth === 0) wrong(image, "the image does not show");
   }
   for (const link of document.querySelectorAll("a[href]")) {
     ++found.links;

@@ -18,7 +18,7 @@ struct PageFindings {
   };
   std::vector<Control> controls;
   /// Sentences, each with the element: a script's error, a blank canvas, a chart without a point in it, a
-  /// control that changes nothing, a table without rows or with a cell like "undefined", a picture that does
+  /// control that changes nothing, a table without rows or with a cell like "undefined", an image that does
   /// not show, a link to nowhere, a request to elsewhere, a body wider than the window (of a desk or a
   /// phone).
   std::vector<std::string> problems;

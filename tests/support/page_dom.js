@@ -1,6 +1,6 @@
 "use strict";
 // Draws a page without a browser: its scripts run before a document that knows as much of the DOM as the pages use, and what they
-// made is told as JSON: texts, tables, pictures, links, charts, controls, and what went wrong.
+// made is told as JSON: texts, tables, images, links, charts, controls, and what went wrong.
 // node page_dom.js page.html
 const fs = require("fs"), vm = require("vm");
 
@@ -78,9 +78,9 @@ async function main(file) {
   const documents = {
     body, createElement: tag => new Element(tag),
     getElementById: id => id in blocks ? { textContent: blocks[id] } : body.all(element => element.attributes.id === id)[0] || null };
-  class Picture {
+  class Image {
     async decode() {
-      if (!/^data:image\/png;base64,[A-Za-z0-9+/]+=*$/.test(this.src || "")) throw new Error("no picture: " + String(this.src).slice(0, 60));
+      if (!/^data:image\/png;base64,[A-Za-z0-9+/]+=*$/.test(this.src || "")) throw new Error("no image: " + String(this.src).slice(0, 60));
     }
   }
   // Of Chart.js as much as it is asked for; it is not run itself, which takes a real canvas.
@@ -92,7 +92,7 @@ async function main(file) {
     destroy() { charts.splice(charts.indexOf(this), 1); }
   }
   Chart.defaults = { plugins: { legend: { labels: { generateLabels: () => [] } } } };
-  const sandbox = vm.createContext({ document: documents, location: { hash: "" }, Image: Picture, Chart, console });
+  const sandbox = vm.createContext({ document: documents, location: { hash: "" }, Image: Image, Chart, console });
   const settle = () => new Promise(done => setTimeout(done, 5));
   process.on("unhandledRejection", error => problems.push("script: " + (error && error.message || error)));
   for (const script of scripts) {
@@ -118,7 +118,7 @@ async function main(file) {
   for (const control of body.tag("select", "input")) {
     const at = control.value, values = control.tagName === "INPUT" ? [control.attributes.min, control.attributes.max]
       : control.tag("option").map(option => option.attributes.value).filter(value => value !== at);
-    // What is drawn is told apart by the pictures that are drawn.
+    // What is drawn is told apart by the images that are drawn.
     body.tag("canvas").forEach(canvas => { canvas.calls.length = 0; });
     let before = seen(), changed = 0;
     for (const value of values) {
@@ -151,7 +151,7 @@ async function main(file) {
     if (href.startsWith("#") && !ids.includes(href.slice(1))) problems.push("a link leads nowhere: " + href);
   const images = body.tag("img").map(image => image.attributes);
   for (const image of images)
-    if (!image.alt || !image.src) problems.push("a picture without a text or an address");
+    if (!image.alt || !image.src) problems.push("an image without a text or an address");
   const slip = /.{0,40}(undefined|\[object Object\]).{0,40}/.exec(body.textContent);
   if (slip) problems.push("the text says " + slip[0]);
   process.stdout.write(JSON.stringify({ problems, text: body.textContent, html: body.serial(), tables, links, charts: chartFindings, controls,

@@ -29,9 +29,9 @@ struct Estimate {
 
 /// Mean of a layer. Its channels share paths, so their errors are taken as one; those of pixels are
 /// independent.
-inline Estimate estimateOf(const LayeredPicture& picture, const std::string& layer) {
-  const Picture& means = picture.layers.at(layer);
-  const Picture& variances = picture.layers.at(layer + ".variance");
+inline Estimate estimateOf(const LayeredImage& image, const std::string& layer) {
+  const ImageBuffer& means = image.layers.at(layer);
+  const ImageBuffer& variances = image.layers.at(layer + ".variance");
   const auto pixels = static_cast<double>(means.pixelCount()),
              channels = static_cast<double>(means.channels());
   Estimate result;
@@ -42,7 +42,7 @@ inline Estimate estimateOf(const LayeredPicture& picture, const std::string& lay
   return result;
 }
 
-/// A room with an emissive lamp under its ceiling, coloured side walls, a diffuse and a glossy box; the front
+/// A room with an area light under its ceiling, coloured side walls, a diffuse and a glossy box; the front
 /// is open.
 inline Scene litRoom(int width, int height) {
   SceneBuilder builder;
@@ -51,13 +51,13 @@ inline Scene litRoom(int width, int height) {
   green.diffuse = {0.15f, 0.48f, 0.09f};
   const int white = builder.lambert(0.73f), redWall = builder.material(red),
             greenWall = builder.material(green);
-  const int lamp = builder.lambert(0.78f, 15.0f), shiny = builder.phong(0.3f, 0.6f, 30.0f);
+  const int areaLight = builder.lambert(0.78f, 15.0f), shiny = builder.phong(0.3f, 0.6f, 30.0f);
   builder.quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, white);
   builder.quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, white);
   builder.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, white);
   builder.quad({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, redWall);
   builder.quad({1, 0, 0}, {0, 0, 1}, {0, 1, 0}, greenWall);
-  builder.quad({0.35f, 0.99f, 0.35f}, {0.3f, 0, 0}, {0, 0, 0.3f}, lamp);
+  builder.quad({0.35f, 0.99f, 0.35f}, {0.3f, 0, 0}, {0, 0, 0.3f}, areaLight);
   builder.box({0.15f, 0.001f, 0.2f}, {0.45f, 0.6f, 0.5f}, white, false);
   builder.box({0.55f, 0.001f, 0.55f}, {0.85f, 0.3f, 0.85f}, shiny, false);
   builder.look({0.5, 0.5, 2.4}, {0.5, 0.5, 0}, {0, 1, 0}, 0.7, width, height);

@@ -1,4 +1,4 @@
-// The last pass of most pipelines, on pictures made here.
+// The last pass of most pipelines, on images made here.
 #include <array>
 #include <optional>
 
@@ -15,7 +15,7 @@ const std::array<glm::vec3, 5> kValues{glm::vec3(1.0f, 2.0f, 3.0f), glm::vec3(0.
                                        glm::vec3(8.0f, 0.125f, 1.5f), glm::vec3(0.5f, 0.75f, 0.25f),
                                        glm::vec3(16.0f, 32.0f, 0.0625f)};
 
-Picture composed(const std::array<bool, 5>& given) {
+ImageBuffer composed(const std::array<bool, 5>& given) {
   const Scene scene = emptyScene();
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   PassHarness compose(device(), techniques(), "direct_lighting", "compose", scene, snapshot);
@@ -25,13 +25,13 @@ Picture composed(const std::array<bool, 5>& given) {
                        Image{image(std::vector<glm::vec4>(kPixels * kPixels, glm::vec4(kValues[i], 1.0f)))});
   }
   compose.run();
-  return pictureOf(*compose.output<Image>("radiance").texture, 4);
+  return imageOf(*compose.output<Image>("radiance").texture, 4);
 }
 
 }  // namespace
 
 TEST_CASE(
-    "a picture is direct, diffuse and glossy light, dimmed by the media before it, and what they scatter") {
+    "an image is direct, diffuse and glossy light, dimmed by the media before it, and what they scatter") {
   // Each of the optional inputs given or left out: what is left out adds nothing and dims nothing.
   for (int choice = 0; choice < 16; ++choice) {
     const std::array<bool, 5> given{true, (choice & 1) != 0, (choice & 2) != 0, (choice & 4) != 0,
@@ -42,10 +42,10 @@ TEST_CASE(
     if (given[2]) expected += kValues[2];
     if (given[3]) expected *= kValues[3];
     if (given[4]) expected += kValues[4];
-    const Picture picture = composed(given);
+    const ImageBuffer image = composed(given);
     for (const glm::ivec2 pixel : {glm::ivec2(0, 0), glm::ivec2(kPixels - 1, 3)}) {
-      for (int c = 0; c < 3; ++c) CHECK(picture.at(pixel.x, pixel.y, c) == expected[c]);
-      CHECK(picture.at(pixel.x, pixel.y, 3) == 1.0f);
+      for (int c = 0; c < 3; ++c) CHECK(image.at(pixel.x, pixel.y, c) == expected[c]);
+      CHECK(image.at(pixel.x, pixel.y, 3) == 1.0f);
     }
   }
 }

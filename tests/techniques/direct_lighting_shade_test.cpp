@@ -60,13 +60,13 @@ TEST_CASE(
   shade.setInput("gbuffer", floorSeen());
   shade.setInput("shadow", darkSquare());
   shade.run();
-  const Picture picture = pictureOf(*shade.output<Image>("radiance").texture, 4);
+  const ImageBuffer image = imageOf(*shade.output<Image>("radiance").texture, 4);
   for (int i = 1; i < kPixels * kPixels; ++i) {
     const glm::vec3 place = floorPlace(i);
     const bool dark = std::abs(place.x) < 0.5f && std::abs(place.z) < 0.5f;
     CAPTURE(place.x, place.z);
-    CHECK(valueOf(picture, i) == Approx(dark ? 0.0 : 0.5).epsilon(1e-4));
+    CHECK(valueOf(image, i) == Approx(dark ? 0.0 : 0.5).epsilon(1e-4));
   }
-  for (int c = 0; c < 3; ++c) CHECK(valueOf(picture, 0, c) == scene.environment[c]);
-  for (const int pixel : {0, 1}) CHECK(valueOf(picture, pixel, 3) == 1.0f);
+  for (int c = 0; c < 3; ++c) CHECK(valueOf(image, 0, c) == scene.environment[c]);
+  for (const int pixel : {0, 1}) CHECK(valueOf(image, pixel, 3) == 1.0f);
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kSide = 16;
 
-/// A floor of 2 m x 2 m at y = 0 facing up, seen from 3 m above; `up` of the picture is -z.
+/// A floor of 2 m x 2 m at y = 0 facing up, seen from 3 m above; `up` of the image is -z.
 SceneBuilder floorOf(const Material& material) {
   SceneBuilder builder;
   builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.material(material));
@@ -35,7 +35,7 @@ SurfaceTexture holeOnTheLeft() {
   return half;
 }
 
-Picture directLight(const Scene& scene) {
+ImageBuffer directLight(const Scene& scene) {
   return renderOnce(scene, pipeline("direct_lighting")).outputs.at("direct");
 }
 
@@ -52,7 +52,7 @@ TEST_CASE(
     shiny.exponent = exponent;
     SceneBuilder builder = floorOf(shiny);
     builder.light(LightKind::directional, {3, 3, 3}, {}, travel);
-    const Picture picture = directLight(builder.scene);
+    const ImageBuffer image = directLight(builder.scene);
     const glm::dvec3 mirrored(travel.x, -travel.y, travel.z);
     for (const glm::ivec2 pixel :
          {glm::ivec2(2, 13), glm::ivec2(8, 8), glm::ivec2(9, 7), glm::ivec2(14, 3)}) {
@@ -60,7 +60,7 @@ TEST_CASE(
       const double cosine = std::max(0.0, glm::dot(mirrored, toEye));
       const double lobe = (exponent + 2.0) / (2.0 * glm::pi<double>()) * std::pow(cosine, double(exponent));
       for (int c = 0; c < 3; ++c)
-        CHECK_THAT(picture.at(pixel.x, pixel.y, c),
+        CHECK_THAT(image.at(pixel.x, pixel.y, c),
                    WithinRel(static_cast<float>(shiny.specular[c] * lobe * irradiance), 2e-3f));
     }
   }
@@ -78,8 +78,8 @@ TEST_CASE("a light more than a right angle off the mirror direction adds nothing
     const glm::dvec3 towards(std::sin(slant), std::cos(slant), 0.0);
     builder.look(4.0 * towards, {0, 0, 0}, {0, 1, 0}, 0.1, kSide, kSide);
     builder.light(LightKind::directional, {3, 3, 3}, {}, -towards);
-    const Picture picture = directLight(builder.scene);
-    for (const float radiance : picture.values()) CHECK(radiance == 0.0f);
+    const ImageBuffer image = directLight(builder.scene);
+    for (const float radiance : image.values()) CHECK(radiance == 0.0f);
   }
 }
 
@@ -115,7 +115,7 @@ TEST_CASE("a blocker casts the shadow of what its alpha mask keeps, and the hole
   // Wider than the floor and above the camera, so that it is not seen.
   builder.quad({-2, 4, -2}, {4, 0, 0}, {0, 0, 4}, builder.material(masked));
   builder.light(LightKind::directional, {3, 3, 3}, {}, {0, -1, 0});
-  const Picture picture = directLight(builder.scene);
+  const ImageBuffer image = directLight(builder.scene);
   const float lit = 0.5f / glm::pi<float>() * 3.0f;
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
@@ -124,9 +124,9 @@ TEST_CASE("a blocker casts the shadow of what its alpha mask keeps, and the hole
       if (x == kSide / 2 - 1 || x == kSide / 2) continue;
       CAPTURE(x, y);
       if (x < kSide / 2)
-        CHECK_THAT(picture.at(x, y, 0), WithinRel(lit, 1e-3f));
+        CHECK_THAT(image.at(x, y, 0), WithinRel(lit, 1e-3f));
       else
-        CHECK(picture.at(x, y, 0) == 0.0f);
+        CHECK(image.at(x, y, 0) == 0.0f);
     }
   }
 }
@@ -142,9 +142,9 @@ TEST_CASE("the camera looks through the holes of alpha masks") {
   // Just above the floor, facing up, u along x.
   builder.quad({-1, 0.01f, 1}, {2, 0, 0}, {0, 0, -2}, builder.material(masked));
   builder.light(LightKind::directional, {3, 3, 3}, {}, glm::normalize(glm::dvec3(0.001, -1, 0)));
-  const Picture picture = directLight(builder.scene);
+  const ImageBuffer image = directLight(builder.scene);
   for (int y = 1; y < kSide - 1; ++y) {
-    CHECK_THAT(picture.at(2, y, 0), WithinRel(0.5f / glm::pi<float>() * 3.0f, 2e-3f));
-    CHECK_THAT(picture.at(kSide - 3, y, 0), WithinRel(1.0f / glm::pi<float>() * 3.0f, 2e-3f));
+    CHECK_THAT(image.at(2, y, 0), WithinRel(0.5f / glm::pi<float>() * 3.0f, 2e-3f));
+    CHECK_THAT(image.at(kSide - 3, y, 0), WithinRel(1.0f / glm::pi<float>() * 3.0f, 2e-3f));
   }
 }

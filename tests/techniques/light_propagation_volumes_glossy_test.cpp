@@ -84,7 +84,7 @@ double shown(const RadianceGrid& radiance, const glm::dvec3& eye, const glm::vec
                                      filledPixels(glm::vec4(1, 1, 1, exponent)), nullptr});
   gather.setInput("grid", filter.output<RadianceGrid>("mips"));
   gather.run();
-  return pictureOf(*gather.output<Image>("glossy").texture).at(4, 4, 0);
+  return imageOf(*gather.output<Image>("glossy").texture).at(4, 4, 0);
 }
 
 }  // namespace
@@ -210,16 +210,16 @@ TEST_CASE("glossy light of the Cornell box is within its card's error of the ref
   ReferenceOptions referenceOptions = quietly(512, 1);
   referenceOptions.width = referenceOptions.height = 64;
   referenceOptions.useCache = true;
-  const Picture oneBounce = cachedReference(scene, referenceOptions).layers.at("one_bounce_glossy");
+  const ImageBuffer oneBounce = cachedReference(scene, referenceOptions).layers.at("one_bounce_glossy");
   const Pipeline text = pipeline("light_propagation_volumes");
   RenderOptions options;
   options.width = options.height = 64;
   const FrameResult frame = renderOnce(scene, text, options);
-  const PictureError error = compare(frame.outputs.at("indirect_glossy"), oneBounce),
-                     nothing = compare(Picture(64, 64, 3), oneBounce);
+  const ImageError error = compare(frame.outputs.at("indirect_glossy"), oneBounce),
+                   nothing = compare(ImageBuffer(64, 64, 3), oneBounce);
   INFO("RMSE " << error.rmse.value << " against " << nothing.rmse.value << ", ratio "
                << error.meanRatio.value);
-  // Measured: 0.382 of none, ratio 0.848, with a reference whose noise is a sixth of that error. Picture and
+  // Measured: 0.382 of none, ratio 0.848, with a reference whose noise is a sixth of that error. Image and
   // reference are the same bits every time; the margin of 5 % is for other drivers' rounding and texture
   // filters.
   CHECK(error.rmse.value < 0.40 * nothing.rmse.value);

@@ -19,7 +19,7 @@ constexpr float kSize = 0.5f;  // m
 constexpr double kFace = kSize * kSize;
 
 /// What an injection makes of one grid.
-struct Injected : ShGrid::Level, ClosedFaces::Level {};
+struct Injected : ShGrid::Level, OccludedFaces::Level {};
 
 /// An injection pass over cells of half a metre.
 struct Injection {
@@ -34,7 +34,7 @@ struct Injection {
   Injected run(const std::vector<FragmentData>& squares) {
     harness.setInput("fragments", listOver(grid(), squares));
     harness.run();
-    return {harness.output<ShGrid>("light").levels[0], harness.output<ClosedFaces>("faces").levels[0]};
+    return {harness.output<ShGrid>("light").levels[0], harness.output<OccludedFaces>("faces").levels[0]};
   }
   /// Where the cells lie: around the eye, on whole cells.
   static GridPlacement grid() {
@@ -80,13 +80,13 @@ std::size_t faceAt(const glm::ivec3& face) {
 }
 
 /// Closed sixteenths of the faces of an axis, of one or of all.
-int closedParts(const Injected& level, int axis, const glm::ivec3& face) {
+int occludedParts(const Injected& level, int axis, const glm::ivec3& face) {
   const auto byte =
-      static_cast<int>(level.closed->download(0)[faceAt(face) + static_cast<std::size_t>(axis)]);
+      static_cast<int>(level.occluded->download(0)[faceAt(face) + static_cast<std::size_t>(axis)]);
   return static_cast<int>(std::lround(byte * 16.0 / 255.0));
 }
-int allClosedParts(const Injected& level, int axis) {
-  const std::vector<std::byte> bytes = level.closed->download(0);
+int allOccludedParts(const Injected& level, int axis) {
+  const std::vector<std::byte> bytes = level.occluded->download(0);
   int sum = 0;
   for (std::size_t i = static_cast<std::size_t>(axis); i < bytes.size(); i += 4)
     sum += static_cast<int>(std::lround(static_cast<int>(bytes[i]) * 16.0 / 255.0));
@@ -177,9 +177,9 @@ TEST_CASE(
                      << one.slope);
         const std::size_t first = faceAt(face) + static_cast<std::size_t>(axis);
         CHECK(static_cast<int>(level.moved->download(0)[first]) == (one.down | one.up << 4));
-        CHECK(closedParts(level, axis, face) == 4);
-        if (one.slope == 0.0f) CHECK(allClosedParts(level, (axis + 1) % 3) == 0);
-        if (one.slope == 0.0f) CHECK(allClosedParts(level, (axis + 2) % 3) == 0);
+        CHECK(occludedParts(level, axis, face) == 4);
+        if (one.slope == 0.0f) CHECK(allOccludedParts(level, (axis + 1) % 3) == 0);
+        if (one.slope == 0.0f) CHECK(allOccludedParts(level, (axis + 2) % 3) == 0);
       }
 }
 
@@ -224,11 +224,11 @@ TEST_CASE(
           INFO("floor " << up << " of axis " << across << ", wall " << right << " of axis " << side);
           INFO("gap " << gap);
           const bool meets = gap < 3;
-          CHECK(closedParts(level, across, ofFloor) == (4 - gap) * 4 + (meets ? 2 * gap : 0));
-          CHECK(closedParts(level, side, ofWall) == 3 * 2 + (meets ? 2 : 0));
-          CHECK(allClosedParts(level, across) == 4 * 4 + (meets ? 2 * gap : 0));
-          CHECK(allClosedParts(level, side) == 4 * 2 + (meets ? 2 : 0));
-          CHECK(allClosedParts(level, along) == 0);
+          CHECK(occludedParts(level, across, ofFloor) == (4 - gap) * 4 + (meets ? 2 * gap : 0));
+          CHECK(occludedParts(level, side, ofWall) == 3 * 2 + (meets ? 2 : 0));
+          CHECK(allOccludedParts(level, across) == 4 * 4 + (meets ? 2 * gap : 0));
+          CHECK(allOccludedParts(level, side) == 4 * 2 + (meets ? 2 : 0));
+          CHECK(allOccludedParts(level, along) == 0);
         }
 }
 
@@ -302,8 +302,8 @@ TEST_CASE("a surface with holes closes its share of a face, to the nearest sixte
       face[(axis + 2) % 3] = 5;
       const Injected level = inject.run(squares);
       INFO("axis " << axis << ", sixteenths " << sixteenths);
-      CHECK(closedParts(level, axis, face) == std::lround(sixteenths));
-      CHECK(allClosedParts(level, axis) == std::lround(sixteenths));
+      CHECK(occludedParts(level, axis, face) == std::lround(sixteenths));
+      CHECK(allOccludedParts(level, axis) == std::lround(sixteenths));
     }
 }
 
@@ -376,11 +376,11 @@ TEST_CASE("each surface of a long list lights its own cell and closes its own fa
   REQUIRE(cells.size() == 4 * squares.size());
   for (std::size_t i = 0; i < cells.size(); i += 4)
     CHECK(cells[i] == Approx(kY0 * 0.5 * 0.8 * kFace * 4.0 / 16.0).epsilon(1e-5));
-  CHECK(allClosedParts(level, 1) == 4 * kSide * kSide * kSide);
-  CHECK(allClosedParts(level, 0) + allClosedParts(level, 2) == 0);
+  CHECK(allOccludedParts(level, 1) == 4 * kSide * kSide * kSide);
+  CHECK(allOccludedParts(level, 0) + allOccludedParts(level, 2) == 0);
 }
 
-TEST_CASE("a surface is lit by a lamp at its true place and not at the middle of its cell: I cos / d^2") {
+TEST_CASE("a surface is lit by a light at its true place and not at the middle of its cell: I cos / d^2") {
   Injection inject("inject_voxels");
   for (int axis = 0; axis < 3; ++axis)
     for (const float sign : {1.0f, -1.0f})
@@ -389,10 +389,10 @@ TEST_CASE("a surface is lit by a lamp at its true place and not at the middle of
           glm::dvec3 place(3.0 + beyond);
           place[(axis + 1) % 3] = 4.0 + part;
           place[(axis + 2) % 3] = 5.0 + part;
-          const glm::dvec3 lamp = glm::dvec3(4.9, 4.7, 5.1) + 3.0 * glm::dvec3(unit(axis, sign));
+          const glm::dvec3 lightCell = glm::dvec3(4.9, 4.7, 5.1) + 3.0 * glm::dvec3(unit(axis, sign));
           ShadowMap shadow = sunFrom({0, 1, 0}, 0.0f);
           LightSampleData light{};
-          light.position = Injection::grid().low + kSize * glm::vec3(lamp);
+          light.position = Injection::grid().low + kSize * glm::vec3(lightCell);
           light.kind = LightSampleKind::point;
           light.firstView = -1;
           light.power = glm::vec3(0.3f);
@@ -400,7 +400,7 @@ TEST_CASE("a surface is lit by a lamp at its true place and not at the middle of
           inject.harness.setInput("shadow", shadow);
           const Cells cells =
               inject.run({squareAt(place, unit(axis, sign))}).coefficients[0]->downloadFloats(0);
-          const glm::dvec3 path = static_cast<double>(kSize) * (lamp - place);
+          const glm::dvec3 path = static_cast<double>(kSize) * (lightCell - place);
           const double distance = glm::length(path), cosine = std::abs(path[axis]) / distance;
           INFO("axis " << axis << ", sign " << sign << ", " << beyond << " beyond the plane");
           CHECK(energy(cells) ==

@@ -77,7 +77,7 @@ double gathered(const LitCells& light, const glm::vec3& position, const glm::vec
   gather.setInput<ShGrid>("light", light);
   gather.setInput("faces", light.faces);
   gather.run();
-  return pictureOf(*gather.output<Image>("diffuse").texture).at(4, 4, 0);
+  return imageOf(*gather.output<Image>("diffuse").texture).at(4, 4, 0);
 }
 
 /// Radiance in one voxel of a reflection grid of [-1,1]^3 of white surfaces everywhere.
@@ -261,7 +261,7 @@ TEST_CASE(
   const double radiance = std::floor(0.6 / kPi * 255.0) / 255.0 * 3.0 * cosine;
   const Cells cells = level.coefficients[0]->downloadFloats(0);
   const std::vector<std::uint32_t> words =
-      inject.output<ClosedFaces>("faces").levels[0].packed->downloadValues<std::uint32_t>();
+      inject.output<OccludedFaces>("faces").levels[0].packed->downloadValues<std::uint32_t>();
   REQUIRE(words.size() == cells.size() / 4 * 5);
   int lit = 0;
   for (std::size_t i = 0; i < cells.size(); i += 4) {

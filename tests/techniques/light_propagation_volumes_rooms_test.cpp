@@ -28,7 +28,7 @@ LitCells injected(const Scene& scene, const std::string& pass, int voxelResoluti
   else
     inject.setInput("shadow", shadow.output<ShadowMap>("depth"));
   inject.run();
-  LitCells result{inject.output<ShGrid>("light"), inject.output<ClosedFaces>("faces")};
+  LitCells result{inject.output<ShGrid>("light"), inject.output<OccludedFaces>("faces")};
   return result;
 }
 
@@ -128,7 +128,7 @@ TEST_CASE("what the walls of a closed room reflect starts inside of it, along it
     }
 }
 
-TEST_CASE("cells that a dim lamp lights keep their light beside a lamp 10^6 times as bright") {
+TEST_CASE("cells that a dim area light lights keep their light beside an area light 10^6 times as bright") {
   const auto scene = [](float bright) {
     SceneBuilder builder = floorUnderTwoSpots(bright);
     // Gives the grid its height.
@@ -166,7 +166,7 @@ TEST_CASE(
     const Pipeline text = pipeline(name);
     RenderOptions options;
     options.parameters = text.settings({"levels=1", "resolution=24", "surfaces=48"});
-    const Picture row = renderOnce(builder.scene, text, options).outputs.at("indirect_diffuse");
+    const ImageBuffer row = renderOnce(builder.scene, text, options).outputs.at("indirect_diffuse");
     std::vector<float> values;
     for (int x = 0; x < kWidth; ++x) values.push_back(row.at(x, 0, 0));
     std::vector<float> sorted = values;

@@ -26,8 +26,8 @@ std::vector<float> randomFaces(int n, unsigned seed) {
   return faces;
 }
 
-Picture indirect(const Scene& scene, const char* name, const std::vector<std::string>& settings, int width,
-                 int height) {
+ImageBuffer indirect(const Scene& scene, const char* name, const std::vector<std::string>& settings,
+                     int width, int height) {
   const Pipeline text = pipeline(name);
   RenderOptions options;
   options.width = width;
@@ -126,7 +126,7 @@ TEST_CASE("in an open box what is inside and what left make up what was sent out
   }
 }
 
-TEST_CASE("no iteration of a thousand amplifies, whatever is closed") {
+TEST_CASE("no iteration of a thousand amplifies, whatever is occluded") {
   // Power iteration: the norm of a random state tends to that of the most amplified one.
   constexpr int n = 6;
   const SceneBuilder builder = emptyScene();
@@ -226,13 +226,13 @@ TEST_CASE("a closed plane lets nothing through, and an open one does") {
   constexpr int n = 12;
   Cells cells = empty(n);
   addLight(cells, n, {2, 6, 6}, {1, 0, 0}, forwardCosine());
-  std::vector<float> closed(at(n + 1, 0, 0, n + 1), 0.0f);
+  std::vector<float> occluded(at(n + 1, 0, 0, n + 1), 0.0f);
   for (int z = 0; z <= n; ++z)
-    for (int y = 0; y <= n; ++y) closed[at(n + 1, 6, y, z)] = 1.0f;
+    for (int y = 0; y <= n; ++y) occluded[at(n + 1, 6, y, z)] = 1.0f;
   const SceneBuilder builder = emptyScene();
   for (const bool wall : {false, true}) {
     Propagation step(builder.scene);
-    step.set("iterations", 40).run(gridOf(n, cells, wall ? closed : std::vector<float>{}));
+    step.set("iterations", 40).run(gridOf(n, cells, wall ? occluded : std::vector<float>{}));
     const Cells light = step.cells("light");
     double behind = 0.0;
     for (int z = 0; z < n; ++z)
@@ -275,14 +275,14 @@ TEST_CASE(
   gather.setInput("light", light);
   gather.setInput("faces", lit.faces);
   gather.run();
-  CHECK(pictureOf(*gather.output<Image>("diffuse").texture).at(4, 4, 0) == Approx(kRadiance).epsilon(0.01));
+  CHECK(imageOf(*gather.output<Image>("diffuse").texture).at(4, 4, 0) == Approx(kRadiance).epsilon(0.01));
 }
 
 TEST_CASE("light without faces is refused, and told where faces come from") {
   const SceneBuilder builder = emptyScene();
   Propagation step(builder.scene);
   LitCells light = gridOf(4, empty(4));
-  light.faces.levels[0].closed = nullptr;
+  light.faces.levels[0].occluded = nullptr;
   CHECK_THROWS_WITH(step.run(light), Catch::Contains("level 0 of the light") && Catch::Contains("injection"));
   light.faces.levels.clear();
   CHECK_THROWS_WITH(step.run(light), Catch::Contains("level 0 of the light") && Catch::Contains("'faces'"));
@@ -337,7 +337,7 @@ TEST_CASE("nested grids hold the same radiance on both sides of their seam") {
   inject.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
   inject.run();
   Propagation step(builder.scene);
-  step.set("iterations", 400).run(inject.output<ShGrid>("light"), inject.output<ClosedFaces>("faces"));
+  step.set("iterations", 400).run(inject.output<ShGrid>("light"), inject.output<OccludedFaces>("faces"));
   const ShGrid light = step.grid("light");
   REQUIRE(light.levels.size() == 3);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -369,15 +369,15 @@ TEST_CASE("light on a grid moved by parts of a cell changes as far as its card s
     RenderOptions options;
     options.width = options.height = 24;
     options.parameters = text.settings({"levels=1", "resolution=32", "iterations=48"});
-    const Picture picture = renderOnce(builder.scene, text, options).outputs.at("indirect_diffuse");
+    const ImageBuffer image = renderOnce(builder.scene, text, options).outputs.at("indirect_diffuse");
     double sum = 0.0;
-    for (const float value : picture.values()) sum += value;
-    return sum / static_cast<double>(picture.values().size());
+    for (const float value : image.values()) sum += value;
+    return sum / static_cast<double>(image.values().size());
   };
   const double base = meanOf(0.0);
   REQUIRE(base > 0.0);
-  // As measured and told in the card: walls, boxes and lamp are moved to the nearest planes of faces, each by
-  // its own part of a cell, and jump to the next ones half-way.
+  // As measured and told in the card: walls, boxes and area light are moved to the nearest planes of faces,
+  // each by its own part of a cell, and jump to the next ones half-way.
   struct Shift {
     double cells, light;
   };
@@ -395,7 +395,7 @@ TEST_CASE("light on a grid moved by parts of a cell changes as far as its card s
   CHECK(halfWay < 1.2 * base);
 }
 
-TEST_CASE("no negative radiance reaches a picture, and what two bands made negative is told") {
+TEST_CASE("no negative radiance reaches an image, and what two bands made negative is told") {
   const Scene scene = loadScene(sourceDirectory() / "scenes/cornell.scene");
   const Pipeline text = pipeline("light_propagation_volumes");
   RenderOptions options;
@@ -406,14 +406,14 @@ TEST_CASE("no negative radiance reaches a picture, and what two bands made negat
   executor.keepOutput("gather", "clipped");
   const FrameResult frame = executor.render(0.0);
   REQUIRE(frame.notes.size() == 1);
-  CHECK(frame.notes[0].find("% of the light of the picture was negative") != std::string::npos);
+  CHECK(frame.notes[0].find("% of the light of the image was negative") != std::string::npos);
   CHECK(frame.healthFindings.empty());
   double lowest = 0.0, sum = 0.0, clipped = 0.0;
   for (const float value : frame.outputs.at("indirect_diffuse").values()) {
     lowest = std::min<double>(lowest, value);
     sum += value;
   }
-  const Picture negative = pictureOf(*executor.output("gather", "clipped")->textures()[0]);
+  const ImageBuffer negative = imageOf(*executor.output("gather", "clipped")->textures()[0]);
   for (const float value : negative.values()) {
     CHECK(value >= 0.0f);
     clipped += value;
@@ -444,7 +444,7 @@ TEST_CASE("without glossy materials there is no reflection grid, with them there
 
 TEST_CASE(
     "light propagation volumes on the Cornell box and the arcade are as near to the reference as their card says") {
-  // Of the RMSE of leaving the light out, measured at this size: 0.426 and 0.421; 0.670 and 0.780. Picture
+  // Of the RMSE of leaving the light out, measured at this size: 0.426 and 0.421; 0.670 and 0.780. Image
   // and reference are the same bits every time; the margin of 5 % is for other drivers' rounding and filters.
   struct Limit {
     const char *scene, *text;
@@ -457,13 +457,13 @@ TEST_CASE(
     const std::string name = limit.scene;
     const char* text = limit.text;
     const Scene scene = loadScene(sourceDirectory() / "scenes" / (name + ".scene"));
-    ReferenceOptions truthOptions = quietly(64, 1);
-    truthOptions.width = 64;
-    truthOptions.height = 36;
-    truthOptions.useCache = true;
-    const Picture oneBounce = cachedReference(scene, truthOptions).layers.at("one_bounce_diffuse");
-    const PictureError error = compare(indirect(scene, text, {}, 64, 36), oneBounce),
-                       nothing = compare(Picture(64, 36, 3), oneBounce);
+    ReferenceOptions referenceOptions = quietly(64, 1);
+    referenceOptions.width = 64;
+    referenceOptions.height = 36;
+    referenceOptions.useCache = true;
+    const ImageBuffer oneBounce = cachedReference(scene, referenceOptions).layers.at("one_bounce_diffuse");
+    const ImageError error = compare(indirect(scene, text, {}, 64, 36), oneBounce),
+                     nothing = compare(ImageBuffer(64, 36, 3), oneBounce);
     INFO(name << " through " << text << ": RMSE " << error.rmse.value << " against " << nothing.rmse.value
               << ", ratio " << error.meanRatio.value);
     CHECK(error.rmse.value < limit.error * nothing.rmse.value);

@@ -71,7 +71,7 @@ TEST_CASE(
       const double expected = 3.0 * gathered * atSurface * std::max(cone.cosine, 0.0f);
       INFO(fade << ", exponent " << cone.exponent << ", reach " << cone.reach << ", " << cone.behind
                 << " from the eye, cosine " << cone.cosine);
-      const Picture glossy = pictureOf(*trace.output<Image>("glossy").texture);
+      const ImageBuffer glossy = imageOf(*trace.output<Image>("glossy").texture);
       for (int channel = 0; channel < 3; ++channel)
         CHECK(glossy.at(4, 4, channel) == Approx(0.2 * std::exp2(-channel) * expected).epsilon(5e-3));
     }
@@ -112,7 +112,7 @@ TEST_CASE(
   const auto gathered = [&](int steps) {  // of a voxel each
     trace.setParameter("reach", (steps + 0.5) * size);
     trace.run();
-    return pictureOf(*trace.output<Image>("glossy").texture).at(4, 4, 0);
+    return imageOf(*trace.output<Image>("glossy").texture).at(4, 4, 0);
   };
   // Between the middles of two voxels of level 1, two finest ones wide, lies a line between their values;
   // each sample stands for half of its diameter.
@@ -149,7 +149,7 @@ TEST_CASE("the printed cone leaves pixels black where nothing is seen, or nothin
                                         normals, filledPixels(glm::vec4(1.0f)),
                                         filledPixels(glm::vec4(glm::vec3(albedo), 20.0f)), nullptr});
       trace.run();
-      const float value = pictureOf(*trace.output<Image>("glossy").texture).at(4, 4, 1);
+      const float value = imageOf(*trace.output<Image>("glossy").texture).at(4, 4, 1);
       if (isSeen && albedo > 0.0f) CHECK(value > 0.01f);
       if (!isSeen || albedo == 0.0f) CHECK(value == 0.0f);
     }

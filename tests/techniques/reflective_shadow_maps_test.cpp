@@ -98,11 +98,11 @@ glm::vec3 reflectedAtOrigin(const ReflectiveShadowMap& map, const char* method, 
   harness.setParameter("method", std::string(method));
   harness.setParameter("samples", samples);
   harness.run();
-  const Picture picture = pictureOf(*harness.output<Image>("diffuse").texture);
-  return {picture.at(3, 3, 0), picture.at(3, 3, 1), picture.at(3, 3, 2)};
+  const ImageBuffer image = imageOf(*harness.output<Image>("diffuse").texture);
+  return {image.at(3, 3, 0), image.at(3, 3, 1), image.at(3, 3, 2)};
 }
 
-Picture gather(const Scene& scene, const ReflectiveShadowMap& map, const char* method, int samples) {
+ImageBuffer gather(const Scene& scene, const ReflectiveShadowMap& map, const char* method, int samples) {
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   PassHarness view(device(), techniques(), "direct_lighting", "gbuffer", scene, snapshot);
   view.run();
@@ -112,7 +112,7 @@ Picture gather(const Scene& scene, const ReflectiveShadowMap& map, const char* m
   harness.setParameter("method", std::string(method));
   harness.setParameter("samples", samples);
   harness.run();
-  return pictureOf(*harness.output<Image>("diffuse").texture);
+  return imageOf(*harness.output<Image>("diffuse").texture);
 }
 
 }  // namespace
@@ -275,7 +275,7 @@ TEST_CASE("the pattern lies where the light sees the surface point: texels elsew
       harness.setParameter("reach", kReach);
       harness.setParameter("samples", 1000);
       harness.run();
-      const double found = pictureOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
+      const double found = imageOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
       CAPTURE(static_cast<int>(kind), published, found / expected);
       CHECK(found == Approx(expected).epsilon(0.03));
     }
@@ -307,7 +307,7 @@ TEST_CASE(
     harness.setParameter("reach", kReach);
     harness.setParameter("samples", 100);
     harness.run();
-    const double found = pictureOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
+    const double found = imageOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
     CAPTURE(ahead);
     CHECK(found == Approx(ahead > 0.0f ? kPi * std::pow(kReach * kSide, 2) : 0.0).epsilon(1e-3));
   }
@@ -388,7 +388,7 @@ TEST_CASE(
         harness.setParameter("reach", reach);
         harness.setParameter("samples", 4000);
         harness.run();
-        const double found = pictureOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
+        const double found = imageOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
         CAPTURE(kind.name, published, reach, found / expected);
         CHECK(found == Approx(expected).epsilon(0.02));
       }
@@ -442,7 +442,7 @@ TEST_CASE(
         harness.setParameter("method", std::string("flux"));
         harness.setParameter("samples", samples);
         harness.run();
-        return pictureOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
+        return imageOf(*harness.output<Image>("diffuse").texture).at(3, 3, 0) * kPi * kPi;
       };
       CAPTURE(size.x, size.y, bright, found(kSamples) / all, facing / all);
       CHECK(std::abs(found(kSamples) - facing) <= (2.0 / kSamples + 1e-5) * all);
@@ -454,10 +454,10 @@ TEST_CASE(
 TEST_CASE("gathering chosen texels converges to gathering all of them, by flux and by projection") {
   const Scene scene = litRoom(16, 16);
   const ReflectiveShadowMap map = render(scene, 32).value;
-  const Picture all = gather(scene, map, "all", 1);
+  const ImageBuffer all = gather(scene, map, "all", 1);
   const auto errorOf = [&](const char* method, int samples) {
-    const PictureError error = compare(gather(scene, map, method, samples), all);
-    return error.rmse.value / compare(Picture(16, 16, 3), all).rmse.value;
+    const ImageError error = compare(gather(scene, map, method, samples), all);
+    return error.rmse.value / compare(ImageBuffer(16, 16, 3), all).rmse.value;
   };
   for (const char* method : {"flux", "projected"}) {
     const double few = errorOf(method, 160), many = errorOf(method, 40000);
@@ -483,20 +483,20 @@ TEST_CASE("reflective shadow maps err on the Cornell box and the arcade by what 
   };
   for (const Claim& claim : {Claim{"cornell", 0.23, 0.95}, {"arcade", 0.53, 0.72}}) {
     const Scene scene = loadScene(sourceDirectory() / "scenes" / (std::string(claim.scene) + ".scene"));
-    ReferenceOptions truthOptions = quietly(64, 1);
-    truthOptions.width = 64;
-    truthOptions.height = 36;
-    truthOptions.useCache = true;
-    const LayeredPicture truth = cachedReference(scene, truthOptions);
-    const Picture &oneBounce = truth.layers.at("one_bounce_diffuse"),
-                  &variance = truth.layers.at("one_bounce_diffuse.variance");
+    ReferenceOptions referenceOptions = quietly(64, 1);
+    referenceOptions.width = 64;
+    referenceOptions.height = 36;
+    referenceOptions.useCache = true;
+    const LayeredImage reference = cachedReference(scene, referenceOptions);
+    const ImageBuffer &oneBounce = reference.layers.at("one_bounce_diffuse"),
+                      &variance = reference.layers.at("one_bounce_diffuse.variance");
     RenderOptions options;
     options.width = 64;
     options.height = 36;
-    const Picture picture =
+    const ImageBuffer image =
         renderOnce(scene, pipeline("reflective_shadow_maps"), options).outputs.at("indirect_diffuse");
-    const PictureError error = compare(picture, oneBounce, variance),
-                       nothing = compare(Picture(64, 36, 3), oneBounce, variance);
+    const ImageError error = compare(image, oneBounce, variance),
+                     nothing = compare(ImageBuffer(64, 36, 3), oneBounce, variance);
     // The reference's own noise is a part of the RMSE.
     const double rmse =
         std::sqrt(std::max(0.0, error.rmse.value * error.rmse.value - error.noiseFloor * error.noiseFloor));

@@ -25,8 +25,8 @@ Marched marchAsPublished(const Scene& scene, const ScatteringGrid& media, const 
   harness.setInput("gbuffer", gbuffer);
   harness.setInput("media", media);
   harness.run();
-  return {pictureOf(*harness.output<Image>("scattered").texture),
-          pictureOf(*harness.output<Image>("transmittance").texture)};
+  return {imageOf(*harness.output<Image>("scattered").texture),
+          imageOf(*harness.output<Image>("transmittance").texture)};
 }
 
 /// A floor far below gives the scene its size, six metres, and a speck far above its middle, the origin;
@@ -70,12 +70,12 @@ TEST_CASE(
           const double entry = isSlip && !slip ? 0.25 : listing451(row, column);
           const ScatteringGrid fog = evenMedium(glm::vec3(1.0f), glm::vec3(1.0f), 0.0f, {-5, -5, -5},
                                                 {5, 5, static_cast<float>(-(entry + side))});
-          const Picture found =
+          const ImageBuffer found =
               marchAsPublished(scene, fog, gbuffer, 1,
                                {{"dither", slip ? "as_published" : "bayer"}, {"cosine", "unit_vectors"}})
                   .scattered;
           CAPTURE(row, column, side, slip);
-          // Row 0 of a picture is its top.
+          // Row 0 of an image is its top.
           CHECK(found.at(8 + row, kPixels - 1 - (12 + column), 0) ==
                 Approx(side < 0.0 ? 3.0 * kIsotropic : 0.0).epsilon(1e-4).margin(1e-7));
         }
@@ -103,7 +103,7 @@ TEST_CASE("as published nothing is scattered where the shadow map has shadow") {
   builder.quad({-2, 1, -2}, {0, 0, 4}, {2, 0, 0}, builder.lambert(0.5f));
   const GBuffer gbuffer = surfacesAt([](int i) { return glm::vec3(i % 2 == 0 ? -1.0f : 1.0f, 0.0f, -0.5f); });
   const ScatteringGrid fog = evenMedium(glm::vec3(1.0f), glm::vec3(1.0f), 0.0f, {-5, -5, -5}, {5, 5, 5});
-  const Picture found =
+  const ImageBuffer found =
       marchAsPublished(builder.scene, fog, gbuffer, 32, {{"cosine", "unit_vectors"}}).scattered;
   // Beside the eye, at the roof's edge, a texel of the shadow map is half in the light.
   for (int i = 100; i < 200; ++i)
@@ -133,15 +133,15 @@ TEST_CASE(
     // A power of what is negative has no value.
     const double expected = 1.25 - printed > 0.0 ? 2.0 * listing453(printed, 0.5) : 0.0;
     CHECK(found("as_published", "as_published") == Approx(expected).epsilon(1e-3).margin(1e-7));
-    // A lamp has a position; its light arrives as the inverse square, here at four places of the ray.
+    // A light has a position; its light arrives as the inverse square, here at four places of the ray.
     builder.scene.lights.clear();
-    const glm::dvec3 lamp(0.3, 1.2, -1.5);
-    builder.light(LightKind::point, glm::vec3(10.0f), lamp);
-    const double cosine = glm::dot(glm::dvec3(0, 0, -length) / unit, lamp / unit);
+    const glm::dvec3 light(0.3, 1.2, -1.5);
+    builder.light(LightKind::point, glm::vec3(10.0f), light);
+    const double cosine = glm::dot(glm::dvec3(0, 0, -length) / unit, light / unit);
     const int row = 77 % kPixels % 4, column = (kPixels - 1 - 77 / kPixels) % 4;
     double irradiance = 0.0;
     for (int s = 0; s < 4; ++s) {
-      const glm::dvec3 path = lamp - glm::dvec3(0, 0, -length * (s + listing451(row, column)) / 4.0);
+      const glm::dvec3 path = light - glm::dvec3(0, 0, -length * (s + listing451(row, column)) / 4.0);
       irradiance += 10.0 / glm::dot(path, path) / 4.0;
     }
     CHECK(found("as_published", "as_published") ==
@@ -201,7 +201,7 @@ TEST_CASE(
   };
   const GBuffer gbuffer = surfacesAt([&](int i) { return glm::vec3(endOf(i)); });
   constexpr int kSteps = 24;
-  const Picture found =
+  const ImageBuffer found =
       marchAsPublished(builder.scene, grid, gbuffer, kSteps, {{"cosine", "unit_vectors"}}).scattered;
   double lit = 0.0;
   for (int i = 31; i < kPixels * kPixels; i += 61) {

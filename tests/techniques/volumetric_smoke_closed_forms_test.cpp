@@ -43,7 +43,7 @@ TEST_CASE("one step through extinction 10^4 / m scatters what the closed form sa
   }
 }
 
-TEST_CASE("voxelised smoke of 10^-3 to 10^5 / m, in 32 steps, scatters what a slab does in closed form") {
+TEST_CASE("voxelized smoke of 10^-3 to 10^5 / m, in 32 steps, scatters what a slab does in closed form") {
   // Plane layers seen from above: at the optical depth t along the view the light has come through t r, r =
   // mu_v / mu_s the ratio of the cosines of view and light with the normal, whatever the density's profile
   // is. So L = albedo p E int_0^T exp(-t (1 + r)) dt = albedo p E (1 - exp(-T (1 + r))) / (1 + r), which is
@@ -105,7 +105,7 @@ TEST_CASE("an opaque ball of smoke has the light of its surface, mu_s / (mu_s + 
   for (const char* depth : {"volume", "march"})
     for (const float extinction : {1e3f, 1e4f}) {
       ball.media.front().extinction = glm::vec3(extinction);
-      const Picture scattered =
+      const ImageBuffer scattered =
           march(builder.scene, ball, gbuffer, 32, {{"light_depth", depth}, {"start", "dithered"}}).scattered;
       double found = 0.0, wanted = 0.0, squares = 0.0;
       int count = 0;
@@ -188,9 +188,9 @@ TEST_CASE("a point light inside smoke that varies is its integral, marching to i
                  std::exp(-double(extinction) * (0.5 * t + (0.5 + 0.1 * kHeight) * r));
         }
         const double expected = double(extinction) * 0.5 * 0.9 * 10.0 * sum * 3.5 / kPieces / 3.0;
-        const Picture found = march(builder.scene, smoke, gbuffer, 128, {{"light_depth", way.depth}},
-                                    {{"light_resolution", way.points}})
-                                  .scattered;
+        const ImageBuffer found = march(builder.scene, smoke, gbuffer, 128, {{"light_depth", way.depth}},
+                                        {{"light_resolution", way.points}})
+                                      .scattered;
         CAPTURE(way.depth, way.points, g, extinction, expected);
         CHECK(valueOf(found, kPixels * 9 + 5) == Approx(expected).epsilon(way.tolerance));
       }
@@ -215,7 +215,7 @@ TEST_CASE("densities are integrated exactly over as many cells as asked for, alo
           varyingMedium(static_cast<float>(kExtinction), 0.5f, 0.0f, glm::vec3(-2.0f), kVoxel, glm::ivec3(16),
                         [&](const glm::vec3& place) { return densityAlong(glm::dot(place, direction)); });
       const GBuffer gbuffer = surfacesAt([&](int) { return 1.5f * direction; });
-      const Picture through = march(emptyScene(), smoke, gbuffer, 1, {}, {{"cells", 4}}).transmittance;
+      const ImageBuffer through = march(emptyScene(), smoke, gbuffer, 1, {}, {{"cells", 4}}).transmittance;
       CHECK(valueOf(through, 7) == Approx(std::exp(-kExtinction * integral)).epsilon(0.005));
     }
 }

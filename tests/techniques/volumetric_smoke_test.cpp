@@ -186,7 +186,7 @@ TEST_CASE("a fine grid holds the density of the clouds") {
   const Medium& source = scene.media.front();
   const ParticleClock clock = particleClock(source, 2.0);
   const glm::dvec3 origin = snapshotOf(scene, 2.0).origin;
-  double squared = 0.0, truth = 0.0;
+  double squared = 0.0, reference = 0.0;
   for (int z = 5; z < medium.grid.resolution.z; z += 7)
     for (int y = 5; y < medium.grid.resolution.y; y += 7)
       for (int x = 5; x < medium.grid.resolution.x; x += 7) {
@@ -201,9 +201,9 @@ TEST_CASE("a fine grid holds the density of the clouds") {
         const auto index =
             static_cast<std::size_t>((z * medium.grid.resolution.y + y) * medium.grid.resolution.x + x);
         squared += std::pow(density[index] - expected, 2.0);
-        truth += expected * expected;
+        reference += expected * expected;
       }
-  CHECK(std::sqrt(squared / truth) < 0.01);
+  CHECK(std::sqrt(squared / reference) < 0.01);
 }
 
 TEST_CASE("nothing is inserted into solid voxels, and what they would have held stays in the free ones") {
@@ -237,7 +237,7 @@ TEST_CASE("nothing is inserted into solid voxels, and what they would have held 
   CHECK(massOf(medium) == Approx(3000 * particleMass(scene.media.front())).epsilon(1e-6));
 }
 
-TEST_CASE("light depths in a volume give the picture of marching to the light from every step") {
+TEST_CASE("light depths in a volume give the image of marching to the light from every step") {
   SceneBuilder builder;
   builder.scene = smokeScene(smokeMedium());
   builder.light(LightKind::point, glm::vec3(4.0f), {1.0, 1.0, 1.0});
@@ -248,11 +248,11 @@ TEST_CASE("light depths in a volume give the picture of marching to the light fr
     return glm::vec3(2.0f * static_cast<float>(i % kPixels) / kPixels - 1.0f,
                      1.0f - 2.0f * static_cast<float>(i / kPixels) / kPixels, -1.0f);
   });
-  const Picture marched = march(builder.scene, grid, gbuffer, 32, {{"light_depth", "march"}}).scattered;
+  const ImageBuffer marched = march(builder.scene, grid, gbuffer, 32, {{"light_depth", "march"}}).scattered;
   // What is near is integrated; trilinear interpolation of the rest: a finer grid errs less.
   double errors[2];
   for (const int level : {0, 1}) {
-    const Picture volume =
+    const ImageBuffer volume =
         march(builder.scene, grid, gbuffer, 32, {}, {{"light_resolution", 32 << level}}).scattered;
     double squared = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < volume.values().size(); ++i) {
@@ -268,8 +268,8 @@ TEST_CASE("light depths in a volume give the picture of marching to the light fr
   CHECK(errors[1] < 0.006);
 }
 
-TEST_CASE("at half resolution of a picture of odd size every ray is one of the picture's") {
-  // Where the pattern would look beside the picture it takes the last pixel: all rays end at the surface.
+TEST_CASE("at half resolution of an image of odd size every ray is one of the image's") {
+  // Where the pattern would look beside the image it takes the last pixel: all rays end at the surface.
   constexpr int kWidth = 9, kHeight = 7;
   SceneBuilder builder;
   builder.look({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 0.7, kWidth, kHeight);
@@ -281,7 +281,7 @@ TEST_CASE("at half resolution of a picture of odd size every ray is one of the p
   gbuffer.position = std::make_shared<gpu::Texture>(device(), description, "surfaces");
   gbuffer.position->clear({0, 0, -1, 1});
   const ScatteringGrid fog = evenMedium(glm::vec3(1.0f), glm::vec3(0.5f), 0, glm::vec3(-3), glm::vec3(3));
-  const Picture through = march(builder.scene, fog, gbuffer, 4, {{"resolution", "half"}}).transmittance;
+  const ImageBuffer through = march(builder.scene, fog, gbuffer, 4, {{"resolution", "half"}}).transmittance;
   REQUIRE(through.width() == 5);
   REQUIRE(through.height() == 4);
   for (const float value : through.values()) CHECK(value == Approx(std::exp(-1.0)).epsilon(1e-3));
@@ -296,7 +296,7 @@ TEST_CASE("surfaces are lit through the medium: E exp(-sigma_t d)") {
   fog.extinction = {0.3f, 1.0f, 2.0f};
   fog.box.emplace(glm::dvec3(-2, 0, -2), glm::dvec3(2, 0.7, 2));
   builder.scene.media.push_back(fog);
-  const Picture direct = renderOnce(builder.scene, pipeline("volumetric_smoke")).outputs.at("direct");
+  const ImageBuffer direct = renderOnce(builder.scene, pipeline("volumetric_smoke")).outputs.at("direct");
   for (int channel = 0; channel < 3; ++channel)
     CHECK(direct.at(8, 8, channel) ==
           Approx(0.6 / kPi * 3.0 * std::exp(-0.7 * fog.extinction[channel])).epsilon(0.001));
@@ -328,7 +328,7 @@ TEST_CASE("cones see the medium: an environment seen through d metres of it is d
   harness.setInput("grid", grid);
   harness.setInput("media", evenMedium(extinction, glm::vec3(0.5f), 0, {-50, 1, -50}, {50, 1.5f, 50}));
   harness.run();
-  const Picture diffuse = pictureOf(*harness.output<Image>("diffuse").texture);
+  const ImageBuffer diffuse = imageOf(*harness.output<Image>("diffuse").texture);
   for (int channel = 0; channel < 3; ++channel)
     CHECK(diffuse.at(5, 5, channel) ==
           Approx(std::exp(-0.5 / std::sqrt(0.5) * extinction[channel])).epsilon(0.001));
@@ -361,13 +361,13 @@ TEST_CASE("a frame made alone is the frame of a sequence") {
   for (const double time : {0.0, 1.0}) sequence.render(time);
   const FrameResult last = sequence.render(2.5, 2);
   const FrameResult alone = frameAt(scene, text, sized(48), 2.5);
-  for (const auto& [name, picture] : last.outputs) {
+  for (const auto& [name, image] : last.outputs) {
     CAPTURE(name);
-    CHECK(picture.values() == alone.outputs.at(name).values());
+    CHECK(image.values() == alone.outputs.at(name).values());
   }
 }
 
-TEST_CASE("a scene without media pays nothing: the passes are left out and the picture keeps its bits") {
+TEST_CASE("a scene without media pays nothing: the passes are left out and the image keeps its bits") {
   const Scene scene = committed("cornell_glossy");
   const Pipeline smoke = pipeline("volumetric_smoke"), clear = pipeline("voxel_cone_tracing");
   RenderOptions options = sized(48);
@@ -396,9 +396,9 @@ TEST_CASE("with media, leaving out changes no bit") {
     const FrameResult pruned = frameAt(scene, pipeline("volumetric_smoke"), options, 2.0);
     options.keepEverything = true;
     const FrameResult kept = frameAt(scene, pipeline("volumetric_smoke"), options, 2.0);
-    for (const auto& [output, picture] : pruned.outputs) {
+    for (const auto& [output, image] : pruned.outputs) {
       CAPTURE(name, output);
-      CHECK(picture.values() == kept.outputs.at(output).values());
+      CHECK(image.values() == kept.outputs.at(output).values());
     }
   }
 }
@@ -407,23 +407,23 @@ TEST_CASE("scattering in smoke and fog is that of the path tracer", "[slow]") {
   for (const char* name : {"smoke", "fog"}) {
     CAPTURE(name);
     const Scene scene = committed(name);
-    ReferenceOptions truthOptions;
-    truthOptions.width = truthOptions.height = 64;
-    truthOptions.samplesPerPixel = 384;
-    truthOptions.time = 3.0;
-    truthOptions.progress = false;
-    const LayeredPicture truth = cachedReference(scene, truthOptions);
-    const Picture& single = truth.layers.at("scattered_single");
-    const Picture& variance = truth.layers.at("scattered_single.variance");
-    const double nothing = compare(Picture(64, 64, 3), single, variance).rmse.value;
+    ReferenceOptions referenceOptions;
+    referenceOptions.width = referenceOptions.height = 64;
+    referenceOptions.samplesPerPixel = 384;
+    referenceOptions.time = 3.0;
+    referenceOptions.progress = false;
+    const LayeredImage reference = cachedReference(scene, referenceOptions);
+    const ImageBuffer& single = reference.layers.at("scattered_single");
+    const ImageBuffer& variance = reference.layers.at("scattered_single.variance");
+    const double nothing = compare(ImageBuffer(64, 64, 3), single, variance).rmse.value;
     const Pipeline text = pipeline("volumetric_smoke");
-    // Grid and picture resolution bring the energy to the truth's; the default is near.
+    // Grid and image resolution bring the energy to the reference's; the default is near.
     for (const bool fine : {false, true}) {
       RenderOptions options = sized(64);
       if (fine) options.parameters = text.settings({"pixels=full", "smoke_resolution=128", "steps=64"});
-      const PictureError error =
+      const ImageError error =
           compare(frameAt(scene, text, options, 3.0).outputs.at("scattered"), single, variance);
-      // The truth's own noise is a part of the RMSE.
+      // The reference's own noise is a part of the RMSE.
       const double rmse =
           std::sqrt(std::max(0.0, error.rmse.value * error.rmse.value - error.noiseFloor * error.noiseFloor));
       CAPTURE(fine, rmse / nothing);

@@ -15,7 +15,7 @@ constexpr int kSize = 64;  // pixels along both sides
 
 /// The reference with so many samples that its own noise, 0.0013 on the Cornell box beside 0.0043 of the best
 /// row, adds a twentieth to that and nothing to the others.
-LayeredPicture referenceOf(const Scene& scene) {
+LayeredImage referenceOf(const Scene& scene) {
   ReferenceOptions options;
   options.width = options.height = kSize;
   options.samplesPerPixel = 1024;
@@ -32,13 +32,13 @@ struct Claim {
 /// Other drivers filter and round a little differently, and the reference has its noise: a tenth of the error
 /// and 0.03 of the energy are left to them.
 void checkClaim(const Scene& scene, const Pipeline& text, const Claim& claim, const char* output,
-                const Picture& reference, const Picture& variance) {
+                const ImageBuffer& reference, const ImageBuffer& variance) {
   RenderOptions options;
   options.width = options.height = kSize;
   options.parameters = text.settings(claim.settings);
-  const Picture picture = renderOnce(scene, text, options).outputs.at(output);
-  const PictureError error = compare(picture, reference, variance),
-                     nothing = compare(Picture(kSize, kSize, 3), reference);
+  const ImageBuffer image = renderOnce(scene, text, options).outputs.at(output);
+  const ImageError error = compare(image, reference, variance),
+                   nothing = compare(ImageBuffer(kSize, kSize, 3), reference);
   for (const std::string& setting : claim.settings) UNSCOPED_INFO(setting);
   INFO("RMSE " << error.rmse.value << " of " << nothing.rmse.value << ": "
                << error.rmse.value / nothing.rmse.value << ", ratio " << error.meanRatio.value);
@@ -50,7 +50,7 @@ void checkClaim(const Scene& scene, const Pipeline& text, const Claim& claim, co
 
 TEST_CASE("indirect light on the Cornell box is as near to the reference as the card claims") {
   const Scene scene = loadScene(sourceDirectory() / "scenes/cornell.scene");
-  const LayeredPicture reference = referenceOf(scene);
+  const LayeredImage reference = referenceOf(scene);
   const Pipeline text = pipeline("voxel_cone_tracing");
   for (const Claim& claim :
        {Claim{{"resolution=64", "cones=6"}, 0.37, 1.10}, Claim{{"resolution=128", "cones=6"}, 0.38, 1.12},
@@ -61,7 +61,7 @@ TEST_CASE("indirect light on the Cornell box is as near to the reference as the 
 
 TEST_CASE("glossy light of the glossy Cornell box is as near to the reference as the card claims") {
   const Scene scene = loadScene(sourceDirectory() / "scenes/cornell_glossy.scene");
-  const LayeredPicture reference = referenceOf(scene);
+  const LayeredImage reference = referenceOf(scene);
   const Pipeline text = pipeline("voxel_cone_tracing");
   for (const Claim& claim : {Claim{{"resolution=64"}, 0.79, 1.31}, Claim{{"resolution=128"}, 0.86, 1.41}})
     checkClaim(scene, text, claim, "indirect_glossy", reference.layers.at("one_bounce_glossy"),
@@ -73,16 +73,16 @@ TEST_CASE("a closed room of single sheets keeps nine tenths of its one-bounce li
   builder.box({0, 0, 0}, {1, 1, 1}, builder.lambert(0.7f), true);
   builder.light(LightKind::point, glm::vec3(1.0f), {0.45, 0.6, 0.55});
   builder.look({0.85, 0.8, 0.9}, {0.2, 0.2, 0.15}, {0, 1, 0}, 1.0, 32, 32);
-  ReferenceOptions truthOptions;
-  truthOptions.samplesPerPixel = 256;
-  truthOptions.progress = false;
-  const LayeredPicture truth = cachedReference(builder.scene, truthOptions);
+  ReferenceOptions referenceOptions;
+  referenceOptions.samplesPerPixel = 256;
+  referenceOptions.progress = false;
+  const LayeredImage reference = cachedReference(builder.scene, referenceOptions);
   const Pipeline text = pipeline("voxel_cone_tracing");
   for (const char* resolution : {"resolution=32", "resolution=64", "resolution=128"}) {
     RenderOptions options;
     options.parameters = text.settings({resolution});
-    const Picture picture = renderOnce(builder.scene, text, options).outputs.at("indirect_diffuse");
-    const PictureError error = compare(picture, truth.layers.at("one_bounce_diffuse"));
+    const ImageBuffer image = renderOnce(builder.scene, text, options).outputs.at("indirect_diffuse");
+    const ImageError error = compare(image, reference.layers.at("one_bounce_diffuse"));
     INFO(resolution << ": ratio " << error.meanRatio.value);
     CHECK(error.meanRatio.value >= 0.9);
     CHECK(error.meanRatio.value <= 1.05);

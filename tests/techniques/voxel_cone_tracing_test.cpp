@@ -239,7 +239,7 @@ TEST_CASE("a lit plane stores albedo / pi times its irradiance in its voxels") {
 }
 
 TEST_CASE(
-    "a dim lamp keeps its light in a grid with one 10^9 times as bright, in half floats with one of 10^6") {
+    "a dim area light keeps its light in a grid with one 10^9 times as bright, in half floats with one of 10^6") {
   // Two spots that light a patch of the floor each. What the dim one lights alone is that of a scene without
   // the other. In half floats values below 6e-5 units have fewer digits: a hundredth of the largest here is
   // 4e-6 units.
@@ -335,10 +335,10 @@ TEST_CASE(
   const RadianceGrid grid = filtered(uniformGrid(64, glm::vec4(0.05f)));
   GatherSettings settings{6, "cosine", 0, 0, 0.4, 1.0};
   settings.jitter = 1.0;
-  const Picture picture = gatherPicture(emptyScene(), grid, glm::vec3(0.0f), {0, 1, 0}, settings);
+  const ImageBuffer image = gatherImage(emptyScene(), grid, glm::vec3(0.0f), {0, 1, 0}, settings);
   const double expected = 1.0 - std::pow(0.95, 0.4 * 32.0);
   for (int y = 0; y < cones::kPixels; ++y)
-    for (int x = 0; x < cones::kPixels; ++x) CHECK(picture.at(x, y, 0) == Approx(expected).epsilon(0.01));
+    for (int x = 0; x < cones::kPixels; ++x) CHECK(image.at(x, y, 0) == Approx(expected).epsilon(0.01));
 }
 
 TEST_CASE(
@@ -353,10 +353,10 @@ TEST_CASE(
       GatherSettings settings{cones, "cosine", 0, 0, 0, 2.0, 0.0};
       settings.jitter = jitter;
       settings.asPublished = asPublished;
-      const Picture picture = gatherPicture(
+      const ImageBuffer image = gatherImage(
           emptyScene(), grid, {0, static_cast<float>(place) / 32.0f / 6.0f, 0}, {0, 1, 0}, settings);
       double mean = 0.0;
-      for (const float value : picture.values()) mean += value / static_cast<double>(picture.values().size());
+      for (const float value : image.values()) mean += value / static_cast<double>(image.values().size());
       low = std::min(low, mean);
       high = std::max(high, mean);
     }
@@ -368,16 +368,16 @@ TEST_CASE(
   CHECK(jittered < 0.5 * bands);
 
   GatherSettings settings{6, "cosine", 0, 0, 0, 2.0, 0.0};
-  const auto picture = [&](double jitter, std::uint64_t seed, bool asPublished) {
+  const auto image = [&](double jitter, std::uint64_t seed, bool asPublished) {
     settings.jitter = jitter;
     settings.seed = seed;
     settings.asPublished = asPublished;
-    return gatherPicture(emptyScene(), grid, glm::vec3(0.0f), {0, 1, 0}, settings).values();
+    return gatherImage(emptyScene(), grid, glm::vec3(0.0f), {0, 1, 0}, settings).values();
   };
   for (const bool asPublished : {false, true}) {
-    CHECK(picture(1.0, 1, asPublished) == picture(1.0, 1, asPublished));
-    CHECK(picture(1.0, 1, asPublished) != picture(1.0, 2, asPublished));
-    const std::vector<float> still = picture(0.0, 1, asPublished), moved = picture(1.0, 1, asPublished);
+    CHECK(image(1.0, 1, asPublished) == image(1.0, 1, asPublished));
+    CHECK(image(1.0, 1, asPublished) != image(1.0, 2, asPublished));
+    const std::vector<float> still = image(0.0, 1, asPublished), moved = image(1.0, 1, asPublished);
     CHECK(still.at(0) == still.at(12));
     CHECK(moved.at(0) != moved.at(12));
   }
@@ -519,6 +519,5 @@ TEST_CASE("the same seed and device give the same bits twice") {
   const FrameResult first = renderOnce(scene, pipeline("voxel_cone_tracing")),
                     second = renderOnce(scene, pipeline("voxel_cone_tracing"));
   REQUIRE(first.outputs.size() == 4);
-  for (const auto& [name, picture] : first.outputs)
-    CHECK(picture.values() == second.outputs.at(name).values());
+  for (const auto& [name, image] : first.outputs) CHECK(image.values() == second.outputs.at(name).values());
 }

@@ -81,7 +81,7 @@ struct Run {
     return options;
   }
   std::pair<std::set<Cell>, Voxels> at(double time) {
-    executor.render(time, 0, PipelineExecutor::Pictures::no);
+    executor.render(time, 0, PipelineExecutor::Images::no);
     return {
         cellsOf(static_cast<const Out<BinaryGrid>&>(*executor.output("binary", "bits")).value()),
         voxelsOf(
@@ -313,7 +313,7 @@ TEST_CASE(
     "larger points close a wall across the stacks whose atlas is too small, and thicken one along them") {
   // 0.7 texels along a voxel are 1.43 voxels apart: whole rows and columns are missed. A point of side s
   // reaches the centres of voxels within s / 2 of it in x and y: 1.5 is enough where 1 is not. Along the
-  // stacks, z, it reaches nothing (thesis 004, Listing 4.41: what grows is a point in the picture of stacks).
+  // stacks, z, it reaches nothing (thesis 004, Listing 4.41: what grows is a point in the image of stacks).
   for (const int axis : {0, 2}) {
     INFO("a wall across "
          << "xyz"[axis]);

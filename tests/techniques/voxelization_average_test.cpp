@@ -227,7 +227,7 @@ TEST_CASE("a hundred thousand fragments of one voxel neither overflow nor lose t
   CHECK(Averages::texel(averages.emission, {0, 0, 0}).x == Approx(2.0).epsilon(1e-6));
 }
 
-TEST_CASE("a dim crowded voxel keeps its emission in a grid with a lamp 10^12 times as bright") {
+TEST_CASE("a dim crowded voxel keeps its emission in a grid with an area light 10^12 times as bright") {
   // Every voxel has a unit of its own: 5000 fragments of radiance 1 and half as many of 1/4 have the mean
   // 3/4.
   const glm::ivec3 dim(1, 2, 3), bright(6, 2, 3);
@@ -286,7 +286,7 @@ TEST_CASE("an empty list gives empty grids, and a scene that emits nothing no em
   CHECK(dark.emission.empty());
 }
 
-TEST_CASE("the averages of a voxelised scene have its albedo and its voxels") {
+TEST_CASE("the averages of a voxelized scene have its albedo and its voxels") {
   SceneBuilder builder;
   builder.box({-1, -1, -1}, {1, 1, 1}, builder.lambert(0.25f, 3.0f), false);
   const Pipeline text = Pipeline::parse(

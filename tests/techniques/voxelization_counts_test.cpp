@@ -39,14 +39,14 @@ void addBlock(Scene& scene, int material, const glm::vec3& low, const glm::vec3&
 /// outside of the grid, at time 1 the plates fill it, at time 2 the block does.
 Scene travellers() {
   SceneBuilder builder;
-  const int grey = builder.lambert(0.5f), lamp = builder.lambert(0.25f, 3.0f);
+  const int grey = builder.lambert(0.5f), areaLight = builder.lambert(0.25f, 3.0f);
   const auto move = [&](std::size_t first) {
     for (std::size_t o = first; o < builder.scene.objects.size(); ++o)
       builder.scene.objects[o].motion = RigidMotion{{0, 1, 0}, 0.0, {0, 0, 0}, {10, 0, 0}};
   };
   for (int i = 0; i < 60; ++i)
     builder.quad({-10.75f, -0.75f, -0.74f + 0.025f * static_cast<float>(i)}, {1.5f, 0, 0}, {0, 1.5f, 0},
-                 i % 2 == 0 ? grey : lamp);
+                 i % 2 == 0 ? grey : areaLight);
   addBlock(builder.scene, grey, {-20.75f, -0.75f, -0.75f}, {-19.25f, 0.75f, 0.75f});
   move(0);
   builder.quad({0, 0, 0}, {0.2f, 0, 0}, {0, 0.2f, 0}, grey);  // stands still
@@ -75,7 +75,7 @@ struct Run {
     executor.keepOutput("means", "attributes");
     executor.keepOutput("means", "opacity");
   }
-  void at(double time, int frame) { executor.render(time, frame, PipelineExecutor::Pictures::no); }
+  void at(double time, int frame) { executor.render(time, frame, PipelineExecutor::Images::no); }
   std::vector<FragmentData> fragments(const char* pass) const {
     return voxelsOf(static_cast<const Out<VoxelFragments>*>(executor.output(pass, "fragments"))->value())
         .fragments;
@@ -140,7 +140,7 @@ TEST_CASE("in a steady frame no pass of a voxelizer waits for the device") {
   int frame = 0;
   for (const double time : {1.0, 1.01, 1.02}) run.at(time, frame++);
   const std::uint64_t before = device().transfers().stalls;
-  const FrameResult steady = run.executor.render(1.03, frame, PipelineExecutor::Pictures::no);
+  const FrameResult steady = run.executor.render(1.03, frame, PipelineExecutor::Images::no);
   CHECK(device().transfers().stalls == before);
   for (const PassRecord& pass : steady.passes) CHECK(pass.ran);
   // The counter does count: a download with work under way waits for it.
@@ -159,7 +159,7 @@ TEST_CASE("in a steady frame no pass of a voxelizer waits for the device") {
   CHECK(device().transfers().stalls == before + 1);
 }
 
-TEST_CASE("a list from nothing of what stands still is as long as it has to be") {
+TEST_CASE("a list from nothing of static geometry is as long as it has to be") {
   Scene scene = litRoom(8, 8);
   const Pipeline text =
       Pipeline::parse("pipeline \"still\" {\n  pass voxels voxelization.conservative { resolution 24 }\n}\n",
@@ -168,7 +168,7 @@ TEST_CASE("a list from nothing of what stands still is as long as it has to be")
   executor.keepOutput("voxels", "fragments");
   const auto list = [&] {
     executor.invalidate();
-    executor.render(0.0, 0, PipelineExecutor::Pictures::no);
+    executor.render(0.0, 0, PipelineExecutor::Images::no);
     return static_cast<const Out<VoxelFragments>*>(executor.output("voxels", "fragments"))->value();
   };
   const std::vector<FragmentData> first = fragmentsOf(list());

@@ -1,4 +1,4 @@
-// What all voxelisers share: geometry that stands still is voxelised once, what moves in every frame, and no
+// What all voxelizers share: static geometry is voxelized once, what moves in every frame, and no
 // frame can be told from the first one of a fresh run.
 #include <cmath>
 #include <cstring>
@@ -13,7 +13,7 @@ using namespace lumivox::test;
 
 namespace {
 
-Pipeline oneVoxeliser(const std::string& parameters) {
+Pipeline oneVoxelizer(const std::string& parameters) {
   return Pipeline::parse(
       "pipeline \"voxels\" {\n  pass gbuffer direct_lighting.gbuffer { }\n"
       "  pass shadow direct_lighting.shadow_map { size 16 }\n"
@@ -33,10 +33,10 @@ RenderOptions small() {
   return options;
 }
 
-/// A pipeline of one voxeliser whose fragments stay readable.
+/// A pipeline of one voxelizer whose fragments stay readable.
 struct Run {
   Run(const Scene& scene, const std::string& parameters, RenderOptions options = small())
-      : executor(device(), techniques(), scene, oneVoxeliser(parameters), options) {
+      : executor(device(), techniques(), scene, oneVoxelizer(parameters), options) {
     executor.keepOutput("voxels", "fragments");
   }
   Voxels at(double time, int frame = 0) { return now(executor.render(time, frame)); }
@@ -45,11 +45,11 @@ struct Run {
     REQUIRE(output != nullptr);
     return voxelsOf(output->value());
   }
-  bool reusesStillGeometry() const {
+  bool reusesStaticGeometry() const {
     const std::vector<LeftOut> leftOut = executor.explain().leftOut;
     return std::any_of(leftOut.begin(), leftOut.end(), [](const LeftOut& one) {
       return one.level == LeftOut::Level::time && one.pass == "voxels" &&
-             one.what.find("stands still") != std::string::npos;
+             one.what.find("static geometry") != std::string::npos;
     });
   }
   PipelineExecutor executor;
@@ -85,7 +85,7 @@ TEST_CASE("after any sequence of times the fragments are those of a fresh run at
   int frame = 0;
   std::size_t changed = 0;
   Voxels before = run.at(0.0, frame++);
-  CHECK_FALSE(run.reusesStillGeometry());
+  CHECK_FALSE(run.reusesStaticGeometry());
   // Forwards, backwards, the same time again, a teleport and a time in the far future.
   for (const double time : {0.1, 0.2, 0.15, 0.15, 3.0, 0.0, 1e6}) {
     INFO("time " << time);
@@ -95,7 +95,7 @@ TEST_CASE("after any sequence of times the fragments are those of a fresh run at
     before = voxels;
   }
   CHECK(changed == 6);
-  CHECK(run.reusesStillGeometry());
+  CHECK(run.reusesStaticGeometry());
 }
 
 TEST_CASE("the fragments of still geometry stay at the beginning of the list, untouched") {
@@ -111,10 +111,10 @@ TEST_CASE("the fragments of still geometry stay at the beginning of the list, un
   const std::size_t stillCount = Run(still, "resolution 24").at(0.0).fragments.size();
   const auto first = raw(0.0), second = raw(0.5);
   REQUIRE(stillCount > 1000);
-  // On one device a second voxelisation may write in the same order, so that the explanation has to say it
+  // On one device a second voxelization may write in the same order, so that the explanation has to say it
   // too.
   CHECK(std::equal(first.begin(), first.begin() + static_cast<std::ptrdiff_t>(stillCount), second.begin()));
-  CHECK(run.reusesStillGeometry());
+  CHECK(run.reusesStaticGeometry());
 }
 
 TEST_CASE("without anything that stands still, and without anything that moves, the list is right as well") {
@@ -123,7 +123,7 @@ TEST_CASE("without anything that stands still, and without anything that moves, 
   Run run(moving, "resolution 16");
   run.at(0.0);
   checkSame(run.at(0.4, 1), Run(moving, "resolution 16").at(0.4));
-  CHECK_FALSE(run.reusesStillGeometry());
+  CHECK_FALSE(run.reusesStaticGeometry());
 
   Scene still = movingRoom();
   std::erase_if(still.objects, [](const Object& object) { return object.animated(); });
@@ -171,19 +171,19 @@ TEST_CASE("a list grows while things move and nothing is lost") {
   checkSame(run.at(0.0, 2), Run(scene, resolution).at(0.0));
 }
 
-TEST_CASE("invalidate and keep-everything voxelise what stands still anew, with the same fragments") {
+TEST_CASE("invalidate and keep-everything voxelize static geometry anew, with the same fragments") {
   const Scene scene = movingRoom();
   Run run(scene, "resolution 16");
   run.at(0.0);
   run.executor.invalidate();
   const Voxels anew = run.at(0.3, 1);
-  CHECK_FALSE(run.reusesStillGeometry());
+  CHECK_FALSE(run.reusesStaticGeometry());
   RenderOptions everything = small();
   everything.keepEverything = true;
   Run whole(scene, "resolution 16", everything);
   whole.at(0.0);
   checkSame(whole.at(0.3, 1), anew);
-  CHECK_FALSE(whole.reusesStillGeometry());
+  CHECK_FALSE(whole.reusesStaticGeometry());
 }
 
 TEST_CASE("a grid around the camera moves by whole voxels and keeps its fragments between such steps") {
@@ -209,7 +209,7 @@ TEST_CASE("a grid around the camera moves by whole voxels and keeps its fragment
   }
   CHECK(steps >= 1);
   CHECK(steps <= 2);
-  CHECK(run.reusesStillGeometry());
+  CHECK(run.reusesStaticGeometry());
 }
 
 TEST_CASE("a grid around the camera needs an extent") {
@@ -218,7 +218,7 @@ TEST_CASE("a grid around the camera needs an extent") {
   CHECK_THAT(message, Catch::Matchers::Contains("extent above 0 m"));
 }
 
-TEST_CASE("a still object that is moved by hand is voxelised where it stands") {
+TEST_CASE("a still object that is moved by hand is voxelized where it stands") {
   const Scene scene = movingRoom();
   RenderOptions options = small();
   options.interactive = true;

@@ -312,7 +312,7 @@ TEST_CASE("what the camera sees stands behind the fragments of another list, and
   const Pipeline pipeline = Pipeline::parse(kReprojected, "reprojected.pipeline");
   PipelineExecutor executor(device(), techniques(), scene, pipeline, {});
   for (const char* pass : {"points", "alone", "both"}) executor.keepOutput(pass, "fragments");
-  executor.render(0.0, 0, PipelineExecutor::Pictures::no);
+  executor.render(0.0, 0, PipelineExecutor::Images::no);
   const std::vector<FragmentData> points = fragmentsOf(listOf(executor, "points")),
                                   alone = fragmentsOf(listOf(executor, "alone")),
                                   both = fragmentsOf(listOf(executor, "both"));
@@ -386,7 +386,7 @@ TEST_CASE("leaving out nothing gives the same points and the same seen voxels to
       whole(device(), techniques(), scene, pipeline, everything);
   for (PipelineExecutor* executor : {&pruned, &whole}) {
     executor->keepOutput("both", "fragments");
-    executor->render(0.0, 0, PipelineExecutor::Pictures::no);
+    executor->render(0.0, 0, PipelineExecutor::Images::no);
   }
   CHECK(fragmentsOf(listOf(pruned, "both")) == fragmentsOf(listOf(whole, "both")));
 }
@@ -422,14 +422,14 @@ const char* const kLit = R"(pipeline "lit" {
   pass known voxelization.reproject { gbuffer gbuffer fragments points.fragments direct direct.radiance }
   pass seen voxelization.reproject { gbuffer gbuffer resolution 16 direct direct.radiance }
   pass unlit voxelization.reproject { gbuffer gbuffer resolution 16 }
-  pass from_picture voxel_cone_tracing.inject { fragments seen.fragments shadow shadow.depth precision float }
+  pass from_image voxel_cone_tracing.inject { fragments seen.fragments shadow shadow.depth precision float }
   pass from_lights voxel_cone_tracing.inject { fragments unlit.fragments shadow shadow.depth precision float }
   output direct direct.radiance
 })";
 
 }  // namespace
 
-TEST_CASE("points of the picture bring the direct light along that was computed there, and no others do") {
+TEST_CASE("points of the image bring the direct light along that was computed there, and no others do") {
   const Scene scene = diffuseRoom(48, 40);
   const Pipeline pipeline = Pipeline::parse(kLit, "lit.pipeline");
   PipelineExecutor executor(device(), techniques(), scene, pipeline, {});
@@ -442,7 +442,7 @@ TEST_CASE("points of the picture bring the direct light along that was computed 
   for (std::size_t i = 0; i < points; ++i) CHECK(known[i] == VoxelFragments::kNotKnown);
   // All pixels: what they show without what they emit. A packed radiance is right to 1/256 of its largest
   // component.
-  const Picture& direct = frame.outputs.at("direct");
+  const ImageBuffer& direct = frame.outputs.at("direct");
   const GBuffer& gbuffer = static_cast<const Out<GBuffer>&>(*executor.output("gbuffer", "gbuffer")).value();
   const std::vector<float> positions = gbuffer.position->downloadFloats(),
                            emission = gbuffer.emission->downloadFloats();
@@ -466,13 +466,13 @@ TEST_CASE("points of the picture bring the direct light along that was computed 
 }
 
 TEST_CASE("light that came along by reprojection is the light that the voxels would have been given anew") {
-  // Both light the same points of the same diffuse surfaces: one with the picture's light, the other with the
+  // Both light the same points of the same diffuse surfaces: one with the image's light, the other with the
   // lights and their shadow maps once more, from places rounded to 1/1023 of a voxel.
   const Scene scene = diffuseRoom(64, 64);
   const Pipeline pipeline = Pipeline::parse(kLit, "lit.pipeline");
   PipelineExecutor executor(device(), techniques(), scene, pipeline, {});
-  for (const char* pass : {"from_picture", "from_lights"}) executor.keepOutput(pass, "radiance");
-  executor.render(0.0, 0, PipelineExecutor::Pictures::no);
+  for (const char* pass : {"from_image", "from_lights"}) executor.keepOutput(pass, "radiance");
+  executor.render(0.0, 0, PipelineExecutor::Images::no);
   const auto sumOf = [&](const char* pass) {
     const auto& grid = static_cast<const Out<RadianceGrid>&>(*executor.output(pass, "radiance")).value();
     const std::vector<float> values = grid.radiance->downloadFloats();
@@ -482,11 +482,11 @@ TEST_CASE("light that came along by reprojection is the light that the voxels wo
              glm::dvec4(glm::dvec3(grid.unit), 1.0);
     return sum;
   };
-  const glm::dvec4 picture = sumOf("from_picture"), lights = sumOf("from_lights");
+  const glm::dvec4 image = sumOf("from_image"), lights = sumOf("from_lights");
   CHECK(lights.r > 10.0);
   for (int channel = 0; channel < 3; ++channel)
-    CHECK(picture[channel] == Approx(lights[channel]).epsilon(0.03));
-  CHECK(picture.a == lights.a);
+    CHECK(image[channel] == Approx(lights[channel]).epsilon(0.03));
+  CHECK(image.a == lights.a);
 }
 
 TEST_CASE("a fragment whose direct light is known reflects just that, whatever shines on it") {
@@ -530,7 +530,7 @@ TEST_CASE("a fragment whose direct light is known reflects just that, whatever s
   // A list that brings light along is not given light a second time.
   reproject.setInput("fragments", list);
   CHECK_THROWS_WITH(reproject.run(), Catch::Matchers::Contains("brings direct light along already"));
-  // A picture of another size has no light for these pixels.
+  // An image of another size has no light for these pixels.
   description.width = 32;
   PassHarness wrong(device(), techniques(), "voxelization", "reproject", builder.scene, snapshot);
   wrong.setInput("gbuffer", gbuffer);

@@ -365,7 +365,7 @@ TEST_CASE(
   CHECK(opaque == expected);
 }
 
-TEST_CASE("a solid that moves leaves nothing behind, and what stands still is filled once") {
+TEST_CASE("a solid that moves leaves nothing behind, and static geometry is filled once") {
   Scene scene = sceneOf({sphere({0, 0, 0}, 1.0f, 24), box({-1, -1.5f, -1}, {1, -1.2f, 1})});
   scene.objects[0].motion = RigidMotion{{0, 1, 0}, 1.0, {0.5, 0, 0}, {0, 0, 0}};
   const Pipeline text = Pipeline::parse(R"(pipeline "solid" {
@@ -378,7 +378,7 @@ TEST_CASE("a solid that moves leaves nothing behind, and what stands still is fi
   RenderOptions options;
   options.width = options.height = 8;
   const auto at = [&](PipelineExecutor& executor, double time) {
-    executor.render(time, 0, PipelineExecutor::Pictures::no);
+    executor.render(time, 0, PipelineExecutor::Images::no);
     return cellsOf(static_cast<const Out<BinaryGrid>&>(*executor.output("voxels", "bits")).value());
   };
   PipelineExecutor executor(device(), techniques(), scene, text, options);
@@ -425,7 +425,7 @@ TEST_CASE("the solid volume of a scanned model is that of its mesh") {
   } catch (const AbsentError& absent) {
     return skip(absent.what());
   }
-  // The scan alone: its first object, without floor and lamp.
+  // The scan alone: its first object, without floor and area light.
   model.objects.resize(1);
   double volume = 0.0;
   for (const SurfaceComponent& component : surfaceComponents(weld(model, model.objects[0]))) {
@@ -437,7 +437,7 @@ TEST_CASE("the solid volume of a scanned model is that of its mesh") {
 }
 
 TEST_CASE("the view shows cubes where voxels are, and the cut lays their inside open") {
-  // A box of 2 m seen from 4 m away: its front, at 3 m, fills 2 / (2 * 3 * tan(fov / 2)) of the picture's
+  // A box of 2 m seen from 4 m away: its front, at 3 m, fills 2 / (2 * 3 * tan(fov / 2)) of the image's
   // side.
   Scene scene = sceneOf({box({-1, -1, -1}, {1, 1, 1})});
   Camera& camera = scene.cameras.front();
@@ -453,7 +453,7 @@ TEST_CASE("the view shows cubes where voxels are, and the cut lays their inside 
     view.setInput("fragments", solid.output<VoxelFragments>("fragments"));
     view.setParameter("cut", cut);
     view.run();
-    const std::vector<float> values = view.output<Image>("picture").texture->downloadFloats();
+    const std::vector<float> values = view.output<Image>("image").texture->downloadFloats();
     int count = 0;
     for (std::size_t i = 0; i < values.size(); i += 4) count += std::abs(values[i] - brightness) < 1e-4f;
     return count;

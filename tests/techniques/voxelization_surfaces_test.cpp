@@ -1,4 +1,4 @@
-// What fragments tell of the surface at their place, whichever voxeliser made them: its texture, its normal.
+// What fragments tell of the surface at their place, whichever voxelizer made them: its texture, its normal.
 #include <array>
 #include <cmath>
 
@@ -12,12 +12,12 @@ using namespace lumivox::test;
 
 namespace {
 
-struct Voxeliser {
+struct Voxelizer {
   const char* pass;
   const char* method;  ///< empty: it has one only
   bool columns;        ///< looks at the middle of a column; else at points anywhere
 };
-constexpr std::array<Voxeliser, 7> kVoxelisers{{{"conservative", "raster", true},
+constexpr std::array<Voxelizer, 7> kVoxelizers{{{"conservative", "raster", true},
                                                 {"conservative", "compute", true},
                                                 {"slicing", "", true},
                                                 {"depth_peeling", "", true},
@@ -47,7 +47,7 @@ struct Fragments {
   }
 };
 
-Fragments voxelised(const Scene& scene, const Voxeliser& by) {
+Fragments voxelized(const Scene& scene, const Voxelizer& by) {
   PassHarness harness(device(), techniques(), "voxelization", by.pass, scene, snapshotOf(scene, 0.0));
   harness.setParameter("resolution", kSide + 2);
   if (*by.method != 0) harness.setParameter("method", std::string(by.method));
@@ -85,9 +85,9 @@ TEST_CASE(
       for (int axis = 0; axis < 3; ++axis) {
         SceneBuilder builder = square(axis, material);
         builder.scene.textures = {stripes};
-        for (const Voxeliser& by : kVoxelisers) {
+        for (const Voxelizer& by : kVoxelizers) {
           if (by.columns != columns || (!columns && axis != 1)) continue;
-          const Fragments fragments = voxelised(builder.scene, by);
+          const Fragments fragments = voxelized(builder.scene, by);
           CAPTURE(by.pass, by.method, axis, alongSecond);
           double worst = 0.0, farthest = 0.0;  // off the texture, off the square
           int looked = 0;
@@ -119,9 +119,9 @@ TEST_CASE("a fragment's normal is that between the corners, of unit length howev
   SceneBuilder builder = square(2, {});
   for (std::size_t i = 0; i < 4; ++i)
     builder.scene.normals[i] = {builder.scene.positions[i].x * lean, 0.0f, 0.3f};
-  for (const Voxeliser& by : kVoxelisers) {
+  for (const Voxelizer& by : kVoxelizers) {
     CAPTURE(by.pass, by.method);
-    const Fragments fragments = voxelised(builder.scene, by);
+    const Fragments fragments = voxelized(builder.scene, by);
     double worst = 0.0;
     int looked = 0;
     for (const FragmentData& fragment : fragments.all) {
@@ -152,9 +152,9 @@ TEST_CASE(
   material.maskTexture = 0;
   SceneBuilder builder = square(1, material);
   builder.scene.textures = {holes};
-  for (const Voxeliser& by : kVoxelisers) {
+  for (const Voxelizer& by : kVoxelizers) {
     CAPTURE(by.pass, by.method);
-    const Fragments fragments = voxelised(builder.scene, by);
+    const Fragments fragments = voxelized(builder.scene, by);
     CHECK(fragments.all.size() >= kSide * kSide);
     double offAlbedo = 0.0, offCoverage = 0.0;
     for (const FragmentData& fragment : fragments.all) {

@@ -14,7 +14,7 @@ using namespace lumivox::test;
 
 namespace {
 
-Voxels voxelise(const Scene& scene, int resolution, const char* depth = "conservative",
+Voxels voxelize(const Scene& scene, int resolution, const char* depth = "conservative",
                 const char* method = "automatic") {
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   PassHarness harness(device(), techniques(), "voxelization", "conservative", scene, snapshot);
@@ -25,7 +25,7 @@ Voxels voxelise(const Scene& scene, int resolution, const char* depth = "conserv
   return voxelsOf(harness.output<VoxelFragments>("fragments"));
 }
 
-VoxelTruth truthOf(const Scene& scene, const GridPlacement& grid) {
+VoxelReference referenceOf(const Scene& scene, const GridPlacement& grid) {
   return trueVoxels(scene, snapshotOf(scene, 0.0), grid);
 }
 
@@ -55,8 +55,8 @@ TEST_CASE("conservative depth marks every voxel that an exact overlap test marks
   for (const char* method : {"raster", "compute"}) {
     for (const float size : {0.02f, 0.2f, 1.5f}) {
       const Scene scene = randomTriangles(200, size, 7);
-      const Voxels voxels = voxelise(scene, 48, "conservative", method);
-      const VoxelError error = compareVoxels(setOf(voxels), truthOf(scene, voxels.grid));
+      const Voxels voxels = voxelize(scene, 48, "conservative", method);
+      const VoxelError error = compareVoxels(setOf(voxels), referenceOf(scene, voxels.grid));
       INFO(method << ", size " << size << ", occupied " << voxels.occupied.size());
       CHECK(error.truePositive > 100);
       CHECK(error.falseNegative == 0);
@@ -67,7 +67,7 @@ TEST_CASE("conservative depth marks every voxel that an exact overlap test marks
 
 TEST_CASE("with depth at the pixel's centre only, steep triangles lose voxels but none is invented") {
   const Scene scene = randomTriangles(200, 1.0f, 11);
-  const Voxels all = voxelise(scene, 48), centre = voxelise(scene, 48, "centre");
+  const Voxels all = voxelize(scene, 48), centre = voxelize(scene, 48, "centre");
   CHECK(centre.occupied.size() < all.occupied.size());
   CHECK(std::includes(all.occupied.begin(), all.occupied.end(), centre.occupied.begin(),
                       centre.occupied.end()));
@@ -77,8 +77,8 @@ TEST_CASE("a needle of one to a million still marks every voxel along it") {
   SceneBuilder builder;
   Object& object = builder.quad({-1, -1, -1}, {2, 1.9f, 1.8f}, {1e-6f, -1e-6f, 0}, builder.lambert(0.5f));
   object.parts.front().indexCount = 3;
-  const Voxels voxels = voxelise(builder.scene, 32);
-  const VoxelError error = compareVoxels(setOf(voxels), truthOf(builder.scene, voxels.grid));
+  const Voxels voxels = voxelize(builder.scene, 32);
+  const VoxelError error = compareVoxels(setOf(voxels), referenceOf(builder.scene, voxels.grid));
   CHECK(error.truePositive > 30);
   CHECK(error.falseNegative == 0);
 }
@@ -97,8 +97,8 @@ TEST_CASE(
       builder.mesh({corners[turn], corners[(turn + 1) % 3], corners[(turn + 2) % 3]}, grey);
     }
     for (const char* method : {"raster", "compute"}) {
-      const Voxels voxels = voxelise(builder.scene, 64, "conservative", method);
-      const VoxelError error = compareVoxels(setOf(voxels), truthOf(builder.scene, voxels.grid));
+      const Voxels voxels = voxelize(builder.scene, 64, "conservative", method);
+      const VoxelError error = compareVoxels(setOf(voxels), referenceOf(builder.scene, voxels.grid));
       CAPTURE(method, turn);
       CHECK(error.truePositive > 5000);
       CHECK(error.falseNegative == 0);
@@ -110,7 +110,7 @@ TEST_CASE(
 TEST_CASE("an axis-aligned box occupies exactly the shell of its voxels") {
   SceneBuilder builder;
   builder.box({-1, -1, -1}, {1, 1, 1}, builder.lambert(0.5f), false);
-  const Voxels voxels = voxelise(builder.scene, 16);
+  const Voxels voxels = voxelize(builder.scene, 16);
   // One empty voxel on each side: the box spans 14 voxels, and its shell is 14^3 - 12^3.
   CHECK(voxels.occupied.size() == 14u * 14u * 14u - 12u * 12u * 12u);
 }
@@ -120,7 +120,7 @@ TEST_CASE("every fragment keeps the albedo of its material and a normal of unit 
   Material material;
   material.diffuse = {0.25f, 0.5f, 0.75f};
   builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.material(material));
-  const Voxels voxels = voxelise(builder.scene, 16);
+  const Voxels voxels = voxelize(builder.scene, 16);
   REQUIRE(!voxels.fragments.empty());
   for (const FragmentData& fragment : voxels.fragments) {
     CHECK(fragment.albedo() == glm::vec3(0.25f, 0.5f, 0.75f));
@@ -134,7 +134,7 @@ TEST_CASE("many triangles in one voxel make as many fragments, beyond what fits 
   const int grey = builder.lambert(0.5f);
   builder.box({-1, -1, -1}, {1, 1, 1}, grey, false);
   for (int i = 0; i < 400; ++i) builder.quad({0.05f, 0.05f, 0.05f}, {0.01f, 0, 0}, {0, 0.01f, 0}, grey);
-  const Voxels voxels = voxelise(builder.scene, 8);
+  const Voxels voxels = voxelize(builder.scene, 8);
   std::map<std::uint32_t, std::size_t> perVoxel;
   for (const FragmentData& fragment : voxels.fragments) ++perVoxel[fragment.voxel];
   std::size_t most = 0;
@@ -148,8 +148,8 @@ TEST_CASE("the rasteriser and the compute shader find the same voxels with the s
     for (const int resolution : {1, 5, 48, 200}) {
       for (const char* depth : {"conservative", "centre"}) {
         INFO("size " << size << ", resolution " << resolution << ", depth " << depth);
-        const Voxels raster = voxelise(scene, resolution, depth, "raster"),
-                     compute = voxelise(scene, resolution, depth, "compute");
+        const Voxels raster = voxelize(scene, resolution, depth, "raster"),
+                     compute = voxelize(scene, resolution, depth, "compute");
         CHECK(raster.occupied == compute.occupied);
         CHECK(raster.fragments == compute.fragments);
         CHECK(raster.fragments.size() >= 100);
@@ -166,8 +166,8 @@ TEST_CASE("more rows of large triangles than their list has room for are found a
     const float place = static_cast<float>(i) / 300.0f - 1.0f;
     builder.quad({place, -1, 0.3f * place}, {1e-3f, 0, 0}, {0, 2, 0.01f}, grey);
   }
-  const Voxels raster = voxelise(builder.scene, 1024, "conservative", "raster"),
-               compute = voxelise(builder.scene, 1024, "conservative", "compute");
+  const Voxels raster = voxelize(builder.scene, 1024, "conservative", "raster"),
+               compute = voxelize(builder.scene, 1024, "conservative", "compute");
   CHECK(raster.fragments.size() > 1000000);
   CHECK((raster.fragments == compute.fragments));
 }
@@ -201,18 +201,18 @@ TEST_CASE("triangles on the faces of voxels, needles and points are the same for
 
 TEST_CASE("an empty scene and a resolution of one voxel are no special cases") {
   SceneBuilder empty;
-  CHECK(voxelise(empty.scene, 16).fragments.empty());
+  CHECK(voxelize(empty.scene, 16).fragments.empty());
   const Scene scene = randomTriangles(10, 0.5f, 3);
-  CHECK(voxelise(scene, 1).occupied.size() == 1);
-  CHECK(!voxelise(scene, 2).occupied.empty());
-  CHECK(!voxelise(scene, 3).occupied.empty());
+  CHECK(voxelize(scene, 1).occupied.size() == 1);
+  CHECK(!voxelize(scene, 2).occupied.empty());
+  CHECK(!voxelize(scene, 3).occupied.empty());
 }
 
 TEST_CASE("the grid holds the whole scene whatever the resolution") {
   const Scene scene = randomTriangles(50, 0.5f, 5);
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   for (const int resolution : {1, 2, 3, 63, 64, 65}) {
-    const GridPlacement grid = voxelise(scene, resolution).grid;
+    const GridPlacement grid = voxelize(scene, resolution).grid;
     for (int axis = 0; axis < 3; ++axis) {
       CHECK(grid.low[axis] <= snapshot.bounds.low[axis]);
       CHECK(grid.low[axis] + grid.voxelSize * static_cast<float>(grid.resolution[axis]) >=

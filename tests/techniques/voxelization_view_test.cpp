@@ -1,4 +1,4 @@
-// The picture of voxels as cubes, against every cube met by every line of sight.
+// The image of voxels as cubes, against every cube met by every line of sight.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -68,7 +68,7 @@ TEST_CASE("every line of sight shows the nearest cube, with darker edges where c
     PassHarness view(device(), techniques(), "voxelization", "view", builder.scene, snapshot);
     view.setInput("fragments", listOver(cells, fragments));
     view.run();
-    const Picture picture = pictureOf(*view.output<Image>("picture").texture);
+    const ImageBuffer image = imageOf(*view.output<Image>("image").texture);
     const CameraView& camera = snapshot.camera;
     const glm::dvec3 eyeGrid = (glm::dvec3(camera.eye) - glm::dvec3(cells.low)) / 0.2;
     const double pixelWidth = 2.0 * camera.tanHalfFov / camera.height;
@@ -103,7 +103,7 @@ TEST_CASE("every line of sight shows the nearest cube, with darker edges where c
         if (!clear) continue;
         ++looked;
         empty += expected == kNoVoxel;
-        REQUIRE(picture.at(x, y, 1) == Approx(expected).margin(2e-3));
+        REQUIRE(image.at(x, y, 1) == Approx(expected).margin(2e-3));
       }
     CHECK(looked > 96 * 96 * 9 / 10);
     // From afar pixels are wider than lines would be.

@@ -1,4 +1,4 @@
-// Voxelisers that look at the scene along the axes: slices, peeled layers, multisampled coverage. Closed
+// Voxelizers that look at the scene along the axes: slices, peeled layers, multisampled coverage. Closed
 // forms of planes, spheres and boxes, and the failures that the papers tell of.
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ std::unique_ptr<PassHarness> harnessOf(const Scene& scene, const std::string& pa
   return harness;
 }
 
-Voxels voxelise(const Scene& scene, const std::string& pass, int resolution, const Numbers& parameters = {}) {
+Voxels voxelize(const Scene& scene, const std::string& pass, int resolution, const Numbers& parameters = {}) {
   const auto harness = harnessOf(scene, pass, resolution, parameters);
   return voxelsOf(harness->output<VoxelFragments>("fragments"));
 }
@@ -77,11 +77,11 @@ Scene wall(int axis, float albedo = 0.5f) {
   return builder.scene;
 }
 
-const std::vector<std::string> kVoxelisers{"slicing", "depth_peeling", "msaa_opacity"};
+const std::vector<std::string> kVoxelizers{"slicing", "depth_peeling", "msaa_opacity"};
 
 }  // namespace
 
-TEST_CASE("voxelisers that look along axes invent no voxel and find the share of a sphere that theory says") {
+TEST_CASE("voxelizers that look along axes invent no voxel and find the share of a sphere that theory says") {
   // Of a plane with the normal n, as many voxels are touched per area as its shadow on the three sides of a
   // voxel is large: |x| + |y| + |z|; over all directions 3/2. A line through the voxels' centres along z
   // meets |z| of them: 1/2, a third. Lines along all axes meet max(|x|, |y|, |z|): over all directions 3
@@ -89,17 +89,17 @@ TEST_CASE("voxelisers that look along axes invent no voxel and find the share of
   const double oneAxis = 1.0 / 3.0,
                threeAxes = 3.0 * std::sqrt(2.0) / kPi * std::atan(1.0 / std::sqrt(2.0)) / 1.5;
   const Scene ball = sphere(1.0f, 24);
-  const Voxels truth = voxelise(ball, "conservative", 32);
+  const Voxels reference = voxelize(ball, "conservative", 32);
   const auto share = [&](const Voxels& voxels) {
-    return static_cast<double>(voxels.occupied.size()) / static_cast<double>(truth.occupied.size());
+    return static_cast<double>(voxels.occupied.size()) / static_cast<double>(reference.occupied.size());
   };
   const auto invented = [&](const Voxels& voxels) {
     return std::count_if(voxels.occupied.begin(), voxels.occupied.end(),
-                         [&](const Cell& cell) { return truth.occupied.count(cell) == 0; });
+                         [&](const Cell& cell) { return reference.occupied.count(cell) == 0; });
   };
-  const Voxels one = voxelise(ball, "slicing", 32),
-               three = voxelise(ball, "slicing", 32, Numbers{{"axes", 3.0}}),
-               peeled = voxelise(ball, "depth_peeling", 32), msaa = voxelise(ball, "msaa_opacity", 32);
+  const Voxels one = voxelize(ball, "slicing", 32),
+               three = voxelize(ball, "slicing", 32, Numbers{{"axes", 3.0}}),
+               peeled = voxelize(ball, "depth_peeling", 32), msaa = voxelize(ball, "msaa_opacity", 32);
   INFO("slices " << share(one) << ", along three axes " << share(three) << ", peeled " << share(peeled)
                  << ", multisampled " << share(msaa));
   for (const Voxels* voxels : {&one, &three, &peeled, &msaa}) CHECK(invented(*voxels) == 0);
@@ -112,8 +112,8 @@ TEST_CASE("voxelisers that look along axes invent no voxel and find the share of
 
 TEST_CASE("peeled layers hold what slices along three axes hold") {
   const Scene ball = sphere(1.0f, 24);
-  const Voxels peeled = voxelise(ball, "depth_peeling", 33),
-               sliced = voxelise(ball, "slicing", 33, Numbers{{"axes", 3.0}});
+  const Voxels peeled = voxelize(ball, "depth_peeling", 33),
+               sliced = voxelize(ball, "slicing", 33, Numbers{{"axes", 3.0}});
   // Both see every surface at every pixel's centre. Clipping makes new corners, which the rasteriser rounds
   // again, so that a few pixels on the silhouettes differ.
   std::vector<Cell> different;
@@ -124,13 +124,13 @@ TEST_CASE("peeled layers hold what slices along three axes hold") {
 
 TEST_CASE(
     "a surface parallel to the view is lost to slices along one axis, as published, and found along three") {
-  for (const int axis : {0, 1}) CHECK(voxelise(wall(axis), "slicing", 16).fragments.empty());
+  for (const int axis : {0, 1}) CHECK(voxelize(wall(axis), "slicing", 16).fragments.empty());
   // A wall of 14 by 14 voxels; the pixels on its border have their centres inside.
-  CHECK(voxelise(wall(2), "slicing", 16).occupied.size() == 14u * 14u);
+  CHECK(voxelize(wall(2), "slicing", 16).occupied.size() == 14u * 14u);
   for (int axis = 0; axis < 3; ++axis) {
-    CHECK(voxelise(wall(axis), "slicing", 16, Numbers{{"axes", 3.0}}).occupied.size() == 14u * 14u);
-    CHECK(voxelise(wall(axis), "depth_peeling", 16).occupied.size() == 14u * 14u);
-    CHECK(voxelise(wall(axis), "msaa_opacity", 16).occupied.size() == 14u * 14u);
+    CHECK(voxelize(wall(axis), "slicing", 16, Numbers{{"axes", 3.0}}).occupied.size() == 14u * 14u);
+    CHECK(voxelize(wall(axis), "depth_peeling", 16).occupied.size() == 14u * 14u);
+    CHECK(voxelize(wall(axis), "msaa_opacity", 16).occupied.size() == 14u * 14u);
   }
 }
 
@@ -141,11 +141,11 @@ TEST_CASE("every surface behind others is peeled, until the layers end") {
   for (int i = 0; i < 10; ++i)
     builder.quad({-1, -1, -0.9f + 0.2f * static_cast<float>(i)}, {2, 0, 0}, {0, 2, 0}, grey);
   builder.quad({-1, -1, 0.12f}, {2, 0, 0}, {0, 2, 0}, grey);
-  const Voxels all = voxelise(builder.scene, "depth_peeling", 18),
-               truth = voxelise(builder.scene, "conservative", 18);
-  CHECK(all.occupied == truth.occupied);
+  const Voxels all = voxelize(builder.scene, "depth_peeling", 18),
+               reference = voxelize(builder.scene, "conservative", 18);
+  CHECK(all.occupied == reference.occupied);
   CHECK(all.fragments.size() == 11u * 16u * 16u);
-  const Voxels few = voxelise(builder.scene, "depth_peeling", 18, Numbers{{"layers", 3.0}});
+  const Voxels few = voxelize(builder.scene, "depth_peeling", 18, Numbers{{"layers", 3.0}});
   CHECK(few.fragments.size() == 3u * 16u * 16u);
 }
 
@@ -294,8 +294,8 @@ TEST_CASE(
 TEST_CASE(
     "supersampling leaves what is large alone, to the bit, and the coverages of small triangles add up") {
   const Scene large = wall(2);
-  CHECK(voxelise(large, "msaa_opacity", 16).fragments ==
-        voxelise(large, "msaa_opacity", 16, Numbers{{"supersampling", 8.0}}).fragments);
+  CHECK(voxelize(large, "msaa_opacity", 16).fragments ==
+        voxelize(large, "msaa_opacity", 16, Numbers{{"supersampling", 8.0}}).fragments);
   // A sphere of triangles much smaller than a voxel. Each adds its area as seen along the axis that it faces
   // most: area * max(|n.x|, |n.y|, |n.z|), over the sphere 4 pi r^2 times the mean of that factor.
   const Scene fine = sphere(1.0f, 60);
@@ -310,7 +310,7 @@ TEST_CASE(
   const double expected = 4.0 * kPi * 49.0 * mean;
   double sum = 0.0;
   for (const FragmentData& fragment :
-       voxelise(fine, "msaa_opacity", 16, Numbers{{"supersampling", 16.0}}).fragments)
+       voxelize(fine, "msaa_opacity", 16, Numbers{{"supersampling", 16.0}}).fragments)
     sum += fragment.coverage();
   CHECK(sum == Approx(expected).epsilon(0.005));
 }
@@ -348,9 +348,9 @@ TEST_CASE("attributes of all views are those of the material") {
   material.diffuse = {0.25f, 0.5f, 0.75f};
   material.emission = glm::vec3(2.0f);
   builder.box({-1, -1, -1}, {1, 1, 1}, builder.material(material), false);
-  for (const std::string& pass : kVoxelisers) {
+  for (const std::string& pass : kVoxelizers) {
     INFO(pass);
-    const Voxels voxels = voxelise(builder.scene, pass, 12);
+    const Voxels voxels = voxelize(builder.scene, pass, 12);
     REQUIRE(voxels.fragments.size() > 100);
     for (const FragmentData& fragment : voxels.fragments) {
       CHECK(fragment.albedo() == glm::vec3(0.25f, 0.5f, 0.75f));
@@ -376,7 +376,7 @@ TEST_CASE("a mask's holes leave no fragments and a texture gives its colour to a
   for (const std::string& pass : {std::string("slicing"), std::string("depth_peeling"),
                                   std::string("msaa_opacity"), std::string("conservative")}) {
     INFO(pass);
-    const Voxels voxels = voxelise(builder.scene, pass, 18);
+    const Voxels voxels = voxelize(builder.scene, pass, 18);
     std::size_t left = 0, right = 0;
     for (const Cell& cell : voxels.occupied) {
       // Away from the border: a mip of four texels reaches a voxel far.
@@ -389,13 +389,13 @@ TEST_CASE("a mask's holes leave no fragments and a texture gives its colour to a
   }
 }
 
-TEST_CASE("voxelisers that look along axes give the same fragments every time and with everything kept") {
+TEST_CASE("voxelizers that look along axes give the same fragments every time and with everything kept") {
   Scene scene = litRoom(8, 8);
   SceneBuilder builder;
   builder.scene = scene;
   builder.quad({0.1f, 0.3f, 0.7f}, {0.2f, 0, 0}, {0, 0.2f, 0.1f}, builder.lambert(0.5f)).motion =
       RigidMotion{{0, 1, 0}, 1.0, {0.2, 0.3, 0.7}, {0, 0, 0}};
-  for (const std::string& pass : kVoxelisers) {
+  for (const std::string& pass : kVoxelizers) {
     INFO(pass);
     const Pipeline text = Pipeline::parse(
         "pipeline \"views\" {\n  pass voxels voxelization." + pass + " { resolution 16 }\n}\n",
@@ -406,7 +406,7 @@ TEST_CASE("voxelisers that look along axes give the same fragments every time an
       options.keepEverything = kind == 2;
       PipelineExecutor executor(device(), techniques(), builder.scene, text, options);
       executor.keepOutput("voxels", "fragments");
-      // Kind 1 comes from another time: what stands still is kept.
+      // Kind 1 comes from another time: static geometry is kept.
       if (kind == 1) executor.render(0.7);
       executor.render(0.2, 1);
       runs.push_back(
@@ -422,10 +422,10 @@ TEST_CASE("empty scenes, points and one voxel are no special cases for views") {
   SceneBuilder empty, degenerate;
   degenerate.quad({0, 0, 0}, {1, 0, 0}, {1, 0, 0}, degenerate.lambert(0.5f));
   for (glm::vec3& normal : degenerate.scene.normals) normal = {0, 1, 0};
-  for (const std::string& pass : kVoxelisers) {
+  for (const std::string& pass : kVoxelizers) {
     INFO(pass);
-    CHECK(voxelise(empty.scene, pass, 16).fragments.empty());
-    CHECK(voxelise(degenerate.scene, pass, 16).fragments.empty());
-    CHECK(voxelise(wall(2), pass, 1).occupied.size() == 1);
+    CHECK(voxelize(empty.scene, pass, 16).fragments.empty());
+    CHECK(voxelize(degenerate.scene, pass, 16).fragments.empty());
+    CHECK(voxelize(wall(2), pass, 1).occupied.size() == 1);
   }
 }

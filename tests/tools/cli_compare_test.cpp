@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "lumivox/base/picture.h"
+#include "lumivox/base/image.h"
 #include "tools/cli_support.h"
 
 using namespace lumivox;
@@ -12,10 +12,10 @@ namespace {
 
 /// Two layers of 8 x 8 pixels with one value each.
 void writeConstant(const std::filesystem::path& file, float direct, float indirect) {
-  LayeredPicture picture;
-  picture.layers["direct"] = Picture(8, 8, 3, direct);
-  picture.layers["indirect_diffuse"] = Picture(8, 8, 3, indirect);
-  writeExr(file, picture);
+  LayeredImage image;
+  image.layers["direct"] = ImageBuffer(8, 8, 3, direct);
+  image.layers["indirect_diffuse"] = ImageBuffer(8, 8, 3, indirect);
+  writeExr(file, image);
 }
 
 nlohmann::json compareAsJson(const Workplace& place, const std::string& options) {
@@ -34,7 +34,7 @@ TEST_CASE("compare gives each common layer its own error") {
   writeConstant(place.path() / "b.exr", 0.75f, 0.5f);
   const auto layers = compareAsJson(place, "");
   REQUIRE(layers.size() == 2);
-  // Constant pictures: the RMSE is the difference, the mean ratio the quotient.
+  // Constant images: the RMSE is the difference, the mean ratio the quotient.
   CHECK(layers[0]["layer"] == "direct");
   CHECK(layers[0]["rmse"]["value"].get<double>() == Approx(0.25));
   CHECK(layers[0]["mean_ratio"]["value"].get<double>() == Approx(1.0 / 0.75));
@@ -61,34 +61,34 @@ TEST_CASE("compare takes a chosen layer, or two layers of different names, and c
 TEST_CASE("NaN and infinite pixels are counted and do not spread into the numbers") {
   const Workplace place;
   writeConstant(place.path() / "b.exr", 0.75f, 0.5f);
-  LayeredPicture picture;
-  picture.layers["direct"] = Picture(8, 8, 3, 1.0f);
-  picture.layers["direct"].at(3, 4, 1) = std::numeric_limits<float>::quiet_NaN();
-  picture.layers["direct"].at(5, 6, 0) = std::numeric_limits<float>::infinity();
-  writeExr(place.path() / "a.exr", picture);
+  LayeredImage image;
+  image.layers["direct"] = ImageBuffer(8, 8, 3, 1.0f);
+  image.layers["direct"].at(3, 4, 1) = std::numeric_limits<float>::quiet_NaN();
+  image.layers["direct"].at(5, 6, 0) = std::numeric_limits<float>::infinity();
+  writeExr(place.path() / "a.exr", image);
   const auto layers = compareAsJson(place, "");
-  CHECK(layers[0]["non_finite_picture"] == 2);
+  CHECK(layers[0]["non_finite_image"] == 2);
   CHECK(layers[0]["rmse"]["value"].get<double>() == Approx(0.25));
 }
 
-TEST_CASE("the variance layers of the truth become the uncertainties") {
+TEST_CASE("the variance layers of the reference become the uncertainties") {
   const Workplace place;
   writeConstant(place.path() / "a.exr", 1.0f, 0.5f);
-  LayeredPicture truth;
-  truth.layers["direct"] = Picture(8, 8, 3, 0.75f);
-  truth.layers["direct.variance"] = Picture(8, 8, 3, 0.01f);
-  writeExr(place.path() / "b.exr", truth);
+  LayeredImage reference;
+  reference.layers["direct"] = ImageBuffer(8, 8, 3, 0.75f);
+  reference.layers["direct.variance"] = ImageBuffer(8, 8, 3, 0.01f);
+  writeExr(place.path() / "b.exr", reference);
   const auto layers = compareAsJson(place, "");
   REQUIRE(layers.size() == 1);  // the variance itself is not compared
-  CHECK(layers[0]["truth_noise"].get<double>() == Approx(0.1).epsilon(1e-5));
+  CHECK(layers[0]["reference_noise"].get<double>() == Approx(0.1).epsilon(1e-5));
   CHECK(layers[0]["rmse"]["uncertainty"].get<double>() > 0.0);
 }
 
-TEST_CASE("compare refuses pictures of other sizes and files without a layer in common") {
+TEST_CASE("compare refuses images of other sizes and files without a layer in common") {
   const Workplace place;
-  LayeredPicture small, other;
-  small.layers["direct"] = Picture(4, 4, 3, 1.0f);
-  other.layers["grid"] = Picture(8, 8, 3, 1.0f);
+  LayeredImage small, other;
+  small.layers["direct"] = ImageBuffer(4, 4, 3, 1.0f);
+  other.layers["grid"] = ImageBuffer(8, 8, 3, 1.0f);
   writeExr(place.path() / "small.exr", small);
   writeExr(place.path() / "other.exr", other);
   writeConstant(place.path() / "a.exr", 1.0f, 0.5f);
@@ -105,7 +105,7 @@ TEST_CASE("an EXR that is missing, empty, cut short or something else gives one 
   place.write("empty.exr", "");
   place.write("cut.exr", whole.substr(0, whole.size() / 2));
   place.write("head.exr", whole.substr(0, 20));
-  place.write("text.exr", "scene \"no picture\" {}\n");
+  place.write("text.exr", "scene \"no image\" {}\n");
   for (const char* name : {"missing.exr", "empty.exr", "cut.exr", "head.exr", "text.exr"}) {
     INFO(name);
     checkRefused(runCommand("lumivox compare '" + place.file(name) + "' '" + place.file("a.exr") + "'"),

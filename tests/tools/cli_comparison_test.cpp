@@ -49,7 +49,7 @@ TEST_CASE("a store tells the front, the errors at equal time and the times at eq
   const Swept swept;
   const auto front = swept.json("front");
   CHECK(front.at("component") == "final");
-  CHECK(front.at("truth") == "full");
+  CHECK(front.at("reference") == "full");
   CHECK(front.at("points").size() == 2);
   const double quick = front.at("points").at(0).at("frame_ms").at("median");
   const double slow = front.at("points").at(1).at("frame_ms").at("median");
@@ -65,10 +65,11 @@ TEST_CASE("a store tells the front, the errors at equal time and the times at eq
     CHECK(pipeline.at("equal_error").at(0).at("reach") == "not_reached");
   for (const auto& pipeline : swept.json("equal-error --error 1e9 --metric flip").at("pipelines"))
     CHECK(pipeline.at("equal_error").at(0).at("reach") == "at_most");
-  CHECK(swept.json("front --against bias --component indirect_diffuse").at("truth") == "one_bounce_diffuse");
+  CHECK(swept.json("front --against bias --component indirect_diffuse").at("reference") ==
+        "one_bounce_diffuse");
 
   const CommandResult text = swept.results("front");
-  CHECK(contains(text.output, "on the front"));
+  CHECK(contains(text.output, "on the Pareto front"));
   CHECK(contains(text.output, "room, camera main, 24x16"));
   CHECK(contains(swept.results("equal-time --budget 1000s").output, "<= "));
   CHECK(contains(swept.results("equal-error --error 1e-9").output, "not reached"));
@@ -105,7 +106,7 @@ TEST_CASE("explain sets scenes against pipelines, and says which scene's model i
   const auto cells = nlohmann::json::parse(result.output).at("cells");
   REQUIRE(cells.size() == 4);
   CHECK(cells.at(0).at("passes_kept") == 3);
-  CHECK(cells.at(0).at("same_picture").get<bool>());
+  CHECK(cells.at(0).at("same_image").get<bool>());
   CHECK(cells.at(0).at("frame_ms").is_null());
   CHECK(cells.at(1).at("passes_total").get<int>() > 3);
   CHECK(cells.at(1).at("variants").at("needed") < cells.at(1).at("variants").at("compiled"));

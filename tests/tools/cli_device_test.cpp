@@ -1,4 +1,4 @@
-// The ceilings of the device from the command line, and how a report and the store use them.
+// The peak rates of the device from the command line, and how a report and the store use them.
 #include "support/drawn_page.h"
 #include "tools/cli_support.h"
 
@@ -16,7 +16,7 @@ constexpr const char* kPipeline =
 
 }  // namespace
 
-TEST_CASE("ceilings are measured, told with the device's limits, and kept in the store that is named") {
+TEST_CASE("peak rates are measured, told with the device's limits, and kept in the store that is named") {
   const Workplace place;
   const std::string store = place.file("results.sqlite");
   const std::string command =
@@ -28,10 +28,10 @@ TEST_CASE("ceilings are measured, told with the device's limits, and kept in the
   CHECK_FALSE(told.at("device").at("renderer").get<std::string>().empty());
   CHECK(told.at("device").at("largest_buffer_bytes").get<std::uint64_t>() > 0);
   CHECK(told.at("device").contains("timer_note"));
-  REQUIRE(told.at("ceilings").size() == 2);
-  for (const Json& ceiling : told.at("ceilings")) {
-    CHECK(ceiling.at("median").get<double>() > 1e6);
-    CHECK(ceiling.at("repeats") == 2);
+  REQUIRE(told.at("peak_rates").size() == 2);
+  for (const Json& peakRate : told.at("peak_rates")) {
+    CHECK(peakRate.at("median").get<double>() > 1e6);
+    CHECK(peakRate.at("repeats") == 2);
   }
   CHECK(told.at("store") == store);
   CHECK(place.has("results.sqlite"));
@@ -45,7 +45,7 @@ TEST_CASE("ceilings are measured, told with the device's limits, and kept in the
 }
 
 TEST_CASE(
-    "a report says how far each pass is from the ceilings in its store, and how to get them otherwise") {
+    "a report says how far each pass is from the peak rates in its store, and how to get them otherwise") {
   const Workplace place;
   const std::string store = place.file("results.sqlite");
   place.write("quick.pipeline", kPipeline);
@@ -58,7 +58,7 @@ TEST_CASE(
     return Json::parse(place.read("page.json"));
   };
   const Json without = report("");
-  CHECK(without.at("ceilings").empty());
+  CHECK(without.at("peak_rates").empty());
   const bool draws = canDrawPages();
   if (draws) CHECK(contains(drawnPage(place.file("page.html")).at("html"), "<code>lumivox device</code>"));
   const bool counted = !without.at("scenes").at(0).at("points").at(0).contains("why_not_counted");
@@ -68,16 +68,16 @@ TEST_CASE(
                      store)
               .exitCode == 0);
   const Json with = report("--store " + store);
-  CHECK(with.at("ceilings").size() == 4);
+  CHECK(with.at("peak_rates").size() == 4);
   if (!counted) return skip("this driver takes GLSL, and operations are counted in SPIR-V");
   for (const Json& pass : with.at("scenes").at(0).at("points").at(0).at("passes")) {
     INFO(pass.at("pass"));
     const Json& limit = pass.at("limit");
     CHECK(limit.at("work").size() > 2);
     CHECK_FALSE(limit.at("limited_by").get<std::string>().empty());
-    CHECK(limit.at("of_ceiling").get<double>() > 0.0);
+    CHECK(limit.at("of_peak_rate").get<double>() > 0.0);
     const double least = limit.at("at_least_ms").at(limit.at("limited_by").get<std::string>()).get<double>();
-    CHECK(limit.at("of_ceiling").get<double>() ==
+    CHECK(limit.at("of_peak_rate").get<double>() ==
           Approx(least / pass.at("device_ms").at("median").get<double>()));
   }
   const Json& shade = with.at("scenes").at(0).at("points").at(0).at("passes").at(2).at("limit");

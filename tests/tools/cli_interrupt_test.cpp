@@ -1,5 +1,5 @@
 // An interrupted command leaves the earlier result readable and no half file.
-#include "lumivox/base/picture.h"
+#include "lumivox/base/image.h"
 #include "tools/cli_support.h"
 #include "tools/started.h"
 
@@ -7,13 +7,13 @@ using namespace lumivox;
 using namespace lumivox::test;
 
 TEST_CASE(
-    "a reference that is killed or interrupted leaves the earlier picture readable and nothing "
+    "a reference that is killed or interrupted leaves the earlier image readable and nothing "
     "half-written") {
   using namespace std::chrono_literals;
   const Workplace place;
-  const std::string output = place.file("truth.exr");
-  LayeredPicture earlier;
-  earlier.layers["full"] = Picture(4, 4, 3, 0.25f);
+  const std::string output = place.file("reference.exr");
+  LayeredImage earlier;
+  earlier.layers["full"] = ImageBuffer(4, 4, 3, 0.25f);
   writeExr(output, earlier);
   const std::size_t files = place.fileCount();
 
@@ -30,24 +30,24 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("an animation that is killed leaves only whole pictures") {
+TEST_CASE("an animation that is killed leaves only whole images") {
   using namespace std::chrono_literals;
   const Workplace place;
   Started command({"render", place.scene(), committedPipeline("direct_lighting"), "--resolution", "16x16",
                    "--frames", "0..99999", "-o", place.file("frame.exr")});
-  // Not before the first picture is there; a minute is far more than the device needs to start.
+  // Not before the first image is there; a minute is far more than the device needs to start.
   for (int i = 0; i < 600 && !place.has("frame_0000.exr"); ++i) std::this_thread::sleep_for(100ms);
   REQUIRE(place.has("frame_0000.exr"));
   command.signalAfter(150ms, SIGKILL);
   command.wait();
-  std::size_t pictures = 0;
+  std::size_t images = 0;
   for (const auto& entry : std::filesystem::directory_iterator(place.path())) {
     const std::string name = entry.path().filename().string();
     if (entry.path().extension() != ".exr") continue;
     INFO(name);
     CHECK(name[0] != '.');
     CHECK(readExr(entry.path()).layers.at("direct").width() == 16);
-    ++pictures;
+    ++images;
   }
-  CHECK(pictures >= 1);
+  CHECK(images >= 1);
 }

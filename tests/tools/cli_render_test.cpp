@@ -1,7 +1,7 @@
 // render, reference, explain and shaders on real input, good and bad.
 #include <regex>
 
-#include "lumivox/base/picture.h"
+#include "lumivox/base/image.h"
 #include "tools/cli_support.h"
 
 using namespace lumivox;
@@ -21,35 +21,35 @@ std::string roomWith(const Workplace& place, const std::string& pipeline) {
 }  // namespace
 
 TEST_CASE(
-    "render writes every output as a layer, their sum as the main layer, and where the picture comes from") {
+    "render writes every output as a layer, their sum as the main layer, and where the image comes from") {
   const Workplace place;
   const CommandResult result = runCommand("lumivox render " + roomWith(place, "voxel_cone_tracing") +
                                           " --set resolution=16 --seed 3 -o " + quoted(place.file("a.exr")));
   INFO(result.errors);
   REQUIRE(result.exitCode == 0);
-  const LayeredPicture picture = readExr(place.path() / "a.exr");
+  const LayeredImage image = readExr(place.path() / "a.exr");
   for (const char* layer : {"", "direct", "indirect_diffuse", "indirect_glossy"}) {
     INFO(layer);
-    REQUIRE(picture.layers.count(layer) == 1);
-    CHECK(picture.layers.at(layer).width() == 24);
-    CHECK(picture.layers.at(layer).height() == 16);
+    REQUIRE(image.layers.count(layer) == 1);
+    CHECK(image.layers.at(layer).width() == 24);
+    CHECK(image.layers.at(layer).height() == 16);
   }
-  const auto& main = picture.layers.at("").values();
+  const auto& main = image.layers.at("").values();
   double sum = 0.0;
   for (std::size_t i = 0; i < main.size(); ++i) {
-    const double parts = picture.layers.at("direct").values()[i] +
-                         picture.layers.at("indirect_diffuse").values()[i] +
-                         picture.layers.at("indirect_glossy").values()[i];
+    const double parts = image.layers.at("direct").values()[i] +
+                         image.layers.at("indirect_diffuse").values()[i] +
+                         image.layers.at("indirect_glossy").values()[i];
     CHECK(main[i] ==
           Approx(parts).epsilon(2e-3).margin(1e-4));  // outputs may be stored as half floats: 11 bits
     sum += main[i];
   }
   CHECK(sum > 0.0);
-  CHECK(contains(picture.attributes.at("lumivox.parameters"), "resolution=16"));
-  CHECK(picture.attributes.at("lumivox.seed") == "3");
-  CHECK(picture.attributes.at("lumivox.scene_hash").size() == 32);
+  CHECK(contains(image.attributes.at("lumivox.parameters"), "resolution=16"));
+  CHECK(image.attributes.at("lumivox.seed") == "3");
+  CHECK(image.attributes.at("lumivox.scene_hash").size() == 32);
   for (const char* name : {"lumivox.pipeline_hash", "lumivox.device", "lumivox.driver", "lumivox.command"})
-    CHECK(picture.attributes.count(name) == 1);
+    CHECK(image.attributes.count(name) == 1);
 }
 
 TEST_CASE("the same seed and device give the same bits twice") {
@@ -58,11 +58,11 @@ TEST_CASE("the same seed and device give the same bits twice") {
     REQUIRE(runCommand("lumivox render " + roomWith(place, "direct_lighting") + " -q -o " +
                        quoted(place.file(name)))
                 .exitCode == 0);
-  const LayeredPicture a = readExr(place.path() / "a.exr"), b = readExr(place.path() / "b.exr");
-  for (const auto& [name, picture] : a.layers) CHECK(picture.values() == b.layers.at(name).values());
+  const LayeredImage a = readExr(place.path() / "a.exr"), b = readExr(place.path() / "b.exr");
+  for (const auto& [name, image] : a.layers) CHECK(image.values() == b.layers.at(name).values());
 }
 
-TEST_CASE("render numbers the pictures of an animation, with a run of # or before the extension") {
+TEST_CASE("render numbers the images of an animation, with a run of # or before the extension") {
   const Workplace place;
   const std::string command =
       "lumivox render " + roomWith(place, "direct_lighting") + " -q --resolution 8x8 --frames 9..11 -o ";
@@ -73,8 +73,8 @@ TEST_CASE("render numbers the pictures of an animation, with a run of # or befor
     CHECK(place.has(name));
   }
   CHECK_FALSE(place.has("out.png"));
-  const BytePicture picture = readBytePicture(place.path() / "f10.png");
-  CHECK(picture.width == 8);
+  const ByteImage image = readByteImage(place.path() / "f10.png");
+  CHECK(image.width == 8);
 }
 
 TEST_CASE("render of one output alone has it as the main layer, and a wrong name names the nearest") {
@@ -86,15 +86,13 @@ TEST_CASE("render of one output alone has it as the main layer, and a wrong name
   checkRefused(runCommand(command + " --output dirext"), "did you mean 'direct'");
 }
 
-TEST_CASE(
-    "render accumulates frames at each time; without anything that does, the picture stays to the bit") {
+TEST_CASE("render accumulates frames at each time; without anything that does, the image stays to the bit") {
   const Workplace place;
   const std::string command = "lumivox render " + roomWith(place, "direct_lighting") + " -q -o ";
   REQUIRE(runCommand(command + quoted(place.file("alone.exr"))).exitCode == 0);
   REQUIRE(runCommand(command + quoted(place.file("third.exr")) + " --accumulate 3").exitCode == 0);
-  const LayeredPicture alone = readExr(place.path() / "alone.exr"),
-                       third = readExr(place.path() / "third.exr");
-  for (const auto& [name, picture] : alone.layers) CHECK(picture.values() == third.layers.at(name).values());
+  const LayeredImage alone = readExr(place.path() / "alone.exr"), third = readExr(place.path() / "third.exr");
+  for (const auto& [name, image] : alone.layers) CHECK(image.values() == third.layers.at(name).values());
   CHECK(alone.attributes.count("lumivox.accumulate") == 0);
   CHECK(third.attributes.at("lumivox.accumulate") == "3");
   for (const char* wrong : {"0", "-1", "2.5", "many"})
@@ -122,10 +120,10 @@ TEST_CASE("the reference has layers of numbers of bounces when they are asked fo
                               " -q --no-cache --resolution 8x8 --spp 2 --bounces 4 -o " +
                               quoted(place.file("t.exr"));
   REQUIRE(runCommand(command + " --bounce-layers 1,3").exitCode == 0);
-  const LayeredPicture picture = readExr(place.path() / "t.exr");
+  const LayeredImage image = readExr(place.path() / "t.exr");
   for (const char* layer : {"bounces_1", "bounces_3_diffuse", "bounces_3_glossy.variance"})
-    CHECK(picture.layers.count(layer) == 1);
-  CHECK(picture.layers.count("bounces_2") == 0);
+    CHECK(image.layers.count(layer) == 1);
+  CHECK(image.layers.count("bounces_2") == 0);
   checkRefused(runCommand(command + " --bounce-layers 5"), "a number of bounces with layers of its own is 5");
   checkRefused(runCommand(command + " --bounce-layers one"), "--bounce-layers");
 }
@@ -138,13 +136,13 @@ TEST_CASE("a frame that cannot be written ends the render with its name, and tho
                  " -q --resolution 8x8 --frames 0..3 -o " + quoted(place.file("f_#.png")));
   CHECK(result.exitCode == 2);
   CHECK_THAT(result.errors, Catch::Contains("f_1.png") && Catch::Contains("cannot write"));
-  CHECK(readBytePicture(place.path() / "f_0.png").width == 8);
+  CHECK(readByteImage(place.path() / "f_0.png").width == 8);
   CHECK_FALSE(std::filesystem::exists(place.path() / "f_3.png"));
   for (const auto& entry : std::filesystem::directory_iterator(place.path()))
     CHECK(entry.path().extension() != ".new");
 }
 
-TEST_CASE("a picture is written to the file that a symbolic link names") {
+TEST_CASE("an image is written to the file that a symbolic link names") {
   const Workplace place;
   std::filesystem::create_symlink("there.png", place.path() / "link.png");
   const CommandResult result = runCommand("lumivox render " + roomWith(place, "direct_lighting") +
@@ -152,7 +150,7 @@ TEST_CASE("a picture is written to the file that a symbolic link names") {
   INFO(result.errors);
   CHECK(result.exitCode == 0);
   CHECK(std::filesystem::is_symlink(place.path() / "link.png"));
-  CHECK(readBytePicture(place.path() / "there.png").width == 8);
+  CHECK(readByteImage(place.path() / "there.png").width == 8);
 }
 
 TEST_CASE("the cache of references is listed and pruned") {
@@ -179,7 +177,7 @@ TEST_CASE("the cache of references is listed and pruned") {
 }
 
 TEST_CASE(
-    "bad options are told before any work: parameter, range, resolution, frames, kind of picture, place") {
+    "bad options are told before any work: parameter, range, resolution, frames, kind of image, place") {
   const Workplace place;
   place.write("old.exr", "an earlier result");
   const std::string command =
@@ -199,7 +197,7 @@ TEST_CASE(
   checkRefused(runCommand(elsewhere + quoted(place.path().string() + "/cache.exr/")), "cache.exr");
 }
 
-TEST_CASE("every kind of bad input file gives one clear error and leaves the earlier picture alone") {
+TEST_CASE("every kind of bad input file gives one clear error and leaves the earlier image alone") {
   const Workplace place;
   place.write("old.exr", "an earlier result");
   const auto scene = [&](const std::string& name, const std::string& mesh) {
@@ -211,10 +209,10 @@ TEST_CASE("every kind of bad input file gives one clear error and leaves the ear
   place.write("binary.obj", std::string("\0\1\2\3\xff\xfe", 6));
   place.write("cut.obj.gz", std::string("\x1f\x8b\x08\x00\x00\x00\x00\x00\x00\x03\x4b", 11));
   place.write("no_mtl.obj", std::string("mtllib nowhere.mtl\n") + kRoomObj);
-  place.write("picture.mtl", "newmtl grey\nKd 0.5 0.5 0.5\nmap_Kd broken.png\n");
+  place.write("image.mtl", "newmtl grey\nKd 0.5 0.5 0.5\nmap_Kd broken.png\n");
   place.write(
-      "picture.obj",
-      std::string("mtllib picture.mtl\nusemtl grey\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n"));
+      "image.obj",
+      std::string("mtllib image.mtl\nusemtl grey\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n"));
   place.write("broken.png", "\x89PNG\r\n\x1a\n and no more");
   const struct {
     std::string scene, named;
@@ -222,7 +220,7 @@ TEST_CASE("every kind of bad input file gives one clear error and leaves the ear
                {scene("empty_model.scene", "empty.obj"), "empty.obj"},
                {scene("binary_model.scene", "binary.obj"), "binary.obj"},
                {scene("cut_model.scene", "cut.obj.gz"), "cut.obj.gz"},
-               {scene("picture.scene", "picture.obj"), "broken.png"},
+               {scene("image.scene", "image.obj"), "broken.png"},
                {place.file("nowhere.scene"), "nowhere.scene"}};
   for (const auto& bad : cases) {
     INFO(bad.scene);
@@ -308,40 +306,41 @@ TEST_CASE("strict refuses a model with a bad triangle that is otherwise dropped 
   CHECK(contains(lenient.errors, "room.obj"));
 }
 
-TEST_CASE("reference writes the truth with its variances, and compare judges a picture by it") {
+TEST_CASE("reference writes the reference with its variances, and compare judges an image by it") {
   const Workplace place;
-  const CommandResult result = runCommand("lumivox reference " + quoted(place.scene()) +
-                                          " -q --spp 16 --bounces 4 -o " + quoted(place.file("truth.exr")));
+  const CommandResult result =
+      runCommand("lumivox reference " + quoted(place.scene()) + " -q --spp 16 --bounces 4 -o " +
+                 quoted(place.file("reference.exr")));
   INFO(result.errors);
   REQUIRE(result.exitCode == 0);
-  const LayeredPicture truth = readExr(place.path() / "truth.exr");
+  const LayeredImage reference = readExr(place.path() / "reference.exr");
   for (const char* layer :
        {"", "direct", "one_bounce_diffuse", "indirect_diffuse", "full", "direct.variance", "full.variance"}) {
     INFO(layer);
-    CHECK(truth.layers.count(layer) == 1);
+    CHECK(reference.layers.count(layer) == 1);
   }
-  CHECK(truth.layers.at("").values() == truth.layers.at("full").values());
+  CHECK(reference.layers.at("").values() == reference.layers.at("full").values());
   REQUIRE(runCommand("lumivox render -q " + roomWith(place, "direct_lighting") + " -o " +
                      quoted(place.file("a.exr")))
               .exitCode == 0);
   const CommandResult compared = runCommand("lumivox compare '" + place.file("a.exr") + "' '" +
-                                            place.file("truth.exr") + "' --layer direct --json");
+                                            place.file("reference.exr") + "' --layer direct --json");
   INFO(compared.errors);
   const auto layer = nlohmann::json::parse(compared.output).at("layers").at(0);
-  // A point light on Lambert surfaces: direct lighting is exact but for the picture's edges and the shadow
+  // A point light on Lambert surfaces: direct lighting is exact but for the image's edges and the shadow
   // map.
   CHECK(layer["mean_ratio"]["value"].get<double>() == Approx(1.0).epsilon(0.1));
   CHECK(runCommand("lumivox reference " + quoted(place.scene()) + " --spp 0 -o a.exr").exitCode == 2);
 }
 
-TEST_CASE("explain says what was left out, what it saved, and that the picture is the same") {
+TEST_CASE("explain says what was left out, what it saved, and that the image is the same") {
   const Workplace place;
   const CommandResult result = runCommand("lumivox explain " + roomWith(place, "voxel_cone_tracing") +
                                           " -q --set resolution=16 --repeats 1 --json");
   INFO(result.errors);
   REQUIRE(result.exitCode == 0);
   const auto json = nlohmann::json::parse(result.output);
-  CHECK(json.at("same_picture").get<bool>());
+  CHECK(json.at("same_image").get<bool>());
   CHECK(json.at("frame_ms").at("median").get<double>() > 0.0);
   CHECK(json.at("frame_ms_keep_everything").at("median").get<double>() > 0.0);
   bool glossy = false;  // the room has nothing glossy

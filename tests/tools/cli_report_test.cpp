@@ -80,9 +80,9 @@ TEST_CASE(
   const std::string page = place.read("out/page.html");
   CHECK(contains(page, "Chart.js v3"));
   CHECK(contains(page, "Little room"));
-  const nlohmann::json pictures = pageRecords(page, "pictures").at("scenes").at(0);
-  CHECK(pictures.at("points").size() == 2);
-  CHECK(pictures.at("points").at(0).at(0).at("png").get<std::string>().rfind("iVBORw0KGgo", 0) == 0);  // PNG
+  const nlohmann::json images = pageRecords(page, "images").at("scenes").at(0);
+  CHECK(images.at("points").size() == 2);
+  CHECK(images.at("points").at(0).at(0).at("png").get<std::string>().rfind("iVBORw0KGgo", 0) == 0);  // PNG
   CHECK(externalLoad(page).empty());
   CHECK_FALSE(contains(page, "<link"));
 
@@ -96,19 +96,19 @@ TEST_CASE(
       REQUIRE(row < rows.size());
       const auto& record = rows[row++];
       CHECK(record.at("output") == error.at("output").get<std::string>());
-      CHECK(record.at("truth") == error.at("truth").get<std::string>());
+      CHECK(record.at("reference") == error.at("reference").get<std::string>());
       CHECK(std::stod(record.at("rmse")) == error.at("rmse").at("value").get<double>());
       CHECK(std::stod(record.at("rmse_uncertainty")) == error.at("rmse").at("uncertainty").get<double>());
       CHECK(std::stod(record.at("frame_ms")) == point.at("frame_ms").at("median").get<double>());
       CHECK(record.at("command") == point.at("command").get<std::string>());
-      CHECK(error.at("rmse").at("uncertainty").get<double>() > 0.0);  // the truth has noise, and says so
+      CHECK(error.at("rmse").at("uncertainty").get<double>() > 0.0);  // the reference has noise, and says so
       CHECK(error.at("rmse_of_nothing").get<double>() > 0.0);
     }
     CHECK(point.at("frame_ms").at("repeats") == 2);
     CHECK(point.at("passes").size() == 3);
   }
   CHECK(row == rows.size());
-  CHECK(json.at("scenes").at(0).at("pruning").at(0).at("same_picture").get<bool>());
+  CHECK(json.at("scenes").at(0).at("pruning").at(0).at("same_image").get<bool>());
   CHECK_FALSE(json.at("device").at("renderer").get<std::string>().empty());
   CHECK(json.at("device").contains("timer_note"));
 

@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "lumivox/base/file.h"
-#include "lumivox/base/picture.h"
+#include "lumivox/base/image.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/experiment/reproduce.h"
 #include "support/drawn_page.h"
@@ -133,8 +133,8 @@ TEST_CASE(
                          "004-figure-84",
                          "004-figure-85",
                          "004-figure-86",
-                         "001-voxelisation-binary",
-                         "001-voxelisation-multi-valued",
+                         "001-voxelization-binary",
+                         "001-voxelization-multi-valued",
                          "004-table-1",
                          "004-table-2",
                          "004-table-3",
@@ -153,7 +153,7 @@ TEST_CASE("a table that is not there is refused with the nearest name, and so ar
 TEST_CASE("describe knows the words of published tables and figures") {
   CHECK(contains(runCommand("lumivox describe reproduction").output, "lumivox reproduce ID"));
   CHECK(contains(runCommand("lumivox describe software_scale").output, "software rasteriser"));
-  CHECK(contains(runCommand("lumivox describe panel").output, "one picture of a figure"));
+  CHECK(contains(runCommand("lumivox describe panel").output, "one image of a figure"));
   CHECK(contains(runCommand("lumivox describe growth").output, "sublinear, linear, superlinear"));
   CHECK(contains(runCommand("lumivox describe reference").output, "path-traced"));
 }
@@ -203,7 +203,7 @@ TEST_CASE("a small table is measured: ratios to its first row, a verdict for eac
 
   const std::string text = readFile(page);
   CHECK(contains(text, "| gather | 1 ms |"));
-  CHECK(contains(text, "Reduced: picture sides, resolution times 0.5."));
+  CHECK(contains(text, "Reduced: image sides, resolution times 0.5."));
   CHECK(contains(text, "factor of 1.5"));
 
   const Json runs = Json::parse(runCommand("lumivox results export --format json --store " + store).output);
@@ -212,7 +212,7 @@ TEST_CASE("a small table is measured: ratios to its first row, a verdict for eac
   for (const Json& run : runs) {
     INFO(run.dump());
     CHECK(run["failure"] == "");
-    CHECK(run["identity"]["truth_samples"] == 16);
+    CHECK(run["identity"]["reference_samples"] == 16);
     CHECK(run["errors"].size() > 0);
     CHECK(run["frame"]["repeats"] == 2);
     CHECK(run["next_frame"]["repeats"] == 2);
@@ -288,12 +288,12 @@ TEST_CASE(
   CHECK(contains(panels[4]["why_not"].get<std::string>(), "lost.obj"));
   CHECK(panels[5]["why_not"] == "it was sold");
   for (const Json& panel : panels) CHECK(panel["failed"] == false);
-  // A software rasteriser gets no smaller picture without software_scale.
-  const BytePicture sheet = readBytePicture(figures / "figure.png");
+  // A software rasteriser gets no smaller image without software_scale.
+  const ByteImage sheet = readByteImage(figures / "figure.png");
   CHECK(sheet.width == 3 * (160 + 6) + 6);
   CHECK(contains(readFile(figures / "figure.csv"), "\"light by voxels\",resolution,32,fragments,"));
   CHECK(contains(readFile(figures / "figure.svg"), "<svg"));
-  const Json shown = pageRecords(readFile(page), "pictures").at("results").at(0);
+  const Json shown = pageRecords(readFile(page), "images").at("results").at(0);
   CHECK(contains(shown.at("sheet"), "iVBORw0KGgo"));       // PNG
   CHECK(contains(shown.at("curves"), "PHN2ZyB4bWxucz0"));  // <svg xmlns=
   // Under one exposure the indirect light alone is darker than all light, in the middle of their panels: the

@@ -86,10 +86,10 @@ TEST_CASE("a report that is killed goes on where it stopped, says so, and gives 
     CHECK(std::any_of(points.begin(), points.end(), [&](const Json& point) {
       return point.at("frame_ms").at("median") == run.point.frameMs.median;
     }));
-  // Pictures of points that were taken up are on the page: an output, a map for each truth.
+  // Images of points that were taken up are on the page: an output, a map for each reference.
   const std::string page = place.read("page.html");
   REQUIRE(place.run("report", {"slow"}, {"-o", place.file("whole.html")}).exitCode == 0);
-  CHECK(pageRecords(page, "pictures") == pageRecords(place.read("whole.html"), "pictures"));
+  CHECK(pageRecords(page, "images") == pageRecords(place.read("whole.html"), "images"));
 }
 
 TEST_CASE(

@@ -26,7 +26,7 @@ inline constexpr const char* kRoomScene =
     "  light bulb point { position 0.2 0.5 0  intensity 1 1 1 }\n"
     "}\n";
 
-/// Its own truth cache and its own folder with the little room, and no asset path of the machine.
+/// Its own reference cache and its own folder with the little room, and no asset path of the machine.
 class Workplace : public TemporaryDirectory {
  public:
   Workplace() {

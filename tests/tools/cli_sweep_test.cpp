@@ -67,7 +67,7 @@ TEST_CASE("a sweep measures what the store lacks, and the same sweep again measu
       CHECK(pass["work"].size() > 0);
     }
   }
-  // The views of the lamp are drawn twice as often, the scene is seen as before.
+  // The views of the area light are drawn twice as often, the scene is seen as before.
   const auto workOf = [&](std::size_t run, const char* pass, const char* what) {
     for (const Json& one : measured["runs"][run]["passes"])
       if (one["name"] == pass) return one["work"].at(what).get<double>();

@@ -104,8 +104,8 @@ TEST_CASE("one text measures scenes by pipelines by parameters by seeds, and the
   CHECK(points.size() == 12);
   CHECK(Json::parse(measure(store).output)["measured"] == 0);
 
-  // Direct light has no random numbers, and both seeds are judged against one truth: the same errors to the
-  // bit.
+  // Direct light has no random numbers, and both seeds are judged against one reference: the same errors to
+  // the bit.
   std::vector<Json> direct;
   for (const Json& run : measured["runs"])
     if (contains(run["pipeline"], "direct_lighting") && contains(run["scene"], "cornell"))

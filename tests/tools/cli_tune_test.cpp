@@ -21,7 +21,7 @@ struct Tuning {
         directory
             .write("direct.pipeline",
                    "pipeline \"Direct\" {\n"
-                   "  param samples 1 in 1..16 # of the lamp\n"
+                   "  param samples 1 in 1..16 # of the area light\n"
                    "  pass gbuffer direct_lighting.gbuffer { }\n"
                    "  pass shadow direct_lighting.shadow_map { size 32 area_size 32 area_samples $samples }\n"
                    "  pass direct direct_lighting.shade { gbuffer gbuffer shadow shadow.depth }\n"
@@ -93,7 +93,7 @@ TEST_CASE("the winning text is the pipeline with its parameters as defaults, and
   const std::string text = readFile(best);
   CHECK(text.find("param samples " + winner["parameters"]["samples"].get<std::string>() + " in 1..16") !=
         std::string::npos);
-  CHECK(text.find("# of the lamp") != std::string::npos);
+  CHECK(text.find("# of the area light") != std::string::npos);
   CHECK(runCommand("lumivox check " + best.string()).exitCode == 0);
   CHECK(runCommand("lumivox fmt --check " + best.string()).exitCode == 0);
 }

@@ -1,4 +1,4 @@
-// Measuring voxelisers: the right numbers for a room whose voxels are known, the committed scenes without a
+// Measuring voxelizers: the right numbers for a room whose voxels are known, the committed scenes without a
 // miss, and bad input.
 #include <algorithm>
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 #include "lumivox/analysis/scaling.h"
 #include "lumivox/base/file.h"
-#include "lumivox/experiment/voxelisers.h"
+#include "lumivox/experiment/voxelizers.h"
 #include "support/drawn_page.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
@@ -35,9 +35,9 @@ CommandResult measure(const Workplace& place, const std::string& more) {
                     place.file("voxels.pipeline") + "' " + more);
 }
 
-VoxeliserOptions committedConservative(std::vector<int> resolutions) {
-  VoxeliserOptions options;
-  options.pipelines = {committedPipeline("voxelisers/conservative")};
+VoxelizerOptions committedConservative(std::vector<int> resolutions) {
+  VoxelizerOptions options;
+  options.pipelines = {committedPipeline("voxelizers/conservative")};
   options.resolutions = std::move(resolutions);
   options.openSweeps = false;
   options.repeats = 1;
@@ -54,7 +54,7 @@ bool showsPublishedModels(const std::string& text) {
   return false;
 }
 
-/// Recall and precision of the conservative voxeliser on every scene of a folder; what the machine lacks is
+/// Recall and precision of the conservative voxelizer on every scene of a folder; what the machine lacks is
 /// counted.
 void requireNothingMissed(const fs::path& folder, const std::vector<int>& resolutions, bool withModels,
                           int& measured, int& absent) {
@@ -67,8 +67,8 @@ void requireNothingMissed(const fs::path& folder, const std::vector<int>& resolu
     INFO(file);
     try {
       const Scene scene = loadScene(file);
-      for (const VoxeliserRecord& record :
-           measureVoxelisers(device(), techniques(), scene, committedConservative(resolutions))) {
+      for (const VoxelizerRecord& record :
+           measureVoxelizers(device(), techniques(), scene, committedConservative(resolutions))) {
         INFO("resolution " << record.resolution << ", missed " << record.error.falseNegative << ", wrong "
                            << record.error.falsePositive << " of " << record.occupied);
         CHECK(record.whyNot.empty());
@@ -95,7 +95,7 @@ TEST_CASE("a room's walls fill the shell of its grid, at what the fragments cost
   REQUIRE(json["records"].size() == 2);
   for (const auto& record : json["records"]) {
     CHECK(record["occupied"] == shellOf(record["resolution"]));
-    CHECK(record["truth"] == record["occupied"]);
+    CHECK(record["reference"] == record["occupied"]);
     CHECK(record["recall"] == 1.0);
     CHECK(record["precision"] == 1.0);
     CHECK(record["holes"]["oblique_holes"] == 0);
@@ -144,16 +144,16 @@ TEST_CASE("splitting triangles leaves the surface and its voxels, and four times
 }
 
 TEST_CASE("a power law through the medians has the exponent that made them") {
-  std::vector<VoxeliserRecord> records;
+  std::vector<VoxelizerRecord> records;
   for (const int resolution : {16, 32, 64}) {
-    VoxeliserRecord record;
+    VoxelizerRecord record;
     record.scene = "s", record.pipeline = "p";
     record.resolution = resolution;
     record.triangles = 10;
     record.frameMs.median = 0.1 * std::pow(resolution, 1.5);
     records.push_back(record);
   }
-  VoxeliserRecord more = records.front();
+  VoxelizerRecord more = records.front();
   more.subdivisions = 1;
   more.triangles = 40;
   more.frameMs.median *= 2.0;
@@ -180,7 +180,7 @@ TEST_CASE("the page, the CSV and the JSON hold the same records, and the page ne
   CHECK(!contains(page, "src=\"http"));
 }
 
-TEST_CASE("a report has a section on voxelisers when it is asked for, and only then") {
+TEST_CASE("a report has a section on voxelizers when it is asked for, and only then") {
   Workplace place;
   place.write("direct.pipeline",
               "pipeline \"Direct\" {\n  pass gbuffer direct_lighting.gbuffer { }\n"
@@ -220,7 +220,7 @@ TEST_CASE("a pipeline without voxels and one without a resolution are passed ove
   const CommandResult none = runCommand("lumivox -q voxels '" + place.scene() +
                                         "' --repeats 1 --pipelines '" + place.file("fixed.pipeline") + "'");
   CHECK(none.exitCode == 1);
-  // Beyond what a text allows, that voxeliser alone has no numbers.
+  // Beyond what a text allows, that voxelizer alone has no numbers.
   place.write("small.pipeline",
               "pipeline \"Small\" {\n  param resolution 16 in 1..32\n  pass voxels "
               "voxelization.conservative { resolution $resolution }\n}\n");
@@ -246,7 +246,7 @@ TEST_CASE("bad input of the voxels command is refused before any work, and names
   checkRefused(measure(place, "-o '" + place.file("file") + "'"), "file");
 }
 
-TEST_CASE("the conservative voxeliser misses no voxel of any committed scene, and hardly any is wrong",
+TEST_CASE("the conservative voxelizer misses no voxel of any committed scene, and hardly any is wrong",
           "[slow]") {
   int measured = 0, absent = 0;
   requireNothingMissed(sourceDirectory() / "scenes", {32, 64}, false, measured, absent);
@@ -255,7 +255,7 @@ TEST_CASE("the conservative voxeliser misses no voxel of any committed scene, an
   CHECK(absent == 0);
 }
 
-TEST_CASE("the conservative voxeliser misses no voxel of the published models", "[slow]") {
+TEST_CASE("the conservative voxelizer misses no voxel of the published models", "[slow]") {
   int measured = 0, absent = 0;
   requireNothingMissed(sourceDirectory() / "scenes", {64}, true, measured, absent);
   // Models that no committed scene shows.

@@ -191,7 +191,7 @@ TEST_CASE("the guide to techniques shows every file of the one that `lumivox new
     quoted.insert(withoutLayout(quote.text));
   std::size_t shown = 0;
   for (const auto& entry : fs::recursive_directory_iterator(root)) {
-    // Of the card it tells what belongs there; a picture is no text.
+    // Of the card it tells what belongs there; an image is no text.
     if (!entry.is_regular_file() || entry.path().extension() == ".md" || entry.path().extension() == ".png")
       continue;
     INFO(entry.path());
@@ -201,7 +201,7 @@ TEST_CASE("the guide to techniques shows every file of the one that `lumivox new
   CHECK(shown == 5);
 }
 
-TEST_CASE("a paper card begins with a picture of the technique and its three headline deviations") {
+TEST_CASE("a paper card begins with an image of the technique and its three headline deviations") {
   std::vector<fs::path> cards;
   for (const char* folder : {"techniques", "templates/technique/techniques"})
     for (const auto& entry : fs::directory_iterator(test::sourceDirectory() / folder))
@@ -210,11 +210,11 @@ TEST_CASE("a paper card begins with a picture of the technique and its three hea
   for (const fs::path& card : cards) {
     INFO(card);
     const std::string text = readFile(card), top = text.substr(0, text.find("\n\n", text.find("\n1. ")));
-    std::smatch picture;
-    REQUIRE(std::regex_search(top, picture,
+    std::smatch image;
+    REQUIRE(std::regex_search(top, image,
                               std::regex("^# \\w+\n\n!\\[[^\\]]+\\]\\(([^)]+\\.png)\\)\n\n1\\. \\*\\*")));
-    REQUIRE(fs::exists(card.parent_path() / picture[1].str()));
-    CHECK(fs::file_size(card.parent_path() / picture[1].str()) < 60'000);
+    REQUIRE(fs::exists(card.parent_path() / image[1].str()));
+    CHECK(fs::file_size(card.parent_path() / image[1].str()) < 60'000);
     for (const char* number : {"\n1. **", "\n2. **", "\n3. **"}) CHECK(top.find(number) != std::string::npos);
     CHECK(top.find("\n4. ") == std::string::npos);
   }

@@ -12,7 +12,7 @@ using namespace lumivox::test;
 
 namespace {
 
-/// A room with one lamp that is a point, and a panel of its own: nothing glossy, textured, cut out, shining,
+/// A room with one light, a point, and a panel of its own: nothing glossy, textured, cut out, shining,
 /// moving, and nothing around it.
 const std::string kPlain = R"(
 scene "Plain" {
@@ -52,7 +52,7 @@ void addVariants(PipelineExecutor& executor, Cost& cost) {
     if (usage.needed.empty()) continue;
     const std::size_t slash = name.find('/');
     const std::string programName = name.substr(slash + 1);
-    // The same voxeliser, by whichever way this device is faster.
+    // The same voxelizer, by whichever way this device is faster.
     const std::string stem = programName == "conservative_compute" ? "conservative" : programName;
     const shader::PackedProgram& program =
         executor.shaders().packs().at(name.substr(0, slash)).program(programName);
@@ -75,11 +75,11 @@ Cost costOf(const std::string& sceneText, const Pipeline& text) {
   const Scene scene = sceneOf(sceneText);
   PipelineExecutor executor(device(), techniques(), scene, text, options);
   Cost cost;
-  for (const PassRecord& pass : executor.render(0.0, 0, PipelineExecutor::Pictures::no).passes) {
+  for (const PassRecord& pass : executor.render(0.0, 0, PipelineExecutor::Images::no).passes) {
     if (pass.ran) cost.words.insert("pass " + pass.name);
     cost.bytes[pass.name] = pass.bytes;
   }
-  for (const PassRecord& pass : executor.render(1.0 / 24, 1, PipelineExecutor::Pictures::no).passes)
+  for (const PassRecord& pass : executor.render(1.0 / 24, 1, PipelineExecutor::Images::no).passes)
     if (pass.ran) cost.words.insert("again " + pass.name);
   addVariants(executor, cost);
   return cost;

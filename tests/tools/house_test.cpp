@@ -315,7 +315,7 @@ Violations dependentTechniques(const Sources& sources, const std::vector<std::st
   return found;
 }
 
-constexpr const char* kVoxelisers = "voxelisers";  // scenes/pipelines/voxelisers: what makes voxels alone
+constexpr const char* kVoxelizers = "voxelizers";  // scenes/pipelines/voxelizers: what makes voxels alone
 
 constexpr const char* kDeviceShaders =
     "device";  // shaders/device: the framework's own, which time the device
@@ -338,7 +338,7 @@ Violations brokenNames(const std::set<std::string>& files, const std::vector<std
   }
   for (const SourceFile& pipeline : pipelines) {
     const std::string stem = fs::path(pipeline.path).stem().string();
-    if (fs::path(pipeline.path).parent_path().filename() == kVoxelisers) {
+    if (fs::path(pipeline.path).parent_path().filename() == kVoxelizers) {
       // Named by the pass that makes the voxels, behind which others may stand.
       std::string pass;
       forEachMatch(pipeline.text, std::regex("\\bpass\\s+\\w+\\s+\\w+\\.(\\w+)"),
@@ -538,14 +538,14 @@ TEST_CASE("the scanner finds what breaks the rules of the house") {
   CHECK(brokenNames(whole, {"shading"}, {}).size() == 1);
   CHECK(brokenNames({"shaders/other/a.comp"}, {}, {}).size() == 1);
   CHECK(brokenNames(whole, {"shading"}, {uses[0], {"scenes/pipelines/odd.pipeline", ""}}).size() == 1);
-  const auto voxeliser = [&](const char* name) {
+  const auto voxelizer = [&](const char* name) {
     return brokenNames(
         whole, {"shading"},
-        {uses[0], {std::string("scenes/pipelines/voxelisers/") + name, "pass a shading.points { }"}});
+        {uses[0], {std::string("scenes/pipelines/voxelizers/") + name, "pass a shading.points { }"}});
   };
-  CHECK(voxeliser("points.pipeline").empty());
-  CHECK(voxeliser("points_twice.pipeline").empty());
-  CHECK(voxeliser("shading.pipeline").size() == 1);
+  CHECK(voxelizer("points.pipeline").empty());
+  CHECK(voxelizer("points_twice.pipeline").empty());
+  CHECK(voxelizer("shading.pipeline").size() == 1);
   for (const char* file : {"techniques/shading/README.md", "tests/techniques/shading_test.cpp",
                            "techniques/shading/shading.cpp"}) {
     std::set<std::string> lacking = whole;

@@ -47,7 +47,7 @@ ComponentError errorOf(const std::string& output, const std::string& component, 
   ComponentError error;
   error.output = output;
   error.component = component;
-  error.truth = bias ? "one_bounce" : "full";
+  error.reference = bias ? "one_bounce" : "full";
   error.bias = bias;
   error.seeds = 3;
   error.error.rmse = {rmse, 0.01 * rmse};
@@ -67,7 +67,7 @@ ReportRecord badlyNamedReport() {
   scene.file = "x.scene";
   scene.name = "<img src=x onerror=alert(1)>";
   scene.width = scene.height = 8;
-  scene.truths.push_back({"full", "png", 1.0, 0.01, 0.5, 1.0});
+  scene.references.push_back({"full", "png", 1.0, 0.01, 0.5, 1.0});
   for (const std::string name : {"one", "two"})
     for (const double samples : {1.0, 2.0, 4.0}) {
       PointRecord point;
@@ -83,8 +83,8 @@ ReportRecord badlyNamedReport() {
       point.point.passOrder = {"paint"};
       point.point.passDeviceMs["paint"] = point.point.frameMs;
       point.point.passBytes["paint"] = 3u << 20;
-      point.point.errors = {errorOf(kWholePicture, "final", true, 0.4 / ms),
-                            errorOf(kWholePicture, "final", false, 0.5 / ms)};
+      point.point.errors = {errorOf(kWholeImage, "final", true, 0.4 / ms),
+                            errorOf(kWholeImage, "final", false, 0.5 / ms)};
       point.point.notes = {"pass paint: 12 of \"3\""};
       point.point.command = "lumivox report <x>";
       scene.points.push_back(point);
@@ -106,7 +106,7 @@ ReportRecord badlyNamedReport() {
   pruning.passOrder = {"paint"};
   pruning.unprunedPassMs["paint"] = pruning.unprunedMs;
   pruning.unprunedBytes = 4u << 20;
-  pruning.samePicture = true;
+  pruning.sameImage = true;
   scene.pruning.push_back(pruning);
   scene.unsuited.emplace_back("four.pipeline", "the scene has no <light>");
   record.scenes.push_back(scene);
@@ -140,7 +140,7 @@ TEST_CASE(
   const std::string headings = texts(page.at("headings"));
   for (const char* heading :
        {"Lumivox report", "Summary", "What was needed", "Little room", "Error against run time",
-        "Pictures, truth and FLIP maps", "Error numbers", "Bias and noise apart", "Convergence",
+        "Images, reference and FLIP maps", "Error numbers", "Bias and noise apart", "Convergence",
         "Time and memory per pass", "What was left out, and what that saved", "Health",
         "Commands that repeat the points", "Voxels", "Recall against time", "Growth, published and here",
         "Device, driver and contents"}) {
@@ -150,7 +150,7 @@ TEST_CASE(
   const std::string text = page.at("text");
   CHECK(contains(text, "Every output of every pass was scanned"));
   CHECK(contains(text, "lumivox device measures it, once"));
-  CHECK(contains(text, "Same picture, bit for bit: yes"));
+  CHECK(contains(text, "Same image, bit for bit: yes"));
 
   const Json& points = json.at("scenes").at(0).at("points");
   CHECK(tableWith(page, {"Scene", "Pipeline", "Parameters"}).size() == 1 + points.size());
@@ -159,11 +159,11 @@ TEST_CASE(
     errors += point.at("errors").size();
     CHECK(contains(text, point.at("command").get<std::string>()));
   }
-  const Json table = tableWith(page, {"Pipeline", "Parameters", "Output", "Truth", "Says"});
+  const Json table = tableWith(page, {"Pipeline", "Parameters", "Output", "Reference", "Says"});
   REQUIRE(table.size() == 1 + errors);
   const double rmse = points.at(0).at("errors").at(0).at("rmse").at("value");
   CHECK(std::stod(table.at(1).at(5).get<std::string>()) == Approx(rmse).epsilon(0.006));
-  // Errors, times, memory, voxels; sliders and choices between pictures; the choices of the fronts.
+  // Errors, times, memory, voxels; sliders and choices between images; the choices of the fronts.
   CHECK(page.at("charts").size() >= 6);
   CHECK(page.at("images").size() > 8);
   CHECK(page.at("controls").size() >= 8);
@@ -171,7 +171,7 @@ TEST_CASE(
   CHECK(externalLoad(place.read("page.html")).empty());
 }
 
-TEST_CASE("a broken record, script or picture is found out when its page is drawn") {
+TEST_CASE("a broken record, script or image is found out when its page is drawn") {
   if (lacksNode()) return;
   const TemporaryDirectory place;
   CHECK(drawn(badlyNamedReport(), place).at("problems").empty());
@@ -215,7 +215,7 @@ TEST_CASE("the summary, the fronts and the matrix of what was needed say what th
   CHECK(summary[1][3] == "1 [0.995, 1]");
   CHECK(summary[1][4] == "0.5 ± 0.005");
   CHECK(summary[2][7] == "75.0 %; 0.0 %");
-  CHECK(summary[1][8] == "on the front");
+  CHECK(summary[1][8] == "on the Pareto front");
   CHECK(summary[7][9] == "failed");
   CHECK(summary[7][3] == "-");
   const Json ranges = tableWith(page, {"Budget, ms", "Least error"});
@@ -241,7 +241,7 @@ TEST_CASE("the summary, the fronts and the matrix of what was needed say what th
   CHECK(passes[1][4] == "3.0 MiB");
 }
 
-TEST_CASE("the page of the stress battery draws its matrix, its concerns and their pictures") {
+TEST_CASE("the page of the stress battery draws its matrix, its concerns and their images") {
   if (lacksNode()) return;
   const TemporaryDirectory place;
   std::vector<StressCell> cells;
@@ -259,20 +259,20 @@ TEST_CASE("the page of the stress battery draws its matrix, its concerns and the
     cell.value = {0.031, 0.002};
     cell.limit = 0.02;
     cell.detail = "first at pixel (3, 2)";
-    cell.picture = "pictures/" + cell.name + ".png";
+    cell.image = "images/" + cell.name + ".png";
     cell.command = "lumivox stress";
     cells.push_back(cell);
   }
-  std::filesystem::create_directories(place.path() / "pictures");
-  place.write("pictures/case_0.png", "x");
+  std::filesystem::create_directories(place.path() / "images");
+  place.write("images/case_0.png", "x");
   const Json page = drawnPage(writeStressPage(place.path(), cells, "lumivox stress <all>"));
   INFO(texts(page.at("problems")));
   CHECK(page.at("problems").empty());
   const std::string text = page.at("text"), html = page.at("html");
   CHECK(contains(text, "4 cells on device, 2026-01-01 to 2026-01-04, by lumivox stress <all>"));
   CHECK(contains(text, "first at pixel (3, 2)"));
-  CHECK(contains(html, "src=\"pictures/case_0.png\""));
-  CHECK_FALSE(contains(html, "pictures/case_1.png"));  // it is not there
+  CHECK(contains(html, "src=\"images/case_0.png\""));
+  CHECK_FALSE(contains(html, "images/case_1.png"));  // it is not there
   const Json matrix = page.at("tables").at(1);
   CHECK(matrix.at(1) == Json({"case", "a <b>"}));
   CHECK(matrix.at(2) == Json({"light"}));
@@ -282,12 +282,12 @@ TEST_CASE("the page of the stress battery draws its matrix, its concerns and the
   CHECK(contains(text, "RMSE: 0.031 ± 0.002; limit 0.02"));
 }
 
-TEST_CASE("the page of the voxelisers draws its charts and both kinds of growth") {
+TEST_CASE("the page of the voxelizers draws its charts and both kinds of growth") {
   if (lacksNode()) return;
   const TemporaryDirectory place;
-  std::vector<VoxeliserRecord> records;
+  std::vector<VoxelizerRecord> records;
   for (const int resolution : {16, 32, 64}) {
-    VoxeliserRecord record;
+    VoxelizerRecord record;
     record.scene = "x.scene";
     record.pipeline = "atlas.pipeline";
     record.resolution = resolution;
@@ -299,17 +299,17 @@ TEST_CASE("the page of the voxelisers draws its charts and both kinds of growth"
   }
   records.push_back(records.back());
   records.back().whyNot = "it is <lost>";
-  const VoxeliserFiles files = voxeliserFiles(place.path());
+  const VoxelizerFiles files = voxelizerFiles(place.path());
   gpu::DeviceInfo device;
   device.renderer = "device";
-  writeVoxelisers(files, records, device, "lumivox voxels");
+  writeVoxelizers(files, records, device, "lumivox voxels");
   const Json page = drawnPage(files.page);
   INFO(texts(page.at("problems")));
   CHECK(page.at("problems").empty());
   CHECK(page.at("charts").size() == 3);
-  CHECK(tableWith(page, {"Scene", "Voxeliser"}).size() == 4);
+  CHECK(tableWith(page, {"Scene", "Voxelizer"}).size() == 4);
   CHECK(contains(page.at("text"), "it is <lost>"));
-  const Json growth = tableWith(page, {"Source", "Voxeliser"});
+  const Json growth = tableWith(page, {"Source", "Voxelizer"});
   REQUIRE(growth.size() == 11);
   CHECK(growth.back() == Json({"here, x", "atlas", "voxels along a side", "2"}));
   CHECK(growth[1][3] == "0.739");  // log(22 / 2) / log(262267 / 10219)

@@ -84,7 +84,7 @@ TEST_CASE("the check finds nothing wrong with a good page and something wrong wi
            Break{"<tr><td>1</td></tr>", "", "it has no rows"},
            Break{"<td>1</td>", "<td>undefined</td>", "it says undefined"},
            Break{"#top", "#bottom", "leads nowhere"},
-           Break{"#top", "pictures/none.png", "not there: pictures/none.png"},
+           Break{"#top", "images/none.png", "not there: images/none.png"},
            Break{"<h1", "<div style=\"width:900px\">wide</div><h1", "too wide for a phone"},
            Break{"<h1", "<div style=\"width:1900px\">wide</div><h1", "too wide for a desk"},
        }) {
@@ -112,8 +112,8 @@ TEST_CASE(
   INFO(page.text());
   CHECK(page.problems.empty());
 
-  // Per scene: a plot per component, times, bytes; a frame with two pictures per component. And the
-  // voxelisers.
+  // Per scene: a plot per component, times, bytes; a frame with two images per component. And the
+  // voxelizers.
   CHECK(page.charts >= 12);
   CHECK(page.canvases > page.charts);
   CHECK(page.tables > 10);
@@ -123,7 +123,7 @@ TEST_CASE(
   CHECK(sliders >= 5);
   for (const PageFindings::Control& control : page.controls) {
     INFO(control.name);
-    // More than the line between the pictures moves: the picture itself.
+    // More than the line between the images moves: the image itself.
     if (control.slider) CHECK(control.changed > 2 * 24);
   }
 
@@ -137,7 +137,7 @@ TEST_CASE(
   CHECK(blank.hasProblem("it is blank"));
 }
 
-TEST_CASE("the page of the voxelisers draws all plots and needs no network") {
+TEST_CASE("the page of the voxelizers draws all plots and needs no network") {
   if (lacksBrowser()) return;
   const Workplace place;
   const CommandResult made =

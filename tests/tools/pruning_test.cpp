@@ -1,4 +1,4 @@
-// The law of leaving out: it changes the cost, never the picture. Over every committed scene and pipeline.
+// The law of leaving out: it changes the cost, never the image. Over every committed scene and pipeline.
 #include <algorithm>
 #include <optional>
 #include <regex>
@@ -23,7 +23,7 @@ std::vector<std::filesystem::path> filesIn(const char* folder, const char* exten
   return files;
 }
 
-/// Small pictures and grids: the law does not depend on the size, and the software rasteriser has two cores.
+/// Small images and grids: the law does not depend on the size, and the software rasteriser has two cores.
 RenderOptions smallOptions(const Pipeline& pipeline) {
   RenderOptions options;
   options.width = 48;
@@ -54,22 +54,22 @@ bool changes(const Scene& scene) {
 void checkSameOutputs(const FrameResult& pruned, const FrameResult& whole) {
   REQUIRE(!pruned.outputs.empty());
   REQUIRE(pruned.outputs.size() == whole.outputs.size());
-  for (const auto& [name, picture] : pruned.outputs) {
+  for (const auto& [name, image] : pruned.outputs) {
     const std::vector<float>& other = whole.outputs.at(name).values();
     std::size_t different = 0;
-    for (std::size_t i = 0; i < other.size(); ++i) different += picture.values()[i] != other[i];
+    for (std::size_t i = 0; i < other.size(); ++i) different += image.values()[i] != other[i];
     INFO("output " << name << ": " << different << " values differ");
     CHECK(different == 0);
   }
 }
 
-void checkSamePicture(const std::filesystem::path& sceneFile) {
+void checkSameImage(const std::filesystem::path& sceneFile) {
   const std::optional<Scene> loaded = sceneIfPresent(sceneFile);
   if (!loaded) return;
   const Scene& scene = *loaded;
   for (const auto& pipelineFile : filesIn("scenes/pipelines", ".pipeline")) {
     const Pipeline text = Pipeline::load(pipelineFile);
-    if (text.outputs.empty()) continue;  // voxelisers alone, below
+    if (text.outputs.empty()) continue;  // voxelizers alone, below
     const RenderOptions options = smallOptions(text);
     RenderOptions keeping = options;
     keeping.keepEverything = true;
@@ -100,14 +100,14 @@ std::vector<std::filesystem::path> scenes(bool ownModels) {
 
 }  // namespace
 
-TEST_CASE("leaving out passes and variants gives the bit-identical picture on every scene made here") {
+TEST_CASE("leaving out passes and variants gives the bit-identical image on every scene made here") {
   const auto files = scenes(true);
   REQUIRE(files.size() >= 6);
-  for (const auto& file : files) checkSamePicture(file);
+  for (const auto& file : files) checkSameImage(file);
 }
 
-TEST_CASE("leaving out passes and variants gives the bit-identical picture on the well-known models") {
-  for (const auto& file : scenes(false)) checkSamePicture(file);
+TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models") {
+  for (const auto& file : scenes(false)) checkSameImage(file);
 }
 
 namespace {
@@ -119,9 +119,9 @@ std::vector<FragmentData> fragmentsWith(const Scene& scene, const Pipeline& text
   PipelineExecutor executor(device(), techniques(), scene, text, options);
   const std::string last = text.passes.back().name;
   executor.keepOutput(last, "fragments");
-  executor.render(0.0, 0, PipelineExecutor::Pictures::no);
+  executor.render(0.0, 0, PipelineExecutor::Images::no);
   const OutBase* output = executor.output(last, "fragments");
-  // Without a triangle a voxeliser is left out.
+  // Without a triangle a voxelizer is left out.
   return output == nullptr ? std::vector<FragmentData>{}
                            : fragmentsOf(static_cast<const Out<VoxelFragments>*>(output)->value());
 }
@@ -141,7 +141,7 @@ void checkSameFragments(const std::filesystem::path& sceneFile) {
   const std::optional<Scene> loaded = sceneIfPresent(sceneFile);
   if (!loaded) return;
   const Scene& scene = *loaded;
-  for (const auto& file : filesIn("scenes/pipelines/voxelisers", ".pipeline")) {
+  for (const auto& file : filesIn("scenes/pipelines/voxelizers", ".pipeline")) {
     const Pipeline text = Pipeline::load(file);
     INFO(sceneFile.filename() << " through " << file.filename());
     const std::vector<FragmentData> pruned = fragmentsWith(scene, text, false);
@@ -156,34 +156,34 @@ void checkSameFragments(const std::filesystem::path& sceneFile) {
 
 }  // namespace
 
-TEST_CASE("leaving out gives bit-identical fragments from every voxeliser on every scene made here") {
+TEST_CASE("leaving out gives bit-identical fragments from every voxelizer on every scene made here") {
   for (const auto& file : scenes(true)) checkSameFragments(file);
 }
 
-TEST_CASE("leaving out gives bit-identical fragments from every voxeliser on the well-known models") {
-  // Scenes of published figures and tables differ from others in what no voxeliser sees: media, lights and
+TEST_CASE("leaving out gives bit-identical fragments from every voxelizer on the well-known models") {
+  // Scenes of published figures and tables differ from others in what no voxelizer sees: media, lights and
   // cameras.
   std::vector<std::filesystem::path> files = scenes(false);
   std::erase_if(files, [](const auto& file) { return file.parent_path().filename() == "reproductions"; });
   for (const auto& file : files) checkSameFragments(file);
 }
 
-TEST_CASE("the same picture comes from SPIR-V and from the GLSL text made of it") {
+TEST_CASE("the same image comes from SPIR-V and from the GLSL text made of it") {
   const Scene scene = loadScene(sourceDirectory() / "scenes/cornell_glossy.scene");
   const Pipeline text = pipeline("voxel_cone_tracing");
   const RenderOptions options = smallOptions(text);
-  std::map<std::string, Picture> pictures[2];
+  std::map<std::string, ImageBuffer> images[2];
   for (int route = 0; route < 2; ++route) {
     gpu::DeviceOptions deviceOptions;
     deviceOptions.shaderInput = route == 0 ? gpu::ShaderInput::spirv : gpu::ShaderInput::glsl;
     gpu::Device device(deviceOptions);
-    pictures[route] = PipelineExecutor(device, techniques(), scene, text, options).render(0.0).outputs;
+    images[route] = PipelineExecutor(device, techniques(), scene, text, options).render(0.0).outputs;
   }
-  for (const auto& [name, picture] : pictures[0]) {
-    const Picture& other = pictures[1].at(name);
-    REQUIRE(picture.sameShape(other));
-    for (std::size_t i = 0; i < picture.values().size(); ++i) {
-      CHECK(other.values()[i] == Approx(picture.values()[i]).epsilon(1e-4).margin(1e-6));
+  for (const auto& [name, image] : images[0]) {
+    const ImageBuffer& other = images[1].at(name);
+    REQUIRE(image.sameShape(other));
+    for (std::size_t i = 0; i < image.values().size(); ++i) {
+      CHECK(other.values()[i] == Approx(image.values()[i]).epsilon(1e-4).margin(1e-6));
     }
   }
 }

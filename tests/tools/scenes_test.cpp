@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "lumivox/base/file.h"
+#include "lumivox/base/image.h"
 #include "lumivox/base/log.h"
-#include "lumivox/base/picture.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/scene/scene.h"
 #include "support/support.h"
@@ -92,7 +92,7 @@ TEST_CASE("make_models writes the committed models anew") {
     REQUIRE(fs::exists(other));
     total += fs::file_size(other);
     if (made.extension() == ".png")  // zlib chooses the bytes, the pixels are ours
-      CHECK(readBytePicture(made).values == readBytePicture(other).values);
+      CHECK(readByteImage(made).values == readByteImage(other).values);
     else
       CHECK(readFile(made) == readFile(other));
   }
@@ -145,7 +145,7 @@ TEST_CASE("the scenes of well-known models load where the models are") {
 }
 
 TEST_CASE(
-    "the Cornell box is the measured one: 38 triangles, one lamp, and nothing that a pipeline could need "
+    "the Cornell box is the measured one: 38 triangles, one area light, and nothing that a pipeline could need "
     "besides") {
   const Scene scene = load("cornell");
   CHECK(scene.triangleCount() == 38);
@@ -166,7 +166,8 @@ TEST_CASE(
   CHECK(extent(scene).z == Approx(0.5592).epsilon(1e-5));
 }
 
-TEST_CASE("in the picture of the Cornell box the red wall is on the left, and the lamp shines downwards") {
+TEST_CASE(
+    "in the image of the Cornell box the red wall is on the left, and the area light shines downwards") {
   const Scene scene = load("cornell");
   const SceneSnapshot snapshot = snapshotOf(scene, 0);
   const auto mean = [&](const std::string& name) {
@@ -179,9 +180,9 @@ TEST_CASE("in the picture of the Cornell box the red wall is on the left, and th
   const Material& red =
       scene.materials[static_cast<std::size_t>(objectNamed(scene, "room/left_wall").parts.at(0).material)];
   CHECK(red.diffuse.r > 5 * red.diffuse.g);
-  const Part& lamp = objectNamed(scene, "room/ceiling_lamp").parts.at(0);
-  CHECK(scene.materials[static_cast<std::size_t>(lamp.material)].emission == glm::vec3(17, 12, 4));
-  for (std::uint32_t i = lamp.firstIndex; i < lamp.firstIndex + lamp.indexCount; i += 3) {
+  const Part& areaLight = objectNamed(scene, "room/ceiling_lamp").parts.at(0);
+  CHECK(scene.materials[static_cast<std::size_t>(areaLight.material)].emission == glm::vec3(17, 12, 4));
+  for (std::uint32_t i = areaLight.firstIndex; i < areaLight.firstIndex + areaLight.indexCount; i += 3) {
     const glm::vec3 a = scene.positions[scene.indices[i]], b = scene.positions[scene.indices[i + 1]],
                     c = scene.positions[scene.indices[i + 2]];
     CHECK(glm::normalize(glm::cross(b - a, c - a)).y == Approx(-1.0));

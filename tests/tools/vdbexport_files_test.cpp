@@ -67,7 +67,7 @@ Scene sphereScene(const glm::vec3& centre, float radius, int slices) {
 
 }  // namespace
 
-TEST_CASE("a voxelised sphere of one metre measures one metre through the file's transform") {
+TEST_CASE("a voxelized sphere of one metre measures one metre through the file's transform") {
   const TemporaryDirectory directory;
   const glm::dvec3 centre(3.0, -2.0, 7.0);
   const Scene scene = sphereScene(glm::vec3(centre), 0.5f, 96);
@@ -97,7 +97,7 @@ TEST_CASE("a voxelised sphere of one metre measures one metre through the file's
     CHECK(outer <= 1.0 + 2.0 * voxel);
     CHECK(std::abs(0.5 * (high[axis] + low[axis]) - centre[axis]) <= 0.5 * voxel);
   }
-  // Their centres lie on both sides of the surface alike: a plane that is conservatively voxelised has a
+  // Their centres lie on both sides of the surface alike: a plane that is conservatively voxelized has a
   // symmetric distribution, and curvature shifts it by terms of order voxel^2 / radius.
   double mean = 0.0, farthest = 0.0;
   openvdb::Vec3d middle(0.0);

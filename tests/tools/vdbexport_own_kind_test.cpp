@@ -3,7 +3,7 @@
 #include <openvdb/openvdb.h>
 
 #include "lumivox/base/error.h"
-#include "lumivox/experiment/voxelisers.h"
+#include "lumivox/experiment/voxelizers.h"
 #include "lumivox/plugin/loader.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"

@@ -7,7 +7,7 @@
 #include <map>
 #include <random>
 
-#include "../../techniques/light_propagation_volumes/closed_faces.h"
+#include "../../techniques/light_propagation_volumes/occluded_faces.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 #include "tools/cli_support.h"
@@ -32,7 +32,7 @@ struct Content {
   AttributeGrid attributes;
   RadianceGrid radiance;
   ShGrid harmonics;
-  light_propagation_volumes::ClosedFaces faces;
+  light_propagation_volumes::OccludedFaces faces;
   ScatteringGrid media;
 };
 Content& content() {
@@ -153,9 +153,9 @@ class EveryKind : public Pass {
   Out<AttributeGrid> attributes{this, "attributes"};
   Out<RadianceGrid> radiance{this, "radiance"};
   Out<ShGrid> harmonics{this, "harmonics"};
-  Out<light_propagation_volumes::ClosedFaces> faces{this, "faces"};  // a kind that a technique brought
+  Out<light_propagation_volumes::OccludedFaces> faces{this, "faces"};  // a kind that a technique brought
   Out<ScatteringGrid> media{this, "media"};
-  Out<Image> picture{this, "picture", Contributes::direct};
+  Out<Image> image{this, "image", Contributes::direct};
   void run(PassContext& frame) override {
     const Content& made = content();
     fragments = made.fragments;
@@ -166,7 +166,7 @@ class EveryKind : public Pass {
     harmonics = made.harmonics;
     faces = made.faces;
     media = made.media;
-    if (picture.wanted()) picture = {frame.image(gpu::Format::rgba32f, "picture")};
+    if (image.wanted()) image = {frame.image(gpu::Format::rgba32f, "image")};
   }
 };
 
@@ -190,7 +190,7 @@ class OneTechnique : public TechniqueSource {
 
 Pipeline kindsPipeline() {
   return Pipeline::parse(
-      "pipeline \"kinds\" {\n  pass all toy.kinds { width 4 m }\n  output direct all.picture\n}\n",
+      "pipeline \"kinds\" {\n  pass all toy.kinds { width 4 m }\n  output direct all.image\n}\n",
       "kinds.pipeline");
 }
 
@@ -326,7 +326,7 @@ TEST_CASE("every value of every kind of port reads back from the file as the dev
   checkComponent(grids, "all.media.density_smoke", made.media.media[0].density, 0, 0);
   checkVoxels<openvdb::FloatGrid>(grids, "all.media.density_fog", glm::ivec3(8),
                                   [](const glm::ivec3&) { return std::pair(1.0f, true); });
-  checkRgb(grids, "all.faces.closed", made.faces.levels[0].closed, 0);
+  checkRgb(grids, "all.faces.occluded", made.faces.levels[0].occluded, 0);
 
   const std::array<const char*, 4> coefficients{"Y00", "Y1-1", "Y10", "Y11"};
   for (int level = 0; level < 2; ++level) {

@@ -5,20 +5,20 @@
 
 #include "command.h"
 #include "lumivox/base/error.h"
-#include "lumivox/base/picture.h"
+#include "lumivox/base/image.h"
 #include "lumivox/measure/metrics.h"
 
 namespace lumivox::command {
 namespace {
 
 struct CompareCommand {
-  std::filesystem::path picture, truth;
+  std::filesystem::path image, reference;
   std::vector<std::string> layers;
   bool json = false;
   double rmseAtMost = -1.0;
 };
 
-/// A layer of the picture and the layer of the truth that it is compared with.
+/// A layer of the image and the layer of the reference that it is compared with.
 using LayerPair = std::pair<std::string, std::string>;
 
 constexpr const char* kMainLayer = "main";  // how the command line names the layer without a name
@@ -31,15 +31,15 @@ bool isVariance(const std::string& layer) {
   return layer.size() > 9 && layer.rfind(kVariance) == layer.size() - 9;
 }
 
-std::vector<std::string> namesIn(const LayeredPicture& file) {
+std::vector<std::string> namesIn(const LayeredImage& file) {
   std::vector<std::string> names;
-  for (const auto& [name, picture] : file.layers)
+  for (const auto& [name, image] : file.layers)
     if (!isVariance(name)) names.push_back(shown(name));
   return names;
 }
 
-const Picture& layerIn(const LayeredPicture& file, const std::filesystem::path& path,
-                       const std::string& layer) {
+const ImageBuffer& layerIn(const LayeredImage& file, const std::filesystem::path& path,
+                           const std::string& layer) {
   const auto found = file.layers.find(layer == kMainLayer && file.layers.count(layer) == 0 ? "" : layer);
   if (found != file.layers.end()) return found->second;
   const std::vector<std::string> names = namesIn(file);
@@ -49,8 +49,8 @@ const Picture& layerIn(const LayeredPicture& file, const std::filesystem::path& 
                           nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
 }
 
-std::vector<LayerPair> pairsOf(const CompareCommand& command, const LayeredPicture& picture,
-                               const LayeredPicture& truth) {
+std::vector<LayerPair> pairsOf(const CompareCommand& command, const LayeredImage& image,
+                               const LayeredImage& reference) {
   std::vector<LayerPair> pairs;
   for (const std::string& layer : command.layers) {
     const std::size_t equals = layer.find('=');
@@ -58,23 +58,23 @@ std::vector<LayerPair> pairsOf(const CompareCommand& command, const LayeredPictu
     pairs.emplace_back(own, equals == std::string::npos ? own : layer.substr(equals + 1));
   }
   if (!pairs.empty()) return pairs;
-  for (const auto& [name, values] : picture.layers)
-    if (!isVariance(name) && truth.layers.count(name) != 0) pairs.emplace_back(name, name);
+  for (const auto& [name, values] : image.layers)
+    if (!isVariance(name) && reference.layers.count(name) != 0) pairs.emplace_back(name, name);
   if (pairs.empty())
     throw Error(fmt::format(
         "{} and {} have no layer in common; choose with --layer A=B; the first has {}; the second has {}",
-        command.picture.string(), command.truth.string(), fmt::join(namesIn(picture), ", "),
-        fmt::join(namesIn(truth), ", ")));
+        command.image.string(), command.reference.string(), fmt::join(namesIn(image), ", "),
+        fmt::join(namesIn(reference), ", ")));
   return pairs;
 }
 
 /// Without its fourth channel, which is coverage and no radiance.
-Picture withoutAlpha(const Picture& picture) {
-  if (picture.channels() != 4) return picture;
-  Picture rgb(picture.width(), picture.height(), 3);
-  for (std::size_t pixel = 0; pixel < picture.pixelCount(); ++pixel)
+ImageBuffer withoutAlpha(const ImageBuffer& image) {
+  if (image.channels() != 4) return image;
+  ImageBuffer rgb(image.width(), image.height(), 3);
+  for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel)
     for (std::size_t channel = 0; channel < 3; ++channel)
-      rgb.values()[3 * pixel + channel] = picture.values()[4 * pixel + channel];
+      rgb.values()[3 * pixel + channel] = image.values()[4 * pixel + channel];
   return rgb;
 }
 
@@ -83,9 +83,9 @@ Json toJson(const Measured& measured) {
   return {{"value", number(measured.value)}, {"uncertainty", number(measured.uncertainty)}};
 }
 
-Json toJson(const LayerPair& pair, const PictureError& error) {
+Json toJson(const LayerPair& pair, const ImageError& error) {
   return {{"layer", shown(pair.first)},
-          {"truth_layer", shown(pair.second)},
+          {"reference_layer", shown(pair.second)},
           {"rmse", toJson(error.rmse)},
           {"relative_mse", toJson(error.relativeMse)},
           {"mean_ratio", toJson(error.meanRatio)},
@@ -94,9 +94,9 @@ Json toJson(const LayerPair& pair, const PictureError& error) {
           {"ssim", error.ssim},
           {"flip_hdr", error.flip},
           {"flip_ldr", error.flipLdr},
-          {"truth_noise", error.noiseFloor},
-          {"non_finite_picture", error.nonFinitePicture},
-          {"non_finite_truth", error.nonFiniteTruth}};
+          {"reference_noise", error.noiseFloor},
+          {"non_finite_image", error.nonFiniteImage},
+          {"non_finite_reference", error.nonFiniteReference}};
 }
 
 std::string text(const Measured& measured) {
@@ -106,25 +106,25 @@ std::string text(const Measured& measured) {
 }
 
 int compareFiles(const CompareCommand& command) {
-  const LayeredPicture picture = readExr(command.picture), truth = readExr(command.truth);
+  const LayeredImage image = readExr(command.image), reference = readExr(command.reference);
   Json list = Json::array();
   std::vector<std::vector<std::string>> rows{{"Layer", "RMSE", "Relative MSE", "Mean ratio",
                                               "Mean difference", "95 %", "SSIM", "FLIP", "FLIP LDR",
-                                              "Truth's noise", "NaN or Inf"}};
+                                              "Reference's noise", "NaN or Inf"}};
   bool good = true;
-  for (const LayerPair& pair : pairsOf(command, picture, truth)) {
-    const Picture& own = layerIn(picture, command.picture, pair.first);
-    const Picture& other = layerIn(truth, command.truth, pair.second);
+  for (const LayerPair& pair : pairsOf(command, image, reference)) {
+    const ImageBuffer& own = layerIn(image, command.image, pair.first);
+    const ImageBuffer& other = layerIn(reference, command.reference, pair.second);
     const bool alpha = own.channels() + other.channels() == 7;  // RGBA with RGB
-    const Picture left = alpha ? withoutAlpha(own) : own, right = alpha ? withoutAlpha(other) : other;
+    const ImageBuffer left = alpha ? withoutAlpha(own) : own, right = alpha ? withoutAlpha(other) : other;
     if (!left.sameShape(right))
       throw Error(fmt::format(
           "layer '{}' of {} has {} x {} pixels of {} channels, layer '{}' of {} has {} x {} of {}",
-          shown(pair.first), command.picture.string(), left.width(), left.height(), left.channels(),
-          shown(pair.second), command.truth.string(), right.width(), right.height(), right.channels()));
-    const auto variance = truth.layers.find((pair.second == kMainLayer ? "" : pair.second) + kVariance);
-    const bool known = variance != truth.layers.end() && variance->second.sameShape(right);
-    const PictureError error = compare(left, right, known ? variance->second : Picture{});
+          shown(pair.first), command.image.string(), left.width(), left.height(), left.channels(),
+          shown(pair.second), command.reference.string(), right.width(), right.height(), right.channels()));
+    const auto variance = reference.layers.find((pair.second == kMainLayer ? "" : pair.second) + kVariance);
+    const bool known = variance != reference.layers.end() && variance->second.sameShape(right);
+    const ImageError error = compare(left, right, known ? variance->second : ImageBuffer{});
     if (command.rmseAtMost >= 0.0 && !(error.rmse.value <= command.rmseAtMost)) good = false;
     list.push_back(toJson(pair, error));
     rows.push_back(
@@ -133,11 +133,12 @@ int compareFiles(const CompareCommand& command) {
          threeDigits(error.percentile95), fmt::format("{:.4f}", error.ssim),
          fmt::format("{:.4f}", error.flip), fmt::format("{:.4f}", error.flipLdr),
          threeDigits(error.noiseFloor),
-         fmt::format("{}", error.nonFinitePicture) +
-             (error.nonFiniteTruth > 0 ? fmt::format(", truth {}", error.nonFiniteTruth) : "")});
+         fmt::format("{}", error.nonFiniteImage) +
+             (error.nonFiniteReference > 0 ? fmt::format(", reference {}", error.nonFiniteReference) : "")});
   }
   if (command.json)
-    printJson({{"picture", command.picture.string()}, {"truth", command.truth.string()}, {"layers", list}});
+    printJson(
+        {{"image", command.image.string()}, {"reference", command.reference.string()}, {"layers", list}});
   else
     print(textTable(rows));
   return good ? kGood : kNotGood;
@@ -147,10 +148,12 @@ int compareFiles(const CompareCommand& command) {
 
 void addCompareCommand(Commands& commands) {
   auto* command = commands.app.add_subcommand(
-      "compare", "how far a picture is from another; NaN and Inf are counted, not spread");
+      "compare", "how far an image is from another; NaN and Inf are counted, not spread");
   auto options = std::make_shared<CompareCommand>();
-  command->add_option("PICTURE", options->picture, "an EXR file")->required();
-  command->add_option("TRUTH", options->truth, "an EXR file; its layers NAME.variance give the uncertainties")
+  command->add_option("IMAGE", options->image, "an EXR file")->required();
+  command
+      ->add_option("REFERENCE", options->reference,
+                   "an EXR file; its layers NAME.variance give the uncertainties")
       ->required();
   addRepeatable(
       *command, "--layer", options->layers,

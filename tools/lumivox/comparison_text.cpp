@@ -31,7 +31,7 @@ std::string timeText(const Measured& timeMs) {
 std::string frontText(const PipelineComparison& comparison) {
   std::vector<std::vector<std::string>> rows{{"Pipeline", "Parameters", "Frame ms", comparison.metric, ""}};
   for (const ComparedPoint& point : comparison.points) {
-    std::string standing = "on the front";
+    std::string standing = "on the Pareto front";
     if (!point.tradeOff.timeMs.enoughRepeats || !point.tradeOff.error.enoughRepeats)
       standing += ", undecided";
     if (point.beatenBy) {
@@ -101,8 +101,8 @@ namespace {
 
 std::string tableText(const PipelineComparison& comparison, ComparisonTable table) {
   const std::string title = fmt::format(
-      "{}, {} against {}\n", comparison.component == "final" ? "whole picture" : comparison.component,
-      comparison.metric, comparison.truth);
+      "{}, {} against {}\n", comparison.component == "final" ? "whole image" : comparison.component,
+      comparison.metric, comparison.reference);
   switch (table) {
     case ComparisonTable::front:
       return title + frontText(comparison);

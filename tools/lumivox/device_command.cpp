@@ -8,27 +8,27 @@
 #include "lumivox/results/json.h"
 #include "lumivox/results/store.h"
 #include "lumivox/results/text.h"
-#include "lumivox/roofline/ceilings.h"
+#include "lumivox/roofline/peak_rates.h"
 
 namespace lumivox::command {
 namespace {
 
 struct DeviceCommand {
-  CeilingOptions options;
+  PeakRateOptions options;
   std::filesystem::path store;
   bool json = false;
 };
 
 int device(const DeviceCommand& command, const GlobalOptions& global) {
-  CeilingOptions options = command.options;
+  PeakRateOptions options = command.options;
   options.progress = [](std::size_t done, std::size_t total, const std::string& name) {
     logInformation("{} of {}: {}", done + 1, total, name);
   };
   const std::filesystem::path file = command.store.empty() ? ResultsStore::defaultFile() : command.store;
   ResultsStore store(file);  // a place that cannot be written is told before the work
   const auto device = global.openDevice();
-  const std::vector<DeviceCeiling> ceilings = measureCeilings(*device, options);
-  store.add(ceilings);
+  const std::vector<PeakRate> peakRates = measurePeakRates(*device, options);
+  store.add(peakRates);
 
   const gpu::DeviceInfo& info = device->info();
   if (command.json) {
@@ -44,9 +44,9 @@ int device(const DeviceCommand& command, const GlobalOptions& global) {
                  {"largest_volume", info.maxTextureSize3d},
                  {"largest_buffer_bytes", info.maxStorageBytes},
                  {"samples", info.maxSamples},
-                 {"host", ceilings.front().host}}},
+                 {"host", peakRates.front().host}}},
                {"store", file.string()},
-               {"ceilings", toJson(ceilings)}});
+               {"peak_rates", toJson(peakRates)}});
     return kGood;
   }
   std::string text = textTable({{"", ""},
@@ -54,18 +54,18 @@ int device(const DeviceCommand& command, const GlobalOptions& global) {
                                 {"Vendor", info.vendor},
                                 {"Driver", info.version},
                                 {"Platform", info.platform},
-                                {"Host", ceilings.front().host},
+                                {"Host", peakRates.front().host},
                                 {"Shaders", gpu::programRouteText(*device)},
                                 {"Timer", info.timerNote},
                                 {"Largest volume", fmt::format("{} voxels a side", info.maxTextureSize3d)},
                                 {"Largest buffer", formatBytes(info.maxStorageBytes)},
                                 {"Samples per pixel", fmt::format("{}", info.maxSamples)}});
   std::vector<std::vector<std::string>> rows{{"At most", "median", "quartiles", "unit"}};
-  for (const DeviceCeiling& ceiling : ceilings)
+  for (const PeakRate& peakRate : peakRates)
     rows.push_back(
-        {ceiling.name, formatThousands(ceiling.rate.median),
-         formatThousands(ceiling.rate.lowerQuartile) + " .. " + formatThousands(ceiling.rate.upperQuartile),
-         ceiling.unit});
+        {peakRate.name, formatThousands(peakRate.rate.median),
+         formatThousands(peakRate.rate.lowerQuartile) + " .. " + formatThousands(peakRate.rate.upperQuartile),
+         peakRate.unit});
   print(text + "\n" + textTable(rows) + file.string() + "\n");
   return kGood;
 }
@@ -78,9 +78,9 @@ void addDeviceCommand(Commands& commands) {
   auto all = std::make_shared<DeviceCommand>();
   command->add_option("--store", all->store,
                       "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)");
-  command->add_option("--repeats", all->options.repeats, "timed runs per ceiling (default 5)")
+  command->add_option("--repeats", all->options.repeats, "timed runs per peak rate (default 5)")
       ->check(CLI::Range(1, 10000));
-  addRepeatable(*command, "--only", all->options.names, "measures this ceiling alone; may be repeated");
+  addRepeatable(*command, "--only", all->options.names, "measures this peak rate alone; may be repeated");
   command->add_flag("--json", all->json, "print JSON in place of the table");
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] { return device(*all, global); });

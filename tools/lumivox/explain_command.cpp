@@ -58,9 +58,9 @@ std::string asText(const PruningRecord& record) {
   if (timed)
     text += fmt::format("{} of the time of a first frame saved, {} of the next ones with a moving camera; ",
                         formatPercent(record.savedShare()), formatPercent(record.savedShareNext()));
-  return text + fmt::format("memory of the passes {} in place of {}; same picture: {}\n",
+  return text + fmt::format("memory of the passes {} in place of {}; same image: {}\n",
                             formatBytes(record.prunedBytes), formatBytes(record.unprunedBytes),
-                            record.samePicture ? "yes" : "NO");
+                            record.sameImage ? "yes" : "NO");
 }
 
 /// "42.1/57.5 MiB", or "900.0 KiB/1.2 MiB" where the units differ.
@@ -122,7 +122,7 @@ std::vector<std::string> cellRow(const NeededCell& cell) {
     row.push_back(both(record.prunedMs, record.unprunedMs));
     row.push_back(both(record.nextPrunedMs, record.nextUnprunedMs));
   }
-  if (!record.samePicture) row.emplace_back("DIFFERS");
+  if (!record.sameImage) row.emplace_back("DIFFERS");
   return row;
 }
 
@@ -159,7 +159,7 @@ std::string matrixText(const std::vector<NeededCell>& cells) {
     if (none) remarks += remark(*first, true);
     for (; first != end; ++first) {
       absent += !first->record;
-      same += first->record && first->record->samePicture;
+      same += first->record && first->record->sameImage;
       if (none) continue;
       rows.push_back(cellRow(*first));
       remarks += remark(*first, false);
@@ -173,7 +173,7 @@ std::string matrixText(const std::vector<NeededCell>& cells) {
   return textTable(rows) + remarks +
          wrapped(fmt::format(
              "passes: kept/all; shader variants: needed/compiled/possible; memory{}: as it runs/with everything "
-             "kept; same picture, bit for bit: {} of {}{}",
+             "kept; same image, bit for bit: {} of {}{}",
              timed ? ", first frame, later frames" : "", same, cells.size() - absent,
              absent == 0 ? "" : fmt::format("; {} absent", absent)));
 }
@@ -241,7 +241,7 @@ int explain(const ExplainCommand& command, const GlobalOptions& global) {
   else
     print(one ? asText(*cells.front().record) : matrixText(cells));
   const bool good = std::all_of(cells.begin(), cells.end(), [](const NeededCell& cell) {
-    return cell.record ? cell.record->samePicture : !cell.failed;
+    return cell.record ? cell.record->sameImage : !cell.failed;
   });
   return good ? kGood : kNotGood;
 }
@@ -259,7 +259,7 @@ void addExplainCommand(Commands& commands) {
   command->add_option("--pipeline", options->pipelines, "further pipelines' texts, for a matrix");
   command->add_flag("--all", options->all, "every committed scene, as a matrix");
   command->add_flag("--no-times", options->noTimes,
-                    "only what is left out and whether the picture is the same; much faster");
+                    "only what is left out and whether the image is the same; much faster");
   options->run.addTo(*command);
   command->add_option("--repeats", options->repeats, "timed frames of each kind (default 5)")
       ->check(CLI::Range(1, 10000));

@@ -11,7 +11,7 @@ using namespace lumivox::command;
 int run(int count, char** arguments) {
   requireLibraryOf(techniqueVersionHere());
   CLI::App app{
-      "A laboratory for real-time global illumination: a scene and a pipeline in; pictures, their error and "
+      "A laboratory for real-time global illumination: a scene and a pipeline in; images, their error and "
       "their time out."};
   app.name("lumivox");
   app.set_version_flag("--version", std::string("lumivox ") + LUMIVOX_VERSION);

@@ -17,11 +17,11 @@ void MeasureOptions::addTo(CLI::App& app, const std::string& store, const std::s
   app.add_option("--pipeline", options.pipelines,
                  "pipelines' texts (default: every committed one that suits the scene)");
   run.addTo(app);
-  app.add_option("--spp", options.truthSamples,
-                 "the truth's samples per pixel (default: by the size of the picture)")
+  app.add_option("--spp", options.referenceSamples,
+                 "the reference's samples per pixel (default: by the size of the image)")
       ->check(CLI::Range(1, 1 << 24));
   app.add_option("--subpixels", options.subpixels,
-                 "judged pictures are means over N positions in the pixel (default 16; 1: its centre)")
+                 "judged images are means over N positions in the pixel (default 16; 1: its centre)")
       ->check(CLI::Range(1, 4096));
   app.add_option("--repeats", options.repeats, "timed frames per point (default 5)")
       ->check(CLI::Range(1, 10000));

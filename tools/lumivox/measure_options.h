@@ -30,7 +30,7 @@ std::string quartilesText(const TimingStatistics& time);  ///< "1.2 [1.1, 1.4]";
 std::string parametersText(const std::map<std::string, std::string>& parameters);
 /// "0.0123 ± 0.0004 (0.31)": RMSE, and in brackets its ratio to leaving the component out. Empty for null.
 std::string rmseText(const ComponentError* error);
-/// The error of an output by name: against the truth that is wanted, or the only one. Null when there is
+/// The error of an output by name: against the reference that is wanted, or the only one. Null when there is
 /// none.
 const ComponentError* errorOf(const ReportPoint& point, const std::string& output, bool bias);
 

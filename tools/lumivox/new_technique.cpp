@@ -44,7 +44,7 @@ std::string withName(std::string text, const std::string& name) {
   return text;
 }
 
-/// Adds the files of a folder of templates, by the path that they get, with the name put in; pictures as they
+/// Adds the files of a folder of templates, by the path that they get, with the name put in; images as they
 /// are.
 void addTemplates(std::map<fs::path, std::string>& files, const fs::path& folder, const std::string& name) {
   if (!fs::is_directory(folder))

@@ -1,11 +1,11 @@
-// reference: the path-traced truth.
+// reference: the path-traced reference.
 #include <fmt/format.h>
 
 #include "command.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/base/image.h"
 #include "lumivox/base/log.h"
-#include "lumivox/base/picture.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/measure/metrics.h"
 #include "lumivox/reference/path_tracer.h"
@@ -23,7 +23,7 @@ struct ReferenceCommand {
 int reference(ReferenceCommand command, const GlobalOptions& global) {
   const std::string extension = command.output.extension().string();
   if (extension != ".exr" && extension != ".png")
-    throw Error(fmt::format("{}: unknown kind of picture; expected a name that ends in .exr or .png",
+    throw Error(fmt::format("{}: unknown kind of image; expected a name that ends in .exr or .png",
                             command.output.string()));
   requireWritable(command.output);
   if (!command.resolution.empty())
@@ -32,16 +32,16 @@ int reference(ReferenceCommand command, const GlobalOptions& global) {
   command.options.progress = !global.quiet;
   const Scene scene = global.loadScene(command.scene);
   scene.camera(command.options.camera);
-  LayeredPicture truth = command.options.useCache ? cachedReference(scene, command.options)
-                                                  : renderReference(scene, command.options);
-  const Picture full = truth.layers.at("full");
+  LayeredImage reference = command.options.useCache ? cachedReference(scene, command.options)
+                                                    : renderReference(scene, command.options);
+  const ImageBuffer full = reference.layers.at("full");
   if (extension == ".png") {
     writePng(command.output, full, displayExposure(full));
   } else {
-    truth.layers[""] = full;  // what a viewer of pictures shows first
-    truth.attributes["lumivox.command"] = global.commandLine;
-    truth.attributes["lumivox.version"] = LUMIVOX_VERSION;
-    writeExr(command.output, truth);
+    reference.layers[""] = full;  // what a viewer of images shows first
+    reference.attributes["lumivox.command"] = global.commandLine;
+    reference.attributes["lumivox.version"] = LUMIVOX_VERSION;
+    writeExr(command.output, reference);
   }
   logInformation("{}: {} x {}, {} samples per pixel", command.output.string(), full.width(), full.height(),
                  command.options.samplesPerPixel);
@@ -51,7 +51,7 @@ int reference(ReferenceCommand command, const GlobalOptions& global) {
 }  // namespace
 
 void addReferenceCommand(Commands& commands) {
-  auto* command = commands.app.add_subcommand("reference", "path-traces the truth of a scene");
+  auto* command = commands.app.add_subcommand("reference", "path-traces the reference of a scene");
   auto all = std::make_shared<ReferenceCommand>();
   ReferenceOptions& options = all->options;
   command->add_option("SCENE", all->scene, "the scene's text")->required();
@@ -78,7 +78,7 @@ void addReferenceCommand(Commands& commands) {
                    "metres, of ambient occlusion (default: a tenth of the diagonal of the scene's bounds)")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--threads", options.threads, "default: all")->check(CLI::Range(0, 4096));
-  command->add_flag("--no-cache", all->noCache, "neither read nor write the cache of truths");
+  command->add_flag("--no-cache", all->noCache, "neither read nor write the cache of references");
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] { return reference(*all, global); });
 }

@@ -1,4 +1,4 @@
-// render: pictures alone.
+// render: images alone.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -7,8 +7,8 @@
 #include "lumivox/base/background_writer.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/base/image.h"
 #include "lumivox/base/log.h"
-#include "lumivox/base/picture.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/measure/metrics.h"
 
@@ -22,7 +22,7 @@ struct RenderCommand {
   RunOptions run;
   std::string frames, onlyOutput;
   double framesPerSecond = 24.0;
-  int accumulate = 0;  ///< frames a picture; 0: each is made alone
+  int accumulate = 0;  ///< frames an image; 0: each is made alone
   bool keepEverything = false, health = false, checkReads = false;
 };
 
@@ -37,7 +37,7 @@ FrameResult renderShown(const RenderCommand& command, PipelineExecutor& executor
   const int count = std::max(command.accumulate, 1);
   for (int i = 1;; ++i) {
     FrameResult result = executor.render(
-        time, frame, i == count ? PipelineExecutor::Pictures::yes : PipelineExecutor::Pictures::no);
+        time, frame, i == count ? PipelineExecutor::Images::yes : PipelineExecutor::Images::no);
     collect(health, result.healthFindings);
     collect(reads, result.readsFindings);
     collect(notes, result.notes);
@@ -50,25 +50,25 @@ FrameResult renderShown(const RenderCommand& command, PipelineExecutor& executor
   }
 }
 
-Picture mainPicture(const RenderCommand& command, const FrameResult& frame) {
-  if (command.onlyOutput.empty()) return compositePicture(frame);
+ImageBuffer mainImage(const RenderCommand& command, const FrameResult& frame) {
+  if (command.onlyOutput.empty()) return compositeImage(frame);
   const auto found = frame.outputs.find(command.onlyOutput);
-  return found == frame.outputs.end() ? Picture{} : found->second;
+  return found == frame.outputs.end() ? ImageBuffer{} : found->second;
 }
 
 void writeFrame(const RenderCommand& command, const fs::path& file, FrameResult frame,
                 const std::map<std::string, std::string>& attributes) {
-  Picture main = mainPicture(command, frame);
+  ImageBuffer main = mainImage(command, frame);
   if (file.extension() == ".png") {
     if (main.empty()) throw Error("the pipeline has no output that is a radiance; name one with --output");
     writePng(file, main, main.channels() == 1 ? 1.0f : displayExposure(main));
     return;
   }
-  LayeredPicture layered;
+  LayeredImage layered;
   layered.attributes = attributes;
   if (command.onlyOutput.empty())
-    for (auto& [name, picture] : frame.outputs)
-      if (!picture.empty()) layered.layers[name] = std::move(picture);
+    for (auto& [name, image] : frame.outputs)
+      if (!image.empty()) layered.layers[name] = std::move(image);
   if (!main.empty()) layered.layers[""] = std::move(main);
   writeExr(file, layered);
 }
@@ -76,7 +76,7 @@ void writeFrame(const RenderCommand& command, const fs::path& file, FrameResult 
 int render(const RenderCommand& command, const GlobalOptions& global) {
   const std::string extension = command.output.extension().string();
   if (extension != ".exr" && extension != ".png")
-    throw Error(fmt::format("{}: unknown kind of picture; expected a name that ends in .exr or .png",
+    throw Error(fmt::format("{}: unknown kind of image; expected a name that ends in .exr or .png",
                             command.output.string()));
   if (!(command.framesPerSecond > 0.0) || !std::isfinite(command.framesPerSecond))
     throw Error("--fps: expected a number above 0");
@@ -137,18 +137,18 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
 }  // namespace
 
 void addRenderCommand(Commands& commands) {
-  auto* command = commands.app.add_subcommand("render", "renders a scene with a pipeline into pictures");
+  auto* command = commands.app.add_subcommand("render", "renders a scene with a pipeline into images");
   auto options = std::make_shared<RenderCommand>();
   command->add_option("SCENE", options->scene, "the scene's text")->required();
   command->add_option("PIPELINE", options->pipeline, "the pipeline's text")->required();
   command
       ->add_option("-o,--out", options->output,
-                   "the picture: .exr (every output as a layer, the whole picture as the main layer) or .png "
-                   "(the whole picture)")
+                   "the image: .exr (every output as a layer, the whole image as the main layer) or .png "
+                   "(the whole image)")
       ->required();
   options->run.addTo(*command);
   command->add_option("--frames", options->frames,
-                      "FIRST..LAST: numbered pictures, out_0007.exr or a run of # in the name");
+                      "FIRST..LAST: numbered images, out_0007.exr or a run of # in the name");
   command->add_option("--fps", options->framesPerSecond, "frames per second of --frames (default 24)");
   command->add_option("--output", options->onlyOutput, "only this output of the pipeline, as the main layer");
   command->add_flag("--keep-everything", options->keepEverything, "leave nothing out");
@@ -157,8 +157,8 @@ void addRenderCommand(Commands& commands) {
   command
       ->add_option(
           "--accumulate", options->accumulate,
-          "N: every picture is the last of N frames at its time, and every frame finds what passes left "
-          "in the one before; with --frames from picture to picture too (default: every frame alone)")
+          "N: every image is the last of N frames at its time, and every frame finds what passes left "
+          "in the one before; with --frames from image to image too (default: every frame alone)")
       ->check(CLI::Range(1, 1 << 20));
   command->add_flag(
       "--check-reads", options->checkReads,

@@ -41,8 +41,8 @@ struct ReportCommand {
 };
 
 void printSummary(const ReportSummary& summary) {
-  // One column of errors per output that any pipeline has; the whole picture first.
-  std::vector<std::string> outputs{kWholePicture};
+  // One column of errors per output that any pipeline has; the whole image first.
+  std::vector<std::string> outputs{kWholeImage};
   for (const ReportPoint& point : summary.points)
     for (const ComponentError& error : point.errors)
       if (std::find(outputs.begin(), outputs.end(), error.output) == outputs.end())
@@ -50,7 +50,7 @@ void printSummary(const ReportSummary& summary) {
 
   std::vector<std::vector<std::string>> rows{{"Scene", "Pipeline", "Parameters", "Frame ms"}};
   for (const std::string& output : outputs)
-    rows[0].push_back(output == kWholePicture ? "misses in all" : output + " bias");
+    rows[0].push_back(output == kWholeImage ? "misses in all" : output + " bias");
   rows[0].push_back("Memory");
   rows[0].push_back("Health");
   for (const ReportPoint& point : summary.points) {
@@ -60,7 +60,7 @@ void printSummary(const ReportSummary& summary) {
                                  std::filesystem::path(point.pipeline).stem().string(),
                                  parametersText(parameters), quartilesText(point.frameMs)};
     for (const std::string& output : outputs)
-      row.push_back(rmseText(errorOf(point, output, output != kWholePicture)));
+      row.push_back(rmseText(errorOf(point, output, output != kWholeImage)));
     row.push_back(formatBytes(point.peakBytes));
     row.push_back(!point.failure.empty()         ? "failed"
                   : point.healthFindings.empty() ? "good"
@@ -76,13 +76,13 @@ void printSummary(const ReportSummary& summary) {
     text += fmt::format(
         "{}, {}: leaving out what the scene does not need saves {} of a first frame ({} of {} ms) and "
         "{} of "
-        "the next ones with a moving camera ({} of {} ms); same picture: {}\n",
+        "the next ones with a moving camera ({} of {} ms); same image: {}\n",
         std::filesystem::path(pruning.scene).stem().string(),
         std::filesystem::path(pruning.pipeline).stem().string(), formatPercent(pruning.savedShare()),
         formatMilliseconds(pruning.unprunedMs.median - pruning.prunedMs.median),
         formatMilliseconds(pruning.unprunedMs.median), formatPercent(pruning.savedShareNext()),
         formatMilliseconds(pruning.nextUnprunedMs.median - pruning.nextPrunedMs.median),
-        formatMilliseconds(pruning.nextUnprunedMs.median), pruning.samePicture ? "yes" : "NO");
+        formatMilliseconds(pruning.nextUnprunedMs.median), pruning.sameImage ? "yes" : "NO");
   if (summary.takenUp > 0)
     text += fmt::format("{} of {} points were taken up from an interrupted report\n", summary.takenUp,
                         summary.points.size());
@@ -132,7 +132,7 @@ void addReportCommand(Commands& commands) {
       ->check(CLI::Range(0.001, 1e9));
   command
       ->add_option("--voxels", all->measure.options.voxelResolution,
-                   "adds a section on the voxelisers at this resolution (default: none)")
+                   "adds a section on the voxelizers at this resolution (default: none)")
       ->check(CLI::Range(1, 1024));
   addRepeatable(*command, "--equal-time", all->equalTimes,
                 "a budget of the table of equal time, as 16ms; may be repeated (default: round numbers)");

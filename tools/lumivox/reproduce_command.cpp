@@ -9,8 +9,8 @@
 #include "lumivox/analysis/judge.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/base/image.h"
 #include "lumivox/base/log.h"
-#include "lumivox/base/picture.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/experiment/reproduce.h"
 #include "lumivox/page/reproduction_page.h"
@@ -222,7 +222,7 @@ int measure(const ReproduceCommand& command, const GlobalOptions& global) {
     return std::any_of(result.panels.begin(), result.panels.end(),
                        [](const PublishedPanel& panel) { return !panel.reference.empty(); });
   });
-  if (command.options.truthSamples > 0 && command.store.empty() && !traces)
+  if (command.options.referenceSamples > 0 && command.store.empty() && !traces)
     throw Error(
         "--spp: nothing is path traced here; expected --store, or a figure with a panel of the reference");
   for (const PublishedResult& result : chosen)
@@ -268,7 +268,7 @@ int reproduce(const ReproduceCommand& command, const GlobalOptions& global) {
 void addReproduceCommand(Commands& commands) {
   auto* command = commands.app.add_subcommand(
       "reproduce",
-      "measures the set-ups of published tables and figures, compares numbers as ratios, and makes the pictures");
+      "measures the set-ups of published tables and figures, compares numbers as ratios, and makes the images");
   auto all = std::make_shared<ReproduceCommand>();
   command->add_option("NAME", all->names,
                       "names of tables and figures, or texts .reproduction (default: all committed ones)");
@@ -276,7 +276,7 @@ void addReproduceCommand(Commands& commands) {
   command
       ->add_option(
           "--scale", all->options.scale,
-          "reduces picture sides and grids by this factor (default: 1, or what the text says for a software "
+          "reduces image sides and grids by this factor (default: 1, or what the text says for a software "
           "rasteriser)")
       ->check(CLI::Range(1.0 / 64, 1.0));
   command->add_option("--repeats", all->options.repeats, "timed frames of each set-up (default 5)")
@@ -300,8 +300,8 @@ void addReproduceCommand(Commands& commands) {
       "after them (default: none)");
   command
       ->add_option(
-          "--spp", all->options.truthSamples,
-          "samples per pixel of the reference, of those errors and of panels (default: by the picture's size)")
+          "--spp", all->options.referenceSamples,
+          "samples per pixel of the reference, of those errors and of panels (default: by the image's size)")
       ->check(CLI::Range(1, 1 << 24));
   command->add_flag("--json", all->json, "print JSON in place of text");
   recordOption->excludes("--list");

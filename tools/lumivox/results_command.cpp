@@ -29,7 +29,7 @@ struct ResultsCommand {
   std::string format = "csv";
   std::vector<std::filesystem::path> others;
   bool all = false, dryRun = false, json = false;
-  std::string component = kWholePicture, metric = "rmse", against = "misses";
+  std::string component = kWholeImage, metric = "rmse", against = "misses";
   std::vector<std::string> budgets, errors;
 
   std::filesystem::path file() const { return store.empty() ? ResultsStore::defaultFile() : store; }
@@ -127,9 +127,9 @@ int listResults(const ResultsCommand& command) {
 
 /// The component that a comparison is asked for.
 std::string componentNamed(const std::string& asked) {
-  if (asked == kWholePicture) return name(Contributes::final);
+  if (asked == kWholeImage) return name(Contributes::final);
   std::vector<std::string> known = comparableComponents();
-  known.back() = kWholePicture;
+  known.back() = kWholeImage;
   if (std::find(known.begin(), known.end(), asked) != known.end()) return asked;
   const std::string nearest = nearestWord(asked, known);
   throw Error(fmt::format("--component '{}': expected one of {}{}", asked, fmt::join(known, ", "),
@@ -202,8 +202,8 @@ int mergeResults(const ResultsCommand& command) {
   ResultsStore store(command.file());
   for (const ResultsStore& other : others) {
     const MergeCount count = store.merge(other);
-    print(fmt::format("{} runs, {} stress cells, {} ceilings from {}\n", count.runs, count.cells,
-                      count.ceilings, other.file().string()));
+    print(fmt::format("{} runs, {} stress cells, {} peak rates from {}\n", count.runs, count.cells,
+                      count.peakRates, other.file().string()));
   }
   return kGood;
 }
@@ -378,7 +378,7 @@ void addResultsCommands(Commands& commands) {
         add(name, meaning, [table](const ResultsCommand& asked) { return comparePipelinesOf(asked, table); });
     command->addFilterTo(*subcommand);
     subcommand->add_option("--component", command->component,
-                           "whole_picture (default), direct, indirect_diffuse, ...");
+                           "whole_image (default), direct, indirect_diffuse, ...");
     subcommand->add_option("--metric", command->metric,
                            "rmse (default), relative_mse, percentile95, flip, ...");
     subcommand->add_option("--against", command->against, "misses (full transport) or bias (the own model)")
@@ -394,7 +394,7 @@ void addResultsCommands(Commands& commands) {
                                ComparisonTable::equalError),
                 "--error", command->errors, "an error; may be repeated (default: round numbers)");
   auto* merge =
-      add("merge", "takes over the runs, stress cells and ceilings of other stores that are not there yet",
+      add("merge", "takes over the runs, stress cells and peak rates of other stores that are not there yet",
           mergeResults);
   command->addStoreTo(*merge);
   merge->add_option("STORE", command->others, "the other stores")->required();

@@ -48,7 +48,7 @@ Json errorJson(const ComponentError& error) {
                             {"of_nothing", jsonNumber(metric.ofNothing)}};
   return {{"output", error.output},
           {"component", error.component},
-          {"truth", error.truth},
+          {"reference", error.reference},
           {"against", error.bias ? "bias" : "misses"},
           {"seeds", error.seeds},
           {"deterministic", error.deterministic},
@@ -70,7 +70,7 @@ Json identityJson(const RunIdentity& identity) {
           {"seeds", identity.seeds},
           {"repeats", identity.repeats},
           {"subpixels", identity.subpixels},
-          {"truth_samples", identity.truthSamples},
+          {"reference_samples", identity.referenceSamples},
           {"flicker_pairs", identity.flickerPairs},
           {"kept", identity.kept},
           {"device", identity.device},
@@ -86,7 +86,7 @@ Json jsonNumber(double value) {
 }
 
 std::string runsTable(const std::vector<StoredRun>& runs) {
-  std::vector<std::string> outputs{kWholePicture};
+  std::vector<std::string> outputs{kWholeImage};
   for (const StoredRun& run : runs)
     for (const ComponentError& error : run.point.errors)
       if (std::find(outputs.begin(), outputs.end(), error.output) == outputs.end())
@@ -94,7 +94,7 @@ std::string runsTable(const std::vector<StoredRun>& runs) {
   std::vector<std::vector<std::string>> rows{
       {"Run", "Scene", "Pipeline", "Parameters", "Seeds", "Size", "Frame ms", "Memory"}};
   for (const std::string& output : outputs)
-    rows[0].push_back(output == kWholePicture ? "misses in all" : output + " bias");
+    rows[0].push_back(output == kWholeImage ? "misses in all" : output + " bias");
   rows[0].push_back("State");
   for (const StoredRun& run : runs) {
     const ReportPoint& point = run.point;
@@ -104,7 +104,7 @@ std::string runsTable(const std::vector<StoredRun>& runs) {
         seedsText(run.identity),      fmt::format("{}x{}", run.identity.width, run.identity.height),
         quartilesText(point.frameMs), formatBytes(point.peakBytes)};
     for (const std::string& output : outputs)
-      row.push_back(rmseText(errorOf(point, output, output != kWholePicture)));
+      row.push_back(rmseText(errorOf(point, output, output != kWholeImage)));
     row.push_back(!point.failure.empty()         ? "failed: " + point.failure
                   : point.healthFindings.empty() ? "good"
                                                  : fmt::format("{} findings", point.healthFindings.size()));
@@ -116,7 +116,7 @@ std::string runsTable(const std::vector<StoredRun>& runs) {
 std::string runsCsv(const std::vector<StoredRun>& runs) {
   std::string text =
       "run,created,scene,pipeline,sweep,parameters,camera,time,width,height,seed,device,driver,host,"
-      "frame_ms,frame_ms_lower,frame_ms_upper,next_frame_ms,peak_bytes,failure,output,component,truth,against";
+      "frame_ms,frame_ms_lower,frame_ms_upper,next_frame_ms,peak_bytes,failure,output,component,reference,against";
   const std::vector<NamedMetric> names = metricsOf(ComponentError{});
   for (const NamedMetric& metric : names)
     text += fmt::format(",{0},{0}_uncertainty,{0}_of_nothing", metric.name);
@@ -134,7 +134,7 @@ std::string runsCsv(const std::vector<StoredRun>& runs) {
         quoted(point.failure));
     if (point.errors.empty()) text += head + ",,,," + std::string(3 * names.size(), ',') + "\r\n";
     for (const ComponentError& error : point.errors) {
-      text += fmt::format("{},{},{},{},{}", head, quoted(error.output), error.component, error.truth,
+      text += fmt::format("{},{},{},{},{}", head, quoted(error.output), error.component, error.reference,
                           error.bias ? "bias" : "misses");
       for (const NamedMetric& metric : metricsOf(error))
         text += fmt::format(",{},{},{}", exact(metric.measured.value), exact(metric.measured.uncertainty),

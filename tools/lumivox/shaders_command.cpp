@@ -106,12 +106,12 @@ int listPrograms(const ShadersCommand& command, const GlobalOptions& global) {
   const Scene scene = global.loadScene(command.scene);
   const auto device = global.openDevice();
   if (options.width == 0) {
-    constexpr int kSmall = 64;  // the size of the picture asks for no other variant
+    constexpr int kSmall = 64;  // the size of the image asks for no other variant
     const Camera& camera = scene.camera(options.camera);
     std::tie(options.width, options.height) = reducedResolution(camera.width, camera.height, kSmall);
   }
   PipelineExecutor executor(*device, techniques, scene, pipeline, options);
-  executor.render(command.run.time, 0, PipelineExecutor::Pictures::no);
+  executor.render(command.run.time, 0, PipelineExecutor::Images::no);
 
   Json list = Json::array();
   std::vector<std::vector<std::string>> rows{

@@ -131,7 +131,7 @@ void addStressCommand(Commands& commands) {
   addRepeatable(*command, "--case", options.cases,
                 "only this case, quick or not; may hold '*'; may be repeated");
   addRepeatable(*command, "--pipeline", options.pipelines,
-                "pipelines' texts (default: every committed one, voxelisers too); may be repeated");
+                "pipelines' texts (default: every committed one, voxelizers too); may be repeated");
   command->add_flag("--quick", options.quick, "the quick cases alone, at small sizes");
   command
       ->add_option("--time-limit", options.timeLimit,
@@ -142,7 +142,7 @@ void addStressCommand(Commands& commands) {
                    "processes at the same time (default: one a processor on a software rasteriser, else one)")
       ->check(CLI::Range(1, 256));
   command->add_option("-o,--out", options.output,
-                      "a folder for the page, its pictures and index.json (default: none)");
+                      "a folder for the page, its images and index.json (default: none)");
   command->add_option("--store", options.store,
                       "a results store that the cells are added to (default: none)");
   command->add_option("--from", all->from, "show the newest cells of this results store and run nothing");

@@ -104,7 +104,7 @@ void addTuneCommand(Commands& commands) {
   command->add_option("--metric", all->tune.metric,
                       "rmse (default), relative_mse, percentile95, flip, flip_ldr, ...");
   command->add_option("--output", all->tune.output,
-                      "the pipelines' output that is judged (default: the whole picture)");
+                      "the pipelines' output that is judged (default: the whole image)");
   command->add_flag("--bias", all->tune.bias,
                     "judge against the technique's own model (one bounce) in place of full transport");
   command->add_option("--evaluations", all->tune.evaluations, "most points to look at (default 60)")

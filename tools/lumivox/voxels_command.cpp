@@ -1,4 +1,4 @@
-// voxels: every voxeliser on a scene, for time, memory and what its grid gets wrong.
+// voxels: every voxelizer on a scene, for time, memory and what its grid gets wrong.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -8,7 +8,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/experiment/report.h"
-#include "lumivox/experiment/voxelisers.h"
+#include "lumivox/experiment/voxelizers.h"
 #include "lumivox/page/voxel_page.h"
 #include "lumivox/results/text.h"
 
@@ -17,9 +17,9 @@ namespace {
 
 struct VoxelsCommand {
   std::vector<std::filesystem::path> scenes;
-  VoxeliserOptions options;
+  VoxelizerOptions options;
   std::vector<std::string> resolutions;
-  std::string picture;
+  std::string image;
   std::filesystem::path output;
   std::optional<int> repeats;
   bool scaling = false, noSweep = false, json = false;
@@ -46,12 +46,12 @@ std::string percentText(double share) {
   return fmt::format("{:.3f}", 100.0 * share);
 }
 
-void printTable(const std::vector<VoxeliserRecord>& records) {
-  std::vector<std::vector<std::string>> rows{{"voxeliser", "res", "triangles", "ms", "quartiles", "fragments",
+void printTable(const std::vector<VoxelizerRecord>& records) {
+  std::vector<std::vector<std::string>> rows{{"voxelizer", "res", "triangles", "ms", "quartiles", "fragments",
                                               "occupied", "recall", "precision", "axis holes %",
                                               "oblique holes %", "output", "B/voxel", "memory"}};
   std::string skipped;
-  for (const VoxeliserRecord& record : records) {
+  for (const VoxelizerRecord& record : records) {
     if (!record.whyNot.empty()) {
       skipped += fmt::format("not measured: {}, resolution {}: {}\n", record.label(), record.resolution,
                              record.whyNot);
@@ -69,7 +69,7 @@ void printTable(const std::vector<VoxeliserRecord>& records) {
   }
   std::string text = records.empty() ? "" : records.front().scene + "\n";
   if (rows.size() > 1) text += textTable(rows);
-  for (const VoxeliserScaling& scaling : scalingOf(records)) {
+  for (const VoxelizerScaling& scaling : scalingOf(records)) {
     if (scaling.withResolution)
       text +=
           fmt::format("{}: time ~ (voxels along a side)^{:.2f}\n", scaling.label, *scaling.withResolution);
@@ -81,32 +81,32 @@ void printTable(const std::vector<VoxeliserRecord>& records) {
 
 int voxels(const VoxelsCommand& command, const GlobalOptions& global) {
   constexpr int kScalingSubdivisions = 2;  // 4 and 16 times the triangles
-  VoxeliserOptions options = command.options;
+  VoxelizerOptions options = command.options;
   if (!command.resolutions.empty()) options.resolutions = resolutionsOf(command.resolutions);
-  if (!command.picture.empty()) std::tie(options.width, options.height) = parseResolution(command.picture);
+  if (!command.image.empty()) std::tie(options.width, options.height) = parseResolution(command.image);
   if (command.repeats) options.repeats = options.repeatsOfLongFrames = *command.repeats;
   options.openSweeps = !command.noSweep;
   if (command.scaling) options.subdivisions = kScalingSubdivisions;
-  const VoxeliserFiles files = voxeliserFiles(command.output);
+  const VoxelizerFiles files = voxelizerFiles(command.output);
   if (!command.output.empty())
     for (const auto& file : {files.page, files.csv, files.json}) requireWritable(file);
 
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();
-  std::vector<VoxeliserRecord> all;
+  std::vector<VoxelizerRecord> all;
   for (const std::filesystem::path& file : command.scenes) {
-    const std::vector<VoxeliserRecord> records =
-        measureVoxelisers(*device, techniques, global.loadScene(file), options);
+    const std::vector<VoxelizerRecord> records =
+        measureVoxelizers(*device, techniques, global.loadScene(file), options);
     if (!command.json) printTable(records);
     all.insert(all.end(), records.begin(), records.end());
   }
-  if (command.json) print(voxelisersJson(all, device->info(), global.commandLine));
+  if (command.json) print(voxelizersJson(all, device->info(), global.commandLine));
   if (!command.output.empty()) {
-    writeVoxelisers(files, all, device->info(), global.commandLine);
+    writeVoxelizers(files, all, device->info(), global.commandLine);
     if (!command.json) print(files.page.string() + "\n");
   }
   const bool any = std::any_of(all.begin(), all.end(),
-                               [](const VoxeliserRecord& record) { return record.whyNot.empty(); });
+                               [](const VoxelizerRecord& record) { return record.whyNot.empty(); });
   return any ? kGood : kNotGood;
 }
 
@@ -114,26 +114,26 @@ int voxels(const VoxelsCommand& command, const GlobalOptions& global) {
 
 void addVoxelsCommand(Commands& commands) {
   auto* command = commands.app.add_subcommand(
-      "voxels", "measures voxelisers on scenes: time, memory, precision, recall and holes");
+      "voxels", "measures voxelizers on scenes: time, memory, precision, recall and holes");
   auto all = std::make_shared<VoxelsCommand>();
-  VoxeliserOptions& options = all->options;
+  VoxelizerOptions& options = all->options;
   command->add_option("SCENE", all->scenes, "the scenes' texts")->required();
   addRepeatable(*command, "--resolution", all->resolutions,
                 "voxels along the longest side, 1..1024; several as 32,64,128 (default 64)");
   addRepeatable(*command, "--pipelines", options.pipelines,
-                "a pipeline's text or a folder of them; may be repeated (default: the committed voxelisers)");
+                "a pipeline's text or a folder of them; may be repeated (default: the committed voxelizers)");
   addRepeatable(*command, "--set", options.settings,
                 "a parameter, as name=value, of those pipelines that have it");
   command
       ->add_option("--repeats", all->repeats,
-                   "timed frames per voxeliser (default 5, and 3 of frames longer than 0.2 s)")
+                   "timed frames per voxelizer (default 5, and 3 of frames longer than 0.2 s)")
       ->check(CLI::Range(1, 10000));
   command->add_flag("--no-sweep", all->noSweep,
                     "only the default parameters, not the points of the pipelines' sweeps");
   command->add_flag("--scaling", all->scaling,
                     "measure again with every triangle split into 4 and 16: how time grows with triangles");
-  command->add_option("--picture", all->picture,
-                      "size of the picture for voxelisers that start from one (default: the camera's)");
+  command->add_option("--image", all->image,
+                      "size of the image for voxelizers that start from one (default: the camera's)");
   command->add_option("--camera", options.camera, "the scene's camera of this name (default: the first)");
   command->add_option("--time", options.time, "seconds");
   command->add_option("--seed", options.seed, "of the random numbers of techniques");

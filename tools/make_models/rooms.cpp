@@ -24,10 +24,10 @@ void cornellBlock(ObjModel& model, const glm::dvec3 (&top)[4]) {
 
 }  // namespace
 
-// Cornell University Program of Computer Graphics, "Cornell Box Data" (1998): the measured vertices, the lamp
-// filling its hole in the ceiling. Albedos and the lamp's radiance (set in the scene text) are the usual Rec.
-// 709 values for the measured spectra. X points to the left when looking in, so the red wall, at high X, is
-// the left one.
+// Cornell University Program of Computer Graphics, "Cornell Box Data" (1998): the measured vertices, the area
+// light filling its hole in the ceiling. Albedos and the area light's radiance (set in the scene text) are
+// the usual Rec. 709 values for the measured spectra. X points to the left when looking in, so the red wall,
+// at high X, is the left one.
 void writeCornell(const std::filesystem::path& directory) {
   ObjModel model("cornell",
                  "The measured Cornell box in metres, Cornell University Program of Computer Graphics");
@@ -46,13 +46,15 @@ void writeCornell(const std::filesystem::path& directory) {
   model.object("left_wall", "red");
   model.flatQuad(m(552.8, 0, 0), m(549.6, 0, 559.2), m(556, 548.8, 559.2), m(556, 548.8, 0));
 
-  // Ceiling and lamp share their edges: nothing lies upon anything.
+  // Ceiling and area light share their edges: nothing lies upon anything.
   const glm::dvec3 ceiling[4] = {m(556, 548.8, 0), m(556, 548.8, 559.2), m(0, 548.8, 559.2), m(0, 548.8, 0)};
-  const glm::dvec3 lamp[4] = {m(343, 548.8, 227), m(343, 548.8, 332), m(213, 548.8, 332), m(213, 548.8, 227)};
+  const glm::dvec3 areaLight[4] = {m(343, 548.8, 227), m(343, 548.8, 332), m(213, 548.8, 332),
+                                   m(213, 548.8, 227)};
   model.object("ceiling", "white");
-  for (int i = 0; i < 4; ++i) model.flatQuad(ceiling[i], ceiling[(i + 1) % 4], lamp[(i + 1) % 4], lamp[i]);
+  for (int i = 0; i < 4; ++i)
+    model.flatQuad(ceiling[i], ceiling[(i + 1) % 4], areaLight[(i + 1) % 4], areaLight[i]);
   model.object("ceiling_lamp", "lamp");
-  model.flatQuad(lamp[0], lamp[1], lamp[2], lamp[3]);
+  model.flatQuad(areaLight[0], areaLight[1], areaLight[2], areaLight[3]);
 
   model.object("short_box", "white");
   cornellBlock(model, {m(130, 165, 65), m(82, 165, 225), m(240, 165, 272), m(290, 165, 114)});

@@ -3,7 +3,7 @@
 #include <functional>
 #include <numbers>
 
-#include "lumivox/base/picture.h"
+#include "lumivox/base/image.h"
 #include "models.h"
 #include "obj_model.h"
 
@@ -22,19 +22,19 @@ double speckle(int x, int y, std::uint32_t salt) {
   return ((h ^ (h >> 16)) >> 8) / 16777216.0;
 }
 
-/// Fills a picture from (u, v) in [0,1)^2 with v upwards, at texel centres.
-Picture paint(int size, int channels, const std::function<glm::dvec3(double u, double v)>& albedo) {
-  Picture picture(size, size, channels);
+/// Fills an image from (u, v) in [0,1)^2 with v upwards, at texel centres.
+ImageBuffer paint(int size, int channels, const std::function<glm::dvec3(double u, double v)>& albedo) {
+  ImageBuffer image(size, size, channels);
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) {
       const glm::dvec3 value = albedo((x + 0.5) / size, 1 - (y + 0.5) / size);
-      for (int c = 0; c < channels; ++c) picture.at(x, y, c) = static_cast<float>(value[c]);
+      for (int c = 0; c < channels; ++c) image.at(x, y, c) = static_cast<float>(value[c]);
     }
-  return picture;
+  return image;
 }
 
 /// Position within a course of blocks: which block, and how far its nearest edge is (in units of the
-/// picture).
+/// image).
 struct Block {
   int column, row;
   double edge;
@@ -51,7 +51,7 @@ Block blockAt(double u, double v, int columns, int rows) {
 }  // namespace
 
 void writeArcadeTextures(const std::filesystem::path& directory) {
-  const auto save = [&](const char* name, const Picture& picture) { writePng(directory / name, picture); };
+  const auto save = [&](const char* name, const ImageBuffer& image) { writePng(directory / name, image); };
 
   save("bricks.png", paint(128, 3, [](double u, double v) {
          const Block brick = blockAt(u, v, 4, 10);

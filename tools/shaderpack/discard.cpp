@@ -1,6 +1,6 @@
 // An invocation that a discard has ended leaves the derivatives of its neighbours in the 2 x 2 pixels
 // undefined (GLSL 4.50, 6.4), and with them the mip level of a sample that asks for none. Some drivers
-// forgive it; pictures have wrong texels along every mask's edge on the others.
+// forgive it; images have wrong texels along every mask's edge on the others.
 #include <fmt/format.h>
 
 #include <map>

@@ -176,7 +176,7 @@ void Exporter::append(const Source& source, const OutBase& output, std::vector<N
 std::vector<NamedField> Exporter::render(double time, int frame) {
   snapshot_ = snapshotOf(scene_, time, options_.camera, options_.width, options_.height);
   frame_ = frame;
-  executor_.render(snapshot_, frame, PipelineExecutor::Pictures::no);
+  executor_.render(snapshot_, frame, PipelineExecutor::Images::no);
   std::vector<Source> sources = sources_;
   if (request_.grids.empty()) dropCopies(sources);
   std::vector<NamedField> fields;

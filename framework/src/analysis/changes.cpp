@@ -67,16 +67,16 @@ class Comparison {
     const RunIdentity &a = before.identity, &b = after.identity;
     if (a.sceneHash != b.sceneHash || a.width != b.width || a.height != b.height ||
         a.subpixels != b.subpixels) {
-      result.incomparable.push_back(point_ + ": errors and times of other scene content or picture size");
+      result.incomparable.push_back(point_ + ": errors and times of other scene content or image size");
       return;
     }
     for (const ComponentError& error : before.point.errors)
       for (const ComponentError& other : after.point.errors)
-        if (error.output == other.output && error.truth == other.truth) compareError(error, other);
+        if (error.output == other.output && error.reference == other.reference) compareError(error, other);
   }
 
   void compareError(const ComponentError& before, const ComponentError& after) {
-    const std::string what = before.output + " {} against " + before.truth;
+    const std::string what = before.output + " {} against " + before.reference;
     const auto named = [&](const char* metric) { return fmt::format(fmt::runtime(what), metric); };
     for (const char* metric : {"rmse", "flip"})
       add(named(metric), errorNumber(before, metric), errorNumber(after, metric), true, 0.0);

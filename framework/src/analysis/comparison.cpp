@@ -189,12 +189,12 @@ std::vector<std::string> comparableComponents() {
 }
 
 std::vector<std::string> errorMetrics() {
-  static const std::set<std::string> others{"ssim",         // 1 for the truth
+  static const std::set<std::string> others{"ssim",         // 1 for the reference
                                             "mean_ratio",   // the same
                                             "bias",         // signed
-                                            "noise_floor",  // of the truth alone
-                                            "non_finite_picture",
-                                            "non_finite_truth"};
+                                            "noise_floor",  // of the reference alone
+                                            "non_finite_image",
+                                            "non_finite_reference"};
   std::vector<std::string> names;
   for (const NamedMetric& metric : metricsOf(ComponentError{}))
     if (others.count(metric.name) == 0) names.push_back(metric.name);
@@ -231,7 +231,7 @@ const ComponentError* componentErrorOf(const ReportPoint& point, const std::stri
   const bool whole = component == name(Contributes::final);
   const ComponentError* only = nullptr;
   for (const ComponentError& error : point.errors) {
-    if (error.component != component || (whole && error.output != kWholePicture)) continue;
+    if (error.component != component || (whole && error.output != kWholeImage)) continue;
     if (error.bias == bias) return &error;
     if (only == nullptr) only = &error;
   }
@@ -245,14 +245,14 @@ PipelineComparison comparePipelines(const std::vector<const ReportPoint*>& point
   comparison.component = component;
   comparison.bias = bias;
   comparison.metric = metric;
-  std::set<std::string> truths;  // each technique is judged by its own model
+  std::set<std::string> references;  // each technique is judged by its own model
   for (std::size_t source = 0; source < points.size(); ++source) {
     const ReportPoint& point = *points[source];
     const ComponentError* error = componentErrorOf(point, component, bias);
     if (error == nullptr || !point.failure.empty() || point.frameMs.repeats == 0) continue;
     const Measured number = errorNumber(*error, metric);
     if (!std::isfinite(number.value)) continue;
-    truths.insert(error->truth);
+    references.insert(error->reference);
     const auto same = [&](const ComparedPipeline& pipeline) { return pipeline.pipeline == point.pipeline; };
     auto pipeline = std::find_if(comparison.pipelines.begin(), comparison.pipelines.end(), same);
     if (pipeline == comparison.pipelines.end()) {
@@ -266,7 +266,7 @@ PipelineComparison comparePipelines(const std::vector<const ReportPoint*>& point
                                  {medianOf(point.frameMs), number},
                                  std::nullopt});
   }
-  comparison.truth = fmt::format("{}", fmt::join(truths, ", "));
+  comparison.reference = fmt::format("{}", fmt::join(references, ", "));
   std::stable_sort(comparison.points.begin(), comparison.points.end(),
                    [](const ComparedPoint& a, const ComparedPoint& b) {
                      return a.tradeOff.timeMs.value < b.tradeOff.timeMs.value;
@@ -294,10 +294,11 @@ std::vector<PipelineComparison> compareComponents(const std::vector<const Report
     for (const bool bias : {false, true})
       for (const std::string& metric : metrics) {
         PipelineComparison comparison = comparePipelines(points, component, bias, metric, limits);
-        const auto sameTruth = [&](const PipelineComparison& other) {
-          return other.component == component && other.metric == metric && other.truth == comparison.truth;
+        const auto sameReference = [&](const PipelineComparison& other) {
+          return other.component == component && other.metric == metric &&
+                 other.reference == comparison.reference;
         };
-        if (comparison.points.empty() || (bias && std::any_of(result.begin(), result.end(), sameTruth)))
+        if (comparison.points.empty() || (bias && std::any_of(result.begin(), result.end(), sameReference)))
           continue;
         result.push_back(std::move(comparison));
       }
@@ -339,14 +340,10 @@ std::vector<ComparableRuns> comparableRuns(const std::vector<StoredRun>& runs) {
 }
 
 nlohmann::ordered_json toJson(const PipelineComparison& comparison) {
-  Json json = {{"component", comparison.component},
-               {"against", comparison.bias ? "bias" : "misses"},
-               {"truth", comparison.truth},
-               {"metric", comparison.metric},
-               {"least_time_share", comparison.timeShare},
-               {"controls", comparison.controls},
-               {"undecided", comparison.undecided},
-               {"front", comparison.front}};
+  Json json = {{"component", comparison.component},        {"against", comparison.bias ? "bias" : "misses"},
+               {"reference", comparison.reference},        {"metric", comparison.metric},
+               {"least_time_share", comparison.timeShare}, {"controls", comparison.controls},
+               {"undecided", comparison.undecided},        {"front", comparison.front}};
   json["points"] = Json::array();
   for (const ComparedPoint& point : comparison.points) json["points"].push_back(pointJson(comparison, point));
   json["pipelines"] = Json::array();

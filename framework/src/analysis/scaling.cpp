@@ -22,19 +22,19 @@ std::optional<double> exponentOf(const std::map<double, double>& timeAt) {
 
 }  // namespace
 
-std::vector<VoxeliserScaling> scalingOf(const std::vector<VoxeliserRecord>& records) {
-  std::vector<VoxeliserScaling> all;
+std::vector<VoxelizerScaling> scalingOf(const std::vector<VoxelizerRecord>& records) {
+  std::vector<VoxelizerScaling> all;
   std::set<std::pair<std::string, std::string>> seen;
-  for (const VoxeliserRecord& one : records) {
+  for (const VoxelizerRecord& one : records) {
     if (!one.whyNot.empty() || !seen.insert({one.scene, one.label()}).second) continue;
     std::map<double, double> withResolution, withTriangles;
-    for (const VoxeliserRecord& other : records) {
+    for (const VoxelizerRecord& other : records) {
       if (other.scene != one.scene || other.label() != one.label() || !(other.frameMs.median > 0.0)) continue;
       if (other.subdivisions == 0) withResolution[other.resolution] = other.frameMs.median;
       if (other.resolution == one.resolution)
         withTriangles[static_cast<double>(other.triangles)] = other.frameMs.median;
     }
-    VoxeliserScaling scaling{one.scene, one.label(), exponentOf(withResolution), exponentOf(withTriangles)};
+    VoxelizerScaling scaling{one.scene, one.label(), exponentOf(withResolution), exponentOf(withTriangles)};
     if (scaling.withResolution || scaling.withTriangles) all.push_back(std::move(scaling));
   }
   return all;

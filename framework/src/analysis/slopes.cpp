@@ -14,8 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The RMSE that the truth's noise does not explain. Its square is the difference of two squares.
-Measured withoutTruthNoise(const ComponentError& error) {
+/// The RMSE that the reference's noise does not explain. Its square is the difference of two squares.
+Measured withoutReferenceNoise(const ComponentError& error) {
   const Measured rmse = error.error.rmse;
   const double square = rmse.value * rmse.value - error.error.noiseFloor * error.error.noiseFloor;
   if (!(square > 0.0)) return {0.0, 0.0};
@@ -87,7 +87,7 @@ std::vector<SweepSlope> slopesOf(const std::vector<const ReportPoint*>& points) 
     };
     for (const auto& [value, point] : series.points) {
       for (const ComponentError& error : point->errors) {
-        put(error.output, error.bias ? "bias" : "misses", value, withoutTruthNoise(error));
+        put(error.output, error.bias ? "bias" : "misses", value, withoutReferenceNoise(error));
         if (error.bias && error.parts.noise.value > 0.0) put(error.output, "noise", value, error.parts.noise);
       }
       if (point->frameMs.repeats > 0) put("", "time", value, medianOf(point->frameMs));

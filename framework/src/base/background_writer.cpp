@@ -66,7 +66,7 @@ void BackgroundWriter::run() {
     } catch (...) {
       failure = std::current_exception();
     }
-    write = nullptr;  // its pictures go before the next are taken
+    write = nullptr;  // its images go before the next are taken
     lock.lock();
     busy_ = false;
     if (failure) {

@@ -12,7 +12,7 @@
 namespace lumivox::experiment {
 namespace {
 
-/// Longest side of the pictures on a software rasteriser, where a frame at the camera's resolution takes too
+/// Longest side of the images on a software rasteriser, where a frame at the camera's resolution takes too
 /// long to repeat.
 constexpr int kSoftwarePixels = 128;
 
@@ -125,20 +125,21 @@ std::pair<int, int> measuredSize(const gpu::Device& device, const Scene& scene,
   return {camera.width, camera.height};
 }
 
-ReferenceOptions truthOptionsOf(const ReportOptions& options, int width, int height) {
-  ReferenceOptions truth;
-  truth.samplesPerPixel = options.truthSamples > 0 ? options.truthSamples : truthSamplesFor(width, height);
-  // The seed is the techniques' alone: all of them are judged against one truth.
-  truth.time = options.time;
-  truth.camera = options.camera;
-  truth.width = width;
-  truth.height = height;
-  return truth;
+ReferenceOptions referenceOptionsOf(const ReportOptions& options, int width, int height) {
+  ReferenceOptions reference;
+  reference.samplesPerPixel =
+      options.referenceSamples > 0 ? options.referenceSamples : referenceSamplesFor(width, height);
+  // The seed is the techniques' alone: all of them are judged against one reference.
+  reference.time = options.time;
+  reference.camera = options.camera;
+  reference.width = width;
+  reference.height = height;
+  return reference;
 }
 
 StoredRun storedRunOf(gpu::Device& device, TechniqueSource& techniques, const Scene& scene,
                       const LoadedPipeline& loaded, const PlannedPoint& point, const ReportOptions& options,
-                      int width, int height, int truthSamples, const std::string& sceneShown) {
+                      int width, int height, int referenceSamples, const std::string& sceneShown) {
   StoredRun run;
   RunIdentity& identity = run.identity;
   identity.sceneHash = scene.hash.text();
@@ -156,7 +157,7 @@ StoredRun storedRunOf(gpu::Device& device, TechniqueSource& techniques, const Sc
   identity.seeds = options.seeds;
   identity.repeats = options.repeats;
   identity.subpixels = options.subpixels;
-  identity.truthSamples = truthSamples;
+  identity.referenceSamples = referenceSamples;
   identity.flickerPairs = flickers(scene, options) ? options.flickerPairs : 0;
   const DeviceIdentity where = identityOf(device);
   identity.device = where.device;
@@ -172,7 +173,7 @@ StoredRun storedRunOf(gpu::Device& device, TechniqueSource& techniques, const Sc
   run.point.sweep = point.sweep;
   run.point.parameters = point.parameters;
   run.point.command =
-      repeatingCommand(options, sceneShown, loaded.shown, point.parameters, width, height, truthSamples);
+      repeatingCommand(options, sceneShown, loaded.shown, point.parameters, width, height, referenceSamples);
   return run;
 }
 

@@ -1,4 +1,4 @@
-// What a report and a sweep measure: which pipelines on a scene, at which size, against which truth.
+// What a report and a sweep measure: which pipelines on a scene, at which size, against which reference.
 #pragma once
 
 #include <map>
@@ -53,11 +53,11 @@ std::vector<PlannedPoint> pointsFor(const LoadedPipeline& loaded, TechniqueSourc
 
 /// The size that is asked for, or the camera's, smaller on a software rasteriser.
 std::pair<int, int> measuredSize(const gpu::Device& device, const Scene& scene, const ReportOptions& options);
-ReferenceOptions truthOptionsOf(const ReportOptions& options, int width, int height);
+ReferenceOptions referenceOptionsOf(const ReportOptions& options, int width, int height);
 
 /// A point before it is measured: what it depends on and how it is called.
 StoredRun storedRunOf(gpu::Device& device, TechniqueSource& techniques, const Scene& scene,
                       const LoadedPipeline& loaded, const PlannedPoint& point, const ReportOptions& options,
-                      int width, int height, int truthSamples, const std::string& sceneShown);
+                      int width, int height, int referenceSamples, const std::string& sceneShown);
 
 }  // namespace lumivox::experiment

@@ -17,11 +17,11 @@
 namespace lumivox::experiment {
 namespace {
 
-/// The pictures of every output that has a truth, and the whole picture; per seed.
+/// The images of every output that has a reference, and the whole image; per seed.
 struct Judged {
   std::string output;
   Contributes component;
-  std::vector<Picture> seeds;
+  std::vector<ImageBuffer> seeds;
 };
 
 RenderOptions renderOptions(const TimingContext& context, const ReportPoint& point) {
@@ -36,30 +36,31 @@ RenderOptions renderOptions(const TimingContext& context, const ReportPoint& poi
   return options;
 }
 
-void collect(std::vector<Judged>& judged, const std::string& output, Contributes component, Picture picture) {
-  if (picture.empty() || truthLayers(component).first.empty()) return;
+void collect(std::vector<Judged>& judged, const std::string& output, Contributes component,
+             ImageBuffer image) {
+  if (image.empty() || referenceLayers(component).first.empty()) return;
   const auto found =
       std::find_if(judged.begin(), judged.end(), [&](const Judged& one) { return one.output == output; });
   if (found == judged.end())
-    judged.push_back({output, component, {std::move(picture)}});
+    judged.push_back({output, component, {std::move(image)}});
   else
-    found->seeds.push_back(std::move(picture));
+    found->seeds.push_back(std::move(image));
 }
 
 void collectOutputs(std::vector<Judged>& judged, const PipelineExecutor& executor, FrameResult frame) {
-  Picture whole = compositePicture(frame);
+  ImageBuffer whole = compositeImage(frame);
   for (const std::string& output : executor.outputNames()) {
-    const auto picture = frame.outputs.find(output);
+    const auto image = frame.outputs.find(output);
     const auto component = frame.components.find(output);
-    // An output that is the whole picture already is judged as that, once.
-    if (picture != frame.outputs.end() && component != frame.components.end() &&
+    // An output that is the whole image already is judged as that, once.
+    if (image != frame.outputs.end() && component != frame.components.end() &&
         component->second != Contributes::final)
-      collect(judged, output, component->second, std::move(picture->second));
+      collect(judged, output, component->second, std::move(image->second));
   }
-  collect(judged, kWholePicture, Contributes::final, std::move(whole));
+  collect(judged, kWholeImage, Contributes::final, std::move(whole));
 }
 
-bool sameValues(const Picture& a, const Picture& b) {
+bool sameValues(const ImageBuffer& a, const ImageBuffer& b) {
   return a.sameShape(b) &&
          std::equal(a.values().begin(), a.values().end(), b.values().begin(),
                     [](float x, float y) { return x == y || (std::isnan(x) && std::isnan(y)); });
@@ -68,21 +69,21 @@ bool sameValues(const Picture& a, const Picture& b) {
 bool sameInEverySeed(const Judged& judged) {
   return judged.seeds.size() > 1 &&
          std::all_of(judged.seeds.begin() + 1, judged.seeds.end(),
-                     [&](const Picture& seed) { return sameValues(judged.seeds.front(), seed); });
+                     [&](const ImageBuffer& seed) { return sameValues(judged.seeds.front(), seed); });
 }
 
 /// `flipMap` becomes that of the first seed.
-ComponentError errorAgainst(const Judged& judged, Truth& truth, const std::string& layer, bool bias,
-                            Picture& flipMap) {
-  const TruthLayer& reference = *truth.layer(layer);
+ComponentError errorAgainst(const Judged& judged, SceneReference& references, const std::string& layer,
+                            bool bias, ImageBuffer& flipMap) {
+  const ReferenceLayer& reference = *references.layer(layer);
   ComponentError record;
   record.output = judged.output;
   record.component = name(judged.component);
-  record.truth = layer;
+  record.reference = layer;
   record.bias = bias;
   record.seeds = static_cast<int>(judged.seeds.size());
   record.deterministic = sameInEverySeed(judged);
-  // Seeds that are the same bits are one picture.
+  // Seeds that are the same bits are one image.
   SeedsError error =
       compareSeeds(std::span(judged.seeds).first(record.deterministic ? 1 : judged.seeds.size()),
                    reference.mean, reference.variance);
@@ -90,7 +91,7 @@ ComponentError errorAgainst(const Judged& judged, Truth& truth, const std::strin
   flipMap = std::move(error.flipMap);
   record.parts = errorParts(judged.seeds, reference.mean, reference.variance, record.deterministic);
   record.noiseRmse = judged.seeds.size() > 1 ? record.parts.noise.value : 0.0;
-  record.errorOfNothing = truth.errorOfNothing(layer);
+  record.errorOfNothing = references.errorOfNothing(layer);
   return record;
 }
 
@@ -128,9 +129,9 @@ std::string whyFailed(const std::function<void()>& work) {
 
 FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& centre, int positions,
                            int frameIndex, int frames) {
-  // The truth is filtered over the pixel, so that with one sample at its centre the silhouettes of bright
-  // lamps would outweigh every other error. The camera turns by the fraction of a pixel, which shifts the
-  // picture but for second order.
+  // The reference is filtered over the pixel, so that with one sample at its centre the silhouettes of bright
+  // area lights would outweigh every other error. The camera turns by the fraction of a pixel, which shifts
+  // the image but for second order.
   const int count = std::max(1, positions);
   const float pixel = 2.0f * centre.camera.tanHalfFov / static_cast<float>(centre.camera.height);
   // Unlike a regular grid, the sequence has as many different rows and columns as positions, which matters
@@ -147,7 +148,7 @@ FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& cent
       executor.invalidate();
       executor.emptyHistories();
       for (int before = 0; before + 1 < frames; ++before)
-        executor.render(shifted, frameIndex + before, PipelineExecutor::Pictures::no);
+        executor.render(shifted, frameIndex + before, PipelineExecutor::Images::no);
     }
     FrameResult frame = executor.render(shifted, frameIndex + frames - 1);
     if (position == 0) {
@@ -155,13 +156,13 @@ FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& cent
       continue;
     }
     if (sum.healthFindings.empty()) sum.healthFindings = std::move(frame.healthFindings);
-    for (auto& [name, picture] : sum.outputs) {
+    for (auto& [name, image] : sum.outputs) {
       const std::vector<float>& added = frame.outputs.at(name).values();
-      for (std::size_t i = 0; i < added.size(); ++i) picture.values()[i] += added[i];
+      for (std::size_t i = 0; i < added.size(); ++i) image.values()[i] += added[i];
     }
   }
-  for (auto& [name, picture] : sum.outputs)
-    for (float& value : picture.values()) value /= static_cast<float>(count);
+  for (auto& [name, image] : sum.outputs)
+    for (float& value : image.values()) value /= static_cast<float>(count);
   return sum;
 }
 
@@ -174,18 +175,11 @@ bool flickers(const Scene& scene, const ReportOptions& options) {
          SceneTraits::of(scene).particles;
 }
 
-std::map<std::string, int> bouncesOf(const PipelineExecutor& executor, const Pipeline& pipeline) {
-  std::map<std::string, int> bounces{{kWholePicture, 1}};
-  for (const Pipeline::Output& output : pipeline.outputs) {
-    const Pass& pass = executor.pass(output.pass);
-    int& own = bounces[output.name] = 1;
-    for (const OutBase* port : pass.outputs())
-      if (port->name() == output.port &&
-          (port->contributes() == Contributes::indirectDiffuse ||
-           port->contributes() == Contributes::indirectGlossy || port->contributes() == Contributes::final))
-        own = std::max(1, pass.indirectBounces());
-    bounces[kWholePicture] = std::max(bounces[kWholePicture], own);
-  }
+std::map<std::string, int> bouncesOf(const PipelineExecutor& executor) {
+  std::map<std::string, int> bounces = executor.indirectBounces();
+  int most = 1;
+  for (const auto& [output, count] : bounces) most = std::max(most, count);
+  bounces[kWholeImage] = most;
   return bounces;
 }
 
@@ -213,7 +207,7 @@ void measureErrors(const MeasureContext& context, const Pipeline& pipeline, Poin
     FrameResult frame = renderFiltered(executor, snapshotAt(context, options, context.options.time),
                                        context.options.subpixels, 0, framesOf(record.point.parameters));
     if (seed == 0) {
-      bounces = bouncesOf(executor, pipeline);
+      bounces = bouncesOf(executor);
       record.point.healthFindings = frame.healthFindings;
       record.point.notes = frame.notes;
     }
@@ -225,29 +219,29 @@ void measureErrors(const MeasureContext& context, const Pipeline& pipeline, Poin
       break;
   }
 
-  for (const auto& [output, count] : bounces) context.truth.require(context.scene, count);
+  for (const auto& [output, count] : bounces) context.reference.require(context.scene, count);
   for (const Judged& one : judged) {
-    const auto [biasLayer, missLayer] = truthLayers(one.component, bounces.at(one.output));
-    OutputPictures pictures;
-    pictures.output = one.output;
-    pictures.component = name(one.component);
-    const float exposure = context.truth.exposure(missLayer);
-    pictures.picture = encodePng(one.seeds.front(), exposure);
+    const auto [biasLayer, missLayer] = referenceLayers(one.component, bounces.at(one.output));
+    OutputImages images;
+    images.output = one.output;
+    images.component = name(one.component);
+    const float exposure = context.reference.exposure(missLayer);
+    images.image = encodePng(one.seeds.front(), exposure);
     for (const bool bias : {true, false}) {
       const std::string& layer = bias ? biasLayer : missLayer;
-      const TruthLayer* reference = context.truth.layer(layer);
+      const ReferenceLayer* reference = context.reference.layer(layer);
       if (reference == nullptr || (!bias && missLayer == biasLayer)) continue;
       if (!reference->mean.sameShape(one.seeds.front()))
         throw Error(fmt::format(
-            "output '{}' has {} x {} pixels of {} channels, but its truth '{}' has {} x {} of {}", one.output,
-            one.seeds.front().width(), one.seeds.front().height(), one.seeds.front().channels(), layer,
-            reference->mean.width(), reference->mean.height(), reference->mean.channels()));
-      Picture flipMap;
-      ComponentError error = errorAgainst(one, context.truth, layer, bias, flipMap);
-      pictures.against.push_back({layer, encodePng(falseColour(flipMap)), error.error.flip});
+            "output '{}' has {} x {} pixels of {} channels, but its reference '{}' has {} x {} of {}",
+            one.output, one.seeds.front().width(), one.seeds.front().height(), one.seeds.front().channels(),
+            layer, reference->mean.width(), reference->mean.height(), reference->mean.channels()));
+      ImageBuffer flipMap;
+      ComponentError error = errorAgainst(one, context.reference, layer, bias, flipMap);
+      images.against.push_back({layer, encodePng(falseColour(flipMap)), error.error.flip});
       record.point.errors.push_back(std::move(error));
     }
-    record.pictures.push_back(std::move(pictures));
+    record.images.push_back(std::move(images));
   }
 }
 
@@ -269,11 +263,11 @@ std::vector<Judged> sequenceOf(const MeasureContext& context, const Pipeline& pi
   return judged;
 }
 
-Measured flickerAgainst(const MeasureContext& context, const std::vector<Picture>& frames,
-                        const std::string& truth) {
-  std::vector<Picture> means, variances;
+Measured flickerAgainst(const MeasureContext& context, const std::vector<ImageBuffer>& frames,
+                        const std::string& reference) {
+  std::vector<ImageBuffer> means, variances;
   for (int frame = 0; frame <= context.options.flickerPairs; ++frame) {
-    const TruthLayer& layer = *context.truth.later(context.scene, frame).layer(truth);
+    const ReferenceLayer& layer = *context.reference.later(context.scene, frame).layer(reference);
     means.push_back(layer.mean);
     variances.push_back(layer.variance);
   }
@@ -294,7 +288,7 @@ void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, Poi
       const ComponentError& error = record.point.errors[i];
       for (const Judged& one : judged)
         if (one.output == error.output && (seed == 0 || !error.deterministic))
-          flickers[i].push_back(flickerAgainst(context, one.seeds, error.truth));
+          flickers[i].push_back(flickerAgainst(context, one.seeds, error.reference));
     }
   }
   for (std::size_t i = 0; i < flickers.size(); ++i) {
@@ -314,7 +308,7 @@ void countWork(const TimingContext& context, const Pipeline& pipeline, ReportPoi
   try {
     PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
     for (const auto& [pass, port] : kept) executor.keepOutput(pass, port);
-    FrameResult frame = executor.render(context.options.time, 0, PipelineExecutor::Pictures::no);
+    FrameResult frame = executor.render(context.options.time, 0, PipelineExecutor::Images::no);
     for (PassRecord& pass : frame.passes) point.passWork[pass.name] = std::move(pass.work);
   } catch (const AbsentError& error) {
     point.whyNotCounted = error.what();
@@ -358,17 +352,17 @@ struct TimedPoint::State {
     executor.reset();  // its memory first
     executor.emplace(device, techniques, scene, pipeline, options);
     for (const auto& [pass, port] : kept) executor->keepOutput(pass, port);
-    return executor->render(time, 0, PipelineExecutor::Pictures::no);
+    return executor->render(time, 0, PipelineExecutor::Images::no);
   }
 
   /// The point's frames from nothing; all that they took, ms, and the first one.
   std::pair<double, FrameResult> fromNothing(PipelineExecutor::Timing timing) {
     executor->invalidate();
     executor->emptyHistories();
-    FrameResult first = executor->render(time, 0, PipelineExecutor::Pictures::no, timing);
+    FrameResult first = executor->render(time, 0, PipelineExecutor::Images::no, timing);
     double sum = first.frameMs;
     for (index = 1; index < frames; ++index)
-      sum += executor->render(time, index, PipelineExecutor::Pictures::no, timing).frameMs;
+      sum += executor->render(time, index, PipelineExecutor::Images::no, timing).frameMs;
     index = frames - 1;
     now = time;
     return {sum, std::move(first)};
@@ -411,12 +405,12 @@ void TimedPoint::timeFrame() {
 void TimedPoint::timeNextFrame() {
   State& s = *state_;
   s.now += kNextFrame;
-  s.nextMs.push_back(s.executor->render(s.now, ++s.index, PipelineExecutor::Pictures::no).frameMs);
+  s.nextMs.push_back(s.executor->render(s.now, ++s.index, PipelineExecutor::Images::no).frameMs);
 }
 
 void TimedPoint::timeStillFrame() {
   State& s = *state_;
-  s.stillMs.push_back(s.executor->render(s.now, ++s.index, PipelineExecutor::Pictures::no).frameMs);
+  s.stillMs.push_back(s.executor->render(s.now, ++s.index, PipelineExecutor::Images::no).frameMs);
 }
 
 void TimedPoint::timeMovedFrame() {
@@ -441,7 +435,7 @@ void TimedPoint::timeMovedFrame() {
     light.direction =
         glm::normalize(light.direction + moved.camera.right * (static_cast<float>(s.index) * kStride));
   }
-  s.movedMs.push_back(s.executor->render(moved, s.index, PipelineExecutor::Pictures::no).frameMs);
+  s.movedMs.push_back(s.executor->render(moved, s.index, PipelineExecutor::Images::no).frameMs);
 }
 
 void TimedPoint::finish() {

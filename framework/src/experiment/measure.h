@@ -1,4 +1,4 @@
-// One scene's share of a report: the truth, and every point measured for error and, apart from that, for
+// One scene's share of a report: the reference, and every point measured for error and, apart from that, for
 // time.
 #pragma once
 
@@ -15,30 +15,30 @@
 
 namespace lumivox::experiment {
 
-/// The truth of a scene with the layers that outputs are judged by, added up once.
-class Truth {
+/// The reference of a scene with the layers that outputs are judged by, added up once.
+class SceneReference {
  public:
-  Truth(const Scene& scene, const ReferenceOptions& options);
-  const LayeredPicture& layers() const { return layers_; }
+  SceneReference(const Scene& scene, const ReferenceOptions& options);
+  const LayeredImage& layers() const { return layers_; }
   /// Sees to it that the layers of so many bounces are there; what layer() gave before is no more valid.
   void require(const Scene& scene, int bounces);
-  /// Null when the truth has no such layer.
-  const TruthLayer* layer(const std::string& name);
-  /// The truth `frame` frames of an animation later, for flicker: with a quarter of the samples, which are
-  /// others in every frame, so that its noise is independent. Frame 0 is this one.
-  Truth& later(const Scene& scene, int frame);
-  /// The error of a picture of nothing against it: black, or 1 for ambient occlusion.
-  const PictureError& errorOfNothing(const std::string& name);
-  /// At which every picture judged against this component's full truth is shown.
+  /// Null when the reference has no such layer.
+  const ReferenceLayer* layer(const std::string& name);
+  /// The reference `frame` frames of an animation later, for flicker: with a quarter of the samples, which
+  /// are others in every frame, so that its noise is independent. Frame 0 is this one.
+  SceneReference& later(const Scene& scene, int frame);
+  /// The error of an image of nothing against it: black, or 1 for ambient occlusion.
+  const ImageError& errorOfNothing(const std::string& name);
+  /// At which every image judged against this component's full reference is shown.
   float exposure(const std::string& name);
   double seconds() const { return seconds_; }
 
  private:
   ReferenceOptions options_;
-  std::map<int, std::unique_ptr<Truth>> later_;
-  LayeredPicture layers_;
-  std::map<std::string, std::optional<TruthLayer>> cache_;
-  std::map<std::string, PictureError> nothing_;
+  std::map<int, std::unique_ptr<SceneReference>> later_;
+  LayeredImage layers_;
+  std::map<std::string, std::optional<ReferenceLayer>> cache_;
+  std::map<std::string, ImageError> nothing_;
   double seconds_ = 0.0;
 };
 
@@ -55,23 +55,23 @@ struct TimingContext {
   int width, height;
 };
 struct MeasureContext : TimingContext {
-  Truth& truth;
+  SceneReference& reference;
 };
 
-/// The picture that a pipeline converges to under sub-pixel motion of the camera (temporal anti-aliasing):
+/// The image that a pipeline converges to under sub-pixel motion of the camera (temporal anti-aliasing):
 /// the mean of the outputs over so many positions inside the pixel, the centre when there is one. The rest of
 /// the result is the first frame's; health findings are those of the first frame that has some. At each
-/// position the picture is that of the last of `frames` frames, of which the first knows nothing from before.
+/// position the image is that of the last of `frames` frames, of which the first knows nothing from before.
 FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& centre, int positions,
                            int frameIndex = 0, int frames = 1);
 
-/// How many indirect bounces each output of a pipeline models, by its name; kWholePicture: the most of them.
-std::map<std::string, int> bouncesOf(const PipelineExecutor& executor, const Pipeline& pipeline);
-/// Whether a pass goes on from what earlier frames left, so that the pipeline's pictures improve while
+/// How many indirect bounces each output of a pipeline models, by its name; kWholeImage: the most of them.
+std::map<std::string, int> bouncesOf(const PipelineExecutor& executor);
+/// Whether a pass goes on from what earlier frames left, so that the pipeline's images improve while
 /// nothing changes.
 bool isProgressive(const Pipeline& pipeline, TechniqueSource& techniques);
 
-/// Fills the errors, pictures and health of a point: executors of their own, one per seed.
+/// Fills the errors, images and health of a point: executors of their own, one per seed.
 void measureErrors(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record);
 /// Time between the frames whose flicker is measured, s.
 inline constexpr double kFlickerStep = 1.0 / 24.0;
@@ -79,14 +79,14 @@ inline constexpr double kFlickerStep = 1.0 / 24.0;
 bool flickers(const Scene& scene, const ReportOptions& options);
 /// Fills the flicker of the errors that are there already, where the scene moves.
 void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record);
-/// Outputs, pass and port, that stay alive although no picture needs them.
+/// Outputs, pass and port, that stay alive although no image needs them.
 using KeptOutputs = std::vector<std::pair<std::string, std::string>>;
 /// Fills what the passes do, counted in a frame of its own.
 void countWork(const TimingContext& context, const Pipeline& pipeline, ReportPoint& point,
                const KeptOutputs& kept = {});
 
 /// One point that is timed frame by frame, so that the frames of several points can take turns: a machine
-/// that drifts then biases none of them. No pictures are taken.
+/// that drifts then biases none of them. No images are taken.
 class TimedPoint {
  public:
   /// Renders one frame as warm-up: programs are linked, the pool is filled.
@@ -108,7 +108,7 @@ class TimedPoint {
   std::unique_ptr<State> state_;
 };
 
-/// The truth layers that were used, for the page.
-std::vector<TruthRecord> truthRecords(Truth& truth, const std::set<std::string>& used);
+/// The reference layers that were used, for the page.
+std::vector<ReferenceRecord> referenceRecords(SceneReference& reference, const std::set<std::string>& used);
 
 }  // namespace lumivox::experiment

@@ -46,12 +46,12 @@ std::string runText(const StoredRun& run) {
                      seed);
 }
 
-std::vector<StoredPicture> storedPictures(const std::vector<OutputPictures>& outputs) {
-  std::vector<StoredPicture> stored;
-  for (const OutputPictures& one : outputs) {
-    stored.push_back({one.output, one.component, {}, 0.0, one.picture});
-    for (const OutputPictures::Against& map : one.against)
-      stored.push_back({one.output, one.component, map.truth, map.flip, map.flipMap});
+std::vector<StoredImage> storedImages(const std::vector<OutputImages>& outputs) {
+  std::vector<StoredImage> stored;
+  for (const OutputImages& one : outputs) {
+    stored.push_back({one.output, one.component, {}, 0.0, one.image});
+    for (const OutputImages::Against& map : one.against)
+      stored.push_back({one.output, one.component, map.reference, map.flip, map.flipMap});
   }
   return stored;
 }
@@ -65,16 +65,16 @@ void failed(StoredRun& run, const std::string& why) {
 }  // namespace
 
 Measurer::Measurer(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
-                   ResultsStore& store, Scene scene, std::string sceneShown, Pictures pictures)
+                   ResultsStore& store, Scene scene, std::string sceneShown, Images images)
     : device_(device),
       techniques_(techniques),
       options_(options),
       store_(store),
       scene_(std::move(scene)),
       sceneShown_(std::move(sceneShown)),
-      pictures_(pictures) {
+      images_(images) {
   std::tie(width_, height_) = measuredSize(device_, scene_, options_);
-  truthOptions_ = truthOptionsOf(options_, width_, height_);
+  referenceOptions_ = referenceOptionsOf(options_, width_, height_);
 }
 
 StoredRun Measurer::open(const WantedPoint& point) const {
@@ -84,7 +84,7 @@ StoredRun Measurer::open(const WantedPoint& point) const {
     options.seeds = 1;
   }
   return storedRunOf(device_, techniques_, scene_, *point.loaded, point.point, options, width_, height_,
-                     truthOptions_.samplesPerPixel, sceneShown_);
+                     referenceOptions_.samplesPerPixel, sceneShown_);
 }
 
 ReportOptions Measurer::optionsOf(const RunIdentity& identity) const {
@@ -156,12 +156,12 @@ std::vector<StoredRun> Measurer::measure(const std::vector<WantedPoint>& points,
       continue;
     }
     if (!batch.empty()) {
-      makeTruth(points);
+      makeReference(points);
       measureBatch(batch);
     }
     for (Entry& entry : batch) {
       entry.run.created = dateText();
-      store_.add(entry.run, entry.pictures);
+      store_.add(entry.run, entry.images);
     }
     if (done) done(batch.size(), byOthers);
   }
@@ -212,8 +212,8 @@ std::vector<StoredRun> Measurer::fetch(const std::vector<WantedPoint>& points) {
   return result;
 }
 
-void Measurer::makeTruth(const std::vector<WantedPoint>& points) {
-  if (truth_) return;
+void Measurer::makeReference(const std::vector<WantedPoint>& points) {
+  if (reference_) return;
   const MachineLock working(MachineLock::For::work);
   std::set<int> layers;
   std::set<const LoadedPipeline*> seen;
@@ -228,13 +228,13 @@ void Measurer::makeTruth(const std::vector<WantedPoint>& points) {
     // A pipeline that fails is told so when it is measured.
     whyFailed([&] {
       const PipelineExecutor executor(device_, techniques_, scene_, point.loaded->pipeline, options);
-      for (const auto& [output, bounces] : bouncesOf(executor, point.loaded->pipeline))
+      for (const auto& [output, bounces] : bouncesOf(executor))
         if (bounces > 1) layers.insert(bounces);
     });
   }
-  ReferenceOptions options = truthOptions_;
+  ReferenceOptions options = referenceOptions_;
   options.bounceLayers.assign(layers.begin(), layers.end());
-  truth_.emplace(scene_, options);
+  reference_.emplace(scene_, options);
 }
 
 double Measurer::secondsOf(const WantedPoint& point) const {
@@ -247,7 +247,7 @@ void Measurer::measureBatch(Batch& batch) {
   const auto secondsSince = [](Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
   };
-  Truth& reference = truth();
+  SceneReference& sceneReference = reference();
   std::vector<std::string> keys;
   for (const Entry& entry : batch) keys.push_back(entry.run.identity.key());
   for (Entry& entry : batch) {
@@ -258,12 +258,12 @@ void Measurer::measureBatch(Batch& batch) {
       PointRecord record;
       record.point = entry.run.point;
       const ReportOptions options = optionsOf(entry.run.identity);
-      const MeasureContext context{{device_, techniques_, scene_, options, width_, height_}, reference};
+      const MeasureContext context{{device_, techniques_, scene_, options, width_, height_}, sceneReference};
       measureErrors(context, entry.loaded->pipeline, record);
       measureFlicker(context, entry.loaded->pipeline, record);
       countWork(context, entry.loaded->pipeline, record.point);
       entry.run.point = std::move(record.point);
-      if (pictures_ == Pictures::kept) entry.pictures = storedPictures(record.pictures);
+      if (images_ == Images::kept) entry.images = storedImages(record.images);
     });
     if (!why.empty()) failed(entry.run, why);
     seconds_[entry.run.identity.key()] = secondsSince(start);

@@ -27,10 +27,10 @@ class Measurer {
   /// the batch.
   static constexpr std::size_t kBatch = 6;
 
-  enum class Pictures { no, kept };
-  /// Pictures are kept in the store, beside the numbers, where they are wanted.
+  enum class Images { no, kept };
+  /// Images are kept in the store, beside the numbers, where they are wanted.
   Measurer(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options, ResultsStore& store,
-           Scene scene, std::string sceneShown, Pictures pictures = Pictures::no);
+           Scene scene, std::string sceneShown, Images images = Images::no);
 
   /// What the store holds of these points, in their order, before anything is measured. A failure counts as
   /// held unless `retryFailed`.
@@ -58,11 +58,11 @@ class Measurer {
   const Scene& scene() const { return scene_; }
   int width() const { return width_; }
   int height() const { return height_; }
-  const ReferenceOptions& truthOptions() const { return truthOptions_; }
+  const ReferenceOptions& referenceOptions() const { return referenceOptions_; }
   /// Makes it with all layers that these points are judged by; measure() does it for its own where it is not
   /// there.
-  void makeTruth(const std::vector<WantedPoint>& points);
-  Truth& truth() { return truth_.value(); }
+  void makeReference(const std::vector<WantedPoint>& points);
+  SceneReference& reference() { return reference_.value(); }
   /// How long a point took that was measured here, its share of the batch's times included, s; 0: it was not.
   double secondsOf(const WantedPoint& point) const;
 
@@ -72,7 +72,7 @@ class Measurer {
   struct Entry {
     const LoadedPipeline* loaded;
     StoredRun run;
-    std::vector<StoredPicture> pictures = {};
+    std::vector<StoredImage> images = {};
   };
   using Batch = std::vector<Entry>;
   /// Points that this process may measure now, at most a batch; takes them, and what others have stored
@@ -88,10 +88,10 @@ class Measurer {
   ResultsStore& store_;
   Scene scene_;
   std::string sceneShown_;
-  Pictures pictures_;
+  Images images_;
   int width_ = 0, height_ = 0;
-  ReferenceOptions truthOptions_;
-  std::optional<Truth> truth_;
+  ReferenceOptions referenceOptions_;
+  std::optional<SceneReference> reference_;
   std::map<std::string, double> seconds_;  ///< by key
 };
 

@@ -134,8 +134,8 @@ std::pair<int, int> reducedResolution(int width, int height, int limit) {
   return {reduced(width), reduced(height)};
 }
 
-int truthSamplesFor(int width, int height) {
-  // Paths in the whole picture; measured so that the committed scenes take about a minute on two cores at 128
+int referenceSamplesFor(int width, int height) {
+  // Paths in the whole image; measured so that the committed scenes take about a minute on two cores at 128
   // x 128.
   constexpr double kPaths = 8.0e6;
   constexpr int kFewest = 64, kMost = 4096;

@@ -1,4 +1,4 @@
-// What leaving out saves, and the whole picture of a pipeline.
+// What leaving out saves, and the whole image of a pipeline.
 #include <cmath>
 #include <cstring>
 
@@ -8,16 +8,16 @@
 namespace lumivox {
 namespace {
 
-bool sameBits(const Picture& a, const Picture& b) {
+bool sameBits(const ImageBuffer& a, const ImageBuffer& b) {
   return a.sameShape(b) && (a.values().empty() || std::memcmp(a.values().data(), b.values().data(),
                                                               a.values().size() * sizeof(float)) == 0);
 }
 
 bool sameBits(const FrameResult& a, const FrameResult& b) {
   if (a.outputs.size() != b.outputs.size()) return false;
-  for (const auto& [name, picture] : a.outputs) {
+  for (const auto& [name, image] : a.outputs) {
     const auto other = b.outputs.find(name);
-    if (other == b.outputs.end() || !sameBits(picture, other->second)) return false;
+    if (other == b.outputs.end() || !sameBits(image, other->second)) return false;
   }
   return true;
 }
@@ -33,7 +33,7 @@ struct Series {
     using Timing = PipelineExecutor::Timing;
     for (const Timing timing : {Timing::frame, Timing::passes}) {
       executor.invalidate();
-      const FrameResult frame = executor.render(time, 0, PipelineExecutor::Pictures::no, timing);
+      const FrameResult frame = executor.render(time, 0, PipelineExecutor::Images::no, timing);
       if (timing == Timing::frame) frameMs.push_back(frame.frameMs);
     }
   }
@@ -62,11 +62,11 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
   PruningRecord record;
   record.scene = scene.file.string();
   record.pipeline = pipeline.file.string();
-  // The warm-up frames give the pictures and the bytes of each pass.
+  // The warm-up frames give the images and the bytes of each pass.
   {
     const FrameResult prunedFrame = pruned.render(time);
     const FrameResult unprunedFrame = unpruned.render(time);
-    record.samePicture = sameBits(prunedFrame, unprunedFrame);
+    record.sameImage = sameBits(prunedFrame, unprunedFrame);
     for (const PassRecord& pass : prunedFrame.passes) record.prunedPassBytes[pass.name] = pass.bytes;
     for (const PassRecord& pass : unprunedFrame.passes) {
       record.unprunedPassBytes[pass.name] = pass.bytes;
@@ -95,7 +95,7 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
   options.keepEverything = false;
   options.interactive = true;
   PipelineExecutor walking(device, techniques, scene, pipeline, options);
-  walking.render(time, 0, PipelineExecutor::Pictures::no);
+  walking.render(time, 0, PipelineExecutor::Images::no);
   std::vector<double> nextPruned, nextUnpruned;
   for (int repeat = 1; repeat <= repeats; ++repeat) {
     constexpr double kNextFrame = 1.0 / 60.0;  // s
@@ -104,8 +104,8 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
         snapshotOf(scene, time + repeat * kNextFrame, options.camera, options.width, options.height);
     const float diagonal = next.bounds.empty ? 1.0f : glm::length(next.bounds.high - next.bounds.low);
     next.camera.eye += next.camera.right * (static_cast<float>(repeat) * kStride * diagonal);
-    nextPruned.push_back(walking.render(next, repeat, PipelineExecutor::Pictures::no).frameMs);
-    nextUnpruned.push_back(unpruned.render(next, repeat, PipelineExecutor::Pictures::no).frameMs);
+    nextPruned.push_back(walking.render(next, repeat, PipelineExecutor::Images::no).frameMs);
+    nextUnpruned.push_back(unpruned.render(next, repeat, PipelineExecutor::Images::no).frameMs);
   }
   record.nextPrunedMs = statisticsOf(std::move(nextPruned));
   record.nextUnprunedMs = statisticsOf(std::move(nextUnpruned));
@@ -123,29 +123,28 @@ PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, c
   return record;
 }
 
-Picture compositePicture(const FrameResult& frame) {
+ImageBuffer compositeImage(const FrameResult& frame) {
   const auto named = frame.outputs.find("final");
   if (named != frame.outputs.end()) return named->second;
   for (const auto& [name, component] : frame.components)
     if (component == Contributes::final)
       if (const auto found = frame.outputs.find(name); found != frame.outputs.end()) return found->second;
 
-  Picture sum;
-  for (const auto& [name, picture] : frame.outputs) {
+  ImageBuffer sum;
+  for (const auto& [name, image] : frame.outputs) {
     const auto component = frame.components.find(name);
-    if (component == frame.components.end() || picture.empty()) continue;
+    if (component == frame.components.end() || image.empty()) continue;
     const bool radiance =
         component->second == Contributes::direct || component->second == Contributes::indirectDiffuse ||
         component->second == Contributes::indirectGlossy || component->second == Contributes::scattered;
     if (!radiance) continue;
     if (sum.empty()) {
-      sum = picture;
+      sum = image;
       continue;
     }
-    if (!sum.sameShape(picture))
-      throw Error("output '" + name +
-                  "': its picture has another size or number of channels than the others");
-    for (std::size_t i = 0; i < sum.values().size(); ++i) sum.values()[i] += picture.values()[i];
+    if (!sum.sameShape(image))
+      throw Error("output '" + name + "': its image has another size or number of channels than the others");
+    for (std::size_t i = 0; i < sum.values().size(); ++i) sum.values()[i] += image.values()[i];
   }
   return sum;
 }

@@ -14,23 +14,23 @@
 #include "experiment/plan.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
-#include "lumivox/experiment/voxelisers.h"
+#include "lumivox/experiment/voxelizers.h"
 #include "lumivox/results/store.h"
 #include "lumivox/results/text.h"
-#include "lumivox/roofline/ceilings.h"
+#include "lumivox/roofline/peak_rates.h"
 
 namespace lumivox {
 namespace {
 
 using namespace experiment;
 
-std::vector<OutputPictures> outputPictures(std::vector<StoredPicture> stored) {
-  std::vector<OutputPictures> outputs;
-  for (StoredPicture& one : stored) {
-    if (one.truth.empty())
+std::vector<OutputImages> outputImages(std::vector<StoredImage> stored) {
+  std::vector<OutputImages> outputs;
+  for (StoredImage& one : stored) {
+    if (one.reference.empty())
       outputs.push_back({std::move(one.output), std::move(one.component), std::move(one.png), {}});
     else if (!outputs.empty())
-      outputs.back().against.push_back({std::move(one.truth), std::move(one.png), one.flip});
+      outputs.back().against.push_back({std::move(one.reference), std::move(one.png), one.flip});
   }
   return outputs;
 }
@@ -73,7 +73,7 @@ class Budget {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// One scene of a report, from its truth to its record.
+/// One scene of a report, from its reference to its record.
 class SceneReport {
  public:
   SceneReport(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
@@ -84,24 +84,24 @@ class SceneReport {
         options_(options),
         checkpoint_(checkpoint),
         shown_(shown),
-        measurer_(device, techniques, options, checkpoint, std::move(scene), shown,
-                  Measurer::Pictures::kept) {
+        measurer_(device, techniques, options, checkpoint, std::move(scene), shown, Measurer::Images::kept) {
     for (const LoadedPipeline* loaded : pipelines)
       for (PlannedPoint& planned : pointsFor(*loaded, techniques, options))
         points_.push_back({{loaded, std::move(planned)}});
   }
 
-  void makeTruth() {
-    logInformation("{}: truth at {} x {}, {} samples per pixel", shown_, measurer_.width(),
-                   measurer_.height(), measurer_.truthOptions().samplesPerPixel);
+  void makeReference() {
+    logInformation("{}: reference at {} x {}, {} samples per pixel", shown_, measurer_.width(),
+                   measurer_.height(), measurer_.referenceOptions().samplesPerPixel);
     std::vector<WantedPoint> wanted;
     for (const Point& point : points_) wanted.push_back(point.wanted);
-    whyNoTruth_ = whyFailed([&] { measurer_.makeTruth(wanted); });
-    if (!whyNoTruth_.empty()) logWarning("{}: its truth could not be made: {}", shown_, whyNoTruth_);
+    whyNoReference_ = whyFailed([&] { measurer_.makeReference(wanted); });
+    if (!whyNoReference_.empty())
+      logWarning("{}: its reference could not be made: {}", shown_, whyNoReference_);
     const std::vector<bool> held = measurer_.held(wanted, true);
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (held[i]) points_[i].state = State::takenUp;
-      if (!whyNoTruth_.empty()) points_[i].state = State::withoutTruth;
+      if (!whyNoReference_.empty()) points_[i].state = State::withoutReference;
       if (points_[i].state == State::takenUp)
         logInformation("{}: taken up from {}", measurer_.text(wanted[i]), checkpoint_.file().string());
     }
@@ -162,7 +162,7 @@ class SceneReport {
     if (!why.empty()) logWarning("{}: nothing could be timed twice: {}", shown_, why);
   }
 
-  SceneRecord record(const std::vector<DeviceCeiling>& ceilings, const ResultsStore& controls) {
+  SceneRecord record(const std::vector<PeakRate>& peakRates, const ResultsStore& controls) {
     const Scene& scene = measurer_.scene();
     SceneRecord record;
     record.file = shown_;
@@ -173,29 +173,29 @@ class SceneReport {
     record.triangles = scene.triangleCount();
     record.width = measurer_.width();
     record.height = measurer_.height();
-    record.truthSamples = measurer_.truthOptions().samplesPerPixel;
+    record.referenceSamples = measurer_.referenceOptions().samplesPerPixel;
     for (const Point& point : points_) {
       if (point.state == State::missing)
         record.leftOutPoints.push_back(
             {point.wanted.loaded->shown, point.wanted.point.sweep, point.wanted.point.parameters});
       else
-        record.points.push_back(recordOf(point, ceilings));
+        record.points.push_back(recordOf(point, peakRates));
     }
     record.pruning = std::move(pruning_);
     record.leftOutPrunings = std::move(leftOutPrunings_);
-    if (!whyNoTruth_.empty()) return record;
-    record.truthSeconds = measurer_.truth().seconds();
-    record.truthAttributes = measurer_.truth().layers().attributes;
+    if (!whyNoReference_.empty()) return record;
+    record.referenceSeconds = measurer_.reference().seconds();
+    record.referenceAttributes = measurer_.reference().layers().attributes;
     std::set<std::string> used;
     for (const PointRecord& point : record.points)
-      for (const ComponentError& error : point.point.errors) used.insert(error.truth);
-    record.truths = truthRecords(measurer_.truth(), used);
+      for (const ComponentError& error : point.point.errors) used.insert(error.reference);
+    record.references = referenceRecords(measurer_.reference(), used);
     record.floor = measurer_.floor(controls);
     return record;
   }
 
  private:
-  enum class State { missing, takenUp, measured, withoutTruth };
+  enum class State { missing, takenUp, measured, withoutReference };
   struct Point {
     WantedPoint wanted;
     State state = State::missing;
@@ -248,13 +248,13 @@ class SceneReport {
       logWarning("{}, {}: the unpruned pipeline could not be measured: {}", shown_, loaded.shown, why);
   }
 
-  PointRecord recordOf(const Point& point, const std::vector<DeviceCeiling>& ceilings) const {
+  PointRecord recordOf(const Point& point, const std::vector<PeakRate>& peakRates) const {
     const StoredRun opened = measurer_.open(point.wanted);
     PointRecord record;
     record.isDefault = point.wanted.point.isDefault;
     record.point = opened.point;
-    if (point.state == State::withoutTruth) {
-      fail(record.point, "the scene's truth could not be made: " + whyNoTruth_);
+    if (point.state == State::withoutReference) {
+      fail(record.point, "the scene's reference could not be made: " + whyNoReference_);
       return record;
     }
     // Names and command are those of this report, whoever measured the point.
@@ -264,8 +264,8 @@ class SceneReport {
     record.point.sweep = opened.point.sweep;
     record.point.command = opened.point.command;
     for (const auto& [pass, work] : record.point.passWork)
-      record.point.passBounds[pass] = lowerBounds(work, ceilings);
-    record.pictures = outputPictures(checkpoint_.pictures(opened.identity.key()));
+      record.point.passBounds[pass] = lowerBounds(work, peakRates);
+    record.images = outputImages(checkpoint_.images(opened.identity.key()));
     return record;
   }
 
@@ -273,7 +273,7 @@ class SceneReport {
   TechniqueSet& techniques_;
   const ReportOptions& options_;
   ResultsStore& checkpoint_;
-  std::string shown_, whyNoTruth_;
+  std::string shown_, whyNoReference_;
   Measurer measurer_;
   std::vector<Point> points_;  ///< in the order of the pipelines and their sweeps
   std::vector<PruningRecord> pruning_;
@@ -301,8 +301,8 @@ void measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options, c
   for (SceneReport& scene : scenes) scene.control(options.budgetSeconds > 0.0 ? 1 : Measurer::kBatch);
 }
 
-VoxeliserOptions voxeliserOptions(const ReportOptions& options, const SceneRecord& scene) {
-  VoxeliserOptions voxels;
+VoxelizerOptions voxelizerOptions(const ReportOptions& options, const SceneRecord& scene) {
+  VoxelizerOptions voxels;
   voxels.resolutions = {options.voxelResolution};
   voxels.camera = options.camera;
   voxels.width = scene.width;
@@ -333,9 +333,9 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
   data.shaderInput = gpu::programRouteText(device);
   data.host = hostText();
   data.date = dateText();
-  data.ceilings = storedCeilings(device, options.store);
+  data.peakRates = storedPeakRates(device, options.store);
 
-  // Everything that can be wrong in any text is found before the first picture is rendered.
+  // Everything that can be wrong in any text is found before the first image is rendered.
   PipelineChoice choice(options, techniques);
   std::vector<Scene> scenes;
   std::vector<std::vector<const LoadedPipeline*>> pipelines;
@@ -352,7 +352,7 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     reports.emplace_back(device, techniques, options, checkpoint.store, std::move(scenes[i]),
                          shownPath(options.scenes[i]), pipelines[i]);
-    reports.back().makeTruth();
+    reports.back().makeReference();
     summary.takenUp += reports.back().takenUp();
   }
   const Budget budget(options.budgetSeconds);
@@ -361,11 +361,11 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
   if (store) store->merge(checkpoint.store);
   std::set<std::string> pipelineFiles, techniqueNames;
   for (std::size_t i = 0; i < reports.size(); ++i) {
-    data.scenes.push_back(reports[i].record(data.ceilings, store ? *store : checkpoint.store));
+    data.scenes.push_back(reports[i].record(data.peakRates, store ? *store : checkpoint.store));
     data.scenes.back().unsuited = unsuited[i];
     if (options.voxelResolution > 0) {
-      const std::vector<VoxeliserRecord> voxels = measureVoxelisers(
-          device, techniques, reports[i].scene(), voxeliserOptions(options, data.scenes.back()));
+      const std::vector<VoxelizerRecord> voxels = measureVoxelizers(
+          device, techniques, reports[i].scene(), voxelizerOptions(options, data.scenes.back()));
       data.voxels.insert(data.voxels.end(), voxels.begin(), voxels.end());
     }
     for (const LoadedPipeline* loaded : pipelines[i]) {

@@ -18,7 +18,7 @@
 #include "lumivox/analysis/judge.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
-#include "lumivox/experiment/voxelisers.h"
+#include "lumivox/experiment/voxelizers.h"
 #include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/ports.h"
 #include "lumivox/results/text.h"
@@ -61,7 +61,7 @@ class Reproduction {
     result_.command =
         fmt::format("lumivox reproduce {} --scale {} --repeats {} --seed {}",
                     shellQuoted(shownPath(published.file)), result_.scale, options.repeats, options.seed);
-    if (options.truthSamples > 0) result_.command += fmt::format(" --spp {}", options.truthSamples);
+    if (options.referenceSamples > 0) result_.command += fmt::format(" --spp {}", options.referenceSamples);
     for (const std::string& argument : options.repeatArguments)
       result_.command += " " + shellQuoted(argument);
   }
@@ -85,7 +85,7 @@ class Reproduction {
     for (const MeasuredCurve& curve : result_.curves) result_.judgedCurves.push_back(judgeGrowth(curve));
     result_.judged = judge(result_.rows);
     if (store_ != nullptr) store();
-    setUps_.clear();  // their memory, which pictures may need
+    setUps_.clear();  // their memory, which images may need
     for (const PublishedPanel& panel : result_.published.panels) result_.panels.push_back(show(panel));
     expose();
     return std::move(result_);
@@ -149,9 +149,9 @@ class Reproduction {
     guarded(setUp, [&] {
       PointRecord record;
       record.point = run.point;
-      // A pipeline that only times something makes no picture.
+      // A pipeline that only times something makes no image.
       if (!setUp.loaded.pipeline.outputs.empty()) {
-        const MeasureContext context{timingOf(setUp), truthOf(setUp)};
+        const MeasureContext context{timingOf(setUp), referenceOf(setUp)};
         measureErrors(context, setUp.loaded.pipeline, record);
         measureFlicker(context, setUp.loaded.pipeline, record);
       }
@@ -163,12 +163,13 @@ class Reproduction {
     store_->add(run);
   }
 
-  Truth& truthOf(const TimedSetUp& setUp) {
-    std::unique_ptr<Truth>& truth =
-        truths_[{setUp.scene, setUp.options.camera, setUp.options.time, setUp.width, setUp.height}];
-    if (!truth)
-      truth = std::make_unique<Truth>(*setUp.scene, truthOptionsOf(setUp.options, setUp.width, setUp.height));
-    return *truth;
+  SceneReference& referenceOf(const TimedSetUp& setUp) {
+    std::unique_ptr<SceneReference>& reference =
+        references_[{setUp.scene, setUp.options.camera, setUp.options.time, setUp.width, setUp.height}];
+    if (!reference)
+      reference = std::make_unique<SceneReference>(
+          *setUp.scene, referenceOptionsOf(setUp.options, setUp.width, setUp.height));
+    return *reference;
   }
 
   /// One set-up that cannot be measured must not cost the others.
@@ -278,10 +279,10 @@ class Reproduction {
     setUp.options.camera = published.camera;
     setUp.options.time = published.time;
     setUp.options.seed = options_.seed;
-    setUp.options.truthSamples = options_.truthSamples;
+    setUp.options.referenceSamples = options_.referenceSamples;
     setUp.run = storedRunOf(
         device_, techniques_, scene, setUp.loaded, setUp.planned, setUp.options, setUp.width, setUp.height,
-        truthOptionsOf(setUp.options, setUp.width, setUp.height).samplesPerPixel, setUp.sceneShown);
+        referenceOptionsOf(setUp.options, setUp.width, setUp.height).samplesPerPixel, setUp.sceneShown);
     setUp.run.point.command = result_.command;
     return setUp;
   }
@@ -359,7 +360,7 @@ class Reproduction {
     return static_cast<double>(voxels->fragments);
   }
 
-  // ---- pictures
+  // ---- images
 
   ShownPanel show(const PublishedPanel& panel) {
     ShownPanel shown;
@@ -369,7 +370,7 @@ class Reproduction {
     const Scene* scene = panel.absent.empty() ? sceneWithAll(panel, shown.whyNot) : nullptr;
     if (scene == nullptr) return shown;
     try {
-      shown.picture = panel.reference.empty() ? rendered(panel, *scene, shown) : traced(panel, *scene, shown);
+      shown.image = panel.reference.empty() ? rendered(panel, *scene, shown) : traced(panel, *scene, shown);
     } catch (const DiagnosticsError&) {
       throw;  // a wrong text
     } catch (const Error& error) {
@@ -377,8 +378,8 @@ class Reproduction {
       shown.failed = true;
       logWarning("{}: {}: {}", result_.published.id, panel.name, error.what());
     }
-    if (!shown.picture.empty()) {
-      const Picture bright = luminance(shown.picture);
+    if (!shown.image.empty()) {
+      const ImageBuffer bright = luminance(shown.image);
       const Health health = scanHealth(bright.values().data(), bright.values().size(), 1);
       shown.meanLuminance =
           health.sum / static_cast<double>(bright.pixelCount() - health.nan - health.infinite);
@@ -386,7 +387,7 @@ class Reproduction {
     return shown;
   }
 
-  Picture rendered(const PublishedPanel& panel, const Scene& scene, ShownPanel& shown) {
+  ImageBuffer rendered(const PublishedPanel& panel, const Scene& scene, ShownPanel& shown) {
     const TimedSetUp setUp = newSetUp(panel, scene, parametersOf(panel));
     RenderOptions options;
     options.parameters = setUp.planned.parameters;
@@ -401,14 +402,14 @@ class Reproduction {
     if (std::find(result_.setUps.begin(), result_.setUps.end(), set) == result_.setUps.end())
       result_.setUps.push_back(set);
     if (panel.pass.empty()) {
-      Picture whole = compositePicture(executor.render(panel.time));
+      ImageBuffer whole = compositeImage(executor.render(panel.time));
       if (whole.empty())
         throw Error(
-            fmt::format("{}: pipeline \"{}\" makes no picture; expected an output PASS.PORT of the panel",
+            fmt::format("{}: pipeline \"{}\" makes no image; expected an output PASS.PORT of the panel",
                         panel.place.text(), setUp.loaded.pipeline.name));
       return whole;
     }
-    executor.render(panel.time, 0, PipelineExecutor::Pictures::no);
+    executor.render(panel.time, 0, PipelineExecutor::Images::no);
     const OutBase* output = executor.output(panel.pass, panel.port);
     if (output == nullptr || !output->hasValue()) {
       shown.whyNot = fmt::format("{}.{} was left out", panel.pass, panel.port);
@@ -418,24 +419,24 @@ class Reproduction {
     }
     const auto* image = dynamic_cast<const Out<Image>*>(output);
     if (image == nullptr)
-      throw Error(fmt::format("{}: {}.{} is no picture", panel.place.text(), panel.pass, panel.port));
+      throw Error(fmt::format("{}: {}.{} is no image", panel.place.text(), panel.pass, panel.port));
     const gpu::Texture& texture = *image->value().texture;
-    return pictureOf(texture, gpu::componentCount(texture.description().format) < 3 ? 1 : 3);
+    return imageOf(texture, gpu::componentCount(texture.description().format) < 3 ? 1 : 3);
   }
 
-  Picture traced(const PublishedPanel& panel, const Scene& scene, ShownPanel& shown) {
+  ImageBuffer traced(const PublishedPanel& panel, const Scene& scene, ShownPanel& shown) {
     TimedSetUp setUp;
     setUp.scene = &scene;
     std::tie(setUp.width, setUp.height) = sizeOf(panel, scene);
     setUp.options.camera = panel.camera;
     setUp.options.time = panel.time;
     setUp.options.seed = options_.seed;
-    setUp.options.truthSamples = options_.truthSamples;
+    setUp.options.referenceSamples = options_.referenceSamples;
     result_.setUps.push_back(fmt::format(
         "{}, path-traced reference ({}): {} samples a pixel, {} x {} pixels", shownPath(scene.file),
-        panel.reference, truthOptionsOf(setUp.options, setUp.width, setUp.height).samplesPerPixel,
+        panel.reference, referenceOptionsOf(setUp.options, setUp.width, setUp.height).samplesPerPixel,
         setUp.width, setUp.height));
-    const TruthLayer* layer = truthOf(setUp).layer(panel.reference);
+    const ReferenceLayer* layer = referenceOf(setUp).layer(panel.reference);
     if (layer == nullptr) {
       shown.whyNot = fmt::format("the reference of this scene has no layer {}", panel.reference);
       return {};
@@ -448,8 +449,8 @@ class Reproduction {
     result_.exposure = 1.0;
     double smallest = std::numeric_limits<double>::infinity();
     for (const ShownPanel& panel : result_.panels)
-      if (!panel.picture.empty() && panel.meanLuminance > 0.0)
-        smallest = std::min(smallest, static_cast<double>(displayExposure(panel.picture)));
+      if (!panel.image.empty() && panel.meanLuminance > 0.0)
+        smallest = std::min(smallest, static_cast<double>(displayExposure(panel.image)));
     if (std::isfinite(smallest)) result_.exposure = smallest;
   }
 
@@ -462,7 +463,8 @@ class Reproduction {
   std::map<fs::path, std::string> whyAbsent_;
   ResultsStore* store_;
   /// By scene, camera, time and size.
-  std::map<std::tuple<const Scene*, std::string, double, int, int>, std::unique_ptr<Truth>> truths_;
+  std::map<std::tuple<const Scene*, std::string, double, int, int>, std::unique_ptr<SceneReference>>
+      references_;
   std::deque<TimedSetUp> setUps_;  // points keep references to their records
 };
 

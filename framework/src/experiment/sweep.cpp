@@ -19,7 +19,7 @@ using namespace experiment;
 
 namespace {
 
-/// One scene with all points that are wanted on it, so that its truth is made once.
+/// One scene with all points that are wanted on it, so that its reference is made once.
 struct ScenePlan {
   std::unique_ptr<Measurer> measurer;
   std::vector<WantedPoint> points, missing;
@@ -127,7 +127,7 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
   SweepSummary summary;
   PipelineChoice choice(measure, techniques);
   SweepPlan plan(device, techniques, options, store, loadScene);
-  // All texts are read before the first picture is rendered.
+  // All texts are read before the first image is rendered.
   for (const std::filesystem::path& file : measure.scenes) plan.addScene(file, choice, summary);
   for (const std::filesystem::path& file : options.texts) plan.addText(file, summary);
   const std::size_t total = plan.findMissing(summary);

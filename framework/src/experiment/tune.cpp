@@ -89,7 +89,7 @@ class Search {
     std::vector<std::vector<WantedPoint>> lists;
     for (const std::size_t index : ahead()) follow(seen_[index], lists);
     if (const std::optional<std::size_t> index = best()) follow(seen_[*index], lists);
-    // In turns, so that few evaluations are shared by all that is on the front.
+    // In turns, so that few evaluations are shared by all that is on the Pareto front.
     std::vector<WantedPoint> result;
     for (std::size_t i = 0; result.size() < total(lists); ++i)
       for (const std::vector<WantedPoint>& list : lists)
@@ -129,7 +129,7 @@ class Search {
     if (!run.point.failure.empty() || run.point.frameMs.repeats == 0) return;
     for (const ComponentError& error : run.point.errors) {
       if (error.output != options_.output) continue;
-      // A component with one truth has only the first, which then answers for both.
+      // A component with one reference has only the first, which then answers for both.
       const bool only =
           std::count_if(run.point.errors.begin(), run.point.errors.end(),
                         [&](const ComponentError& other) { return other.output == options_.output; }) == 1;
@@ -269,9 +269,9 @@ TuneResult tune(gpu::Device& device, TechniqueSet& techniques, const TuneOptions
   Measurer measurer(device, techniques, options.measure, store, loadScene(file), shownPath(file));
   std::vector<std::pair<std::string, std::string>> unsuited;
   std::vector<WantedPoint> first;
-  std::set<std::string> outputs{kWholePicture};
+  std::set<std::string> outputs{kWholeImage};
   for (const LoadedPipeline* loaded : choice.forScene(measurer.scene(), unsuited)) {
-    std::set<std::string> own{kWholePicture};
+    std::set<std::string> own{kWholeImage};
     for (const Pipeline::Output& output : loaded->pipeline.outputs) own.insert(output.name);
     outputs.insert(own.begin(), own.end());
     if (own.count(options.output) == 0) {

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "lumivox/base/error.h"
-#include "lumivox/experiment/voxelisers.h"
+#include "lumivox/experiment/voxelizers.h"
 #include "lumivox/pipeline/pass.h"
 
 namespace lumivox {

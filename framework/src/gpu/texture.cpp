@@ -57,7 +57,7 @@ void checkLimits(const TextureDescription& d, const std::string& label, const De
   } else {
     if (longest > limits.textureSize2d) {
       refuse(
-          fmt::format("a picture on {} has at most {} texels along an axis", renderer, limits.textureSize2d));
+          fmt::format("an image on {} has at most {} texels along an axis", renderer, limits.textureSize2d));
     }
     if (d.depth > limits.textureLayers)
       refuse(fmt::format("{} has at most {} layers", renderer, limits.textureLayers));

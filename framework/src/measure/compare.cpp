@@ -1,6 +1,6 @@
-// The errors of a picture against its truth, and how far the truth's own noise may have moved them.
+// The errors of an image against its reference, and how far the reference's own noise may have moved them.
 //
-// Propagation to first order. A metric f of the truth's values t_i, each with the variance v_i, has the
+// Propagation to first order. A metric f of the reference's values t_i, each with the variance v_i, has the
 // variance
 //   Var f = sum over pixels of Var(sum over the pixel's channels of g_i n_i),   g_i = df/dt_i,
 // because pixels are sampled independently. The channels of one pixel are not: the same light paths fill all
@@ -10,7 +10,7 @@
 // With d_i = x_i - t_i, N values, M = mean d^2:
 //   RMSE = sqrt(M)           g_i = -d_i / (N RMSE)
 //   relative MSE             g_i = -(2 / N) (d_i / q_i + d_i^2 t_i / q_i^2) - (2 e 0.01 / N) mean(d^2 / q^2),
-//                            q_i = t_i^2 + e^2, e = 0.01 mean(t); the last term is the truth's share in e
+//                            q_i = t_i^2 + e^2, e = 0.01 mean(t); the last term is the reference's share in e
 //   mean ratio = X / T       g_i = -X / T^2
 //   bias = mean d            g_i = -1 / N
 #include <fmt/format.h>
@@ -37,8 +37,8 @@ namespace {
 /// terms.
 template <std::size_t count, class AddPixel>
 std::array<double, count> sumPixels(const ComparablePair& pair, const AddPixel& addPixel) {
-  const auto width = static_cast<std::size_t>(pair.truth.width());
-  std::vector<std::array<double, count>> rows(static_cast<std::size_t>(pair.truth.height()));
+  const auto width = static_cast<std::size_t>(pair.reference.width());
+  std::vector<std::array<double, count>> rows(static_cast<std::size_t>(pair.reference.height()));
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
     std::array<double, count> sums{};
     for (std::size_t pixel = y * width; pixel < (y + 1) * width; ++pixel) {
@@ -53,28 +53,29 @@ std::array<double, count> sumPixels(const ComparablePair& pair, const AddPixel& 
   return total;
 }
 
-/// The deviations sqrt(v) of the truth's values, in the channels of the pair; empty when no variance is
+/// The deviations sqrt(v) of the reference's values, in the channels of the pair; empty when no variance is
 /// known.
-Picture deviationsOf(const Picture& variance, const Picture& truth, const ComparablePair& pair) {
+ImageBuffer deviationsOf(const ImageBuffer& variance, const ImageBuffer& reference,
+                         const ComparablePair& pair) {
   if (variance.empty()) return {};
-  if (!variance.sameShape(truth)) {
+  if (!variance.sameShape(reference)) {
     throw Error(fmt::format(
-        "the truth's variance is {} x {} pixels with {} channels; expected the truth's {} x {} with {}",
-        variance.width(), variance.height(), variance.channels(), truth.width(), truth.height(),
-        truth.channels()));
+        "the reference's variance is {} x {} pixels with {} channels; expected the reference's {} x {} with {}",
+        variance.width(), variance.height(), variance.channels(), reference.width(), reference.height(),
+        reference.channels()));
   }
-  Picture deviations(truth.width(), truth.height(), pair.truth.channels());
-  for (int y = 0; y < truth.height(); ++y) {
-    for (int x = 0; x < truth.width(); ++x) {
-      const std::size_t pixel =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(truth.width()) + static_cast<std::size_t>(x);
+  ImageBuffer deviations(reference.width(), reference.height(), pair.reference.channels());
+  for (int y = 0; y < reference.height(); ++y) {
+    for (int x = 0; x < reference.width(); ++x) {
+      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(reference.width()) +
+                                static_cast<std::size_t>(x);
       if (pair.counts[pixel] == 0) continue;
       for (int c = 0; c < deviations.channels(); ++c) {
         const float value = variance.at(x, y, c);
         if (!(value >= 0.0f) || !std::isfinite(value)) {
           throw Error(fmt::format(
-              "the truth's variance is {} at pixel {}, {}; expected a finite number of at least 0", value, x,
-              y));
+              "the reference's variance is {} at pixel {}, {}; expected a finite number of at least 0", value,
+              x, y));
         }
         deviations.at(x, y, c) = std::sqrt(value);
       }
@@ -84,38 +85,38 @@ Picture deviationsOf(const Picture& variance, const Picture& truth, const Compar
 }
 
 /// The metrics that are sums over pixels, with their uncertainties.
-void compareValues(const ComparablePair& pair, const Picture& deviations, PictureError& result) {
-  const auto channels = static_cast<std::size_t>(pair.truth.channels());
-  const auto& x = pair.picture.values();
-  const auto& t = pair.truth.values();
+void compareValues(const ComparablePair& pair, const ImageBuffer& deviations, ImageError& result) {
+  const auto channels = static_cast<std::size_t>(pair.reference.channels());
+  const auto& x = pair.image.values();
+  const auto& t = pair.reference.values();
   const auto& s = deviations.values();
   const auto forChannels = [&](std::size_t pixel, auto&& visit) {
     for (std::size_t i = pixel * channels; i < (pixel + 1) * channels; ++i)
       visit(i, double{x[i]} - double{t[i]}, double{t[i]});
   };
 
-  enum { pixels, sumPicture, sumTruth, sumSquares, sumVariance, firstCount };
+  enum { pixels, sumImage, sumReference, sumSquares, sumVariance, firstCount };
   const auto first = sumPixels<firstCount>(pair, [&](std::size_t pixel, auto& sums) {
     sums[pixels] += 1.0;
-    forChannels(pixel, [&](std::size_t i, double d, double truth) {
-      sums[sumPicture] += double{x[i]};
-      sums[sumTruth] += truth;
+    forChannels(pixel, [&](std::size_t i, double d, double reference) {
+      sums[sumImage] += double{x[i]};
+      sums[sumReference] += reference;
       sums[sumSquares] += d * d;
       if (!s.empty()) sums[sumVariance] += double{s[i]} * double{s[i]};
     });
   });
   const double n = first[pixels] * static_cast<double>(channels);
-  const double meanTruth = first[sumTruth] / n;
-  const double epsilon = 0.01 * meanTruth;
+  const double meanReference = first[sumReference] / n;
+  const double epsilon = 0.01 * meanReference;
   result.rmse.value = std::sqrt(first[sumSquares] / n);
-  result.bias.value = (first[sumPicture] - first[sumTruth]) / n;
-  result.meanRatio.value = first[sumTruth] != 0.0 ? first[sumPicture] / first[sumTruth] : kNan;
+  result.bias.value = (first[sumImage] - first[sumReference]) / n;
+  result.meanRatio.value = first[sumReference] != 0.0 ? first[sumImage] / first[sumReference] : kNan;
   result.noiseFloor = std::sqrt(first[sumVariance] / n);
 
   enum { relative, epsilonSlope, secondCount };
   const auto second = sumPixels<secondCount>(pair, [&](std::size_t pixel, auto& sums) {
-    forChannels(pixel, [&](std::size_t, double d, double truth) {
-      const double q = truth * truth + epsilon * epsilon;
+    forChannels(pixel, [&](std::size_t, double d, double reference) {
+      const double q = reference * reference + epsilon * epsilon;
       sums[relative] += d * d / q;
       sums[epsilonSlope] += d * d / (q * q);
     });
@@ -127,10 +128,11 @@ void compareValues(const ComparablePair& pair, const Picture& deviations, Pictur
   const double throughEpsilon = -2.0 * epsilon * 0.01 / n * second[epsilonSlope] / n;
   const auto third = sumPixels<thirdCount>(pair, [&](std::size_t pixel, auto& sums) {
     double rmse = 0.0, relativeMse = 0.0, sum = 0.0;
-    forChannels(pixel, [&](std::size_t i, double d, double truth) {
-      const double q = truth * truth + epsilon * epsilon;
+    forChannels(pixel, [&](std::size_t i, double d, double reference) {
+      const double q = reference * reference + epsilon * epsilon;
       rmse += std::abs(d) * double{s[i]};
-      relativeMse += std::abs(-2.0 / n * (d / q + d * d * truth / (q * q)) + throughEpsilon) * double{s[i]};
+      relativeMse +=
+          std::abs(-2.0 / n * (d / q + d * d * reference / (q * q)) + throughEpsilon) * double{s[i]};
       sum += double{s[i]};
     });
     sums[ofRmse] += rmse * rmse;
@@ -142,7 +144,8 @@ void compareValues(const ComparablePair& pair, const Picture& deviations, Pictur
   result.rmse.uncertainty =
       result.rmse.value > 0.0 ? std::sqrt(third[ofRmse]) / (n * result.rmse.value) : result.noiseFloor;
   result.relativeMse.uncertainty = epsilon != 0.0 ? std::sqrt(third[ofRelative]) : kNan;
-  result.meanRatio.uncertainty = std::abs(result.meanRatio.value / first[sumTruth]) * std::sqrt(third[ofSum]);
+  result.meanRatio.uncertainty =
+      std::abs(result.meanRatio.value / first[sumReference]) * std::sqrt(third[ofSum]);
   result.bias.uncertainty = std::sqrt(third[ofSum]) / n;
 }
 
@@ -152,30 +155,30 @@ struct Perceived {
 };
 
 /// sRGB-encoded luminance in [0,1] as a display shows it: what SSIM was made for.
-Picture displayed(const Picture& picture, float exposure) {
-  Picture result = luminance(picture);
+ImageBuffer displayed(const ImageBuffer& image, float exposure) {
+  ImageBuffer result = luminance(image);
   for (float& value : result.values()) value = linearToSrgb(std::clamp(value * exposure, 0.0f, 1.0f));
   return result;
 }
 
-Picture scaled(Picture picture, float factor) {
-  for (float& value : picture.values()) value *= factor;
-  return picture;
+ImageBuffer scaled(ImageBuffer image, float factor) {
+  for (float& value : image.values()) value *= factor;
+  return image;
 }
 
 /// FLIP maps of one pair.
 struct FlipPair {
-  const Picture &hdr, &ldr;
+  const ImageBuffer &hdr, &ldr;
 };
 
-Perceived perceivedDifference(const ComparablePair& pair, const Picture& truth, float exposure,
+Perceived perceivedDifference(const ComparablePair& pair, const ImageBuffer& reference, float exposure,
                               const FlipPair& flip) {
   std::vector<double> differences;
   for (std::size_t pixel = 0; pixel < pair.counts.size(); ++pixel) {
     if (pair.counts[pixel] != 0)
-      differences.push_back(std::abs(luminanceAt(pair.picture, pixel) - luminanceAt(truth, pixel)));
+      differences.push_back(std::abs(luminanceAt(pair.image, pixel) - luminanceAt(reference, pixel)));
   }
-  const auto meanOf = [&](const Picture& map, bool windowsInside) {
+  const auto meanOf = [&](const ImageBuffer& map, bool windowsInside) {
     enum { sum, count, sums };
     const auto width = static_cast<std::size_t>(map.width());
     const auto total = sumPixels<sums>(pair, [&](std::size_t pixel, auto& into) {
@@ -188,19 +191,19 @@ Perceived perceivedDifference(const ComparablePair& pair, const Picture& truth, 
   };
   Perceived result;
   result.percentile95 = quantileOf(differences, 0.95);
-  result.ssim = meanOf(ssimMap(displayed(pair.picture, exposure), displayed(truth, exposure)), true);
+  result.ssim = meanOf(ssimMap(displayed(pair.image, exposure), displayed(reference, exposure)), true);
   result.flip = meanOf(flip.hdr, false);
   result.flipLdr = meanOf(flip.ldr, false);
   return result;
 }
 
-/// The truth with its noise doubled in variance: one more draw of it on top, the same in all channels of a
-/// pixel (see above).
-Picture withNoiseDoubled(const Picture& truth, const Picture& deviations) {
+/// The reference with its noise doubled in variance: one more draw of it on top, the same in all channels of
+/// a pixel (see above).
+ImageBuffer withNoiseDoubled(const ImageBuffer& reference, const ImageBuffer& deviations) {
   constexpr std::uint64_t kSeed = 0x6c756d69766f78;  // any fixed number: the result must be repeatable
-  Picture noisy = truth;
-  const auto channels = static_cast<std::size_t>(truth.channels());
-  tbb::parallel_for(std::size_t{0}, truth.pixelCount(), [&](std::size_t pixel) {
+  ImageBuffer noisy = reference;
+  const auto channels = static_cast<std::size_t>(reference.channels());
+  tbb::parallel_for(std::size_t{0}, reference.pixelCount(), [&](std::size_t pixel) {
     RandomStream random(kSeed, static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(pixel >> 32));
     // Box and Muller 1958: a standard normal number from two uniform ones.
     const double radius = std::sqrt(-2.0 * std::log(1.0 - double{random.uniform()}));
@@ -212,9 +215,9 @@ Picture withNoiseDoubled(const Picture& truth, const Picture& deviations) {
   return noisy;
 }
 
-/// What the truth's noise may have moved in the metrics that have no simple derivative: doubling it moves
+/// What the reference's noise may have moved in the metrics that have no simple derivative: doubling it moves
 /// them about as far as the noise that is there already did.
-void addPerceived(PictureError& result, const Perceived& measured, const Perceived* moved) {
+void addPerceived(ImageError& result, const Perceived& measured, const Perceived* moved) {
   result.percentile95 = measured.percentile95;
   result.ssim = measured.ssim;
   result.flip = measured.flip;
@@ -226,73 +229,73 @@ void addPerceived(PictureError& result, const Perceived& measured, const Perceiv
   result.flipLdrUncertainty = std::abs(moved->flipLdr - measured.flipLdr);
 }
 
-/// Mean over the pictures; to the uncertainty, which is the truth's noise, their spread is added.
-PictureError meanOver(const std::vector<PictureError>& each) {
-  PictureError mean = each.front();
+/// Mean over the images; to the uncertainty, which is the reference's noise, their spread is added.
+ImageError meanOver(const std::vector<ImageError>& each) {
+  ImageError mean = each.front();
   const auto merge = [&](double& value, double& uncertainty, const auto& numberOf) {
     std::vector<double> values;
-    for (const PictureError& one : each) values.push_back(numberOf(one));
+    for (const ImageError& one : each) values.push_back(numberOf(one));
     const Measured over = meanOverSeeds(values);
     value = over.value;
     uncertainty = std::hypot(uncertainty, over.uncertainty);
   };
-  const auto measured = [&](Measured PictureError::*number) {
+  const auto measured = [&](Measured ImageError::*number) {
     merge((mean.*number).value, (mean.*number).uncertainty,
-          [&](const PictureError& one) { return (one.*number).value; });
+          [&](const ImageError& one) { return (one.*number).value; });
   };
-  const auto plain = [&](double PictureError::*number, double PictureError::*uncertainty) {
-    merge(mean.*number, mean.*uncertainty, [&](const PictureError& one) { return one.*number; });
+  const auto plain = [&](double ImageError::*number, double ImageError::*uncertainty) {
+    merge(mean.*number, mean.*uncertainty, [&](const ImageError& one) { return one.*number; });
   };
-  measured(&PictureError::rmse);
-  measured(&PictureError::relativeMse);
-  measured(&PictureError::meanRatio);
-  measured(&PictureError::bias);
-  plain(&PictureError::percentile95, &PictureError::percentile95Uncertainty);
-  plain(&PictureError::ssim, &PictureError::ssimUncertainty);
-  plain(&PictureError::flip, &PictureError::flipUncertainty);
-  plain(&PictureError::flipLdr, &PictureError::flipLdrUncertainty);
-  for (const PictureError& one : each)
-    mean.nonFinitePicture = std::max(mean.nonFinitePicture, one.nonFinitePicture);
+  measured(&ImageError::rmse);
+  measured(&ImageError::relativeMse);
+  measured(&ImageError::meanRatio);
+  measured(&ImageError::bias);
+  plain(&ImageError::percentile95, &ImageError::percentile95Uncertainty);
+  plain(&ImageError::ssim, &ImageError::ssimUncertainty);
+  plain(&ImageError::flip, &ImageError::flipUncertainty);
+  plain(&ImageError::flipLdr, &ImageError::flipLdrUncertainty);
+  for (const ImageError& one : each) mean.nonFiniteImage = std::max(mean.nonFiniteImage, one.nonFiniteImage);
   return mean;
 }
 
-std::vector<const Picture*> pointersTo(const std::vector<Picture>& pictures) {
-  std::vector<const Picture*> pointers;
-  for (const Picture& picture : pictures) pointers.push_back(&picture);
+std::vector<const ImageBuffer*> pointersTo(const std::vector<ImageBuffer>& images) {
+  std::vector<const ImageBuffer*> pointers;
+  for (const ImageBuffer& image : images) pointers.push_back(&image);
   return pointers;
 }
 
 }  // namespace
 
-SeedsError compareSeeds(std::span<const Picture> seeds, const Picture& truth, const Picture& truthVariance) {
-  const std::vector<ComparablePair> pairs = comparable(seeds, truth);
-  const Picture& expected = pairs.front().truth;
-  const Picture deviations = deviationsOf(truthVariance, truth, pairs.front());
-  const float exposure = displayExposure(truth);
+SeedsError compareSeeds(std::span<const ImageBuffer> seeds, const ImageBuffer& reference,
+                        const ImageBuffer& referenceVariance) {
+  const std::vector<ComparablePair> pairs = comparable(seeds, reference);
+  const ImageBuffer& expected = pairs.front().reference;
+  const ImageBuffer deviations = deviationsOf(referenceVariance, reference, pairs.front());
+  const float exposure = displayExposure(reference);
   const bool noisy = !deviations.empty();
-  const Picture other = noisy ? withNoiseDoubled(expected, deviations) : Picture();
-  const Picture shownOther = scaled(other, exposure);
+  const ImageBuffer other = noisy ? withNoiseDoubled(expected, deviations) : ImageBuffer();
+  const ImageBuffer shownOther = scaled(other, exposure);
 
-  std::vector<Picture> shown;
-  std::vector<const Picture*> pictures;
+  std::vector<ImageBuffer> shown;
+  std::vector<const ImageBuffer*> images;
   for (const ComparablePair& pair : pairs) {
-    pictures.push_back(&pair.picture);
-    shown.push_back(scaled(pair.picture, exposure));
+    images.push_back(&pair.image);
+    shown.push_back(scaled(pair.image, exposure));
   }
-  FlipMaps hdr = flipHdrMaps(pictures, expected, noisy ? &other : nullptr, kDefaultPixelsPerDegree,
+  FlipMaps hdr = flipHdrMaps(images, expected, noisy ? &other : nullptr, kDefaultPixelsPerDegree,
                              flipExposures(expected));
   const FlipMaps ldr = flipLdrMaps(pointersTo(shown), scaled(expected, exposure),
                                    noisy ? &shownOther : nullptr, kDefaultPixelsPerDegree);
 
   SeedsError result;
-  std::vector<PictureError> each;
+  std::vector<ImageError> each;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    PictureError& one = each.emplace_back();
-    one.nonFinitePicture = pairs[i].nonFinitePicture;
-    one.nonFiniteTruth = pairs[i].nonFiniteTruth;
+    ImageError& one = each.emplace_back();
+    one.nonFiniteImage = pairs[i].nonFiniteImage;
+    one.nonFiniteReference = pairs[i].nonFiniteReference;
     compareValues(pairs[i], deviations, one);
     const Perceived measured =
-        perceivedDifference(pairs[i], expected, exposure, {hdr.ofPictures[i], ldr.ofPictures[i]});
+        perceivedDifference(pairs[i], expected, exposure, {hdr.ofImages[i], ldr.ofImages[i]});
     const bool first = i == 0 && noisy;
     const Perceived moved =
         first ? perceivedDifference(pairs[i], other, exposure, {hdr.againstOther, ldr.againstOther})
@@ -300,26 +303,28 @@ SeedsError compareSeeds(std::span<const Picture> seeds, const Picture& truth, co
     addPerceived(one, measured, first ? &moved : nullptr);
   }
   result.mean = meanOver(each);
-  result.flipMap = withBadPixelsMarked(std::move(hdr.ofPictures.front()), pairs.front().counts);
+  result.flipMap = withBadPixelsMarked(std::move(hdr.ofImages.front()), pairs.front().counts);
   return result;
 }
 
-PictureError compare(const Picture& picture, const Picture& truth, const Picture& truthVariance) {
-  return compareSeeds(std::span(&picture, 1), truth, truthVariance).mean;
+ImageError compare(const ImageBuffer& image, const ImageBuffer& reference,
+                   const ImageBuffer& referenceVariance) {
+  return compareSeeds(std::span(&image, 1), reference, referenceVariance).mean;
 }
 
-double flicker(const Picture& frame0, const Picture& frame1, const Picture& truth0, const Picture& truth1) {
-  const ComparablePair before = comparable(frame0, truth0);
-  const ComparablePair after = comparable(frame1, truth1);
-  if (!before.truth.sameShape(after.truth))
+double flicker(const ImageBuffer& frame0, const ImageBuffer& frame1, const ImageBuffer& reference0,
+               const ImageBuffer& reference1) {
+  const ComparablePair before = comparable(frame0, reference0);
+  const ComparablePair after = comparable(frame1, reference1);
+  if (!before.reference.sameShape(after.reference))
     throw Error("consecutive frames of different shapes cannot be compared");
-  const auto channels = static_cast<std::size_t>(before.truth.channels());
+  const auto channels = static_cast<std::size_t>(before.reference.channels());
   enum { sumSquares, values, count };
   const auto total = sumPixels<count>(before, [&](std::size_t pixel, auto& sums) {
     if (after.counts[pixel] == 0) return;
     for (std::size_t i = pixel * channels; i < (pixel + 1) * channels; ++i) {
-      const double change = double{after.picture.values()[i]} - double{before.picture.values()[i]};
-      const double trueChange = double{after.truth.values()[i]} - double{before.truth.values()[i]};
+      const double change = double{after.image.values()[i]} - double{before.image.values()[i]};
+      const double trueChange = double{after.reference.values()[i]} - double{before.reference.values()[i]};
       sums[sumSquares] += (change - trueChange) * (change - trueChange);
       sums[values] += 1.0;
     }
@@ -327,12 +332,12 @@ double flicker(const Picture& frame0, const Picture& frame1, const Picture& trut
   return std::sqrt(total[sumSquares] / total[values]);
 }
 
-float displayExposure(const Picture& truth) {
-  radianceChannels(truth, "a truth whose exposure is wanted");
+float displayExposure(const ImageBuffer& reference) {
+  radianceChannels(reference, "a reference whose exposure is wanted");
   constexpr double kQuantile = 0.99, kShownAs = 0.8;
   std::vector<double> luminances;
-  for (std::size_t pixel = 0; pixel < truth.pixelCount(); ++pixel) {
-    const double value = luminanceAt(truth, pixel);
+  for (std::size_t pixel = 0; pixel < reference.pixelCount(); ++pixel) {
+    const double value = luminanceAt(reference, pixel);
     if (std::isfinite(value)) luminances.push_back(value);
   }
   if (luminances.empty()) return 1.0f;

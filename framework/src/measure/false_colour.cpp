@@ -1,4 +1,4 @@
-// Error maps as pictures: the eye reads a ramp rightly when equal steps of the value are equal steps of
+// Error maps as images: the eye reads a ramp rightly when equal steps of the value are equal steps of
 // lightness.
 #include <fmt/format.h>
 
@@ -60,11 +60,11 @@ Rgb rampAt(double value) {
 
 }  // namespace
 
-Picture falseColour(const Picture& map) {
+ImageBuffer falseColour(const ImageBuffer& map) {
   if (map.channels() != 1) {
     throw Error(fmt::format("a map with {} channels cannot be coloured; expected 1", map.channels()));
   }
-  Picture result(map.width(), map.height(), 3);
+  ImageBuffer result(map.width(), map.height(), 3);
   for (std::size_t pixel = 0; pixel < map.pixelCount(); ++pixel) {
     const float value = map.values()[pixel];
     const Rgb colour =

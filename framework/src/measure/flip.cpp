@@ -1,4 +1,4 @@
-// FLIP: how visible the difference is to a person who flips between two pictures.
+// FLIP: how visible the difference is to a person who flips between two images.
 // Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astroem, Fairchild 2020, "FLIP: A Difference Evaluator for
 // Alternating Images", and Andersson, Nilsson, Shirley, Akenine-Moeller 2021, "Visualizing Errors in Rendered
 // High Dynamic Range Images" (HDR-FLIP).
@@ -126,7 +126,7 @@ struct Filters {
   }
 
  private:
-  /// Scales the positive weights to the sum 1 and the negative ones to -1, so that a constant picture has no
+  /// Scales the positive weights to the sum 1 and the negative ones to -1, so that a constant image has no
   /// features.
   static void balance(std::vector<double>& weights) {
     double positive = 0.0, negative = 0.0;
@@ -137,7 +137,7 @@ struct Filters {
 
 // ---- the two pipelines
 
-/// What FLIP compares, for one picture.
+/// What FLIP compares, for one image.
 struct Percept {
   std::vector<dvec3> lab;  ///< filtered by contrast sensitivity, Hunt-adjusted
   Plane edges, points;     ///< strength of the features
@@ -197,26 +197,26 @@ Percept perceive(int width, int height, const Filters& filters, const Rgb& rgb) 
 
 /// Sec. 4.1, Eq. 6 and Sec. 4.2-4.3, Eqs. 7-9: both differences in [0,1], the colour difference raised by
 /// that of the features.
-double flipOf(const Percept& picture, const Percept& truth, std::size_t pixel) {
+double flipOf(const Percept& image, const Percept& reference, std::size_t pixel) {
   constexpr double kColourExponent = 0.7, kFeatureExponent = 0.5;  // q_c, q_f
   constexpr double kKnee = 0.4, kKneeValue = 0.95;                 // p_c, p_t
   // The largest distance between two colours of the display is that between green and blue.
   static const double largest =
       std::pow(hyab(huntLabFromRgb({0.0, 1.0, 0.0}), huntLabFromRgb({0.0, 0.0, 1.0})), kColourExponent);
-  const double distance = std::pow(hyab(picture.lab[pixel], truth.lab[pixel]), kColourExponent);
+  const double distance = std::pow(hyab(image.lab[pixel], reference.lab[pixel]), kColourExponent);
   const double knee = kKnee * largest;
   const double colour = distance < knee
                             ? distance * kKneeValue / knee
                             : kKneeValue + (distance - knee) / (largest - knee) * (1.0 - kKneeValue);
-  const double edges = std::abs(picture.edges.values[pixel] - truth.edges.values[pixel]);
-  const double points = std::abs(picture.points.values[pixel] - truth.points.values[pixel]);
+  const double edges = std::abs(image.edges.values[pixel] - reference.edges.values[pixel]);
+  const double points = std::abs(image.points.values[pixel] - reference.points.values[pixel]);
   const double feature = std::pow(std::max(edges, points) / std::numbers::sqrt2, kFeatureExponent);
   return std::clamp(std::pow(colour, 1.0 - feature), 0.0, 1.0);
 }
 
-/// What the eye makes of a picture as the display shows it.
+/// What the eye makes of an image as the display shows it.
 template <class Tone>
-Percept perceiveWith(const Picture& source, const Filters& filters, const Tone& tone) {
+Percept perceiveWith(const ImageBuffer& source, const Filters& filters, const Tone& tone) {
   const auto channels = static_cast<std::size_t>(source.channels());
   return perceive(source.width(), source.height(), filters, [&](std::size_t pixel) {
     const float* values = source.values().data() + pixel * channels;
@@ -226,7 +226,7 @@ Percept perceiveWith(const Picture& source, const Filters& filters, const Tone& 
 }
 
 /// Raises each pixel of a map to the difference of the percepts where that is larger.
-void raise(Picture& map, const Percept& seen, const Percept& expected) {
+void raise(ImageBuffer& map, const Percept& seen, const Percept& expected) {
   const auto width = static_cast<std::size_t>(map.width());
   tbb::parallel_for(std::size_t{0}, static_cast<std::size_t>(map.height()), [&](std::size_t y) {
     for (std::size_t pixel = y * width; pixel < (y + 1) * width; ++pixel)
@@ -235,20 +235,21 @@ void raise(Picture& map, const Percept& seen, const Percept& expected) {
 }
 
 template <class Tone>
-void raiseMaps(FlipMaps& maps, std::span<const Picture* const> pictures, const Picture& truth,
-               const Picture* other, const Filters& filters, const Tone& tone) {
-  const Percept expected = perceiveWith(truth, filters, tone);
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    const Percept seen = perceiveWith(*pictures[i], filters, tone);
-    raise(maps.ofPictures[i], seen, expected);
+void raiseMaps(FlipMaps& maps, std::span<const ImageBuffer* const> images, const ImageBuffer& reference,
+               const ImageBuffer* other, const Filters& filters, const Tone& tone) {
+  const Percept expected = perceiveWith(reference, filters, tone);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const Percept seen = perceiveWith(*images[i], filters, tone);
+    raise(maps.ofImages[i], seen, expected);
     if (i == 0 && other != nullptr) raise(maps.againstOther, seen, perceiveWith(*other, filters, tone));
   }
 }
 
-FlipMaps blankMaps(std::span<const Picture* const> pictures, const Picture& truth, const Picture* other) {
+FlipMaps blankMaps(std::span<const ImageBuffer* const> images, const ImageBuffer& reference,
+                   const ImageBuffer* other) {
   FlipMaps maps;
-  maps.ofPictures.assign(pictures.size(), Picture(truth.width(), truth.height(), 1));
-  if (other != nullptr) maps.againstOther = Picture(truth.width(), truth.height(), 1);
+  maps.ofImages.assign(images.size(), ImageBuffer(reference.width(), reference.height(), 1));
+  if (other != nullptr) maps.againstOther = ImageBuffer(reference.width(), reference.height(), 1);
   return maps;
 }
 
@@ -286,27 +287,27 @@ struct ToneCurve {
 
 }  // namespace
 
-Picture withBadPixelsMarked(Picture map, const std::vector<unsigned char>& counts) {
+ImageBuffer withBadPixelsMarked(ImageBuffer map, const std::vector<unsigned char>& counts) {
   for (std::size_t i = 0; i < counts.size(); ++i) {
     if (counts[i] == 0) map.values()[i] = std::numeric_limits<float>::quiet_NaN();
   }
   return map;
 }
 
-std::vector<double> flipExposures(const Picture& truth) {
+std::vector<double> flipExposures(const ImageBuffer& reference) {
   // The shortest exposure maps the brightest luminance, the longest the median one, to 0.85 of the display's
   // white.
   constexpr double kTarget = 0.85;
-  std::vector<double> luminances(truth.pixelCount());
+  std::vector<double> luminances(reference.pixelCount());
   for (std::size_t pixel = 0; pixel < luminances.size(); ++pixel)
-    luminances[pixel] = std::max(0.0, luminanceAt(truth, pixel));
+    luminances[pixel] = std::max(0.0, luminanceAt(reference, pixel));
   const double largest = *std::max_element(luminances.begin(), luminances.end());
   constexpr std::size_t kFewest = 2;
   if (largest <= 0.0) return std::vector<double>(kFewest, 0.0);
   double median = quantileOf(luminances, 0.5);
   if (median <= 0.0) {
-    // Deviates: a truth that is black in more than half of its pixels has no finite longest exposure; its lit
-    // pixels decide.
+    // Deviates: a reference that is black in more than half of its pixels has no finite longest exposure; its
+    // lit pixels decide.
     luminances.erase(std::remove(luminances.begin(), luminances.end(), 0.0), luminances.end());
     median = quantileOf(luminances, 0.5);
   }
@@ -320,49 +321,51 @@ std::vector<double> flipExposures(const Picture& truth) {
   return stops;
 }
 
-FlipMaps flipLdrMaps(std::span<const Picture* const> pictures, const Picture& truth, const Picture* other,
-                     double pixelsPerDegree) {
+FlipMaps flipLdrMaps(std::span<const ImageBuffer* const> images, const ImageBuffer& reference,
+                     const ImageBuffer* other, double pixelsPerDegree) {
   const auto clip = [](float value) { return std::clamp(static_cast<double>(value), 0.0, 1.0); };
-  FlipMaps maps = blankMaps(pictures, truth, other);
-  raiseMaps(maps, pictures, truth, other, Filters(pixelsPerDegree), clip);
+  FlipMaps maps = blankMaps(images, reference, other);
+  raiseMaps(maps, images, reference, other, Filters(pixelsPerDegree), clip);
   return maps;
 }
 
-FlipMaps flipHdrMaps(std::span<const Picture* const> pictures, const Picture& truth, const Picture* other,
-                     double pixelsPerDegree, const std::vector<double>& stops) {
+FlipMaps flipHdrMaps(std::span<const ImageBuffer* const> images, const ImageBuffer& reference,
+                     const ImageBuffer* other, double pixelsPerDegree, const std::vector<double>& stops) {
   const Filters filters(pixelsPerDegree);
-  FlipMaps maps = blankMaps(pictures, truth, other);
+  FlipMaps maps = blankMaps(images, reference, other);
   for (std::size_t i = 0; i < stops.size(); ++i) {
     if (i > 0 && stops[i] == stops[i - 1]) continue;
     const double exposure = std::exp2(stops[i]);
-    raiseMaps(maps, pictures, truth, other, filters,
+    raiseMaps(maps, images, reference, other, filters,
               [&](float value) { return ToneCurve::apply(exposure * value); });
   }
   return maps;
 }
 
-Picture flipLdrOf(const Picture& picture, const Picture& truth, double pixelsPerDegree) {
-  const Picture* const one[] = {&picture};
-  return std::move(flipLdrMaps(one, truth, nullptr, pixelsPerDegree).ofPictures.front());
+ImageBuffer flipLdrOf(const ImageBuffer& image, const ImageBuffer& reference, double pixelsPerDegree) {
+  const ImageBuffer* const one[] = {&image};
+  return std::move(flipLdrMaps(one, reference, nullptr, pixelsPerDegree).ofImages.front());
 }
 
-Picture flipHdrOf(const Picture& picture, const Picture& truth, double pixelsPerDegree,
-                  const std::vector<double>& stops) {
-  const Picture* const one[] = {&picture};
-  return std::move(flipHdrMaps(one, truth, nullptr, pixelsPerDegree, stops).ofPictures.front());
+ImageBuffer flipHdrOf(const ImageBuffer& image, const ImageBuffer& reference, double pixelsPerDegree,
+                      const std::vector<double>& stops) {
+  const ImageBuffer* const one[] = {&image};
+  return std::move(flipHdrMaps(one, reference, nullptr, pixelsPerDegree, stops).ofImages.front());
 }
 
-Picture flipLdr(const Picture& linearPicture, const Picture& linearTruth, double pixelsPerDegree) {
+ImageBuffer flipLdr(const ImageBuffer& linearImage, const ImageBuffer& linearReference,
+                    double pixelsPerDegree) {
   requireViewing(pixelsPerDegree);
-  const ComparablePair pair = comparable(linearPicture, linearTruth);
-  return withBadPixelsMarked(flipLdrOf(pair.picture, pair.truth, pixelsPerDegree), pair.counts);
+  const ComparablePair pair = comparable(linearImage, linearReference);
+  return withBadPixelsMarked(flipLdrOf(pair.image, pair.reference, pixelsPerDegree), pair.counts);
 }
 
-Picture flipHdr(const Picture& linearPicture, const Picture& linearTruth, double pixelsPerDegree) {
+ImageBuffer flipHdr(const ImageBuffer& linearImage, const ImageBuffer& linearReference,
+                    double pixelsPerDegree) {
   requireViewing(pixelsPerDegree);
-  const ComparablePair pair = comparable(linearPicture, linearTruth);
-  return withBadPixelsMarked(flipHdrOf(pair.picture, pair.truth, pixelsPerDegree, flipExposures(pair.truth)),
-                             pair.counts);
+  const ComparablePair pair = comparable(linearImage, linearReference);
+  return withBadPixelsMarked(
+      flipHdrOf(pair.image, pair.reference, pixelsPerDegree, flipExposures(pair.reference)), pair.counts);
 }
 
 }  // namespace lumivox

@@ -1,4 +1,4 @@
-// Bias, noise and flicker, with the truth's noise taken off: estimates of mean squares that are right on
+// Bias, noise and flicker, with the reference's noise taken off: estimates of mean squares that are right on
 // average.
 #include <fmt/format.h>
 
@@ -20,71 +20,73 @@ Measured rootOf(double square, double uncertainty) {
   return {std::sqrt(least), std::sqrt(least + uncertainty) - std::sqrt(least)};
 }
 
-/// Values of a picture that count: radiance channels, pixel by pixel.
-std::size_t stride(const Picture& picture) {
-  return static_cast<std::size_t>(picture.channels());
+/// Values of an image that count: radiance channels, pixel by pixel.
+std::size_t stride(const ImageBuffer& image) {
+  return static_cast<std::size_t>(image.channels());
 }
 
-double varianceAt(const Picture& variance, std::size_t i) {
+double varianceAt(const ImageBuffer& variance, std::size_t i) {
   return variance.empty() ? 0.0 : static_cast<double>(variance.values()[i]);
 }
 
-void requireShape(const Picture& one, const Picture& other, const char* what) {
+void requireShape(const ImageBuffer& one, const ImageBuffer& other, const char* what) {
   if (!one.empty() && !one.sameShape(other))
     throw Error(fmt::format("{} has {} x {} pixels of {} channels; expected {} x {} of {}", what, one.width(),
                             one.height(), one.channels(), other.width(), other.height(), other.channels()));
 }
 
-/// Sums over the pixels that are finite in the truth and in every picture.
+/// Sums over the pixels that are finite in the reference and in every image.
 struct Sums {
-  double bias = 0.0, noise = 0.0, truth = 0.0;  ///< of the squares
-  double byTruth = 0.0;                         ///< variance of `bias` through the truth's noise
+  double bias = 0.0, noise = 0.0, reference = 0.0;  ///< of the squares
+  double byReference = 0.0;                         ///< variance of `bias` through the reference's noise
   std::size_t values = 0;
 };
 
 /// Mean over the chosen seeds m, their unbiased variance s², n of them: (m - T)² has the expected value
-/// bias² + s²/n + v, where v is the variance of the truth T.
-Sums sumsOver(const std::vector<const Picture*>& seeds, const Picture& truth, const Picture& variance) {
+/// bias² + s²/n + v, where v is the variance of the reference T.
+Sums sumsOver(const std::vector<const ImageBuffer*>& seeds, const ImageBuffer& reference,
+              const ImageBuffer& variance) {
   const auto n = static_cast<double>(seeds.size());
-  const int channels = radianceChannels(truth, "a truth");
+  const int channels = radianceChannels(reference, "a reference");
   Sums sums;
-  for (std::size_t pixel = 0; pixel < truth.pixelCount(); ++pixel) {
-    if (!finiteAt(truth, pixel, channels) ||
+  for (std::size_t pixel = 0; pixel < reference.pixelCount(); ++pixel) {
+    if (!finiteAt(reference, pixel, channels) ||
         !std::all_of(seeds.begin(), seeds.end(),
-                     [&](const Picture* seed) { return finiteAt(*seed, pixel, channels); }))
+                     [&](const ImageBuffer* seed) { return finiteAt(*seed, pixel, channels); }))
       continue;
     double deviation = 0.0;  // of the pixel's part of `bias`: the channels err together
-    for (std::size_t i = pixel * stride(truth);
-         i < pixel * stride(truth) + static_cast<std::size_t>(channels); ++i) {
+    for (std::size_t i = pixel * stride(reference);
+         i < pixel * stride(reference) + static_cast<std::size_t>(channels); ++i) {
       double mean = 0.0, squares = 0.0;
-      for (const Picture* seed : seeds) mean += static_cast<double>(seed->values()[i]) / n;
-      for (const Picture* seed : seeds) {
+      for (const ImageBuffer* seed : seeds) mean += static_cast<double>(seed->values()[i]) / n;
+      for (const ImageBuffer* seed : seeds) {
         const double d = static_cast<double>(seed->values()[i]) - mean;
         squares += d * d;
       }
       const double own = seeds.size() > 1 ? squares / (n - 1.0) : 0.0;
-      const double difference = mean - static_cast<double>(truth.values()[i]), v = varianceAt(variance, i);
+      const double difference = mean - static_cast<double>(reference.values()[i]),
+                   v = varianceAt(variance, i);
       sums.bias += difference * difference - own / n - v;
       sums.noise += own;
-      sums.truth += v;
+      sums.reference += v;
       // Of (b + e)² with e normal of variance v: 4 b² v + 2 v².
       deviation += std::sqrt(4.0 * difference * difference * v + 2.0 * v * v);
       ++sums.values;
     }
-    sums.byTruth += deviation * deviation;
+    sums.byReference += deviation * deviation;
   }
   return sums;
 }
 
 /// Standard deviations of the mean squares over seeds, from leaving out one seed at a time (Efron 1982, Sec.
 /// 3).
-std::pair<double, double> jackknife(const std::vector<const Picture*>& seeds, const Picture& truth,
-                                    const Picture& variance) {
+std::pair<double, double> jackknife(const std::vector<const ImageBuffer*>& seeds,
+                                    const ImageBuffer& reference, const ImageBuffer& variance) {
   std::vector<double> bias, noise;
   for (std::size_t left = 0; left < seeds.size(); ++left) {
-    std::vector<const Picture*> others(seeds);
+    std::vector<const ImageBuffer*> others(seeds);
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(left));
-    const Sums sums = sumsOver(others, truth, variance);
+    const Sums sums = sumsOver(others, reference, variance);
     bias.push_back(sums.bias / static_cast<double>(sums.values));
     noise.push_back(sums.noise / static_cast<double>(sums.values));
   }
@@ -97,63 +99,64 @@ std::pair<double, double> jackknife(const std::vector<const Picture*>& seeds, co
 
 }  // namespace
 
-ErrorParts errorParts(const std::vector<Picture>& seeds, const Picture& truth, const Picture& truthVariance,
-                      bool withoutNoise) {
-  if (seeds.empty()) throw Error("the parts of an error need at least one picture");
-  requireShape(truthVariance, truth, "the variance of a truth");
-  std::vector<const Picture*> all;
-  for (const Picture& seed : seeds) {
-    requireShape(seed, truth, "a picture");
+ErrorParts errorParts(const std::vector<ImageBuffer>& seeds, const ImageBuffer& reference,
+                      const ImageBuffer& referenceVariance, bool withoutNoise) {
+  if (seeds.empty()) throw Error("the parts of an error need at least one image");
+  requireShape(referenceVariance, reference, "the variance of a reference");
+  std::vector<const ImageBuffer*> all;
+  for (const ImageBuffer& seed : seeds) {
+    requireShape(seed, reference, "an image");
     if (all.empty() || !withoutNoise) all.push_back(&seed);
   }
-  const Sums sums = sumsOver(all, truth, truthVariance);
+  const Sums sums = sumsOver(all, reference, referenceVariance);
   const auto values = static_cast<double>(sums.values), n = static_cast<double>(all.size());
   ErrorParts parts;
-  parts.truthNoise = std::sqrt(sums.truth / values);
+  parts.referenceNoise = std::sqrt(sums.reference / values);
   const double bias = sums.bias / values, noise = sums.noise / values;
-  const double byTruth = std::sqrt(sums.byTruth) / values;
+  const double byReference = std::sqrt(sums.byReference) / values;
   if (withoutNoise) {
-    parts.bias = rootOf(bias, byTruth);
+    parts.bias = rootOf(bias, byReference);
     parts.noise = {0.0, 0.0};
   } else if (all.size() == 2) {
     // All pixels may err together: one degree of freedom, and a mean that is off by s / sqrt(2).
     const double ofMean = noise / n;
     const double bySeeds = 2.0 * std::sqrt(std::max(bias, 0.0) * ofMean) + std::sqrt(2.0) * ofMean;
-    parts.bias = rootOf(bias, std::hypot(byTruth, bySeeds));
+    parts.bias = rootOf(bias, std::hypot(byReference, bySeeds));
     parts.noise = rootOf(noise, std::sqrt(2.0) * noise);
   } else if (all.size() > 2) {
-    const auto [ofBias, ofNoise] = jackknife(all, truth, truthVariance);
-    parts.bias = rootOf(bias, std::hypot(byTruth, ofBias));
+    const auto [ofBias, ofNoise] = jackknife(all, reference, referenceVariance);
+    parts.bias = rootOf(bias, std::hypot(byReference, ofBias));
     parts.noise = rootOf(noise, ofNoise);
   }
   return parts;
 }
 
-Measured flicker(const std::vector<Picture>& frames, const std::vector<Picture>& truths,
-                 const std::vector<Picture>& variances) {
-  if (frames.size() != truths.size() || (!variances.empty() && variances.size() != frames.size()))
-    throw Error(fmt::format("the flicker of {} frames needs as many truths; there are {}, and {} variances",
-                            frames.size(), truths.size(), variances.size()));
+Measured flicker(const std::vector<ImageBuffer>& frames, const std::vector<ImageBuffer>& references,
+                 const std::vector<ImageBuffer>& variances) {
+  if (frames.size() != references.size() || (!variances.empty() && variances.size() != frames.size()))
+    throw Error(
+        fmt::format("the flicker of {} frames needs as many references; there are {}, and {} variances",
+                    frames.size(), references.size(), variances.size()));
   double square = 0.0, deviation = 0.0, pairs = 0.0;
-  const Picture nothing;
+  const ImageBuffer nothing;
   for (std::size_t f = 1; f < frames.size(); ++f, pairs += 1.0) {
-    const Picture& before = variances.empty() ? nothing : variances[f - 1];
-    const Picture& after = variances.empty() ? nothing : variances[f];
-    // The change against the true change is a difference like any other: no noise but the truth's.
-    Picture change = frames[f], trueChange = truths[f], variance = after;
-    requireShape(frames[f], truths[f], "a frame");
-    requireShape(frames[f - 1], truths[f], "a frame");
-    requireShape(truths[f - 1], truths[f], "the truth of a frame");
+    const ImageBuffer& before = variances.empty() ? nothing : variances[f - 1];
+    const ImageBuffer& after = variances.empty() ? nothing : variances[f];
+    // The change against the true change is a difference like any other: no noise but the reference's.
+    ImageBuffer change = frames[f], trueChange = references[f], variance = after;
+    requireShape(frames[f], references[f], "a frame");
+    requireShape(frames[f - 1], references[f], "a frame");
+    requireShape(references[f - 1], references[f], "the reference of a frame");
     for (std::size_t i = 0; i < change.values().size(); ++i) {
       change.values()[i] -= frames[f - 1].values()[i];
-      trueChange.values()[i] -= truths[f - 1].values()[i];
+      trueChange.values()[i] -= references[f - 1].values()[i];
       if (!variance.empty()) variance.values()[i] += before.values()[i];
     }
-    requireShape(variance, trueChange, "the variance of a truth");
+    requireShape(variance, trueChange, "the variance of a reference");
     const Sums sums = sumsOver({&change}, trueChange, variance);
     square += sums.bias / static_cast<double>(sums.values);
-    deviation +=
-        std::sqrt(sums.byTruth) / static_cast<double>(sums.values);  // neighbouring pairs share a truth
+    deviation += std::sqrt(sums.byReference) /
+                 static_cast<double>(sums.values);  // neighbouring pairs share a reference
   }
   return pairs == 0.0 ? Measured{kNan, 0.0} : rootOf(square / pairs, deviation / pairs);
 }

@@ -10,8 +10,8 @@
 
 namespace lumivox {
 
-int radianceChannels(const Picture& picture, std::string_view what) {
-  const int channels = picture.channels();
+int radianceChannels(const ImageBuffer& image, std::string_view what) {
+  const int channels = image.channels();
   if (channels != 1 && channels != 3 && channels != 4) {
     throw Error(fmt::format("{} has {} channels; expected 1, 3 or 4 (radiance, R G B, or R G B and alpha)",
                             what, channels));
@@ -19,68 +19,69 @@ int radianceChannels(const Picture& picture, std::string_view what) {
   return std::min(channels, 3);
 }
 
-double luminanceAt(const Picture& picture, std::size_t pixel) {
-  const auto channels = static_cast<std::size_t>(picture.channels());
-  const float* values = picture.values().data() + pixel * channels;
+double luminanceAt(const ImageBuffer& image, std::size_t pixel) {
+  const auto channels = static_cast<std::size_t>(image.channels());
+  const float* values = image.values().data() + pixel * channels;
   if (channels == 1) return double{values[0]};
   double sum = 0.0;
   for (std::size_t c = 0; c < 3; ++c) sum += kLuminanceWeights[c] * double{values[c]};
   return sum;
 }
 
-bool finiteAt(const Picture& picture, std::size_t pixel, int radianceChannels) {
-  const float* values = picture.values().data() + pixel * static_cast<std::size_t>(picture.channels());
+bool finiteAt(const ImageBuffer& image, std::size_t pixel, int radianceChannels) {
+  const float* values = image.values().data() + pixel * static_cast<std::size_t>(image.channels());
   return std::all_of(values, values + radianceChannels, [](float value) { return std::isfinite(value); });
 }
 
-ComparablePair comparable(const Picture& picture, const Picture& truth) {
-  return std::move(comparable(std::span(&picture, 1), truth).front());
+ComparablePair comparable(const ImageBuffer& image, const ImageBuffer& reference) {
+  return std::move(comparable(std::span(&image, 1), reference).front());
 }
 
-std::vector<ComparablePair> comparable(std::span<const Picture> pictures, const Picture& truth) {
-  if (pictures.empty()) throw Error("at least one picture is needed to compare with a truth");
-  for (const Picture& picture : pictures)
-    if (!picture.sameShape(truth))
+std::vector<ComparablePair> comparable(std::span<const ImageBuffer> images, const ImageBuffer& reference) {
+  if (images.empty()) throw Error("at least one image is needed to compare with a reference");
+  for (const ImageBuffer& image : images)
+    if (!image.sameShape(reference))
       throw Error(
-          fmt::format("pictures of different shapes cannot be compared: {} x {} pixels with {} channels "
-                      "against a truth of {} x {} with {}",
-                      picture.width(), picture.height(), picture.channels(), truth.width(), truth.height(),
-                      truth.channels()));
-  if (truth.empty()) throw Error("empty pictures cannot be compared");
-  const int channels = radianceChannels(truth, "the truth");
-  const auto count = static_cast<std::size_t>(channels), stride = static_cast<std::size_t>(truth.channels());
+          fmt::format("images of different shapes cannot be compared: {} x {} pixels with {} channels "
+                      "against a reference of {} x {} with {}",
+                      image.width(), image.height(), image.channels(), reference.width(), reference.height(),
+                      reference.channels()));
+  if (reference.empty()) throw Error("empty images cannot be compared");
+  const int channels = radianceChannels(reference, "the reference");
+  const auto count = static_cast<std::size_t>(channels),
+             stride = static_cast<std::size_t>(reference.channels());
   ComparablePair blank;
-  blank.picture = Picture(truth.width(), truth.height(), channels);
-  blank.truth = blank.picture;
-  blank.counts.assign(truth.pixelCount(), 1);
-  std::vector<ComparablePair> pairs(pictures.size(), blank);
-  for (std::size_t pixel = 0; pixel < truth.pixelCount(); ++pixel) {
-    const bool goodTruth = finiteAt(truth, pixel, channels);
-    // Where the pixel does not count, all have the same: the truth's value, else that of a picture that has
-    // one.
-    const float* common = goodTruth ? truth.values().data() + pixel * stride : nullptr;
-    bool allGood = goodTruth;
-    for (std::size_t i = 0; i < pictures.size(); ++i) {
-      const bool good = finiteAt(pictures[i], pixel, channels);
-      pairs[i].nonFinitePicture += good ? 0 : 1;
-      pairs[i].nonFiniteTruth += goodTruth ? 0 : 1;
-      if (good && common == nullptr) common = pictures[i].values().data() + pixel * stride;
+  blank.image = ImageBuffer(reference.width(), reference.height(), channels);
+  blank.reference = blank.image;
+  blank.counts.assign(reference.pixelCount(), 1);
+  std::vector<ComparablePair> pairs(images.size(), blank);
+  for (std::size_t pixel = 0; pixel < reference.pixelCount(); ++pixel) {
+    const bool goodReference = finiteAt(reference, pixel, channels);
+    // Where the pixel does not count, all have the same: the reference's value, else that of an image that
+    // has one.
+    const float* common = goodReference ? reference.values().data() + pixel * stride : nullptr;
+    bool allGood = goodReference;
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      const bool good = finiteAt(images[i], pixel, channels);
+      pairs[i].nonFiniteImage += good ? 0 : 1;
+      pairs[i].nonFiniteReference += goodReference ? 0 : 1;
+      if (good && common == nullptr) common = images[i].values().data() + pixel * stride;
       allGood = allGood && good;
     }
-    for (std::size_t i = 0; i < pictures.size(); ++i) {
+    for (std::size_t i = 0; i < images.size(); ++i) {
       pairs[i].counts[pixel] = allGood ? 1 : 0;
       if (common == nullptr) continue;
-      const float* own = allGood ? pictures[i].values().data() + pixel * stride : common;
-      std::copy_n(own, count, pairs[i].picture.values().data() + pixel * count);
-      std::copy_n(common, count, pairs[i].truth.values().data() + pixel * count);
+      const float* own = allGood ? images[i].values().data() + pixel * stride : common;
+      std::copy_n(own, count, pairs[i].image.values().data() + pixel * count);
+      std::copy_n(common, count, pairs[i].reference.values().data() + pixel * count);
     }
   }
   return pairs;
 }
 
-Picture luminance(const Picture& rgb) {
-  radianceChannels(rgb, "a picture whose luminance is wanted");
-  Picture result(rgb.width(), rgb.height(), 1);
+ImageBuffer luminance(const ImageBuffer& rgb) {
+  radianceChannels(rgb, "an image whose luminance is wanted");
+  ImageBuffer result(rgb.width(), rgb.height(), 1);
   for (std::size_t pixel = 0; pixel < rgb.pixelCount(); ++pixel) {
     result.values()[pixel] = static_cast<float>(luminanceAt(rgb, pixel));
   }

@@ -19,20 +19,20 @@ constexpr double kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;
 
 }  // namespace
 
-bool ssimCounts(const Picture& picture, int x, int y) {
+bool ssimCounts(const ImageBuffer& image, int x, int y) {
   const auto inside = [](int place, int size) {
     return size <= 2 * kWindowRadius || (place >= kWindowRadius && place < size - kWindowRadius);
   };
-  return inside(x, picture.width()) && inside(y, picture.height());
+  return inside(x, image.width()) && inside(y, image.height());
 }
 
-Picture ssimMap(const Picture& pictureLuminance, const Picture& truthLuminance) {
-  const int width = truthLuminance.width(), height = truthLuminance.height();
+ImageBuffer ssimMap(const ImageBuffer& imageLuminance, const ImageBuffer& referenceLuminance) {
+  const int width = referenceLuminance.width(), height = referenceLuminance.height();
   const auto window = normalised(gaussian(kWindowSigma, kWindowRadius));
   const auto mean = [&](auto&& valueOf) {
     Plane plane(width, height);
     for (std::size_t i = 0; i < plane.values.size(); ++i) {
-      plane.values[i] = valueOf(double{pictureLuminance.values()[i]}, double{truthLuminance.values()[i]});
+      plane.values[i] = valueOf(double{imageLuminance.values()[i]}, double{referenceLuminance.values()[i]});
     }
     return filterColumns(filterRows(plane, window), window);
   };
@@ -40,7 +40,7 @@ Picture ssimMap(const Picture& pictureLuminance, const Picture& truthLuminance) 
   const Plane xx = mean([](double a, double) { return a * a; }),
               yy = mean([](double, double b) { return b * b; });
   const Plane xy = mean([](double a, double b) { return a * b; });
-  Picture map(width, height, 1);
+  ImageBuffer map(width, height, 1);
   for (std::size_t i = 0; i < x.values.size(); ++i) {
     const double meanX = x.values[i], meanY = y.values[i];
     const double varianceX = xx.values[i] - meanX * meanX, varianceY = yy.values[i] - meanY * meanY;
@@ -53,13 +53,13 @@ Picture ssimMap(const Picture& pictureLuminance, const Picture& truthLuminance) 
   return map;
 }
 
-double ssim(const Picture& pictureLuminance, const Picture& truthLuminance) {
-  if (pictureLuminance.channels() != 1) {
+double ssim(const ImageBuffer& imageLuminance, const ImageBuffer& referenceLuminance) {
+  if (imageLuminance.channels() != 1) {
     throw Error(fmt::format("structural similarity is taken of luminance; expected 1 channel, not {}",
-                            pictureLuminance.channels()));
+                            imageLuminance.channels()));
   }
-  const ComparablePair pair = comparable(pictureLuminance, truthLuminance);
-  const Picture map = ssimMap(pair.picture, pair.truth);
+  const ComparablePair pair = comparable(imageLuminance, referenceLuminance);
+  const ImageBuffer map = ssimMap(pair.image, pair.reference);
   double sum = 0.0;
   std::size_t count = 0;
   for (int y = 0; y < map.height(); ++y) {

@@ -28,7 +28,7 @@ double depthInside(const std::vector<glm::dvec2>& polygon, double doubleArea, co
 MaskedTriangle::MaskedTriangle(const ExactTriangle& triangle, const std::array<glm::vec2, 3>& texcoords,
                                const SurfaceTexture& mask)
     : mask_(mask) {
-  // Row 0 is the top of the picture; the centre of texel (x, y) lies at (x + 0.5, y + 0.5).
+  // Row 0 is the top of the image; the centre of texel (x, y) lies at (x + 0.5, y + 0.5).
   for (std::size_t k = 0; k < 3; ++k)
     corners_[k] = {triangle[k],
                    {static_cast<double>(texcoords[k].x) * mask.width,
@@ -89,11 +89,11 @@ MaskedTriangle::Within MaskedTriangle::within(const glm::ivec3& voxel, double to
     least = glm::min(least, point.texel);
     most = glm::max(most, point.texel);
   }
-  const glm::dvec2 picture(mask_.width, mask_.height), size = most - least;
-  // More than the whole picture in one voxel, or coordinates that are no numbers: undecided unless all is a
+  const glm::dvec2 image(mask_.width, mask_.height), size = most - least;
+  // More than the whole image in one voxel, or coordinates that are no numbers: undecided unless all is a
   // hole.
-  if (!(size.x < picture.x && size.y < picture.y)) return {false, anySolid()};
-  const glm::dvec2 repeats = glm::floor(least / picture) * picture;
+  if (!(size.x < image.x && size.y < image.y)) return {false, anySolid()};
+  const glm::dvec2 repeats = glm::floor(least / image) * image;
   Within result;
   for (glm::dvec2& corner : polygon) {
     corner -= repeats;

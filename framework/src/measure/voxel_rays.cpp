@@ -1,4 +1,4 @@
-// Straight rays through the voxels of a truth, and what closes the surfaces that they cross.
+// Straight rays through the voxels of a reference, and what closes the surfaces that they cross.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
@@ -67,8 +67,8 @@ void addCrossings(const std::vector<MetVoxel>& met, Closers& closers) {
 }
 
 /// Amanatides & Woo 1987, "A fast voxel traversal algorithm for ray tracing".
-void walk(const Ray& ray, const VoxelTruth& truth, std::vector<MetVoxel>& met, Closers& closers) {
-  const VoxelSet& possible = truth.possible;
+void walk(const Ray& ray, const VoxelReference& reference, std::vector<MetVoxel>& met, Closers& closers) {
+  const VoxelSet& possible = reference.possible;
   met.clear();
   const auto [first, last] = withinGrid(ray, possible.resolution());
   if (!(first < last)) return;
@@ -88,7 +88,7 @@ void walk(const Ray& ray, const VoxelTruth& truth, std::vector<MetVoxel>& met, C
     const int axis = next.x <= next.y && next.x <= next.z ? 0 : next.y <= next.z ? 1 : 2;
     const double leave = std::min(next[axis], last);
     const std::uint64_t bit = possible.bitOf(voxel);
-    met.push_back({enter, leave, bit, possible.containsBit(bit), truth.certain.containsBit(bit)});
+    met.push_back({enter, leave, bit, possible.containsBit(bit), reference.certain.containsBit(bit)});
     enter = leave;
     voxel[axis] += step[axis];
     next[axis] += stride[axis];
@@ -112,13 +112,13 @@ Ray obliqueRay(int index, const glm::ivec3& resolution) {
 }
 
 template <class RayOf>
-void addRays(std::int64_t rays, const VoxelTruth& truth, Closers& all, const RayOf& rayOf) {
+void addRays(std::int64_t rays, const VoxelReference& reference, Closers& all, const RayOf& rayOf) {
   constexpr std::int64_t kGrain = 256;  // rays that one task takes at a time
   Closers found = tbb::parallel_reduce(
       tbb::blocked_range<std::int64_t>(0, rays, kGrain), Closers{},
       [&](const auto& range, Closers closers) {
         std::vector<MetVoxel> met;
-        for (std::int64_t i = range.begin(); i != range.end(); ++i) walk(rayOf(i), truth, met, closers);
+        for (std::int64_t i = range.begin(); i != range.end(); ++i) walk(rayOf(i), reference, met, closers);
         return closers;
       },
       [](Closers a, const Closers& b) {
@@ -143,14 +143,14 @@ double RayHoles::obliqueShare() const {
   return share(obliqueHoles, obliqueCrossings);
 }
 
-RayCrossings::RayCrossings(const VoxelTruth& truth, int raysPerKind)
-    : resolution_(truth.possible.resolution()) {
-  measure::requireSameResolution(truth.certain, truth.possible);
+RayCrossings::RayCrossings(const VoxelReference& reference, int raysPerKind)
+    : resolution_(reference.possible.resolution()) {
+  measure::requireSameResolution(reference.certain, reference.possible);
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     const std::int64_t columns = static_cast<std::int64_t>(resolution_[u]) * resolution_[v];
     const std::int64_t rays = std::min<std::int64_t>(columns, raysPerKind);
-    addRays(rays, truth, axis_, [&](std::int64_t index) {
+    addRays(rays, reference, axis_, [&](std::int64_t index) {
       const std::int64_t column = index * columns / rays;
       Ray ray{glm::dvec3(0.0), glm::dvec3(0.0)};
       ray.direction[axis] = 1.0;
@@ -159,7 +159,7 @@ RayCrossings::RayCrossings(const VoxelTruth& truth, int raysPerKind)
       return ray;
     });
   }
-  addRays(raysPerKind, truth, oblique_,
+  addRays(raysPerKind, reference, oblique_,
           [&](std::int64_t index) { return obliqueRay(static_cast<int>(index), resolution_); });
 }
 
@@ -179,8 +179,8 @@ RayHoles RayCrossings::holes(const VoxelSet& occupied) const {
   return {axis_.ends.size(), axis_.holes(occupied), oblique_.ends.size(), oblique_.holes(occupied)};
 }
 
-RayHoles rayHoles(const VoxelSet& occupied, const VoxelTruth& truth, int raysPerKind) {
-  return RayCrossings(truth, raysPerKind).holes(occupied);
+RayHoles rayHoles(const VoxelSet& occupied, const VoxelReference& reference, int raysPerKind) {
+  return RayCrossings(reference, raysPerKind).holes(occupied);
 }
 
 }  // namespace lumivox

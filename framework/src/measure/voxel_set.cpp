@@ -66,17 +66,17 @@ bool isBare(const VoxelSet& occupied, const glm::ivec3& voxel) {
 
 }  // namespace
 
-VoxelError compareVoxels(const VoxelSet& occupied, const VoxelTruth& truth) {
-  measure::requireSameResolution(occupied, truth.certain);
-  measure::requireSameResolution(occupied, truth.possible);
+VoxelError compareVoxels(const VoxelSet& occupied, const VoxelReference& reference) {
+  measure::requireSameResolution(occupied, reference.certain);
+  measure::requireSameResolution(occupied, reference.possible);
   VoxelError result;
   for (std::size_t i = 0; i < occupied.words().size(); ++i) {
-    const std::uint64_t claimed = occupied.words()[i], certain = truth.certain.words()[i];
+    const std::uint64_t claimed = occupied.words()[i], certain = reference.certain.words()[i];
     const auto bits = [](std::uint64_t word) { return static_cast<std::uint64_t>(std::popcount(word)); };
     result.truePositive += bits(claimed & certain);
-    result.falsePositive += bits(claimed & ~truth.possible.words()[i]);
+    result.falsePositive += bits(claimed & ~reference.possible.words()[i]);
     result.falseNegative += bits(certain & ~claimed);
-    for (std::uint64_t open = truth.possible.words()[i] & ~certain; open != 0; open &= open - 1) {
+    for (std::uint64_t open = reference.possible.words()[i] & ~certain; open != 0; open &= open - 1) {
       const std::uint64_t bit = 64 * i + static_cast<std::uint64_t>(std::countr_zero(open));
       if (isBare(occupied, occupied.voxelOf(bit))) ++result.falseNegative;
     }

@@ -51,13 +51,13 @@ std::vector<std::string> lines(const std::string& text, int width) {
 }
 
 /// The display value of a paper without anything on it.
-void fill(Picture& sheet, int left, int top, int width, int height, float value) {
+void fill(ImageBuffer& sheet, int left, int top, int width, int height, float value) {
   for (int y = std::max(0, top); y < std::min(sheet.height(), top + height); ++y)
     for (int x = std::max(0, left); x < std::min(sheet.width(), left + width); ++x)
       for (int c = 0; c < sheet.channels(); ++c) sheet.at(x, y, c) = value;
 }
 
-void write(Picture& sheet, int left, int top, std::string text) {
+void write(ImageBuffer& sheet, int left, int top, std::string text) {
   constexpr std::size_t kQuadFloats = 4 * 4;  // four corners of x, y, z and a colour
   // stb_easy_font asks for 270 bytes a letter on the average; a letter has at most 24 quads.
   std::vector<float> quads(text.size() * 24 * kQuadFloats + kQuadFloats);
@@ -74,25 +74,26 @@ void write(Picture& sheet, int left, int top, std::string text) {
 }
 
 /// Enlarged or reduced to the nearest texel, so that what is coarse looks coarse.
-void draw(Picture& sheet, int left, int top, int width, int height, const Picture& picture, double exposure) {
+void draw(ImageBuffer& sheet, int left, int top, int width, int height, const ImageBuffer& image,
+          double exposure) {
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
-      const int sourceX = x * picture.width() / width, sourceY = y * picture.height() / height;
+      const int sourceX = x * image.width() / width, sourceY = y * image.height() / height;
       for (int c = 0; c < sheet.channels(); ++c)
         sheet.at(left + x, top + y, c) =
-            static_cast<float>(exposure * picture.at(sourceX, sourceY, picture.channels() == 1 ? 0 : c));
+            static_cast<float>(exposure * image.at(sourceX, sourceY, image.channels() == 1 ? 0 : c));
     }
 }
 
 }  // namespace
 
-Picture contactSheet(const ReproducedResult& result) {
+ImageBuffer contactSheet(const ReproducedResult& result) {
   const int count = static_cast<int>(result.panels.size());
   if (count == 0) throw Error(fmt::format("{}: there are no panels for a sheet", result.published.id));
   int width = kLeast, height = 0;
   for (const ShownPanel& panel : result.panels) {
-    width = std::max(width, panel.picture.width());
-    height = std::max(height, panel.picture.height());
+    width = std::max(width, panel.image.width());
+    height = std::max(height, panel.image.height());
   }
   if (height == 0) height = width * 3 / 4;  // nothing but reasons
   const int columns =
@@ -111,7 +112,7 @@ Picture contactSheet(const ReproducedResult& result) {
   const int titleHeight = static_cast<int>(title.size()) * kLine + kMargin;
 
   constexpr int kChannels = 3;
-  Picture sheet(sheetWidth, titleHeight + rows * (height + nameHeight + 2 * kMargin), kChannels, kPaper);
+  ImageBuffer sheet(sheetWidth, titleHeight + rows * (height + nameHeight + 2 * kMargin), kChannels, kPaper);
   for (std::size_t i = 0; i < title.size(); ++i)
     write(sheet, kMargin, kMargin + static_cast<int>(i) * kLine, title[i]);
   for (int i = 0; i < count; ++i) {
@@ -121,12 +122,12 @@ Picture contactSheet(const ReproducedResult& result) {
     std::vector<std::string> name = lines(panel.name, width);
     for (std::size_t line = 0; line < name.size(); ++line)
       write(sheet, left, top + height + 4 + static_cast<int>(line) * kLine, name[line]);
-    if (!panel.picture.empty()) {
-      // Smaller pictures, of half the resolution say, fill the same space.
-      const double factor = std::min(static_cast<double>(width) / panel.picture.width(),
-                                     static_cast<double>(height) / panel.picture.height());
-      draw(sheet, left, top, static_cast<int>(std::lround(factor * panel.picture.width())),
-           static_cast<int>(std::lround(factor * panel.picture.height())), panel.picture, result.exposure);
+    if (!panel.image.empty()) {
+      // Smaller images, of half the resolution say, fill the same space.
+      const double factor = std::min(static_cast<double>(width) / panel.image.width(),
+                                     static_cast<double>(height) / panel.image.height());
+      draw(sheet, left, top, static_cast<int>(std::lround(factor * panel.image.width())),
+           static_cast<int>(std::lround(factor * panel.image.height())), panel.image, result.exposure);
       continue;
     }
     fill(sheet, left, top, width, height, kEmpty);

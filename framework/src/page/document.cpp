@@ -26,7 +26,7 @@ std::string script(const std::string& text) {
 
 std::string html(const Document& document) {
   std::string records = block("data", document.data), scripts;
-  if (!document.pictures.is_null()) records += block("pictures", document.pictures);
+  if (!document.images.is_null()) records += block("images", document.images);
   if (document.charts) scripts += script(chartLibrary());
   scripts += script(assets::kPageJs);
   for (const char* text : document.scripts) scripts += script(text);

@@ -9,10 +9,10 @@ namespace lumivox::page {
 
 struct Document {
   std::string title;
-  nlohmann::ordered_json data;           ///< the block "data"
-  nlohmann::ordered_json pictures = {};  ///< the block "pictures", Base64; null: none
-  bool charts = false;                   ///< with Chart.js in it
-  std::vector<const char*> scripts;      ///< in this order, after kPageJs
+  nlohmann::ordered_json data;         ///< the block "data"
+  nlohmann::ordered_json images = {};  ///< the block "images", Base64; null: none
+  bool charts = false;                 ///< with Chart.js in it
+  std::vector<const char*> scripts;    ///< in this order, after kPageJs
 };
 std::string html(const Document& document);
 

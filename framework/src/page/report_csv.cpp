@@ -52,25 +52,25 @@ CsvRow csvRow(const SceneRecord& scene, const PointRecord& record, const Compone
   row.add("height", static_cast<std::uint64_t>(scene.height));
   row.add("output", error.output);
   row.add("component", error.component);
-  row.add("truth", error.truth);
+  row.add("reference", error.reference);
   row.add("kind", error.output.empty() ? "" : error.bias ? "bias" : "miss");
   row.add("rmse", error.error.rmse);
   row.add("seeds", static_cast<std::uint64_t>(error.seeds));
-  row.add("picture_noise", error.noiseRmse);
+  row.add("image_noise", error.noiseRmse);
   row.add("rms_bias", error.parts.bias);
   row.add("rms_noise", error.parts.noise);
   row.add("flicker", error.flicker);
-  row.add("truth_noise", error.error.noiseFloor);
+  row.add("reference_noise", error.error.noiseFloor);
   row.add("relative_mse", error.error.relativeMse);
   row.add("mean_ratio", error.error.meanRatio);
   row.add("mean_difference", error.error.bias);
-  const PictureError& e = error.error;
+  const ImageError& e = error.error;
   row.add("percentile_95", Measured{e.percentile95, e.percentile95Uncertainty});
   row.add("ssim", Measured{e.ssim, e.ssimUncertainty});
   row.add("flip_hdr", Measured{e.flip, e.flipUncertainty});
   row.add("flip_ldr", Measured{e.flipLdr, e.flipLdrUncertainty});
-  row.add("non_finite_picture", error.error.nonFinitePicture);
-  row.add("non_finite_truth", error.error.nonFiniteTruth);
+  row.add("non_finite_image", error.error.nonFiniteImage);
+  row.add("non_finite_reference", error.error.nonFiniteReference);
   row.add("rmse_of_nothing", error.errorOfNothing.rmse.value);
   row.add("ratio_to_nothing", error.ratioToNothing());
   row.add("frame_ms", point.frameMs.median);
@@ -98,7 +98,7 @@ std::string reportCsv(const ReportRecord& record) {
     for (const PointRecord& point : scene.points) {
       std::vector<ComponentError> errors = point.point.errors;
       if (errors.empty())
-        errors.emplace_back();  // a point that failed, or without any truth, still has its row
+        errors.emplace_back();  // a point that failed, or without any reference, still has its row
       for (const ComponentError& error : errors) {
         const CsvRow row = csvRow(scene, point, error);
         head = row.head();

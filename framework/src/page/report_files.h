@@ -9,9 +9,9 @@
 namespace lumivox::page {
 
 /// The records, and what follows from them: comparisons of pipelines, slopes, growth. Everything but the
-/// pictures.
+/// images.
 nlohmann::ordered_json reportJson(const ReportRecord& record);
-/// One row per point, output and truth layer (RFC 4180).
+/// One row per point, output and reference layer (RFC 4180).
 std::string reportCsv(const ReportRecord& record);
 
 }  // namespace lumivox::page

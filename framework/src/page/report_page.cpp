@@ -55,27 +55,27 @@ Json sceneJson(const ReportRecord& record, const SceneRecord& scene) {
 }
 
 /// In the order of the scenes, points and outputs.
-Json picturesJson(const ReportRecord& record) {
+Json imagesJson(const ReportRecord& record) {
   Json scenes = Json::array();
   for (const SceneRecord& scene : record.scenes) {
-    Json truths = Json::array(), points = Json::array();
-    for (const TruthRecord& truth : scene.truths)
-      truths.push_back({{"layer", truth.layer}, {"png", base64(truth.picture)}});
+    Json references = Json::array(), points = Json::array();
+    for (const ReferenceRecord& reference : scene.references)
+      references.push_back({{"layer", reference.layer}, {"png", base64(reference.image)}});
     for (const PointRecord& point : scene.points) {
       Json outputs = Json::array();
-      for (const OutputPictures& output : point.pictures) {
+      for (const OutputImages& output : point.images) {
         Json against = Json::array();
-        for (const OutputPictures::Against& map : output.against)
+        for (const OutputImages::Against& map : output.against)
           against.push_back(
-              {{"truth", map.truth}, {"flip", numberJson(map.flip)}, {"png", base64(map.flipMap)}});
+              {{"reference", map.reference}, {"flip", numberJson(map.flip)}, {"png", base64(map.flipMap)}});
         outputs.push_back({{"output", output.output},
                            {"component", output.component},
-                           {"png", base64(output.picture)},
+                           {"png", base64(output.image)},
                            {"against", std::move(against)}});
       }
       points.push_back(std::move(outputs));
     }
-    scenes.push_back({{"truths", std::move(truths)}, {"points", std::move(points)}});
+    scenes.push_back({{"references", std::move(references)}, {"points", std::move(points)}});
   }
   return {{"scenes", std::move(scenes)}};
 }
@@ -93,7 +93,7 @@ Json reportJson(const ReportRecord& record) {
                     {"timer_queries_trusted", record.device.timerQueriesTrusted},
                     {"timer_note", record.device.timerNote},
                     {"host", record.host}};
-  json["ceilings"] = toJson(record.ceilings);
+  json["peak_rates"] = toJson(record.peakRates);
   json["units"] = {{"error", "radiance, W/(sr m^2)"}, {"time", "ms"}, {"memory", "bytes"}};
   json["pipelines"] = Json::array();
   for (const PipelineRecord& pipeline : record.pipelines)
@@ -137,9 +137,9 @@ ReportFiles reportFiles(const std::filesystem::path& file) {
 void writeReport(const ReportFiles& files, const ReportRecord& record) {
   page::Document document{"Lumivox report",
                           page::reportJson(record),
-                          page::picturesJson(record),
+                          page::imagesJson(record),
                           true,
-                          {page::assets::kComparisonJs, page::assets::kPicturesJs, page::assets::kVoxelsJs,
+                          {page::assets::kComparisonJs, page::assets::kImagesJs, page::assets::kVoxelsJs,
                            page::assets::kStressJs, page::assets::kReportJs}};
   writeFileAtomically(files.json, textOf(document.data, 1) + "\n");
   writeFileAtomically(files.csv, page::reportCsv(record));

@@ -107,7 +107,7 @@ std::vector<std::string> reproductionNotes(const ReproducedResult& result) {
   if (result.scale != 1.0) {
     std::string parameters;
     for (const std::string& name : published.scaled) parameters += ", " + name;
-    notes.push_back(fmt::format("Reduced: picture sides{} times {:.4g}.", parameters, result.scale));
+    notes.push_back(fmt::format("Reduced: image sides{} times {:.4g}.", parameters, result.scale));
   }
   for (const std::string& setUp : result.setUps) notes.push_back("Measured: " + setUp + ".");
   for (const std::string& difference : published.differences) notes.push_back("Differs: " + difference + ".");
@@ -122,7 +122,7 @@ std::string reproductionRule() {
       "comparable when the set-up is not here or is another one, or when the uncertainty reaches across the limit. A table "
       "is reproduced when a row is, none is not, and no two rows stand in the other order than published. Frame rates "
       "count as times of frames. Brackets behind times are quartiles. A curve grows as a power of what it is drawn over: less than linearly where the exponent, {1} "
-      "standard uncertainties to both sides, is below 1, linearly where from its first point to its last it grows as that does within the same factor. Pictures "
+      "standard uncertainties to both sides, is below 1, linearly where from its first point to its last it grows as that does within the same factor. Images "
       "have no verdict.",
       kReproducedFactor, kReproducedSigmas);
 }
@@ -161,7 +161,7 @@ std::string reproductionsAsMarkdown(const std::vector<ReproducedResult>& results
 
 std::string reproductionsAsHtml(const std::vector<ReproducedResult>& results) {
   using Json = nlohmann::ordered_json;
-  Json shown = Json::array(), pictures = Json::array();
+  Json shown = Json::array(), images = Json::array();
   for (const ReproducedResult& result : results) {
     Json rows = Json::array(), curves = Json::array(), panels = Json::array();
     for (std::size_t i = 0; i < result.rows.size(); ++i)
@@ -180,7 +180,7 @@ std::string reproductionsAsHtml(const std::vector<ReproducedResult>& results) {
     Json own = Json::object();
     if (!result.panels.empty()) own["sheet"] = base64(encodePng(contactSheet(result)));
     if (!result.curves.empty()) own["curves"] = base64(curvesAsSvg(result));
-    pictures.push_back(std::move(own));
+    images.push_back(std::move(own));
   }
   Document document;
   document.title = "Published tables and figures, measured here";
@@ -188,7 +188,7 @@ std::string reproductionsAsHtml(const std::vector<ReproducedResult>& results) {
                    {"rule", reproductionRule()},
                    {"headings", reproductionHeadings()},
                    {"results", std::move(shown)}};
-  document.pictures = {{"results", std::move(pictures)}};
+  document.images = {{"results", std::move(images)}};
   document.scripts = {assets::kReproductionPageJs};
   return html(document);
 }

@@ -23,7 +23,7 @@ std::string trimmed(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// "ratios 004-table-3; isotropic, voxelisation; isotropic, mipmap"
+/// "ratios 004-table-3; isotropic, voxelization; isotropic, mipmap"
 struct Request {
   std::string kind, id;
   std::vector<std::string> names;

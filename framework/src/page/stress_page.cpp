@@ -13,8 +13,7 @@ std::filesystem::path writeStressPage(const std::filesystem::path& folder,
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (StressCell& cell : cells) {
     std::error_code failure;
-    if (!cell.picture.empty() && !std::filesystem::exists(folder / cell.picture, failure))
-      cell.picture.clear();
+    if (!cell.image.empty() && !std::filesystem::exists(folder / cell.image, failure)) cell.image.clear();
     list.push_back(toJson(cell));
   }
   page::Document document;

@@ -1,13 +1,13 @@
-// How the times of voxelisers grow, as JSON.
+// How the times of voxelizers grow, as JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "lumivox/results/voxelisers.h"
+#include "lumivox/results/voxelizers.h"
 
 namespace lumivox::page {
 
-nlohmann::ordered_json scalingJson(const std::vector<VoxeliserRecord>& records);
+nlohmann::ordered_json scalingJson(const std::vector<VoxelizerRecord>& records);
 
 }  // namespace lumivox::page

@@ -1,4 +1,4 @@
-// The records of voxelisers as a page, JSON and CSV.
+// The records of voxelizers as a page, JSON and CSV.
 #include "lumivox/page/voxel_page.h"
 
 #include <fmt/format.h>
@@ -15,9 +15,9 @@ namespace lumivox::page {
 
 using Json = nlohmann::ordered_json;
 
-Json scalingJson(const std::vector<VoxeliserRecord>& records) {
+Json scalingJson(const std::vector<VoxelizerRecord>& records) {
   Json list = Json::array();
-  for (const VoxeliserScaling& scaling : scalingOf(records)) {
+  for (const VoxelizerScaling& scaling : scalingOf(records)) {
     Json one = {{"scene", scaling.scene}, {"label", scaling.label}};
     if (scaling.withResolution) one["with_resolution"] = *scaling.withResolution;
     if (scaling.withTriangles) one["with_triangles"] = *scaling.withTriangles;
@@ -28,20 +28,20 @@ Json scalingJson(const std::vector<VoxeliserRecord>& records) {
 
 namespace {
 
-std::string recordsCsv(const std::vector<VoxeliserRecord>& records) {
+std::string recordsCsv(const std::vector<VoxelizerRecord>& records) {
   std::string csv =
       "scene,pipeline,output,label,resolution,triangles,subdivisions,median_ms,lower_quartile_ms,"
-      "upper_quartile_ms,fragments,occupied,truth,undecided,recall,precision,axis_holes,oblique_holes,bytes,"
+      "upper_quartile_ms,fragments,occupied,reference,undecided,recall,precision,axis_holes,oblique_holes,bytes,"
       "allocated_bytes,why_not\n";
   const auto quoted = [](const std::string& text) { return "\"" + replaced(text, "\"", "\"\"") + "\""; };
-  for (const VoxeliserRecord& record : records) {
+  for (const VoxelizerRecord& record : records) {
     csv += fmt::format("{},{},{},{},{},{},{},", quoted(record.scene), quoted(record.pipeline),
                        quoted(record.output), quoted(record.label()), record.resolution, record.triangles,
                        record.subdivisions);
     csv += record.whyNot.empty()
                ? fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},\n", record.frameMs.median,
                              record.frameMs.lowerQuartile, record.frameMs.upperQuartile, record.fragments,
-                             record.occupied, record.truth, record.undecided, record.error.recall(),
+                             record.occupied, record.reference, record.undecided, record.error.recall(),
                              record.error.precision(), record.holes.axisShare(), record.holes.obliqueShare(),
                              record.bytes, record.allocatedBytes)
                : std::string(13, ',') + quoted(record.whyNot) + "\n";
@@ -54,11 +54,11 @@ std::string recordsCsv(const std::vector<VoxeliserRecord>& records) {
 
 namespace lumivox {
 
-VoxeliserFiles voxeliserFiles(const std::filesystem::path& folder) {
+VoxelizerFiles voxelizerFiles(const std::filesystem::path& folder) {
   return {folder / "index.html", folder / "voxels.csv", folder / "voxels.json"};
 }
 
-std::string voxelisersJson(const std::vector<VoxeliserRecord>& records, const gpu::DeviceInfo& device,
+std::string voxelizersJson(const std::vector<VoxelizerRecord>& records, const gpu::DeviceInfo& device,
                            const std::string& commandLine) {
   return textOf({{"command", commandLine},
                  {"device", device.renderer},
@@ -70,10 +70,10 @@ std::string voxelisersJson(const std::vector<VoxeliserRecord>& records, const gp
          "\n";
 }
 
-void writeVoxelisers(const VoxeliserFiles& files, const std::vector<VoxeliserRecord>& records,
+void writeVoxelizers(const VoxelizerFiles& files, const std::vector<VoxelizerRecord>& records,
                      const gpu::DeviceInfo& device, const std::string& commandLine) {
   page::Document document;
-  document.title = "Lumivox voxelisers";
+  document.title = "Lumivox voxelizers";
   document.data = {{"command", commandLine},
                    {"device", device.renderer},
                    {"voxels", toJson(records)},
@@ -81,7 +81,7 @@ void writeVoxelisers(const VoxeliserFiles& files, const std::vector<VoxeliserRec
   document.charts = true;
   document.scripts = {page::assets::kVoxelsJs, page::assets::kVoxelsPageJs};
   const std::string html = page::html(document);
-  writeFileAtomically(files.json, voxelisersJson(records, device, commandLine));
+  writeFileAtomically(files.json, voxelizersJson(records, device, commandLine));
   writeFileAtomically(files.csv, page::recordsCsv(records));
   writeFileAtomically(files.page, html);
 }

@@ -34,21 +34,21 @@ std::string differenceOf(const OutBase& output, const OutBase& scratch) {
   return different == 0 ? std::string() : fmt::format("{} of {} bytes", different, all);
 }
 
-/// Values of a picture, against those of the same one where nothing was left out, or (null) against its
+/// Values of an image, against those of the same one where nothing was left out, or (null) against its
 /// neutral element.
-std::string differenceOfPictures(const OutBase& whole, const OutBase* lean) {
+std::string differenceOfImages(const OutBase& whole, const OutBase* lean) {
   if (whole.contributes() == Contributes::nothing || whole.textures().empty()) return {};
   // The fourth channel of a radiance holds nothing.
   const int channels = channelsOf(whole.contributes());
-  const Picture picture = pictureOf(*whole.textures().front(), channels);
-  const Picture other = lean != nullptr
-                            ? pictureOf(*lean->textures().front(), channels)
-                            : neutralPicture(picture.width(), picture.height(), whole.contributes());
-  if (!picture.sameShape(other)) return "its size is another one";
+  const ImageBuffer image = imageOf(*whole.textures().front(), channels);
+  const ImageBuffer other = lean != nullptr
+                                ? imageOf(*lean->textures().front(), channels)
+                                : neutralImage(image.width(), image.height(), whole.contributes());
+  if (!image.sameShape(other)) return "its size is another one";
   std::size_t different = 0;
-  for (std::size_t i = 0; i < picture.values().size(); ++i)
-    different += picture.values()[i] != other.values()[i] ? 1 : 0;
-  return different == 0 ? std::string() : fmt::format("{} of {} values", different, picture.values().size());
+  for (std::size_t i = 0; i < image.values().size(); ++i)
+    different += image.values()[i] != other.values()[i] ? 1 : 0;
+  return different == 0 ? std::string() : fmt::format("{} of {} values", different, image.values().size());
 }
 
 /// One frame of a run, beside the same frame made from scratch and made without leaving anything out.
@@ -79,7 +79,7 @@ class Comparison {
       if (!everything.hasValue() || !everything.kind().isSameType(portKind<Image>())) return {};
       // What nobody would read may be anything where its inputs are left out.
       if (!planned.wanted && (planned.lacksNeed || (planned.impossible && isShown(index)))) {
-        const std::string difference = differenceOfPictures(everything, nullptr);
+        const std::string difference = differenceOfImages(everything, nullptr);
         return difference.empty()
                    ? std::string()
                    : fmt::format(
@@ -87,7 +87,7 @@ class Comparison {
                          difference, whyLeftOut(index));
       }
       if (!planned.wanted || !less.hasValue()) return {};
-      const std::string difference = differenceOfPictures(everything, &less);
+      const std::string difference = differenceOfImages(everything, &less);
       return difference.empty()
                  ? std::string()
                  : fmt::format("{} differ from a run that leaves nothing out; {}", difference, whyLess(pass));
@@ -197,8 +197,8 @@ void PipelineExecutor::State::checkReads(FrameResult& result) {
     anew.complete = false;
   else
     anew.renewPasses();
-  scratch->render(*last, *lastFrameIndex, Pictures::no);
-  whole->render(*last, *lastFrameIndex, Pictures::no);
+  scratch->render(*last, *lastFrameIndex, Images::no);
+  whole->render(*last, *lastFrameIndex, Images::no);
   Comparison comparison(graph, *plan, result.passes);
   comparison.compareWithScratch(anew.graph);
   comparison.compareWithWhole(anew.graph, everything.graph);

@@ -249,7 +249,7 @@ void PipelineExecutor::State::runPass(std::size_t index, Instrument instrument, 
   result.passes.push_back(std::move(record));
 }
 
-FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameIndex, Pictures pictures,
+FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameIndex, Images images,
                                            Timing timing, Clock::time_point start) {
   planned();
   const Reads changed = changesSince(snapshot, frameIndex);
@@ -274,7 +274,7 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
   if (instrument == Instrument::fence) keepTimes(result->passes);
   if (instrument == Instrument::stamps) readTimes(timers.take());
   if (options.checkReads) checkReads(*result);
-  collectPictures(*result, pictures);
+  collectImages(*result, images);
   return *std::move(result);
 }
 
@@ -339,21 +339,32 @@ std::optional<FrameResult> PipelineExecutor::State::attempt(Reads changed, Instr
   return result;
 }
 
-void PipelineExecutor::State::collectPictures(FrameResult& result, Pictures pictures) {
-  if (pictures == Pictures::yes && graph.outputs.empty() && request.forced.empty())
-    throw Error(
-        fmt::format("pipeline \"{}\" makes no picture; expected output NAME pass.port", pipeline.name));
-  const std::vector<int> bounces = bouncesOf(graph);
+std::map<std::string, int> PipelineExecutor::State::indirectBounces() const {
+  const std::vector<int> modelled = bouncesOf(graph);
+  std::map<std::string, int> bounces;
+  for (const BoundOutput& bound : graph.outputs) {
+    const Contributes component = graph.output(bound.source).contributes();
+    const bool isIndirect = component == Contributes::indirectDiffuse ||
+                            component == Contributes::indirectGlossy || component == Contributes::final;
+    bounces[bound.name] = isIndirect ? std::max(1, modelled[static_cast<std::size_t>(bound.source.pass)]) : 1;
+  }
+  return bounces;
+}
+
+void PipelineExecutor::State::collectImages(FrameResult& result, Images images) {
+  if (images == Images::yes && graph.outputs.empty() && request.forced.empty())
+    throw Error(fmt::format("pipeline \"{}\" makes no image; expected output NAME pass.port", pipeline.name));
+  const std::map<std::string, int> bounces = indirectBounces();
   for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
     if (!request.wanted[i]) continue;
     const BoundOutput& bound = graph.outputs[i];
     const OutBase& output = graph.output(bound.source);
     result.components[bound.name] = output.contributes();
-    result.indirectBounces[bound.name] = bounces[static_cast<std::size_t>(bound.source.pass)];
-    if (pictures == Pictures::no) continue;
+    result.indirectBounces[bound.name] = bounces.at(bound.name);
+    if (images == Images::no) continue;
     if (!output.hasValue()) {
       result.outputs[bound.name] =
-          neutralPicture(last->camera.width, last->camera.height, output.contributes());
+          neutralImage(last->camera.width, last->camera.height, output.contributes());
       continue;
     }
     const std::vector<gpu::TextureRef> textures = output.textures();
@@ -362,10 +373,10 @@ void PipelineExecutor::State::collectPictures(FrameResult& result, Pictures pict
     const gpu::TextureDescription& size = textures.front()->description();
     if (size.width != last->camera.width || size.height != last->camera.height)
       throw Error(fmt::format(
-          "output '{}' of pipeline \"{}\": {} has {} x {} texels; expected {} x {}, the picture's size",
+          "output '{}' of pipeline \"{}\": {} has {} x {} texels; expected {} x {}, the image's size",
           bound.name, pipeline.name, graph.outputText(bound.source), size.width, size.height,
           last->camera.width, last->camera.height));
-    result.outputs[bound.name] = pictureOf(*textures.front(), channelsOf(output.contributes()));
+    result.outputs[bound.name] = imageOf(*textures.front(), channelsOf(output.contributes()));
   }
 }
 
@@ -377,17 +388,17 @@ PipelineExecutor::PipelineExecutor(gpu::Device& device, TechniqueSource& techniq
 
 PipelineExecutor::~PipelineExecutor() = default;
 
-FrameResult PipelineExecutor::render(double time, int frameIndex, Pictures pictures, Timing timing) {
+FrameResult PipelineExecutor::render(double time, int frameIndex, Images images, Timing timing) {
   State& s = *state_;
   const auto start = s.startFrame(s.instrumentOf(timing));
   return s.frame(snapshotOf(*s.scene, time, s.options.camera, s.options.width, s.options.height), frameIndex,
-                 pictures, timing, start);
+                 images, timing, start);
 }
 
-FrameResult PipelineExecutor::render(const SceneSnapshot& snapshot, int frameIndex, Pictures pictures,
+FrameResult PipelineExecutor::render(const SceneSnapshot& snapshot, int frameIndex, Images images,
                                      Timing timing) {
   State& s = *state_;
-  return s.frame(snapshot, frameIndex, pictures, timing, s.startFrame(s.instrumentOf(timing)));
+  return s.frame(snapshot, frameIndex, images, timing, s.startFrame(s.instrumentOf(timing)));
 }
 
 std::vector<std::vector<PassRecord>> PipelineExecutor::timedPasses() {
@@ -467,6 +478,10 @@ void PipelineExecutor::keepOnly(const std::string& pass, const std::string& port
 
 void PipelineExecutor::freeUnused(bool free) {
   state_->freesUnused = free;
+}
+
+std::map<std::string, int> PipelineExecutor::indirectBounces() const {
+  return state_->indirectBounces();
 }
 
 const Pass& PipelineExecutor::pass(const std::string& name) const {

@@ -64,6 +64,7 @@ struct PipelineExecutor::State {
   /// What counts as a source for PassContext::accumulated(): with --keep-everything too, passes count like
   /// those of a run that leaves out what it can.
   std::vector<std::vector<OutputIndex>> sourcesThatCount();
+  std::map<std::string, int> indirectBounces() const;
   void countStillFrames(Reads changed, const SceneSnapshot& snapshot);
   void holdHistories();
   void emptyHistories();
@@ -94,11 +95,11 @@ struct PipelineExecutor::State {
   void runPass(std::size_t index, Instrument instrument, FrameResult& result);
   /// Before a frame, the snapshot of its time included: what its time starts from.
   Clock::time_point startFrame(Instrument instrument);
-  FrameResult frame(SceneSnapshot snapshot, int frameIndex, Pictures pictures, Timing timing,
+  FrameResult frame(SceneSnapshot snapshot, int frameIndex, Images images, Timing timing,
                     Clock::time_point start);
   /// Nothing when a pass had too little room for what it counts.
   std::optional<FrameResult> attempt(Reads changed, Instrument instrument, Clock::time_point start);
-  void collectPictures(FrameResult& result, Pictures pictures);
+  void collectImages(FrameResult& result, Images images);
   void checkReads(FrameResult& result);
 };
 

@@ -273,11 +273,11 @@ class Binder {
           {output.name, connect(output.place, length, output.pass, output.port, portKind<Image>(),
                                 fmt::format("output '{}' of the pipeline", output.name))});
     }
-    if (pipeline_.outputs.empty()) requireNoPicture();
+    if (pipeline_.outputs.empty()) requireNoImage();
   }
 
-  /// Only a pipeline that makes no part of a picture has nothing to deliver.
-  void requireNoPicture() {
+  /// Only a pipeline that makes no part of an image has nothing to deliver.
+  void requireNoImage() {
     for (std::size_t i = 0; i < graph_.passes.size(); ++i) {
       if (!graph_.passes[i].object) continue;
       for (const OutBase* output : graph_.passes[i].object->outputs()) {

@@ -1,4 +1,4 @@
-// Scan of a pass's output for values that no picture may hold.
+// Scan of a pass's output for values that no image may hold.
 #pragma once
 
 #include <string>

@@ -44,7 +44,7 @@ std::string unmetNeed(Needs needs, const SceneTraits& traits) {
     const char* words;
   };
   // An environment counts as a light: it arrives at surfaces like any other, so leaving it out would change
-  // the picture.
+  // the image.
   const bool anyLight =
       traits.directionalLights + traits.pointLights + traits.spotLights + traits.areaLights > 0 ||
       traits.emission || traits.environment;

@@ -41,7 +41,7 @@ std::vector<dsl::BlockSpecification> makeSpecifications() {
   pipeline.word = "pipeline";
   pipeline.name = dsl::HeaderUse::required;
   pipeline.repeatable = false;
-  pipeline.meaning = "A chain of passes from a scene to pictures. It names techniques, never geometry.";
+  pipeline.meaning = "A chain of passes from a scene to images. It names techniques, never geometry.";
   pipeline.properties = {
       property(
           "param", dsl::PropertyType::name,
@@ -49,8 +49,8 @@ std::vector<dsl::BlockSpecification> makeSpecifications() {
           "`$NAME`, that --set NAME=VALUE changes and that a sweep varies."),
       property(
           "output", dsl::PropertyType::output,
-          "`output NAME pass.port`: a picture that the pipeline delivers under this name. A pipeline whose "
-          "passes make no part of a picture, a voxeliser for instance, needs none.")};
+          "`output NAME pass.port`: an image that the pipeline delivers under this name. A pipeline whose "
+          "passes make no part of an image, a voxelizer for instance, needs none.")};
   pipeline.blocks = {pass};
 
   return {pipeline, sweepSpecification(SweepHome::pipeline)};

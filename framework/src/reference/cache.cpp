@@ -90,13 +90,13 @@ void add(Hasher& hasher, const Medium& medium) {
   }
 }
 
-/// Of all pixels and attributes, so that damage inside an entry that still reads as a picture is noticed.
-ContentHash contentOf(const LayeredPicture& picture) {
+/// Of all pixels and attributes, so that damage inside an entry that still reads as an image is noticed.
+ContentHash contentOf(const LayeredImage& image) {
   Hasher hasher;
-  for (const auto& [name, layer] : picture.layers) {
+  for (const auto& [name, layer] : image.layers) {
     hasher.add(name).add(layer.width()).add(layer.height()).add(layer.channels()).add(layer.values());
   }
-  for (const auto& [name, value] : picture.attributes) hasher.add(name).add(value);
+  for (const auto& [name, value] : image.attributes) hasher.add(name).add(value);
   return hasher.finish();
 }
 
@@ -104,7 +104,7 @@ constexpr const char* kContentHash = "content";
 
 /// What keeps an entry from being the wanted reference; empty when nothing does. It is believed in nothing:
 /// what it says of itself is compared with what it has to be.
-std::string defectOf(LayeredPicture& entry, const Scene& scene, const ResolvedOptions& resolved) {
+std::string defectOf(LayeredImage& entry, const Scene& scene, const ResolvedOptions& resolved) {
   const auto stated = entry.attributes.find(kContentHash);
   const std::string hash = stated == entry.attributes.end() ? std::string() : stated->second;
   entry.attributes.erase(kContentHash);
@@ -137,14 +137,14 @@ std::string defectOf(LayeredPicture& entry, const Scene& scene, const ResolvedOp
 }
 
 /// The entry, or nothing when there is none or it is not to be taken (which is said).
-std::optional<LayeredPicture> readEntry(const std::filesystem::path& file, const Scene& scene,
-                                        const ResolvedOptions& resolved) {
+std::optional<LayeredImage> readEntry(const std::filesystem::path& file, const Scene& scene,
+                                      const ResolvedOptions& resolved) {
   std::error_code failure;
   if (!std::filesystem::exists(std::filesystem::symlink_status(file, failure))) return std::nullopt;
   try {
-    LayeredPicture picture = readExr(file);
-    const std::string defect = defectOf(picture, scene, resolved);
-    if (defect.empty()) return picture;
+    LayeredImage image = readExr(file);
+    const std::string defect = defectOf(image, scene, resolved);
+    if (defect.empty()) return image;
     logWarning("{}: this cached reference is damaged ({}); it is made anew", file.string(), defect);
   } catch (const Error& error) {
     logWarning("this cached reference is damaged and is made anew: {}", error.what());
@@ -153,11 +153,11 @@ std::optional<LayeredPicture> readEntry(const std::filesystem::path& file, const
 }
 
 /// The folder may hold a link under this name, which is not followed: the entry is written in its place.
-void keep(const std::filesystem::path& file, const LayeredPicture& picture) {
+void keep(const std::filesystem::path& file, const LayeredImage& image) {
   std::error_code failure;
   if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file, failure)))
     std::filesystem::remove(file, failure);
-  writeExr(file, picture);
+  writeExr(file, image);
   const PrunedReferences pruned = pruneReferences(referenceCacheLimit());
   if (pruned.removed > 0) {
     logInformation("the cache of references is full: {} not used for longest gave way ({})", pruned.removed,
@@ -226,26 +226,26 @@ std::map<std::string, std::string> provenance(const Scene& scene, const Resolved
 
 }  // namespace reference
 
-LayeredPicture cachedReference(const Scene& scene, const ReferenceOptions& options) {
+LayeredImage cachedReference(const Scene& scene, const ReferenceOptions& options) {
   using namespace reference;
   if (!options.useCache) return renderReference(scene, options);
   const ResolvedOptions resolved = resolve(scene, options);
   const std::filesystem::path file = cacheDirectory() / entryName(cacheKey(scene, resolved));
-  if (std::optional<LayeredPicture> entry = readEntry(file, scene, resolved)) {
+  if (std::optional<LayeredImage> entry = readEntry(file, scene, resolved)) {
     markAsUsed(file);
     if (options.progress) warnOfCutOff(entry->attributes);
     return *std::move(entry);
   }
-  LayeredPicture picture = renderReference(scene, options);
-  picture.attributes[kContentHash] = contentOf(picture).text();
+  LayeredImage image = renderReference(scene, options);
+  image.attributes[kContentHash] = contentOf(image).text();
   try {
-    keep(file, picture);
+    keep(file, image);
   } catch (const Error& error) {
-    // The picture is good; only the next call pays.
+    // The image is good; only the next call pays.
     logWarning("the reference could not be kept for later: {}", error.what());
   }
-  picture.attributes.erase(kContentHash);
-  return picture;
+  image.attributes.erase(kContentHash);
+  return image;
 }
 
 }  // namespace lumivox

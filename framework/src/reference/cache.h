@@ -1,4 +1,4 @@
-// Keys and provenance of truths.
+// Keys and provenance of references.
 #pragma once
 
 #include <filesystem>
@@ -10,16 +10,16 @@
 
 namespace lumivox::reference {
 
-/// The version of the path tracer; raise it with every change that changes pictures, so that older cached
-/// truths are not taken.
+/// The version of the path tracer; raise it with every change that changes images, so that older cached
+/// references are not taken.
 inline constexpr int kTracerVersion = 4;
-/// The same for what changes pictures of scenes with media alone.
+/// The same for what changes images of scenes with media alone.
 inline constexpr int kMediaVersion = 2;
 
 /// Scene::hash, or for a scene made by code the hash of all that the path tracer reads.
 ContentHash contentOf(const Scene& scene);
 
-/// Everything that the picture depends on.
+/// Everything that the image depends on.
 ContentHash cacheKey(const Scene& scene, const ResolvedOptions& resolved);
 
 /// Name of the entry's file.

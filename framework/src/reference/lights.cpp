@@ -90,7 +90,7 @@ LightSampler::LightSampler(RayScene& scene, const SceneSnapshot& snapshot) {
   if (choices_.empty()) return;
 
   // Half of the choices by flux, half evenly among the lights (all emissive triangles together being one): a
-  // lamp indoors is not starved by a sun that does not reach it.
+  // light indoors is not starved by a sun that does not reach it.
   double totalFlux = 0.0;
   for (const double value : flux) totalFlux += value;
   const double share = 0.5 / static_cast<double>(firstTriangle + (emitters_ > 0 ? 1 : 0));

@@ -103,8 +103,8 @@ CutOff Film::cutOff(int bounces) const {
                   std::accumulate(full.begin(), full.end(), 0.0), bounces);
 }
 
-LayeredPicture Film::take() {
-  LayeredPicture result;
+LayeredImage Film::take() {
+  LayeredImage result;
   for (std::size_t layer = 0; layer < names_.size(); ++layer) {
     result.layers.emplace(names_[layer], std::move(means_[layer]));
     result.layers.emplace(names_[layer] + ".variance", std::move(variances_[layer]));
@@ -154,7 +154,7 @@ void forEachTile(const Tiles& tiles, int threads, const std::function<void(int)>
 
 }  // namespace reference
 
-LayeredPicture renderReference(const Scene& scene, const ReferenceOptions& given) {
+LayeredImage renderReference(const Scene& scene, const ReferenceOptions& given) {
   using namespace reference;
   const ResolvedOptions resolved = resolve(scene, given);
   const ReferenceOptions& options = resolved.options;
@@ -177,11 +177,11 @@ LayeredPicture renderReference(const Scene& scene, const ReferenceOptions& given
     if (progress) progress->advance();
   });
   const CutOff cutOff = film.cutOff(options.bounces);
-  LayeredPicture picture = film.take();
-  picture.attributes = provenance(scene, resolved);
-  picture.attributes["cut_off"] = fmt::format("{:.3g} {:.6g}", cutOff.share, cutOff.radius);
-  if (options.progress) warnOfCutOff(picture.attributes);
-  return picture;
+  LayeredImage image = film.take();
+  image.attributes = provenance(scene, resolved);
+  image.attributes["cut_off"] = fmt::format("{:.3g} {:.6g}", cutOff.share, cutOff.radius);
+  if (options.progress) warnOfCutOff(image.attributes);
+  return image;
 }
 
 glm::vec3 referenceRadiance(const Scene& scene, double time, glm::dvec3 originWorld, glm::vec3 direction,

@@ -12,7 +12,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
-#include "lumivox/base/picture.h"
+#include "lumivox/base/image.h"
 #include "reference/cache.h"
 
 namespace lumivox {

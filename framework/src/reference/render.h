@@ -1,4 +1,4 @@
-// All pixels of a picture, in tiles that threads take in any order.
+// All pixels of an image, in tiles that threads take in any order.
 #pragma once
 
 #include <algorithm>
@@ -12,19 +12,19 @@
 #include <string>
 #include <vector>
 
-#include "lumivox/base/picture.h"
+#include "lumivox/base/image.h"
 #include "lumivox/reference/path_tracer.h"
 #include "reference/integrator.h"
 
 namespace lumivox::reference {
 
-/// What the picture depends on, in the one form that the tracer and the cache's key share: nothing left at
+/// What the image depends on, in the one form that the tracer and the cache's key share: nothing left at
 /// "the default".
 struct ResolvedOptions {
   ReferenceOptions options;
-  SceneSnapshot snapshot;  ///< at options.time, from options.camera, at the resolution of the picture
+  SceneSnapshot snapshot;  ///< at options.time, from options.camera, at the resolution of the image
 };
-/// Throws Error on options that make no picture.
+/// Throws Error on options that make no image.
 ResolvedOptions resolve(const Scene& scene, const ReferenceOptions& options);
 
 /// Everything that is built once before the first ray.
@@ -81,7 +81,7 @@ inline std::array<std::string, 3> bounceLayerNames(int bounces) {
   const std::string name = "bounces_" + std::to_string(bounces);
   return {name, name + "_diffuse", name + "_glossy"};
 }
-/// `direct`: light of the path without any further bounce, in the whole picture. `transmittance`: between the
+/// `direct`: light of the path without any further bounce, in the whole image. `transmittance`: between the
 /// camera and the first surface.
 inline std::array<glm::vec3, 3> bounceRadiancesOf(const BounceSums::Sum& sum, const glm::vec3& direct,
                                                   const glm::vec3& transmittance) {
@@ -163,11 +163,11 @@ struct CutOff {
   double share = 0.0;   ///< of all light that paths of more bounces would bring, estimated; 1: without end
   double radius = 0.0;  ///< of what is missing, the share that one further bounce leaves
 };
-/// `middle` and `late` are LateLight, summed over the picture like `full`. Where bounces shrink by a factor
+/// `middle` and `late` are LateLight, summed over the image like `full`. Where bounces shrink by a factor
 /// r, late / middle = x (1 + x) with x = r^(N/4), and late x^2 / (1 - x^2) lies beyond the last bounce N.
 CutOff cutOffOf(double middle, double late, double full, int bounces);
 
-/// The pictures that pixels are written to: the radiance layers, the occlusion, and the layers of numbers of
+/// The images that pixels are written to: the radiance layers, the occlusion, and the layers of numbers of
 /// bounces.
 class Film {
  public:
@@ -197,15 +197,15 @@ class Film {
   }
   /// Sums in the order of the pixels, so that threads change nothing.
   CutOff cutOff(int bounces) const;
-  LayeredPicture take();
+  LayeredImage take();
 
  private:
   std::vector<std::string> names_;
-  std::vector<Picture> means_, variances_;
+  std::vector<ImageBuffer> means_, variances_;
   std::vector<double> middle_, late_;  ///< LateLight of each pixel
 };
 
-/// The picture's tiles, row by row.
+/// The image's tiles, row by row.
 class Tiles {
  public:
   static constexpr int kSize = 16;
@@ -233,7 +233,7 @@ template <std::size_t Layers, class AddPath>
 void renderPixels(const ResolvedOptions& resolved, const Tiles& tiles, int tile, Film& film,
                   AddPath&& addPath) {
   const CameraView& camera = resolved.snapshot.camera;
-  // The direction is affine in the picture's coordinates.
+  // The direction is affine in the image's coordinates.
   const glm::vec3 corner = camera.direction(0.0f, 0.0f);
   const auto width = static_cast<float>(camera.width), height = static_cast<float>(camera.height);
   const glm::vec3 perColumn = (camera.direction(width, 0.0f) - corner) / width;
@@ -290,7 +290,7 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
 /// What the attributes of a reference say of it; nothing when they say nothing that can be right.
 std::optional<CutOff> cutOffIn(const std::map<std::string, std::string>& attributes);
 
-/// Says so when the limit on bounces costs more than a hundredth, by the attributes of a truth.
+/// Says so when the limit on bounces costs more than a hundredth, by the attributes of a reference.
 void warnOfCutOff(const std::map<std::string, std::string>& attributes);
 
 /// Threads that a request of `threads` (0: all) gets.

@@ -7,7 +7,7 @@
 namespace lumivox::reference {
 namespace {
 
-/// Numbers the distinct values of a picture; nothing when there are more than 256.
+/// Numbers the distinct values of an image; nothing when there are more than 256.
 std::optional<std::vector<std::uint8_t>> indicesOf(const std::vector<float>& values,
                                                    std::array<float, 256>& palette) {
   std::unordered_map<std::uint32_t, std::uint8_t> known;

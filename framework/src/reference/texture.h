@@ -38,11 +38,11 @@ class Texture {
   }
 
   int width_, height_;
-  /// Pictures with 8 bits per channel have at most 256 values, whatever curve decoded them: a texel is three
+  /// Images with 8 bits per channel have at most 256 values, whatever curve decoded them: a texel is three
   /// indices into them.
   std::array<float, 256> palette_{};
   std::vector<std::uint32_t> packed_;
-  std::vector<glm::vec3> wide_;  ///< texels of all other pictures; then packed_ is empty
+  std::vector<glm::vec3> wide_;  ///< texels of all other images; then packed_ is empty
 };
 
 }  // namespace lumivox::reference

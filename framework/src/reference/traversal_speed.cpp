@@ -87,7 +87,7 @@ TraversalSpeed measureTraversalSpeed(const Scene& scene, const ReferenceOptions&
   });
   TraversalSpeed speed;
   for (const auto& tile : recorded) speed.rays += tile.size();
-  if (speed.rays == 0) throw Error("reference: the picture needs no rays, so there is no speed to measure");
+  if (speed.rays == 0) throw Error("reference: the image needs no rays, so there is no speed to measure");
 
   // Both in turn on every tile, within milliseconds, and the best of each: the processor's clock and other
   // programs then meet both alike.

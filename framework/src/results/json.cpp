@@ -22,7 +22,7 @@ Json limitJson(const ReportPoint& point, const std::string& pass) {
   const double ms = millisecondsOf(point, pass);
   if (bounds == point.passBounds.end() || bounds->second.empty() || !(ms > 0.0)) return json;
   json["limited_by"] = bounds->second.front().resource;
-  json["of_ceiling"] = bounds->second.front().ms / ms;
+  json["of_peak_rate"] = bounds->second.front().ms / ms;
   Json least = Json::object();
   for (const WorkBound& bound : bounds->second) least[bound.resource] = bound.ms;
   json["at_least_ms"] = std::move(least);
@@ -60,20 +60,20 @@ Json toJson(const ParameterValues& values) {
 }
 
 Json toJson(const ComponentError& record) {
-  const PictureError& error = record.error;
+  const ImageError& error = record.error;
   return {{"output", record.output},
           {"component", record.component},
-          {"truth", record.truth},
+          {"reference", record.reference},
           {"kind", record.bias ? "bias" : "miss"},
           {"rmse", toJson(record.error.rmse)},
           {"seeds", record.seeds},
           {"deterministic", record.deterministic},
           {"enough_seeds", record.enoughSeeds()},
           {"rms_bias", toJson(record.parts.bias)},
-          {"picture_noise", numberJson(record.noiseRmse)},
+          {"image_noise", numberJson(record.noiseRmse)},
           {"rms_noise", toJson(record.parts.noise)},
           {"flicker", toJson(record.flicker)},
-          {"truth_noise", numberJson(error.noiseFloor)},
+          {"reference_noise", numberJson(error.noiseFloor)},
           {"relative_mse", toJson(error.relativeMse)},
           {"mean_ratio", toJson(error.meanRatio)},
           {"mean_difference", toJson(error.bias)},
@@ -85,8 +85,8 @@ Json toJson(const ComponentError& record) {
           {"flip_hdr_uncertainty", numberJson(error.flipUncertainty)},
           {"flip_ldr", numberJson(error.flipLdr)},
           {"flip_ldr_uncertainty", numberJson(error.flipLdrUncertainty)},
-          {"non_finite_picture", error.nonFinitePicture},
-          {"non_finite_truth", error.nonFiniteTruth},
+          {"non_finite_image", error.nonFiniteImage},
+          {"non_finite_reference", error.nonFiniteReference},
           {"rmse_of_nothing", numberJson(record.errorOfNothing.rmse.value)},
           {"ratio_to_nothing", numberJson(record.ratioToNothing())}};
 }
@@ -159,7 +159,7 @@ Json toJson(const PruningRecord& record) {
                {"saved_share_next", share(record.savedShareNext())},
                {"bytes", record.prunedBytes},
                {"bytes_keep_everything", record.unprunedBytes},
-               {"same_picture", record.samePicture}};
+               {"same_image", record.sameImage}};
   json["left_out"] = Json::array();
   for (const LeftOut& one : explanation.leftOut)
     json["left_out"].push_back({{"level", name(one.level)},
@@ -176,22 +176,22 @@ Json toJson(const PruningRecord& record) {
   return json;
 }
 
-Json toJson(const std::vector<DeviceCeiling>& ceilings) {
+Json toJson(const std::vector<PeakRate>& peakRates) {
   Json list = Json::array();
-  for (const DeviceCeiling& ceiling : ceilings)
-    list.push_back({{"name", ceiling.name},
-                    {"unit", ceiling.unit},
-                    {"median", ceiling.rate.median},
-                    {"lower_quartile", ceiling.rate.lowerQuartile},
-                    {"upper_quartile", ceiling.rate.upperQuartile},
-                    {"smallest", ceiling.rate.smallest},
-                    {"largest", ceiling.rate.largest},
-                    {"repeats", ceiling.rate.repeats},
-                    {"created", ceiling.created}});
+  for (const PeakRate& peakRate : peakRates)
+    list.push_back({{"name", peakRate.name},
+                    {"unit", peakRate.unit},
+                    {"median", peakRate.rate.median},
+                    {"lower_quartile", peakRate.rate.lowerQuartile},
+                    {"upper_quartile", peakRate.rate.upperQuartile},
+                    {"smallest", peakRate.rate.smallest},
+                    {"largest", peakRate.rate.largest},
+                    {"repeats", peakRate.rate.repeats},
+                    {"created", peakRate.created}});
   return list;
 }
 
-Json toJson(const VoxeliserRecord& record) {
+Json toJson(const VoxelizerRecord& record) {
   Json json = {{"scene", record.scene},         {"pipeline", record.pipeline},
                {"label", record.label()},       {"output", record.output},
                {"kind", record.kind},           {"resolution", record.resolution},
@@ -209,7 +209,7 @@ Json toJson(const VoxeliserRecord& record) {
       {"resolution", {record.grid.resolution.x, record.grid.resolution.y, record.grid.resolution.z}}};
   json["frame_ms"] = toJson(record.frameMs);
   json["occupied"] = record.occupied;
-  json["truth"] = record.truth;
+  json["reference"] = record.reference;
   json["undecided"] = record.undecided;
   json["true_positive"] = record.error.truePositive;
   json["false_positive"] = record.error.falsePositive;
@@ -230,9 +230,9 @@ Json toJson(const VoxeliserRecord& record) {
   return json;
 }
 
-Json toJson(const std::vector<VoxeliserRecord>& records) {
+Json toJson(const std::vector<VoxelizerRecord>& records) {
   Json list = Json::array();
-  for (const VoxeliserRecord& record : records) list.push_back(toJson(record));
+  for (const VoxelizerRecord& record : records) list.push_back(toJson(record));
   return list;
 }
 
@@ -240,17 +240,17 @@ Json toJson(const SceneRecord& scene) {
   Json json = {{"file", scene.file},     {"name", scene.name},          {"hash", scene.hash},
                {"camera", scene.camera}, {"time_s", scene.time},        {"width", scene.width},
                {"height", scene.height}, {"triangles", scene.triangles}};
-  json["truth"] = {{"samples_per_pixel", scene.truthSamples},
-                   {"seconds", numberJson(scene.truthSeconds)},
-                   {"attributes", scene.truthAttributes}};
+  json["reference"] = {{"samples_per_pixel", scene.referenceSamples},
+                       {"seconds", numberJson(scene.referenceSeconds)},
+                       {"attributes", scene.referenceAttributes}};
   Json layers = Json::array();
-  for (const TruthRecord& truth : scene.truths)
-    layers.push_back({{"layer", truth.layer},
-                      {"noise", numberJson(truth.noise)},
-                      {"mean", numberJson(truth.mean)},
-                      {"largest", numberJson(truth.largest)},
-                      {"display_exposure", numberJson(truth.exposure)}});
-  json["truth"]["layers"] = std::move(layers);
+  for (const ReferenceRecord& reference : scene.references)
+    layers.push_back({{"layer", reference.layer},
+                      {"noise", numberJson(reference.noise)},
+                      {"mean", numberJson(reference.mean)},
+                      {"largest", numberJson(reference.largest)},
+                      {"display_exposure", numberJson(reference.exposure)}});
+  json["reference"]["layers"] = std::move(layers);
   json["left_out_points"] = Json::array();
   for (const LeftOutPoint& point : scene.leftOutPoints)
     json["left_out_points"].push_back(

@@ -40,8 +40,9 @@ std::vector<NamedMetric> metricsOf(const ComponentError& error) {
     metric.measured.enoughRepeats = error.enoughSeeds() && (error.deterministic || error.everyMetricPerSeed ||
                                                             metric.name == std::string("rmse"));
   metrics.push_back({"noise_floor", {error.error.noiseFloor, 0.0}, error.errorOfNothing.noiseFloor});
-  metrics.push_back({"non_finite_picture", {static_cast<double>(error.error.nonFinitePicture), 0.0}, 0.0});
-  metrics.push_back({"non_finite_truth", {static_cast<double>(error.error.nonFiniteTruth), 0.0}, 0.0});
+  metrics.push_back({"non_finite_image", {static_cast<double>(error.error.nonFiniteImage), 0.0}, 0.0});
+  metrics.push_back(
+      {"non_finite_reference", {static_cast<double>(error.error.nonFiniteReference), 0.0}, 0.0});
   return metrics;
 }
 
@@ -57,7 +58,7 @@ bool setMetric(ComponentError& error, const NamedMetric& metric) {
   if (known) return true;
   if (metric.name == "rmse_over_seeds") {
     // Stores of schema 3 and before: mean and standard error over the seeds beside the RMSE of the first one,
-    // whose uncertainty is the truth's noise.
+    // whose uncertainty is the reference's noise.
     error.error.rmse = {metric.measured.value,
                         std::hypot(error.error.rmse.uncertainty, metric.measured.uncertainty)};
   } else if (metric.name == "rms_bias") {
@@ -67,13 +68,13 @@ bool setMetric(ComponentError& error, const NamedMetric& metric) {
   } else if (metric.name == "flicker") {
     error.flicker = metric.measured;
   } else if (metric.name == "noise_floor") {
-    error.parts.truthNoise = metric.measured.value;
+    error.parts.referenceNoise = metric.measured.value;
     error.error.noiseFloor = metric.measured.value;
     error.errorOfNothing.noiseFloor = metric.ofNothing;
-  } else if (metric.name == "non_finite_picture") {
-    error.error.nonFinitePicture = static_cast<std::uint64_t>(metric.measured.value);
-  } else if (metric.name == "non_finite_truth") {
-    error.error.nonFiniteTruth = static_cast<std::uint64_t>(metric.measured.value);
+  } else if (metric.name == "non_finite_image") {
+    error.error.nonFiniteImage = static_cast<std::uint64_t>(metric.measured.value);
+  } else if (metric.name == "non_finite_reference") {
+    error.error.nonFiniteReference = static_cast<std::uint64_t>(metric.measured.value);
   } else {
     return false;
   }

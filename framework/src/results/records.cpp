@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "lumivox/results/report_record.h"
-#include "lumivox/results/voxelisers.h"
+#include "lumivox/results/voxelizers.h"
 
 namespace lumivox {
 namespace {
@@ -49,14 +49,14 @@ double PruningRecord::savedShareNext() const {
   return saved(nextPrunedMs, nextUnprunedMs);
 }
 
-double VoxeliserRecord::bytesPerFragment() const {
+double VoxelizerRecord::bytesPerFragment() const {
   return fragments == 0 ? 0.0 : static_cast<double>(bytes) / static_cast<double>(fragments);
 }
-double VoxeliserRecord::bytesPerVoxel() const {
+double VoxelizerRecord::bytesPerVoxel() const {
   return occupied == 0 ? 0.0 : static_cast<double>(bytes) / static_cast<double>(occupied);
 }
 
-std::string VoxeliserRecord::label() const {
+std::string VoxelizerRecord::label() const {
   std::string text = std::filesystem::path(pipeline).stem().string();
   if (!output.empty()) text += " " + output;
   if (!isDefault)

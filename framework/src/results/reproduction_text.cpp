@@ -19,8 +19,7 @@ using dsl::BlockSpecification;
 using dsl::PropertySpecification;
 using dsl::PropertyType;
 
-constexpr double kLargestPicture =
-    16384;  // the widest picture of OpenGL 4.5's guaranteed minimum texture size
+constexpr double kLargestImage = 16384;  // the widest image of OpenGL 4.5's guaranteed minimum texture size
 constexpr double kSmallestScale = 1.0 / 64;
 PropertySpecification property(const char* word, PropertyType type, const char* meaning) {
   PropertySpecification specification;
@@ -70,8 +69,8 @@ std::vector<PropertySpecification> setUpProperties() {
                "whose times or bytes are added up; without them the whole frame"),
       property(
           "output", PropertyType::output,
-          "an output that is kept, for passes that no picture needs; whose fragments are counted; whose picture "
-          "a panel shows, in place of the pipeline's whole picture"),
+          "an output that is kept, for passes that no image needs; whose fragments are counted; whose image "
+          "a panel shows, in place of the pipeline's whole image"),
       property("absent", PropertyType::text,
                "why there is nothing to measure or to show here: not comparable"),
       property("substitute", PropertyType::text,
@@ -142,7 +141,7 @@ BlockSpecification panelSpecification() {
                "layer of the path-traced reference that is shown in place of a pipeline");
   for (const char* layer : kReferenceLayers) reference.choices.push_back(layer);
   return partSpecification("panel", dsl::HeaderUse::required,
-                           "one picture of a figure. What it does not say itself the whole text says.",
+                           "one image of a figure. What it does not say itself the whole text says.",
                            {reference});
 }
 
@@ -156,14 +155,16 @@ BlockSpecification makeSpecification() {
       "`reproduction \"ID\" { ... }`: one table or figure of a paper. `lumivox reproduce ID` measures its rows and compares "
       "them as ratios to the first row, measures its curves and how they grow, and shows its panels on one sheet under one "
       "exposure.";
-  PropertySpecification picture =
-      property("picture", PropertyType::resolution,
-               "width and height of the published picture; without it the camera's");
-  picture.low = 1;
-  picture.high = kLargestPicture;
+  PropertySpecification image = property("image", PropertyType::resolution,
+                                         "width and height of the published image; without it the camera's");
+  image.low = 1;
+  image.high = kLargestImage;
+  PropertySpecification picture = image;
+  picture.word = "picture";
+  picture.meaning = "the word of older texts for `image`";
   PropertySpecification softwareScale = property(
       "software_scale", PropertyType::number,
-      "what picture sides and scaled parameters are multiplied by on a software rasteriser, unless --scale says "
+      "what image sides and scaled parameters are multiplied by on a software rasteriser, unless --scale says "
       "otherwise");
   softwareScale.low = kSmallestScale;
   softwareScale.high = 1.0;
@@ -180,9 +181,10 @@ BlockSpecification makeSpecification() {
       required(property("title", PropertyType::text, "what the table or figure shows")),
       required(property("paper", PropertyType::text, "authors, year, number of the table or figure")),
       property("device", PropertyType::text, "on which the published numbers were measured"),
+      image,
       picture,
       property("scaled", PropertyType::list,
-               "parameters that a reduced set-up makes smaller with the picture: voxels along a side"),
+               "parameters that a reduced set-up makes smaller with the image: voxels along a side"),
       softwareScale,
       differs,
       columns};
@@ -224,9 +226,9 @@ class ResultReader : TextFindings {
     result_.title = block.text("title", "");
     result_.paper = block.text("paper", "");
     result_.device = block.text("device", "");
-    if (const auto picture = block.numbers("picture", {}); picture.size() == 2) {
-      result_.width = static_cast<int>(picture[0]);
-      result_.height = static_cast<int>(picture[1]);
+    if (const auto image = block.numbers("image", block.numbers("picture", {})); image.size() == 2) {
+      result_.width = static_cast<int>(image[0]);
+      result_.height = static_cast<int>(image[1]);
     }
     result_.softwareScale = block.number("software_scale", 1.0);
     result_.columns = static_cast<int>(block.number("columns", 0.0));

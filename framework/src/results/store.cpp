@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kRunColumns =
     "key, created, version, scene, scene_name, pipeline, pipeline_name, sweep, is_default, camera, time, "
-    "width, height, seed, seeds, repeats, subpixels, truth_samples, device, driver, shader_input, host, "
+    "width, height, seed, seeds, repeats, subpixels, reference_samples, device, driver, shader_input, host, "
     "framework_share, failure, command";
 constexpr const char* kTimings[] = {"frame",     "next_frame",  "pass_device",
                                     "pass_host", "still_frame", "moved_frame"};
@@ -101,6 +101,7 @@ void ResultsStore::State::requireSchema() {
       database.execute(results::kSchema2);
       database.execute(results::kSchema3);
       database.execute(results::kSchema4);
+      database.execute(results::kSchema5);
       database.execute(fmt::format("PRAGMA user_version = {}", results::kSchemaVersion).c_str());
       database.execute(fmt::format("PRAGMA application_id = {}", results::kApplicationId).c_str());
     }
@@ -116,12 +117,15 @@ void ResultsStore::State::requireSchema() {
     if (schema < 2) database.execute(results::kSchema2);
     if (schema < 3) database.execute(results::kSchema3);
     if (schema < 4) database.execute(results::kSchema4);
+    if (schema < 5) database.execute(results::kSchema5);
     if (schema < results::kSchemaVersion)
       database.execute(fmt::format("PRAGMA user_version = {}", results::kSchemaVersion).c_str());
     transaction.commit();
     schema = database.pragma("user_version");
   }
   if (schema < 1 || schema > results::kSchemaVersion) refuse(fmt::format("it has schema {}", schema));
+  for (const results::WordsOfSchema5& words : results::kWordsOfSchema5)
+    if (schema < 5 && schema >= words.since) database.execute(words.view);
 }
 
 const fs::path& ResultsStore::file() const {
@@ -143,7 +147,7 @@ std::int64_t ResultsStore::State::insertRun(const StoredRun& run) {
   insert.run(identity.key(), run.created, run.version, run.point.scene, run.sceneName, run.point.pipeline,
              run.pipelineName, run.point.sweep, run.isDefault, identity.camera, identity.time, identity.width,
              identity.height, identity.seed, identity.seeds, identity.repeats, identity.subpixels,
-             identity.truthSamples, identity.device, identity.driver, identity.shaderInput, identity.host,
+             identity.referenceSamples, identity.device, identity.driver, identity.shaderInput, identity.host,
              run.point.frameworkShare, run.point.failure, run.point.command);
   return database.lastRow();
 }
@@ -200,7 +204,7 @@ void ResultsStore::State::insertErrors(std::int64_t id, const ReportPoint& point
   Statement insertMetric(database, "INSERT INTO metrics VALUES (?,?,?,?,?,?)");
   int position = 0;
   for (const ComponentError& error : point.errors) {
-    insert.run(id, position, error.output, error.component, error.truth, error.bias ? "bias" : "misses",
+    insert.run(id, position, error.output, error.component, error.reference, error.bias ? "bias" : "misses",
                error.seeds, error.deterministic, error.noiseRmse, error.everyMetricPerSeed);
     for (const NamedMetric& metric : metricsOf(error))
       insertMetric.run(id, position, metric.name, metric.measured.value, metric.measured.uncertainty,
@@ -210,7 +214,7 @@ void ResultsStore::State::insertErrors(std::int64_t id, const ReportPoint& point
 }
 
 /// Inside a transaction.
-bool ResultsStore::State::add(const StoredRun& run, const std::vector<StoredPicture>& pictures) {
+bool ResultsStore::State::add(const StoredRun& run, const std::vector<StoredImage>& images) {
   Statement(database, "DELETE FROM claims WHERE key = ?").run(run.identity.key());
   // A failure may have had causes that are gone; it gives way to a result.
   if (run.point.failure.empty())
@@ -222,17 +226,17 @@ bool ResultsStore::State::add(const StoredRun& run, const std::vector<StoredPict
   insertTimes(id, run.point);
   insertWork(id, run.point);
   insertErrors(id, run.point);
-  Statement insert(database, "INSERT INTO pictures VALUES (?,?,?,?,?,?,?)");
+  Statement insert(database, "INSERT INTO images VALUES (?,?,?,?,?,?,?)");
   int position = 0;
-  for (const StoredPicture& picture : pictures)
-    insert.run(id, position++, picture.output, picture.component, picture.truth, picture.flip,
-               results::Blob{picture.png});
+  for (const StoredImage& image : images)
+    insert.run(id, position++, image.output, image.component, image.reference, image.flip,
+               results::Blob{image.png});
   return true;
 }
 
-bool ResultsStore::add(const StoredRun& run, const std::vector<StoredPicture>& pictures) {
+bool ResultsStore::add(const StoredRun& run, const std::vector<StoredImage>& images) {
   Transaction transaction(state_->database);
-  const bool added = state_->add(run, pictures);
+  const bool added = state_->add(run, images);
   transaction.commit();
   return added;
 }
@@ -258,7 +262,7 @@ StoredRun ResultsStore::State::runAt(const Statement& row) const {
   identity.seeds = static_cast<int>(row.integer(15));
   identity.repeats = static_cast<int>(row.integer(16));
   identity.subpixels = static_cast<int>(row.integer(17));
-  identity.truthSamples = static_cast<int>(row.integer(18));
+  identity.referenceSamples = static_cast<int>(row.integer(18));
   identity.device = row.text(19);
   identity.driver = row.text(20);
   identity.shaderInput = row.text(21);
@@ -334,7 +338,7 @@ void ResultsStore::State::readErrors(StoredRun& run) const {
     ComponentError error;
     error.output = row.text(2);
     error.component = row.text(3);
-    error.truth = row.text(4);
+    error.reference = row.text(4);
     error.bias = row.text(5) == "bias";
     error.seeds = static_cast<int>(row.integer(6));
     error.deterministic = row.integer(7) != 0;
@@ -375,16 +379,16 @@ std::vector<StoredRun> ResultsStore::runs(const RunFilter& filter) const {
   return result;
 }
 
-std::vector<StoredPicture> ResultsStore::pictures(const std::string& key) const {
-  std::vector<StoredPicture> pictures;
-  if (state_->schema < 4) return pictures;
+std::vector<StoredImage> ResultsStore::images(const std::string& key) const {
+  std::vector<StoredImage> images;
+  if (state_->schema < 4) return images;
   Statement row(
       state_->database,
-      "SELECT p.output, p.component, p.truth, p.flip, p.png FROM pictures p JOIN runs r ON r.id = p.run "
+      "SELECT p.output, p.component, p.reference, p.flip, p.png FROM images p JOIN runs r ON r.id = p.run "
       "WHERE r.key = ? ORDER BY p.position");
   for (row.bind(key); row.step();)
-    pictures.push_back({row.text(0), row.text(1), row.text(2), row.number(3), row.bytes(4)});
-  return pictures;
+    images.push_back({row.text(0), row.text(1), row.text(2), row.number(3), row.bytes(4)});
+  return images;
 }
 
 std::size_t ResultsStore::remove(const RunFilter& filter) {
@@ -399,10 +403,11 @@ std::size_t ResultsStore::remove(const RunFilter& filter) {
 MergeCount ResultsStore::merge(const ResultsStore& other) {
   const std::vector<StoredRun> theirs = other.runs();
   const std::vector<StressCell> theirCells = other.stressCells();
-  const std::vector<DeviceCeiling> theirCeilings = other.ceilings();
+  const std::vector<PeakRate> theirPeakRates = other.peakRates();
   Transaction transaction(state_->database);
   MergeCount count;
-  for (const StoredRun& run : theirs) count.runs += state_->add(run) ? 1 : 0;
+  for (const StoredRun& run : theirs)
+    count.runs += state_->add(run, other.images(run.identity.key())) ? 1 : 0;
   std::map<std::string, std::string> created;
   for (const StressCell& cell : stressCells()) created[cell.key()] = cell.created;
   std::vector<StressCell> cells;
@@ -410,18 +415,18 @@ MergeCount ResultsStore::merge(const ResultsStore& other) {
     if (created[cell.key()] < cell.created) cells.push_back(cell);
   state_->addCells(cells);
   count.cells = cells.size();
-  const auto identity = [](const DeviceCeiling& ceiling) {
-    return std::tie(ceiling.device, ceiling.driver, ceiling.shaderInput, ceiling.host, ceiling.name);
+  const auto identity = [](const PeakRate& peakRate) {
+    return std::tie(peakRate.device, peakRate.driver, peakRate.shaderInput, peakRate.host, peakRate.name);
   };
-  const std::vector<DeviceCeiling> mine = ceilings();
-  std::vector<DeviceCeiling> newer;
-  for (const DeviceCeiling& ceiling : theirCeilings)
-    if (std::none_of(mine.begin(), mine.end(), [&](const DeviceCeiling& one) {
-          return identity(one) == identity(ceiling) && one.created >= ceiling.created;
+  const std::vector<PeakRate> mine = peakRates();
+  std::vector<PeakRate> newer;
+  for (const PeakRate& peakRate : theirPeakRates)
+    if (std::none_of(mine.begin(), mine.end(), [&](const PeakRate& one) {
+          return identity(one) == identity(peakRate) && one.created >= peakRate.created;
         }))
-      newer.push_back(ceiling);
-  state_->addCeilings(newer);
-  count.ceilings = newer.size();
+      newer.push_back(peakRate);
+  state_->addPeakRates(newer);
+  count.peakRates = newer.size();
   state_->addControls(*other.state_);
   transaction.commit();
   return count;

@@ -1,4 +1,4 @@
-// The stress battery's cells and the devices' ceilings in the results store.
+// The stress battery's cells and the devices' peak rates in the results store.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ void ResultsStore::State::addCells(const std::vector<StressCell>& cells) {
     remove.run(cell.key());
     insert.run(cell.key(), cell.created, cell.version, cell.family, cell.name, cell.pipeline, cell.technique,
                cell.size, lumivox::name(cell.outcome), cell.measure, cell.unit, cell.value.value,
-               cell.value.uncertainty, cell.limit, cell.detail, cell.explanation, cell.picture, cell.command,
+               cell.value.uncertainty, cell.limit, cell.detail, cell.explanation, cell.image, cell.command,
                cell.seconds, cell.pipelineHash, cell.framework, cell.device, cell.driver, cell.shaderInput,
                cell.host);
     const std::int64_t id = database.lastRow();
@@ -89,7 +89,7 @@ std::vector<StressCell> ResultsStore::stressCells(const CellFilter& filter) cons
     cell.limit = row.number(14);
     cell.detail = row.text(15);
     cell.explanation = row.text(16);
-    cell.picture = row.text(17);
+    cell.image = row.text(17);
     cell.command = row.text(18);
     cell.seconds = row.number(19);
     cell.pipelineHash = row.text(20);
@@ -115,44 +115,44 @@ std::size_t ResultsStore::removeCells(const CellFilter& filter) {
   return chosen.size();
 }
 
-void ResultsStore::add(const std::vector<DeviceCeiling>& ceilings) {
+void ResultsStore::add(const std::vector<PeakRate>& peakRates) {
   Transaction transaction(state_->database);
-  state_->addCeilings(ceilings);
+  state_->addPeakRates(peakRates);
   transaction.commit();
 }
 
 /// Inside a transaction.
-void ResultsStore::State::addCeilings(const std::vector<DeviceCeiling>& ceilings) {
-  Statement insert(database, "INSERT OR REPLACE INTO ceilings VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
-  for (const DeviceCeiling& ceiling : ceilings)
-    insert.run(ceiling.device, ceiling.driver, ceiling.shaderInput, ceiling.host, ceiling.name, ceiling.unit,
-               ceiling.created, ceiling.version, ceiling.rate.median, ceiling.rate.lowerQuartile,
-               ceiling.rate.upperQuartile, ceiling.rate.smallest, ceiling.rate.largest, ceiling.rate.repeats);
+void ResultsStore::State::addPeakRates(const std::vector<PeakRate>& peakRates) {
+  Statement insert(database, "INSERT OR REPLACE INTO peak_rates VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+  for (const PeakRate& peakRate : peakRates)
+    insert.run(peakRate.device, peakRate.driver, peakRate.shaderInput, peakRate.host, peakRate.name,
+               peakRate.unit, peakRate.created, peakRate.version, peakRate.rate.median,
+               peakRate.rate.lowerQuartile, peakRate.rate.upperQuartile, peakRate.rate.smallest,
+               peakRate.rate.largest, peakRate.rate.repeats);
 }
 
-std::vector<DeviceCeiling> ResultsStore::ceilings() const {
-  std::vector<DeviceCeiling> ceilings;
-  if (state_->schema < 2) return ceilings;
+std::vector<PeakRate> ResultsStore::peakRates() const {
+  std::vector<PeakRate> peakRates;
+  if (state_->schema < 2) return peakRates;
   Statement row(state_->database,
                 "SELECT name, unit, created, version, median, lower_quartile, upper_quartile, smallest, "
-                "largest, repeats, device, driver, shader_input, host FROM ceilings "
+                "largest, repeats, device, driver, shader_input, host FROM peak_rates "
                 "ORDER BY device, driver, shader_input, host, name");
   while (row.step()) {
-    DeviceCeiling ceiling{row.text(0),  row.text(1),  {},           row.text(2), row.text(3),
-                          row.text(10), row.text(11), row.text(12), row.text(13)};
-    ceiling.rate = {row.number(4), row.number(5), row.number(6),
-                    row.number(7), row.number(8), static_cast<int>(row.integer(9))};
-    ceilings.push_back(std::move(ceiling));
+    PeakRate peakRate{row.text(0),  row.text(1),  {},           row.text(2), row.text(3),
+                      row.text(10), row.text(11), row.text(12), row.text(13)};
+    peakRate.rate = {row.number(4), row.number(5), row.number(6),
+                     row.number(7), row.number(8), static_cast<int>(row.integer(9))};
+    peakRates.push_back(std::move(peakRate));
   }
-  return ceilings;
+  return peakRates;
 }
 
-std::vector<DeviceCeiling> ResultsStore::ceilings(const std::string& device, const std::string& driver,
-                                                  const std::string& shaderInput,
-                                                  const std::string& host) const {
-  std::vector<DeviceCeiling> result = ceilings();
+std::vector<PeakRate> ResultsStore::peakRates(const std::string& device, const std::string& driver,
+                                              const std::string& shaderInput, const std::string& host) const {
+  std::vector<PeakRate> result = peakRates();
   result.erase(std::remove_if(result.begin(), result.end(),
-                              [&](const DeviceCeiling& one) {
+                              [&](const PeakRate& one) {
                                 return one.device != device || one.driver != driver ||
                                        one.shaderInput != shaderInput || one.host != host;
                               }),

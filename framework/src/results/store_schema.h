@@ -5,7 +5,7 @@
 
 namespace lumivox::results {
 
-inline constexpr std::int64_t kSchemaVersion = 4;           // PRAGMA user_version
+inline constexpr std::int64_t kSchemaVersion = 5;           // PRAGMA user_version
 inline constexpr std::int64_t kApplicationId = 0x4c4d5658;  // PRAGMA application_id: "LMVX"
 
 inline constexpr const char* kSchema = R"sql(
@@ -210,5 +210,39 @@ CREATE TABLE claims (
   expires INTEGER NOT NULL
 ) STRICT, WITHOUT ROWID;
 )sql";
+
+/// What schema 5 changes in schema 4: one word for each thing.
+inline constexpr const char* kSchema5 = R"sql(
+ALTER TABLE runs RENAME COLUMN truth_samples TO reference_samples;
+ALTER TABLE errors RENAME COLUMN truth TO reference;
+ALTER TABLE stress_cells RENAME COLUMN picture TO image;
+UPDATE stress_cells SET family = 'image_and_camera' WHERE family = 'picture_and_camera';
+ALTER TABLE ceilings RENAME TO peak_rates;
+ALTER TABLE pictures RENAME TO images;
+ALTER TABLE images RENAME COLUMN truth TO reference;
+UPDATE metrics SET name = 'non_finite_reference' WHERE name = 'non_finite_truth';
+UPDATE metrics SET name = 'non_finite_image' WHERE name = 'non_finite_picture';
+)sql";
+
+/// Shows the words of schema 5 where an older store is only read: views of this connection, before the
+/// tables.
+struct WordsOfSchema5 {
+  std::int64_t since;  ///< the schema that brought the table
+  const char* view;
+};
+inline constexpr WordsOfSchema5 kWordsOfSchema5[] = {
+    {1, "CREATE TEMP VIEW runs AS SELECT *, truth_samples AS reference_samples FROM main.runs"},
+    {1,
+     "CREATE TEMP VIEW metrics AS SELECT run, position, CASE name WHEN 'non_finite_truth' THEN "
+     "'non_finite_reference' WHEN 'non_finite_picture' THEN 'non_finite_image' ELSE name END AS name, value, "
+     "uncertainty, of_nothing FROM main.metrics"},
+    {2,
+     "CREATE TEMP VIEW stress_cells AS SELECT id, key, created, version, replace(family, "
+     "'picture_and_camera', 'image_and_camera') AS family, name, pipeline, technique, size, outcome, measure, "
+     "unit, value, uncertainty, limit_value, detail, explanation, picture AS image, command, seconds, "
+     "pipeline_hash, framework, device, driver, shader_input, host FROM main.stress_cells"},
+    {2, "CREATE TEMP VIEW peak_rates AS SELECT * FROM main.ceilings"},
+    {4, "CREATE TEMP VIEW images AS SELECT *, truth AS reference FROM main.pictures"},
+};
 
 }  // namespace lumivox::results

@@ -28,9 +28,9 @@ struct ResultsStore::State {
   void insertWork(std::int64_t id, const ReportPoint& point);
   void insertErrors(std::int64_t id, const ReportPoint& point);
   void insertNames(std::int64_t id, const StoredRun& run);
-  bool add(const StoredRun& run, const std::vector<StoredPicture>& pictures = {});
+  bool add(const StoredRun& run, const std::vector<StoredImage>& images = {});
   void addCells(const std::vector<StressCell>& cells);
-  void addCeilings(const std::vector<DeviceCeiling>& ceilings);
+  void addPeakRates(const std::vector<PeakRate>& peakRates);
   void addControls(const State& other);  ///< of runs that are here
   StoredRun runAt(const results::Statement& row) const;
   void readTimes(StoredRun& run) const;

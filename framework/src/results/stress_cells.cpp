@@ -38,7 +38,7 @@ void visitTexts(Cell& cell, Visit visit) {
   visit("unit", cell.unit);
   visit("detail", cell.detail);
   visit("explanation", cell.explanation);
-  visit("picture", cell.picture);
+  visit("image", cell.image);
   visit("command", cell.command);
   visit("pipeline_hash", cell.pipelineHash);
   visit("framework", cell.framework);

@@ -23,7 +23,7 @@ using gpu::TextureKind;
 constexpr std::uint32_t kInvocations = 1u << 17;  // enough for every unit of a large device
 constexpr std::uint32_t kContenders = 1u << 13;   // on one word they wait for each other
 constexpr std::uint32_t kPerRound = 8;  // samples, accesses or steps of an invocation, as in the shaders
-constexpr int kPictureSize = 256,
+constexpr int kImageSize = 256,
               kVolumeSize = 64;  // texels along a side: what a cache holds, as most passes' textures
 constexpr int kTargetSize = 512;
 constexpr std::uint64_t kCachedBytes = std::uint64_t{1} << 20, kMemoryBytes = std::uint64_t{64} << 20;
@@ -100,7 +100,7 @@ struct SampleKind {
 Kernel sampleKernel(shader::ShaderLibrary& library, const SampleKind& kind, bool scattered) {
   const bool mips = kind.sampling == Sampling::linearMips, shadow = kind.sampling == Sampling::shadow;
   gpu::Device& device = library.device();
-  const int size = kind.kind == TextureKind::d3 ? kVolumeSize : kPictureSize;
+  const int size = kind.kind == TextureKind::d3 ? kVolumeSize : kImageSize;
   const auto field = texture(device, kind.kind, kind.format, size, mips ? 3 : 1);
   constexpr float kShadowDepth = 0.375f;
   if (shadow)
@@ -119,12 +119,11 @@ Kernel sampleKernel(shader::ShaderLibrary& library, const SampleKind& kind, bool
     return p;
   };
   const auto run = [=, &library](std::uint32_t rounds) {
-    library.dispatch(
-        *program,
-        {code::sample::parameters(parameters(rounds)), code::sample::picture(*field, kind.sampling),
-         code::sample::volume(*field, kind.sampling), code::sample::depths(*field, kind.sampling),
-         code::sample::results(*results)},
-        groups(kInvocations));
+    library.dispatch(*program,
+                     {code::sample::parameters(parameters(rounds)),
+                      code::sample::image(*field, kind.sampling), code::sample::volume(*field, kind.sampling),
+                      code::sample::depths(*field, kind.sampling), code::sample::results(*results)},
+                     groups(kInvocations));
   };
   const auto wrong = [=, &device]() -> std::string {
     run(kCheckedRounds);
@@ -176,13 +175,13 @@ Kernel imageKernel(shader::ShaderLibrary& library, TextureKind kind, Format form
     code::image::Parameters parameters{};
     parameters.rounds = rounds;
     parameters.size = glm::ivec3(size, size, volume ? size : 1);
-    library.dispatch(*program,
-                     {code::image::parameters(parameters), code::image::picture(*target),
-                      code::image::pictureWords(*target), code::image::volume(*target),
-                      code::image::volumeWords(*target), code::image::results(*results)},
-                     groups(invocations));
+    library.dispatch(
+        *program,
+        {code::image::parameters(parameters), code::image::image(*target), code::image::imageWords(*target),
+         code::image::volume(*target), code::image::volumeWords(*target), code::image::results(*results)},
+        groups(invocations));
   };
-  // What a texel holds in the end: the row of a picture, the slice of a volume.
+  // What a texel holds in the end: the row of an image, the slice of a volume.
   const auto texelsOfRow = static_cast<std::size_t>(volume ? size * size : size);
   const auto words = [=] {
     const std::vector<std::byte> bytes = target->download();

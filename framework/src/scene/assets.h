@@ -1,4 +1,4 @@
-// Where model and picture files are sought.
+// Where model and image files are sought.
 #pragma once
 
 #include <filesystem>

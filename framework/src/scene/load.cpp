@@ -57,8 +57,8 @@ void findMissingFiles(const dsl::Document& document, const SceneDescription& des
   };
   for (const MeshText& mesh : description.meshes) require(mesh.file, fileNames(mesh).front(), "model");
   for (const MaterialText& material : description.materials) {
-    if (material.texture) require(*material.texture, material.texture->text, "picture");
-    if (material.mask) require(*material.mask, material.mask->text, "picture");
+    if (material.texture) require(*material.texture, material.texture->text, "image");
+    if (material.mask) require(*material.mask, material.mask->text, "image");
   }
   for (const MediumText& medium : description.media) {
     if (medium.file) require(*medium.file, medium.file->text, "volume");
@@ -336,7 +336,7 @@ class Loader {
       if (use.text->texture) {
         const std::string& name = use.text->texture->text;
         material.diffuseTexture =
-            texture(found(name, "the picture of material '" + use.name + "'"), name, false);
+            texture(found(name, "the image of material '" + use.name + "'"), name, false);
       }
       if (use.text->mask) {
         const std::string& name = use.text->mask->text;
@@ -354,17 +354,17 @@ class Loader {
     return material;
   }
 
-  /// Each picture is read once for each use of it.
+  /// Each image is read once for each use of it.
   int texture(const fs::path& file, const std::string& name, bool mask, float coverage = 1.0f) {
     const auto [entry, isNew] = textures_.emplace(std::tuple(file.lexically_normal(), mask, coverage),
                                                   static_cast<int>(scene_.textures.size()));
     if (!isNew) return entry->second;
-    SurfaceTexture picture =
+    SurfaceTexture image =
         mask ? readMaskTexture(file, name, hasher_) : readDiffuseTexture(file, name, hasher_);
     if (coverage != 1.0f) {
-      for (float& value : picture.values) value *= coverage;
+      for (float& value : image.values) value *= coverage;
     }
-    scene_.textures.push_back(std::move(picture));
+    scene_.textures.push_back(std::move(image));
     return entry->second;
   }
 

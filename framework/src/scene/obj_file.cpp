@@ -125,7 +125,7 @@ class MaterialTable {
     Material& values = result.values;
     values.name = name;
     values.diffuse = vectorOf(source.diffuse);
-    // A picture alone is the albedo.
+    // An image alone is the albedo.
     if (!hasDiffuse && !source.diffuse_texname.empty()) values.diffuse = glm::vec3(1.0f);
     values.specular = vectorOf(source.specular);
     values.exponent = source.shininess;

@@ -12,12 +12,12 @@
 
 namespace lumivox {
 
-/// A material of an MTL file, not yet with its pictures.
+/// A material of an MTL file, not yet with its images.
 struct ModelMaterial {
   Material values;                    ///< without textures
   std::string diffuseFile, maskFile;  ///< as written; empty for none
   float dissolve = 1.0f;              ///< coverage of the whole surface; below a half it is a hole
-  std::filesystem::path directory;    ///< of the MTL file: pictures are relative to it
+  std::filesystem::path directory;    ///< of the MTL file: images are relative to it
 };
 
 struct ModelObject {

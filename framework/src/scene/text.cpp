@@ -12,8 +12,8 @@ using dsl::PropertySpecification;
 using dsl::PropertyType;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-// The widest picture of OpenGL 4.5's guaranteed minimum texture size.
-constexpr double kLargestPicture = 16384;
+// The widest image of OpenGL 4.5's guaranteed minimum texture size.
+constexpr double kLargestImage = 16384;
 // Beyond it Phong lobes are narrower than single precision resolves: cos^n of one ulp below 1 is already
 // exp(-n 6e-8).
 constexpr double kLargestExponent = 1e6;
@@ -76,13 +76,13 @@ BlockSpecification camera() {
             "a pinhole camera with square pixels; the first one is used unless another is asked for",
             {Row("eye", PropertyType::vector3, "position; required without keys", dsl::kLength),
              Row("target", PropertyType::vector3,
-                 "the point in the middle of the picture; required without keys", dsl::kLength),
-             Row("up", PropertyType::vector3, "the direction that is up in the picture").byDefault("0 1 0"),
+                 "the point in the middle of the image; required without keys", dsl::kLength),
+             Row("up", PropertyType::vector3, "the direction that is up in the image").byDefault("0 1 0"),
              Row("fov", PropertyType::number, "full vertical angle of view", dsl::kAngle)
                  .between(0.1 * kDegree, 179.0 * kDegree)
                  .byDefault("40 deg"),
-             Row("resolution", PropertyType::resolution, "width and height of the picture in pixels")
-                 .between(1, kLargestPicture)
+             Row("resolution", PropertyType::resolution, "width and height of the image in pixels")
+                 .between(1, kLargestImage)
                  .byDefault("256 256")});
   result.blocks = {key};
   result.required = true;
@@ -104,10 +104,9 @@ BlockSpecification material() {
        Row("emission", PropertyType::oneOrThree, "radiance of the front side in W/(sr m^2)")
            .from(0)
            .byDefault("0"),
-       Row("texture", PropertyType::text,
-           "picture file that multiplies diffuse; sRGB values are made linear"),
+       Row("texture", PropertyType::text, "image file that multiplies diffuse; sRGB values are made linear"),
        Row("mask", PropertyType::text,
-           "picture file of coverage (alpha, else the first channel); below a half is a hole")});
+           "image file of coverage (alpha, else the first channel); below a half is a hole")});
 }
 
 BlockSpecification mesh() {

@@ -3,25 +3,24 @@
 #include <array>
 
 #include "lumivox/base/file.h"
-#include "lumivox/base/picture.h"
+#include "lumivox/base/image.h"
 
 namespace lumivox {
 namespace {
 
-BytePicture read(const std::filesystem::path& file, Hasher& hasher) {
-  const std::string bytes = readFile(file, kLargestPictureFile);
+ByteImage read(const std::filesystem::path& file, Hasher& hasher) {
+  const std::string bytes = readFile(file, kLargestImageFile);
   hasher.add(bytes);
-  return decodeBytePicture(bytes, file);
+  return decodeByteImage(bytes, file);
 }
 
-SurfaceTexture shapedAs(const BytePicture& picture, const std::string& name, bool mask) {
+SurfaceTexture shapedAs(const ByteImage& image, const std::string& name, bool mask) {
   SurfaceTexture texture;
   texture.name = name;
-  texture.width = picture.width;
-  texture.height = picture.height;
+  texture.width = image.width;
+  texture.height = image.height;
   texture.mask = mask;
-  const std::size_t pixels =
-      static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+  const std::size_t pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   requireMemory(pixels * (mask ? 1 : 3) * sizeof(float), name);
   texture.values.reserve(pixels * (mask ? 1 : 3));
   return texture;
@@ -36,23 +35,23 @@ SurfaceTexture readDiffuseTexture(const std::filesystem::path& file, const std::
     for (std::size_t i = 0; i < table.size(); ++i) table[i] = srgbToLinear(static_cast<float>(i) / 255.0f);
     return table;
   }();
-  const BytePicture picture = read(file, hasher);
-  SurfaceTexture texture = shapedAs(picture, name, false);
-  const auto channels = static_cast<std::size_t>(picture.channels);
+  const ByteImage image = read(file, hasher);
+  SurfaceTexture texture = shapedAs(image, name, false);
+  const auto channels = static_cast<std::size_t>(image.channels);
   const bool grey = channels < 3;
-  for (std::size_t i = 0; i < picture.values.size(); i += channels) {
-    for (std::size_t c = 0; c < 3; ++c) texture.values.push_back(linear[picture.values[i + (grey ? 0 : c)]]);
+  for (std::size_t i = 0; i < image.values.size(); i += channels) {
+    for (std::size_t c = 0; c < 3; ++c) texture.values.push_back(linear[image.values[i + (grey ? 0 : c)]]);
   }
   return texture;
 }
 
 SurfaceTexture readMaskTexture(const std::filesystem::path& file, const std::string& name, Hasher& hasher) {
-  const BytePicture picture = read(file, hasher);
-  SurfaceTexture texture = shapedAs(picture, name, true);
-  const auto channels = static_cast<std::size_t>(picture.channels);
+  const ByteImage image = read(file, hasher);
+  SurfaceTexture texture = shapedAs(image, name, true);
+  const auto channels = static_cast<std::size_t>(image.channels);
   const bool hasAlpha = channels == 2 || channels == 4;
-  for (std::size_t i = 0; i < picture.values.size(); i += channels) {
-    texture.values.push_back(static_cast<float>(picture.values[i + (hasAlpha ? channels - 1 : 0)]) / 255.0f);
+  for (std::size_t i = 0; i < image.values.size(); i += channels) {
+    texture.values.push_back(static_cast<float>(image.values[i + (hasAlpha ? channels - 1 : 0)]) / 255.0f);
   }
   return texture;
 }

@@ -1,4 +1,4 @@
-// Pictures on surfaces.
+// Images on surfaces.
 #pragma once
 
 #include <filesystem>
@@ -9,9 +9,9 @@
 
 namespace lumivox {
 
-/// A picture file as albedo: linear RGB. A picture without colours is grey; an alpha channel is not used.
+/// An image file as albedo: linear RGB. An image without colours is grey; an alpha channel is not used.
 SurfaceTexture readDiffuseTexture(const std::filesystem::path& file, const std::string& name, Hasher& hasher);
-/// A picture file as coverage: its alpha channel where it has one, its first channel otherwise.
+/// An image file as coverage: its alpha channel where it has one, its first channel otherwise.
 SurfaceTexture readMaskTexture(const std::filesystem::path& file, const std::string& name, Hasher& hasher);
 
 }  // namespace lumivox

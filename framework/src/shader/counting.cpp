@@ -46,7 +46,7 @@ std::string nameOf(const TextureAccess& access, const std::vector<ResourceBindin
     const auto* image = std::get_if<ResourceBinding::StorageImage>(&binding.resource);
     if (isSample ? sampled == nullptr : image == nullptr) continue;
     const gpu::TextureDescription& d = (isSample ? sampled->texture : image->texture)->description();
-    // An array's layers are pictures.
+    // An array's layers are images.
     const char* kind = d.kind == gpu::TextureKind::d3 ? "d3" : "d2";
     if (isSample)
       return fmt::format("texture_samples_{}_{}_{}", kind, gpu::name(d.format),

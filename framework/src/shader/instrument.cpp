@@ -386,7 +386,7 @@ class Counter {
     most_ = constant(~0u);
     device_ = constant(spv::ScopeDevice);
   }
-  /// A module that has the type of truth values already must use that one.
+  /// A module that has the type of reference values already must use that one.
   void useBoolean(Id type) { boolean_ = type; }
   void declareBoolean() { emit(declarations, spv::OpTypeBool, {boolean_}); }
 

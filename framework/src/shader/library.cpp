@@ -29,9 +29,9 @@ BindingKind kindOf(const ResourceBinding& binding) {
 const char* name(gpu::TextureKind kind) {
   switch (kind) {
     case gpu::TextureKind::d2:
-      return "a picture";
+      return "an image";
     case gpu::TextureKind::d2Array:
-      return "an array of pictures";
+      return "an array of images";
     case gpu::TextureKind::d3:
       return "a volume";
   }

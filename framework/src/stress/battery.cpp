@@ -77,8 +77,8 @@ class Battery {
   CellRequest requestFor(const StressJob& job) const {
     CellRequest request{job.pipeline, job.info.name, options_.quick, {}};
     if (!options_.output.empty())
-      request.picture =
-          options_.output / "pictures" / (job.pipeline.stem().string() + "__" + job.info.name + ".png");
+      request.image =
+          options_.output / "images" / (job.pipeline.stem().string() + "__" + job.info.name + ".png");
     return request;
   }
 

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cstring>
+#include <set>
 #include <variant>
 
 #include "experiment/measure.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/hash.h"
 #include "lumivox/experiment/report.h"
-#include "lumivox/experiment/voxelisers.h"
+#include "lumivox/experiment/voxelizers.h"
 #include "lumivox/pipeline/pass.h"
 #include "lumivox/scene/text.h"
 #include "stress/elsewhere.h"
@@ -66,17 +67,17 @@ void addContent(Hasher& hasher, const OutBase& output) {
 }
 
 /// Voxels seen along z: the nearer the first one, the brighter.
-Picture pictureOf(const VoxelSet& voxels) {
+ImageBuffer imageOf(const VoxelSet& voxels) {
   const glm::ivec3 size = voxels.resolution();
-  Picture picture(std::max(1, size.x), std::max(1, size.y), 1);
+  ImageBuffer image(std::max(1, size.x), std::max(1, size.y), 1);
   for (int y = 0; y < size.y; ++y)
     for (int x = 0; x < size.x; ++x)
       for (int z = 0; z < size.z; ++z)
         if (voxels.contains({x, y, z})) {
-          picture.at(x, size.y - 1 - y, 0) = 1.0f - 0.9f * static_cast<float>(z) / static_cast<float>(size.z);
+          image.at(x, size.y - 1 - y, 0) = 1.0f - 0.9f * static_cast<float>(z) / static_cast<float>(size.z);
           break;
         }
-  return picture;
+  return image;
 }
 
 }  // namespace
@@ -95,7 +96,7 @@ struct PipelineBench::State {
   Ground& ground;
   const Pipeline& pipeline;
   ParameterValues values;
-  Picture last, given;
+  ImageBuffer last, given;
 
   Ready ready(const Shot& shot) const;
   /// Outputs of the last pass are kept where the pipeline has none of its own.
@@ -145,7 +146,7 @@ void PipelineBench::State::keepVoxels(PipelineExecutor& executor, const Pipeline
 void PipelineBench::State::lookAtVoxels(const std::vector<const OutBase*>& outputs) {
   for (const OutBase* output : outputs)
     if (const auto voxels = occupiedVoxels(*output)) {
-      last = pictureOf(voxels->voxels);
+      last = imageOf(voxels->voxels);
       return;
     }
 }
@@ -154,15 +155,15 @@ Frame PipelineBench::State::frame(PipelineExecutor& executor, const SceneSnapsho
                                   int index) {
   Frame frame;
   if (pipeline.outputs.empty()) {
-    frame.result = executor.render(snapshot, index, PipelineExecutor::Pictures::no);
+    frame.result = executor.render(snapshot, index, PipelineExecutor::Images::no);
     lookAtVoxels(lastOutputs(executor, pipeline));
   } else {
     frame.result = shot.subpixels > 1 ? experiment::renderFiltered(executor, snapshot, shot.subpixels, index)
                                       : executor.render(snapshot, index);
-    frame.whole = compositePicture(frame.result);
+    frame.whole = compositeImage(frame.result);
     if (!frame.whole.empty()) last = frame.whole;
   }
-  // After the picture, which shows where it is bad.
+  // After the image, which shows where it is bad.
   requireHealthy(frame.result);
   return frame;
 }
@@ -232,7 +233,7 @@ std::uint64_t PipelineBench::State::content(gpu::Device& device, const Scene& sc
   PipelineExecutor executor(device, ground.techniques, scene, made.pipeline, made.options);
   const Frame rendered = sequence(executor, scene, made, times, shot, edit).back();
   Hasher hasher;
-  for (const auto& [name, picture] : rendered.result.outputs) hasher.add(name).add(picture.values());
+  for (const auto& [name, image] : rendered.result.outputs) hasher.add(name).add(image.values());
   if (pipeline.outputs.empty())
     for (const OutBase* output : lastOutputs(executor, made.pipeline)) addContent(hasher, *output);
   return hasher.finish().low;
@@ -265,16 +266,17 @@ std::optional<VoxelError> PipelineBench::voxelError(const Scene& scene, const Sh
   PipelineExecutor executor(s.ground.device, s.ground.techniques, scene, ready.pipeline, ready.options);
   s.keepVoxels(executor, ready.pipeline);
   const SceneSnapshot snapshot = s.snapshot(scene, ready, shot.time);
-  requireHealthy(executor.render(snapshot, 0, PipelineExecutor::Pictures::no));
+  requireHealthy(executor.render(snapshot, 0, PipelineExecutor::Images::no));
   for (const OutBase* output : s.lastOutputs(executor, ready.pipeline))
     if (const auto voxels = occupiedVoxels(*output)) {
-      s.last = pictureOf(voxels->voxels);
+      s.last = imageOf(voxels->voxels);
       return compareVoxels(voxels->voxels, trueVoxels(scene, snapshot, voxels->grid));
     }
   return std::nullopt;
 }
 
-LayeredPicture PipelineBench::truth(const Scene& scene, const Shot& shot, int samplesPerPixel, int threads) {
+LayeredImage PipelineBench::reference(const Scene& scene, const Shot& shot, int samplesPerPixel,
+                                      int threads) {
   const Ready ready = state_->ready(shot);
   ReferenceOptions options;
   options.samplesPerPixel = samplesPerPixel;
@@ -285,14 +287,20 @@ LayeredPicture PipelineBench::truth(const Scene& scene, const Shot& shot, int sa
   options.height = ready.options.height;
   options.threads = threads;
   options.progress = false;
+  const Ground& ground = state_->ground;
+  const PipelineExecutor executor(ground.device, ground.techniques, scene, ready.pipeline, ready.options);
+  std::set<int> layers;
+  for (const auto& [output, bounces] : executor.indirectBounces())
+    if (bounces > 1) layers.insert(bounces);
+  options.bounceLayers.assign(layers.begin(), layers.end());
   return threads > 0 ? renderReference(scene, options) : cachedReference(scene, options);
 }
 
-void PipelineBench::show(const Picture& picture) {
-  state_->given = picture;
+void PipelineBench::show(const ImageBuffer& image) {
+  state_->given = image;
 }
 
-const Picture& PipelineBench::shown() const {
+const ImageBuffer& PipelineBench::shown() const {
   return state_->given.empty() ? state_->last : state_->given;
 }
 

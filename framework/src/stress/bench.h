@@ -42,11 +42,11 @@ class PipelineBench : public Bench {
                                  const std::vector<std::string>& environment) override;
   std::uint64_t contentOnSecondDevice(const Scene& scene, const Shot& shot) override;
   std::optional<VoxelError> voxelError(const Scene& scene, const Shot& shot) override;
-  LayeredPicture truth(const Scene& scene, const Shot& shot, int samplesPerPixel, int threads) override;
-  void show(const Picture& picture) override;
+  LayeredImage reference(const Scene& scene, const Shot& shot, int samplesPerPixel, int threads) override;
+  void show(const ImageBuffer& image) override;
 
-  /// What show() was given last, else the last whole picture that was rendered; empty: none.
-  const Picture& shown() const;
+  /// What show() was given last, else the last whole image that was rendered; empty: none.
+  const ImageBuffer& shown() const;
 
  private:
   struct State;

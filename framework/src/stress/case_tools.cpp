@@ -8,6 +8,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/pipeline/pass.h"
+#include "stress/measures.h"
 
 namespace lumivox::stress {
 
@@ -50,7 +51,7 @@ bool seesCamera(Bench& bench) {
                      });
 }
 
-bool makesPictures(const Bench& bench) {
+bool makesImages(const Bench& bench) {
   return !bench.pipeline().outputs.empty();
 }
 
@@ -59,16 +60,15 @@ double spuriousShare(Bench& bench, const Scene& scene, const Shot& shot) {
   return error ? 1.0 - error->precision() : 0.0;
 }
 
-double meanOf(const Picture& picture) {
+double meanOf(const ImageBuffer& image) {
   double sum = 0.0;
-  for (const float value : picture.values()) sum += value;
-  return picture.empty() ? 0.0 : sum / static_cast<double>(picture.values().size());
+  for (const float value : image.values()) sum += value;
+  return image.empty() ? 0.0 : sum / static_cast<double>(image.values().size());
 }
 
-double largestOf(const Picture& picture) {
+double largestOf(const ImageBuffer& image) {
   double largest = 0.0;
-  for (const float value : picture.values())
-    largest = std::max(largest, std::abs(static_cast<double>(value)));
+  for (const float value : image.values()) largest = std::max(largest, std::abs(static_cast<double>(value)));
   return largest;
 }
 
@@ -77,9 +77,9 @@ bool hasComponent(const FrameResult& frame, Contributes component) {
                      [&](const auto& entry) { return entry.second == component; });
 }
 
-Measured differenceFromTruth(const Picture& picture, const TruthLayer& truth) {
-  const PictureError error = compare(picture, truth.mean, truth.variance);
-  const double mean = meanOf(truth.mean), scale = mean > 0.0 ? mean : 1.0;
+Measured differenceFromReference(const ImageBuffer& image, const ReferenceLayer& reference) {
+  const ImageError error = compare(image, reference.mean, reference.variance);
+  const double mean = meanOf(reference.mean), scale = mean > 0.0 ? mean : 1.0;
   const double squares = error.rmse.value * error.rmse.value - error.noiseFloor * error.noiseFloor;
   return {std::sqrt(std::max(squares, 0.0)) / scale, error.noiseFloor / scale};
 }
@@ -92,20 +92,20 @@ Finding notApplicable(std::string why) {
 }
 
 std::map<std::string, Measured> ratiosToNothing(Bench& bench, const Scene& scene, const Shot& shot,
-                                                int truthSamples) {
+                                                int referenceSamples) {
   const Frame frame = bench.render(scene, shot);
-  const LayeredPicture truth = bench.truth(scene, shot, truthSamples);
+  const LayeredImage reference = bench.reference(scene, shot, referenceSamples);
   std::map<std::string, Measured> ratios;
   for (const auto& [name, component] : frame.result.components) {
-    const std::string layer = truthLayers(component).first;
-    const auto picture = frame.result.outputs.find(name);
-    const std::optional<TruthLayer> wanted = layer.empty() ? std::nullopt : truthLayer(truth, layer);
-    if (!wanted || picture == frame.result.outputs.end() || !wanted->mean.sameShape(picture->second))
-      continue;
-    const Picture neutral = neutralPicture(wanted->mean.width(), wanted->mean.height(), component);
+    const std::string layer = ownLayer(frame.result, name);
+    const auto image = frame.result.outputs.find(name);
+    const std::optional<ReferenceLayer> wanted =
+        layer.empty() ? std::nullopt : referenceLayer(reference, layer);
+    if (!wanted || image == frame.result.outputs.end() || !wanted->mean.sameShape(image->second)) continue;
+    const ImageBuffer neutral = neutralImage(wanted->mean.width(), wanted->mean.height(), component);
     const Measured nothing = compare(neutral, wanted->mean, wanted->variance).rmse;
     if (!(nothing.value > 0.0)) continue;
-    const Measured error = compare(picture->second, wanted->mean, wanted->variance).rmse;
+    const Measured error = compare(image->second, wanted->mean, wanted->variance).rmse;
     const double ratio = error.value / nothing.value;
     ratios[name] = {ratio, std::hypot(error.uncertainty, ratio * nothing.uncertainty) / nothing.value};
   }

@@ -16,25 +16,25 @@ Scene suitableScene(Bench& bench);
 /// Whether a pass of the pipeline reads the camera.
 bool seesCamera(Bench& bench);
 
-bool makesPictures(const Bench& bench);
+bool makesImages(const Bench& bench);
 
 /// Share of the occupied voxels that no triangle touches; 0 for a pipeline that makes none.
 double spuriousShare(Bench& bench, const Scene& scene, const Shot& shot);
 
-double meanOf(const Picture& picture);
-double largestOf(const Picture& picture);
+double meanOf(const ImageBuffer& image);
+double largestOf(const ImageBuffer& image);
 bool hasComponent(const FrameResult& frame, Contributes component);
 
-/// RMSE against a truth without the part that is the truth's own noise, divided by the truth's mean (by 1
-/// where that is black); the uncertainty is that noise, divided likewise.
-Measured differenceFromTruth(const Picture& picture, const TruthLayer& truth);
+/// RMSE against a reference without the part that is the reference's own noise, divided by the reference's
+/// mean (by 1 where that is black); the uncertainty is that noise, divided likewise.
+Measured differenceFromReference(const ImageBuffer& image, const ReferenceLayer& reference);
 
 /// The case says nothing about this pipeline, and why.
 Finding notApplicable(std::string why);
 
-/// RMSE of every output as a share of the RMSE of leaving it out, by its name; outputs that the truth is
+/// RMSE of every output as a share of the RMSE of leaving it out, by its name; outputs that the reference is
 /// black in are passed over.
 std::map<std::string, Measured> ratiosToNothing(Bench& bench, const Scene& scene, const Shot& shot,
-                                                int truthSamples);
+                                                int referenceSamples);
 
 }  // namespace lumivox::stress

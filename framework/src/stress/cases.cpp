@@ -14,7 +14,7 @@ std::vector<Case> casesFor(const Pipeline& pipeline, TechniqueSource& techniques
   add(geometryCases());
   add(scaleAndPlaceCases());
   add(lightCases());
-  add(pictureAndCameraCases());
+  add(imageAndCameraCases());
   add(timeCases());
   add(refinementCases(pipeline));
   add(repeatabilityCases());

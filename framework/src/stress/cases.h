@@ -1,6 +1,6 @@
 // What a case of the battery is written with. A case knows neither techniques nor passes: it makes scenes,
-// has the pipeline under test render them, and compares what comes out with closed forms, with the truth, or
-// with the pipeline's own picture of an equivalent scene. A cell that is biased or diverges by a property of
+// has the pipeline under test render them, and compares what comes out with closed forms, with the reference,
+// or with the pipeline's own image of an equivalent scene. A cell that is biased or diverges by a property of
 // the published method is explained in the technique's paper card: docs/stress.md.
 #pragma once
 
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "lumivox/base/picture.h"
+#include "lumivox/base/image.h"
 #include "lumivox/measure/metrics.h"
 #include "lumivox/measure/voxels.h"
 #include "lumivox/pipeline/pipeline.h"
@@ -23,7 +23,7 @@
 
 namespace lumivox::stress {
 
-/// A pass's output held what no picture may hold.
+/// A pass's output held what no image may hold.
 class Unhealthy : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -36,7 +36,7 @@ using Edit = std::function<void(std::size_t frame, SceneSnapshot&)>;
 /// its first sweep, which by convention is the cheapest.
 ParameterValues batteryValues(const Pipeline& pipeline, bool quick);
 
-/// How one picture of the pipeline under test is made. Health is always scanned, every pass's output.
+/// How one image of the pipeline under test is made. Health is always scanned, every pass's output.
 struct Shot {
   int width = 0, height = 0;  ///< 0: the battery's (48 x 48 quick, 96 x 96 full)
   double time = 0.0;          ///< s
@@ -48,14 +48,14 @@ struct Shot {
   ParameterValues parameters;
   /// Of single passes, over everything: "gather.cones".
   ParameterValues passParameters;
-  int subpixels =
-      1;  ///< the picture is the mean over this many positions in the pixel (for comparisons with the truth)
+  int subpixels = 1;  ///< the image is the mean over this many positions in the pixel (for comparisons with
+                      ///< the reference)
   bool keepEverything = false;
 };
 
 struct Frame {
   FrameResult result;
-  Picture whole;  ///< composite (report.h compositePicture); for a pipeline without outputs an empty picture
+  ImageBuffer whole;  ///< composite (report.h compositeImage); for a pipeline without outputs an empty image
 };
 
 /// A case's hands: the pipeline under test on a device. Throws Unhealthy (with the first finding of the first
@@ -92,11 +92,12 @@ class Bench {
   /// How the voxels of the last pass differ from those that the scene's triangles touch; nullopt when it
   /// makes none.
   virtual std::optional<VoxelError> voxelError(const Scene& scene, const Shot& shot = {}) = 0;
-  /// Path-traced truth at the shot's size. From the cache, unless a number of threads is asked for.
-  virtual LayeredPicture truth(const Scene& scene, const Shot& shot, int samplesPerPixel,
-                               int threads = 0) = 0;
-  /// The picture that the cell links to; without it the last whole picture that was rendered, or the voxels.
-  virtual void show(const Picture& picture) = 0;
+  /// Path-traced reference at the shot's size, with the layers that the pipeline's outputs are judged by: of
+  /// one bounce, and of as many as they model. From the cache, unless a number of threads is asked for.
+  virtual LayeredImage reference(const Scene& scene, const Shot& shot, int samplesPerPixel,
+                                 int threads = 0) = 0;
+  /// The image that the cell links to; without it the last whole image that was rendered, or the voxels.
+  virtual void show(const ImageBuffer& image) = 0;
 };
 
 /// What a case found. `outcome` follows from value and limit unless the case says otherwise.
@@ -120,14 +121,14 @@ struct Case {
 /// value <= limit: stable, else biased.
 Finding judged(std::string measure, Measured value, double limit, std::string detail = {});
 /// RMS difference divided by the mean of `wanted` (by 1 where that is black).
-double relativeDifference(const Picture& picture, const Picture& wanted);
+double relativeDifference(const ImageBuffer& image, const ImageBuffer& wanted);
 
 // The families, a file each: cases_<family>.cpp.
 std::vector<Case> stiffTransportCases();
 std::vector<Case> geometryCases();
 std::vector<Case> scaleAndPlaceCases();
 std::vector<Case> lightCases();
-std::vector<Case> pictureAndCameraCases();
+std::vector<Case> imageAndCameraCases();
 std::vector<Case> timeCases();
 /// Every number that the pipeline declares.
 std::vector<Case> refinementCases(const Pipeline& pipeline);

@@ -20,14 +20,14 @@ constexpr const char* kGeometryFamily = "geometry";
 
 std::optional<Finding> noTriangles(Bench& bench) {
   Scene scene = bench.committedScene("stress/no_triangles");
-  if (!makesPictures(bench)) {
+  if (!makesImages(bench)) {
     const auto error = bench.voxelError(scene);
     if (!error) return std::nullopt;
     return judged("voxels set", {static_cast<double>(error->falsePositive), 0.0}, 0.0);
   }
   const Frame sky = bench.render(scene);
   if (sky.whole.empty()) return std::nullopt;
-  Picture wanted = sky.whole;
+  ImageBuffer wanted = sky.whole;
   for (int y = 0; y < wanted.height(); ++y)
     for (int x = 0; x < wanted.width(); ++x)
       for (int c = 0; c < wanted.channels(); ++c) wanted.at(x, y, c) = c < 3 ? scene.environment[c] : 1.0f;
@@ -41,14 +41,14 @@ std::optional<Finding> noTriangles(Bench& bench) {
 
 std::optional<Finding> oneTriangle(Bench& bench) {
   const Scene scene = bench.committedScene("stress/one_triangle");
-  if (!makesPictures(bench)) {
+  if (!makesImages(bench)) {
     const auto error = bench.voxelError(scene);
     if (!error) return std::nullopt;
     return judged("share of wrong voxels", {wrongShare(*error), 0.0}, 0.01);
   }
   const Frame frame = bench.render(scene);
   if (frame.whole.empty()) return std::nullopt;
-  if (!makesIndirect(frame)) return againstTruth(bench, scene, 0.05);
+  if (!makesIndirect(frame)) return againstReference(bench, scene, 0.05);
   // A flat surface cannot light itself.
   const double direct = meanOf(frame.whole) - meanOf(indirectOf(frame));
   return judged("light of a triangle on itself, as a share of its direct light",
@@ -168,7 +168,7 @@ std::optional<Finding> farSpeck(Bench& bench) {
 }
 
 std::optional<Finding> openAgainstClosed(Bench& bench) {
-  if (!makesPictures(bench)) return std::nullopt;
+  if (!makesImages(bench)) return std::nullopt;
   const Scene closed = closedRoom(0.7f).scene;
   Scene open = closed;
   // The walls behind the camera, which it does not see: those at high z and high x.
@@ -180,10 +180,11 @@ std::optional<Finding> openAgainstClosed(Bench& bench) {
     return judged("change of the direct light, which does not know the walls, of it",
                   {relativeDifference(openFrame.whole, closedFrame.whole), 0.0}, 1e-3);
   const double left = meanOf(indirectOf(openFrame)) / meanOf(indirectOf(closedFrame));
-  const double wanted = indirectTruth(bench, open, openFrame) / indirectTruth(bench, closed, closedFrame);
-  return judged("share of the indirect light that opening two walls takes, beside the same of the truth",
+  const double wanted =
+      indirectReference(bench, open, openFrame) / indirectReference(bench, closed, closedFrame);
+  return judged("share of the indirect light that opening two walls takes, beside the same of the reference",
                 {std::abs(left - wanted), 0.0}, 0.1,
-                fmt::format("taken: {:.3g}; from the truth: {:.3g}", 1.0 - left, 1.0 - wanted));
+                fmt::format("taken: {:.3g}; from the reference: {:.3g}", 1.0 - left, 1.0 - wanted));
 }
 
 /// All grids that can lie around the camera do so, with this side; nullopt: none can.
@@ -202,7 +203,7 @@ std::optional<Finding> outsideTheGrid(Bench& bench) {
   if (!around) return std::nullopt;
   const Shot& shot = *around;
   const Scene scene = sunlitFloor();
-  if (!makesPictures(bench)) {
+  if (!makesImages(bench)) {
     const auto error = bench.voxelError(scene, shot);
     if (!error) return std::nullopt;
     return judged("voxels set", {static_cast<double>(error->falsePositive), 0.0}, 0.0);
@@ -220,7 +221,7 @@ std::vector<Case> geometryCases() {
     return StressCaseInfo{kGeometryFamily, name, meaning, quick};
   };
   return {
-      {info("no_triangles", "no triangle at all: the picture is the environment, without one exactly black",
+      {info("no_triangles", "no triangle at all: the image is the environment, without one exactly black",
             true),
        noTriangles},
       {info("one_triangle", "one triangle, which cannot light itself", false), oneTriangle},
@@ -229,9 +230,9 @@ std::vector<Case> geometryCases() {
        degenerate},
       {info("needle_triangles", "64 needles of 1 : 10^6 in a room change nothing that could be seen", false),
        needles},
-      {info("coplanar_duplicates", "every surface twice in the same place: the same picture", true),
+      {info("coplanar_duplicates", "every surface twice in the same place: the same image", true),
        duplicates},
-      {info("overlapping_triangles", "a surface in pieces that overlap: the same picture as in one piece",
+      {info("overlapping_triangles", "a surface in pieces that overlap: the same image as in one piece",
             false),
        overlapping},
       {info("thin_wall_leak",
@@ -246,7 +247,7 @@ std::vector<Case> geometryCases() {
        crowdedVoxel},
       {info("sealed_camera", "a closed box around the camera, the light outside: black", false),
        sealedCamera},
-      {info("million_triangles", "a floor of a million tiny triangles: the picture of two large ones", false),
+      {info("million_triangles", "a floor of a million tiny triangles: the image of two large ones", false),
        millionTriangles},
       {info("far_speck", "a speck a kilometre away makes voxels huge, and changes nothing that could be seen",
             false),
@@ -255,7 +256,8 @@ std::vector<Case> geometryCases() {
             "a grid of 10 cm around a camera in mid-air: all surfaces lie outside of it, and nothing bounces",
             false),
        outsideTheGrid},
-      {info("open_against_closed", "a room loses two walls: as much light is lost as in the truth", false),
+      {info("open_against_closed", "a room loses two walls: as much light is lost as in the reference",
+            false),
        openAgainstClosed},
   };
 }

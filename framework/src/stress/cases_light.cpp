@@ -13,18 +13,18 @@ namespace lumivox::stress {
 namespace {
 
 constexpr const char* kLightFamily = "light";
-/// A technique of one bounce is within so much of the truth of one bounce where it does its best.
+/// A technique of one bounce is within so much of the reference of one bounce where it does its best.
 constexpr double kFairBias = 0.1;
 
 std::optional<Finding> exactlyBlack(Bench& bench, const Scene& scene) {
-  if (!makesPictures(bench)) return std::nullopt;
+  if (!makesImages(bench)) return std::nullopt;
   const Frame frame = bench.render(scene);
   if (frame.whole.empty()) return std::nullopt;
   return judged("largest radiance", {largestOf(frame.whole), 0.0}, 0.0);
 }
 
-/// A room with a light of every kind that has no extent; in the full battery the Cornell box with its lamp as
-/// well.
+/// A room with a light of every kind that has no extent; in the full battery the Cornell box with its area
+/// light as well.
 Scene allLights(const Bench& bench) {
   Scene scene = bench.quick() ? closedRoom(0.7f).scene : bench.committedScene("cornell");
   scene.hash = {};
@@ -43,20 +43,20 @@ Scene allLights(const Bench& bench) {
 }
 
 std::optional<Finding> powersOfLight(Bench& bench) {
-  if (!makesPictures(bench)) return std::nullopt;
+  if (!makesImages(bench)) return std::nullopt;
   const Scene scene = allLights(bench);
   const Frame wanted = bench.render(scene);
   if (wanted.whole.empty()) return std::nullopt;
   double largest = 0.0;
   std::string detail;
   for (const float factor : {1e-8f, 1e8f}) {
-    Picture picture = bench.render(brighter(scene, factor)).whole;
-    for (float& value : picture.values()) value /= factor;
-    const double difference = relativeDifference(picture, wanted.whole);
+    ImageBuffer image = bench.render(brighter(scene, factor)).whole;
+    for (float& value : image.values()) value /= factor;
+    const double difference = relativeDifference(image, wanted.whole);
     detail += fmt::format("{}at {:.0e} times {:.3g}", detail.empty() ? "" : ", ", factor, difference);
     largest = std::max(largest, difference);
   }
-  return judged("RMS difference from the picture at power 1 after division by the power, of its mean",
+  return judged("RMS difference from the image at power 1 after division by the power, of its mean",
                 {largest, 0.0}, 0.001, detail);
 }
 
@@ -75,13 +75,13 @@ std::optional<Finding> lightInGeometry(Bench& bench) {
 std::optional<Finding> lightAtCamera(Bench& bench) {
   SceneBuilder builder = closedRoom(0.7f);
   builder.scene.lights[0].position = builder.scene.camera().eye;
-  return againstTruth(bench, builder.scene, kFairBias);
+  return againstReference(bench, builder.scene, kFairBias);
 }
 
 std::optional<Finding> lightOnSurface(Bench& bench) {
   SceneBuilder builder = closedRoom(0.7f);
   builder.scene.lights[0].position.y = 0.0;
-  return againstTruth(bench, builder.scene, kFairBias);
+  return againstReference(bench, builder.scene, kFairBias);
 }
 
 std::optional<Finding> grazing(Bench& bench) {
@@ -89,7 +89,7 @@ std::optional<Finding> grazing(Bench& bench) {
   const double elevation = glm::radians(1.0);
   builder.light(LightKind::directional, glm::vec3(30.0f), {},
                 {-std::cos(elevation), -std::sin(elevation), -0.3 * std::cos(elevation)});
-  return againstTruth(bench, builder.scene, kFairBias);
+  return againstReference(bench, builder.scene, kFairBias);
 }
 
 std::optional<Finding> manyLights(Bench& bench) {
@@ -104,7 +104,7 @@ std::optional<Finding> manyLights(Bench& bench) {
     }
     return builder.scene;
   };
-  if (!makesPictures(bench)) return std::nullopt;
+  if (!makesImages(bench)) return std::nullopt;
   return sameAs(bench, litBy(1), litBy(64), 0.005, "one light of the power of all");
 }
 
@@ -128,7 +128,7 @@ std::optional<Finding> spotOfNoAngle(Bench& bench) {
 }
 
 std::optional<Finding> spotOfAllAngles(Bench& bench) {
-  if (!makesPictures(bench)) return std::nullopt;
+  if (!makesImages(bench)) return std::nullopt;
   return sameAs(bench, closedRoom(0.7f).scene, spotRoom(179.8, 179.9), 0.001,
                 "a point light of its intensity");
 }
@@ -136,7 +136,7 @@ std::optional<Finding> spotOfAllAngles(Bench& bench) {
 std::optional<Finding> environmentOnly(Bench& bench) {
   SceneBuilder builder = openFloor();
   builder.scene.environment = glm::vec3(0.5f, 0.7f, 1.0f);
-  return againstTruth(bench, builder.scene, kFairBias);
+  return againstReference(bench, builder.scene, kFairBias);
 }
 
 }  // namespace
@@ -150,22 +150,23 @@ std::vector<Case> lightCases() {
        [](Bench& bench) { return exactlyBlack(bench, bench.committedScene("stress/no_light")); }},
       {info("zero_light", "a light of every kind with a power of zero: black, exactly", true),
        [](Bench& bench) { return exactlyBlack(bench, brighter(allLights(bench), 0.0f)); }},
-      {info("light_1e8", "10^8 and 10^-8 times the light: the picture times 10^8 and 10^-8", true),
+      {info("light_1e8", "10^8 and 10^-8 times the light: the image times 10^8 and 10^-8", true),
        powersOfLight},
       {info("light_in_geometry", "a point light within a closed box: no light outside", false),
        lightInGeometry},
-      {info("light_on_surface", "a point light in the plane of a room's floor: the truth", true),
+      {info("light_on_surface", "a point light in the plane of a room's floor: the reference", true),
        lightOnSurface},
-      {info("light_at_camera", "a point light exactly at the camera in a closed room: the truth", true),
+      {info("light_at_camera", "a point light exactly at the camera in a closed room: the reference", true),
        lightAtCamera},
-      {info("grazing", "the sun one degree above a floor with a box: the truth", false), grazing},
-      {info("lights_64", "64 lights of a 64th of the power in the same place: the picture of one", false),
+      {info("grazing", "the sun one degree above a floor with a box: the reference", false), grazing},
+      {info("lights_64", "64 lights of a 64th of the power in the same place: the image of one", false),
        manyLights},
       {info("spot_0", "a spot of 0 degrees lights nothing", false), spotOfNoAngle},
       {info("spot_179.9", "a spot of 179.9 degrees to every side is a point light but for a needle behind it",
             false),
        spotOfAllAngles},
-      {info("environment_only", "a box on a floor under the sky alone: the truth", true), environmentOnly},
+      {info("environment_only", "a box on a floor under the sky alone: the reference", true),
+       environmentOnly},
   };
 }
 

@@ -1,5 +1,5 @@
 // Parameters at the ends of their ranges. An extreme may be coarse; it is too bad when leaving the light out
-// would be better, unless that is so with the battery's own values too; or when a voxeliser misses more than
+// would be better, unless that is so with the battery's own values too; or when a voxelizer misses more than
 // half of what it should find.
 #include <fmt/format.h>
 
@@ -13,12 +13,12 @@ namespace lumivox::stress {
 namespace {
 
 constexpr double kMissed = 0.5;
-/// As good as none, and the noise of a truth of few samples.
+/// As good as none, and the noise of a reference of few samples.
 constexpr double kNoise = 1.02;
-/// No error of a bounded picture is a thousand times the light itself: light that grows from step to step is.
+/// No error of a bounded image is a thousand times the light itself: light that grows from step to step is.
 constexpr double kGrown = 1e3;
 
-constexpr int kPixels = 48, kTruthSamples = 64;
+constexpr int kPixels = 48, kReferenceSamples = 64;
 
 /// All other parameters are at their cheap values, in the full battery too: an upper end alone may take long.
 Shot cheapShot(const Pipeline& pipeline) {
@@ -31,7 +31,7 @@ Shot cheapShot(const Pipeline& pipeline) {
 /// How bad a pipeline is at these values: the worst RMSE of an output over that of leaving it out, or the
 /// share of the touched voxels that are missed; by the output's name. Empty: nothing can be said.
 std::map<std::string, Measured> badnessOf(Bench& bench, const Scene& scene, const Shot& shot) {
-  if (makesPictures(bench)) return ratiosToNothing(bench, scene, shot, kTruthSamples);
+  if (makesImages(bench)) return ratiosToNothing(bench, scene, shot, kReferenceSamples);
   const auto error = bench.voxelError(scene, shot);
   if (!error) return {};
   return {{"voxels", {1.0 - error->recall(), 0.0}}};
@@ -40,8 +40,8 @@ std::map<std::string, Measured> badnessOf(Bench& bench, const Scene& scene, cons
 /// `shot` against bounds, which the battery's own values may exceed already: then against those.
 std::optional<Finding> judgedBy(Bench& bench, const Shot& shot, bool isOrdinary) {
   const Scene scene = suitableScene(bench);
-  const bool pictures = makesPictures(bench);
-  const double bound = pictures ? 1.0 : kMissed;
+  const bool images = makesImages(bench);
+  const double bound = images ? 1.0 : kMissed;
   const std::map<std::string, Measured> found = badnessOf(bench, scene, shot);
   if (found.empty()) return std::nullopt;
   std::map<std::string, Measured> ordinary;
@@ -55,14 +55,14 @@ std::optional<Finding> judgedBy(Bench& bench, const Shot& shot, bool isOrdinary)
     const double limit = kNoise * std::max(bound, usual);
     if (badness.value / limit <= excess) continue;
     excess = badness.value / limit;
-    worst = judged(pictures ? "RMSE of the worst output over that of leaving it out"
-                            : "share of the touched voxels that are missed",
-                   badness, limit, pictures ? "output " + name : std::string());
+    worst = judged(images ? "RMSE of the worst output over that of leaving it out"
+                          : "share of the touched voxels that are missed",
+                   badness, limit, images ? "output " + name : std::string());
     if (usual > bound)
       worst.detail += fmt::format("{}with the battery's own values already {:.3g}",
                                   worst.detail.empty() ? "" : ", ", usual);
   }
-  if (pictures && worst.value.value > kGrown) worst.outcome = StressOutcome::diverges;
+  if (images && worst.value.value > kGrown) worst.outcome = StressOutcome::diverges;
   return worst;
 }
 

@@ -9,6 +9,7 @@
 
 #include "lumivox/base/error.h"
 #include "stress/case_tools.h"
+#include "stress/measures.h"
 
 namespace lumivox::stress {
 namespace {
@@ -19,8 +20,8 @@ constexpr double kTolerance = 0.05;  // relative growth of an error that is not 
 
 struct Level {
   double value = 0.0;
-  Measured error;   ///< of the truth's mean; uncertainty: of the truth's noise
-  Picture picture;  ///< of the component that is judged; empty where only an error is known
+  Measured error;     ///< of the reference's mean; uncertainty: of the reference's noise
+  ImageBuffer image;  ///< of the component that is judged; empty where only an error is known
   FrameResult frame;
 };
 
@@ -64,13 +65,13 @@ std::string limitingTerm(const std::vector<Level>& levels, const std::vector<dou
   const double before = errors[errors.size() - 2];
   if (last.value < (1.0 - 2.0 * kTolerance) * before)
     return fmt::format("none yet, the error falls as the power {:.2g} of it", slopeOf(values, errors));
-  if (last.uncertainty > 0.5 * last.value) return "the truth's own noise";
+  if (last.uncertainty > 0.5 * last.value) return "the reference's own noise";
   if (changes.empty()) return "the method itself";
-  if (changes.back() < 0.02) return "the method's own model: this parameter hardly changes the picture";
+  if (changes.back() < 0.02) return "the method's own model: this parameter hardly changes the image";
   if (changes.back() < 0.5 * last.value)
-    return fmt::format("the method's own model: its pictures come together {:.2g} away from the truth",
+    return fmt::format("the method's own model: its images come together {:.2g} away from the reference",
                        last.value);
-  return "its pictures do not come together yet";
+  return "its images do not come together yet";
 }
 
 Finding judge(const std::string& name, const std::string& subject, const std::vector<Level>& levels,
@@ -81,21 +82,21 @@ Finding judge(const std::string& name, const std::string& subject, const std::ve
     values.push_back(levels[i].value);
     errors.push_back(levels[i].error.value);
     detail += fmt::format("{} {:g} {:.3g}", i == 0 ? "" : ",", levels[i].value, levels[i].error.value);
-    if (i == 0 || levels[i].picture.empty()) continue;
+    if (i == 0 || levels[i].image.empty()) continue;
     coarser.push_back(levels[i - 1].value);
-    changes.push_back(relativeDifference(levels[i].picture, levels[i - 1].picture));
+    changes.push_back(relativeDifference(levels[i].image, levels[i - 1].image));
   }
   if (!changes.empty()) {
-    detail += "; changes of the picture from one to the next:";
+    detail += "; changes of the image from one to the next:";
     for (const double change : changes) detail += fmt::format(" {:.3g}", change);
     if (changes.size() > 1) detail += fmt::format(", as the power {:.2g} of it", slopeOf(coarser, changes));
   }
   const Measured &first = levels.front().error, &last = levels.back().error;
-  detail += fmt::format("; the truth's noise is {:.2g}; limiting term: {}", last.uncertainty,
+  detail += fmt::format("; the reference's noise is {:.2g}; limiting term: {}", last.uncertainty,
                         limitingTerm(levels, values, errors, changes));
   if (!remark.empty()) detail += "; " + remark;
   const double smallest = std::max(first.value, std::max(first.uncertainty, 1e-6));
-  // Growth within the truth's noise is none.
+  // Growth within the reference's noise is none.
   const double noise = 2.0 * last.uncertainty / smallest;
   Finding finding =
       judged(fmt::format("error at the largest {} over the error at the smallest", name),
@@ -106,11 +107,11 @@ Finding judge(const std::string& name, const std::string& subject, const std::ve
   return finding;
 }
 
-/// The Cornell box seen from below its lamp, which would drown all other light. Full: with a light of each
+/// The Cornell box seen from below its light, which would drown all other light. Full: with a light of each
 /// kind of shadow; quick: with the one that is cheap.
 Scene roomOf(const Bench& bench) {
   return bench.sceneFromText(
-      fmt::format(R"(scene "Cornell box without its lamp in sight" {{
+      fmt::format(R"(scene "Cornell box without its light in sight" {{
   camera main {{ eye 0.278 0.4 -0.5  target 0.278 0.15 0.3  fov 45 deg  resolution 48 48 }}
   mesh room {{ file "../models/cornell.obj" }}
   light beam spot {{ position 0.3 0.5 0.2  direction -0.1 -1 0.3  intensity 1  inner 15 deg  outer 40 deg }}
@@ -120,11 +121,11 @@ Scene roomOf(const Bench& bench) {
                   bench.quick() ? "" : "light lamp area { mesh room/ceiling_lamp  radiance 8 6 4 }"));
 }
 
-/// What a parameter does to the pictures or voxels of a pipeline.
+/// What a parameter does to the images or voxels of a pipeline.
 class Refinement {
  public:
   Refinement(Bench& bench, std::string name) : bench_(bench), name_(std::move(name)), scene_(roomOf(bench)) {
-    if (!makesPictures(bench)) return;
+    if (!makesImages(bench)) return;
     Shot small;
     small.width = small.height = 8;
     if (hasComponent(bench.render(scene_, small).result, Contributes::scattered))
@@ -134,7 +135,7 @@ class Refinement {
   /// One value of the parameter; nullopt where there is nothing to compare.
   std::optional<Level> at(double value) {
     Shot shot = shotOf(value);
-    if (makesPictures(bench_)) {
+    if (makesImages(bench_)) {
       Level level{value, {}, {}, {}};
       const Frame frame = bench_.render(scene_, shot);
       level.frame = frame.result;
@@ -148,14 +149,14 @@ class Refinement {
     return Level{value, {wrong / std::max(all, 1.0), 0.0}, {}, {}};
   }
 
-  /// Fills in errors: of the output that the parameter changes most, against the truth of its component.
-  /// Returns its name; empty where no output has a truth.
-  std::string judgePictures(std::vector<Level>& levels) {
+  /// Fills in errors: of the output that the parameter changes most, against the reference of its component.
+  /// Returns its name; empty where no output has a reference.
+  std::string judgeImages(std::vector<Level>& levels) {
     const FrameResult &coarse = levels.front().frame, &fine = levels.back().frame;
     std::string chosen;
     double most = -1.0;
     for (const auto& [output, component] : fine.components) {
-      if (component == Contributes::final || truthLayers(component).first.empty()) continue;
+      if (component == Contributes::final || ownLayer(fine, output).empty()) continue;
       if (!(meanOf(fine.outputs.at(output)) > 0.0)) continue;
       const double change = relativeDifference(coarse.outputs.at(output), fine.outputs.at(output));
       if (change <= most) continue;
@@ -163,13 +164,13 @@ class Refinement {
       chosen = output;
     }
     if (chosen.empty()) return chosen;
-    const LayeredPicture truth =
-        bench_.truth(scene_, shotOf(levels.front().value), bench_.quick() ? 1024 : 2048);
-    const auto layer = truthLayer(truth, truthLayers(fine.components.at(chosen)).first);
+    const LayeredImage reference =
+        bench_.reference(scene_, shotOf(levels.front().value), bench_.quick() ? 1024 : 2048);
+    const auto layer = referenceLayer(reference, ownLayer(fine, chosen));
     if (!layer) return {};
     for (Level& level : levels) {
-      level.picture = level.frame.outputs.at(chosen);
-      level.error = differenceFromTruth(level.picture, *layer);
+      level.image = level.frame.outputs.at(chosen);
+      level.error = differenceFromReference(level.image, *layer);
     }
     return chosen;
   }
@@ -195,7 +196,7 @@ std::optional<Finding> refined(Bench& bench, const PipelineParameter& parameter)
     const auto start = std::chrono::steady_clock::now();
     try {
       const std::optional<Level> level = refinement.at(value);
-      if (!level) return notApplicable("it makes neither a picture nor voxels");
+      if (!level) return notApplicable("it makes neither an image nor voxels");
       levels.push_back(*level);
     } catch (const Error& refusal) {
       // A value that needs more than there is ends the refinement; the first two must be possible.
@@ -211,9 +212,9 @@ std::optional<Finding> refined(Bench& bench, const PipelineParameter& parameter)
   }
   if (levels.size() < 2) return notApplicable(parameter.name + " cannot be doubled within its range");
   std::string subject = "voxels";
-  if (makesPictures(bench)) {
-    subject = refinement.judgePictures(levels);
-    if (subject.empty()) return notApplicable("no output that has a truth shines here");
+  if (makesImages(bench)) {
+    subject = refinement.judgeImages(levels);
+    if (subject.empty()) return notApplicable("no output that has a reference shines here");
   }
   return judge(parameter.name, subject, levels, remark);
 }
@@ -228,12 +229,13 @@ std::vector<Case> refinementCases(const Pipeline& pipeline) {
   std::vector<Case> cases;
   for (const PipelineParameter& parameter : pipeline.parameters) {
     if (!isNumber(parameter)) continue;
-    cases.push_back({{"refinement", "refine_" + parameter.name,
-                      fmt::format("{} is doubled again and again: the error against the truth falls, or what "
-                                  "limits it is named",
-                                  parameter.name),
-                      cases.empty()},
-                     [parameter](Bench& bench) { return refined(bench, *bench.parameter(parameter.name)); }});
+    cases.push_back(
+        {{"refinement", "refine_" + parameter.name,
+          fmt::format("{} is doubled again and again: the error against the reference falls, or what "
+                      "limits it is named",
+                      parameter.name),
+          cases.empty()},
+         [parameter](Bench& bench) { return refined(bench, *bench.parameter(parameter.name)); }});
   }
   return cases;
 }

@@ -41,22 +41,22 @@ std::optional<Finding> withThreads(Bench& bench) {
   return sameBits("processes with other threads and other bits", different, runs);
 }
 
-std::optional<Finding> truthWithThreads(Bench& bench) {
-  if (!makesPictures(bench)) return std::nullopt;
+std::optional<Finding> referenceWithThreads(Bench& bench) {
+  if (!makesImages(bench)) return std::nullopt;
   const Scene scene = suitableScene(bench);
   Shot shot;
   shot.width = shot.height = bench.quick() ? 16 : 48;
   constexpr int kSamples = 8;
-  const LayeredPicture first = bench.truth(scene, shot, kSamples, 1);
+  const LayeredImage first = bench.reference(scene, shot, kSamples, 1);
   std::size_t different = 0;
   for (const int threads : {2, 7}) {
-    const LayeredPicture other = bench.truth(scene, shot, kSamples, threads);
-    for (const auto& [name, picture] : first.layers) {
-      const std::vector<float>&a = picture.values(), &b = other.layers.at(name).values();
+    const LayeredImage other = bench.reference(scene, shot, kSamples, threads);
+    for (const auto& [name, image] : first.layers) {
+      const std::vector<float>&a = image.values(), &b = other.layers.at(name).values();
       for (std::size_t i = 0; i < a.size(); ++i) different += std::memcmp(&a[i], &b[i], sizeof(float)) != 0;
     }
   }
-  return judged("values of the truth with other bits on 2 or 7 threads than on one",
+  return judged("values of the reference with other bits on 2 or 7 threads than on one",
                 {static_cast<double>(different), 0.0}, 0.0);
 }
 
@@ -72,9 +72,9 @@ std::vector<Case> repeatabilityCases() {
       {{"repeatability", "same_bits_with_other_threads",
         "a process whose rasteriser has 1, 2 or 7 threads (quick: 4) gives the same bits", true},
        withThreads},
-      {{"repeatability", "same_truth_with_other_threads",
+      {{"repeatability", "same_reference_with_other_threads",
         "the path tracer gives the same bits on 1, 2 and 7 threads", true},
-       truthWithThreads}};
+       referenceWithThreads}};
 }
 
 }  // namespace lumivox::stress

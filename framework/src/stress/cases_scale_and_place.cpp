@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kScaleAndPlaceFamily = "scale_and_place";
 
-/// The lower half of the Cornell box, its lamp out of view, with something glossy and thin fog; in the full
+/// The lower half of the Cornell box, its light out of view, with something glossy and thin fog; in the full
 /// battery with one more light of every kind that has a place: every length that some technique uses is in
 /// it.
 Scene room(const Bench& bench, bool fog) {
@@ -24,12 +24,12 @@ Scene room(const Bench& bench, bool fog) {
   scene.cameras.front().target = {0.2739, 0.1431, 0.0};
   scene.cameras.front().fov = glm::radians(28.3);
   if (!bench.quick()) {
-    Light lamp;
-    lamp.name = "lamp";
-    lamp.kind = LightKind::point;
-    lamp.position = {0.15, 0.35, 0.2};
-    lamp.power = glm::vec3(0.15f);
-    scene.lights.push_back(lamp);
+    Light light;
+    light.name = "light";
+    light.kind = LightKind::point;
+    light.position = {0.15, 0.35, 0.2};
+    light.power = glm::vec3(0.15f);
+    scene.lights.push_back(light);
     Light spot;
     spot.name = "spot";
     spot.kind = LightKind::spot;
@@ -80,13 +80,13 @@ std::optional<Finding> quarterTurn(Bench& bench) {
   return movedBy(bench, by, 0.01, "the same scene unturned");
 }
 
-/// Not the same picture: walls lie at a slant in the grid. Its light must stay what it was.
+/// Not the same image: walls lie at a slant in the grid. Its light must stay what it was.
 std::optional<Finding> turnedBy30(Bench& bench) {
   const Scene scene = room(bench, false);
   Similarity by;
   by.rotation = turnAboutY(std::numbers::pi / 6.0);
   const Scene turned = moved(scene, by);
-  if (!makesPictures(bench)) return sameAs(bench, scene, turned, 0.05, "the same scene unturned");
+  if (!makesImages(bench)) return sameAs(bench, scene, turned, 0.05, "the same scene unturned");
   const Frame straight = bench.render(scene), slanted = bench.render(turned);
   if (straight.whole.empty()) return std::nullopt;
   const bool indirect = makesIndirect(straight);
@@ -94,7 +94,7 @@ std::optional<Finding> turnedBy30(Bench& bench) {
                                 : meanOf(slanted.whole) / meanOf(straight.whole);
   return judged(fmt::format("change of the {} light's mean", indirect ? "indirect" : "whole"),
                 {std::abs(ratio - 1.0), 0.0}, 0.1,
-                fmt::format("RMS difference of the pictures {:.3g} of the mean",
+                fmt::format("RMS difference of the images {:.3g} of the mean",
                             relativeDifference(slanted.whole, straight.whole)));
 }
 
@@ -115,22 +115,22 @@ std::optional<Finding> gridOfVoxels(Bench& bench, const Scene& scene, int resolu
 }
 
 /// A grid too coarse to show anything, or very fine, still knows how much light there is.
-std::optional<Finding> gridAgainstTruth(Bench& bench, int resolution) {
+std::optional<Finding> gridAgainstReference(Bench& bench, int resolution) {
   if (bench.parameter("resolution") == nullptr) return std::nullopt;
-  if (!makesPictures(bench)) return gridOfVoxels(bench, bench.committedScene("cornell"), resolution);
+  if (!makesImages(bench)) return gridOfVoxels(bench, bench.committedScene("cornell"), resolution);
   const Scene scene = room(bench, false);
   const Shot shot = atResolution(resolution);
   const Frame frame = bench.render(scene, shot);
   if (!makesIndirect(frame)) return std::nullopt;
-  const double ratio = meanOf(indirectOf(frame)) / indirectTruth(bench, scene, frame);
-  return judged("distance of the indirect light's mean from the truth's, of it", {std::abs(ratio - 1.0), 0.0},
-                0.25, fmt::format("{:.3g} of the truth's", ratio));
+  const double ratio = meanOf(indirectOf(frame)) / indirectReference(bench, scene, frame);
+  return judged("distance of the indirect light's mean from the reference's, of it",
+                {std::abs(ratio - 1.0), 0.0}, 0.25, fmt::format("{:.3g} of the reference's", ratio));
 }
 
 /// One voxel more or less changes little.
 std::optional<Finding> gridBeside64(Bench& bench, int resolution) {
   if (bench.parameter("resolution") == nullptr) return std::nullopt;
-  if (!makesPictures(bench)) return gridOfVoxels(bench, bench.committedScene("cornell"), resolution);
+  if (!makesImages(bench)) return gridOfVoxels(bench, bench.committedScene("cornell"), resolution);
   const Scene scene = room(bench, false);
   const Frame at64 = bench.render(scene, atResolution(64)),
               beside = bench.render(scene, atResolution(resolution));
@@ -148,17 +148,15 @@ std::vector<Case> scaleAndPlaceCases() {
     return StressCaseInfo{kScaleAndPlaceFamily, std::move(name), std::move(meaning), quick};
   };
   std::vector<Case> cases{
-      {info("scale_0.001", "the same scene in millimetres: the same picture", true),
+      {info("scale_0.001", "the same scene in millimetres: the same image", true),
        [](Bench& bench) { return scaled(bench, 1e-3); }},
-      {info("scale_1000", "the same scene in kilometres: the same picture", false),
+      {info("scale_1000", "the same scene in kilometres: the same image", false),
        [](Bench& bench) { return scaled(bench, 1e3); }},
-      {info("moved_10_km", "scene and camera ten kilometres from the origin: the same picture", false),
+      {info("moved_10_km", "scene and camera ten kilometres from the origin: the same image", false),
        [](Bench& bench) { return movedAway(bench, 1e4); }},
-      {info("moved_1000_km", "scene and camera a thousand kilometres from the origin: the same picture",
-            true),
+      {info("moved_1000_km", "scene and camera a thousand kilometres from the origin: the same image", true),
        [](Bench& bench) { return movedAway(bench, 1e6); }},
-      {info("turned_90", "scene and camera turned by 90 degrees about Y: the same picture", true),
-       quarterTurn},
+      {info("turned_90", "scene and camera turned by 90 degrees about Y: the same image", true), quarterTurn},
       {info(
            "turned_30",
            "scene and camera turned by 30 degrees about Y: walls lie at a slant in the grid, but light stays",
@@ -167,17 +165,18 @@ std::vector<Case> scaleAndPlaceCases() {
   };
   for (const int resolution : {1, 2, 3, 64, 256})
     cases.push_back(
-        {info(fmt::format("grid_{}", resolution),
-              fmt::format(
-                  "a grid of {} along its longest side: the mean of the indirect light against the truth; "
-                  "voxels against the exact test",
-                  resolution),
-              resolution == 1),
-         [resolution](Bench& bench) { return gridAgainstTruth(bench, resolution); }});
+        {info(
+             fmt::format("grid_{}", resolution),
+             fmt::format(
+                 "a grid of {} along its longest side: the mean of the indirect light against the reference; "
+                 "voxels against the exact test",
+                 resolution),
+             resolution == 1),
+         [resolution](Bench& bench) { return gridAgainstReference(bench, resolution); }});
   for (const int resolution : {63, 65})
     cases.push_back(
         {info(fmt::format("grid_{}", resolution),
-              fmt::format("a grid of {} along its longest side is no power of two: nearly the picture of 64",
+              fmt::format("a grid of {} along its longest side is no power of two: nearly the image of 64",
                           resolution),
               false),
          [resolution](Bench& bench) { return gridBeside64(bench, resolution); }});

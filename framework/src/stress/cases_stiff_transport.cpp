@@ -28,17 +28,17 @@ Scene closedBox(const Bench& bench, double albedo) {
 }
 
 /// What the path tracer's sum over bounces converges like.
-struct TruthSeries {
+struct ReferenceSeries {
   double radius = 0.0;     ///< measured share that a further bounce leaves of what is missing
   int bounces = 0;         ///< the most that were measured
   double missing = 0.0;    ///< share of the whole that is missing after them, measured
   double ofDefault = 0.0;  ///< the same after the default number of bounces
 };
 
-constexpr double kTelling = 0.1;  // share of missing light that the truth's noise does not hide
+constexpr double kTelling = 0.1;  // share of missing light that the reference's noise does not hide
 
 /// The error after N bounces is e(N) = a^(N+2) / (1 - a), so that e(2N) / e(N) = a^N.
-TruthSeries truthSeries(const Scene& scene, double albedo, bool quick) {
+ReferenceSeries referenceSeries(const Scene& scene, double albedo, bool quick) {
   ReferenceOptions options;
   options.width = options.height = 8;
   // Paths of a nearly white room are long, and there are many bounces to average over.
@@ -48,12 +48,12 @@ TruthSeries truthSeries(const Scene& scene, double albedo, bool quick) {
   const double whole = 1.0 / (1.0 - albedo);
   // Quick: until about 2/3 of the light is there. Full: until 1 % is missing.
   const double enough = quick ? whole : std::log(0.01) / std::log(albedo);
-  TruthSeries series;
+  ReferenceSeries series;
   double before = 0.0;
   for (int bounces = 1;; bounces *= 2) {
     options.bounces = bounces;
     const double error = whole - meanOf(cachedReference(scene, options).layers.at("full"));
-    // Nearer to the whole the truth's noise is larger than what is missing.
+    // Nearer to the whole the reference's noise is larger than what is missing.
     if (bounces > 1 && error > kTelling * whole) series.radius = std::pow(error / before, 2.0 / bounces);
     series.bounces = bounces;
     series.missing = error / whole;
@@ -67,15 +67,15 @@ TruthSeries truthSeries(const Scene& scene, double albedo, bool quick) {
 }
 
 std::optional<Finding> missingOfClosedBox(Bench& bench, double albedo) {
-  if (!makesPictures(bench)) return notApplicable("it makes no picture");
+  if (!makesImages(bench)) return notApplicable("it makes no image");
   const Scene scene = closedBox(bench, albedo);
   const Frame frame = bench.render(scene);
   bench.show(frame.whole);
   const double whole = 1.0 / (1.0 - albedo), found = meanOf(frame.whole);
-  const TruthSeries series = truthSeries(scene, albedo, bench.quick());
+  const ReferenceSeries series = referenceSeries(scene, albedo, bench.quick());
   Finding finding = judged(
       "distance from the full transport 1 / (1 - albedo), of it", {std::abs(found / whole - 1.0), 0.0}, 0.05,
-      fmt::format("radiance {:.4g} of {:.4g}; one exact bounce would leave out albedo^3 = {:.3g}. Truth: "
+      fmt::format("radiance {:.4g} of {:.4g}; one exact bounce would leave out albedo^3 = {:.3g}. Reference: "
                   "spectral radius {:.5f} measured over {} bounces ({:.3g} of the light missing then), {} "
                   "bounces to 1 %; its default of {} bounces leaves out {:.3g}",
                   found, whole, std::pow(albedo, 3.0), series.radius, series.bounces, series.missing,
@@ -88,9 +88,9 @@ std::optional<Finding> missingOfClosedBox(Bench& bench, double albedo) {
 /// The part of the transport that the pipeline has a component for, in closed form: direct light is
 /// E (1 + a), one bounce adds E a^2.
 std::optional<Finding> bounceOfClosedBox(Bench& bench) {
-  if (!makesPictures(bench)) return notApplicable("it makes no picture");
+  if (!makesImages(bench)) return notApplicable("it makes no image");
   constexpr double kAlbedo = 0.999;
-  // The walls around are the lamp: few samples of it say little about the points near them.
+  // The walls around are the light: few samples of it say little about the points near them.
   Shot shot;
   shot.parameters["area_samples"].number = 64;
   const Frame frame = bench.render(closedBox(bench, kAlbedo), shot);
@@ -98,8 +98,8 @@ std::optional<Finding> bounceOfClosedBox(Bench& bench) {
   const bool indirect = hasComponent(frame.result, Contributes::indirectDiffuse);
   const double wanted = 1.0 + kAlbedo + (indirect ? kAlbedo * kAlbedo : 0.0);
   const double found = meanOf(frame.whole);
-  const Picture exact(frame.whole.width(), frame.whole.height(), 3, static_cast<float>(wanted));
-  std::string detail = fmt::format("radiance {:.4g} of {:.4g}; RMS over the picture {:.3g} of it", found,
+  const ImageBuffer exact(frame.whole.width(), frame.whole.height(), 3, static_cast<float>(wanted));
+  std::string detail = fmt::format("radiance {:.4g} of {:.4g}; RMS over the image {:.3g} of it", found,
                                    wanted, relativeDifference(frame.whole, exact));
   for (const auto& [name, component] : frame.result.components)
     if (component == Contributes::direct || component == Contributes::indirectDiffuse)
@@ -153,7 +153,7 @@ std::optional<Finding> thousandIterations(Bench& bench) {
   const std::size_t last = means.size() - 1;
   const double change = std::abs(means[last] - means[last - 1]);
   Finding finding =
-      judged(fmt::format("change of the picture's energy from {} to {} iterations, of it", counts[last - 1],
+      judged(fmt::format("change of the image's energy from {} to {} iterations, of it", counts[last - 1],
                          counts[last]),
              {change / std::max(means[last - 1], std::numeric_limits<double>::min()), 0.0}, 0.01, detail);
   // An iteration that converges changes less with every doubling; one that grows changes more.
@@ -206,21 +206,21 @@ struct Slab {
     return environment * std::exp(-depth) + albedo * phase * kIrradiance * lit * integral;
   }
 
-  Picture exact(const Scene& scene, int width, int height) const {
+  ImageBuffer exact(const Scene& scene, int width, int height) const {
     const CameraView camera = snapshotOf(scene, 0.0, {}, width, height).camera;
-    Picture picture(width, height, 3);
+    ImageBuffer image(width, height, 3);
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
         const double value =
             radiance(camera.direction(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
-        for (int channel = 0; channel < 3; ++channel) picture.at(x, y, channel) = static_cast<float>(value);
+        for (int channel = 0; channel < 3; ++channel) image.at(x, y, channel) = static_cast<float>(value);
       }
-    return picture;
+    return image;
   }
 };
 
 std::optional<Finding> notOfMedia(Bench& bench, const Scene& scene) {
-  if (!makesPictures(bench)) return notApplicable("it makes no picture");
+  if (!makesImages(bench)) return notApplicable("it makes no image");
   if (!hasComponent(bench.render(scene).result, Contributes::scattered))
     return notApplicable("it renders no media");
   return std::nullopt;
@@ -261,7 +261,7 @@ std::optional<Finding> narrowPhase(Bench& bench, double anisotropy) {
   if (const auto why = notOfMedia(bench, scene)) return why;
   const Frame frame = bench.render(scene);
   bench.show(frame.whole);
-  const Picture exact = slab.exact(scene, frame.whole.width(), frame.whole.height());
+  const ImageBuffer exact = slab.exact(scene, frame.whole.width(), frame.whole.height());
   const double energy = meanOf(frame.whole) / meanOf(exact);
   return judged(
       "scattered energy around the peak, distance from the closed form, of it", {std::abs(energy - 1.0), 0.0},
@@ -271,17 +271,17 @@ std::optional<Finding> narrowPhase(Bench& bench, double anisotropy) {
 }
 
 /// Means over squares of pixels.
-Picture shrunk(const Picture& picture, int factor) {
-  Picture result(picture.width() / factor, picture.height() / factor, picture.channels());
+ImageBuffer shrunk(const ImageBuffer& image, int factor) {
+  ImageBuffer result(image.width() / factor, image.height() / factor, image.channels());
   const float share = 1.0f / static_cast<float>(factor * factor);
   for (int y = 0; y < result.height() * factor; ++y)
     for (int x = 0; x < result.width() * factor; ++x)
-      for (int channel = 0; channel < picture.channels(); ++channel)
-        result.at(x / factor, y / factor, channel) += share * picture.at(x, y, channel);
+      for (int channel = 0; channel < image.channels(); ++channel)
+        result.at(x / factor, y / factor, channel) += share * image.at(x, y, channel);
   return result;
 }
 
-/// Smoke that varies, from thin to opaque, with the same steps, against the truth of single scattering.
+/// Smoke that varies, from thin to opaque, with the same steps, against the reference of single scattering.
 std::optional<Finding> extinctionsOfSmoke(Bench& bench) {
   const auto smoke = [&](double extinction) {
     return bench.sceneFromText(fmt::format(R"(scene "Smoke" {{
@@ -299,38 +299,38 @@ std::optional<Finding> extinctionsOfSmoke(Bench& bench) {
   if (const auto why = notOfMedia(bench, smoke(1.0))) return why;
   Measured worst;
   std::string detail =
-      "extinction, RMSE of the picture of its mean, energy of the scattered light of the truth's:";
-  // Few pixels of the truth, which takes a step for each mean free path of the densest smoke; more of the
-  // picture, so that filters which blend neighbours do not reach across the smoke.
-  constexpr int kPixels = 16, kFiner = 4;
+      "extinction, RMSE of the image of its mean, energy of the scattered light of the reference's:";
+  // Few pixels of the reference, which takes a step for each mean free path of the densest smoke; more of the
+  // image, so that filters which blend neighbours do not reach across the smoke.
+  constexpr int kSide = 16, kFiner = 4;
   for (const double extinction : {1e-3, 1e-2, 0.1, 1.0, 10.0, 1e2, 1e3, 1e4, 1e5}) {
     const Scene scene = smoke(extinction);
     Shot shot;
     shot.time = 1.0;
     shot.parameters["pixels"].word = "full";
-    shot.width = shot.height = kPixels;
+    shot.width = shot.height = kSide;
     // In thin smoke paths are short, and few of them are scattered.
-    const LayeredPicture truth = bench.truth(scene, shot,
-                                             extinction < 1.0   ? 4096
-                                             : extinction < 1e3 ? 256
-                                                                : 16);
-    shot.width = shot.height = kPixels * kFiner;
+    const LayeredImage reference = bench.reference(scene, shot,
+                                                   extinction < 1.0   ? 4096
+                                                   : extinction < 1e3 ? 256
+                                                                      : 16);
+    shot.width = shot.height = kSide * kFiner;
     const Frame frame = bench.render(scene, shot);
     const Measured difference =
-        differenceFromTruth(shrunk(frame.whole, kFiner), *truthLayer(truth, "one_bounce"));
+        differenceFromReference(shrunk(frame.whole, kFiner), *referenceLayer(reference, "one_bounce"));
     detail +=
         fmt::format(" {:.0e} /m {:.2g} (noise {:.1g})", extinction, difference.value, difference.uncertainty);
-    const auto note = [&](const Measured& error, const Picture& picture) {
+    const auto note = [&](const Measured& error, const ImageBuffer& image) {
       if (error.value < worst.value) return;
       worst = error;
-      bench.show(picture);
+      bench.show(image);
     };
     note(difference, frame.whole);
-    // In the picture the light behind the smoke outshines it, and single pixels of its truth are noise.
+    // In the image the light behind the smoke outshines it, and single pixels of its reference are noise.
     for (const auto& [name, component] : frame.result.components) {
       if (component != Contributes::scattered) continue;
-      const Picture& scattered = frame.result.outputs.at(name);
-      const auto layer = truthLayer(truth, truthLayers(component).first);
+      const ImageBuffer& scattered = frame.result.outputs.at(name);
+      const auto layer = referenceLayer(reference, ownLayer(frame.result, name));
       const Measured energy = compare(shrunk(scattered, kFiner), layer->mean, layer->variance).meanRatio;
       detail += fmt::format(" {:.3f} +- {:.1g}", energy.value, energy.uncertainty);
       note({std::abs(energy.value - 1.0), energy.uncertainty}, scattered);
@@ -339,14 +339,14 @@ std::optional<Finding> extinctionsOfSmoke(Bench& bench) {
   }
   detail.pop_back();
   return judged(
-      "the worse of RMSE of the picture and energy of the scattered light, against the truth of single "
+      "the worse of RMSE of the image and energy of the scattered light, against the reference of single "
       "scattering",
       worst, 0.1, detail);
 }
 
 // ---- bright beside dark ----------------------------------------------------------------------------------
 
-/// Two closed rooms with a lamp each; the camera is in the left one, whose lamp has the intensity 1.
+/// Two closed rooms with a light each; the camera is in the left one, whose light has the intensity 1.
 Scene twoRooms(const Bench& bench, double gap, double otherIntensity) {
   return bench.sceneFromText(fmt::format(R"(scene "Bright and dark" {{
   camera main {{ eye -0.3 0.1 0.4  target 0.2 -0.1 -0.5  fov 60 deg  resolution 48 48 }}
@@ -360,19 +360,19 @@ Scene twoRooms(const Bench& bench, double gap, double otherIntensity) {
                                          1.0 + gap, 1.1 + gap, otherIntensity));
 }
 
-/// The rooms are closed, so that the other lamp changes nothing.
+/// The rooms are closed, so that the other light changes nothing.
 std::optional<Finding> brightAndDark(Bench& bench, double gap, double limit) {
-  if (!makesPictures(bench)) return notApplicable("it makes no picture");
+  if (!makesImages(bench)) return notApplicable("it makes no image");
   const Frame alone = bench.render(twoRooms(bench, gap, 0.0));
   const Frame both = bench.render(twoRooms(bench, gap, 1e6));
   bench.show(both.whole);
   std::string detail;
-  for (const auto& [name, picture] : both.result.outputs) {
-    const double difference = relativeDifference(picture, alone.result.outputs.at(name));
+  for (const auto& [name, image] : both.result.outputs) {
+    const double difference = relativeDifference(image, alone.result.outputs.at(name));
     detail += fmt::format("{}{} {:.3g} (mean {:.4g}, alone {:.4g})", detail.empty() ? "" : "; ", name,
-                          difference, meanOf(picture), meanOf(alone.result.outputs.at(name)));
+                          difference, meanOf(image), meanOf(alone.result.outputs.at(name)));
   }
-  return judged("change of a room's picture by a lamp 10^6 times as bright in the other room, of its mean",
+  return judged("change of a room's image by a light 10^6 times as bright in the other room, of its mean",
                 {relativeDifference(both.whole, alone.whole), 0.0}, limit, detail);
 }
 
@@ -409,7 +409,7 @@ std::vector<Case> stiffTransportCases() {
         true},
        extinctions},
       {{family, "smoke_extinction_1e-3_to_1e5",
-        "Smoke of particles with extinctions from 10^-3 to 10^5 /m and unchanged steps against the truth of "
+        "Smoke of particles with extinctions from 10^-3 to 10^5 /m and unchanged steps against the reference of "
         "single scattering",
         false},
        extinctionsOfSmoke},

@@ -13,7 +13,8 @@ namespace {
 
 constexpr const char* kBox = "room/box";
 
-/// A camera on a path, a box that turns and travels, a lamp that travels, sky and rising smoke; full: sun.
+/// A camera on a path, a box that turns and travels, an area light that travels, sky and rising smoke; full:
+/// sun.
 Scene everythingMoves(const Bench& bench) {
   std::string text = R"(scene "Everything moves" {
   camera main {
@@ -45,11 +46,11 @@ Scene everythingMoves(const Bench& bench) {
   return bench.sceneFromText(text + "}\n");
 }
 
-/// How many numbers of two frames' pictures differ in a bit, and by how much at most.
+/// How many numbers of two frames' images differ in a bit, and by how much at most.
 struct Difference {
   std::size_t count = 0, total = 0;
   double largest = 0.0;
-  void add(const Picture& a, const Picture& b) {
+  void add(const ImageBuffer& a, const ImageBuffer& b) {
     for (std::size_t i = 0; i < a.values().size(); ++i) {
       ++total;
       if (a.values()[i] == b.values()[i]) continue;
@@ -78,7 +79,7 @@ Finding lastAgainstAlone(Bench& bench, const std::vector<double>& times, const E
   }
   Shot alone = shot;
   alone.firstFrame = static_cast<int>(last);
-  if (!makesPictures(bench)) {
+  if (!makesImages(bench)) {
     const bool same = bench.contentOfSequence(scene, times, shot, edit) ==
                       bench.contentOfSequence(scene, {times[last]}, alone, edit ? editLast : Edit{});
     return judged("bits of the last frame's last pass differ from the same frame alone (0 or 1)",
@@ -93,9 +94,9 @@ Finding lastAgainstAlone(Bench& bench, const std::vector<double>& times, const E
   bench.show(sequence.whole);
   Difference difference;
   std::string detail;
-  for (const auto& [name, picture] : sequence.result.outputs) {
+  for (const auto& [name, image] : sequence.result.outputs) {
     Difference of;
-    of.add(picture, fresh.result.outputs.at(name));
+    of.add(image, fresh.result.outputs.at(name));
     difference.count += of.count;
     difference.total += of.total;
     detail += fmt::format("{}{}: {} of {}, by {:.3g} at most", detail.empty() ? "" : "; ", name, of.count,

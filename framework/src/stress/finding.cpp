@@ -16,9 +16,9 @@ Finding judged(std::string measure, Measured value, double limit, std::string de
   return finding;
 }
 
-double relativeDifference(const Picture& picture, const Picture& wanted) {
-  const std::vector<float>&a = picture.values(), &b = wanted.values();
-  if (a.size() != b.size()) throw Error("two pictures of different shapes cannot be compared");
+double relativeDifference(const ImageBuffer& image, const ImageBuffer& wanted) {
+  const std::vector<float>&a = image.values(), &b = wanted.values();
+  if (a.size() != b.size()) throw Error("two images of different shapes cannot be compared");
   if (a.empty()) return 0.0;
   double squares = 0.0, sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {

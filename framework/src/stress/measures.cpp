@@ -11,12 +11,12 @@
 namespace lumivox::stress {
 namespace {
 
-void add(Picture& sum, const Picture& part) {
+void add(ImageBuffer& sum, const ImageBuffer& part) {
   if (sum.empty()) {
     sum = part;
     return;
   }
-  if (!sum.sameShape(part)) throw Error("pictures of different shapes cannot be added up");
+  if (!sum.sameShape(part)) throw Error("images of different shapes cannot be added up");
   for (std::size_t i = 0; i < part.values().size(); ++i) sum.values()[i] += part.values()[i];
 }
 
@@ -24,39 +24,44 @@ bool isIndirect(Contributes component) {
   return component == Contributes::indirectDiffuse || component == Contributes::indirectGlossy;
 }
 
-/// Paths a pixel of the truths that the battery compares with.
-int truthSamples(const Bench& bench) {
+/// Paths a pixel of the references that the battery compares with.
+int referenceSamples(const Bench& bench) {
   return bench.quick() ? 64 : 1024;
 }
 
-/// "direct 0.998, indirect_diffuse 0.91": the ratio of the means of every output that has a truth with light.
-std::string ratiosOf(const Frame& frame, const LayeredPicture& truth) {
+/// "direct 0.998, indirect_diffuse 0.91": the ratio of the means of every output that has a reference with
+/// light.
+std::string ratiosOf(const Frame& frame, const LayeredImage& reference) {
   std::string text;
-  for (const auto& [name, picture] : frame.result.outputs) {
+  for (const auto& [name, image] : frame.result.outputs) {
     const Contributes component = frame.result.components.at(name);
     if (component == Contributes::final || component == Contributes::ambientOcclusion) continue;
-    const std::string wanted = truthLayers(component).first;
-    const auto layer = wanted.empty() ? std::nullopt : truthLayer(truth, wanted);
-    if (!layer || !layer->mean.sameShape(picture)) continue;
+    const std::string wanted = ownLayer(frame.result, name);
+    const auto layer = wanted.empty() ? std::nullopt : referenceLayer(reference, wanted);
+    if (!layer || !layer->mean.sameShape(image)) continue;
     if (!text.empty()) text += ", ";
     const double mean = meanOf(layer->mean);
-    text += mean > 0.0 ? fmt::format("{} {:.3g} of the truth's", name, meanOf(picture) / mean)
-                       : fmt::format("{} {:.3g} where the truth has none", name, meanOf(picture));
+    text += mean > 0.0 ? fmt::format("{} {:.3g} of the reference's", name, meanOf(image) / mean)
+                       : fmt::format("{} {:.3g} where the reference has none", name, meanOf(image));
   }
   return text;
 }
 
 }  // namespace
 
+std::string ownLayer(const FrameResult& frame, const std::string& output) {
+  return referenceLayers(frame.components.at(output), frame.indirectBounces.at(output)).first;
+}
+
 bool makesIndirect(const Frame& frame) {
   return std::any_of(frame.result.components.begin(), frame.result.components.end(),
                      [](const auto& output) { return isIndirect(output.second); });
 }
 
-Picture indirectOf(const Frame& frame) {
-  Picture sum;
-  for (const auto& [name, picture] : frame.result.outputs)
-    if (isIndirect(frame.result.components.at(name))) add(sum, picture);
+ImageBuffer indirectOf(const Frame& frame) {
+  ImageBuffer sum;
+  for (const auto& [name, image] : frame.result.outputs)
+    if (isIndirect(frame.result.components.at(name))) add(sum, image);
   return sum;
 }
 
@@ -68,7 +73,7 @@ double wrongShare(const VoxelError& error) {
 
 std::optional<Finding> sameAs(Bench& bench, const Scene& scene, const Scene& changed, double limit,
                               const std::string& what, const Shot& shot) {
-  if (makesPictures(bench)) {
+  if (makesImages(bench)) {
     const Frame wanted = bench.render(scene, shot), got = bench.render(changed, shot);
     if (wanted.whole.empty() || got.whole.empty()) return std::nullopt;
     std::string detail;
@@ -86,45 +91,50 @@ std::optional<Finding> sameAs(Bench& bench, const Scene& scene, const Scene& cha
                 fmt::format("wrong: {:.3g}; {}: {:.3g}", wrongShare(*got), what, wrongShare(*wanted)));
 }
 
-TruthLayer truthOf(Bench& bench, const Scene& scene, const Frame& frame, const Shot& shot) {
-  const char* name = makesIndirect(frame) ? "one_bounce" : "direct";
-  const std::optional<TruthLayer> layer = truthLayer(bench.truth(scene, shot, truthSamples(bench)), name);
-  if (!layer) throw Error(fmt::format("the truth of scene '{}' has no layer '{}'", scene.name, name));
+ReferenceLayer referenceOf(Bench& bench, const Scene& scene, const Frame& frame, const Shot& shot) {
+  int bounces = 1;
+  for (const auto& [output, modelled] : frame.result.indirectBounces) bounces = std::max(bounces, modelled);
+  const std::string name =
+      makesIndirect(frame) ? referenceLayers(Contributes::final, bounces).first : "direct";
+  const std::optional<ReferenceLayer> layer =
+      referenceLayer(bench.reference(scene, shot, referenceSamples(bench)), name);
+  if (!layer) throw Error(fmt::format("the reference of scene '{}' has no layer '{}'", scene.name, name));
   return *layer;
 }
 
-double indirectTruth(Bench& bench, const Scene& scene, const Frame& frame, const Shot& shot) {
-  const LayeredPicture truth = bench.truth(scene, shot, truthSamples(bench));
+double indirectReference(Bench& bench, const Scene& scene, const Frame& frame, const Shot& shot) {
+  const LayeredImage reference = bench.reference(scene, shot, referenceSamples(bench));
   double sum = 0.0;
   for (const auto& [name, component] : frame.result.components) {
     if (!isIndirect(component)) continue;
-    const std::optional<TruthLayer> layer = truthLayer(truth, truthLayers(component).first);
-    if (!layer) throw Error(fmt::format("the truth of scene '{}' lacks a layer for '{}'", scene.name, name));
+    const std::optional<ReferenceLayer> layer = referenceLayer(reference, ownLayer(frame.result, name));
+    if (!layer)
+      throw Error(fmt::format("the reference of scene '{}' lacks a layer for '{}'", scene.name, name));
     sum += meanOf(layer->mean);
   }
   return sum;
 }
 
-std::optional<Finding> againstTruth(Bench& bench, const Scene& scene, double limit, const Shot& shot) {
-  if (!makesPictures(bench)) return std::nullopt;
+std::optional<Finding> againstReference(Bench& bench, const Scene& scene, double limit, const Shot& shot) {
+  if (!makesImages(bench)) return std::nullopt;
   Shot filtered = shot;
   filtered.subpixels = bench.quick() ? 4 : 16;
   const Frame frame = bench.render(scene, filtered);
   if (frame.whole.empty()) return std::nullopt;
-  const TruthLayer truth = truthOf(bench, scene, frame, shot);
-  const PictureError error = compare(frame.whole, truth.mean, truth.variance);
-  const double mean = meanOf(truth.mean);
-  if (!(mean > 0.0)) throw Error(fmt::format("the truth of scene '{}' is black", scene.name));
-  return judged("distance of the picture's mean from the truth's, of it",
+  const ReferenceLayer reference = referenceOf(bench, scene, frame, shot);
+  const ImageError error = compare(frame.whole, reference.mean, reference.variance);
+  const double mean = meanOf(reference.mean);
+  if (!(mean > 0.0)) throw Error(fmt::format("the reference of scene '{}' is black", scene.name));
+  return judged("distance of the image's mean from the reference's, of it",
                 {std::abs(error.meanRatio.value - 1.0), error.meanRatio.uncertainty}, limit,
-                fmt::format("{}; RMSE {:.3g} of the truth's mean, of which its noise {:.2g}",
-                            ratiosOf(frame, bench.truth(scene, shot, truthSamples(bench))),
+                fmt::format("{}; RMSE {:.3g} of the reference's mean, of which its noise {:.2g}",
+                            ratiosOf(frame, bench.reference(scene, shot, referenceSamples(bench))),
                             error.rmse.value / mean, error.noiseFloor / mean));
 }
 
 std::optional<Finding> leak(Bench& bench, const Scene& dark, const Shot& darkShot, const Scene& lit,
                             const Shot& litShot, const std::string& what, double limit) {
-  if (!makesPictures(bench)) return std::nullopt;
+  if (!makesImages(bench)) return std::nullopt;
   const Frame light = bench.render(lit, litShot), shade = bench.render(dark, darkShot);
   if (light.whole.empty() || shade.whole.empty()) return std::nullopt;
   const double mean = meanOf(light.whole);

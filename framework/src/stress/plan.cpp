@@ -7,7 +7,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/experiment/report.h"
-#include "lumivox/experiment/voxelisers.h"
+#include "lumivox/experiment/voxelizers.h"
 #include "lumivox/pipeline/pass.h"
 #include "stress/cases.h"
 
@@ -19,8 +19,8 @@ std::vector<std::filesystem::path> committedPipelines() {
   if (!scenes)
     throw Error("no project with scenes and pipelines is around here; name pipelines with --pipeline");
   std::vector<std::filesystem::path> files = pipelinesIn(*scenes / "pipelines");
-  if (const auto voxelisers = committedVoxelisers())
-    for (const std::filesystem::path& file : pipelinesIn(*voxelisers)) files.push_back(file);
+  if (const auto voxelizers = committedVoxelizers())
+    for (const std::filesystem::path& file : pipelinesIn(*voxelizers)) files.push_back(file);
   return files;
 }
 

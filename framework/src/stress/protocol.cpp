@@ -55,7 +55,7 @@ std::string lineOf(const CellRequest& request) {
   return Json{{"cell", request.name},
               {"pipeline", request.pipeline.string()},
               {"quick", request.quick},
-              {"picture", request.picture.string()}}
+              {"image", request.image.string()}}
       .dump();
 }
 
@@ -81,7 +81,7 @@ AnyRequest requestOf(const std::string& line) {
     const std::string pipeline = json.at("pipeline");
     if (json.contains("cell")) {
       request.cell = CellRequest{pipeline, json.at("cell").get<std::string>(), quick,
-                                 json.at("picture").get<std::string>()};
+                                 json.at("image").get<std::string>()};
       return request;
     }
     ContentRequest content{pipeline, json.at("content").get<std::string>(), quick, {}};

@@ -26,7 +26,7 @@ struct CellRequest {
   std::filesystem::path pipeline;
   std::string name;  ///< of the case
   bool quick = false;
-  std::filesystem::path picture;  ///< where to; empty: nowhere
+  std::filesystem::path image;  ///< where to; empty: nowhere
 };
 /// The content of a frame: Bench::contentOf() for another process.
 struct ContentRequest {

@@ -106,11 +106,11 @@ StressCell runCell(Ground& ground, const CellRequest& request,
   CardAnswer answer = explanationOf(cell, pipeline, ground.techniques);
   cell.explanation = std::move(answer.explanation);
   if (!answer.contradiction.empty()) cell.detail += (cell.detail.empty() ? "" : "; ") + answer.contradiction;
-  const Picture& picture = bench.shown();
-  if (!request.picture.empty() && !picture.empty()) {
-    createParentDirectories(request.picture);
-    writePng(request.picture, picture, picture.channels() == 1 ? 1.0f : displayExposure(picture));
-    cell.picture = (request.picture.parent_path().filename() / request.picture.filename()).string();
+  const ImageBuffer& image = bench.shown();
+  if (!request.image.empty() && !image.empty()) {
+    createParentDirectories(request.image);
+    writePng(request.image, image, image.channels() == 1 ? 1.0f : displayExposure(image));
+    cell.image = (request.image.parent_path().filename() / request.image.filename()).string();
   }
   return cell;
 }

@@ -1,4 +1,4 @@
-// Scenes that cases are made of, and ways to change a scene whose effect on the picture is known.
+// Scenes that cases are made of, and ways to change a scene whose effect on the image is known.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -18,7 +18,7 @@ struct Similarity {
 /// Radians about Y.
 glm::dmat3 turnAboutY(double angle);
 
-/// A scene with everything in it moved, so that its picture stays the same: objects by their placements, with
+/// A scene with everything in it moved, so that its image stays the same: objects by their placements, with
 /// them motions, lights, cameras and media. Radiances and irradiances stay as they are; intensities grow with
 /// the square of the scale, extinctions fall with it. Error for a medium in a box or a volume that is turned
 /// by anything but quarter turns, and for particles that no longer rise along Y.
@@ -36,7 +36,7 @@ std::vector<glm::vec3> gridOfTriangles(const glm::vec3& corner, const glm::vec3&
                                        const glm::vec3& edge2, int columns, int rows);
 
 /// A closed box of size 1 seen from inside, white walls of one albedo, with a point light of 1 W/sr near its
-/// middle; the camera looks at a corner, so that floor and two walls fill the picture.
+/// middle; the camera looks at a corner, so that floor and two walls fill the image.
 SceneBuilder closedRoom(float albedo);
 
 /// Two closed rooms of 1 m beside each other along x with a wall between them, `wall` m thick (0: one sheet).

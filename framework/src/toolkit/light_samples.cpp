@@ -64,7 +64,7 @@ struct Emitter {
 };
 
 /// The emissive triangles of one part of an object, which are of one material.
-struct Lamp {
+struct AreaLight {
   std::vector<Emitter> emitters;
   double weight = 0.0;  ///< of all its emitters together
 };
@@ -107,19 +107,19 @@ std::size_t maskedEmitters(const Scene& scene) {
   return count;
 }
 
-std::vector<Lamp> lampsOf(const Scene& scene, const SceneSnapshot& snapshot) {
+std::vector<AreaLight> areaLightsOf(const Scene& scene, const SceneSnapshot& snapshot) {
   // What 2^14 points miss of one triangle is below a thousandth of it.
   constexpr std::size_t kEnoughPoints = std::size_t{1} << 14, kFewestPoints = 16;
   const std::size_t points = std::clamp(kMostMaskPoints / std::max<std::size_t>(maskedEmitters(scene), 1),
                                         kFewestPoints, kEnoughPoints);
   int maskSequence = 0;
-  std::vector<Lamp> lamps;
+  std::vector<AreaLight> areaLights;
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const ObjectState& state = snapshot.objects[o];
     for (const Part& part : scene.objects[o].parts) {
       const Material& material = scene.materials[static_cast<std::size_t>(part.material)];
       if (!material.emissive()) continue;
-      Lamp lamp;
+      AreaLight areaLight;
       for (std::uint32_t i = 0; i + 2 < part.indexCount; i += 3) {
         std::array<glm::vec3, 3> corner;
         Emitter emitter{};
@@ -145,13 +145,13 @@ std::vector<Lamp> lampsOf(const Scene& scene, const SceneSnapshot& snapshot) {
         }
         emitter.weight = emitter.area * glm::dot(material.emission,
                                                  glm::vec3(0.2126f, 0.7152f, 0.0722f));  // Rec. 709 luminance
-        lamp.weight += emitter.weight;
-        lamp.emitters.push_back(emitter);
+        areaLight.weight += emitter.weight;
+        areaLight.emitters.push_back(emitter);
       }
-      if (lamp.weight > 0.0) lamps.push_back(std::move(lamp));
+      if (areaLight.weight > 0.0) areaLights.push_back(std::move(areaLight));
     }
   }
-  return lamps;
+  return areaLights;
 }
 
 /// A point of what shines of a triangle: the next of the sequence that is no hole.
@@ -164,41 +164,43 @@ glm::vec2 pointOn(const Emitter& emitter, int& sequence) {
   return emitter.someShiningPoint;
 }
 
-/// One sample for each lamp and the others by their power: a dim lamp may be all that lights a place.
-std::vector<int> samplesOfLamps(const std::vector<Lamp>& lamps, int count) {
+/// One sample for each area light and the others by their power: a dim area light may be all that lights a
+/// place.
+std::vector<int> samplesOfAreaLights(const std::vector<AreaLight>& areaLights, int count) {
   double total = 0.0;
-  for (const Lamp& lamp : lamps) total += lamp.weight;
-  const int shared = count - static_cast<int>(lamps.size());
+  for (const AreaLight& areaLight : areaLights) total += areaLight.weight;
+  const int shared = count - static_cast<int>(areaLights.size());
   std::vector<int> samples;
   double sum = 0.0;
   int given = 0;
-  for (const Lamp& lamp : lamps) {
-    sum += lamp.weight;
+  for (const AreaLight& areaLight : areaLights) {
+    sum += areaLight.weight;
     const int upToHere =
-        &lamp == &lamps.back() ? shared : static_cast<int>(std::lround(shared * (sum / total)));
+        &areaLight == &areaLights.back() ? shared : static_cast<int>(std::lround(shared * (sum / total)));
     samples.push_back(1 + upToHere - given);
     given = upToHere;
   }
   return samples;
 }
 
-/// Samples of one lamp, strata of its power, as its whole light.
-void addLamp(LightSet& set, const Lamp& lamp, int count, int& sequence, const Bounds& bounds,
-             int shadowSize) {
+/// Samples of one area light, strata of its power, as its whole light.
+void addAreaLight(LightSet& set, const AreaLight& areaLight, int count, int& sequence, const Bounds& bounds,
+                  int shadowSize) {
   std::vector<double> cumulative;
   double sum = 0.0;
-  for (const Emitter& emitter : lamp.emitters) cumulative.push_back(sum += emitter.weight / lamp.weight);
+  for (const Emitter& emitter : areaLight.emitters)
+    cumulative.push_back(sum += emitter.weight / areaLight.weight);
   const float diagonal = glm::length(bounds.high - bounds.low);
   for (int i = 0; i < count; ++i) {
     const double stratum = (i + 0.5) / count;
     const auto found = std::lower_bound(cumulative.begin(), cumulative.end(), stratum);
-    const Emitter& emitter = lamp.emitters[std::min<std::size_t>(
-        static_cast<std::size_t>(found - cumulative.begin()), lamp.emitters.size() - 1)];
+    const Emitter& emitter = areaLight.emitters[std::min<std::size_t>(
+        static_cast<std::size_t>(found - cumulative.begin()), areaLight.emitters.size() - 1)];
     const glm::vec2 point = pointOn(emitter, sequence);
     const glm::vec3 onSurface =
         emitter.a + point.x * (emitter.b - emitter.a) + point.y * (emitter.c - emitter.a);
     const glm::vec3 position = onSurface + emitter.normal * (1e-5f * diagonal);
-    const double probability = emitter.weight / lamp.weight;
+    const double probability = emitter.weight / areaLight.weight;
     const float area =
         static_cast<float>(emitter.area / (probability * count));  // that the sample stands for
     // Nearer than the radius of its patch the inverse square law of a point does not hold for a sample.
@@ -212,21 +214,21 @@ void addLamp(LightSet& set, const Lamp& lamp, int count, int& sequence, const Bo
 
 void addAreaLights(LightSet& set, const Scene& scene, const SceneSnapshot& snapshot, int count,
                    int shadowSize) {
-  std::vector<Lamp> lamps = lampsOf(scene, snapshot);
-  if (lamps.empty()) return;
-  if (static_cast<int>(lamps.size()) > count) {
-    // Too many for a sample each: one lamp of all emitters, the dimmest of which may get none.
-    Lamp all;
-    for (const Lamp& lamp : lamps) {
-      all.emitters.insert(all.emitters.end(), lamp.emitters.begin(), lamp.emitters.end());
-      all.weight += lamp.weight;
+  std::vector<AreaLight> areaLights = areaLightsOf(scene, snapshot);
+  if (areaLights.empty()) return;
+  if (static_cast<int>(areaLights.size()) > count) {
+    // Too many for a sample each: one area light of all emitters, the dimmest of which may get none.
+    AreaLight all;
+    for (const AreaLight& areaLight : areaLights) {
+      all.emitters.insert(all.emitters.end(), areaLight.emitters.begin(), areaLight.emitters.end());
+      all.weight += areaLight.weight;
     }
-    lamps = {std::move(all)};
+    areaLights = {std::move(all)};
   }
-  const std::vector<int> samples = samplesOfLamps(lamps, count);
+  const std::vector<int> samples = samplesOfAreaLights(areaLights, count);
   int sequence = 0;
-  for (std::size_t i = 0; i < lamps.size(); ++i)
-    addLamp(set, lamps[i], samples[i], sequence, snapshot.bounds, shadowSize);
+  for (std::size_t i = 0; i < areaLights.size(); ++i)
+    addAreaLight(set, areaLights[i], samples[i], sequence, snapshot.bounds, shadowSize);
 }
 
 void addDirectional(LightSet& set, const LightState& light, const Bounds& bounds, int shadowSize) {

@@ -17,7 +17,7 @@ constexpr auto words(Deed) {
   return std::array{"paint", "abort", "fault", "spin", "nan", "refuse", "exhaust", "tire", "rest"};
 }
 
-/// A white picture, unless the deed is something else.
+/// A white image, unless the deed is something else.
 class Paint : public Pass {
  public:
   Param<Deed> deed{this, "deed", Deed::paint, "what it does in place of painting"};
@@ -34,10 +34,10 @@ class Paint : public Pass {
     if (deed == Deed::refuse) throw Error("the pass refuses; expected a scene of another kind");
     if (deed == Deed::exhaust) throw std::bad_alloc();
     if (deed == Deed::rest) std::this_thread::sleep_for(std::chrono::milliseconds(200));
-    // Pictures and the frame to warm up are no trouble, timed frames are.
+    // Images and the frame to warm up are no trouble, timed frames are.
     static int painted = 0;
     if (deed == Deed::tire && ++painted > 4) throw Error("the pass is tired; expected fewer frames");
-    Image image{frame.image(gpu::Format::rgba32f, "picture")};
+    Image image{frame.image(gpu::Format::rgba32f, "image")};
     image.texture->clear(glm::vec4(value));
     if (deed == Deed::nan) {
       std::vector<float> values = image.texture->downloadFloats();

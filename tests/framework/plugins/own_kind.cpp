@@ -75,7 +75,7 @@ class Look : public Pass {
   In<own_kind::Leaves> leaves{this, "leaves", "that are looked at"};
   Out<Image> radiance{this, "radiance", Contributes::direct};
   void run(PassContext& frame) override {
-    const Image image{frame.image(gpu::Format::rgba32f, "picture")};
+    const Image image{frame.image(gpu::Format::rgba32f, "image")};
     image.texture->clear(glm::vec4(leaves->table->downloadFloats().front()));
     radiance = image;
   }
@@ -86,5 +86,5 @@ class Look : public Pass {
 LUMIVOX_TECHNIQUE(registry) {
   registry.describe("brings a kind of port of its own", "no paper");
   registry.add<Plant>("plant", "makes two leaves");
-  registry.add<Look>("look", "a picture of them");
+  registry.add<Look>("look", "an image of them");
 }

@@ -16,8 +16,8 @@ TEST_CASE("every surface that is seen lies in a voxel that is marked, and nothin
   TechniqueSet techniques(TechniqueSet::defaultDirectories());
   const Pipeline pipeline = Pipeline::load("scenes/pipelines/seen_voxels.pipeline");
   PipelineExecutor executor(device, techniques, builder.scene, pipeline, {});
-  const Picture shown = executor.render(0.0).outputs.at("shown");
-  // The floor is seen within atan(1 / 3) of the axis, which is 0.61 of the picture's half height.
+  const ImageBuffer shown = executor.render(0.0).outputs.at("shown");
+  // The floor is seen within atan(1 / 3) of the axis, which is 0.61 of the image's half height.
   CHECK(shown.at(8, 8, 0) == 1.0f);
   CHECK(shown.at(4, 8, 0) == 1.0f);
   CHECK(shown.at(1, 8, 0) == 0.0f);

@@ -19,7 +19,7 @@ struct ComparedPoint {
   ParameterValues parameters;
   TimingStatistics frameMs;
   TradeOff tradeOff;                    ///< of the median of frameMs
-  std::optional<std::size_t> beatenBy;  ///< by the rule of beats(), into points; none: on the front
+  std::optional<std::size_t> beatenBy;  ///< by the rule of beats(), into points; none: on the Pareto front
 };
 
 /// One cell of the tables.
@@ -46,9 +46,9 @@ struct BudgetRange {
 };
 
 struct PipelineComparison {
-  std::string component;  ///< name(Contributes); "final": the whole picture
+  std::string component;  ///< name(Contributes); "final": the whole image
   bool bias = false;      ///< against the technique's own model; false: against full transport
-  std::string truth;      ///< layer that they are judged against
+  std::string reference;  ///< layer that they are judged against
   std::string metric;
   std::vector<ComparedPoint> points;  ///< by time
   std::vector<ComparedPipeline> pipelines;
@@ -60,7 +60,7 @@ struct PipelineComparison {
   /// Points whose time or error has too few repeats or seeds for any claim: they are neither beaten nor beat.
   std::size_t undecided = 0;
 
-  /// Whether some of its points are on the front: no other pipeline beats it at their budgets.
+  /// Whether some of its points are on the Pareto front: no other pipeline beats it at their budgets.
   bool hasFront(std::size_t pipeline) const;
 };
 
@@ -70,34 +70,34 @@ struct ComparisonLimits {
   TimeFloor floor = {};  ///< of the device that the points were timed on
 };
 
-/// Names of the components that pipelines can be compared in, in the order of a picture's making; the last is
-/// "final", the whole picture.
+/// Names of the components that pipelines can be compared in, in the order of an image's making; the last is
+/// "final", the whole image.
 std::vector<std::string> comparableComponents();
 /// Of these, those that some point has an error for.
 std::vector<std::string> componentsOf(const std::vector<const ReportPoint*>& points);
-/// The error of a component at a point, if it was measured: against the bias truth or the full one (a
-/// component with one truth has only the first, which then answers for both). For the component "final" it is
-/// that of the whole picture.
+/// The error of a component at a point, if it was measured: against the bias reference or the full one (a
+/// component with one reference has only the first, which then answers for both). For the component "final"
+/// it is that of the whole image.
 const ComponentError* componentErrorOf(const ReportPoint& point, const std::string& component, bool bias);
-/// The metrics that can be compared: those that are 0 for the truth itself and grow with the error.
+/// The metrics that can be compared: those that are 0 for the reference itself and grow with the error.
 std::vector<std::string> errorMetrics();
 /// Error names the metrics, and the nearest, when this is none of errorMetrics().
 void requireErrorMetric(const std::string& metric);
-/// The metric of that name: mean over seeds with the truth's noise and the spread over seeds; NaN: none.
+/// The metric of that name: mean over seeds with the reference's noise and the spread over seeds; NaN: none.
 Measured errorNumber(const ComponentError& error, const std::string& metric);
 
 /// Compares the points that were timed and judged in this component; without any of them `points` is empty.
 PipelineComparison comparePipelines(const std::vector<const ReportPoint*>& points,
                                     const std::string& component, bool bias, const std::string& metric,
                                     const ComparisonLimits& limits);
-/// Every component of a scene, the whole picture last, against full transport and, where that is another
-/// truth, against the techniques' own model. Without what has no points.
+/// Every component of a scene, the whole image last, against full transport and, where that is another
+/// reference, against the techniques' own model. Without what has no points.
 std::vector<PipelineComparison> compareComponents(const std::vector<const ReportPoint*>& points,
                                                   const std::vector<std::string>& metrics,
                                                   const ComparisonLimits& limits);
 
 /// Stored runs that can be set against each other: one scene with its content, camera, time, size of the
-/// picture and positions in the pixel, one device, driver, way of shaders and host, the same outputs kept.
+/// image and positions in the pixel, one device, driver, way of shaders and host, the same outputs kept.
 struct ComparableRuns {
   std::string title;  ///< "cornell, camera main, 128x128, on llvmpipe"
   /// The last of each point, and of each pipeline only those with the content of its last run: its text, its

@@ -38,7 +38,8 @@ double sigmasApart(const Measured& a, const Measured& b);
 /// by more than the uncertainty (differ(); for times by `timeShare` too). Points within their uncertainties
 /// do not beat each other.
 bool beats(const TradeOff& a, const TradeOff& b, double timeShare = kSignificantTimeShare);
-/// For each point the one that beats it: of those the one with the least error. None: it is on the front.
+/// For each point the one that beats it: of those the one with the least error. None: it is on the Pareto
+/// front.
 std::vector<std::optional<std::size_t>> beatenBy(const std::vector<TradeOff>& points,
                                                  double timeShare = kSignificantTimeShare);
 
@@ -61,8 +62,9 @@ struct Interpolated {
 /// extrapolated. With w = ln(T/t1) / ln(t2/t1), the slope s = ln(e2/e1) / ln(t2/t1) and relative
 /// uncertainties u, to first order:
 ///   u^2 = ((1-w) u_e1 + w u_e2)^2 + s^2 ((1-w)^2 u_t1^2 + w^2 u_t2^2).
-/// Errors add linearly, since the two may share the truth's noise and then err together: the safe side. The
-/// second term is at most ln(e2/e1)^2: a segment shorter than its times are sure says no more than its ends.
+/// Errors add linearly, since the two may share the reference's noise and then err together: the safe side.
+/// The second term is at most ln(e2/e1)^2: a segment shorter than its times are sure says no more than its
+/// ends.
 Interpolated errorAtTime(const std::vector<TradeOff>& points, const std::vector<std::size_t>& front,
                          double timeMs);
 /// The time at an error: the same segment read the other way, with 1/s in place of s:

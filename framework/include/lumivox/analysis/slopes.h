@@ -19,7 +19,7 @@ struct SweepSlope {
 };
 
 /// For every numeric parameter that takes three values or more while the others stay. Errors are RMSE without
-/// the truth's noise, and noise is the picture's own; points at which nothing is left are left out.
+/// the reference's noise, and noise is the image's own; points at which nothing is left are left out.
 std::vector<SweepSlope> slopesOf(const std::vector<const ReportPoint*>& points);
 
 nlohmann::ordered_json toJson(const std::vector<SweepSlope>& slopes);

@@ -10,7 +10,7 @@
 
 namespace lumivox {
 
-/// Runs what writes files (encoding a picture takes as long as rendering one) in the order in which it is
+/// Runs what writes files (encoding an image takes as long as rendering one) in the order in which it is
 /// given, one at a time.
 class BackgroundWriter {
  public:

@@ -16,7 +16,7 @@ namespace lumivox {
 inline constexpr std::uint64_t kLargestTextFile = std::uint64_t{64}
                                                   << 20;  ///< texts, materials, cards, shaders
 inline constexpr std::uint64_t kLargestModelFile = std::uint64_t{4} << 30;    ///< OBJ, also when unpacked
-inline constexpr std::uint64_t kLargestPictureFile = std::uint64_t{1} << 30;  ///< PNG, JPG, TGA
+inline constexpr std::uint64_t kLargestImageFile = std::uint64_t{1} << 30;    ///< PNG, JPG, TGA
 inline constexpr std::uint64_t kLargestExrFile = std::uint64_t{4} << 30;      ///< many layers of floats
 inline constexpr std::uint64_t kLargestVolumeFile = std::uint64_t{8} << 30;   ///< OpenVDB
 inline constexpr std::uint64_t kLargestLibraryFile = std::uint64_t{1} << 30;  ///< techniques

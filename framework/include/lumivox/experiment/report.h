@@ -21,12 +21,12 @@ struct ReportOptions {
       pipelines;                      ///< no pipelines: every committed one that suits the scene
   std::vector<std::string> settings;  ///< "name=value"; pins that axis of a sweep
   std::filesystem::path output = "out/report/index.html";  ///< the page
-  int truthSamples = 0;                                    ///< per pixel; 0: truthSamplesFor(width, height)
+  int referenceSamples = 0;   ///< per pixel; 0: referenceSamplesFor(width, height)
   int width = 0, height = 0;  ///< 0: the camera's, reduced to at most 160 on a software rasteriser
   std::string camera;
   double time = 0.0;       ///< s
   std::uint64_t seed = 1;  ///< the first one
-  int subpixels = 16;      ///< pictures that are judged are means over this many positions in the pixel
+  int subpixels = 16;      ///< images that are judged are means over this many positions in the pixel
   int repeats = 5, seeds = kLeastRepeats;
   /// Pairs of frames 1/24 s apart whose flicker is measured where the scene moves; 0: none.
   int flickerPairs = 4;
@@ -39,7 +39,7 @@ struct ReportOptions {
   /// Told after points were measured: how many of how many, and about how many seconds the rest will take.
   std::function<void(std::size_t done, std::size_t total, double secondsLeft)> progress;
   bool openSweeps = true;                         ///< false: only the default point
-  int voxelResolution = 0;                        ///< of a section on the committed voxelisers; 0: none
+  int voxelResolution = 0;                        ///< of a section on the committed voxelizers; 0: none
   std::filesystem::path store;                    ///< results store that the points are added to; empty: none
   std::vector<double> equalTimesMs, equalErrors;  ///< of the tables; empty: round numbers from the data
   std::string commandLine;                        ///< as typed, for the page
@@ -64,25 +64,25 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
                          const std::function<Scene(const std::filesystem::path&)>& loadScene,
                          const std::function<void(const ReportRecord&)>& write);
 
-/// The truth layer that a component's bias is measured against, that of so many indirect bounces as its
+/// The reference layer that a component's bias is measured against, that of so many indirect bounces as its
 /// technique models (Pass::indirectBounces()), and the one for what the viewer misses. Empty names: a
-/// component without a truth.
-std::pair<std::string, std::string> truthLayers(Contributes component, int bounces = 1);
+/// component without a reference.
+std::pair<std::string, std::string> referenceLayers(Contributes component, int bounces = 1);
 
-/// One layer of a truth and its variance. Where the truth has no layer "one_bounce", direct and both
+/// One layer of a reference and its variance. Where the reference has no layer "one_bounce", direct and both
 /// one-bounce layers are added up; nullopt when it is not there.
-struct TruthLayer {
-  Picture mean, variance;
+struct ReferenceLayer {
+  ImageBuffer mean, variance;
 };
-std::optional<TruthLayer> truthLayer(const LayeredPicture& truth, const std::string& name);
+std::optional<ReferenceLayer> referenceLayer(const LayeredImage& reference, const std::string& name);
 
-/// What an output adds to the whole picture: the output named "final" or contributing final if there is one,
+/// What an output adds to the whole image: the output named "final" or contributing final if there is one,
 /// else the sum of the radiance components (direct, indirect_diffuse, indirect_glossy, scattered). Empty when
 /// there is none of them.
-Picture compositePicture(const FrameResult& frame);
+ImageBuffer compositeImage(const FrameResult& frame);
 
 /// Renders pruned and unpruned alternately, `repeats` times each after one warm-up. With 0 only the warm-up
-/// is rendered, for the pictures, the bytes and the variants; nothing is timed.
+/// is rendered, for the images, the bytes and the variants; nothing is timed.
 PruningRecord measurePruning(gpu::Device& device, TechniqueSource& techniques, const Scene& scene,
                              const Pipeline& pipeline, RenderOptions options, double time, int repeats);
 
@@ -96,11 +96,11 @@ std::vector<std::filesystem::path> pipelinesIn(const std::filesystem::path& fold
 /// something that the scene lacks.
 std::string whyUnsuited(const Pipeline& pipeline, TechniqueSource& techniques, const SceneTraits& traits);
 
-/// Size of the camera's picture reduced to fit within `limit` pixels on its longer side, at least 1, aspect
+/// Size of the camera's image reduced to fit within `limit` pixels on its longer side, at least 1, aspect
 /// kept.
 std::pair<int, int> reducedResolution(int width, int height, int limit);
-/// Samples per pixel at which the truth's noise is well below the techniques' errors and a small picture
+/// Samples per pixel at which the reference's noise is well below the techniques' errors and a small image
 /// takes less than a minute or two.
-int truthSamplesFor(int width, int height);
+int referenceSamplesFor(int width, int height);
 
 }  // namespace lumivox

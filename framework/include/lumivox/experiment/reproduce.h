@@ -18,10 +18,10 @@ namespace lumivox {
 std::vector<std::filesystem::path> committedReproductions();
 
 struct ReproduceOptions {
-  double scale = 0.0;  ///< of picture sides and scaled parameters, above 0 to 1; 0: the table's own
+  double scale = 0.0;  ///< of image sides and scaled parameters, above 0 to 1; 0: the table's own
   int repeats = 5;     ///< timed frames; those of all rows take turns
   std::uint64_t seed = 1;
-  int truthSamples = 0;  ///< per pixel, for the errors that go to a store; 0: truthSamplesFor()
+  int referenceSamples = 0;  ///< per pixel, for the errors that go to a store; 0: referenceSamplesFor()
   std::vector<std::string> repeatArguments;  ///< further options that a repeating command needs
 };
 

@@ -4,7 +4,7 @@
 // What a shader author must know:
 // - Clip space: x to the right, y UP, z from 0 (near) to 1 (far), as glm::perspectiveRH_ZO gives. Row 0 of
 // what is drawn is the TOP of
-//   the picture (clip y = +1), so texel (x, y) means the same in raster passes (gl_FragCoord), compute passes
+//   the image (clip y = +1), so texel (x, y) means the same in raster passes (gl_FragCoord), compute passes
 //   and sampled textures: texture coordinates of a clip position are u = 0.5 + 0.5 x, v = 0.5 - 0.5 y. Front
 //   faces stay counter-clockwise with y up.
 // - Nothing is culled. The depth test passes where depth <= stored. Depth buffers clear to 1, colours to 0.
@@ -257,7 +257,7 @@ struct ColourTarget {
 };
 
 /// Where drawing goes. With no target at all, width and height give the size of an empty framebuffer
-/// (voxelisation).
+/// (voxelization).
 struct RenderTargets {
   std::vector<ColourTarget> colours{};  ///< one per output location; null texture: that output is not kept
   const Texture* depth = nullptr;

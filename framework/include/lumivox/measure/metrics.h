@@ -1,6 +1,6 @@
-// Differences between pictures, in linear radiance unless said otherwise; health and repeated timings.
-// Definitions, reasons and how the truth's noise enters: docs/metrics.md. Everything here gives the same bits
-// on any number of threads.
+// Differences between images, in linear radiance unless said otherwise; health and repeated timings.
+// Definitions, reasons and how the reference's noise enters: docs/metrics.md. Everything here gives the same
+// bits on any number of threads.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "lumivox/base/picture.h"
+#include "lumivox/base/image.h"
 
 namespace lumivox {
 
@@ -25,90 +25,95 @@ struct Measured {
   bool enoughRepeats = true;
 };
 
-/// Every number compares a picture with a truth; pixels that are NaN or infinite in either are left out and
-/// counted. A number that does not exist (every pixel left out, a ratio to a black truth) is NaN. Alpha, the
-/// fourth channel, does not count.
-struct PictureError {
+/// Every number compares an image with a reference; pixels that are NaN or infinite in either are left out
+/// and counted. A number that does not exist (every pixel left out, a ratio to a black reference) is NaN.
+/// Alpha, the fourth channel, does not count.
+struct ImageError {
   Measured rmse;         ///< root mean square over pixels and channels
-  Measured relativeMse;  ///< mean of (x - t)^2 / (t^2 + epsilon^2), epsilon = 1 % of the truth's mean
-  Measured meanRatio;    ///< sum of picture / sum of truth; NaN when the truth is black
+  Measured relativeMse;  ///< mean of (x - t)^2 / (t^2 + epsilon^2), epsilon = 1 % of the reference's mean
+  Measured meanRatio;    ///< sum of image / sum of reference; NaN when the reference is black
   Measured bias;         ///< mean signed difference
   /// 95th percentile of the absolute difference of luminance.
   double percentile95 = 0.0;
-  /// Mean structural similarity (Wang et al. 2004) of luminance as displayed at the truth's exposure.
+  /// Mean structural similarity (Wang et al. 2004) of luminance as displayed at the reference's exposure.
   double ssim = 1.0;
   /// Mean HDR-FLIP (Andersson et al. 2021).
   double flip = 0.0;
-  /// Mean LDR-FLIP (Andersson et al. 2020) of the pictures at the truth's exposure, clipped.
+  /// Mean LDR-FLIP (Andersson et al. 2020) of the images at the reference's exposure, clipped.
   double flipLdr = 0.0;
-  /// How far doubling the truth's noise moves these four; 0 when the noise is not known.
+  /// How far doubling the reference's noise moves these four; 0 when the noise is not known.
   double percentile95Uncertainty = 0.0, ssimUncertainty = 0.0, flipUncertainty = 0.0,
          flipLdrUncertainty = 0.0;
-  /// The RMSE that the truth's own noise alone causes, sqrt(mean variance). It is a part of `rmse`.
+  /// The RMSE that the reference's own noise alone causes, sqrt(mean variance). It is a part of `rmse`.
   double noiseFloor = 0.0;
-  std::uint64_t nonFinitePicture = 0, nonFiniteTruth = 0;  ///< pixels
+  std::uint64_t nonFiniteImage = 0, nonFiniteReference = 0;  ///< pixels
 };
 
-/// `truthVariance` (variance of each truth value, as of its mean) may be empty: then all uncertainties are 0.
-/// Those of the first four numbers are propagated from it to first order. Error when the shapes differ, the
-/// channels are not 1, 3 or 4, or a variance is negative or not finite.
-PictureError compare(const Picture& picture, const Picture& truth, const Picture& truthVariance = {});
+/// `referenceVariance` (variance of each reference value, as of its mean) may be empty: then all
+/// uncertainties are 0. Those of the first four numbers are propagated from it to first order. Error when the
+/// shapes differ, the channels are not 1, 3 or 4, or a variance is negative or not finite.
+ImageError compare(const ImageBuffer& image, const ImageBuffer& reference,
+                   const ImageBuffer& referenceVariance = {});
 
-/// The same picture made with different random numbers, against one truth. A pixel that is not finite in one
-/// of them counts in none.
+/// The same image made with different random numbers, against one reference. A pixel that is not finite in
+/// one of them counts in none.
 struct SeedsError {
-  /// Of every number the mean over the pictures; its uncertainty is the truth's noise and the standard error
-  /// over the pictures, added in quadrature. nonFinitePicture: of the worst picture.
-  PictureError mean;
-  Picture flipMap;  ///< flipHdr() of the first picture
+  /// Of every number the mean over the images; its uncertainty is the reference's noise and the standard
+  /// error over the images, added in quadrature. nonFiniteImage: of the worst image.
+  ImageError mean;
+  ImageBuffer flipMap;  ///< flipHdr() of the first image
 };
-/// Errors as compare(), and for no picture at all.
-SeedsError compareSeeds(std::span<const Picture> seeds, const Picture& truth,
-                        const Picture& truthVariance = {});
+/// Errors as compare(), and for no image at all.
+SeedsError compareSeeds(std::span<const ImageBuffer> seeds, const ImageBuffer& reference,
+                        const ImageBuffer& referenceVariance = {});
 
 /// FLIP maps, one channel in [0,1], NaN where a pixel is left out. Radiance below 0 counts as 0; flipLdr
 /// clips at 1. 67 pixels per degree unless said otherwise (the papers' default viewing condition).
-Picture flipLdr(const Picture& linearPicture, const Picture& linearTruth, double pixelsPerDegree = 67.0206);
-Picture flipHdr(const Picture& linearPicture, const Picture& linearTruth, double pixelsPerDegree = 67.0206);
+ImageBuffer flipLdr(const ImageBuffer& linearImage, const ImageBuffer& linearReference,
+                    double pixelsPerDegree = 67.0206);
+ImageBuffer flipHdr(const ImageBuffer& linearImage, const ImageBuffer& linearReference,
+                    double pixelsPerDegree = 67.0206);
 
-/// What the mean square error of a picture with random numbers is made of: bias² + noise² + truthNoise². The
-/// squares are unbiased estimates; where chance makes one negative, its root is given as 0.
+/// What the mean square error of an image with random numbers is made of: bias² + noise² + referenceNoise².
+/// The squares are unbiased estimates; where chance makes one negative, its root is given as 0.
 struct ErrorParts {
   Measured bias{std::numeric_limits<double>::quiet_NaN(),
                 0.0};  ///< RMS of what stays when noise is averaged away; NaN when it cannot be told
   Measured noise{std::numeric_limits<double>::quiet_NaN(),
-                 0.0};      ///< RMS of the picture's own noise; NaN for a single picture
-  double truthNoise = 0.0;  ///< RMS of the truth's noise; 0 when it is not known
+                 0.0};          ///< RMS of the image's own noise; NaN for a single image
+  double referenceNoise = 0.0;  ///< RMS of the reference's noise; 0 when it is not known
 };
-/// `seeds`: the same picture made with different random numbers, or a single picture `withoutNoise`, as two
-/// that are the same are. From three pictures on the uncertainty is that of the jackknife over them, which
+/// `seeds`: the same image made with different random numbers, or a single image `withoutNoise`, as two
+/// that are the same are. From three images on the uncertainty is that of the jackknife over them, which
 /// needs no independence of pixels; of two it is the bound for pixels that all err together. Definitions and
 /// derivations: docs/metrics.md. Error as for compare().
-ErrorParts errorParts(const std::vector<Picture>& seeds, const Picture& truth,
-                      const Picture& truthVariance = {}, bool withoutNoise = false);
+ErrorParts errorParts(const std::vector<ImageBuffer>& seeds, const ImageBuffer& reference,
+                      const ImageBuffer& referenceVariance = {}, bool withoutNoise = false);
 
-/// Mean structural similarity of two one-channel pictures with values in [0,1], over the windows that lie
-/// within the picture.
-double ssim(const Picture& pictureLuminance, const Picture& truthLuminance);
+/// Mean structural similarity of two one-channel images with values in [0,1], over the windows that lie
+/// within the image.
+double ssim(const ImageBuffer& imageLuminance, const ImageBuffer& referenceLuminance);
 
-/// Changes between consecutive frames that the truth does not make: RMS over pixels of ((p1-p0) - (t1-t0)).
-double flicker(const Picture& frame0, const Picture& frame1, const Picture& truth0, const Picture& truth1);
+/// Changes between consecutive frames that the reference does not make: RMS over pixels of ((p1-p0) -
+/// (t1-t0)).
+double flicker(const ImageBuffer& frame0, const ImageBuffer& frame1, const ImageBuffer& reference0,
+               const ImageBuffer& reference1);
 
-/// The same over a sequence: RMS over consecutive pairs, from which the truth's noise is subtracted, which
-/// must be independent from frame to frame. Where chance makes the square negative, 0. `variances` may be
-/// empty. NaN for fewer than two frames; Error when there are not as many truths as frames.
-Measured flicker(const std::vector<Picture>& frames, const std::vector<Picture>& truths,
-                 const std::vector<Picture>& variances = {});
+/// The same over a sequence: RMS over consecutive pairs, from which the reference's noise is subtracted,
+/// which must be independent from frame to frame. Where chance makes the square negative, 0. `variances` may
+/// be empty. NaN for fewer than two frames; Error when there are not as many references as frames.
+Measured flicker(const std::vector<ImageBuffer>& frames, const std::vector<ImageBuffer>& references,
+                 const std::vector<ImageBuffer>& variances = {});
 
-/// The exposure at which the truth's 99th percentile of luminance (its largest, when that is 0) becomes 0.8:
-/// used for display and LDR metrics; 1 for a black picture.
-float displayExposure(const Picture& truth);
+/// The exposure at which the reference's 99th percentile of luminance (its largest, when that is 0) becomes
+/// 0.8: used for display and LDR metrics; 1 for a black image.
+float displayExposure(const ImageBuffer& reference);
 
 /// A one-channel map in [0,1] in the report's ramp, black over violet and orange to pale yellow, whose
 /// lightness grows in proportion to the value; linear RGB for writePng. NaN stays NaN.
-Picture falseColour(const Picture& map);
+ImageBuffer falseColour(const ImageBuffer& map);
 
-Picture luminance(const Picture& rgb);  ///< Rec. 709 weights; one channel is luminance already
+ImageBuffer luminance(const ImageBuffer& rgb);  ///< Rec. 709 weights; one channel is luminance already
 
 // ---- health
 struct Health {

@@ -1,5 +1,5 @@
-// Exact truth for voxel grids: which voxels a scene's triangles touch, by the separating axis theorem in
-// double precision on the CPU; and how a voxeliser's grid differs from it, as precision, recall and holes
+// Exact reference for voxel grids: which voxels a scene's triangles touch, by the separating axis theorem in
+// double precision on the CPU; and how a voxelizer's grid differs from it, as precision, recall and holes
 // that rays find. Definitions and reasons: docs/metrics.md. Everything here gives the same bits on any number
 // of threads.
 #pragma once
@@ -88,40 +88,41 @@ class TriangleBoxTest {
 };
 
 /// Contacts closer than this, in voxels, are left undecided: single precision places a surface in a grid of
-/// 1024 voxels no better than four of its steps (4 * 2^-24 * 1024 = 2.4e-4), and a voxeliser adds its own.
+/// 1024 voxels no better than four of its steps (4 * 2^-24 * 1024 = 2.4e-4), and a voxelizer adds its own.
 inline constexpr double kContactTolerance = 1e-3;
 
 /// What is right. A voxel that is possible but not certain is touched by no more than the tolerance, or is
 /// missed by no more than it: either answer is right there.
-struct VoxelTruth {
+struct VoxelReference {
   VoxelSet certain;   ///< the box shrunk by the tolerance on every side is touched
   VoxelSet possible;  ///< the box grown by it is
 };
 
 /// The voxels that the triangles touch; their corners are in voxels, from the corner of voxel (0,0,0).
 /// Triangles with corners that are not finite touch nothing.
-VoxelTruth trueVoxels(std::span<const ExactTriangle> triangles, const glm::ivec3& resolution,
-                      double tolerance = kContactTolerance);
+VoxelReference trueVoxels(std::span<const ExactTriangle> triangles, const glm::ivec3& resolution,
+                          double tolerance = kContactTolerance);
 
 /// The same for a scene at one time. Of a surface with a cut-out mask only what is left of it counts: a voxel
 /// is certain when the mask is at least 0.5 at some point of the surface within it, and not possible when the
 /// mask is below 0.5 at every texel that the surface within it reaches.
-VoxelTruth trueVoxels(const Scene& scene, const SceneSnapshot& snapshot, const GridPlacement& grid,
-                      double tolerance = kContactTolerance);
+VoxelReference trueVoxels(const Scene& scene, const SceneSnapshot& snapshot, const GridPlacement& grid,
+                          double tolerance = kContactTolerance);
 
 struct VoxelError {
   std::uint64_t truePositive = 0, falsePositive = 0, falseNegative = 0;
   double precision() const;  ///< share of the occupied voxels that are rightly so; 1 when none is occupied
-  double recall() const;     ///< share of the truth's voxels that are occupied; 1 when the truth has none
+  double recall()
+      const;  ///< share of the reference's voxels that are occupied; 1 when the reference has none
 };
 /// An undecided voxel counts for neither, but for one case: where it and its 26 neighbours, all within the
 /// grid, are empty, the surface was missed on whichever side it lies, and that is a false negative. Error
 /// when the resolutions differ.
-VoxelError compareVoxels(const VoxelSet& occupied, const VoxelTruth& truth);
+VoxelError compareVoxels(const VoxelSet& occupied, const VoxelReference& reference);
 
 /// Surfaces that straight rays slip through. A ray crosses a surface wherever it meets a run of consecutive
-/// voxels of the truth, possible ones of which at least one is certain; the crossing is a hole when the ray
-/// meets no occupied voxel from 1.5 voxel lengths before the run to 1.5 behind it.
+/// voxels of the reference, possible ones of which at least one is certain; the crossing is a hole when the
+/// ray meets no occupied voxel from 1.5 voxel lengths before the run to 1.5 behind it.
 struct RayHoles {
   std::uint64_t axisCrossings = 0, axisHoles = 0;        ///< of rays along the grid's axes
   std::uint64_t obliqueCrossings = 0, obliqueHoles = 0;  ///< of rays in all other directions
@@ -130,13 +131,13 @@ struct RayHoles {
 };
 inline constexpr double kHoleReach = 1.5;  ///< voxel lengths along the ray
 
-/// The crossings of one truth, found once for any number of grids: of each the voxels of its ray that may
+/// The crossings of one reference, found once for any number of grids: of each the voxels of its ray that may
 /// close it. Rays along the axes go through the centres of the columns: of all, or of `raysPerKind` per axis
 /// at equal steps where there are more. As many oblique rays are spread evenly over all directions and
 /// places, the same every time.
 class RayCrossings {
  public:
-  explicit RayCrossings(const VoxelTruth& truth, int raysPerKind = 1 << 16);
+  explicit RayCrossings(const VoxelReference& reference, int raysPerKind = 1 << 16);
   /// Error when the resolutions differ.
   RayHoles holes(const VoxelSet& occupied) const;
 
@@ -153,6 +154,6 @@ class RayCrossings {
 };
 
 /// The same for one grid.
-RayHoles rayHoles(const VoxelSet& occupied, const VoxelTruth& truth, int raysPerKind = 1 << 16);
+RayHoles rayHoles(const VoxelSet& occupied, const VoxelReference& reference, int raysPerKind = 1 << 16);
 
 }  // namespace lumivox

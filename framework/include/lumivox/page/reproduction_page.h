@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lumivox/base/picture.h"
+#include "lumivox/base/image.h"
 #include "lumivox/results/reproduction.h"
 
 namespace lumivox {
@@ -19,7 +19,7 @@ std::vector<std::string> reproductionCells(const MeasuredRow& row, const JudgedR
 const std::vector<std::string>& reproductionHeadings();
 /// Rows as a table of Markdown.
 std::string reproductionTable(const std::vector<MeasuredRow>& rows, const JudgedTable& judged);
-/// "Reproduced: ...", with the count of rows; empty for a result of pictures alone.
+/// "Reproduced: ...", with the count of rows; empty for a result of images alone.
 std::string verdictText(const ReproducedResult& result);
 /// "triangles^0.93 ± 0.02 (published: sublinear), reproduced".
 std::string curveText(const MeasuredCurve& curve, const JudgedCurve& judged);
@@ -30,7 +30,7 @@ std::vector<std::string> reproductionNotes(const ReproducedResult& result);
 
 /// All panels under one exposure, each with its name, those that are absent with the reason, as display
 /// values in [0,1] for encodePng. Error without panels.
-Picture contactSheet(const ReproducedResult& result);
+ImageBuffer contactSheet(const ReproducedResult& result);
 /// The points of all curves: curve, x and its name, median, quartiles, unit, repeats, why not (RFC 4180).
 std::string curvesAsCsv(const ReproducedResult& result);
 /// The curves side by side on logarithmic axes, with quartiles, and a line of slope 1 to compare with.

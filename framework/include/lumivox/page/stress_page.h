@@ -9,8 +9,8 @@
 
 namespace lumivox {
 
-/// Writes `folder`/index.html and index.json; the pictures are there already. Returns the page. A cell whose
-/// picture is not there has no link.
+/// Writes `folder`/index.html and index.json; the images are there already. Returns the page. A cell whose
+/// image is not there has no link.
 std::filesystem::path writeStressPage(const std::filesystem::path& folder,
                                       const std::vector<StressCell>& cells, const std::string& commandLine);
 

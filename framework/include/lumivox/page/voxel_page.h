@@ -1,4 +1,4 @@
-// The page of the voxelisers, with CSV and JSON beside it.
+// The page of the voxelizers, with CSV and JSON beside it.
 #pragma once
 
 #include <filesystem>
@@ -6,20 +6,20 @@
 #include <vector>
 
 #include "lumivox/results/report_record.h"
-#include "lumivox/results/voxelisers.h"
+#include "lumivox/results/voxelizers.h"
 
 namespace lumivox {
 
 /// Writes `folder`/index.html, voxels.csv and voxels.json. Error (before any work: requireWritable) when one
 /// cannot be written.
-struct VoxeliserFiles {
+struct VoxelizerFiles {
   std::filesystem::path page, csv, json;
 };
-VoxeliserFiles voxeliserFiles(const std::filesystem::path& folder);
-void writeVoxelisers(const VoxeliserFiles& files, const std::vector<VoxeliserRecord>& records,
+VoxelizerFiles voxelizerFiles(const std::filesystem::path& folder);
+void writeVoxelizers(const VoxelizerFiles& files, const std::vector<VoxelizerRecord>& records,
                      const gpu::DeviceInfo& device, const std::string& commandLine);
 /// The JSON alone.
-std::string voxelisersJson(const std::vector<VoxeliserRecord>& records, const gpu::DeviceInfo& device,
+std::string voxelizersJson(const std::vector<VoxelizerRecord>& records, const gpu::DeviceInfo& device,
                            const std::string& commandLine);
 
 }  // namespace lumivox

@@ -1,9 +1,9 @@
-// Components of the picture, which outputs of passes hold and references are made of.
+// Components of the image, which outputs of passes hold and references are made of.
 #pragma once
 
 namespace lumivox {
 
-/// The component of the picture that an output holds; decides which truth it is judged against.
+/// The component of the image that an output holds; decides which reference it is judged against.
 enum class Contributes {
   nothing,
   direct,
@@ -17,6 +17,6 @@ const char* name(Contributes component);  ///< "direct", "indirect_diffuse", ...
 /// What an output shows where there is nothing to compute: 1 (nothing is occluded) for ambient occlusion,
 /// else 0 (black).
 float neutralElement(Contributes component);
-int channelsOf(Contributes component);  ///< of its pictures: 1 for ambient occlusion, else 3
+int channelsOf(Contributes component);  ///< of its images: 1 for ambient occlusion, else 3
 
 }  // namespace lumivox

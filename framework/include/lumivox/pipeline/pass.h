@@ -44,7 +44,7 @@ std::string unmetNeed(Needs needs, const SceneTraits& traits);
 
 /// What a pass reads besides its inputs and parameters. A pass is run again only when one of these or an
 /// input changed. materials: with their textures. lights: also the motion of emissive objects. camera: also
-/// the size of the picture. partOfCamera: only what Pass::readsOfCamera() returns. time: also the frame's
+/// the size of the image. partOfCamera: only what Pass::readsOfCamera() returns. time: also the frame's
 /// index. history: what earlier frames left, by PassContext::history() and accumulated(); such a pass runs in
 /// every frame of a run that accumulates (RenderOptions::accumulate).
 enum class Reads : std::uint32_t {
@@ -379,7 +379,7 @@ class PassContext {
   /// Resources that stay for the next frame; needs Reads::history. Every call returns both sides, so that a
   /// frame that has to be rendered again finds `previous` as it was. `previous` is null in the first frame,
   /// after a frame in which the pass did not ask for this label with this shape, after a change of the
-  /// picture's size, a parameter, the seed or the pipeline, and in runs that do not accumulate.
+  /// image's size, a parameter, the seed or the pipeline, and in runs that do not accumulate.
   virtual History<gpu::TextureRef> history(const gpu::TextureDescription& description,
                                            const std::string& label) = 0;
   virtual History<gpu::BufferRef> history(std::uint64_t sizeBytes, const std::string& label) = 0;
@@ -416,7 +416,7 @@ class PassContext {
   void dispatchIndirect(const shader::BoundProgram& program, const shader::BindingSet& bindings,
                         const gpu::Buffer& arguments, std::uint64_t offsetBytes = 0);
 
-  gpu::TextureRef image(gpu::Format format, const std::string& label);  ///< picture-sized d2 texture
+  gpu::TextureRef image(gpu::Format format, const std::string& label);  ///< image-sized d2 texture
   gpu::TextureRef volume(const glm::ivec3& size, gpu::Format format, const std::string& label,
                          int levels = 1);
   /// Room for so many elements of a storage block that ends with an array of open length, and for one at

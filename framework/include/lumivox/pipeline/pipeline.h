@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "lumivox/base/hash.h"
-#include "lumivox/base/picture.h"
+#include "lumivox/base/image.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/dsl/schema.h"
 #include "lumivox/pipeline/contributes.h"
@@ -110,7 +110,7 @@ struct RenderOptions {
   bool wantsOutputs = true;         ///< false: none of them, only what keepOutput() names
   std::uint64_t seed = 1;
   bool health = false;     ///< scan every pass output for NaN, Inf and negative values; not part of the times
-  bool countWork = false;  ///< count what every pass does: the same pictures, several times slower
+  bool countWork = false;  ///< count what every pass does: the same images, several times slower
   /// Passes find what they left in the frame before (PassContext::history(), accumulated(), inputs that are
   /// histories). Off: every frame is made as if it were the first, so that frame N alone is frame N of a
   /// sequence.
@@ -136,10 +136,10 @@ struct PassRecord {
 };
 
 struct FrameResult {
-  std::map<std::string, Picture>
-      outputs;  ///< rgb each (one channel for ambient occlusion); only when pictures were asked for
+  std::map<std::string, ImageBuffer>
+      outputs;  ///< rgb each (one channel for ambient occlusion); only when images were asked for
   std::map<std::string, Contributes> components;
-  /// Per output: the most bounces that its pass or one before it models (Pass::indirectBounces()).
+  /// PipelineExecutor::indirectBounces() of the outputs that were wanted.
   std::map<std::string, int> indirectBounces;
   std::vector<PassRecord> passes;
   double frameMs = 0;          ///< whole frame, device idle before and after; with Timing::passes NaN
@@ -181,16 +181,16 @@ class PipelineExecutor {
                    const Pipeline& pipeline, const RenderOptions& options);
   ~PipelineExecutor();
 
-  enum class Pictures { no, yes };
+  enum class Images { no, yes };
   /// What is timed: the frame as a whole, without any instrument inside of it, or its passes, for
   /// timedPasses(). Where the device keeps time for its passes, such a frame waits for nothing; where it does
   /// not (DeviceInfo::timerQueriesTrusted), it waits before and after every pass.
   enum class Timing { frame, passes };
   /// Renders the scene at `time`. Passes whose inputs did not change since the last call are not run again.
-  FrameResult render(double time, int frameIndex = 0, Pictures pictures = Pictures::yes,
+  FrameResult render(double time, int frameIndex = 0, Images images = Images::yes,
                      Timing timing = Timing::frame);
   /// The same for a snapshot made elsewhere: the viewer's own camera.
-  FrameResult render(const SceneSnapshot& snapshot, int frameIndex = 0, Pictures pictures = Pictures::yes,
+  FrameResult render(const SceneSnapshot& snapshot, int frameIndex = 0, Images images = Images::yes,
                      Timing timing = Timing::frame);
   /// The passes of every frame that was rendered with Timing::passes since the last call, in their order,
   /// with their device times. Waits for the device.
@@ -202,7 +202,7 @@ class PipelineExecutor {
   void emptyHistories();
 
   /// Other parameters from now on, over the pipeline's defaults. Passes whose parameters stay as they are
-  /// keep what they made; pictures are those of a new executor, to the bit. Histories are emptied. Throws
+  /// keep what they made; images are those of a new executor, to the bit. Histories are emptied. Throws
   /// DiagnosticsError like the constructor, and then leaves everything as it was.
   void setParameters(const ParameterValues& values);
   /// Another seed from now on: every pass runs again, and histories are emptied.
@@ -223,6 +223,9 @@ class PipelineExecutor {
   /// Resources that a frame does not use are freed at its end (true, as it begins), or stay for the next one:
   /// for frames that want now this and now that output, and are timed.
   void freeUnused(bool free);
+  /// Per output, whether it is made or not: the most bounces that its pass or one before it models
+  /// (Pass::indirectBounces()); 1 of an output without indirect light.
+  std::map<std::string, int> indirectBounces() const;
   /// A pass of the pipeline with its parameters set, whether it runs or not. Error for an unknown name.
   const Pass& pass(const std::string& name) const;
   /// After the last render. Null when it was left out or given back. Error for an unknown name.
@@ -269,9 +272,9 @@ class PassHarness {
 };
 
 /// What an output shows that was left out: its neutral element everywhere.
-Picture neutralPicture(int width, int height, Contributes component);
+ImageBuffer neutralImage(int width, int height, Contributes component);
 
-/// A texture's picture as the framework stores pictures: row 0 on top.
-Picture pictureOf(const gpu::Texture& texture, int channels = 3);
+/// A texture's image as the framework stores images: row 0 on top.
+ImageBuffer imageOf(const gpu::Texture& texture, int channels = 3);
 
 }  // namespace lumivox

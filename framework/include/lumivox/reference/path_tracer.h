@@ -1,4 +1,4 @@
-// The truth: unidirectional path tracing on Embree with next-event estimation and multiple importance
+// The reference: unidirectional path tracing on Embree with next-event estimation and multiple importance
 // sampling.
 //
 // Components at the first surface that a camera ray hits (box pixel filter of one pixel):
@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "lumivox/base/picture.h"
+#include "lumivox/base/image.h"
 #include "lumivox/scene/scene.h"
 
 namespace lumivox {
@@ -53,11 +53,11 @@ struct ReferenceOptions {
 /// time, camera, resolution, occlusion_distance, tracer_version, bounce_layers (when there are any), cut_off
 /// (the estimated share of all light that lies beyond the last bounce, which is warned of above 1 %, and the
 /// factor from bounce to bounce). At least two samples per pixel, or Error.
-LayeredPicture renderReference(const Scene& scene, const ReferenceOptions& options);
+LayeredImage renderReference(const Scene& scene, const ReferenceOptions& options);
 
-/// The same through the cache (base/file.h cacheDirectory), keyed by everything the picture depends on. A
+/// The same through the cache (base/file.h cacheDirectory), keyed by everything the image depends on. A
 /// damaged entry is made anew.
-LayeredPicture cachedReference(const Scene& scene, const ReferenceOptions& options);
+LayeredImage cachedReference(const Scene& scene, const ReferenceOptions& options);
 
 /// The closed form that a layer is judged by and tools that need single rays use this: radiance along one ray
 /// with n samples.

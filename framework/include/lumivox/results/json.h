@@ -9,7 +9,7 @@
 #include "lumivox/results/records.h"
 #include "lumivox/results/report_record.h"
 #include "lumivox/results/stress_cells.h"
-#include "lumivox/results/voxelisers.h"
+#include "lumivox/results/voxelizers.h"
 
 namespace lumivox {
 
@@ -24,9 +24,9 @@ nlohmann::ordered_json toJson(const ParameterValues& values);
 nlohmann::ordered_json toJson(const ComponentError& error);
 nlohmann::ordered_json toJson(const ReportPoint& point, bool isDefault);
 nlohmann::ordered_json toJson(const PruningRecord& record);
-nlohmann::ordered_json toJson(const std::vector<DeviceCeiling>& ceilings);
-nlohmann::ordered_json toJson(const VoxeliserRecord& record);
-nlohmann::ordered_json toJson(const std::vector<VoxeliserRecord>& records);
+nlohmann::ordered_json toJson(const std::vector<PeakRate>& peakRates);
+nlohmann::ordered_json toJson(const VoxelizerRecord& record);
+nlohmann::ordered_json toJson(const std::vector<VoxelizerRecord>& records);
 nlohmann::ordered_json toJson(const StressCell& cell);
 /// All but its points, prunings and what is found from them.
 nlohmann::ordered_json toJson(const SceneRecord& scene);

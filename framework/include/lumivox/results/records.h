@@ -13,27 +13,29 @@
 
 namespace lumivox {
 
-/// The name under which a pipeline's whole picture (its composite, see compositePicture) is judged.
-inline constexpr const char* kWholePicture = "whole_picture";
+/// The name under which a pipeline's whole image (its composite, see compositeImage) is judged.
+inline constexpr const char* kWholeImage = "whole_image";
 
-/// Error of one output against one truth layer.
+/// Error of one output against one reference layer.
 struct ComponentError {
-  std::string output;     ///< name in the pipeline text, or kWholePicture
+  std::string output;     ///< name in the pipeline text, or kWholeImage
   std::string component;  ///< name(Contributes)
-  std::string truth;  ///< layer: one_bounce_diffuse (bias) or indirect_diffuse (what the viewer misses), ...
-  bool bias = true;   ///< against the truth of the technique's own model; false: against the full truth
-  /// Of every number the mean over the seeds that were run; the uncertainty is the truth's noise and the
+  std::string
+      reference;  ///< layer: one_bounce_diffuse (bias) or indirect_diffuse (what the viewer misses), ...
+  bool bias =
+      true;  ///< against the reference of the technique's own model; false: against the full reference
+  /// Of every number the mean over the seeds that were run; the uncertainty is the reference's noise and the
   /// standard error over the seeds, added in quadrature.
-  PictureError error;
+  ImageError error;
   int seeds = 1;  ///< that were run
   /// False: from a results store of schema 3 or before, where every number but the RMSE is of the first seed.
   bool everyMetricPerSeed = true;
   bool deterministic = false;  ///< two seeds gave the same bits, so that there is no noise to average
-  double noiseRmse = 0.0;      ///< RMS of the picture's own noise, from the differences between the seeds
-  ErrorParts parts;            ///< mean square over seeds = bias² + noise² + the truth's noise²
+  double noiseRmse = 0.0;      ///< RMS of the image's own noise, from the differences between the seeds
+  ErrorParts parts;            ///< mean square over seeds = bias² + noise² + the reference's noise²
   Measured flicker{std::numeric_limits<double>::quiet_NaN(),
-                   0.0};        ///< over the pairs of frames that follow; NaN when none was measured
-  PictureError errorOfNothing;  ///< of a black picture: what leaving the component out would cost
+                   0.0};      ///< over the pairs of frames that follow; NaN when none was measured
+  ImageError errorOfNothing;  ///< of a black image: what leaving the component out would cost
 
   /// Whether there are seeds enough to claim anything: kLeastRepeats of them, or no random numbers at all.
   bool enoughSeeds() const { return deterministic || seeds >= kLeastRepeats; }
@@ -41,7 +43,7 @@ struct ComponentError {
   double ratioToNothing() const;
 };
 
-/// The least time that the work of a pass can take on one resource of the device (roofline/ceilings.h).
+/// The least time that the work of a pass can take on one resource of the device (roofline/peak_rates.h).
 struct WorkBound {
   std::string resource;  ///< "texture sampling"
   double ms = 0.0;
@@ -64,8 +66,8 @@ struct ReportPoint {
   std::map<std::string, std::uint64_t> passBytes;
   /// What each pass does, counted in a frame of its own.
   std::map<std::string, Work> passWork;
-  /// What each pass takes at least: one bound per resource, the largest first. Empty without the ceilings of
-  /// this device.
+  /// What each pass takes at least: one bound per resource, the largest first. Empty without the peak rates
+  /// of this device.
   std::map<std::string, std::vector<WorkBound>> passBounds;
   std::string whyNotCounted;           ///< empty when passWork is there
   std::vector<std::string> passOrder;  ///< as they ran
@@ -96,23 +98,23 @@ struct PruningRecord {
   std::vector<std::string> passOrder;  ///< of the unpruned pipeline
   std::map<std::string, std::uint64_t> prunedPassBytes, unprunedPassBytes;
   std::uint64_t prunedBytes = 0, unprunedBytes = 0;  ///< all resources of the passes
-  bool samePicture = false;                          ///< bit for bit: the law of leaving out
+  bool sameImage = false;                            ///< bit for bit: the law of leaving out
 
   double savedShare() const;      ///< of the unpruned frame time, 0..1
   double savedShareNext() const;  ///< of that of a frame that follows another, with a moving camera
 };
 
 /// What one device can do at most, measured: `lumivox device`.
-struct DeviceCeiling {
+struct PeakRate {
   std::string name;       ///< "texture_sampling_rgba16f_3d"
   std::string unit;       ///< "samples/s", "writes/s", "operations/s", "bytes/s"
   TimingStatistics rate;  ///< in that unit
   std::string created, version, device, driver, shaderInput, host;
 };
 
-/// The metrics of one error by name, with the same of a black picture: what the store's table `metrics`
+/// The metrics of one error by name, with the same of a black image: what the store's table `metrics`
 /// holds. Names: rmse, relative_mse, mean_ratio, bias, percentile95, ssim, flip, flip_ldr,
-/// rms_bias, rms_noise, flicker, noise_floor, non_finite_picture, non_finite_truth.
+/// rms_bias, rms_noise, flicker, noise_floor, non_finite_image, non_finite_reference.
 struct NamedMetric {
   std::string name;
   Measured measured;

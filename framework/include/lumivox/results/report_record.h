@@ -1,4 +1,4 @@
-// What a report holds between measuring and writing: the records, and pictures already encoded.
+// What a report holds between measuring and writing: the records, and images already encoded.
 #pragma once
 
 #include <filesystem>
@@ -12,32 +12,32 @@
 #include "lumivox/results/records.h"
 #include "lumivox/results/runs.h"
 #include "lumivox/results/stress_cells.h"
-#include "lumivox/results/voxelisers.h"
+#include "lumivox/results/voxelizers.h"
 
 namespace lumivox {
 
-/// Pictures of one output at one point, as PNG bytes.
-struct OutputPictures {
+/// Images of one output at one point, as PNG bytes.
+struct OutputImages {
   std::string output, component;
-  std::string picture;
+  std::string image;
   struct Against {
-    std::string truth;
+    std::string reference;
     std::string flipMap;
     double flip = 0.0;
   };
-  std::vector<Against> against;  ///< one per truth layer
+  std::vector<Against> against;  ///< one per reference layer
 };
 
 struct PointRecord {
   ReportPoint point;
   bool isDefault = false;  ///< every parameter as the text has it (with --set)
-  std::vector<OutputPictures> pictures;
+  std::vector<OutputImages> images;
 };
 
-struct TruthRecord {
+struct ReferenceRecord {
   std::string layer;
-  std::string picture;    ///< PNG
-  double exposure = 1.0;  ///< common to every picture of this component
+  std::string image;      ///< PNG
+  double exposure = 1.0;  ///< common to every image of this component
   double noise = 0.0;     ///< sqrt of the mean variance of a pixel value
   double mean = 0.0, largest = 0.0;
 };
@@ -57,10 +57,10 @@ struct SceneRecord {
   int width = 0, height = 0;
   double time = 0.0;
   std::size_t triangles = 0;
-  int truthSamples = 0;
-  double truthSeconds = 0.0;  ///< to make or to read from the cache
-  std::map<std::string, std::string> truthAttributes;
-  std::vector<TruthRecord> truths;
+  int referenceSamples = 0;
+  double referenceSeconds = 0.0;  ///< to make or to read from the cache
+  std::map<std::string, std::string> referenceAttributes;
+  std::vector<ReferenceRecord> references;
   std::vector<PointRecord> points;
   std::vector<LeftOutPoint> leftOutPoints;
   std::vector<PruningRecord> pruning;
@@ -84,8 +84,8 @@ struct ReportRecord {
   std::vector<TechniqueRecord> techniques;
   std::vector<SkippedTechnique> skipped;
   std::vector<SceneRecord> scenes;
-  std::vector<DeviceCeiling> ceilings;  ///< of this device; empty when nobody has measured them
-  std::vector<VoxeliserRecord> voxels;  ///< only when they were asked for
+  std::vector<PeakRate> peakRates;      ///< of this device; empty when nobody has measured them
+  std::vector<VoxelizerRecord> voxels;  ///< only when they were asked for
   std::vector<StressCell> stress;       ///< that the results store holds, the newest of each
 };
 

@@ -1,6 +1,6 @@
 // Tables and figures of papers as texts: the published set-up is measured or shown. Numbers are compared as
 // ratios to the table's first row, since no two devices have the same times; curves by how they grow;
-// pictures by whoever looks at them.
+// images by whoever looks at them.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "lumivox/base/picture.h"
+#include "lumivox/base/image.h"
 #include "lumivox/gpu/device.h"
 #include "lumivox/measure/metrics.h"
 #include "lumivox/pipeline/pipeline.h"
@@ -41,7 +41,7 @@ struct PublishedSetUp {
   int subdivisions = 0;             ///< how often every triangle of the scene is split into four before
   std::vector<std::string> passes;  ///< whose times or bytes are added up; empty: the whole frame
   std::string pass,
-      port;  ///< an output that is kept: its fragments are counted, its picture is shown; may be empty
+      port;  ///< an output that is kept: its fragments are counted, its image is shown; may be empty
   std::string absent;      ///< why it cannot be measured
   std::string substitute;  ///< what stands in for the published set-up, so that a verdict would not count
 };
@@ -66,7 +66,7 @@ struct PublishedCurve {
   std::vector<PublishedSetUp> points;  ///< all of one quantity
 };
 
-/// One picture of a figure: an output of a pass, the whole picture of the pipeline, or a layer of the
+/// One image of a figure: an output of a pass, the whole image of the pipeline, or a layer of the
 /// reference.
 struct PublishedPanel : PublishedSetUp {
   std::string name;
@@ -78,8 +78,8 @@ struct PublishedResult {
   std::filesystem::path file;
   std::string id;  ///< "004-table-3"
   std::string title, paper, device;
-  int width = 0, height = 0;        ///< of the published picture; 0: the camera's
-  std::vector<std::string> scaled;  ///< parameters that a reduced set-up makes smaller with the picture
+  int width = 0, height = 0;        ///< of the published image; 0: the camera's
+  std::vector<std::string> scaled;  ///< parameters that a reduced set-up makes smaller with the image
   double softwareScale = 1.0;       ///< reduction by default on a software rasteriser
   std::vector<std::string>
       differences;  ///< of the set-up from the published one that do not change the verdict
@@ -150,13 +150,13 @@ struct JudgedCurve {
   Measured exponent;  ///< of the power law through the medians; NaN where there is none
 };
 
-/// A picture of a figure.
+/// An image of a figure.
 struct ShownPanel {
   std::string name;
-  Picture picture;     ///< linear; empty where there is none
+  ImageBuffer image;   ///< linear; empty where there is none
   std::string whyNot;  ///< why there is none, or what stands in for it
   bool failed = false;
-  double meanLuminance = 0.0;  ///< W/(sr m²); NaN where there is no picture
+  double meanLuminance = 0.0;  ///< W/(sr m²); NaN where there is no image
 };
 
 struct ReproducedResult {
@@ -175,7 +175,7 @@ struct ReproducedResult {
   bool failed() const;  ///< something should have been measured, and went wrong
 };
 
-/// A file of results as they were measured, without the pixels of pictures.
+/// A file of results as they were measured, without the pixels of images.
 std::string reproductionsAsJson(const std::vector<ReproducedResult>& results);
 /// Not judged: see judged(). Error that names the file and the place for anything that reproductionsAsJson()
 /// does not write.

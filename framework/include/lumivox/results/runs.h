@@ -22,9 +22,9 @@ struct RunIdentity {
   double time = 0.0;  ///< s
   int width = 0, height = 0;
   std::uint64_t seed = 1;
-  int seeds = 1, repeats = 1, subpixels = 1, truthSamples = 0;
+  int seeds = 1, repeats = 1, subpixels = 1, referenceSamples = 0;
   int flickerPairs = 0;                           ///< 0 where the scene does not move
-  std::vector<std::string> kept;                  ///< sorted outputs "pass.port" that no picture needs
+  std::vector<std::string> kept;                  ///< sorted outputs "pass.port" that no image needs
   std::string device, driver, shaderInput, host;  ///< host: processor and system
 
   std::string key() const;  ///< 32 hexadecimal digits
@@ -58,11 +58,11 @@ TimeFloor timeFloorOf(const std::vector<RepeatedControl>& controls);
 /// The larger of both, for numbers of both.
 TimeFloor larger(const TimeFloor& a, const TimeFloor& b);
 
-/// A picture of a run: an output, or its FLIP map against a layer of the truth.
-struct StoredPicture {
+/// An image of a run: an output, or its FLIP map against a layer of the reference.
+struct StoredImage {
   std::string output, component;
-  std::string truth;  ///< layer of the map; empty: the output itself
-  double flip = 0.0;  ///< mean of the map
+  std::string reference;  ///< layer of the map; empty: the output itself
+  double flip = 0.0;      ///< mean of the map
   std::string png;
 };
 

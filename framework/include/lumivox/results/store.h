@@ -43,7 +43,7 @@ struct CellFilter {
 
 /// How much a store took over from another.
 struct MergeCount {
-  std::size_t runs = 0, cells = 0, ceilings = 0;
+  std::size_t runs = 0, cells = 0, peakRates = 0;
 };
 
 class ResultsStore {
@@ -62,9 +62,9 @@ class ResultsStore {
   std::optional<StoredRun> find(const std::string& key) const;
   /// In one transaction: all of it or nothing, whatever happens. Returns false, and stores nothing, when
   /// another process has stored a run with this key meanwhile. A failed run is replaced by one that did not.
-  bool add(const StoredRun& run, const std::vector<StoredPicture>& pictures = {});
+  bool add(const StoredRun& run, const std::vector<StoredImage>& images = {});
   /// Those that were stored with a run.
-  std::vector<StoredPicture> pictures(const std::string& key) const;
+  std::vector<StoredImage> images(const std::string& key) const;
 
   /// Tells others that this process is about to measure these points. For each of them: false when a process
   /// that is alive and whose claim has not expired is at it. Claims of one's own are renewed. A claim ends
@@ -87,7 +87,7 @@ class ResultsStore {
   std::vector<StoredRun> runs(const RunFilter& filter = {}) const;
   /// How many were removed.
   std::size_t remove(const RunFilter& filter);
-  /// Takes over the runs of another store that are not here, its controls, and the cells and ceilings that
+  /// Takes over the runs of another store that are not here, its controls, and the cells and peak rates that
   /// are not here or are older here. In one transaction.
   MergeCount merge(const ResultsStore& other);
 
@@ -96,11 +96,11 @@ class ResultsStore {
   /// By id; empty for a store of schema 1 that is only read.
   std::vector<StressCell> stressCells(const CellFilter& filter = {}) const;
   std::size_t removeCells(const CellFilter& filter);  ///< how many were removed
-  /// The newest ceilings of each device; those of the same name take the place of the older ones.
-  void add(const std::vector<DeviceCeiling>& ceilings);
-  std::vector<DeviceCeiling> ceilings(const std::string& device, const std::string& driver,
-                                      const std::string& shaderInput, const std::string& host) const;
-  std::vector<DeviceCeiling> ceilings() const;  ///< of all devices
+  /// The newest peak rates of each device; those of the same name take the place of the older ones.
+  void add(const std::vector<PeakRate>& peakRates);
+  std::vector<PeakRate> peakRates(const std::string& device, const std::string& driver,
+                                  const std::string& shaderInput, const std::string& host) const;
+  std::vector<PeakRate> peakRates() const;  ///< of all devices
 
   /// The store of a user who names none: $LUMIVOX_RESULTS, else results.sqlite in the cache directory.
   static std::filesystem::path defaultFile();

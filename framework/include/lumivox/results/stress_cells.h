@@ -16,7 +16,7 @@ enum class StressOutcome {
   stable,         ///< healthy, and within the case's limit
   biased,         ///< healthy, bounded, and beyond the limit: `value` says by how much
   diverges,       ///< finite, but it grows without bound or does not converge where it should
-  refused,        ///< a clear message in place of a picture
+  refused,        ///< a clear message in place of an image
   notApplicable,  ///< the case asks for something that the pipeline does not have
   broken          ///< NaN, infinite, negative radiance, a crash or a hang: never acceptable
 };
@@ -37,7 +37,7 @@ struct StressCell {
   double limit = 0.0;
   std::string detail;       ///< the first bad pass, port and voxel or pixel; the refusal; more numbers
   std::string explanation;  ///< of a property of the published method, from the technique's card
-  std::string picture;      ///< file beside the page; empty: none
+  std::string image;        ///< file beside the page; empty: none
   std::string command;      ///< repeats it
   double seconds = 0.0;
   std::string pipelineHash, framework;            ///< content hashes

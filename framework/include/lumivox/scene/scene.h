@@ -16,13 +16,13 @@
 
 namespace lumivox {
 
-/// A picture that modulates a material, decoded to linear values (diffuse maps) or as stored (masks).
+/// An image that modulates a material, decoded to linear values (diffuse maps) or as stored (masks).
 struct SurfaceTexture {
   std::string name;  ///< path as written in the material file
   int width = 0, height = 0;
   bool mask = false;  ///< one channel, a coverage mask; otherwise linear RGB
   std::vector<float>
-      values;  ///< width*height*(mask ? 1 : 3); row 0 is the top of the picture (texture coordinate v = 1)
+      values;  ///< width*height*(mask ? 1 : 3); row 0 is the top of the image (texture coordinate v = 1)
   bool operator==(const SurfaceTexture&) const = default;
 };
 
@@ -153,7 +153,7 @@ struct Medium {
 struct Scene {
   std::string name;            ///< the string in the text
   std::filesystem::path file;  ///< the scene text it came from; empty when made by code
-  ContentHash hash;  ///< of the text, every file that it includes and every model, material and picture file
+  ContentHash hash;  ///< of the text, every file that it includes and every model, material and image file
 
   std::vector<glm::vec3> positions, normals;  ///< object space; same length; normals unit length
   std::vector<glm::vec2> texcoords;           ///< same length; (0,0) is the lower left of a texture
@@ -191,7 +191,7 @@ struct CameraView {
   int width = 0, height = 0;
   bool operator==(const CameraView&) const = default;
 
-  /// Direction (not normalised, forward component 1) through a point of the picture; (0,0) is the upper left
+  /// Direction (not normalised, forward component 1) through a point of the image; (0,0) is the upper left
   /// corner, (width,height) the lower right.
   glm::vec3 direction(float x, float y) const;
 };
@@ -254,10 +254,10 @@ struct SceneLoadOptions {
 };
 
 /// Reads a scene text and everything that it names. Of MTL materials Kd, Ks, Ns, Ke, map_Kd, d and map_d are
-/// used as given: map_d is taken from the picture's alpha, or its first channel where it has none, times d; a
+/// used as given: map_d is taken from the image's alpha, or its first channel where it has none, times d; a
 /// surface without map_d and with d below a half is a hole, so its triangles are left out. Normals that are
 /// missing are smooth where faces meet at up to 30 degrees (`crease`). Throws DiagnosticsError with all
-/// findings of the text, Error for a bad model or picture file, AbsentError for a model that is on no search
+/// findings of the text, Error for a bad model or image file, AbsentError for a model that is on no search
 /// path (the message lists where it was sought).
 Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 

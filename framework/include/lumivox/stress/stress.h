@@ -14,7 +14,7 @@ namespace lumivox {
 
 /// A case as `lumivox stress --list` shows it.
 struct StressCaseInfo {
-  std::string family;   ///< stiff_transport, geometry, scale_and_place, light, picture_and_camera, time,
+  std::string family;   ///< stiff_transport, geometry, scale_and_place, light, image_and_camera, time,
                         ///< refinement, repeatability, parameters
   std::string name;     ///< unique: "closed_box_albedo_0.999"
   std::string meaning;  ///< what is extreme about it and what is measured, one sentence
@@ -29,7 +29,7 @@ struct StressJob {
 };
 
 struct StressOptions {
-  std::vector<std::filesystem::path> pipelines;  ///< empty: every committed one, voxelisers too
+  std::vector<std::filesystem::path> pipelines;  ///< empty: every committed one, voxelizers too
   std::string technique;                         ///< only pipelines of this technique; empty: all
   std::vector<std::string> families, cases;      ///< empty: all; cases may end in '*'
   bool quick = false;                            ///< only the quick cases, at small sizes
@@ -39,7 +39,7 @@ struct StressOptions {
   int workers = 0;
   /// Most memory of textures and buffers, which several workers share; 0: what the device has.
   std::uint64_t memoryBytes = 0;
-  std::filesystem::path output;  ///< folder for the page and the pictures; empty: neither
+  std::filesystem::path output;  ///< folder for the page and the images; empty: neither
   std::filesystem::path store;   ///< results store; empty: none
   /// That runs one worker: the words of its command line, which ends up in serveStress(). Among several,
   /// `--worker-memory BYTES` follows them.

@@ -7,7 +7,7 @@
 
 namespace lumivox {
 
-/// One invocation a pixel of the picture.
+/// One invocation a pixel of the image.
 inline glm::ivec3 pixels(const PassContext& frame) {
   return {frame.snapshot().camera.width, frame.snapshot().camera.height, 1};
 }

@@ -66,7 +66,7 @@ const comparisonSection = (function () {
     return { x: time.median, y: point.error.value, low: time.lower_quartile, high: time.upper_quartile,
              uncertainty: point.error.uncertainty || 0, front: by === null,
              text: parametersText(point.parameters) + ": " + number(time.median) + " ms, " + plain(point.error)
-               + (by === null ? "; on the front" : "; beaten by " + shortName(by.file) + " (" + parametersText(by.parameters) + ")") };
+               + (by === null ? "; on the Pareto front" : "; beaten by " + shortName(by.file) + " (" + parametersText(by.parameters) + ")") };
   }
 
   function configuration(scene, comparison) {
@@ -83,7 +83,7 @@ const comparisonSection = (function () {
     const all = datasets.flatMap(set => set.data);
     const times = all.flatMap(point => [point.low, point.high]).filter(value => value > 0);
     const levelOf = comparison.metric !== "rmse" ? [] : scene.points.flatMap(point => point.errors)
-      .filter(error => error.component === comparison.component && error.truth === comparison.truth && error.rmse_of_nothing > 0)
+      .filter(error => error.component === comparison.component && error.reference === comparison.reference && error.rmse_of_nothing > 0)
       .slice(0, 1).map(error => ({ value: error.rmse_of_nothing, text: "left out" }));
     const errors = all.map(point => point.y).concat(levelOf.map(level => level.value));
     const range = { left: Math.min(...times) / 1.3, right: Math.max(...times) * 1.3 };
@@ -132,7 +132,7 @@ const comparisonSection = (function () {
       }));
   }
 
-  /** Pipelines without a point on the front, and whose points beat theirs. */
+  /** Pipelines without a point on the Pareto front, and whose points beat theirs. */
   function beatenList(comparison) {
     const beaten = comparison.pipelines.map((pipeline, index) => ({ pipeline, index })).filter(one => !one.pipeline.on_front);
     if (beaten.length === 0) return h("p", null, "Every pipeline is unbeaten at some budget.");
@@ -162,14 +162,14 @@ const comparisonSection = (function () {
                   { title: "Front" }],
       comparison.points.map(point => ({ kind: point.beaten_by === null ? "default" : "", cells: [
         shortName(point.file), differingParameters(comparison, point), quartiles(point.frame_ms), measured(point.error),
-        point.beaten_by === null ? h("span", { class: "good" }, "on the front")
+        point.beaten_by === null ? h("span", { class: "good" }, "on the Pareto front")
                                  : ["beaten by ", pointName(comparison, comparison.points[point.beaten_by])]] })));
   }
 
   function tables(comparison) {
     const four = value => lumivox.significant(value, 4);
     const equalTime = comparison.pipelines[0].equal_time.length > 0, equalError = comparison.pipelines[0].equal_error.length > 0;
-    return [caption(metrics[comparison.metric] + " against the truth's layer ", h("code", null, comparison.truth), "."),
+    return [caption(metrics[comparison.metric] + " against the reference's layer ", h("code", null, comparison.reference), "."),
             h("h5", null, "Least error within a budget"), rangeTable(comparison), beatenList(comparison),
             equalTime && [h("h5", null, "Equal time: the error that each reaches"),
                           equalTable(comparison, "equal_time", "ms", "error", limit => four(limit) + " ms", "slower", number)],
@@ -205,7 +205,7 @@ const comparisonSection = (function () {
     const comparisons = scene.comparisons.filter(one => one.front.length > 0);
     const components = scene.components;
     const chosen = { metric: "rmse", against: "misses" };
-    // A component with one truth has one comparison, whatever it is to be judged against.
+    // A component with one reference has one comparison, whatever it is to be judged against.
     const shownOf = component => {
       const fitting = comparisons.filter(one => one.component === component && one.metric === chosen.metric);
       return fitting.find(one => one.against === chosen.against) || fitting[0];
@@ -223,7 +223,7 @@ const comparisonSection = (function () {
       followers.push(drawn.redraw);
       figures.push(h("figure", null, h("h4", null, componentTitle(component)), drawn.frame));
     }
-    // The whole picture is what a reader looks for first.
+    // The whole image is what a reader looks for first.
     const details = [...components].reverse().filter(shownOf).map(component => {
       const place = h("div", null, tables(shownOf(component)));
       followers.push(() => place.replaceChildren(...[h("div", null, tables(shownOf(component)))]));
@@ -233,7 +233,7 @@ const comparisonSection = (function () {
     return [
       h("h3", null, "Error against run time"),
       caption("All pipelines at all points of their sweeps. Bars: quartiles of the frame time; one standard uncertainty of the error, "
-        + "of the truth's noise and the spread over seeds together. Filled points are on the front of all: no other point is as good in "
+        + "of the reference's noise and the spread over seeds together. Filled points are on the Pareto front of all: no other point is as good in "
         + "both time and error and better in one by more than three standard uncertainties, so points within their uncertainties are "
         + "both on it. The grey steps bound all points by their values alone. Coloured lines join the points of one pipeline that none "
         + "of its own beats: the tables interpolate along them. The dashed grey line is the error of leaving the component out. Down and "
@@ -243,11 +243,11 @@ const comparisonSection = (function () {
         list(scene.left_out_points.map(point => shortName(point.pipeline) + ": " + parametersText(point.parameters)))),
       h("p", null, comparisons.length > 0 && chooser("Measure", "metric", metrics, choose("metric")),
         comparisons.some(one => one.against === "bias") && chooser("Against", "against", against, choose("against")),
-        h("span", { class: "caption" }, "A few very bright pixels, such as the edges of a lamp, can rule the RMSE; the 95th percentile "
+        h("span", { class: "caption" }, "A few very bright pixels, such as the edges of an area light, can rule the RMSE; the 95th percentile "
           + "and FLIP are less moved by them.")),
       h("div", { class: "charts" }, figures),
       nothing.length > 0 && caption("Nothing to draw: " + nothing.join(", ")
-        + " has no error, since neither the truth nor any picture has such light."),
+        + " has no error, since neither the reference nor any image has such light."),
       caption("In the tables below: the logarithm of the error is linear in that of the time between two measured points of one "
         + "pipeline; nothing is extrapolated. ≤: the slowest (fastest) point measured has that much within the budget (the error) "
         + "already. ±: one standard uncertainty, from those of both points through the interpolation. Bold: the least, and what cannot "

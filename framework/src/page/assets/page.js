@@ -7,7 +7,7 @@ const lumivox = (function () {
     return block ? JSON.parse(block.textContent) : null;
   };
   const data = records("data") || {};
-  const pictures = records("pictures") || {};
+  const images = records("images") || {};
 
   // ---- elements
 
@@ -76,10 +76,10 @@ const lumivox = (function () {
   const shortName = file => file.replace(/^.*\//, "").replace(/\.[^.]*$/, "");
   const words = name => name.replaceAll("_", " ");
   const parametersText = values => Object.entries(values).map(([name, value]) => name + " " + value).join(", ") || "default";
-  const outputName = output => output === "whole_picture" ? "whole picture" : output;
-  const componentTitle = name => name === "final" ? "Whole picture" : words(name.charAt(0).toUpperCase() + name.slice(1));
+  const outputName = output => output === "whole_image" ? "whole image" : output;
+  const componentTitle = name => name === "final" ? "Whole image" : words(name.charAt(0).toUpperCase() + name.slice(1));
 
-  // ---- charts and pictures
+  // ---- charts and images
 
   // A pipeline has one colour on the whole page, and beyond eight of them another shape.
   const palette = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5195", "#555555"];
@@ -112,7 +112,7 @@ const lumivox = (function () {
     }
   }
 
-  return { data, pictures, h, caption, list, folded, table, isNumber, significant, number, oneDigit, milliseconds, percent, bytes, thousands,
+  return { data, images, h, caption, list, folded, table, isNumber, significant, number, oneDigit, milliseconds, percent, bytes, thousands,
            measured, quartiles, plain, shortName, words, parametersText, outputName, componentTitle, palette, style, chart, whenShown,
            pngAddress, show };
 })();

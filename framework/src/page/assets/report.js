@@ -10,9 +10,9 @@
   const rowKind = point => point.default ? "default" : "";
   const columns = (...titles) => titles.map(title => typeof title === "string" ? { title } : { title: title[0], kind: title[1] });
 
-  /** The error of a component at a point: against the truth that is wanted, or the only one. */
+  /** The error of a component at a point: against the reference that is wanted, or the only one. */
   function errorOf(point, component, kind) {
-    const own = point.errors.filter(error => error.component === component && (component !== "final" || error.output === "whole_picture"));
+    const own = point.errors.filter(error => error.component === component && (component !== "final" || error.output === "whole_image"));
     return own.find(error => error.kind === kind) || own[0];
   }
 
@@ -30,16 +30,16 @@
           sceneTitle(scene), shortName(point.pipeline), parametersText(point.parameters), quartiles(point.frame_ms),
           error ? measured(error.rmse) : "-", error ? number(error.flip_hdr) : "-", error ? measured(error.mean_ratio) : "-",
           pruning ? percent(pruning.saved_share) + "; " + percent(pruning.saved_share_next) : "-",
-          front.has(index) ? "on the front" : "",
+          front.has(index) ? "on the Pareto front" : "",
           point.failure ? bad("failed") : point.health_findings.length === 0 ? good("good")
             : bad(point.health_findings.length + " finding" + (point.health_findings.length === 1 ? "" : "s"))] };
       });
     });
     return [
       h("h2", { id: "summary" }, "Summary"),
-      caption("RMSE, FLIP and mean ratio of the whole picture against full transport. “Saved”: share of the time of a first frame, and of "
+      caption("RMSE, FLIP and mean ratio of the whole image against full transport. “Saved”: share of the time of a first frame, and of "
         + "one that follows another, that leaving out unneeded work saves. Bold rows are the default parameters."),
-      table(columns("Scene", "Pipeline", ["Parameters", "wide"], ["Frame, ms", "number"], ["RMSE, whole picture", "number"],
+      table(columns("Scene", "Pipeline", ["Parameters", "wide"], ["Frame, ms", "number"], ["RMSE, whole image", "number"],
                     ["FLIP", "number"], ["Mean ratio", "number"], ["Saved", "number"], "Front", "Health"), rows)];
   }
 
@@ -48,7 +48,7 @@
     if (saved.told === "not_measurable") return "not measurable, of " + milliseconds(saved.of_ms) + " ms";
     return milliseconds(saved.ms) + " of " + milliseconds(saved.of_ms) + " ms";
   }
-  const samePicture = record => record.same_picture ? good("yes") : bad("NO");
+  const sameImage = record => record.same_image ? good("yes") : bad("NO");
 
   function neededCell(scene, pipeline) {
     const record = scene.pruning.find(one => one.pipeline === pipeline);
@@ -57,7 +57,7 @@
                       variants: record.variants.needed + " / " + record.variants.compiled + " / " + record.variants.possible,
                       "memory left out": bytes(Math.max(0, record.bytes_keep_everything - record.bytes)) + " of " + bytes(record.bytes_keep_everything),
                       "first frame saves": savedText(record.first_frame_saves), "later ones save": savedText(record.later_frames_save),
-                      "same picture": samePicture(record) };
+                      "same image": sameImage(record) };
       return h("dl", { class: "cell" }, Object.entries(lines).map(([what, value]) => [h("dt", null, what), h("dd", null, value)]));
     }
     const unsuited = scene.unsuited.find(one => one.pipeline === pipeline);
@@ -72,7 +72,7 @@
       h("h2", { id: "needed" }, "What was needed"),
       caption("Each pipeline as it runs on each scene, beside the same with everything kept. Passes kept of all that the text has; shader "
         + "variants needed / compiled / possible; memory and time that leaving out saves. A later frame follows another while the camera "
-        + "moves, and runs only what changed. Leaving out may change the cost, never the picture: both are compared bit for bit. Under "
+        + "moves, and runs only what changed. Leaving out may change the cost, never the image: both are compared bit for bit. Under "
         + "each scene below: what was left out, and why."),
       table([{ title: "Scene" }, ...pipelines.map(pipeline => ({ title: shortName(pipeline), kind: "cell" }))],
             data.scenes.map(scene => [sceneTitle(scene), ...pipelines.map(pipeline => neededCell(scene, pipeline))]))];
@@ -80,14 +80,14 @@
 
   // ---- one scene
 
-  function truth(scene) {
-    const { samples_per_pixel: samples, seconds, layers, attributes } = scene.truth;
+  function reference(scene) {
+    const { samples_per_pixel: samples, seconds, layers, attributes } = scene.reference;
     return [
       h("p", null, `${scene.triangles} triangles, camera “${scene.camera}”, ${scene.width} × ${scene.height} pixels, time ${scene.time_s} s. `
-        + `Truth: path tracing with ${samples} samples per pixel${seconds >= 0.1 ? " (" + number(seconds) + " s)" : ""}. Scene hash `,
+        + `Reference: path tracing with ${samples} samples per pixel${seconds >= 0.1 ? " (" + number(seconds) + " s)" : ""}. Scene hash `,
         h("code", null, scene.hash), "."),
-      folded("The truth's own noise",
-        table(columns("Truth layer", ["Noise (RMS)", "number"], ["Mean", "number"], ["Noise / mean", "number"], ["Largest", "number"],
+      folded("The reference's own noise",
+        table(columns("Reference layer", ["Noise (RMS)", "number"], ["Mean", "number"], ["Noise / mean", "number"], ["Largest", "number"],
                       ["Shown at exposure", "number"]),
               layers.map(layer => [layer.layer, number(layer.noise), number(layer.mean),
                                    layer.mean > 0 ? percent(layer.noise / layer.mean) : "-", number(layer.largest),
@@ -97,24 +97,24 @@
 
   function errors(scene) {
     const rows = scene.points.flatMap(point => point.errors.map(error => {
-      const oneTruth = error.kind === "bias" && !point.errors.some(other => other.output === error.output && other.kind === "miss");
+      const oneReference = error.kind === "bias" && !point.errors.some(other => other.output === error.output && other.kind === "miss");
       const pair = name => measured({ value: error[name], uncertainty: error[name + "_uncertainty"] });
       return { kind: rowKind(point), cells: [
-        shortName(point.pipeline), parametersText(point.parameters), outputName(error.output), error.truth,
-        oneTruth ? "error" : error.kind === "bias" ? "bias" : "misses", measured(error.rmse), number(error.ratio_to_nothing),
+        shortName(point.pipeline), parametersText(point.parameters), outputName(error.output), error.reference,
+        oneReference ? "error" : error.kind === "bias" ? "bias" : "misses", measured(error.rmse), number(error.ratio_to_nothing),
         measured(error.mean_ratio), measured(error.mean_difference), measured(error.relative_mse), pair("percentile_95"), pair("ssim"),
-        pair("flip_hdr"), pair("flip_ldr"), number(error.truth_noise),
-        error.seeds < 2 ? "one seed" : error.deterministic ? "none" : number(error.picture_noise),
-        error.non_finite_picture === 0 ? "0" : bad(error.non_finite_picture)] };
+        pair("flip_hdr"), pair("flip_ldr"), number(error.reference_noise),
+        error.seeds < 2 ? "one seed" : error.deterministic ? "none" : number(error.image_noise),
+        error.non_finite_image === 0 ? "0" : bad(error.non_finite_image)] };
     }));
     return [
       h("h3", null, "Error numbers"),
-      caption("RMSE, mean difference and percentile in W/(sr m²). “Of left out” is the RMSE divided by that of a black picture: below 1 the "
-        + "component is better than none. Mean ratio is the picture's energy over the truth's. Pixels that are NaN or infinite are counted "
+      caption("RMSE, mean difference and percentile in W/(sr m²). “Of left out” is the RMSE divided by that of a black image: below 1 the "
+        + "component is better than none. Mean ratio is the image's energy over the reference's. Pixels that are NaN or infinite are counted "
         + "and left out of the numbers. Numbers after ± are one standard uncertainty. Bold rows are the default parameters."),
-      table(columns("Pipeline", "Parameters", "Output", "Truth", "Says", ["RMSE", "number"], ["of left out", "number"], ["Mean ratio", "number"],
+      table(columns("Pipeline", "Parameters", "Output", "Reference", "Says", ["RMSE", "number"], ["of left out", "number"], ["Mean ratio", "number"],
                     ["Mean difference", "number"], ["Relative MSE", "number"], ["95th percentile", "number"], ["SSIM", "number"],
-                    ["FLIP HDR", "number"], ["FLIP LDR", "number"], ["Truth's noise", "number"], ["Picture's noise", "number"],
+                    ["FLIP HDR", "number"], ["FLIP LDR", "number"], ["Reference's noise", "number"], ["Image's noise", "number"],
                     ["NaN, Inf", "number"]), rows)];
   }
 
@@ -122,19 +122,19 @@
     const moves = scene.points.some(point => point.errors.some(error => error.flicker.value !== null));
     const parts = defaults => table([
       { title: "Pipeline" }, ...(defaults ? [] : [{ title: "Parameters" }]), { title: "Output" }, { title: "Against" },
-      ...["RMSE", "Bias", "Picture's noise", "Truth's noise", ...(moves ? ["Flicker"] : []), "Seeds"].map(title => ({ title, kind: "number" }))],
+      ...["RMSE", "Bias", "Image's noise", "Reference's noise", ...(moves ? ["Flicker"] : []), "Seeds"].map(title => ({ title, kind: "number" }))],
       scene.points.filter(point => point.default === defaults).flatMap(point => point.errors.map(error => [
-        shortName(point.pipeline), ...(defaults ? [] : [parametersText(point.parameters)]), outputName(error.output), error.truth,
+        shortName(point.pipeline), ...(defaults ? [] : [parametersText(point.parameters)]), outputName(error.output), error.reference,
         measured(error.rmse), error.seeds < 2 ? "one seed" : measured(error.rms_bias),
-        error.seeds < 2 ? "one seed" : error.deterministic ? "none" : measured(error.rms_noise), number(error.truth_noise),
+        error.seeds < 2 ? "one seed" : error.deterministic ? "none" : measured(error.rms_noise), number(error.reference_noise),
         ...(moves ? [measured(error.flicker)] : []), error.seeds])));
     const others = scene.points.some(point => !point.default && point.errors.length > 0);
     return [
       h("h3", null, "Bias and noise apart"),
-      caption("What the RMSE is made of: the squares of bias, of the picture's own noise and of the truth's noise add up to the mean square "
-        + "over seeds. More samples or more frames take the picture's noise away, never the bias. Techniques without random numbers have "
+      caption("What the RMSE is made of: the squares of bias, of the image's own noise and of the reference's noise add up to the mean square "
+        + "over seeds. More samples or more frames take the image's noise away, never the bias. Techniques without random numbers have "
         + "none; two seeds alone tell noise only roughly, and the uncertainties are then bounds."
-        + (moves ? " Flicker: RMS of the changes from frame to frame, 1/24 s apart, that the truth does not make, its noise taken off." : "")
+        + (moves ? " Flicker: RMS of the changes from frame to frame, 1/24 s apart, that the reference does not make, its noise taken off." : "")
         + " All in W/(sr m²), ± one standard uncertainty."),
       parts(true), others && folded("Other points of the sweeps", parts(false))];
   }
@@ -145,7 +145,7 @@
       h("h3", null, "Convergence"),
       caption("Over each parameter that takes three values or more, the others fixed: the slope of log error, or log time, against the log of "
         + "the parameter, by least squares. An error that falls in proportion to the voxel's size has the slope -1 over the resolution, "
-        + "noise -0.5 over the number of samples. Errors are RMSE without the truth's noise. The plateau, from four values on, is what stays "
+        + "noise -0.5 over the number of samples. Errors are RMSE without the reference's noise. The plateau, from four values on, is what stays "
         + "however large the parameter becomes (of times: however small), as far as the fit of plateau plus power can tell; “none”: not "
         + "above twice its uncertainty."),
       table(columns("Pipeline", "Parameter", "Others", "Output", "Quantity", ["Slope", "number"], ["Plateau", "number"],
@@ -203,11 +203,11 @@
 
   function limitTable(point) {
     return table(columns("Pass", ["ms", "number"], ["Share of the frame", "number"], "Limited by", ["At least, ms", "number"],
-                         ["Of the ceiling", "number"], ["One after the other", "number"], ["Does", "wide"]),
+                         ["Of the peak rate", "number"], ["One after the other", "number"], ["Does", "wide"]),
       point.passes.map(pass => {
         const ms = pass.device_ms ? pass.device_ms.median : 0, limit = pass.limit || {}, least = limit.at_least_ms;
         return [pass.pass, number(ms), point.frame_ms.median > 0 ? percent(ms / point.frame_ms.median) : "-", limit.limited_by || "-",
-                least ? number(least[limit.limited_by]) : "-", least ? percent(limit.of_ceiling) : "-",
+                least ? number(least[limit.limited_by]) : "-", least ? percent(limit.of_peak_rate) : "-",
                 least ? percent(Object.values(least).reduce((sum, one) => sum + one, 0) / ms) : "-", limit.work ? workText(limit.work) : ""];
       }));
   }
@@ -216,8 +216,8 @@
     const pipelines = [...new Set(scene.points.map(point => point.pipeline))];
     return [
       h("h3", null, "Time and memory per pass"),
-      caption("Medians over repeats of frames in which every kept pass runs; quartiles in brackets. Measured apart from the pictures above. "
-        + "What a pass does was counted in a frame of its own; with the ceilings of this device it gives the time that the pass takes at "
+      caption("Medians over repeats of frames in which every kept pass runs; quartiles in brackets. Measured apart from the images above. "
+        + "What a pass does was counted in a frame of its own; with the peak rates of this device it gives the time that the pass takes at "
         + "least: on the resource that limits it, and on all of them one after the other, as a device that overlaps nothing would need. The "
         + "last three rows take a first frame apart: what is done once, what is done again when the camera and the lights have moved, and "
         + "what every frame costs. A point of several accumulated frames holds all of them."),
@@ -244,7 +244,7 @@
     return [
       h("h3", null, "What was left out, and what that saved"),
       caption("The pipeline as it runs and the same with everything kept, timed alternately at the default parameters. Leaving out may change "
-        + "the cost, never the picture."),
+        + "the cost, never the image."),
       scene.pruning.map(record => [
         h("h4", null, shortName(record.pipeline)),
         h("p", null, quartiles(record.frame_ms), " ms instead of ", quartiles(record.frame_ms_keep_everything), " ms: ",
@@ -252,8 +252,8 @@
           " ms instead of ", quartiles(record.next_frame_ms_keep_everything), " ms: ", h("b", null, percent(record.saved_share_next)),
           ` of that of a frame that follows another while the camera moves. ${record.passes_kept} of ${record.passes_total} passes kept; `
           + `shader variants: ${record.variants.possible} possible, ${record.variants.compiled} compiled, ${record.variants.needed} needed. `
-          + `Memory taken by the passes: ${bytes(record.bytes)} instead of ${bytes(record.bytes_keep_everything)}. Same picture, bit for bit: `,
-          samePicture(record), "."),
+          + `Memory taken by the passes: ${bytes(record.bytes)} instead of ${bytes(record.bytes_keep_everything)}. Same image, bit for bit: `,
+          sameImage(record), "."),
         record.left_out.length > 0 && table(
           columns("Level", "Left out", ["Why", "wide"], ["Saved memory", "number"], ["Saved ms", "number"]),
           record.left_out.map(one => [one.level, one.what, one.why, one.saved_bytes === 0 ? "" : bytes(one.saved_bytes),
@@ -284,18 +284,18 @@
   const commands = scene => [h("h3", null, "Commands that repeat the points"), scene.points.map(point => h("pre", null, point.command))];
 
   const scenes = data.scenes.map((scene, index) => [
-    h("h2", { id: "scene-" + index }, sceneTitle(scene)), truth(scene), comparisonSection(scene), pictureSection(scene, index),
+    h("h2", { id: "scene-" + index }, sceneTitle(scene)), reference(scene), comparisonSection(scene), imageSection(scene, index),
     errors(scene), noise(scene), slopes(scene), times(scene), needed(scene), health(scene), commands(scene)]);
 
   // ---- where it comes from
 
-  function ceilings() {
-    if (data.ceilings.length === 0)
+  function peakRates() {
+    if (data.peak_rates.length === 0)
       return h("p", null, "What this device can do at most is not known: ", h("code", null, "lumivox device"),
                " measures it, once, and the next report says how far each pass is from it.");
     return folded("What this device can do at most",
       table(columns("What", ["At most", "number"], ["Quartiles", "number"], "Unit", "Measured"),
-            data.ceilings.map(one => [words(one.name), thousands(one.median), thousands(one.lower_quartile) + " .. " + thousands(one.upper_quartile),
+            data.peak_rates.map(one => [words(one.name), thousands(one.median), thousands(one.lower_quartile) + " .. " + thousands(one.upper_quartile),
                                       one.unit, one.created])));
   }
 
@@ -306,7 +306,7 @@
                     Timer: (device.timer_queries_trusted ? "timer queries; " : "fenced clock; ") + device.timer_note, Date: data.date };
     return [
       h("h2", { id: "device" }, "Device, driver and contents"),
-      h("dl", null, Object.entries(items).map(([title, value]) => [h("dt", null, title), h("dd", null, value)])), ceilings(),
+      h("dl", null, Object.entries(items).map(([title, value]) => [h("dt", null, title), h("dd", null, value)])), peakRates(),
       table(columns("Kind", "Name", "File", "Hash"), [
         ...data.scenes.map(scene => ["scene", scene.name, scene.file, code(scene.hash)]),
         ...data.pipelines.map(pipeline => ["pipeline", pipeline.name, pipeline.file, code(pipeline.hash)]),

@@ -1,10 +1,10 @@
 "use strict";
 // Published tables and figures, measured here: the cells are those of the Markdown.
 (function () {
-  const { data, pictures, h, list, table, pngAddress, show } = lumivox;
+  const { data, images, h, list, table, pngAddress, show } = lumivox;
   const columns = data.headings.map(title => ({ title, kind: title === "row" || title === "verdict" ? "wide" : "number" }));
   show(h("main", null, h("h1", null, data.title), h("p", null, data.rule), data.results.map((result, index) => {
-    const shown = pictures.results[index];
+    const shown = images.results[index];
     return [
       h("h2", null, result.heading), h("p", null, result.paper + ". ", h("strong", null, result.verdict)),
       result.rows.length > 0 && table(columns, result.rows),

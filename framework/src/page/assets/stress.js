@@ -1,6 +1,6 @@
 "use strict";
-// Where each technique breaks: the matrix of pipelines and cases, the cells that are not stable, and those that are. `pictures`: the
-// folder beside the page that holds the cells' pictures; empty: no links.
+// Where each technique breaks: the matrix of pipelines and cases, the cells that are not stable, and those that are. `images`: the
+// folder beside the page that holds the cells' images; empty: no links.
 const stressSection = (function () {
   const { h, caption, table, isNumber, number, measured, shortName, words } = lumivox;
   // In the order of concern.
@@ -8,7 +8,7 @@ const stressSection = (function () {
     broken: "NaN, infinite or negative where it must not be, a crash or a hang",
     diverges: "finite, but it grows without bound or does not converge where it should",
     biased: "healthy and bounded, but beyond the limit of the case",
-    refused: "a clear message in place of a picture",
+    refused: "a clear message in place of an image",
     stable: "healthy, and within the limit of the case",
     not_applicable: "the case asks for something that the pipeline does not have" };
   const hasNumber = cell => cell.measure !== "" && ["diverges", "biased", "stable"].includes(cell.outcome);
@@ -50,27 +50,27 @@ const stressSection = (function () {
   const measureText = cell => cell.measure === "" ? null
     : [cell.measure + ": ", h("b", null, measured(cell)), unit(cell) + (cell.limit > 0 ? "; limit " + number(cell.limit) : "")];
 
-  const concern = (cell, index, pictures) => h("section", { class: "concern", id: "cell-" + index },
-    pictures && cell.picture && h("a", { href: cell.picture }, h("img", { alt: "picture of the cell", src: cell.picture, loading: "lazy" })),
+  const concern = (cell, index, images) => h("section", { class: "concern", id: "cell-" + index },
+    images && cell.image && h("a", { href: cell.image }, h("img", { alt: "image of the cell", src: cell.image, loading: "lazy" })),
     h("h4", null, h("span", { class: "cell " + cell.outcome }, words(cell.outcome)), " " + shortName(cell.pipeline) + ": " + words(cell.case)),
     measureText(cell) && h("p", null, measureText(cell)), cell.detail && h("p", { class: "soft" }, cell.detail),
     cell.explanation && h("p", null, cell.explanation), h("pre", null, cell.command));
 
-  return function (cells, pictures) {
+  return function (cells, images) {
     const quiet = ["stable", "not_applicable"];
     const concerns = Object.keys(outcomes).filter(outcome => !quiet.includes(outcome)).flatMap(outcome =>
-      cells.map((cell, index) => cell.outcome === outcome ? concern(cell, index, pictures) : null).filter(Boolean));
+      cells.map((cell, index) => cell.outcome === outcome ? concern(cell, index, images) : null).filter(Boolean));
     const stable = cells.map((cell, index) => ({ cell, index })).filter(({ cell }) => cell.outcome === "stable");
     return [
       h("h2", { id: "stress" }, "Where each technique breaks"),
       caption("Every pipeline on every extreme case. A cell holds what its case measures; its colour is the outcome. Each leads to its "
-        + "picture and to the command that repeats it."),
+        + "image and to the command that repeats it."),
       legend(cells), matrix(cells), h("h3", null, "Cells that are not stable"), concerns.length > 0 ? concerns : h("p", null, "There are none."),
       h("h3", null, "Stable cells"),
       table([{ title: "Pipeline" }, { title: "Case" }, { title: "Measured", kind: "wide" }, { title: "Detail", kind: "wide" },
-             { title: "Picture" }, { title: "Command" }],
+             { title: "Image" }, { title: "Command" }],
         stable.map(({ cell, index }) => [
           [h("span", { id: "cell-" + index }), shortName(cell.pipeline)], words(cell.case), measureText(cell), cell.detail,
-          pictures && cell.picture ? h("a", { href: cell.picture }, "picture") : "", h("code", null, cell.command)]))];
+          images && cell.image ? h("a", { href: cell.image }, "image") : "", h("code", null, cell.command)]))];
   };
 })();

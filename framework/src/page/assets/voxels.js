@@ -1,5 +1,5 @@
 "use strict";
-// How voxelisers do: charts, the table of all records, and how times grow beside what papers say. `scaling`: exponents of each.
+// How voxelizers do: charts, the table of all records, and how times grow beside what papers say. `scaling`: exponents of each.
 const voxelSection = (function () {
   const { h, caption, list, table, number, percent, bytes, quartiles, shortName, style, chart } = lumivox;
 
@@ -62,7 +62,7 @@ const voxelSection = (function () {
   }
 
   function results(records) {
-    const titles = [["Scene"], ["Voxeliser", "wide"], ...["Resolution", "Triangles", "Time, ms", "Occupied", "Recall", "Precision",
+    const titles = [["Scene"], ["Voxelizer", "wide"], ...["Resolution", "Triangles", "Time, ms", "Occupied", "Recall", "Precision",
       "Holes, axis rays", "Holes, oblique rays", "Fragments", "Output", "Bytes per fragment", "Bytes per voxel", "All memory"]
       .map(title => [title, "number"])];
     const missing = records.filter(record => record.why_not);
@@ -86,7 +86,7 @@ const voxelSection = (function () {
       caption("The exponent p of a power law, time ~ x^p: 1 is proportional; for a surface in a grid, voxels along a side have the exponent 2 "
         + "where the time is that of the voxels it fills. Published: between the first and last row of a table. Here: least squares through "
         + "the medians; triangles by splitting each into four, which leaves the surface and its voxels as they are."),
-      table([{ title: "Source" }, { title: "Voxeliser", kind: "wide" }, { title: "Time grows with" }, { title: "Exponent", kind: "number" }],
+      table([{ title: "Source" }, { title: "Voxelizer", kind: "wide" }, { title: "Time grows with" }, { title: "Exponent", kind: "number" }],
             [...published.map(one => [one.source, one.method, one.over, number(exponent(one))]), ...here]),
       caption("Mavridis & Papaioannou 2011, Table 1, as ratios to the time with 19 points a triangle. Ours with other numbers of points are rows "
         + "of the table above."),
@@ -104,7 +104,7 @@ const voxelSection = (function () {
     };
     return [
       h("h2", { id: "voxels" }, "Voxels"),
-      caption("Every voxeliser against the exact test of triangles and boxes. Recall: share of the touched voxels that are occupied. Precision: "
+      caption("Every voxelizer against the exact test of triangles and boxes. Recall: share of the touched voxels that are occupied. Precision: "
         + "share of the occupied voxels that are touched. Holes: share of the crossings of straight rays with the surface at which the ray "
         + "meets no occupied voxel within a voxel and a half. Time: a frame in which everything that the output needs is made anew, median "
         + "[quartiles]."),

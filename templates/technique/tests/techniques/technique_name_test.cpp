@@ -11,7 +11,7 @@ using namespace lumivox;
 namespace {
 
 /// The output `indirect_diffuse` of the technique's pipeline.
-Picture indirectDiffuse(const Scene& scene, const std::vector<std::string>& settings) {
+ImageBuffer indirectDiffuse(const Scene& scene, const std::vector<std::string>& settings) {
   static gpu::Device device;
   static TechniqueSet techniques(TechniqueSet::defaultDirectories());
   const Pipeline pipeline = Pipeline::load("scenes/pipelines/technique_name.pipeline");
@@ -27,14 +27,14 @@ TEST_CASE("a Lambert surface in light of radiance L from all sides reflects albe
   SceneBuilder builder;
   builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.25f));
   builder.look({0, 3, 0}, {0, 0, 0}, {0, 0, -1}, 0.3, 8, 8);
-  const Picture picture = indirectDiffuse(builder.scene, {"radiance=2"});
+  const ImageBuffer image = indirectDiffuse(builder.scene, {"radiance=2"});
   // L arrives over the half space: E = pi L; a Lambert surface reflects albedo / pi of it.
-  for (const float value : picture.values()) CHECK(value == 0.25f * 2.0f);
+  for (const float value : image.values()) CHECK(value == 0.25f * 2.0f);
 }
 
 TEST_CASE("where nothing is seen, nothing is reflected") {
   SceneBuilder builder;
   builder.look({0, 3, 0}, {0, 6, 0}, {0, 0, -1}, 0.3, 8, 8);
-  const Picture picture = indirectDiffuse(builder.scene, {});
-  for (const float value : picture.values()) CHECK(value == 0.0f);
+  const ImageBuffer image = indirectDiffuse(builder.scene, {});
+  for (const float value : image.values()) CHECK(value == 0.0f);
 }

@@ -1,4 +1,4 @@
-// Reads a volume and a picture, counts in a volume; the format of `summed` follows an axis.
+// Reads a volume and an image, counts in a volume; the format of `summed` follows an axis.
 #pragma lumivox axis WIDE 0 1
 #pragma lumivox axis TEXTURED 0 1
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;

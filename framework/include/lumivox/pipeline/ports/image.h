@@ -4,7 +4,7 @@
 
 namespace lumivox {
 
-/// A picture-sized result. rgba16f or rgba32f: radiance in W/(sr m^2) in rgb; ambient occlusion in r.
+/// An image-sized result. rgba16f or rgba32f: radiance in W/(sr m^2) in rgb; ambient occlusion in r.
 struct Image {
   gpu::TextureRef texture;
 };
@@ -13,7 +13,7 @@ template <>
 struct PortTraits<Image> {
   static PortKind kind() {
     return {"Image",
-            "a picture-sized result",
+            "an image-sized result",
             {{"texture", "d2 rgba16f or rgba32f", "radiance in W/(sr m^2) in rgb; ambient occlusion in r"}}};
   }
   static void contents(const Image& port, PortContents& contents) {

@@ -1,0 +1,83 @@
+// Images in main memory: linear radiance in 32-bit floats, row 0 at the top, and the files that hold them.
+#pragma once
+
+#include <cassert>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace lumivox {
+
+/// A float image. Pixels are stored row by row from the top, the channels of a pixel side by side.
+class ImageBuffer {
+ public:
+  ImageBuffer() = default;
+  ImageBuffer(int width, int height, int channels,
+              float value = 0.0f);  // Error (before allocation) when it does not fit in memory
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  int channels() const { return channels_; }
+  bool empty() const { return values_.empty(); }
+  std::size_t pixelCount() const {
+    return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  }
+
+  float& at(int x, int y, int channel) { return values_[index(x, y, channel)]; }
+  float at(int x, int y, int channel) const { return values_[index(x, y, channel)]; }
+  std::vector<float>& values() { return values_; }
+  const std::vector<float>& values() const { return values_; }
+
+  bool sameShape(const ImageBuffer& other) const {
+    return width_ == other.width_ && height_ == other.height_ && channels_ == other.channels_;
+  }
+
+ private:
+  std::size_t index(int x, int y, int channel) const {
+    assert(x >= 0 && x < width_ && y >= 0 && y < height_ && channel >= 0 && channel < channels_);
+    return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)) *
+               static_cast<std::size_t>(channels_) +
+           static_cast<std::size_t>(channel);
+  }
+  int width_ = 0, height_ = 0, channels_ = 0;
+  std::vector<float> values_;
+};
+
+/// Several images of one size under names, and text attributes: what one EXR file holds. The layer "" is
+/// the file's main layer (channels R, G, B without prefix); three channels are named R G B, four R G B A, one
+/// Y, two X Y.
+struct LayeredImage {
+  std::map<std::string, ImageBuffer> layers;
+  std::map<std::string, std::string> attributes;
+};
+
+/// Reads a scanline or tiled EXR (half, float or uint channels, data window as the image). Error names the
+/// file on anything malformed.
+LayeredImage readExr(const std::filesystem::path& path);
+/// The text attributes of its first part alone, without its pixels.
+std::map<std::string, std::string> readExrAttributes(const std::filesystem::path& path);
+/// Writes 32-bit float ZIP-compressed scanlines, atomically.
+void writeExr(const std::filesystem::path& path, const LayeredImage& image);
+
+/// Writes a three- or one-channel linear image as an 8-bit sRGB PNG, atomically. `exposure` multiplies;
+/// values clip at 1; NaN is magenta.
+void writePng(const std::filesystem::path& path, const ImageBuffer& linear, float exposure = 1.0f);
+/// The bytes of that PNG, for embedding into pages.
+std::string encodePng(const ImageBuffer& linear, float exposure = 1.0f);
+
+/// An 8-bit image as stored (no transfer function applied).
+struct ByteImage {
+  int width = 0, height = 0, channels = 0;
+  std::vector<unsigned char> values;
+};
+/// Reads PNG, JPG or TGA (stb). Error names the file.
+ByteImage readByteImage(const std::filesystem::path& path);
+/// The same of a file that was read before.
+ByteImage decodeByteImage(const std::string& bytes, const std::filesystem::path& path);
+
+/// The sRGB transfer functions (IEC 61966-2-1), value in [0,1].
+float srgbToLinear(float encoded);
+float linearToSrgb(float linear);
+
+}  // namespace lumivox

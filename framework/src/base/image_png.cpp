@@ -1,0 +1,203 @@
+// PNG out (PNG specification, second edition): one IDAT chunk, deflated by libdeflate.
+#include <fmt/format.h>
+#include <libdeflate.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <span>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/base/image.h"
+
+namespace lumivox {
+namespace {
+
+constexpr std::size_t kChannels = 3;
+
+unsigned char encodeByte(float linear) {
+  constexpr float kSteps = 255.0f;
+  return static_cast<unsigned char>(std::lround(kSteps * linearToSrgb(std::clamp(linear, 0.0f, 1.0f))));
+}
+
+/// encodeByte by table: it never falls, so it is known by where it rises.
+class ByteEncoder {
+ public:
+  ByteEncoder() {
+    // Floats from 0 to 1 are in the order of their bits.
+    for (std::uint32_t byte = 1; byte < kBytes; ++byte) {
+      std::uint32_t below = 0, reached = kOne;
+      while (below + 1 < reached) {
+        const std::uint32_t middle = (below + reached) / 2;
+        (encodeByte(std::bit_cast<float>(middle)) >= byte ? reached : below) = middle;
+      }
+      rises_[byte] = reached;
+    }
+    rises_[kBytes] = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t byte = 0;
+    for (std::uint32_t i = 0; i < first_.size(); ++i) {
+      while (rises_[byte + 1] <= i << kSkippedBits) ++byte;
+      first_[i] = static_cast<unsigned char>(byte);
+    }
+  }
+
+  unsigned char operator()(float linear) const {
+    if (!(linear > 0.0f)) return 0;
+    if (linear >= 1.0f) return kBytes - 1;
+    const auto bits = std::bit_cast<std::uint32_t>(linear);
+    std::uint32_t byte = first_[bits >> kSkippedBits];
+    while (bits >= rises_[byte + 1]) ++byte;
+    return static_cast<unsigned char>(byte);
+  }
+
+ private:
+  static constexpr std::uint32_t kBytes = 256, kOne = 0x3f800000u, kSkippedBits = 16;
+  std::array<std::uint32_t, kBytes + 1> rises_{};  ///< bits of the first value that gives the byte
+  std::array<unsigned char, (kOne >> kSkippedBits) + 1> first_{};  ///< byte of the first value of a run
+};
+
+/// Rows of bytes, NaN in magenta.
+std::vector<unsigned char> bytesOf(const ImageBuffer& linear, float exposure) {
+  static const ByteEncoder encoder;
+  const auto sourceChannels = static_cast<std::size_t>(linear.channels());
+  std::vector<unsigned char> bytes(linear.pixelCount() * kChannels);
+  for (std::size_t pixel = 0; pixel < linear.pixelCount(); ++pixel) {
+    const float* source = linear.values().data() + pixel * sourceChannels;
+    unsigned char* target = bytes.data() + pixel * kChannels;
+    bool isNan = false;
+    for (std::size_t c = 0; c < sourceChannels; ++c) isNan = isNan || std::isnan(source[c] * exposure);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      target[c] = isNan ? (c == 1 ? 0 : 255) : encoder(source[sourceChannels == 1 ? 0 : c] * exposure);
+    }
+  }
+  return bytes;
+}
+
+/// The predictors of Sec. 9 that are tried; 3, the mean of left and above, hardly ever wins beside them.
+constexpr std::array<unsigned char, 4> kFilters{0, 1, 2, 4};
+
+/// Sec. 9.4: of left, above and upper left the one nearest to left + above - upper left.
+unsigned char paeth(int left, int above, int upperLeft) {
+  const int toLeft = std::abs(above - upperLeft), toAbove = std::abs(left - upperLeft),
+            toUpperLeft = std::abs(left + above - 2 * upperLeft);
+  const int nearerOfTwo = toAbove <= toUpperLeft ? above : upperLeft;
+  return static_cast<unsigned char>(toLeft <= toAbove && toLeft <= toUpperLeft ? left : nearerOfTwo);
+}
+
+void filterRow(unsigned char filter, const unsigned char* row, const unsigned char* above, std::size_t size,
+               unsigned char* result) {
+  const auto leftOf = [](const unsigned char* bytes, std::size_t i) {
+    return i < kChannels ? 0 : bytes[i - kChannels];
+  };
+  switch (filter) {
+    case 0:
+      std::copy_n(row, size, result);
+      return;
+    case 1:
+      for (std::size_t i = 0; i < size; ++i) result[i] = static_cast<unsigned char>(row[i] - leftOf(row, i));
+      return;
+    case 2:
+      for (std::size_t i = 0; i < size; ++i) result[i] = static_cast<unsigned char>(row[i] - above[i]);
+      return;
+    default:
+      for (std::size_t i = 0; i < std::min(size, kChannels); ++i)
+        result[i] = static_cast<unsigned char>(row[i] - above[i]);
+      for (std::size_t i = kChannels; i < size; ++i)
+        result[i] =
+            static_cast<unsigned char>(row[i] - paeth(row[i - kChannels], above[i], above[i - kChannels]));
+  }
+}
+
+/// Each row behind the number of the filter that leaves the least sum of differences (Sec. 12.8).
+std::string filtered(const std::vector<unsigned char>& bytes, std::size_t rowBytes) {
+  const std::size_t rows = bytes.size() / rowBytes;
+  std::string result(rows * (rowBytes + 1), '\0');
+  std::vector<unsigned char> above(rowBytes, 0), candidate(rowBytes), best(rowBytes);
+  auto* target = reinterpret_cast<unsigned char*>(result.data());
+  for (std::size_t y = 0; y < rows; ++y, target += rowBytes + 1) {
+    const unsigned char* row = bytes.data() + y * rowBytes;
+    const unsigned char* previous = y == 0 ? above.data() : row - rowBytes;
+    std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+    for (const unsigned char filter : kFilters) {
+      filterRow(filter, row, previous, rowBytes, candidate.data());
+      std::uint64_t sum = 0;
+      for (const unsigned char byte : candidate) sum += std::min<unsigned>(byte, 256u - byte);
+      if (sum >= least) continue;
+      least = sum;
+      target[0] = filter;
+      best.swap(candidate);
+    }
+    std::copy(best.begin(), best.end(), target + 1);
+  }
+  return result;
+}
+
+std::string zlibStream(const std::string& bytes) {
+  // Measured on rendered images: at most a tenth larger than what stb made with zlib, in less than a tenth
+  // of the time.
+  constexpr int kLevel = 6;
+  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
+      libdeflate_alloc_compressor(kLevel), &libdeflate_free_compressor);
+  if (!compressor) throw Error("no memory is left to compress a PNG");
+  std::string result(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()), '\0');
+  result.resize(
+      libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), result.data(), result.size()));
+  return result;
+}
+
+void appendBigEndian(std::string& png, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8) png += static_cast<char>(value >> shift & 0xffu);
+}
+
+/// Sec. 5.3: length, type, data, checksum over type and data.
+void appendChunk(std::string& png, const char* type, const std::string& data) {
+  appendBigEndian(png, static_cast<std::uint32_t>(data.size()));
+  const std::size_t begin = png.size();
+  png += type;
+  png += data;
+  appendBigEndian(png, libdeflate_crc32(0, png.data() + begin, png.size() - begin));
+}
+
+}  // namespace
+
+std::string encodePng(const ImageBuffer& linear, float exposure) {
+  if (linear.empty() || (linear.channels() != 1 && linear.channels() != 3)) {
+    throw Error(
+        fmt::format("an image with {} channels cannot become a PNG; expected 1 or 3", linear.channels()));
+  }
+  const std::size_t rowBytes = static_cast<std::size_t>(linear.width()) * kChannels;
+  requireMemory(4 * linear.pixelCount() * kChannels, "a PNG while it is made");
+  const std::string data = zlibStream(filtered(bytesOf(linear, exposure), rowBytes));
+  constexpr std::size_t kLongestChunk = 0x7fffffff;  // Sec. 5.3
+  if (data.size() > kLongestChunk) {
+    throw Error(fmt::format("a PNG of {} x {} pixels could not be encoded: it has over 2 GiB", linear.width(),
+                            linear.height()));
+  }
+  std::string png = "\x89PNG\r\n\x1a\n", header;
+  appendBigEndian(header, static_cast<std::uint32_t>(linear.width()));
+  appendBigEndian(header, static_cast<std::uint32_t>(linear.height()));
+  constexpr char kBitDepth = 8, kTrueColour = 2, kDeflate = 0, kAdaptiveFilters = 0, kNotInterlaced = 0;
+  for (const char byte : {kBitDepth, kTrueColour, kDeflate, kAdaptiveFilters, kNotInterlaced}) header += byte;
+  appendChunk(png, "IHDR", header);
+  appendChunk(png, "IDAT", data);
+  appendChunk(png, "IEND", {});
+  return png;
+}
+
+void writePng(const std::filesystem::path& path, const ImageBuffer& linear, float exposure) {
+  std::string bytes;
+  try {
+    bytes = encodePng(linear, exposure);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path.string(), error.what()));
+  }
+  writeFileAtomically(path, bytes);
+}
+
+}  // namespace lumivox

@@ -1,0 +1,151 @@
+// 8-bit images in by stb: PNG, JPG and TGA. stb checks neither sums nor ends, so the containers
+// are walked here first: a damaged or truncated file must not pass for an image.
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <string_view>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/base/image.h"
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wall"
+#pragma GCC diagnostic ignored "-Wextra"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_TGA
+#define STBI_NO_STDIO
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
+
+namespace lumivox {
+namespace {
+
+using Bytes = std::basic_string_view<unsigned char>;
+
+[[noreturn]] void refuse(std::string_view what) {
+  throw Error(std::string(what));
+}
+
+std::uint32_t bigEndian32(Bytes bytes, std::size_t at) {
+  return std::uint32_t{bytes[at]} << 24 | std::uint32_t{bytes[at + 1]} << 16 |
+         std::uint32_t{bytes[at + 2]} << 8 | bytes[at + 3];
+}
+
+/// PNG specification, Sec. 5.3: chunks of length, type, data and checksum, up to IEND.
+void checkPng(Bytes bytes) {
+  constexpr std::size_t kSignature = 8, kChunkFrame = 12;
+  for (std::size_t at = kSignature;;) {
+    if (bytes.size() - at < kChunkFrame) refuse("the PNG is truncated");
+    const std::size_t length = bigEndian32(bytes, at);
+    if (length > bytes.size() - at - kChunkFrame) refuse("the PNG is truncated");
+    const auto sum = crc32(0, bytes.data() + at + 4, static_cast<uInt>(length + 4));
+    if (sum != bigEndian32(bytes, at + 8 + length)) refuse("a chunk of the PNG fails its checksum");
+    if (std::memcmp(bytes.data() + at + 4, "IEND", 4) == 0) return;
+    at += kChunkFrame + length;
+  }
+}
+
+/// JPEG (ITU-T T.81, Annex B): marker segments, entropy-coded data after each start of scan, and the
+/// end-of-image marker.
+void checkJpeg(Bytes bytes) {
+  constexpr unsigned kStartOfScan = 0xDA, kEndOfImage = 0xD9, kFirstRestart = 0xD0, kLastRestart = 0xD7,
+                     kTemporary = 0x01;
+  bool inScan = false;
+  for (std::size_t at = 2; at + 1 < bytes.size();) {
+    if (bytes[at] != 0xFF) {
+      if (!inScan) refuse("the JPEG has no marker where one is due");
+      ++at;
+      continue;
+    }
+    const unsigned marker = bytes[at + 1];
+    if (marker == kEndOfImage) return;
+    if (marker == 0xFF) {  // fill byte
+      ++at;
+    } else if (marker == 0 || marker == kTemporary || (marker >= kFirstRestart && marker <= kLastRestart)) {
+      at += 2;  // a stuffed 0xFF, or a marker without a segment
+    } else {
+      if (at + 3 >= bytes.size()) break;
+      inScan = marker == kStartOfScan;
+      at += 2 + (std::size_t{bytes[at + 2]} << 8 | bytes[at + 3]);
+    }
+  }
+  refuse("the JPEG is truncated");
+}
+
+/// Truevision TGA 2.0: an 18-byte header, the identification, the palette, then pixels, raw or in run-length
+/// packets.
+void checkTga(Bytes bytes) {
+  constexpr std::size_t kHeader = 18;
+  constexpr unsigned kRunLengthCoded = 8;
+  if (bytes.size() < kHeader) refuse("is no PNG, JPG or TGA");
+  const auto littleEndian16 = [&](std::size_t at) {
+    return std::size_t{bytes[at]} | std::size_t{bytes[at + 1]} << 8;
+  };
+  std::size_t at = kHeader + bytes[0];
+  if (bytes[1] != 0) at += littleEndian16(5) * ((bytes[7] + 7u) / 8);
+  const std::size_t pixelBytes = (bytes[16] + 7u) / 8;
+  const std::size_t pixels = littleEndian16(12) * littleEndian16(14);
+  if ((bytes[2] & kRunLengthCoded) == 0) {
+    at += pixels * pixelBytes;
+  } else {
+    for (std::size_t decoded = 0; decoded < pixels;) {
+      if (at >= bytes.size()) refuse("the TGA is truncated");
+      const std::size_t run = (bytes[at] & 0x7Fu) + 1;
+      at += 1 + ((bytes[at] & 0x80u) != 0 ? pixelBytes : run * pixelBytes);
+      decoded += run;
+    }
+  }
+  if (at > bytes.size()) refuse("the TGA is truncated");
+}
+
+ByteImage decode(Bytes bytes) {
+  if (bytes.empty()) refuse("the file is empty; expected a PNG, JPG or TGA");
+  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    refuse("the image file is over 2 GiB");
+  const int size = static_cast<int>(bytes.size());
+  ByteImage image;
+  if (stbi_info_from_memory(bytes.data(), size, &image.width, &image.height, &image.channels) == 0) {
+    refuse(fmt::format("is no readable PNG, JPG or TGA: {}", stbi_failure_reason()));
+  }
+  if (bytes[0] == 0x89) {
+    checkPng(bytes);
+  } else if (bytes[0] == 0xFF && bytes[1] == 0xD8) {
+    checkJpeg(bytes);
+  } else {
+    checkTga(bytes);
+  }
+  // The decoder holds the unpacked stream and the image at once, up to two bytes a channel.
+  const std::uint64_t valueCount = static_cast<std::uint64_t>(image.width) *
+                                   static_cast<std::uint64_t>(image.height) *
+                                   static_cast<std::uint64_t>(image.channels);
+  requireMemory(valueCount * 4, fmt::format("an image of {} x {} pixels", image.width, image.height));
+  const std::unique_ptr<stbi_uc, decltype(&std::free)> pixels(
+      stbi_load_from_memory(bytes.data(), size, &image.width, &image.height, &image.channels, 0), &std::free);
+  if (!pixels) refuse(fmt::format("is no readable PNG, JPG or TGA: {}", stbi_failure_reason()));
+  image.values.assign(pixels.get(), pixels.get() + valueCount);
+  return image;
+}
+
+}  // namespace
+
+ByteImage readByteImage(const std::filesystem::path& path) {
+  return decodeByteImage(readFile(path, kLargestImageFile), path);
+}
+
+ByteImage decodeByteImage(const std::string& bytes, const std::filesystem::path& path) {
+  try {
+    return decode(Bytes(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path.string(), error.what()));
+  }
+}
+
+}  // namespace lumivox

@@ -1,0 +1,157 @@
+// The reference's layers as the components of a pipeline need them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "experiment/measure.h"
+#include "lumivox/base/error.h"
+
+namespace lumivox {
+namespace {
+
+void add(ImageBuffer& sum, const ImageBuffer& part) {
+  for (std::size_t i = 0; i < sum.values().size(); ++i) sum.values()[i] += part.values()[i];
+}
+
+}  // namespace
+
+std::pair<std::string, std::string> referenceLayers(Contributes component, int bounces) {
+  const auto upTo = [&](const char* one, const char* lobe) {
+    return bounces == 1 ? std::string(one) : fmt::format("bounces_{}{}", bounces, lobe);
+  };
+  switch (component) {
+    case Contributes::direct:
+      return {"direct", "direct"};
+    case Contributes::indirectDiffuse:
+      return {upTo("one_bounce_diffuse", "_diffuse"), "indirect_diffuse"};
+    case Contributes::indirectGlossy:
+      return {upTo("one_bounce_glossy", "_glossy"), "indirect_glossy"};
+    case Contributes::ambientOcclusion:
+      return {"ambient_occlusion", "ambient_occlusion"};
+    case Contributes::scattered:
+      return {"scattered_single", "scattered"};
+    case Contributes::final:
+      return {upTo("one_bounce", ""), "full"};
+    case Contributes::nothing:
+      break;
+  }
+  return {};
+}
+
+std::optional<ReferenceLayer> referenceLayer(const LayeredImage& reference, const std::string& name) {
+  const auto find = [&](const std::string& layer) -> std::optional<ReferenceLayer> {
+    const auto mean = reference.layers.find(layer);
+    if (mean == reference.layers.end()) return std::nullopt;
+    const auto variance = reference.layers.find(layer + ".variance");
+    return ReferenceLayer{mean->second,
+                          variance == reference.layers.end() ? ImageBuffer{} : variance->second};
+  };
+  if (name != "one_bounce" || reference.layers.count(name) != 0) return find(name);
+  std::optional<ReferenceLayer> sum = find("direct");
+  for (const char* part : {"one_bounce_diffuse", "one_bounce_glossy"}) {
+    const std::optional<ReferenceLayer> layer = find(part);
+    if (!sum || !layer || !sum->mean.sameShape(layer->mean)) return std::nullopt;
+    add(sum->mean, layer->mean);
+    // The layers share camera rays; their covariance is not recorded, so the sum of variances is an estimate
+    // that leaves it out.
+    if (sum->variance.sameShape(layer->variance)) add(sum->variance, layer->variance);
+  }
+  return sum;
+}
+
+}  // namespace lumivox
+
+namespace lumivox::experiment {
+
+SceneReference::SceneReference(const Scene& scene, const ReferenceOptions& options) : options_(options) {
+  const auto start = std::chrono::steady_clock::now();
+  layers_ = cachedReference(scene, options);
+  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void SceneReference::require(const Scene& scene, int bounces) {
+  std::vector<int>& layers = options_.bounceLayers;
+  if (bounces <= 1 || std::find(layers.begin(), layers.end(), bounces) != layers.end()) return;
+  layers.insert(std::upper_bound(layers.begin(), layers.end(), bounces), bounces);
+  *this = SceneReference(scene, options_);
+}
+
+SceneReference& SceneReference::later(const Scene& scene, int frame) {
+  if (frame == 0) return *this;
+  std::unique_ptr<SceneReference>& reference = later_[frame];
+  if (!reference) {
+    constexpr int kFewerSamples = 4, kFewest = 16;
+    ReferenceOptions options = options_;
+    options.time += frame * kFlickerStep;
+    options.seed += static_cast<std::uint64_t>(frame);
+    options.samplesPerPixel =
+        std::min(options.samplesPerPixel, std::max(kFewest, options.samplesPerPixel / kFewerSamples));
+    reference = std::make_unique<SceneReference>(scene, options);
+  }
+  return *reference;
+}
+
+const ReferenceLayer* SceneReference::layer(const std::string& name) {
+  auto found = cache_.find(name);
+  if (found == cache_.end()) found = cache_.emplace(name, referenceLayer(layers_, name)).first;
+  return found->second ? &*found->second : nullptr;
+}
+
+const ImageError& SceneReference::errorOfNothing(const std::string& name) {
+  auto found = nothing_.find(name);
+  if (found == nothing_.end()) {
+    const ReferenceLayer& reference = *layer(name);
+    const Contributes component = name == lumivox::name(Contributes::ambientOcclusion)
+                                      ? Contributes::ambientOcclusion
+                                      : Contributes::final;
+    const ImageBuffer nothing = neutralImage(reference.mean.width(), reference.mean.height(), component);
+    found = nothing_.emplace(name, compare(nothing, reference.mean, reference.variance)).first;
+  }
+  return found->second;
+}
+
+float SceneReference::exposure(const std::string& name) {
+  const ReferenceLayer* reference = layer(name);
+  if (reference == nullptr) return 1.0f;
+  return reference->mean.channels() == 1 ? 1.0f
+                                         : displayExposure(reference->mean);  // occlusion is shown as it is
+}
+
+std::vector<ReferenceRecord> referenceRecords(SceneReference& reference, const std::set<std::string>& used) {
+  std::vector<ReferenceRecord> records;
+  // A layer of some bounces is shown at the exposure of the full one, so that all images of a component
+  // compare.
+  const auto exposureLayer = [](const std::string& name) -> std::string {
+    if (name == "one_bounce_diffuse") return "indirect_diffuse";
+    if (name == "one_bounce_glossy") return "indirect_glossy";
+    if (name.rfind("bounces_", 0) == 0)
+      return name.ends_with("_diffuse")  ? "indirect_diffuse"
+             : name.ends_with("_glossy") ? "indirect_glossy"
+                                         : "full";
+    return name == "one_bounce" ? "full" : name;
+  };
+  for (const std::string& name : used) {
+    const ReferenceLayer* layer = reference.layer(name);
+    if (layer == nullptr) continue;
+    ReferenceRecord record;
+    record.layer = name;
+    record.exposure = reference.exposure(exposureLayer(name));
+    record.image = encodePng(layer->mean, static_cast<float>(record.exposure));
+    double sum = 0.0, variance = 0.0;
+    for (const float value : layer->mean.values()) {
+      sum += value;
+      record.largest = std::max(record.largest, static_cast<double>(value));
+    }
+    for (const float value : layer->variance.values()) variance += value;
+    record.mean = layer->mean.values().empty() ? 0.0 : sum / static_cast<double>(layer->mean.values().size());
+    record.noise = layer->variance.empty()
+                       ? 0.0
+                       : std::sqrt(variance / static_cast<double>(layer->variance.values().size()));
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+}  // namespace lumivox::experiment
