@@ -152,7 +152,7 @@ struct FrameResult {
   std::vector<std::string> notes;
 };
 
-/// One thing that a run does without.
+/// One thing that a run leaves out.
 struct LeftOut {
   enum class Level { plugin, pass, variant, resource, time } level;
   std::string what, why;
@@ -162,8 +162,8 @@ struct LeftOut {
 };
 const char* name(LeftOut::Level level);
 
-/// What a pipeline does without on a scene. Variants, shared memory and times are known once a frame was
-/// rendered.
+/// The parts of a pipeline that are left out on a scene. Variants, shared memory and times are known once a
+/// frame was rendered.
 struct Explanation {
   std::vector<LeftOut> leftOut;
   std::size_t passesKept = 0, passesTotal = 0;
@@ -182,7 +182,7 @@ class PipelineExecutor {
   ~PipelineExecutor();
 
   enum class Images { no, yes };
-  /// What is timed: the frame as a whole, without any instrument inside of it, or its passes, for
+  /// The thing timed: the frame as a whole, without any instrument inside of it, or its passes, for
   /// timedPasses(). Where the device keeps time for its passes, such a frame waits for nothing; where it does
   /// not (DeviceInfo::timerQueriesTrusted), it waits before and after every pass.
   enum class Timing { frame, passes };
@@ -195,7 +195,7 @@ class PipelineExecutor {
   /// The passes of every frame that was rendered with Timing::passes since the last call, in their order,
   /// with their device times. Waits for the device.
   std::vector<std::vector<PassRecord>> timedPasses();
-  /// Forgets cached results and what passes keep while it stands still, so that the next frame runs every
+  /// Forgets cached results and what passes keep between frames, so that the next frame runs every
   /// kept pass. Histories stay.
   void invalidate();
   /// The next frame finds no history and counts as the first.
@@ -271,7 +271,7 @@ class PassHarness {
   std::unique_ptr<State> state_;
 };
 
-/// What an output shows that was left out: its neutral element everywhere.
+/// The image of an output that was left out: its neutral element everywhere.
 ImageBuffer neutralImage(int width, int height, Contributes component);
 
 /// A texture's image as the framework stores images: row 0 on top.

@@ -18,7 +18,7 @@ namespace lumivox {
 struct RunClaim {
   std::string machine;  ///< and its start and name space of processes: where `process` means something
   int process = 0;
-  std::uint64_t started = 0;  ///< of the process, so that another one with its number is told apart
+  std::uint64_t started = 0;  ///< of the process, distinguishes another one with its number
   std::string command;        ///< its command line
   std::int64_t expires = 0;   ///< s since 1970
 };
