@@ -99,7 +99,7 @@ void writeToDisk(int descriptor, std::span<const std::byte> bytes, const std::fi
   if (fsync(descriptor) != 0 && errno != EINVAL) fail(path, "write");
 }
 
-/// What a name to be written to stands for, once symbolic links are followed.
+/// The target of a name to be written to, once symbolic links are followed.
 struct Target {
   std::filesystem::path path;
   std::optional<struct stat> status;  ///< absent: there is nothing yet

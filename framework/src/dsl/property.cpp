@@ -1,4 +1,4 @@
-// What one property's values must be.
+// Checks of one property's values.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -88,7 +88,7 @@ class BlockChecker {
         checkItem(*item.block);
       }
     }
-    // What stands behind the end of a truncated text is not missing.
+    // Properties after the end of a truncated text are not missing.
     if (block_.closed) checkMissing();
   }
 

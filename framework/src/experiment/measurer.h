@@ -32,7 +32,7 @@ class Measurer {
   Measurer(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options, ResultsStore& store,
            Scene scene, std::string sceneShown, Images images = Images::no);
 
-  /// What the store holds of these points, in their order, before anything is measured. A failure counts as
+  /// Which of these points the store holds, in their order, before anything is measured. A failure counts as
   /// held unless `retryFailed`.
   std::vector<bool> held(const std::vector<WantedPoint>& points, bool retryFailed) const;
   std::string key(const WantedPoint& point) const;
@@ -49,7 +49,7 @@ class Measurer {
   /// Times the first of these points that the store holds once more, at most as many as are timed together,
   /// in the same way: what differs is the machine's mood.
   void control(const std::vector<WantedPoint>& points, std::size_t most = kBatch);
-  /// What the controls in a store say of this device.
+  /// How far times of the same thing differ on this device, from the controls in a store.
   TimeFloor floor(const ResultsStore& store) const;
   TimeFloor floor() const { return floor(store_); }
   /// Those that the store holds are taken from it, the others are measured.

@@ -1,4 +1,4 @@
-// What leaving out saves, and the whole image of a pipeline.
+// The saving by leaving out, and the whole image of a pipeline.
 #include <cmath>
 #include <cstring>
 

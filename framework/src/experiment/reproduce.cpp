@@ -78,7 +78,7 @@ class Reproduction {
     for (const PublishedCurve& curve : result_.published.curves)
       result_.curves.push_back({curve.name, curve.over, curve.points.front().quantity, curve.growth,
                                 std::vector<MeasuredPoint>(curve.points.size())});
-    // What is measured stays where it is from here on.
+    // Measured rows stay where they are from here on.
     for (std::size_t i = 0; i < result_.rows.size(); ++i) place(result_.published.rows[i], result_.rows[i]);
     for (std::size_t i = 0; i < result_.curves.size(); ++i) placeCurve(i);
     time();
@@ -130,8 +130,8 @@ class Reproduction {
     return {device_, techniques_, *setUp.scene, setUp.options, setUp.width, setUp.height};
   }
 
-  /// What a sweep would store: the times, and errors and work, which are measured apart from them. The
-  /// verdict stands whether this succeeds or not.
+  /// The points that a sweep would store: the times, and errors and work, which are measured apart from them.
+  /// The verdict stands whether this succeeds or not.
   void store() {
     // A scene that was made finer here is none that a sweep could name.
     for (TimedSetUp& setUp : setUps_)

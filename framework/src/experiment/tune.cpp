@@ -206,7 +206,7 @@ class Search {
       }
     }
     for (const PipelineParameter& parameter : pipeline.parameters) {
-      // What the command line sets stays.
+      // Parameters set on the command line stay.
       if (wanted.loaded->settings.count(parameter.name) != 0) continue;
       const ParameterValue& now = wanted.point.parameters.at(parameter.name);
       for (ParameterValue& value : steps(pipeline, parameter, now)) {

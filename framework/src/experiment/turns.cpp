@@ -64,7 +64,7 @@ void timeInTurns(std::vector<Turn>& turns, int repeats, int nextFrames) {
     });
     for (int frame = 0; frame < nextFrames; ++frame)
       forEach(held, failed, [](Held& one) { one.point->timeNextFrame(); });
-    // What these are for needs no more than a claim does.
+    // Their purpose needs no more than a claim does.
     const int parts = std::min(nextFrames, kLeastRepeats);
     for (int frame = 0; frame < parts; ++frame)
       forEach(held, failed, [](Held& one) { one.point->timeStillFrame(); });

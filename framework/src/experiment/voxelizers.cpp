@@ -242,7 +242,7 @@ class Measurement {
     }
   }
 
-  /// What is right in one grid.
+  /// The reference in one grid.
   struct Reference {
     GridPlacement grid;
     VoxelReference voxels;

@@ -160,7 +160,7 @@ std::uint64_t clearedBytes(const RenderTargets& targets) {
   return bytes;
 }
 
-/// What all targets have in common, or the size that is given where there are none.
+/// The common size of all targets, or the given one where there are none.
 glm::ivec2 sizeOf(const RenderTargets& targets) {
   if (targets.colours.empty() && targets.depth == nullptr) return {targets.width, targets.height};
   glm::ivec2 size(0);

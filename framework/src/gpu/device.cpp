@@ -221,7 +221,7 @@ void DeviceState::requireDeviceMemory(std::uint64_t bytes, const std::string& wh
     refuse(memoryBytes - std::min(memoryBytes, allocatedBytes),
            fmt::format("of the limit of {} are", formatBytes(memoryBytes)));
   if (bytes < kNotWorthAsking) return;
-  // What is held already is missing from what is available: drivers fill new resources with zeros.
+  // Memory in use is already missing from the available memory: drivers fill new resources with zeros.
   if (info.software) {
     if (const std::uint64_t available = availableMemory(); bytes > available)
       refuse(available, "of memory are");

@@ -74,8 +74,8 @@ class UniformBuffer : public UniformRing::Fences {
   std::array<GLsync, UniformRing::kSegments> fences_{};
 };
 
-/// What a framebuffer draws to: handle and layer of each colour target and of depth, and the size and samples
-/// of one without targets. Words, so that it is compared as a whole.
+/// The targets of a framebuffer: handle and layer of each colour target and of depth, and the size and
+/// samples of one without targets. Words, so that it is compared as a whole.
 using FramebufferKey = std::vector<std::int64_t>;
 
 /// Framebuffers that were made and checked before.
@@ -92,7 +92,7 @@ class FramebufferCache {
   std::map<FramebufferKey, GLuint> framebuffers_;
 };
 
-/// What is bound now, so that a draw binds only what differs from the one before.
+/// The current bindings, so that a draw binds only what differs from the one before.
 struct BindingCache {
   struct Sampled {
     GLuint texture = 0, sampler = 0;

@@ -137,7 +137,7 @@ gpu::Device::Elapsed FrameContext::run(Pass& pass, const std::string& name, bool
   device_.enterPass(name);
   try {
     pass.run(*this);
-    // What a pass wrote is there for every later one, whatever that does with it.
+    // The writes of a pass are visible to every later one, however it reads them.
     device_.barrier();
     elapsed.hostMs = since(start);
   } catch (...) {

@@ -264,7 +264,7 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
 
   const Instrument instrument = instrumentOf(timing);
   std::optional<FrameResult> result = attempt(changed, instrument, start);
-  // What was rendered lacks something: nothing of it is kept, and the frame's time is that of all attempts.
+  // An incomplete frame is rendered again: nothing of it is kept, and the time is that of all attempts.
   while (!result) result = attempt(Reads::nothing, instrument, start);
   if (timing == Timing::passes) result->frameMs = std::numeric_limits<double>::quiet_NaN();
   if (options.accumulate) holdHistories();

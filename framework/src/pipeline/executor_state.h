@@ -61,8 +61,8 @@ struct PipelineExecutor::State {
   bool readsWhatChanged(std::size_t pass, Reads changed, const SceneSnapshot& snapshot) const;
 
   // ---- what is carried from frame to frame
-  /// What counts as a source for PassContext::accumulated(): with --keep-everything too, passes count like
-  /// those of a run that leaves out what it can.
+  /// Sources for PassContext::accumulated(): with --keep-everything too, passes count like those of a run
+  /// that leaves out what it can.
   std::vector<std::vector<OutputIndex>> sourcesThatCount();
   std::map<std::string, int> indirectBounces() const;
   void countStillFrames(Reads changed, const SceneSnapshot& snapshot);

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What makes one library unfit; carries the reason.
+/// A library that is unfit; carries the reason.
 class Unfit : public Error {
  public:
   using Error::Error;

@@ -102,8 +102,8 @@ ContentHash contentOf(const LayeredImage& image) {
 
 constexpr const char* kContentHash = "content";
 
-/// What keeps an entry from being the wanted reference; empty when nothing does. It is believed in nothing:
-/// what it says of itself is compared with what it has to be.
+/// The defect that keeps an entry from being the wanted reference; empty when there is none. It is not
+/// trusted: what it says of itself is compared with what it has to be.
 std::string defectOf(LayeredImage& entry, const Scene& scene, const ResolvedOptions& resolved) {
   const auto stated = entry.attributes.find(kContentHash);
   const std::string hash = stated == entry.attributes.end() ? std::string() : stated->second;

@@ -29,7 +29,7 @@ bool isEntry(const std::string& name) {
          name.ends_with(kSuffix);
 }
 
-/// What writeFileAtomically names a file before it is whole.
+/// Whether this is writeFileAtomically's name for a file before it is whole.
 bool isHalfWritten(const std::string& name) {
   return name.starts_with(fmt::format(".{}", kPrefix)) && name.ends_with(".new");
 }

@@ -35,12 +35,12 @@ PropertySpecification required(PropertySpecification specification) {
 }
 
 constexpr double kMostSubdivisions = 6;  // 4096 triangles of one
-/// What the path tracer keeps apart (reference/path_tracer.h).
+/// Layers of the path tracer (reference/path_tracer.h).
 constexpr const char* kReferenceLayers[] = {
     "direct", "one_bounce_diffuse", "one_bounce_glossy", "one_bounce", "indirect_diffuse", "indirect_glossy",
     "full",   "ambient_occlusion",  "scattered_single",  "scattered"};
 
-/// What a text says for all of its rows, points and panels, and each of them for itself.
+/// Properties that a text gives for all of its rows, points and panels, and each of them for itself.
 std::vector<PropertySpecification> setUpProperties() {
   PropertySpecification measures = property(
       "measures", PropertyType::word,
@@ -197,7 +197,7 @@ const BlockSpecification& resultSpecification() {
   return reproductionSpecifications().front();
 }
 
-/// What is known of the set-up so far: the text's, a curve's over it, then the row's, point's or panel's.
+/// The set-up as known so far: the text's, a curve's over it, then the row's, point's or panel's.
 struct SetUp {
   const dsl::Property* scene = nullptr;
   const dsl::Property* pipeline = nullptr;
@@ -219,7 +219,7 @@ class ResultReader : TextFindings {
     const dsl::Block* main = nullptr;
     for (const dsl::Item& item : document_.items)
       if (item.block && item.block->word == "reproduction" && main == nullptr) main = item.block.get();
-    // What the tables refuse has no meaning to read.
+    // A block that the tables refuse has no meaning to read.
     if (main == nullptr || !findings_.empty()) return;
     const dsl::CheckedBlock block(*main, resultSpecification());
     result_.id = block.name();
@@ -280,7 +280,7 @@ class ResultReader : TextFindings {
     result_.rows.push_back(std::move(row));
   }
 
-  /// What a row is divided by stands in the same text, measures the same, and is divided by nothing itself.
+  /// The divisor of a row is in the same text, measures the same, and is divided by nothing itself.
   void readOver(const std::vector<const dsl::Block*>& blocks) {
     std::vector<std::string> names;
     for (const PublishedRow& row : result_.rows) names.push_back(row.name);
@@ -449,7 +449,7 @@ class ResultReader : TextFindings {
                  oneOf(names, "no pass"), nearestWord(name, names));
   }
 
-  /// What stands in the table is read for every row.
+  /// Properties of the table are read for every row but reported once.
   void reportOnce(const SourcePlace& place, int length, std::string what, std::string expected,
                   std::string suggestion = {}) {
     const bool known = std::any_of(findings_.begin(), findings_.end(), [&](const Diagnostic& other) {

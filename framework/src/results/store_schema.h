@@ -106,7 +106,7 @@ CREATE TABLE health (
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-/// What schema 2 adds to schema 1.
+/// Additions of schema 2 to schema 1.
 inline constexpr const char* kSchema2 = R"sql(
 CREATE TABLE stress_cells (
   id INTEGER PRIMARY KEY,
@@ -161,7 +161,7 @@ CREATE TABLE ceilings (
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-/// What schema 3 adds to schema 2.
+/// Additions of schema 3 to schema 2.
 inline constexpr const char* kSchema3 = R"sql(
 CREATE TABLE work (
   run INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE,
@@ -172,7 +172,7 @@ CREATE TABLE work (
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-/// What schema 4 adds to schema 3.
+/// Additions of schema 4 to schema 3.
 inline constexpr const char* kSchema4 = R"sql(
 ALTER TABLE errors ADD COLUMN per_seed INTEGER NOT NULL DEFAULT 0;
 CREATE TABLE notes (
@@ -211,7 +211,7 @@ CREATE TABLE claims (
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-/// What schema 5 changes in schema 4: one word for each thing.
+/// Changes of schema 5 to schema 4: one word for each thing.
 inline constexpr const char* kSchema5 = R"sql(
 ALTER TABLE runs RENAME COLUMN truth_samples TO reference_samples;
 ALTER TABLE errors RENAME COLUMN truth TO reference;

@@ -40,7 +40,7 @@ class Reader {
     for (const dsl::Item& item : scene.items) {
       if (!item.block || !known(grammar_, *item.block)) continue;
       checkReferences(*item.block);
-      // What the grammar has already refused is not judged further.
+      // Blocks that the grammar has refused are not judged further.
       std::vector<Diagnostic> refusals;
       dsl::check(document_, *item.block, specificationOf(grammar_, item.block->word), refusals);
       if (refusals.empty() && !holdsParameters(*item.block) && item.block->closed) read(*item.block);

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a surface is where no material file says: the neutral grey of the usual scans.
+// The albedo of a surface without a material file: the neutral grey of the usual scans.
 constexpr float kUnknownAlbedo = 0.8f;
 
 glm::vec3 vectorOf(const tinyobj::real_t* values) {
@@ -47,7 +47,7 @@ class MaterialTable {
     for (const std::string& name : scan.materialNames) {
       if (numbers_.count(name) == 0) addUnknown(name, scan.materialFiles);
     }
-    // What stands before the first usemtl has a material too.
+    // Faces before the first usemtl have a material too.
     fallback_ = static_cast<std::uint32_t>(table_.size());
     table_.push_back(grey("default"));
     if (!unsupported_.empty()) {
