@@ -1,4 +1,4 @@
-// What the surfaces receive from the grids, and what they give on to reflections: thesis Gomes 2015,
+// Light that surfaces receive from the grids, and that they pass on to reflections: thesis Gomes 2015,
 // Sec. 4.3.4 and 4.3.5.
 #include <fmt/format.h>
 

@@ -78,7 +78,7 @@ class Inject : public Pass {
   }
 
  protected:
-  /// What surfaces close; without it nothing but the packed voxels occludes.
+  /// The faces that surfaces occlude; without them only the packed voxels occlude.
   virtual bool findsFaces() const { return true; }
   /// Virtual lights to the coefficients of the cells.
   virtual void fillCells(PassContext& frame, const ShGrid::Level& level, OccludedFaces::Level& surfaces) {

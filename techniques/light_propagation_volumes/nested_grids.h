@@ -1,4 +1,4 @@
-// What all stages share: where the nested grids lie, and textures of their cells.
+// Common parts of all stages: where the nested grids lie, and textures of their cells.
 #pragma once
 
 #include <string>

@@ -1,5 +1,4 @@
-// What the stages of light propagation know of the surfaces in their cells: a kind of port of this
-// technique's own.
+// Knowledge of the surfaces in the cells of light propagation: a kind of port of this technique's own.
 #pragma once
 
 #include "lumivox/pipeline/port.h"

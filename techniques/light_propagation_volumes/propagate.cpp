@@ -145,7 +145,7 @@ class PropagatePass : public Pass {
     const glm::ivec3 wholeBricks = (level.grid.resolution + kBrick - 1) / kBrick * kBrick;
     for (int i = 0; i < iterations; ++i) {
       const auto now = static_cast<std::size_t>(i % 2), next = 1 - now;
-      // What the last iteration brings has not passed its cell yet: it is still travelling.
+      // The flux of the last iteration has not passed its cell yet: it is still travelling.
       const bool passes = i + 1 < iterations && !publishedTransfer();
       frame.dispatch(program,
                      {propagate::parameters({.resolution = level.grid.resolution,

@@ -1,4 +1,4 @@
-// What the camera sees becomes voxels (Mavridis & Papaioannou 2011, Sec. 3.2).
+// Voxels from the surfaces that the camera sees (Mavridis & Papaioannou 2011, Sec. 3.2).
 #include <fmt/format.h>
 
 #include <algorithm>
