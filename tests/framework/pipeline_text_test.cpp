@@ -72,7 +72,7 @@ TEST_CASE("settings are read like values of the text, with units, words and rang
   CHECK(values.at("filter").word == "slow");
   CHECK(values.at("step").number == Approx(0.05));
   CHECK(pipeline.settings({}).empty());
-  // What a value prints can be given again.
+  // The printed form of a value can be given again.
   CHECK(pipeline.settings({"step=" + values.at("step").text()}) ==
         ParameterValues{{"step", values.at("step")}});
 }

@@ -162,8 +162,7 @@ TEST_CASE("a damaged reference in the cache is made anew and said so") {
 
 namespace {
 
-/// What a stranger writes who knows how an entry is made: every statement of it is theirs, and its hash is
-/// right.
+/// A forged entry, by one who knows how it is made: every statement of it is theirs, and its hash is right.
 void writeHostileEntry(const std::filesystem::path& file, LayeredImage image) {
   Hasher hasher;
   for (const auto& [name, layer] : image.layers) {

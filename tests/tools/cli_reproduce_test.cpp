@@ -266,7 +266,7 @@ TEST_CASE(
   CHECK(curve["verdict"] == "reproduced");
   CHECK(curve["exponent"].get<double>() == Approx(2.0).margin(0.35));
   CHECK(curve["points"][2]["x"] == 32);
-  // What is split covers the same voxels; a voxel that it shares has one fragment of each triangle.
+  // A split triangle covers the same voxels; a shared voxel has one fragment of each part.
   const Json& split = figure["curves"][1];
   const double triangles = split["points"][0]["x"];
   CHECK(split["points"][1]["x"] == 4 * triangles);

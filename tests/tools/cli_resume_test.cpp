@@ -81,7 +81,7 @@ TEST_CASE("a report that is killed goes on where it stopped, says so, and gives 
     CHECK(point.at("frame_ms").at("repeats") == 3);
     CHECK(point.at("passes").at(0).at("device_ms").at("median") > 0.0);
   }
-  // What was kept is what stands there.
+  // The kept runs are unchanged.
   for (const StoredRun& run : kept)
     CHECK(std::any_of(points.begin(), points.end(), [&](const Json& point) {
       return point.at("frame_ms").at("median") == run.point.frameMs.median;
@@ -210,7 +210,7 @@ TEST_CASE("two sweeps into one store measure each point once, and both end with 
     CHECK(times == 1);
   }
   CHECK(runsIn(store) == 10);
-  // What was timed first was timed twice.
+  // The first point was timed twice.
   const ResultsStore results(store, ResultsStore::Mode::read);
   CHECK(results.controls(results.runs().front().identity).size() >= 6);
 }

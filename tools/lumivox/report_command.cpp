@@ -16,7 +16,7 @@
 namespace lumivox::command {
 namespace {
 
-/// What there was no time for, "scene, pipeline: cones=6" each, in a line for each pipeline.
+/// Points for which there was no time, "scene, pipeline: cones=6" each, in a line for each pipeline.
 std::string leftOutText(const std::vector<std::string>& leftOut) {
   std::vector<std::pair<std::string, std::string>> lines;
   for (const std::string& one : leftOut) {

@@ -250,7 +250,7 @@ std::filesystem::path storeOf(const std::string& text, const ResultsCommand& com
   return isStore(text) ? std::filesystem::path(text) : command.file();
 }
 
-/// What times of the same thing differ by on the machines of a store's runs.
+/// The difference between times of the same thing on the machines of a store's runs.
 TimeFloor floorOf(const std::filesystem::path& file) {
   const ResultsStore store(file, ResultsStore::Mode::read);
   TimeFloor floor;

@@ -71,7 +71,7 @@ int tell(const StressSummary& summary, bool json) {
   return summary.sound() ? kGood : kNotGood;
 }
 
-/// What a store holds, without running anything.
+/// Prints the contents of a store without running anything.
 int tellStored(const StressCommand& command, const GlobalOptions& global) {
   const StressOptions& options = command.options;
   if (!options.pipelines.empty() || !options.families.empty() || !options.cases.empty() || options.quick ||

@@ -34,7 +34,7 @@ Json findingAsJson(const Diagnostic& finding) {
           {"suggestion", finding.suggestion}};
 }
 
-/// What is wrong with one file: findings with their places, or one message for what has none.
+/// Errors in one file: findings with their places, or one message for an error without a place.
 struct CheckedFile {
   std::vector<Diagnostic> findings;
   std::string message;

@@ -99,7 +99,7 @@ struct Session {
 
 namespace {
 
-/// What an empty grid means: in a sequence a frame without smoke, else that there is nothing to look at.
+/// Refuses an empty grid: in a sequence it is a frame without smoke, else there is nothing to look at.
 void refuseEmpty(const std::vector<openvdb::GridBase::ConstPtr>& grids, bool sequence, const fs::path& file) {
   std::vector<std::string> empty;
   for (const auto& grid : grids)
