@@ -53,7 +53,7 @@ class ReprojectPass : public GridPass {
                               light.width, light.height, image.width, image.height));
     if (list.reflected != nullptr)
       throw Error(
-          "input 'fragments' brings direct light along already; expected input 'direct' at one "
+          "input 'fragments' already contains direct light; expected input 'direct' at one "
           "reprojection only");
   }
 };

@@ -49,7 +49,7 @@ class GridPass : public Pass {
   Param<int> resolution{this, "resolution", 64, within(1, kLargestGrid),
                         "voxels along the longest side of the grid"};
   Param<Around> around{this, "around", Around::scene,
-                       "the grid holds the whole scene, or moves with the camera by whole voxels"};
+                       "the grid contains the whole scene, or moves with the camera by whole voxels"};
   Param<float> extent{this, "extent",
                       0.0f, within(0.0f, 1e9f),
                       "m",  "side of a grid around the camera; needed there, unused else"};

@@ -256,6 +256,6 @@ TEST_CASE("kept results that no longer fit their text are told apart") {
   CHECK_THAT(stale([](auto& t) { t.differences = {"nothing"}; }), Contains("other words"));
   CHECK_THAT(stale([](auto& t) { t.panels.emplace_back(); }), Contains("panels"));
   CHECK_THAT(stale([](auto& t) { t.curves.emplace_back(); }), Contains("curves"));
-  CHECK_THAT(staleReproductions({}, {text})[0], Contains("table-1: nothing is kept"));
+  CHECK_THAT(staleReproductions({}, {text})[0], Contains("table-1: nothing is recorded"));
   CHECK_THAT(staleReproductions({kept}, {})[0], Contains("no such text"));
 }

@@ -429,7 +429,7 @@ TEST_CASE("checking reads names the pass that was not run again though what it r
   REQUIRE(findings.size() == 3);
   CHECK_THAT(findings[0],
              Contains("pass lies, port image: ") &&
-                 Contains("it was not run again: it reads more than its readsFrom() says (geometry)"));
+                 Contains("it was not run again: it reads more than its readsFrom() declares (geometry)"));
   CHECK_THAT(findings[1], Contains("pass keeps, port image: ") && Contains("whose key leaves out"));
   CHECK(findings[2] == needs);
 }

@@ -216,7 +216,7 @@ TEST_CASE("a worker that answers nonsense is one broken cell") {
   workers.options.workers = 1;
   const std::vector<StressCell> cells = workers.run();
   CHECK(brokenOf(cells) == 1);
-  CHECK(cells[0].detail.find("answered what is no cell") != std::string::npos);
+  CHECK(cells[0].detail.find("did not answer with a cell") != std::string::npos);
 }
 
 TEST_CASE("when workers no longer start, what was not run says so and takes no stored cell's place") {

@@ -136,7 +136,7 @@ TEST_CASE(
   CHECK(contains(made.errors, "4 of 4 points"));
   const CommandResult sweep = place.run("sweep", {"slow"}, store);
   INFO(sweep.errors);
-  CHECK(contains(sweep.output, "0 measured, 4 held already"));
+  CHECK(contains(sweep.output, "0 measured, 4 already in the store"));
   // And the point that was timed twice: with a budget, one.
   const ResultsStore stored(place.file("results.sqlite"), ResultsStore::Mode::read);
   CHECK(stored.controls(stored.runs().front().identity).size() == 1);

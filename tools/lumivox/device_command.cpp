@@ -73,8 +73,8 @@ int device(const DeviceCommand& command, const GlobalOptions& global) {
 }  // namespace
 
 void addDeviceCommand(Commands& commands) {
-  auto* command = commands.app.add_subcommand(
-      "device", "measures what this device can do at most, and keeps it in the results store");
+  auto* command =
+      commands.app.add_subcommand("device", "measures the peak rates of this device and stores them");
   auto all = std::make_shared<DeviceCommand>();
   command->add_option("--store", all->store,
                       "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)");

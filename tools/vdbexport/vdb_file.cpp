@@ -117,7 +117,7 @@ std::vector<openvdb::GridBase::Ptr> readVdb(const fs::path& file) {
   } catch (const std::ios_base::failure&) {
     refuse(file, "it ends too early, or its parts contradict each other");
   } catch (const std::bad_alloc&) {
-    refuse(file, "it asks for more memory than there is");
+    refuse(file, "it needs more memory than is available");
   } catch (const std::exception& error) {
     refuse(file, error.what());
   }

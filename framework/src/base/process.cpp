@@ -39,8 +39,8 @@ class OpenFile {
     createParentDirectories(file);
     handle_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
     if (handle_ < 0)
-      throw Error(fmt::format("{}: cannot be opened to wait for others with: {}", file.string(),
-                              std::strerror(errno)));
+      throw Error(
+          fmt::format("{}: cannot be opened as a lock file: {}", file.string(), std::strerror(errno)));
   }
   ~OpenFile() {
     if (handle_ >= 0) close(handle_);
@@ -134,7 +134,7 @@ MachineLock::MachineLock(For purpose) {
     // Measuring is possible all the same.
     static std::atomic<bool> told = false;
     if (!told.exchange(true))
-      logWarning("nobody is waited for, and times may be disturbed by others: {}", error.what());
+      logWarning("not waiting for other processes, which may disturb the times: {}", error.what());
   }
 }
 
@@ -152,8 +152,9 @@ int MachineLock::lockedFor(For purpose) {
       std::this_thread::sleep_for(kPause);
     }
     if (!std::exchange(told, true))
-      logInformation("waiting for {}{}", holdersText(),
-                     purpose == For::timing ? ", whose work would disturb the times" : ", which takes times");
+      logInformation(
+          "waiting for {}{}", holdersText(),
+          purpose == For::timing ? ", whose work would disturb the times" : ", which is taking times");
     one.lock(kind);
   };
   take(gate, LOCK_EX);

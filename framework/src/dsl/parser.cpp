@@ -495,7 +495,7 @@ Document parse(std::string source, std::filesystem::path file) {
   }
   if (const auto place = firstControlCharacter(document)) {
     Diagnostic finding =
-        document.finding(*place, 1, "not a text file: it holds control characters", "UTF-8 text");
+        document.finding(*place, 1, "not a text file: it contains control characters", "UTF-8 text");
     finding.sourceLine.clear();
     document.findings.push_back(std::move(finding));
     return document;

@@ -120,9 +120,9 @@ std::string whyFailed(const std::function<void()>& work) {
   } catch (const Error& error) {
     return error.what();
   } catch (const std::bad_alloc&) {
-    return "out of memory, without a word about what was too large";
+    return "out of memory; what was too large is not known";
   } catch (const std::exception& error) {
-    return fmt::format("an error that nobody foresaw: {}", error.what());
+    return fmt::format("an unexpected error: {}", error.what());
   }
   return {};
 }

@@ -175,7 +175,7 @@ std::string Measurer::waitingText(const std::vector<WantedPoint>& pending) const
     if (const std::optional<RunClaim> claim = store_.claimedByOther(key(point)))
       return fmt::format("waiting for {} points, the first of which process {} measures{}", pending.size(),
                          claim->process, claim->command.empty() ? "" : ": " + claim->command);
-  return fmt::format("waiting for {} points that others measure", pending.size());
+  return fmt::format("waiting for {} points that other processes measure", pending.size());
 }
 
 void Measurer::control(const std::vector<WantedPoint>& points, std::size_t most) {

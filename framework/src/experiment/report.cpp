@@ -45,7 +45,8 @@ class Checkpoint {
       if (!finished && !store.runs().empty()) return;
       std::filesystem::remove(store.file());
     } catch (const std::exception& error) {
-      logWarning("{}: it is of no more use, and cannot be removed: {}", store.file().string(), error.what());
+      logWarning("{}: it is no longer needed, but cannot be removed: {}", store.file().string(),
+                 error.what());
     }
   }
   Checkpoint(const Checkpoint&) = delete;

@@ -143,7 +143,7 @@ class Reproduction {
     for (const auto& [pass, port] : setUp.kept) run.identity.kept.push_back(pass + "." + port);
     std::sort(run.identity.kept.begin(), run.identity.kept.end());
     if (const auto held = store_->find(run.identity.key()); held && held->point.failure.empty()) {
-      logInformation("{}: the store has this set-up already, which stays", setUp.loaded.shown);
+      logInformation("{}: the store already has this set-up, which is kept", setUp.loaded.shown);
       return;
     }
     guarded(setUp, [&] {
@@ -207,7 +207,7 @@ class Reproduction {
     if (published.pipeline)
       for (const std::string& technique : published.pipeline->techniques())
         if (techniques_.technique(technique) == nullptr) {
-          whyNot = fmt::format("the technique '{}' is not here", technique);
+          whyNot = fmt::format("the technique '{}' is not available", technique);
           return nullptr;
         }
     return sceneOf(published, whyNot);
@@ -356,7 +356,7 @@ class Reproduction {
     const std::optional<OccupiedVoxels> voxels = output == nullptr ? std::nullopt : occupiedVoxels(*output);
     if (!voxels || voxels->fragments == 0)
       throw Error(
-          fmt::format("{}: output {}.{} holds no voxel fragments", row.place.text(), row.pass, row.port));
+          fmt::format("{}: output {}.{} has no voxel fragments", row.place.text(), row.pass, row.port));
     return static_cast<double>(voxels->fragments);
   }
 
@@ -419,7 +419,7 @@ class Reproduction {
     }
     const auto* image = dynamic_cast<const Out<Image>*>(output);
     if (image == nullptr)
-      throw Error(fmt::format("{}: {}.{} is no image", panel.place.text(), panel.pass, panel.port));
+      throw Error(fmt::format("{}: {}.{} is not an image", panel.place.text(), panel.pass, panel.port));
     const gpu::Texture& texture = *image->value().texture;
     return imageOf(texture, gpu::componentCount(texture.description().format) < 3 ? 1 : 3);
   }

@@ -123,7 +123,7 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
   const ReportOptions& measure = options.measure;
   if (measure.scenes.empty() && options.texts.empty()) throw Error("a sweep needs at least one scene");
   if (measure.scenes.empty() && !measure.pipelines.empty())
-    throw Error("the text of a sweep names its pipelines; --pipeline goes with a scene");
+    throw Error("the text of a sweep names its pipelines; --pipeline is for scenes only");
   SweepSummary summary;
   PipelineChoice choice(measure, techniques);
   SweepPlan plan(device, techniques, options, store, loadScene);

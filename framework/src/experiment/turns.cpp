@@ -24,7 +24,7 @@ std::vector<Held> holdTogether(std::deque<Turn*>& waiting) {
     Turn* turn = waiting.front();
     const std::string why = whyFailed([&] { held.push_back({turn, turn->open()}); });
     if (!why.empty() && !held.empty()) {
-      logInformation("{}: timed after the {} points before it, beside which it fails: {}", turn->name,
+      logInformation("{}: timed after the {} points before it, since it fails beside them: {}", turn->name,
                      held.size(), why);
       break;
     }

@@ -190,7 +190,7 @@ void DeviceState::check(const std::string& what) {
   GLenum error = glGetError();
   if (error != GL_NO_ERROR && !messages.hasErrors())
     messages.addError(fmt::format("{}{}", errorName(error),
-                                  debug ? "" : " (with --debug-context it tells the pass and the reason)"));
+                                  debug ? "" : " (with --debug-context it names the pass and the reason)"));
   // A lost context repeats its error for ever.
   for (int i = 0; i < 16 && error != GL_NO_ERROR; ++i) error = glGetError();
   if (messages.hasErrors()) throw Error(messages.takeErrors(what));

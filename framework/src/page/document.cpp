@@ -60,7 +60,7 @@ std::string chartLibrary() {
     }
     sought += (sought.empty() ? "" : ", ") + place;
   }
-  throw AbsentError("Chart.js not found; the report needs the Debian package libjs-chart.js; sought: " +
+  throw AbsentError("Chart.js not found; the report needs the Debian package libjs-chart.js; searched: " +
                     sought);
 }
 

@@ -44,7 +44,7 @@ std::string differenceOfImages(const OutBase& whole, const OutBase* lean) {
   const ImageBuffer other = lean != nullptr
                                 ? imageOf(*lean->textures().front(), channels)
                                 : neutralImage(image.width(), image.height(), whole.contributes());
-  if (!image.sameShape(other)) return "its size is another one";
+  if (!image.sameShape(other)) return "its size differs";
   std::size_t different = 0;
   for (std::size_t i = 0; i < image.values().size(); ++i)
     different += image.values()[i] != other.values()[i] ? 1 : 0;
@@ -123,7 +123,7 @@ class Comparison {
   std::string whyStale(std::size_t pass) {
     const BoundPass& bound = graph_.passes[pass];
     if (!ran_[bound.name])
-      return fmt::format("it was not run again: it reads more than its readsFrom() says ({})",
+      return fmt::format("it was not run again: it reads more than its readsFrom() declares ({})",
                          readsText(readsOf(*bound.object)));
     std::vector<std::string> suspects;
     addStaleSources(pass, suspects);

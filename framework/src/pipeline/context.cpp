@@ -53,7 +53,7 @@ bool FrameContext::allHadRoom() {
       if (one.judge(*this, count)) continue;
       enough = false;
       if (attempts_ == kMostAttempts)
-        throw Error(fmt::format("no room for what it counts ({}) after {} attempts", count, kMostAttempts));
+        throw Error(fmt::format("no room for its count ({}) after {} attempts", count, kMostAttempts));
     } catch (const std::exception& error) {
       attempts_ = 0;
       throw Error("pass " + one.pass + ": " + error.what());

@@ -369,7 +369,7 @@ void PipelineExecutor::State::collectImages(FrameResult& result, Images images) 
     }
     const std::vector<gpu::TextureRef> textures = output.textures();
     if (textures.empty())
-      throw Error(fmt::format("pass output '{}' holds no texture", graph.outputText(bound.source)));
+      throw Error(fmt::format("pass output '{}' has no texture", graph.outputText(bound.source)));
     const gpu::TextureDescription& size = textures.front()->description();
     if (size.width != last->camera.width || size.height != last->camera.height)
       throw Error(fmt::format(

@@ -44,7 +44,7 @@ bool matches(const RunFilter& filter, const StoredRun& run) {
   return std::all_of(filter.parameters.begin(), filter.parameters.end(), [&](const std::string& setting) {
     const std::size_t equals = setting.find('=');
     if (equals == std::string::npos)
-      throw Error(fmt::format("'{}' is no setting; expected name=value", setting));
+      throw Error(fmt::format("'{}' is not a setting; expected name=value", setting));
     const auto found = run.identity.parameters.find(setting.substr(0, equals));
     return found != run.identity.parameters.end() && found->second == setting.substr(equals + 1);
   });

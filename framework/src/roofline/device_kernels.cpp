@@ -40,11 +40,11 @@ glm::uvec3 groups(std::uint32_t invocations) {
 gpu::TextureRef texture(gpu::Device& device, TextureKind kind, Format format, int size, int levels = 1) {
   const int depth = kind == TextureKind::d3 ? size : 1;
   return std::make_shared<Texture>(device, gpu::TextureDescription{kind, format, size, size, depth, levels},
-                                   "what the device is measured with");
+                                   "device measurement");
 }
 
 gpu::BufferRef buffer(gpu::Device& device, std::uint64_t bytes) {
-  return std::make_shared<Buffer>(device, bytes, "what the device is measured with");
+  return std::make_shared<Buffer>(device, bytes, "device measurement");
 }
 
 // ---- sampling

@@ -74,9 +74,10 @@ class MaterialTable {
 
   void addUnknown(const std::string& name, const std::vector<std::string>& files) {
     if (options_.needsMaterials) {
-      complain(fmt::format(
-          "{}: material '{}' is in none of its material files ({}); grey {} stands in", objFile_.string(),
-          name, files.empty() ? "it names none" : fmt::format("{}", fmt::join(files, ", ")), kUnknownAlbedo));
+      complain(fmt::format("{}: material '{}' is in none of its material files ({}); grey {} is used instead",
+                           objFile_.string(), name,
+                           files.empty() ? "it names none" : fmt::format("{}", fmt::join(files, ", ")),
+                           kUnknownAlbedo));
     }
     numbers_[name] = static_cast<int>(table_.size());
     table_.push_back(grey(name));
@@ -195,7 +196,7 @@ std::vector<std::uint32_t> cutPolygons(const ObjScan& scan, const fs::path& path
   constexpr bool kTriangulate = true, kColours = false;
   if (!tinyobj::LoadObj(&attributes, &shapes, &ignored, nullptr, &errors, &stream, nullptr, kTriangulate,
                         kColours)) {
-    throw Error(fmt::format("{}: its polygons cannot be cut: {}", path.string(), errors));
+    throw Error(fmt::format("{}: its polygons cannot be triangulated: {}", path.string(), errors));
   }
   std::vector<std::uint32_t> triangles;
   for (const tinyobj::shape_t& shape : shapes) {
@@ -275,8 +276,8 @@ ObjFile readObjFile(const fs::path& path, const ModelOptions& options, Hasher& h
   hasher.add(file.text);
   file.scan = scanObj(file.text, path);
   if (file.scan.faces == 0 && file.scan.brokenFaces.count == 0) {
-    throw Error(
-        fmt::format("{}: holds no faces; expected an OBJ text with 'v' and 'f' statements", path.string()));
+    throw Error(fmt::format("{}: contains no faces; expected an OBJ text with 'v' and 'f' statements",
+                            path.string()));
   }
   if (!file.scan.unusedStatements.empty()) {
     const std::string text = fmt::format("{}: statements without triangles are not used: {}", path.string(),

@@ -422,7 +422,7 @@ CountingCode instrument(std::span<const std::uint32_t> spirv, std::uint32_t bind
                         std::uint32_t firstCounter) {
   constexpr std::uint32_t kVersion14 = 0x00010400;
   if (spirv.size() < kHeaderWords || spirv[0] != spv::MagicNumber)
-    throw Error("what is to be counted is no SPIR-V");
+    throw Error("the code to be counted is not SPIR-V");
   if (spirv[1] >= kVersion14)
     throw Error(fmt::format("SPIR-V {}.{} cannot be counted; expected a version before 1.4", spirv[1] >> 16,
                             spirv[1] >> 8 & 0xffu));

@@ -64,7 +64,7 @@ struct Mismatch {
     if (std::string wrong = texture(image.texture); !wrong.empty()) return wrong;
     const gpu::TextureDescription& d = image.texture->description();
     if (expected.format && d.format != *expected.format) {
-      return fmt::format("texture '{}' holds {}, but the shader declares {}", image.texture->label(),
+      return fmt::format("texture '{}' has the format {}, but the shader declares {}", image.texture->label(),
                          gpu::name(d.format), gpu::name(*expected.format));
     }
     if (image.level < 0 || image.level >= d.levels) {

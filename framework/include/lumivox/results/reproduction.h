@@ -38,7 +38,7 @@ struct PublishedSetUp {
   std::string camera;
   double time = 0.0;  ///< s
   ParameterValues settings;
-  int subdivisions = 0;             ///< how often every triangle of the scene is split into four before
+  int subdivisions = 0;             ///< how many times every triangle of the scene is split into four first
   std::vector<std::string> passes;  ///< whose times or bytes are added up; empty: the whole frame
   std::string pass,
       port;  ///< an output that is kept: its fragments are counted, its image is shown; may be empty
