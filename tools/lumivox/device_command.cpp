@@ -25,7 +25,7 @@ int device(const DeviceCommand& command, const GlobalOptions& global) {
     logInformation("{} of {}: {}", done + 1, total, name);
   };
   const std::filesystem::path file = command.store.empty() ? ResultsStore::defaultFile() : command.store;
-  ResultsStore store(file);  // a place that cannot be written is told before the work
+  ResultsStore store(file);  // a store that cannot be written is refused before the work
   const auto device = global.openDevice();
   const std::vector<PeakRate> peakRates = measurePeakRates(*device, options);
   store.add(peakRates);

@@ -109,7 +109,7 @@ std::vector<openvdb::GridBase::Ptr> readVdb(const fs::path& file) {
   lumivox::MemoryBuffer buffer(bytes);
   std::istream stream(&buffer);
   try {
-    // Without this, a stream that ends too early would be taken for zeros.
+    // Without this, a stream that ends too early would be read as zeros.
     stream.exceptions(std::ios::failbit | std::ios::badbit);
     openvdb::io::Stream whole(stream, /*delayLoad=*/false);
     const openvdb::GridPtrVecPtr grids = whole.getGrids();

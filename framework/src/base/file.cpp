@@ -147,7 +147,7 @@ Target targetOf(const std::filesystem::path& path) {
   return target;
 }
 
-/// For what is no file: one of this process's own open files goes on where it stands, anything else is
+/// For what is no file: one of this process's own open files continues where it is, anything else is
 /// opened.
 void writeThrough(const Target& target, std::span<const std::byte> bytes, const std::filesystem::path& path) {
   std::cout.flush();

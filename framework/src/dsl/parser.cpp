@@ -7,8 +7,8 @@
 namespace lumivox::dsl {
 namespace {
 
-/// Recursive descent over the tokens. After an error it goes on at the next word that starts a line, or at a
-/// brace.
+/// Recursive descent over the tokens. After an error it continues at the next word that starts a line, or at
+/// a brace.
 class Parser {
  public:
   Parser(Document& document, std::vector<Token> tokens) : document_(document), tokens_(std::move(tokens)) {}

@@ -225,7 +225,7 @@ void Measurer::makeReference(const std::vector<WantedPoint>& points) {
     options.camera = options_.camera;
     options.width = width_;
     options.height = height_;
-    // A pipeline that fails is told so when it is measured.
+    // A pipeline that fails is reported when it is measured.
     whyFailed([&] {
       const PipelineExecutor executor(device_, techniques_, scene_, point.loaded->pipeline, options);
       for (const auto& [output, bounces] : bouncesOf(executor))

@@ -244,7 +244,7 @@ void DeviceState::freed(std::uint64_t bytes) {
 }
 
 void DeviceState::forgetBindings() {
-  // No object has this name, so that the next bind is never taken for a repetition.
+  // No object has this name, so the next bind is never mistaken for a repetition.
   constexpr GLuint kNothing = ~GLuint{0};
   cache.program = kNothing;
   std::fill(cache.sampled.begin(), cache.sampled.end(), BindingCache::Sampled{kNothing, kNothing});

@@ -319,8 +319,8 @@ dsl::BlockSpecification sweepSpecification(SweepHome home) {
   } else {
     sweep.meaning = fmt::format(
         "`sweep NAME {{ scenes [...] pipelines [...] parameter [values] }}`: what `lumivox sweep` measures, every "
-        "pipeline at every point on every scene. {} A pipeline without one of the parameters goes without that "
-        "axis, which is said.",
+        "pipeline at every point on every scene. {} A pipeline without one of the parameters is measured "
+        "without that axis, with a note.",
         kAxes);
     sweep.required = true;
     sweep.properties = {listOf(kSweptScenes, true, "files of scenes, beside the text"),

@@ -88,7 +88,7 @@ std::vector<KeptReference> keptReferences(bool withAttributes) {
       try {
         entry.attributes = readExrAttributes(file);
       } catch (const Error&) {
-        // Damaged: listed without them, and made anew when it is wanted.
+        // Damaged: listed without them, and rendered again when it is wanted.
       }
     }
     kept.push_back(std::move(entry));
