@@ -407,7 +407,7 @@ void addResultsCommands(Commands& commands) {
   remove->add_flag("--dry-run", command->dryRun, "only list them");
 
   auto* compare = commands.app.add_subcommand(
-      "compare-runs", "what changed significantly between two stored runs, or two results stores");
+      "compare-runs", "lists significant changes between two stored runs, or two results stores");
   auto before = std::make_shared<std::string>(), after = std::make_shared<std::string>();
   compare->add_option("BEFORE", *before, "a results store, or the number of a run in --store")->required();
   compare->add_option("AFTER", *after, "the same")->required();
