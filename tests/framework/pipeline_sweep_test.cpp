@@ -121,7 +121,7 @@ TEST_CASE("accumulated frames are an axis of every pipeline, of whole numbers fr
   const std::string reserved = test::messageOf<DiagnosticsError>([] {
     Pipeline::parse("pipeline \"P\" {\n  param frames 1\n  pass a t.p { n $frames }\n}\n", "a.pipeline");
   });
-  CHECK_THAT(reserved, Contains("a.pipeline:2:9: 'frames' is a word of sweeps"));
+  CHECK_THAT(reserved, Contains("a.pipeline:2:9: 'frames' is a reserved word of sweeps"));
 }
 
 TEST_CASE("the table of the sweep texts has the words that the reader knows") {

@@ -23,7 +23,7 @@ dsl::PropertySpecification listOf(const char* word, bool required, const char* m
   return specification;
 }
 
-/// What an axis of accumulated frames takes, as if it were a parameter of every pipeline.
+/// The values of an axis of accumulated frames, as if it were a parameter of every pipeline.
 PipelineParameter accumulatedFrames() {
   PipelineParameter frames;
   frames.name = kAccumulatedFrames;
