@@ -2,11 +2,17 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <mutex>
+#include <utility>
+#include <vector>
+
+#include "lumivox/base/terminal.h"
 
 namespace lumivox {
 namespace {
@@ -15,16 +21,42 @@ std::atomic<LogLevel> currentLevel{LogLevel::information};
 std::atomic<std::uint64_t> warnings{0};
 std::mutex outputMutex;
 std::string* captured = nullptr;
-bool barOnScreen = false;
+/// What the terminal shows below the messages; empty: nothing.
+std::string statusLine;
+bool statusOnScreen = false;
+/// Warnings by their text, in the order in which they came first.
+std::vector<std::pair<std::string, std::uint64_t>> told;
 
-void clearBar() {
-  if (barOnScreen) std::fputs("\r\x1b[K", stderr);
-  barOnScreen = false;
+void clearStatus() {
+  if (statusOnScreen) std::fputs("\r\x1b[K", stderr);
+  statusOnScreen = false;
 }
 
-std::string formatSeconds(double seconds) {
-  if (seconds < 60) return fmt::format("{:.0f} s", seconds);
-  return fmt::format("{:.0f} min {:02.0f} s", std::floor(seconds / 60), std::fmod(seconds, 60.0));
+/// The last column stays free, since a terminal may begin a new line behind it.
+void drawStatus() {
+  if (statusLine.empty()) return;
+  clearStatus();
+  std::fputs(cutTo(statusLine, static_cast<std::size_t>(terminalColumns(STDERR_FILENO) - 1)).c_str(), stderr);
+  statusOnScreen = true;
+}
+
+/// Whether the warning is told for the first time.
+bool isNews(std::string_view warning) {
+  for (auto& [text, times] : told)
+    if (text == warning) {
+      ++times;
+      return false;
+    }
+  told.emplace_back(warning, 1);
+  return true;
+}
+
+void writeLine(LogLevel level, std::string_view text) {
+  clearStatus();
+  const std::string head =
+      level == LogLevel::warnings ? painted(Paint::warning, "warning: ", takesColour(STDERR_FILENO)) : "";
+  std::fputs(fmt::format("{}{}\n", head, text).c_str(), stderr);
+  drawStatus();
 }
 
 }  // namespace
@@ -42,14 +74,25 @@ std::uint64_t warningCount() {
 void logMessage(LogLevel level, std::string_view text) {
   if (level == LogLevel::warnings) ++warnings;
   const std::lock_guard lock(outputMutex);
-  const std::string line = fmt::format("{}{}\n", level == LogLevel::warnings ? "warning: " : "", text);
   if (captured != nullptr) {
-    *captured += line;
+    *captured += fmt::format("{}{}\n", level == LogLevel::warnings ? "warning: " : "", text);
     return;
   }
-  if (level > currentLevel.load()) return;
-  clearBar();
-  std::fputs(line.c_str(), stderr);
+  if (level > currentLevel.load() || (level == LogLevel::warnings && !isNews(text))) return;
+  writeLine(level, text);
+}
+
+void logRepeatedWarnings() {
+  const std::lock_guard lock(outputMutex);
+  for (const auto& [text, times] : told)
+    if (times > 1) writeLine(LogLevel::warnings, fmt::format("{} ({} times)", text, times));
+  told.clear();
+}
+
+void clearProgressLine() {
+  const std::lock_guard lock(outputMutex);
+  clearStatus();
+  std::fflush(stderr);
 }
 
 LogCapture::LogCapture() {
@@ -64,36 +107,79 @@ LogCapture::~LogCapture() {
 
 struct Progress::State {
   using Clock = std::chrono::steady_clock;
-  std::string what;
+  std::string what, unit;
   std::uint64_t total;
   std::atomic<std::uint64_t> done{0};
   Clock::time_point start = Clock::now();
   std::atomic<Clock::rep> lastShown{0};
-  bool terminal = isatty(STDERR_FILENO) != 0;
+  bool terminal = isatty(STDERR_FILENO) != 0, told = false;
 
   double elapsed() const { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-  void show() {
-    const double share = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1.0;
-    const double remaining = share > 0 ? elapsed() * (1.0 - share) / share : 0.0;
-    constexpr int kWidth = 30;
-    const int filled = static_cast<int>(share * kWidth);
+  /// "rendering: 12 of 48 images, about 5 s left".
+  std::string text(double secondsLeft) const {
+    const double share = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0.0;
+    std::string line = unit.empty()  ? fmt::format("{}: {:.0f} %", what, share * 100)
+                       : total == 0 ? fmt::format("{}: {} {}", what, done.load(), unit)
+                                    : fmt::format("{}: {} of {} {}", what, done.load(), total, unit);
+    if (!std::isfinite(secondsLeft)) secondsLeft = share > 0.0 ? elapsed() * (1.0 - share) / share : -1.0;
+    if (secondsLeft >= 0.0 && done < total) line += ", about " + durationText(secondsLeft) + " left";
+    return line;
+  }
+
+  /// With a bar before it and what is done behind it, as far as there is room.
+  std::string line(double secondsLeft, const std::string& doing) const {
+    std::string line = text(secondsLeft);
+    const auto columns = static_cast<std::size_t>(terminalColumns(STDERR_FILENO) - 1);
+    constexpr std::size_t kLeastBar = 8, kMostBar = 30, kFrame = 3;  // "[", "] "
+    const std::size_t used = shownWidth(line);
+    if (total > 0 && used + kLeastBar + kFrame <= columns) {
+      const std::size_t bar = std::min(kMostBar, columns - used - kFrame);
+      const auto filled = static_cast<std::size_t>(static_cast<double>(bar) *
+                                                   std::min(1.0, static_cast<double>(done) / static_cast<double>(total)));
+      line = "[" + std::string(filled, '#') + std::string(bar - filled, ' ') + "] " + line;
+    }
+    return doing.empty() ? line : cutTo(line + "; " + doing, columns);
+  }
+
+  /// Whether enough time has passed since the last line; whoever gets the slot writes.
+  bool isDue(std::chrono::milliseconds period) {
+    const auto now = Clock::now().time_since_epoch().count();
+    auto last = lastShown.load();
+    return now - last >= Clock::duration(period).count() && lastShown.compare_exchange_strong(last, now);
+  }
+
+  void show(double secondsLeft, const std::string& doing) {
     const std::lock_guard lock(outputMutex);
     if (captured != nullptr) return;
-    std::fprintf(stderr, "\r\x1b[K%s [%s%s] %3.0f %%, %s left", what.c_str(),
-                 std::string(static_cast<std::size_t>(filled), '#').c_str(),
-                 std::string(static_cast<std::size_t>(kWidth - filled), ' ').c_str(), share * 100,
-                 formatSeconds(remaining).c_str());
-    barOnScreen = true;
+    if (terminal) {
+      statusLine = line(secondsLeft, doing);
+      drawStatus();
+    } else {
+      writeLine(LogLevel::information, text(secondsLeft));
+    }
+    told = true;
   }
 };
 
-Progress::Progress(std::string what, std::uint64_t total) : state_(new State{std::move(what), total}) {}
+namespace {
+
+constexpr std::chrono::milliseconds kRedraw{100}, kInterval{10000};  // in a terminal; between plain lines
+
+}  // namespace
+
+Progress::Progress(std::string what, std::uint64_t total, std::string unit)
+    : state_(new State{std::move(what), std::move(unit), total}) {
+  if (!state_->terminal) state_->lastShown = State::Clock::now().time_since_epoch().count();
+}
 
 Progress::~Progress() {
-  if (state_->terminal) {
+  {
     const std::lock_guard lock(outputMutex);
-    clearBar();
+    if (state_->terminal) {
+      clearStatus();
+      statusLine.clear();
+    }
   }
   logInformation("{}: {:.1f} s", state_->what, state_->elapsed());
   delete state_;
@@ -101,13 +187,18 @@ Progress::~Progress() {
 
 void Progress::advance(std::uint64_t steps) {
   state_->done += steps;
-  if (!state_->terminal || currentLevel.load() < LogLevel::information) return;
-  // At most ten updates a second; whoever gets the slot draws.
-  const auto now = State::Clock::now().time_since_epoch().count();
-  auto last = state_->lastShown.load();
-  const auto period = State::Clock::duration(std::chrono::milliseconds(100)).count();
-  if (now - last < period || !state_->lastShown.compare_exchange_strong(last, now)) return;
-  state_->show();
+  if (currentLevel.load() < LogLevel::information) return;
+  if (state_->isDue(state_->terminal ? kRedraw : kInterval))
+    state_->show(std::numeric_limits<double>::quiet_NaN(), {});
+}
+
+void Progress::show(std::uint64_t done, std::uint64_t total, double secondsLeft, const std::string& doing) {
+  state_->done = done;
+  state_->total = total;
+  if (currentLevel.load() < LogLevel::information) return;
+  // Steps that take seconds each are all shown in a terminal.
+  const bool due = state_->isDue(kInterval), first = !state_->told && done > 0, last = done >= total && total > 0;
+  if (state_->terminal || due || first || last) state_->show(secondsLeft, doing);
 }
 
 }  // namespace lumivox

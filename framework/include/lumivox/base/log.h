@@ -46,19 +46,32 @@ class LogCapture {
   std::string text_;
 };
 
-/// A progress bar with the remaining time on stderr; silent when stderr is no terminal (then one line at the
-/// end) or when quiet. Thread-safe.
+/// Warnings told more than once are written once; this writes how often each was repeated. The end of a program.
+void logRepeatedWarnings();
+
+/// How far a command has come, on stderr. In a terminal one line that fits it and stays below the messages;
+/// elsewhere plain lines: the first counted point at once, then at intervals, and the last. Nothing when quiet.
+/// Of several the latest that moved is shown. Thread-safe.
 class Progress {
  public:
-  Progress(std::string what, std::uint64_t total);
+  /// `unit`: the plural of what is counted, such as "points"; without one only the share is shown, and lines
+  /// outside of a terminal come at intervals alone. `total` 0: not known yet.
+  Progress(std::string what, std::uint64_t total, std::string unit = {});
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   void advance(std::uint64_t steps = 1);
+  /// `done` of `total` steps are there; the rest takes about `secondsLeft`, NaN: as the steps so far. `doing`: the
+  /// latest or next of them.
+  void show(std::uint64_t done, std::uint64_t total, double secondsLeft, const std::string& doing = {});
 
  private:
   struct State;
   State* state_;
 };
+
+/// Takes the line of progress off the terminal, before something else is written there. It returns with the next
+/// step or message.
+void clearProgressLine();
 
 }  // namespace lumivox
