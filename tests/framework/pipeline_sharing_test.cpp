@@ -15,7 +15,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// Paints where the device has the first vertex of the scene, and its first material's red.
+/// Paints where in the world the device has the first vertex of the scene, and its first material's red.
 class ShowScene : public Toy {
  public:
   using Toy::Toy;
@@ -28,7 +28,8 @@ class ShowScene : public Toy {
     const glm::vec4 vertex = toWorld * glm::vec4(positions[0], positions[1], positions[2], 1.0f);
     const float red = scene.materials().downloadValues<MaterialData>().at(0).diffuse.r;
     radiance = Image{frame.image(gpu::Format::rgba32f, "image")};
-    radiance.value().texture->clear(glm::vec4(vertex.x, red, 0.0f, 0.0f));
+    const auto x = static_cast<float>(vertex.x + frame.snapshot().origin.x);
+    radiance.value().texture->clear(glm::vec4(x, red, 0.0f, 0.0f));
   }
 };
 
