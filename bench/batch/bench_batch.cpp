@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <exception>
 #include <memory>
@@ -31,7 +32,7 @@ struct Point {
   std::string resolution, cones;
   /// With waiting resources of its own, and with those of the batch.
   std::unique_ptr<PipelineExecutor> apart, together;
-  std::vector<double> msApart{}, msTogether{};
+  std::vector<double> msApart{}, msTogether{}, ratios{};
 };
 
 }  // namespace
@@ -82,18 +83,35 @@ int main(int argc, char** argv) {
           executor.invalidate();
           return executor.render(0.0, 0, repeat < 0 ? Images::yes : Images::no);
         };
-        const FrameResult apart = frame(*point.apart), together = frame(*point.together);
+        // Neither always comes first.
+        FrameResult apart, together;
+        if (repeat % 2 == 0) {
+          apart = frame(*point.apart);
+          together = frame(*point.together);
+        } else {
+          together = frame(*point.together);
+          apart = frame(*point.apart);
+        }
         if (repeat >= 0) {
           point.msApart.push_back(apart.frameMs);
           point.msTogether.push_back(together.frameMs);
+          point.ratios.push_back(together.frameMs / apart.frameMs);
         }
         for (const auto& [name, image] : apart.outputs)
           same = same && image.values() == together.outputs.at(name).values();
       }
-    for (const Point& point : points)
+    std::vector<double> ratios;
+    for (const Point& point : points) {
       fmt::print("resolution {:>3}, cones {}: {:.1f} ms apart, {:.1f} ms together, ratio {:.3f}\n",
                  point.resolution, point.cones, median(point.msApart), median(point.msTogether),
-                 median(point.msTogether) / median(point.msApart));
+                 median(point.ratios));
+      ratios.insert(ratios.end(), point.ratios.begin(), point.ratios.end());
+    }
+    const double middle = median(ratios);
+    std::vector<double> away;
+    for (const double ratio : ratios) away.push_back(std::abs(ratio - middle));
+    fmt::print("ratio of frame times, together over apart: median {:.3f}, half of them within {:.3f} of it\n",
+               middle, median(away));
     fmt::print("images are {}\n", same ? "the same, bit for bit" : "not the same");
     return same ? 0 : 1;
   } catch (const std::exception& error) {
