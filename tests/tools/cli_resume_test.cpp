@@ -312,7 +312,7 @@ TEST_CASE("Ctrl-C says what is kept, and the command that goes on from there") {
   const std::vector<std::string> words = place.words("sweep", {"slow"}, {"--store", store});
   for (const int signal : {SIGINT, SIGTERM}) {
     INFO("signal " << signal);
-    std::filesystem::remove(store);
+    for (const std::string& earlier : {store, place.file("said.txt")}) std::filesystem::remove(earlier);
     Started sweep(words, place.file("said.txt"));
     REQUIRE(becomes([&] { return place.has("said.txt") && contains(place.read("said.txt"), "value=3"); }));
     sweep.signalAfter(std::chrono::milliseconds(0), signal);
