@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/process.h"
 #include "experiment/choice.h"
 #include "experiment/measure.h"
 #include "lumivox/results/store.h"
@@ -23,8 +24,9 @@ struct WantedPoint {
 
 class Measurer {
  public:
-  /// Points whose timed frames take turns. Each keeps its resources while it waits, and an interruption loses
-  /// the batch.
+  /// Points whose timed frames take turns, each keeping its results while it waits. What is known of a point
+  /// before its times is in the store at once, so that an interruption loses the point at work and the times
+  /// of the batch.
   static constexpr std::size_t kBatch = 6;
 
   enum class Images { no, kept };
@@ -79,6 +81,12 @@ class Measurer {
   /// meanwhile, out of `pending`.
   Batch claimed(std::vector<WantedPoint>& pending, std::size_t& byOthers);
   void measureBatch(Batch& batch);
+  /// Errors, images and work of a point that an interrupted run has left; false: there are none.
+  bool takeUp(Entry& entry) const;
+  /// Measures them, and keeps them until the times are there.
+  void measureUntimed(Entry& entry);
+  /// What an interruption would say now.
+  void noteProgress();
   void timeTogether(Batch& batch);
   std::string waitingText(const std::vector<WantedPoint>& pending) const;
 
@@ -93,6 +101,10 @@ class Measurer {
   ReferenceOptions referenceOptions_;
   std::optional<SceneReference> reference_;
   std::map<std::string, double> seconds_;  ///< by key
+  InterruptionNote note_;
 };
+
+/// Gives a point that was measured elsewhere the names, parameters and command that it has here.
+void nameAs(ReportPoint& point, const ReportPoint& here);
 
 }  // namespace lumivox::experiment

@@ -95,15 +95,18 @@ class Reproduction {
   void time() {
     std::vector<Turn> turns;
     for (TimedSetUp& setUp : setUps_)
-      turns.push_back(
-          {setUp.loaded.shown,
-           [&] { return TimedPoint(timingOf(setUp), setUp.loaded.pipeline, setUp.run.point, setUp.kept); },
-           [&](TimedPoint& timed) {
-             for (const auto& [published, measured] : setUp.answers)
-               readOff(setUp, timed.executor(), *published, *measured);
-           }});
+      turns.push_back({setUp.loaded.shown,
+                       [&](const std::shared_ptr<TransientMemory>& memory) {
+                         TimingContext context = timingOf(setUp);
+                         context.transientMemory = memory;
+                         return TimedPoint(context, setUp.loaded.pipeline, setUp.run.point, setUp.kept);
+                       },
+                       [&](TimedPoint& timed) {
+                         for (const auto& [published, measured] : setUp.answers)
+                           readOff(setUp, timed.executor(), *published, *measured);
+                       }});
     // A store takes the times of later frames too.
-    timeInTurns(turns, options_.repeats, store_ == nullptr ? 0 : options_.repeats);
+    timeInTurns(device_, turns, options_.repeats, store_ == nullptr ? 0 : options_.repeats);
     for (std::size_t i = 0; i < turns.size(); ++i) {
       TimedSetUp& setUp = setUps_[i];
       setUp.failure = turns[i].failure;

@@ -233,14 +233,21 @@ void DeviceState::requireDeviceMemory(std::uint64_t bytes, const std::string& wh
   }
 }
 
-void DeviceState::allocated(std::uint64_t bytes) {
+void DeviceState::allocated(const void* resource, std::uint64_t bytes) {
   allocatedBytes += bytes;
   peakBytes = std::max(peakBytes, allocatedBytes);
+  if (account == nullptr) return;
+  charged.emplace(resource, account);
+  account->add(bytes);
 }
 
-void DeviceState::freed(std::uint64_t bytes) {
+void DeviceState::freed(const void* resource, std::uint64_t bytes) {
   assert(allocatedBytes >= bytes);
   allocatedBytes -= bytes;
+  const auto owner = charged.find(resource);
+  if (owner == charged.end()) return;
+  owner->second->remove(bytes);
+  charged.erase(owner);
 }
 
 void DeviceState::forgetBindings() {

@@ -17,13 +17,14 @@ namespace lumivox {
 
 class FrameContext : public PassContext {
  public:
-  FrameContext(gpu::Device& device, const Scene& scene, bool keepsEverything)
+  FrameContext(gpu::Device& device, const Scene& scene, bool keepsEverything,
+               const std::shared_ptr<TransientMemory>& transientMemory = nullptr)
       : device_(device),
         scene_(&scene),
         keepsEverything_(keepsEverything),
         traits_(keepsEverything ? SceneTraits::everything() : SceneTraits::of(scene)),
         shaders_(device),
-        pool_(device, !keepsEverything) {}
+        pool_(device, !keepsEverything, transientMemory) {}
 
   gpu::Device& device() override { return device_; }
   shader::ShaderLibrary& shaders() override { return shaders_; }

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "gpu/memory.h"
 #include "pipeline/context.h"
 #include "pipeline/graph.h"
 #include "pipeline/prune.h"
@@ -19,6 +20,7 @@ struct PipelineExecutor::State {
   const Scene* scene;
   Pipeline pipeline;
   RenderOptions options;
+  const std::shared_ptr<gpu::MemoryAccount> account = std::make_shared<gpu::MemoryAccount>();
   BoundGraph graph;
   PruneRequest request;
   SceneTraits sceneTraits;  ///< of the scene as it is, with --keep-everything too

@@ -30,6 +30,7 @@ class ShaderLibrary;
 class OutBase;
 class Pass;
 class PassContext;
+class TransientMemory;  ///< of pipeline/pool.h
 template <class Port>
 class Out;
 
@@ -126,6 +127,17 @@ struct RenderOptions {
       false;  ///< camera, lights and objects may change in ways that the scene text does not announce
   std::string camera;
   int width = 0, height = 0;  ///< 0: the camera's
+  /// Where resources wait that no pass uses, for several executors of one device, of which one renders at a
+  /// time. Null: each has its own.
+  std::shared_ptr<TransientMemory> transientMemory{};
+};
+
+/// Bytes of an executor's textures and buffers, as if it were alone on the device.
+struct MemoryUse {
+  std::uint64_t bytes = 0;  ///< the scene's included
+  /// Of them, the parts of the scene that nothing writes to: they are on the device once, whichever executors
+  /// hold them.
+  std::uint64_t sharedBytes = 0;
 };
 
 struct PassRecord {
@@ -148,6 +160,7 @@ struct FrameResult {
   std::vector<PassRecord> passes;
   double frameMs = 0;          ///< whole frame, device idle before and after; with Timing::passes NaN
   double betweenPassesMs = 0;  ///< of the host, outside of the passes: what the framework itself costs
+  /// The most that MemoryUse::bytes was meanwhile, whatever else is on the device.
   std::uint64_t peakBytes = 0;
   /// With `checkReads`: "pass voxels, port grid: 96 of 4096 bytes differ from a run from scratch; ..."
   std::vector<std::string> readsFindings;
@@ -217,6 +230,7 @@ class PipelineExecutor {
   void setScene(const Scene& scene);
 
   Explanation explain() const;
+  MemoryUse memory() const;                             ///< at this moment
   const std::vector<std::string>& outputNames() const;  ///< kept and pruned; a pruned one renders as black
   shader::ShaderLibrary& shaders();
   /// Keeps an output of a pass alive after each render, and its pass with it; for exporters and tests. Error
