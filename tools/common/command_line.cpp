@@ -1,18 +1,119 @@
 #include "common/command_line.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
+#include <limits>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
+#include "lumivox/dsl/document.h"
 
 namespace lumivox::command {
+namespace {
+
+const CLI::App& programOf(const CLI::App& command) {
+  const CLI::App* app = &command;
+  while (app->get_parent() != nullptr) app = app->get_parent();
+  return *app;
+}
+
+/// Help of a command ends with the options of every command, and lines are as wide as the terminal.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_footer(const CLI::App* app) const override {
+    if (app->get_parent() == nullptr) return CLI::Formatter::make_footer(app);
+    return make_group("Options of every command", false,
+                      programOf(*app).get_options([](const CLI::Option* option) {
+                        return option->get_group() == "Options" && option->get_name() != "--help";
+                      }));
+  }
+  std::string make_option(const CLI::Option* option, bool isPositional) const override {
+    const std::string head = "  " + make_option_name(option, isPositional) + make_option_opts(option);
+    return entry(head, make_option_desc(option));
+  }
+  std::string make_subcommand(const CLI::App* command) const override {
+    return entry("  " + command->get_name(), command->get_description());
+  }
+
+ private:
+  static std::string entry(const std::string& head, const std::string& text) {
+    constexpr std::size_t kMeaning = 28;  // the column in which meanings begin
+    const auto columns = static_cast<std::size_t>(outputColumns());
+    const std::string broken =
+        std::string(kMeaning, ' ') + wrapped(text, columns - std::min(columns - 1, kMeaning));
+    std::string lines;
+    for (const char c : broken) lines += c == '\n' ? "\n" + std::string(kMeaning, ' ') : std::string(1, c);
+    if (text.empty()) return head + "\n";
+    if (head.size() + 2 > kMeaning) return head + "\n" + lines + "\n";
+    return head + lines.substr(head.size()) + "\n";
+  }
+};
+
+std::vector<const CLI::App*> commandsOf(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App*) { return true; });
+}
+
+std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
+  const std::string nearest = nearestWord(word, known);
+  return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
+}
+
+/// "lumivox results" for a command below.
+std::string wordsOf(const CLI::App& command) {
+  return command.get_parent() == nullptr ? command.get_name()
+                                         : wordsOf(*command.get_parent()) + " " + command.get_name();
+}
+
+std::string unknownCommand(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> known;
+  for (const CLI::App* command : commandsOf(app)) known.push_back(command->get_name());
+  return fmt::format("'{}' is no command of {}; expected one of {}{}", word, wordsOf(app), fmt::join(known, ", "),
+                     suggestion(word, known));
+}
+
+/// What is wrong with the words that no command took; empty when all were taken.
+std::string wrongWords(const CLI::App& app) {
+  const CLI::App* command = &app;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().back();
+  for (const std::string& word : app.remaining(true)) {
+    if (word == "--") continue;
+    if (word.size() < 2 || word[0] != '-')
+      return commandsOf(*command).empty() ? fmt::format("'{}' is more than {} takes", word, wordsOf(*command))
+                                          : unknownCommand(*command, word);
+    std::vector<std::string> known;
+    for (const CLI::App* one : {command, &app})
+      for (const CLI::Option* option : one->get_options())
+        for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    const std::string option = word.substr(0, word.find('='));
+    return fmt::format("{} has no option '{}'{}", wordsOf(*command), option, suggestion(option, known));
+  }
+  return {};
+}
+
+/// A number and a unit of the dimension, in base units; nothing for anything else.
+std::optional<double> quantityOf(const std::string& text, const dsl::Dimension& dimension, bool needsUnit) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  if (end == text.c_str() || !std::isfinite(number)) return std::nullopt;
+  std::string unit = end;
+  unit.erase(0, unit.find_first_not_of(' '));
+  if (unit.empty()) return needsUnit ? std::nullopt : std::optional(number);
+  for (const dsl::Unit& known : dsl::knownUnits())
+    if (known.name == unit && known.dimension == dimension) return number * known.toBase;
+  return std::nullopt;
+}
+
+}  // namespace
 
 void GlobalOptions::addTo(CLI::App& app) {
+  app.formatter(std::make_shared<HelpFormatter>());
   addRepeatable(
       app, "--assets", assets,
       "a folder to search for models; then $LUMIVOX_ASSETS, then ../shared/models beside the project; "
@@ -83,8 +184,8 @@ void RunOptions::addTo(CLI::App& app) {
   app.add_option("--camera", camera, "the scene's camera of this name (default: the first)");
   app.add_option("--resolution", resolution,
                  "width and height in pixels, such as 640x360 (default: the camera's)");
-  app.add_option("--time", time, "seconds");
-  app.add_option("--seed", seed, "of the random numbers of techniques");
+  addTime(app, time);
+  addSeed(app, seed);
 }
 
 std::pair<int, int> RunOptions::size() const {
@@ -111,11 +212,34 @@ std::string asTyped(const std::string& program, int count, char** arguments) {
   return line;
 }
 
+std::string helpOf(const CLI::App& command) {
+  return command.get_formatter()->make_help(&command, wordsOf(command), CLI::AppFormatMode::Normal);
+}
+
+const CLI::App& commandNamed(const CLI::App& app, const std::vector<std::string>& words) {
+  const CLI::App* command = &app;
+  for (const std::string& word : words) {
+    const std::vector<const CLI::App*> below = commandsOf(*command);
+    const auto found = std::find_if(below.begin(), below.end(),
+                                    [&](const CLI::App* one) { return one->get_name() == word; });
+    if (found == below.end())
+      throw Error(below.empty() ? fmt::format("'{}' has no commands of its own", wordsOf(*command))
+                                : unknownCommand(*command, word));
+    command = *found;
+  }
+  return *command;
+}
+
 std::optional<int> parseOptions(CLI::App& app, const GlobalOptions& global, int count, char** arguments) {
   try {
     app.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
     // Help and version are no errors; everything else about the options is bad input.
+    if (error.get_exit_code() != 0)
+      if (const std::string wrong = wrongWords(app); !wrong.empty()) {
+        std::cerr << app.get_name() << ": " << wrong << "\nRun with --help for more information.\n";
+        return kBadInput;
+      }
     return app.exit(error, std::cout, std::cerr) == 0 ? kGood : kBadInput;
   }
   setLogLevel(global.quiet ? LogLevel::quiet : global.verbose ? LogLevel::details : LogLevel::information);
@@ -123,6 +247,10 @@ std::optional<int> parseOptions(CLI::App& app, const GlobalOptions& global, int 
 }
 
 int guarded(const std::string& program, const std::function<int()>& work) {
+  // However the work ends.
+  struct Repeated {
+    ~Repeated() { logRepeatedWarnings(); }
+  } repeated;
   try {
     return work();
   } catch (const DiagnosticsError& error) {
@@ -143,19 +271,6 @@ CLI::Option* addRepeatableOf(CLI::App& app, const std::string& names, std::vecto
   return app.add_option(names, values, text)->allow_extra_args(false);
 }
 
-bool looksLikeNumber(const std::string& text) {
-  if (text.empty()) return true;
-  const unsigned char first =
-      static_cast<unsigned char>(text[0] == '-' && text.size() > 1 ? text[1] : text[0]);
-  return std::isdigit(first) != 0 || text == "-";
-}
-
-/// Columns that a terminal shows for UTF-8 text: its code points.
-std::size_t shownWidth(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
 }  // namespace
 
 CLI::Option* addRepeatable(CLI::App& app, const std::string& names, std::vector<std::string>& values,
@@ -165,6 +280,68 @@ CLI::Option* addRepeatable(CLI::App& app, const std::string& names, std::vector<
 CLI::Option* addRepeatable(CLI::App& app, const std::string& names,
                            std::vector<std::filesystem::path>& values, const std::string& text) {
   return addRepeatableOf(app, names, values, text);
+}
+
+double secondsOf(const std::string& option, const std::string& text) {
+  const std::optional<double> seconds = quantityOf(text, dsl::kTime, true);
+  if (seconds && *seconds > 0.0) return *seconds;
+  throw Error(fmt::format("{} '{}': expected a time above 0 with its unit ({}), such as 16ms or 0.5s", option, text,
+                          dsl::unitNames(dsl::kTime)));
+}
+
+namespace {
+
+/// An option whose value is text that `read` understands; Error otherwise.
+CLI::Option* addText(CLI::App& app, const std::string& names, const std::string& type, const std::string& text,
+                     std::function<void(const std::string&)> read) {
+  return app
+      .add_option_function<std::string>(names,
+                                        [read = std::move(read)](const std::string& value) {
+                                          try {
+                                            read(value);
+                                          } catch (const Error& error) {
+                                            throw CLI::ValidationError(error.what());
+                                          }
+                                        },
+                                        text)
+      ->type_name(type);
+}
+
+}  // namespace
+
+CLI::Option* addDuration(CLI::App& app, const std::string& names, double& seconds, const std::string& text) {
+  return addText(app, names, "TIME", text,
+                 [names, &seconds](const std::string& value) { seconds = secondsOf(names, value); });
+}
+
+CLI::Option* addTime(CLI::App& app, double& seconds) {
+  return addText(app, "--time", "TIME", "when in the scene's animation, such as 300ms; without a unit in seconds",
+                 [&seconds](const std::string& value) {
+                   const std::optional<double> read = quantityOf(value, dsl::kTime, false);
+                   if (!read)
+                     throw Error(fmt::format("--time '{}': expected a time in {}, such as 300ms or 0.5s", value,
+                                             dsl::unitNames(dsl::kTime)));
+                   seconds = *read;
+                 });
+}
+
+CLI::Option* addLength(CLI::App& app, const std::string& names, double& metres, const std::string& text) {
+  return addText(app, names, "LENGTH", text, [names, &metres](const std::string& value) {
+    const std::optional<double> read = quantityOf(value, dsl::kLength, false);
+    if (!read || *read < 0.0)
+      throw Error(fmt::format("{} '{}': expected a length of at least 0 in {}, such as 0.5m", names, value,
+                              dsl::unitNames(dsl::kLength)));
+    metres = *read;
+  });
+}
+
+CLI::Option* addSeed(CLI::App& app, std::uint64_t& seed, const std::string& text) {
+  return addText(app, "--seed", "UINT", text, [&seed](const std::string& value) {
+    const auto read = std::from_chars(value.data(), value.data() + value.size(), seed);
+    if (read.ec != std::errc() || read.ptr != value.data() + value.size())
+      throw Error(fmt::format("--seed '{}': expected a whole number from 0 to {}", value,
+                              std::numeric_limits<std::uint64_t>::max()));
+  });
 }
 
 std::pair<int, int> parseResolution(const std::string& text) {
@@ -227,32 +404,8 @@ std::map<std::string, std::string> provenance(const GlobalOptions& global, const
           {"lumivox.shaders", device.programRoute()}};
 }
 
-std::string textTable(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widths;
-  std::vector<bool> numbers;
-  for (std::size_t r = 0; r < rows.size(); ++r)
-    for (std::size_t c = 0; c < rows[r].size(); ++c) {
-      if (c >= widths.size()) {
-        widths.push_back(0);
-        numbers.push_back(rows.size() > 1);
-      }
-      widths[c] = std::max(widths[c], shownWidth(rows[r][c]));
-      if (r > 0 && !looksLikeNumber(rows[r][c])) numbers[c] = false;
-    }
-  std::string text;
-  for (const std::vector<std::string>& row : rows) {
-    std::string line;
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      const std::string padding(widths[c] - shownWidth(row[c]), ' ');
-      line += (c == 0 ? "" : "  ") + (numbers[c] ? padding + row[c] : row[c] + padding);
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
-  }
-  return text;
-}
-
 void print(const std::string& text) {
+  if (isatty(STDOUT_FILENO) != 0) clearProgressLine();
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
     throw Error("cannot write to standard output");
 }

@@ -1,5 +1,5 @@
-// Common parts of the programs' command lines: options, exit codes, tables, numbered files and the provenance
-// of a result.
+// Common parts of the programs' command lines: options, exit codes, numbered files and the provenance of a
+// result.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/table.h"
 #include "lumivox/gpu/device.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/plugin/loader.h"
@@ -58,7 +59,12 @@ struct RunOptions {
 /// This command line as a shell would read it, with the program's plain name in front.
 std::string asTyped(const std::string& program, int count, char** arguments);
 
-/// Reads the options and sets the level of messages. The exit code when nothing is left to do: help and the
+/// Help of a command, or of the program itself: with the options of every command, as wide as the terminal.
+std::string helpOf(const CLI::App& command);
+/// The command that these words name, such as "results list"; Error with the nearest one otherwise.
+const CLI::App& commandNamed(const CLI::App& app, const std::vector<std::string>& words);
+
+/// Reads the options and sets the level of messages. A word that is no command or option is named with the nearest. The exit code when nothing is left to do: help and the
 /// version are good, everything else is bad input.
 std::optional<int> parseOptions(CLI::App& app, const GlobalOptions& global, int count, char** arguments);
 
@@ -70,6 +76,17 @@ CLI::Option* addRepeatable(CLI::App& app, const std::string& names, std::vector<
                            const std::string& text);
 CLI::Option* addRepeatable(CLI::App& app, const std::string& names,
                            std::vector<std::filesystem::path>& values, const std::string& text);
+
+/// Seconds of a time as the texts write it: "300ms", "0.5 s", "2min", above 0; Error, with the option's name and the
+/// units, otherwise and for a number without a unit.
+double secondsOf(const std::string& option, const std::string& text);
+/// Options of one value with a unit. `addDuration`: above 0, in seconds; the unit is required. `addTime`: a moment in
+/// seconds, and `addLength`: at least 0 metres; as in the texts a number without a unit is one of these.
+CLI::Option* addDuration(CLI::App& app, const std::string& names, double& seconds, const std::string& text);
+CLI::Option* addTime(CLI::App& app, double& seconds);
+CLI::Option* addLength(CLI::App& app, const std::string& names, double& metres, const std::string& text);
+/// --seed: a whole number from 0.
+CLI::Option* addSeed(CLI::App& app, std::uint64_t& seed, const std::string& text = "of the random numbers of techniques");
 
 /// "640x360"; Error otherwise.
 std::pair<int, int> parseResolution(const std::string& text);
@@ -87,8 +104,6 @@ std::map<std::string, std::string> provenance(const GlobalOptions& global, const
                                               const Pipeline& pipeline, const RenderOptions& options,
                                               const gpu::Device& device, double time);
 
-/// Lays rows out in columns; the first row is the head. Columns of numbers align to the right.
-std::string textTable(const std::vector<std::vector<std::string>>& rows);
 void printJson(const Json& json);
 void print(const std::string& text);  ///< to stdout; Error when that fails (a full disk, a closed pipe)
 std::string threeDigits(double value);

@@ -220,6 +220,53 @@ std::string zshCompletion(const CLI::App& app) {
   return text;
 }
 
+std::string fishCompletion(const CLI::App& app) {
+  const std::string name = app.get_name(), condition = fmt::format("__{}_at", name);
+  // fish knows no escape but \\ and \' in single quotes.
+  const auto quoted = [](const std::string& text) {
+    std::string result = "'";
+    for (const char c : text) result += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+    return result + "'";
+  };
+  std::string text = fmt::format(
+      "# fish completion of {0}, written by `{0} --print-completion fish`\n"
+      "# Whether the words so far lead down to the command.\n"
+      "function {1}\n"
+      "  set -l command\n"
+      "  for word in (commandline -opc)[2..-1]\n"
+      "    switch \"$command $word\"\n",
+      name, condition);
+  forEachCommand(app, [&](const std::string& words, const CLI::App&) {
+    if (words.empty()) return;
+    const std::size_t space = words.rfind(' ');
+    const std::string before = space == std::string::npos ? "" : words.substr(0, space);
+    text += fmt::format("      case {}; set command {}\n",
+                        quoted(before + " " + words.substr(space == std::string::npos ? 0 : space + 1)),
+                        quoted(words));
+  });
+  text += "    end\n  end\n  test \"$command\" = \"$argv\"\nend\n";
+  forEachCommand(app, [&](const std::string& words, const CLI::App& command) {
+    const std::string here = fmt::format("complete -c {} -n {}", name, quoted(condition + " " + words));
+    for (const CLI::App* below : command.get_subcommands([](const CLI::App*) { return true; }))
+      text += fmt::format("{} -f -a {} -d {}\n", here, below->get_name(), quoted(below->get_description()));
+    for (const CLI::Option* option : optionsOf(command)) {
+      if (flagsOf(*option).empty()) continue;
+      // Options of the program itself stand behind every command, too.
+      std::string line = words.empty() ? "complete -c " + name : here;
+      if (!words.empty() && option->get_name() == "--help") continue;
+      for (const std::string& flag : option->get_snames()) line += " -s " + flag;
+      for (const std::string& flag : option->get_lnames()) line += " -l " + flag;
+      const std::vector<std::string> choices = choicesOf(*option);
+      if (!choices.empty())
+        line += " -x -a " + quoted(fmt::format("{}", fmt::join(choices, " ")));
+      else if (option->get_type_size() != 0)
+        line += " -r";
+      text += line + " -d " + quoted(option->get_description()) + "\n";
+    }
+  });
+  return text;
+}
+
 void addDescriptionOptions(CLI::App& app, const std::string& version) {
   // CLI11 prints what is thrown so and ends well, as for --version.
   app.add_flag_callback(
@@ -228,10 +275,13 @@ void addDescriptionOptions(CLI::App& app, const std::string& version) {
   app.add_option_function<std::string>(
          "--print-completion",
          [&app](const std::string& shell) {
-           throw CLI::CallForVersion(shell == "zsh" ? zshCompletion(app) : bashCompletion(app), 0);
+           throw CLI::CallForVersion(shell == "zsh"    ? zshCompletion(app)
+                                     : shell == "fish" ? fishCompletion(app)
+                                                       : bashCompletion(app),
+                                     0);
          },
          "print a completion script")
-      ->check(CLI::IsMember({"bash", "zsh"}));
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
 }
 
 }  // namespace lumivox::command

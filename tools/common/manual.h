@@ -13,8 +13,9 @@ std::string manualPage(const CLI::App& app, const std::string& version);
 /// A completion script: commands, options, and the words that an option may take; files elsewhere.
 std::string bashCompletion(const CLI::App& app);
 std::string zshCompletion(const CLI::App& app);
+std::string fishCompletion(const CLI::App& app);
 
-/// --print-man and --print-completion bash|zsh. Call it when all commands are there.
+/// --print-man and --print-completion bash|zsh|fish. Call it when all commands are there.
 void addDescriptionOptions(CLI::App& app, const std::string& version);
 
 }  // namespace lumivox::command

@@ -13,6 +13,17 @@ void Commands::onChosen(CLI::App* subcommand, Work work) {
   subcommand->callback([this, work = std::move(work)] { chosen = work; });
 }
 
+void addHelpCommand(Commands& commands) {
+  auto* command = commands.app.add_subcommand("help", "prints what a command takes, as --help does behind it");
+  auto words = std::make_shared<std::vector<std::string>>();
+  command->add_option("COMMAND", *words, "a command, such as render or results list (default: all commands)");
+  const CLI::App& app = commands.app;
+  commands.onChosen(command, [words, &app] {
+    print(helpOf(commandNamed(app, *words)));
+    return kGood;
+  });
+}
+
 TextKind kindOfText(const std::filesystem::path& file) {
   if (file.extension() == ".scene") return TextKind::scene;
   if (file.extension() == ".pipeline") return TextKind::pipeline;

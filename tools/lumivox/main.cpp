@@ -39,6 +39,7 @@ int run(int count, char** arguments) {
   addDeviceCommand(commands);
   addShadersCommand(commands);
   addNewCommand(commands);
+  addHelpCommand(commands);
   addDescriptionOptions(app, LUMIVOX_VERSION);
 
   if (const auto done = parseOptions(app, global, count, arguments)) return *done;

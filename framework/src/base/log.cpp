@@ -112,7 +112,7 @@ struct Progress::State {
   std::atomic<std::uint64_t> done{0};
   Clock::time_point start = Clock::now();
   std::atomic<Clock::rep> lastShown{0};
-  bool terminal = isatty(STDERR_FILENO) != 0, told = false;
+  bool terminal = isatty(STDERR_FILENO) != 0, told = false, finished = false;
 
   double elapsed() const { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -160,6 +160,17 @@ struct Progress::State {
     }
     told = true;
   }
+
+  /// The line goes, and a message says how long everything took.
+  void finish() {
+    if (std::exchange(finished, true)) return;
+    {
+      const std::lock_guard lock(outputMutex);
+      if (terminal) clearStatus();
+      if (terminal) statusLine.clear();
+    }
+    logInformation("{}, {:.1f} s", unit.empty() || done == 0 ? what : text(-1.0), elapsed());
+  }
 };
 
 namespace {
@@ -174,14 +185,7 @@ Progress::Progress(std::string what, std::uint64_t total, std::string unit)
 }
 
 Progress::~Progress() {
-  {
-    const std::lock_guard lock(outputMutex);
-    if (state_->terminal) {
-      clearStatus();
-      statusLine.clear();
-    }
-  }
-  logInformation("{}: {:.1f} s", state_->what, state_->elapsed());
+  state_->finish();
   delete state_;
 }
 
@@ -197,8 +201,9 @@ void Progress::show(std::uint64_t done, std::uint64_t total, double secondsLeft,
   state_->total = total;
   if (currentLevel.load() < LogLevel::information) return;
   // Steps that take seconds each are all shown in a terminal.
-  const bool due = state_->isDue(kInterval), first = !state_->told && done > 0, last = done >= total && total > 0;
-  if (state_->terminal || due || first || last) state_->show(secondsLeft, doing);
+  if (total > 0 && done >= total) return state_->finish();
+  const bool due = state_->isDue(kInterval), first = !state_->told && done > 0;
+  if (state_->terminal || due || first) state_->show(secondsLeft, doing);
 }
 
 }  // namespace lumivox

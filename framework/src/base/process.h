@@ -1,5 +1,4 @@
-// Processes told apart on one machine, one at a time while times are taken, and what they say when they are
-// interrupted.
+// Processes told apart on one machine, and one at a time while times are taken.
 #pragma once
 
 #include <cstdint>
@@ -36,17 +35,6 @@ class MachineLock {
  private:
   static int lockedFor(For purpose);
   int lock_ = -1;
-};
-
-/// While it lives, SIGINT (Ctrl-C), SIGTERM and SIGHUP end the process as ever, but with a word on stderr
-/// about what is kept. Of several the last to speak is heard.
-class InterruptionNote {
- public:
-  InterruptionNote();
-  ~InterruptionNote();
-  InterruptionNote(const InterruptionNote&) = delete;
-  InterruptionNote& operator=(const InterruptionNote&) = delete;
-  void say(const std::string& text);
 };
 
 }  // namespace lumivox

@@ -176,14 +176,14 @@ std::vector<StoredRun> Measurer::measure(const std::vector<WantedPoint>& points,
     }
     if (!batch.empty()) {
       makeReference(points);
-      measureBatch(batch);
+      measureBatch(batch, done);
     }
     for (Entry& entry : batch) {
       entry.run.created = dateText();
       store_.add(entry.run, entry.images);
     }
     noteProgress();
-    if (done) done(batch.size(), byOthers);
+    if (done) done(batch.empty() ? 0 : 1, byOthers);
   }
   std::vector<StoredRun> result;
   for (const WantedPoint& point : points) result.push_back(store_.find(key(point)).value());
@@ -221,12 +221,13 @@ TimeFloor Measurer::floor(const ResultsStore& store) const {
   return timeFloorOf(store.controls(where));
 }
 
-std::vector<StoredRun> Measurer::fetch(const std::vector<WantedPoint>& points) {
+std::vector<StoredRun> Measurer::fetch(const std::vector<WantedPoint>& points,
+                                       const std::function<void(std::size_t, std::size_t)>& done) {
   const std::vector<bool> there = held(points, false);
   std::vector<WantedPoint> missing;
   for (std::size_t i = 0; i < points.size(); ++i)
     if (!there[i]) missing.push_back(points[i]);
-  measure(missing);
+  measure(missing, done);
   std::vector<StoredRun> result;
   for (const WantedPoint& point : points) result.push_back(store_.find(key(point)).value());
   return result;
@@ -298,7 +299,7 @@ void Measurer::measureUntimed(Entry& entry) {
   noteProgress();
 }
 
-void Measurer::measureBatch(Batch& batch) {
+void Measurer::measureBatch(Batch& batch, const std::function<void(std::size_t, std::size_t)>& done) {
   using Clock = std::chrono::steady_clock;
   const auto secondsSince = [](Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -311,6 +312,7 @@ void Measurer::measureBatch(Batch& batch) {
     if (!takeUp(entry)) measureUntimed(entry);
     seconds_[entry.run.identity.key()] = secondsSince(start);
     store_.claim(keys);  // still at it
+    if (done && &entry != &batch.back()) done(1, 0);
   }
   const Clock::time_point start = Clock::now();
   timeTogether(batch);

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "base/process.h"
 #include "experiment/choice.h"
 #include "experiment/measure.h"
+#include "lumivox/base/interruption.h"
 #include "lumivox/results/store.h"
 
 namespace lumivox::experiment {
@@ -45,7 +45,8 @@ class Measurer {
 
   /// Measures the points together, at most kBatch at once, and stores them; gives them back as they are in
   /// the store now. Points that another process measures are left to it, and waited for at the end. `done` is
-  /// told after each batch how many points were measured here and how many by others.
+  /// told how many points were measured here and how many by others: of a batch point after point, the last of
+  /// them when all are timed.
   std::vector<StoredRun> measure(const std::vector<WantedPoint>& points,
                                  const std::function<void(std::size_t, std::size_t)>& done = {});
   /// Times the first of these points that the store holds once more, at most as many as are timed together,
@@ -55,7 +56,8 @@ class Measurer {
   TimeFloor floor(const ResultsStore& store) const;
   TimeFloor floor() const { return floor(store_); }
   /// Those that the store holds are taken from it, the others are measured.
-  std::vector<StoredRun> fetch(const std::vector<WantedPoint>& points);
+  std::vector<StoredRun> fetch(const std::vector<WantedPoint>& points,
+                               const std::function<void(std::size_t, std::size_t)>& done = {});
 
   const Scene& scene() const { return scene_; }
   int width() const { return width_; }
@@ -80,7 +82,7 @@ class Measurer {
   /// Points that this process may measure now, at most a batch; takes them, and what others have stored
   /// meanwhile, out of `pending`.
   Batch claimed(std::vector<WantedPoint>& pending, std::size_t& byOthers);
-  void measureBatch(Batch& batch);
+  void measureBatch(Batch& batch, const std::function<void(std::size_t, std::size_t)>& done);
   /// Errors, images and work of a point that an interrupted run has left; false: there are none.
   bool takeUp(Entry& entry) const;
   /// Measures them, and keeps them until the times are there.

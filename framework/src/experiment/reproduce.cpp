@@ -81,17 +81,26 @@ class Reproduction {
     // Measured rows stay where they are from here on.
     for (std::size_t i = 0; i < result_.rows.size(); ++i) place(result_.published.rows[i], result_.rows[i]);
     for (std::size_t i = 0; i < result_.curves.size(); ++i) placeCurve(i);
+    total_ = setUps_.size() * (store_ == nullptr ? 2 : 3) + result_.published.panels.size();
     time();
     for (const MeasuredCurve& curve : result_.curves) result_.judgedCurves.push_back(judgeGrowth(curve));
     result_.judged = judge(result_.rows);
     if (store_ != nullptr) store();
     setUps_.clear();  // their memory, which images may need
-    for (const PublishedPanel& panel : result_.published.panels) result_.panels.push_back(show(panel));
+    for (const PublishedPanel& panel : result_.published.panels) {
+      result_.panels.push_back(show(panel));
+      advance();
+    }
     expose();
     return std::move(result_);
   }
 
  private:
+  void advance() {
+    done_ = std::min(done_ + 1, total_);  // a set-up may be opened twice
+    if (options_.progress) options_.progress(done_, total_, std::numeric_limits<double>::quiet_NaN());
+  }
+
   void time() {
     std::vector<Turn> turns;
     for (TimedSetUp& setUp : setUps_)
@@ -99,11 +108,13 @@ class Reproduction {
                        [&](const std::shared_ptr<TransientMemory>& memory) {
                          TimingContext context = timingOf(setUp);
                          context.transientMemory = memory;
+                         advance();
                          return TimedPoint(context, setUp.loaded.pipeline, setUp.run.point, setUp.kept);
                        },
                        [&](TimedPoint& timed) {
                          for (const auto& [published, measured] : setUp.answers)
                            readOff(setUp, timed.executor(), *published, *measured);
+                         advance();
                        }});
     // A store takes the times of later frames too.
     timeInTurns(device_, turns, options_.repeats, store_ == nullptr ? 0 : options_.repeats);
@@ -137,8 +148,10 @@ class Reproduction {
   /// The verdict stands whether this succeeds or not.
   void store() {
     // A scene that was made finer here is none that a sweep could name.
-    for (TimedSetUp& setUp : setUps_)
+    for (TimedSetUp& setUp : setUps_) {
       if (setUp.subdivisions == 0) store(setUp);
+      advance();
+    }
   }
 
   void store(TimedSetUp& setUp) {
@@ -465,6 +478,7 @@ class Reproduction {
   std::map<std::pair<fs::path, int>, std::unique_ptr<Scene>> scenes_;  // by file and subdivisions
   std::map<fs::path, std::string> whyAbsent_;
   ResultsStore* store_;
+  std::size_t done_ = 0, total_ = 0;  ///< steps
   /// By scene, camera, time and size.
   std::map<std::tuple<const Scene*, std::string, double, int, int>, std::unique_ptr<SceneReference>>
       references_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <chrono>
 #include <limits>
 #include <set>
 
@@ -77,7 +78,11 @@ class Search {
       }
       if (known_.insert(measurer_.key(point)).second) fresh.push_back(point);
     }
-    const std::vector<StoredRun> runs = measurer_.fetch(fresh);
+    std::size_t missing = 0;
+    for (const bool held : measurer_.held(fresh, false)) missing += !held;
+    finished_ += fresh.size() - missing;
+    const std::vector<StoredRun> runs =
+        measurer_.fetch(fresh, [&](std::size_t own, std::size_t others) { tell(own, others); });
     for (std::size_t i = 0; i < runs.size(); ++i) add(fresh[i], runs[i]);
     markFront();
     return !usedUp_;
@@ -124,6 +129,19 @@ class Search {
     std::size_t sum = 0;
     for (const std::vector<WantedPoint>& list : lists) sum += list.size();
     return sum;
+  }
+
+  /// How far the search is of the most that it may look at; points that the store had cost no time.
+  void tell(std::size_t own, std::size_t others) {
+    finished_ += own + others;
+    measured_ += own;
+    const auto most = static_cast<std::size_t>(options_.evaluations);
+    if (!options_.measure.progress) return;
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    options_.measure.progress(finished_, most,
+                              measured_ == 0 ? std::numeric_limits<double>::quiet_NaN()
+                                             : seconds / static_cast<double>(measured_) *
+                                                   static_cast<double>(most - std::min(most, finished_)));
   }
 
   void add(const WantedPoint& wanted, const StoredRun& run) {
@@ -250,6 +268,8 @@ class Search {
   std::vector<Seen> seen_;
   std::set<std::string> known_;
   bool usedUp_ = false;
+  std::size_t finished_ = 0, measured_ = 0;  ///< points; of them those that were measured here
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 void requireSensible(const TuneOptions& options) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <limits>
 #include <set>
 
 #include "base/process.h"
@@ -93,14 +94,20 @@ struct Candidate {
 
 class Measurement {
  public:
-  Measurement(gpu::Device& device, TechniqueSource& techniques, const VoxelizerOptions& options)
-      : device_(device), techniques_(techniques), options_(options) {}
+  /// `runs`: how often run() will be called for `pipelines` pipelines.
+  Measurement(gpu::Device& device, TechniqueSource& techniques, const VoxelizerOptions& options,
+              std::size_t pipelines, std::size_t runs)
+      : device_(device),
+        techniques_(techniques),
+        options_(options),
+        total_(pipelines * runs * (1 + static_cast<std::size_t>(options.repeats))) {}
 
   /// All voxelizers on one scene at one resolution, appended to `records`.
   void run(const Scene& scene, const std::vector<Pipeline>& pipelines, int resolution, int subdivisions,
            std::vector<VoxelizerRecord>& records) {
     std::vector<Candidate> candidates;
     references_.clear();
+    pipelinesHeld_ = 0;
     for (const Pipeline& pipeline : pipelines) {
       VoxelizerRecord blank;
       blank.scene = shownPath(scene.file);
@@ -109,6 +116,8 @@ class Measurement {
       blank.triangles = scene.triangleCount();
       blank.subdivisions = subdivisions;
       add(scene, pipeline, blank, candidates);
+      ++pipelinesHeld_;
+      advance(1);
       // Those that alternate are all held at once.
       constexpr std::uint64_t kMostBytes = std::uint64_t{256} << 20;
       std::uint64_t held = 0;
@@ -120,7 +129,7 @@ class Measurement {
 
  private:
   /// The repeats of these, in turns; they are records then.
-  void time(std::vector<Candidate>& candidates, std::vector<VoxelizerRecord>& records) const {
+  void time(std::vector<Candidate>& candidates, std::vector<VoxelizerRecord>& records) {
     // An executor that makes now this and now that output keeps the memory of all of them meanwhile, which
     // one more frame of each takes: no timed frame waits for memory.
     for (const Candidate& candidate : candidates) {
@@ -129,16 +138,25 @@ class Measurement {
       candidate.render(options_.time, true);
     }
     const MachineLock alone(MachineLock::For::timing);
-    for (int repeat = 0; repeat < options_.repeats; ++repeat)
+    for (int repeat = 0; repeat < options_.repeats; ++repeat) {
       for (Candidate& candidate : candidates)
         if (candidate.executor && !candidate.hasEnough(options_))
           candidate.frameMs.push_back(
               candidate.render(options_.time, candidate.executor.use_count() > 1).frameMs);
+      advance(pipelinesHeld_);
+    }
+    pipelinesHeld_ = 0;
     for (Candidate& candidate : candidates) {
       candidate.record.frameMs = statisticsOf(std::move(candidate.frameMs));
       records.push_back(std::move(candidate.record));
     }
     candidates.clear();
+  }
+
+  void advance(std::size_t steps) {
+    done_ += steps;
+    if (options_.progress && steps > 0)
+      options_.progress(done_, total_, std::numeric_limits<double>::quiet_NaN());
   }
 
   /// The default point and those of the sweeps, at this resolution.
@@ -264,6 +282,8 @@ class Measurement {
   TechniqueSource& techniques_;
   const VoxelizerOptions& options_;
   std::vector<Reference> references_;  ///< of the scene and time at hand
+  std::size_t done_ = 0, pipelinesHeld_ = 0;  ///< steps; pipelines whose repeats are still to come
+  const std::size_t total_;
 };
 
 void requireGood(const VoxelizerOptions& options) {
@@ -291,7 +311,8 @@ std::vector<VoxelizerRecord> measureVoxelizers(gpu::Device& device, TechniqueSou
                      [&](const Pipeline& pipeline) { return !settingsFor(pipeline, {setting}).empty(); }))
       pipelines.front().settings({setting});  // throws, and says what there is
   std::vector<VoxelizerRecord> records;
-  Measurement measurement(device, techniques, options);
+  Measurement measurement(device, techniques, options, pipelines.size(),
+                          options.resolutions.size() + static_cast<std::size_t>(options.subdivisions));
   for (const int resolution : options.resolutions) measurement.run(scene, pipelines, resolution, 0, records);
   Scene finer = options.subdivisions > 0 ? subdivided(scene) : Scene();
   for (int times = 1; times <= options.subdivisions; ++times) {

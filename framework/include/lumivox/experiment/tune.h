@@ -15,7 +15,7 @@
 namespace lumivox {
 
 struct TuneOptions {
-  ReportOptions measure;             ///< one scene; `output` is not used
+  ReportOptions measure;             ///< one scene; `output` is not used; `progress`: of the evaluations
   std::optional<double> budgetMs;    ///< of a frame in which every kept pass runs
   std::optional<double> errorLimit;  ///< exactly one of the two
   std::string metric = "rmse";       ///< one of errorMetrics(), as errorNumber() reads it

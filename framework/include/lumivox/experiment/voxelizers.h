@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,6 +46,9 @@ struct VoxelizerOptions {
   /// Measured again with every triangle split into four, as often as this, at the first resolution: how time
   /// grows with triangles.
   int subdivisions = 0;
+  /// Told after every step: the warm-up of a voxelizer, and each of its timed frames. The time left is NaN: as the
+  /// steps before.
+  std::function<void(std::size_t done, std::size_t total, double secondsLeft)> progress;
 };
 
 /// The committed voxelizers' folder, `pipelines/voxelizers` beside the scenes; nullopt when there is none.
