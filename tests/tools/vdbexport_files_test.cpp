@@ -306,7 +306,7 @@ TEST_CASE("bad input of vdbexport is refused with what was expected, and nothing
                "has no level 42; it has levels 0, 1");
   checkRefused(vdbexport(inputs + out + " --grid light.radiance --level 1"), "it has level 0");
   checkRefused(vdbexport(inputs + out + " --level fine"), "--level 'fine': expected a whole number");
-  checkRefused(vdbexport(inputs + out + " --frame 9..3"), "--frame '9..3': expected FIRST..LAST");
+  checkRefused(vdbexport(inputs + out + " --frames 9..3"), "--frames '9..3': expected FIRST..LAST");
   checkRefused(vdbexport(inputs + " -o " + place.file("out.exr")), "expected a name that ends in .vdb");
   checkRefused(vdbexport(inputs), "expected a name that ends in .vdb");
   checkRefused(vdbexport(place.scene() + out), "1 inputs given; expected SCENE PIPELINE");

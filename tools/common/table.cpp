@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
 #include <numeric>
 
 namespace lumivox::command {
@@ -158,6 +159,18 @@ std::string textTable(const std::vector<std::vector<std::string>>& rows, std::si
     std::vector<Column> own = all;
     narrow(own, some, room);
     text += (text.empty() ? "" : "\n") + block(rows, own, some);
+  }
+  return text;
+}
+
+std::string groupedTable(const std::vector<std::vector<std::string>>& rows, std::size_t keys, int columns) {
+  std::string text;
+  for (std::size_t first = 1; first < rows.size();) {
+    Rows group{{rows.front().begin() + 1, rows.front().end()}};
+    const std::string& name = rows[first].front();
+    for (; first < rows.size() && rows[first].front() == name; ++first)
+      group.emplace_back(rows[first].begin() + 1, rows[first].end());
+    text += (text.empty() ? "" : "\n") + name + "\n" + textTable(group, keys, columns);
   }
   return text;
 }

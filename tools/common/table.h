@@ -19,6 +19,9 @@ std::string painted(Paint paint, std::string_view text);
 /// written in blocks, one below the other: each has the first `keys` columns and as many of the others as fit.
 std::string textTable(const std::vector<std::vector<std::string>>& rows, std::size_t keys = 1, int columns = 0);
 
+/// A table for each run of rows with the same first cell, which is its heading; `keys` of the columns after it.
+std::string groupedTable(const std::vector<std::vector<std::string>>& rows, std::size_t keys = 1, int columns = 0);
+
 /// Remarks below a table: broken at spaces to fit the terminal, further lines indented. Every line of `text` is one
 /// remark.
 std::string remarks(const std::string& text);

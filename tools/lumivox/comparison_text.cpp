@@ -41,7 +41,7 @@ std::string frontText(const PipelineComparison& comparison) {
     rows.push_back({nameOf(comparison, point.pipeline), parametersOf(point), quartilesText(point.frameMs),
                     measuredText(point.tradeOff.error), standing});
   }
-  std::string text = textTable(rows);
+  std::string text = textTable(rows, 2);
   for (const BudgetRange& range : comparison.ranges) {
     text += fmt::format("from {} ms{}: ", formatMilliseconds(range.fromMs),
                         range.toMs ? fmt::format(" to {} ms", formatMilliseconds(*range.toMs)) : " on");

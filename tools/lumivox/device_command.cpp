@@ -21,8 +21,9 @@ struct DeviceCommand {
 
 int device(const DeviceCommand& command, const GlobalOptions& global) {
   PeakRateOptions options = command.options;
-  options.progress = [](std::size_t done, std::size_t total, const std::string& name) {
-    logInformation("{} of {}: {}", done + 1, total, name);
+  Progress progress("peak rates", 0, "measured");
+  options.progress = [&progress](std::size_t done, std::size_t total, const std::string& name) {
+    progress.show(done, total, std::numeric_limits<double>::quiet_NaN(), name);
   };
   const std::filesystem::path file = command.store.empty() ? ResultsStore::defaultFile() : command.store;
   ResultsStore store(file);  // a store that cannot be written is refused before the work

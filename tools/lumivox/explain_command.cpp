@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
+#include <limits>
+#include <numeric>
 
 #include "command.h"
 #include "lumivox/base/error.h"
@@ -24,12 +25,36 @@ struct ExplainCommand {
   bool all = false, noTimes = false, json = false;
 };
 
-std::string leftOutText(const Explanation& explanation) {
-  std::vector<std::vector<std::string>> leftOut{{"Level", "Left out", "Memory", "ms", "Why"}};
-  for (const LeftOut& one : explanation.leftOut)
-    leftOut.push_back({name(one.level), one.what, one.savedBytes == 0 ? "" : formatBytes(one.savedBytes),
-                       one.savedMs == 0.0 ? "" : formatMilliseconds(one.savedMs), one.why});
-  return textTable(leftOut);
+/// What is left out for the same reason, at the same level.
+struct Reason {
+  LeftOut::Level level;
+  std::string why;
+  std::vector<std::string> what;
+  std::uint64_t bytes = 0;
+  double ms = 0.0;
+};
+
+std::vector<Reason> reasonsOf(const Explanation& explanation) {
+  std::vector<Reason> reasons;
+  for (const LeftOut& one : explanation.leftOut) {
+    auto known = std::find_if(reasons.begin(), reasons.end(), [&](const Reason& reason) {
+      return reason.level == one.level && reason.why == one.why;
+    });
+    if (known == reasons.end()) known = reasons.insert(known, {one.level, one.why, {}, 0, 0.0});
+    known->what.push_back(one.what);
+    known->bytes += one.savedBytes;
+    known->ms += one.savedMs;
+  }
+  return reasons;
+}
+
+std::string leftOutText(const std::vector<Reason>& reasons) {
+  std::vector<std::vector<std::string>> rows{{"Why", "Level", "Left out", "Memory", "ms"}};
+  for (const Reason& reason : reasons)
+    rows.push_back({reason.why, name(reason.level), fmt::format("{}", fmt::join(reason.what, ", ")),
+                    reason.bytes == 0 ? "" : formatBytes(reason.bytes),
+                    reason.ms == 0.0 ? "" : formatMilliseconds(reason.ms)});
+  return rows.size() > 1 ? textTable(rows) : std::string();
 }
 
 std::string passText(const PruningRecord& record) {
@@ -47,20 +72,27 @@ std::string passText(const PruningRecord& record) {
   return textTable(passes);
 }
 
+/// The summary, then what is left out by its reasons, then the passes.
 std::string asText(const PruningRecord& record) {
   const Explanation& explanation = record.explanation;
   const bool timed = record.prunedMs.repeats > 0;
-  std::string text = leftOutText(explanation) + "\n";
-  if (timed) text += passText(record) + "\n";
-  text += fmt::format("{} of {} passes kept; variants: {} possible, {} compiled, {} needed\n",
-                      explanation.passesKept, explanation.passesTotal, explanation.variantsPossible,
-                      explanation.variantsCompiled, explanation.variantsNeeded);
+  const std::vector<Reason> reasons = reasonsOf(explanation);
+  std::string text = fmt::format("{} of {} passes kept; variants: {} possible, {} compiled, {} needed\n",
+                                 explanation.passesKept, explanation.passesTotal, explanation.variantsPossible,
+                                 explanation.variantsCompiled, explanation.variantsNeeded);
   if (timed)
-    text += fmt::format("{} of the time of a first frame saved, {} of the next ones with a moving camera; ",
+    text += fmt::format("{} of the time of a first frame saved, {} of the next ones with a moving camera\n",
                         formatPercent(record.savedShare()), formatPercent(record.savedShareNext()));
-  return text + fmt::format("memory of the passes {} in place of {}; same image: {}\n",
-                            formatBytes(record.prunedBytes), formatBytes(record.unprunedBytes),
-                            record.sameImage ? "yes" : "NO");
+  text += fmt::format("memory of the passes {} in place of {}; same image: {}\n", formatBytes(record.prunedBytes),
+                      formatBytes(record.unprunedBytes),
+                      record.sameImage ? painted(Paint::good, "yes") : painted(Paint::bad, "NO"));
+  text += reasons.empty() ? std::string("nothing is left out\n")
+                          : fmt::format("{} {} left out for {} {}\n", explanation.leftOut.size(),
+                                        explanation.leftOut.size() == 1 ? "thing" : "things", reasons.size(),
+                                        reasons.size() == 1 ? "reason" : "reasons");
+  text = remarks(text);
+  if (!reasons.empty()) text += "\n" + leftOutText(reasons);
+  return timed ? text + "\n" + passText(record) : text;
 }
 
 /// "42.1/57.5 MiB", or "900.0 KiB/1.2 MiB" where the units differ.
@@ -69,39 +101,6 @@ std::string bytesText(std::uint64_t first, std::uint64_t second) {
   const std::string b = formatBytes(second);
   if (const std::size_t unit = a.rfind(' '); a.substr(unit) == b.substr(b.rfind(' '))) a.erase(unit);
   return a + "/" + b;
-}
-
-constexpr std::size_t kColumns = 100;  // of a terminal that this fits into
-
-std::size_t widest(const std::string& text) {
-  std::size_t most = 0, begin = 0;
-  for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', begin)) {
-    most = std::max(most, end - begin);
-    begin = end + 1;
-  }
-  return most;
-}
-
-/// The text, or as much of it as leaves room for two dots; whole characters of UTF-8.
-std::string cutTo(const std::string& text, std::size_t size) {
-  if (text.size() <= size) return text;
-  std::size_t end = size - 2;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-  return text.substr(0, end) + "..";
-}
-
-/// Broken at spaces so that no line is longer than a terminal is wide, as far as words allow.
-std::string wrapped(const std::string& text) {
-  std::string result, line;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    if (!line.empty() && line.size() + 1 + word.size() > kColumns) {
-      result += line + "\n";
-      line = " ";
-    }
-    line += (line.empty() ? "" : " ") + word;
-  }
-  return result + line + "\n";
 }
 
 /// Name, passes kept of all, variants needed, compiled and possible, memory as it runs and with everything
@@ -122,17 +121,17 @@ std::vector<std::string> cellRow(const NeededCell& cell) {
     row.push_back(both(record.prunedMs, record.unprunedMs));
     row.push_back(both(record.nextPrunedMs, record.nextUnprunedMs));
   }
-  if (!record.sameImage) row.emplace_back("DIFFERS");
+  if (!record.sameImage) row.push_back(painted(Paint::bad, "DIFFERS"));
   return row;
 }
 
 /// Remarks below the tables: why a cell is empty, and which pipelines do not suit.
 std::string remark(const NeededCell& cell, bool wholeScene) {
   if (!cell.absent.empty())
-    return wrapped(fmt::format("{}: {}{}: {}", cell.failed ? "failed" : "absent", stem(cell.scene),
+    return remarks(fmt::format("{}: {}{}: {}", cell.failed ? "failed" : "absent", stem(cell.scene),
                                wholeScene ? "" : ", " + stem(cell.pipeline), cell.absent));
   if (cell.unsuited.empty()) return {};
-  return wrapped(fmt::format("{} does not suit {}: {}, which the scene does not have", stem(cell.pipeline),
+  return remarks(fmt::format("{} does not suit {}: {}, which the scene does not have", stem(cell.pipeline),
                              stem(cell.scene), cell.unsuited));
 }
 
@@ -142,7 +141,7 @@ std::string matrixText(const std::vector<NeededCell>& cells) {
     return cell.record && cell.record->prunedMs.repeats > 0;
   });
   std::vector<std::vector<std::string>> rows;
-  std::string remarks;
+  std::string below;
   std::size_t absent = 0, same = 0;
   for (auto first = cells.begin(); first != cells.end();) {
     const auto end =
@@ -156,22 +155,28 @@ std::string matrixText(const std::vector<NeededCell>& cells) {
     else
       rows.back().insert(rows.back().end(), {"passes", "variants", "memory"});
     if (!none && timed) rows.back().insert(rows.back().end(), {"first ms", "later ms"});
-    if (none) remarks += remark(*first, true);
+    if (none) below += remark(*first, true);
     for (; first != end; ++first) {
       absent += !first->record;
       same += first->record && first->record->sameImage;
       if (none) continue;
       rows.push_back(cellRow(*first));
-      remarks += remark(*first, false);
+      below += remark(*first, false);
     }
   }
   // Long names give way to the numbers.
-  std::vector<std::vector<std::string>> numbers = rows;
-  for (std::vector<std::string>& row : numbers) row.front().clear();
-  const std::size_t room = kColumns - std::min(3 * kColumns / 4, widest(textTable(numbers)));
+  std::vector<std::size_t> widths;
+  for (const std::vector<std::string>& row : rows)
+    for (std::size_t c = 1; c < row.size(); ++c) {
+      if (c > widths.size()) widths.push_back(0);
+      widths[c - 1] = std::max(widths[c - 1], shownWidth(row[c]) + 2);
+    }
+  const auto columns = static_cast<std::size_t>(outputColumns());
+  const std::size_t room =
+      columns - std::min(3 * columns / 4, std::accumulate(widths.begin(), widths.end(), std::size_t{0}));
   for (std::vector<std::string>& row : rows) row.front() = cutTo(row.front(), room);
-  return textTable(rows) + remarks +
-         wrapped(fmt::format(
+  return textTable(rows) + below +
+         remarks(fmt::format(
              "passes: kept/all; shader variants: needed/compiled/possible; memory{}: as it runs/with everything "
              "kept; same image, bit for bit: {} of {}{}",
              timed ? ", first frame, later frames" : "", same, cells.size() - absent,
@@ -230,10 +235,11 @@ int explain(const ExplainCommand& command, const GlobalOptions& global) {
 
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();
+  Progress progress("explain", 0, "cells");
   const std::vector<NeededCell> cells = measureNeeded(
       *device, techniques, options, [&](const std::filesystem::path& file) { return global.loadScene(file); },
       [&](std::size_t done, std::size_t total) {
-        if (total > 1) logInformation("{} of {}", done, total);
+        if (total > 1) progress.show(done, total, std::numeric_limits<double>::quiet_NaN());
       });
   if (one && !cells.front().record) throw Error(cells.front().absent);
   if (command.json)
@@ -256,7 +262,7 @@ void addExplainCommand(Commands& commands) {
       "TEXT", options->texts,
       "a scene and a pipeline: in full; several scenes or pipelines: as a matrix (no pipeline: "
       "every committed one)");
-  command->add_option("--pipeline", options->pipelines, "further pipelines' texts, for a matrix");
+  addRepeatable(*command, "--pipeline", options->pipelines, "a further pipeline's text, for a matrix; may be repeated");
   command->add_flag("--all", options->all, "every committed scene, as a matrix");
   command->add_flag("--no-times", options->noTimes,
                     "only what is left out and whether the image is the same; much faster");

@@ -2,20 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
-#include "lumivox/dsl/document.h"
 #include "lumivox/results/text.h"
 
 namespace lumivox::command {
 
 void MeasureOptions::addTo(CLI::App& app, const std::string& store, const std::string& scenes) {
   app.add_option("SCENE", options.scenes, scenes)->required();
-  app.add_option("--pipeline", options.pipelines,
-                 "pipelines' texts (default: every committed one that suits the scene)");
+  addRepeatable(app, "--pipeline", options.pipelines,
+                "a pipeline's text; may be repeated (default: every committed one that suits the scene)");
   run.addTo(app);
   app.add_option("--spp", options.referenceSamples,
                  "the reference's samples per pixel (default: by the size of the image)")
@@ -30,15 +31,21 @@ void MeasureOptions::addTo(CLI::App& app, const std::string& store, const std::s
                  "pairs of frames 1/24 s apart for the flicker of scenes that move (default 4; 0: none)")
       ->check(CLI::Range(0, 1000));
   app.add_option(
-         "--frames", options.frames,
+         "--accumulate", options.frames,
          "pipelines that accumulate are measured after 1, 2, 4 ... N frames of the still scene (default 1)")
       ->check(CLI::Range(1, 1 << 20));
   app.add_flag("--no-sweep", noSweep, "only the default parameters, not the points of the pipelines' sweeps");
   app.add_option("--store", options.store, store);
 }
 
-ReportOptions MeasureOptions::asked(const GlobalOptions& global) const {
+ReportOptions MeasureOptions::asked(const GlobalOptions& global, const std::string& doing,
+                                    const std::string& unit) const {
   ReportOptions asked = options;
+  const auto isPipeline = [](const std::filesystem::path& file) { return kindOfText(file) == TextKind::pipeline; };
+  const auto pipelines = std::stable_partition(asked.scenes.begin(), asked.scenes.end(), std::not_fn(isPipeline));
+  asked.pipelines.insert(asked.pipelines.end(), pipelines, asked.scenes.end());
+  asked.scenes.erase(pipelines, asked.scenes.end());
+  if (asked.scenes.empty()) throw Error("no scene; expected a scene's text");
   asked.settings = run.settings;
   asked.camera = run.camera;
   asked.time = run.time;
@@ -47,17 +54,16 @@ ReportOptions MeasureOptions::asked(const GlobalOptions& global) const {
   asked.openSweeps = !noSweep;
   asked.commandLine = global.commandLine;
   asked.repeatArguments = repeatArguments(global);
-  asked.progress = [](std::size_t done, std::size_t total, double secondsLeft) {
-    logInformation("{} of {} points{}", done, total,
-                   done < total ? ", about " + durationText(secondsLeft) + " left" : std::string());
-  };
+  asked.progress = progressLine(doing, unit);
   return asked;
 }
 
-std::string durationText(double seconds) {
-  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
-  return fmt::format("{:.1f} h", seconds / 3600.0);
+std::function<void(std::size_t, std::size_t, double)> progressLine(const std::string& what,
+                                                                   const std::string& unit) {
+  return [line = std::make_shared<Progress>(what, 0, unit)](std::size_t done, std::size_t total,
+                                                            double secondsLeft) {
+    line->show(done, total, secondsLeft);
+  };
 }
 
 std::vector<std::string> repeatArguments(const GlobalOptions& global) {
@@ -71,18 +77,6 @@ std::vector<std::string> repeatArguments(const GlobalOptions& global) {
     arguments.insert(arguments.end(), {"--techniques", folder.string()});
   if (global.strict) arguments.emplace_back("--strict");
   return arguments;
-}
-
-double millisecondsOf(const std::string& option, const std::string& text) {
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  std::string unit = end;
-  unit.erase(0, unit.find_first_not_of(' '));
-  if (unit.empty()) unit = "ms";
-  if (end != text.c_str() && std::isfinite(number) && number > 0.0)
-    for (const dsl::Unit& known : dsl::knownUnits())
-      if (known.name == unit && known.dimension == dsl::kTime) return number * known.toBase * 1000.0;
-  throw Error(fmt::format("{} '{}': expected a time above 0, such as 16ms or 0.5s", option, text));
 }
 
 double positiveNumberOf(const std::string& option, const std::string& text) {

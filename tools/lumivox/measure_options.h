@@ -13,18 +13,19 @@ struct MeasureOptions {
 
   /// `store`: the meaning of --store here; `scenes`: that of the positional texts.
   void addTo(CLI::App& app, const std::string& store, const std::string& scenes = "the scenes' texts");
-  /// Everything that was asked for, in the words of the framework.
-  ReportOptions asked(const GlobalOptions& global) const;
+  /// Everything that was asked for, in the words of the framework. Pipelines' texts among the scenes are pipelines.
+  ReportOptions asked(const GlobalOptions& global, const std::string& doing = "measuring",
+                      const std::string& unit = "points") const;
 };
+
+/// Tells how far a command is by one line of progress; `unit`: the plural of what is counted.
+std::function<void(std::size_t, std::size_t, double)> progressLine(const std::string& what, const std::string& unit);
 
 /// The options of every command that a repeating one needs too.
 std::vector<std::string> repeatArguments(const GlobalOptions& global);
-/// "16ms", "0.016 s" or "16" (milliseconds); Error with the option's name otherwise.
-double millisecondsOf(const std::string& option, const std::string& text);
 /// A number above 0; Error with the option's name otherwise.
 double positiveNumberOf(const std::string& option, const std::string& text);
 
-std::string durationText(double seconds);                 ///< "12 s", "4 min", "1.5 h"
 std::string quartilesText(const TimingStatistics& time);  ///< "1.2 [1.1, 1.4]"; "-" when nothing was timed
 /// "cones=6 resolution=64"
 std::string parametersText(const std::map<std::string, std::string>& parameters);

@@ -67,16 +67,16 @@ void addReferenceCommand(Commands& commands) {
           "numbers N of bounces, such as 1,2,4: layers bounces_N, bounces_N_diffuse and bounces_N_glossy with "
           "up to N of them")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::Range(1, 1 << 16));
-  command->add_option("--seed", options.seed, "of the random numbers");
-  command->add_option("--time", options.time, "seconds");
+  addSeed(*command, options.seed, "of the random numbers");
+  addTime(*command, options.time);
   command->add_option("--camera", options.camera, "the scene's camera of this name (default: the first)");
   command->add_option("--resolution", all->resolution,
                       "width and height in pixels, such as 640x360 (default: the camera's)");
-  command
-      ->add_option("--occlusion-distance", options.occlusionDistance,
-                   "metres, of ambient occlusion (default: a tenth of the diagonal of the scene's bounds)")
-      ->check(CLI::NonNegativeNumber);
+  addLength(*command, "--occlusion-distance", options.occlusionDistance,
+            "of ambient occlusion, such as 0.5m; without a unit in metres (default: a tenth of the diagonal of the "
+            "scene's bounds)");
   command->add_option("--threads", options.threads, "default: all")->check(CLI::Range(0, 4096));
   command->add_flag("--no-cache", all->noCache, "neither read nor write the cache of references");
   const GlobalOptions& global = commands.global;

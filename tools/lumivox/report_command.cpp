@@ -62,12 +62,12 @@ void printSummary(const ReportSummary& summary) {
     for (const std::string& output : outputs)
       row.push_back(rmseText(errorOf(point, output, output != kWholeImage)));
     row.push_back(formatBytes(point.peakBytes));
-    row.push_back(!point.failure.empty()         ? "failed"
-                  : point.healthFindings.empty() ? "good"
+    row.push_back(!point.failure.empty()         ? painted(Paint::bad, "failed")
+                  : point.healthFindings.empty() ? painted(Paint::good, "good")
                                                  : fmt::format("{} findings", point.healthFindings.size()));
     rows.push_back(std::move(row));
   }
-  std::string text = textTable(rows);
+  std::string table = groupedTable(rows, 2), text;
   text +=
       "RMSE in W/(sr m²) ± its uncertainty; in brackets divided by the RMSE of leaving that light out. Bias: "
       "against the technique's "
@@ -88,13 +88,13 @@ void printSummary(const ReportSummary& summary) {
                         summary.points.size());
   text += leftOutText(summary.leftOutPoints);
   for (const std::string& unsuited : summary.unsuited) text += "not run: " + unsuited + "\n";
-  print(text);
+  print(table + remarks(text));
 }
 
 int report(const ReportCommand& command, const GlobalOptions& global) {
   ReportOptions options = command.measure.asked(global);
   for (const std::string& text : command.equalTimes)
-    options.equalTimesMs.push_back(millisecondsOf("--equal-time", text));
+    options.equalTimesMs.push_back(1000.0 * secondsOf("--equal-time", text));
   for (const std::string& text : command.equalErrors)
     options.equalErrors.push_back(positiveNumberOf("--equal-error", text));
   const ReportFiles files = reportFiles(options.output);
@@ -124,12 +124,9 @@ void addReportCommand(Commands& commands) {
   command->add_option("-o,--out", all->measure.options.output,
                       "the page; .csv and .json go beside it (default out/report/index.html)");
   all->measure.addTo(*command, "a results store that the measured points are added to (default: none)");
-  command
-      ->add_option(
-          "--budget", all->measure.options.budgetSeconds,
-          "seconds for measuring, counted when the references are there: all default points, then as many "
-          "points of the sweeps as there is time for (default: no limit)")
-      ->check(CLI::Range(0.001, 1e9));
+  addDuration(*command, "--budget", all->measure.options.budgetSeconds,
+              "time for measuring, such as 30s or 5min, counted when the references are there: all default points, "
+              "then as many points of the sweeps as there is time for (default: no limit)");
   command
       ->add_option("--voxels", all->measure.options.voxelResolution,
                    "adds a section on the voxelizers at this resolution (default: none)")

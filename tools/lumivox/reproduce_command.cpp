@@ -10,6 +10,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/image.h"
+#include "lumivox/base/interruption.h"
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/experiment/reproduce.h"
@@ -207,6 +208,19 @@ void write(const fs::path& output, const std::vector<ReproducedResult>& results)
       output, output.extension() == ".md" ? reproductionsAsMarkdown(results) : reproductionsAsHtml(results));
 }
 
+/// What an interruption would say after so many of the chosen results.
+std::string keptText(const ReproduceCommand& command, const std::vector<PublishedResult>& chosen, std::size_t done,
+                     const GlobalOptions& global) {
+  std::vector<std::string> rest;
+  for (std::size_t i = done; i < chosen.size(); ++i) rest.push_back(chosen[i].id);
+  const std::string kept =
+      !command.record.empty() ? fmt::format("{} keeps {} of {}", command.record.string(), done, chosen.size())
+      : !command.store.empty() ? fmt::format("{} keeps the set-ups of {} of {}", command.store.string(), done, chosen.size())
+                               : std::string("nothing is kept without --record or --store");
+  return fmt::format("interrupted: {}; still to measure: {}; to go on, name them in {}", kept, fmt::join(rest, " "),
+                     global.commandLine);
+}
+
 int measure(const ReproduceCommand& command, const GlobalOptions& global) {
   if (!command.output.empty()) {
     if (command.output.extension() != ".md" && command.output.extension() != ".html")
@@ -238,8 +252,13 @@ int measure(const ReproduceCommand& command, const GlobalOptions& global) {
   const auto device = global.openDevice();
   std::vector<ReproducedResult> results;
   bool failed = false;
+  InterruptionNote note;
   for (const PublishedResult& result : chosen) {
     logInformation("{}: {}", result.id, result.title);
+    options.progress = progressLine(
+        chosen.size() == 1 ? result.id : fmt::format("{} ({} of {})", result.id, results.size() + 1, chosen.size()),
+        "steps");
+    note.say(keptText(command, chosen, results.size(), global));
     results.push_back(lumivox::reproduce(
         *device, techniques, result, options, [&](const fs::path& file) { return global.loadScene(file); },
         store ? &*store : nullptr));
@@ -247,6 +266,7 @@ int measure(const ReproduceCommand& command, const GlobalOptions& global) {
     const std::vector<fs::path> files = writeFigures(command.figures, results.back());
     // Kept one by one: what was measured stays when the next one is interrupted.
     if (!command.record.empty()) record(command.record, {results.back()});
+    options.progress = {};
     if (!command.json) print(resultText(results.back(), files) + "\n");
   }
   if (command.json) printJson(Json::parse(reproductionsAsJson(results)).at("results"));
@@ -281,7 +301,7 @@ void addReproduceCommand(Commands& commands) {
       ->check(CLI::Range(1.0 / 64, 1.0));
   command->add_option("--repeats", all->options.repeats, "timed frames of each set-up (default 5)")
       ->check(CLI::Range(1, 10000));
-  command->add_option("--seed", all->options.seed, "of the random numbers of techniques");
+  addSeed(*command, all->options.seed);
   command->add_option("-o,--out", all->output, "writes the results as a page, .html or .md");
   command->add_option("--figures", all->figures,
                       "folder for sheets (.png) and curves (.csv, .svg) (default: out/reproductions)");

@@ -76,7 +76,7 @@ struct ResultsCommand {
     addRepeatable(app, "--set", filter.parameters, "only runs with this parameter, as name=value");
     app.add_option("--on", filter.device, "only runs whose device's name contains this");
     app.add_option("--since", filter.since, "only runs from this day on, such as 2026-01-31");
-    app.add_option("--run", filter.ids, "only the runs with these numbers");
+    app.add_option("--run", filter.ids, "only the run with this number; may be repeated")->allow_extra_args(false);
     auto* onlyFailed = app.add_flag("--failed", failed, "only runs that failed");
     app.add_flag("--good", good, "only runs that did not fail")->excludes(onlyFailed);
   }
@@ -140,7 +140,7 @@ int comparePipelinesOf(const ResultsCommand& command, ComparisonTable table) {
   requireErrorMetric(command.metric);
   ComparisonLimits limits;
   for (const std::string& text : command.budgets)
-    limits.budgetsMs.push_back(millisecondsOf("--budget", text));
+    limits.budgetsMs.push_back(1000.0 * secondsOf("--budget", text));
   for (const std::string& text : command.errors) limits.errors.push_back(positiveNumberOf("--error", text));
   const std::string component = componentNamed(command.component);
   const ResultsStore store(command.file(), ResultsStore::Mode::read);

@@ -92,25 +92,25 @@ std::string runsTable(const std::vector<StoredRun>& runs) {
       if (std::find(outputs.begin(), outputs.end(), error.output) == outputs.end())
         outputs.push_back(error.output);
   std::vector<std::vector<std::string>> rows{
-      {"Run", "Scene", "Pipeline", "Parameters", "Seeds", "Size", "Frame ms", "Memory"}};
+      {"Scene", "Run", "Pipeline", "Parameters", "Seeds", "Size", "Frame ms", "Memory"}};
   for (const std::string& output : outputs)
     rows[0].push_back(output == kWholeImage ? "misses in all" : output + " bias");
   rows[0].push_back("State");
   for (const StoredRun& run : runs) {
     const ReportPoint& point = run.point;
     std::vector<std::string> row{
-        std::to_string(run.id),       stem(point.scene),
+        stem(point.scene),            std::to_string(run.id),
         stem(point.pipeline),         parametersText(run.identity.parameters),
         seedsText(run.identity),      fmt::format("{}x{}", run.identity.width, run.identity.height),
         quartilesText(point.frameMs), formatBytes(point.peakBytes)};
     for (const std::string& output : outputs)
       row.push_back(rmseText(errorOf(point, output, output != kWholeImage)));
-    row.push_back(!point.failure.empty()         ? "failed: " + point.failure
-                  : point.healthFindings.empty() ? "good"
+    row.push_back(!point.failure.empty()         ? painted(Paint::bad, "failed: ") + point.failure
+                  : point.healthFindings.empty() ? painted(Paint::good, "good")
                                                  : fmt::format("{} findings", point.healthFindings.size()));
     rows.push_back(std::move(row));
   }
-  return textTable(rows);
+  return groupedTable(rows, 3);
 }
 
 std::string runsCsv(const std::vector<StoredRun>& runs) {

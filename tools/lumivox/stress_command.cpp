@@ -8,6 +8,7 @@
 #include "command.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/base/interruption.h"
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/page/stress_page.h"
@@ -59,7 +60,7 @@ int listCases(const StressOptions& options, TechniqueSet& techniques, bool json)
     rows.push_back({job.info.family, job.info.name, job.info.quick ? "quick" : "", "", job.info.meaning});
   }
   for (const auto& [name, row] : rowOf) rows[row][3] = std::to_string(pipelines[name]);
-  print(textTable(rows) + fmt::format("{} cases, {} cells\n", rows.size() - 1, jobs.size()));
+  print(textTable(rows, 2) + fmt::format("{} cases, {} cells\n", rows.size() - 1, jobs.size()));
   return kGood;
 }
 
@@ -110,11 +111,19 @@ int stress(const StressCommand& command, const GlobalOptions& global) {
     return kGood;
   }
   if (command.list) return listCases(options, techniques, command.json);
-  options.progress = [](const StressCell& cell, std::size_t done, std::size_t total, double secondsLeft) {
-    logInformation("{} of {}: {}, {}: {}{}", done, total,
-                   std::filesystem::path(cell.pipeline).stem().string(), cell.name, stressValueText(cell),
-                   done < total ? "; about " + durationText(secondsLeft) + " left" : std::string());
+  Progress progress("stress", 0, "cells");
+  options.progress = [&progress](const StressCell& cell, std::size_t done, std::size_t total, double secondsLeft) {
+    const std::string what =
+        fmt::format("{}, {}: {}", std::filesystem::path(cell.pipeline).stem().string(), cell.name, stressValueText(cell));
+    // What is well passes by in the line of progress.
+    const bool well = cell.outcome == StressOutcome::stable || cell.outcome == StressOutcome::notApplicable;
+    logMessage(well ? LogLevel::details : LogLevel::information, what);
+    progress.show(done, total, secondsLeft, what);
   };
+  InterruptionNote note;
+  note.say(options.store.empty() ? "interrupted: nothing is kept without --store"
+                                 : fmt::format("interrupted: {} keeps the cells that have run; results list --stress shows them; the whole battery again: {}",
+                                               options.store.string(), global.commandLine));
   return tell(runStress(options, techniques), command.json);
 }
 
@@ -134,10 +143,8 @@ void addStressCommand(Commands& commands) {
   addRepeatable(*command, "--pipeline", options.pipelines,
                 "pipelines' texts (default: every committed one, voxelizers too); may be repeated");
   command->add_flag("--quick", options.quick, "the quick cases alone, at small sizes");
-  command
-      ->add_option("--time-limit", options.timeLimit,
-                   "seconds for one cell (default 60 with --quick, else 600)")
-      ->check(CLI::Range(0.1, 86400.0));
+  addDuration(*command, "--time-limit", options.timeLimit,
+              "for one cell, such as 90s (default 60s with --quick, else 600s)");
   command
       ->add_option(
           "--workers", options.workers,

@@ -48,16 +48,17 @@ int sweep(const SweepCommand& command, const GlobalOptions& global) {
                {"runs", runsJson(summary.runs)}});
   } else {
     std::string text = summary.runs.empty() ? std::string() : runsTable(summary.runs);
-    for (const std::string& missing : summary.missing) text += "not measured yet: " + missing + "\n";
-    for (const std::string& note : summary.notes) text += "note: " + note + "\n";
-    for (const std::string& unsuited : summary.unsuited) text += "not run: " + unsuited + "\n";
+    std::string below;
+    for (const std::string& missing : summary.missing) below += "not measured yet: " + missing + "\n";
+    for (const std::string& note : summary.notes) below += "note: " + note + "\n";
+    for (const std::string& unsuited : summary.unsuited) below += "not run: " + unsuited + "\n";
     const std::string done =
         options.planOnly
             ? fmt::format("{} points are missing", summary.missing.size())
             : fmt::format("{} measured{}", summary.measured,
                           summary.failed == 0 ? "" : fmt::format(", {} of them failed", summary.failed));
-    text += fmt::format("{}, {} already in the store; {}\n", done, summary.held, file.string());
-    print(text);
+    below += fmt::format("{}, {} already in the store; {}\n", done, summary.held, file.string());
+    print(text + remarks(below));
   }
   const bool good = std::all_of(summary.runs.begin(), summary.runs.end(), [](const StoredRun& run) {
     return run.point.failure.empty() && run.point.healthFindings.empty();

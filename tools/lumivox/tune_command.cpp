@@ -13,8 +13,7 @@ namespace {
 struct TuneCommand {
   MeasureOptions measure;
   TuneOptions tune;
-  std::string budget;
-  double error = 0.0;
+  double error = 0.0, budgetSeconds = 0.0;
   bool hasError = false, json = false;
   std::filesystem::path output;
 };
@@ -31,7 +30,7 @@ std::string resultText(const TuneResult& result, const TuneOptions& options) {
                     : point.fits       ? "fits"
                                        : ""});
   }
-  std::string text = rows.size() > 1 ? textTable(rows) : std::string();
+  std::string text = rows.size() > 1 ? textTable(rows, 2) : std::string();
   const std::string limit = options.budgetMs
                                 ? fmt::format("{} ms", formatMilliseconds(*options.budgetMs))
                                 : fmt::format("{} {}", options.metric, threeDigits(*options.errorLimit));
@@ -64,8 +63,8 @@ Json resultJson(const TuneResult& result) {
 
 int tuneScene(const TuneCommand& command, const GlobalOptions& global) {
   TuneOptions options = command.tune;
-  options.measure = command.measure.asked(global);
-  if (!command.budget.empty()) options.budgetMs = millisecondsOf("--budget", command.budget);
+  options.measure = command.measure.asked(global, "tuning", "points at most");
+  if (command.budgetSeconds > 0.0) options.budgetMs = 1000.0 * command.budgetSeconds;
   if (command.hasError) options.errorLimit = command.error;
   if (!command.output.empty()) requireWritable(command.output);
   ResultsStore store(options.measure.store.empty() ? ResultsStore::defaultFile() : options.measure.store);
@@ -92,7 +91,7 @@ void addTuneCommand(Commands& commands) {
   auto all = std::make_shared<TuneCommand>();
   all->measure.addTo(*command,
                      "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)");
-  auto* budget = command->add_option("--budget", all->budget, "time limit of a frame, such as 16ms");
+  auto* budget = addDuration(*command, "--budget", all->budgetSeconds, "time limit of a frame, such as 16ms");
   auto* error = command->add_option_function<double>(
       "--error",
       [all](double value) {

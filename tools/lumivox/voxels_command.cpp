@@ -7,10 +7,12 @@
 #include "lumivox/analysis/scaling.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/base/interruption.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/experiment/voxelizers.h"
 #include "lumivox/page/voxel_page.h"
 #include "lumivox/results/text.h"
+#include "measure_options.h"
 
 namespace lumivox::command {
 namespace {
@@ -68,7 +70,7 @@ void printTable(const std::vector<VoxelizerRecord>& records) {
                     threeDigits(record.bytesPerVoxel()), formatBytes(record.allocatedBytes)});
   }
   std::string text = records.empty() ? "" : records.front().scene + "\n";
-  if (rows.size() > 1) text += textTable(rows);
+  if (rows.size() > 1) text += textTable(rows, 2);
   for (const VoxelizerScaling& scaling : scalingOf(records)) {
     if (scaling.withResolution)
       text +=
@@ -76,7 +78,7 @@ void printTable(const std::vector<VoxelizerRecord>& records) {
     if (scaling.withTriangles)
       text += fmt::format("{}: time ~ triangles^{:.2f}\n", scaling.label, *scaling.withTriangles);
   }
-  print(text + skipped);
+  print(text + remarks(skipped));
 }
 
 int voxels(const VoxelsCommand& command, const GlobalOptions& global) {
@@ -94,9 +96,13 @@ int voxels(const VoxelsCommand& command, const GlobalOptions& global) {
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();
   std::vector<VoxelizerRecord> all;
+  InterruptionNote note;
+  note.say("interrupted: measurements of voxelizers are kept only when all are done; from the start: " + global.commandLine);
   for (const std::filesystem::path& file : command.scenes) {
+    options.progress = progressLine("voxelizers on " + stem(file.string()), "steps");
     const std::vector<VoxelizerRecord> records =
         measureVoxelizers(*device, techniques, global.loadScene(file), options);
+    options.progress = {};
     if (!command.json) printTable(records);
     all.insert(all.end(), records.begin(), records.end());
   }
@@ -135,8 +141,8 @@ void addVoxelsCommand(Commands& commands) {
   command->add_option("--image", all->image,
                       "size of the image for voxelizers that start from one (default: the camera's)");
   command->add_option("--camera", options.camera, "the scene's camera of this name (default: the first)");
-  command->add_option("--time", options.time, "seconds");
-  command->add_option("--seed", options.seed, "of the random numbers of techniques");
+  addTime(*command, options.time);
+  addSeed(*command, options.seed);
   command->add_option("-o,--out", all->output, "a folder for index.html, voxels.csv and voxels.json");
   command->add_flag("--json", all->json, "print the JSON in place of the table");
   const GlobalOptions& global = commands.global;

@@ -26,9 +26,9 @@ void Options::addTo(CLI::App& app) {
       ->required();
   app.add_option("-o,--out", output, "the .vdb file");
   run.addTo(app);
-  app.add_option("--frame", frames,
+  app.add_option("--frames", frames,
                  "F or FIRST..LAST: a range gives numbered files, out_0007.vdb or a run of # in the name");
-  app.add_option("--fps", framesPerSecond, "frames per second of --frame (default 24)");
+  app.add_option("--fps", framesPerSecond, "frames per second of --frames (default 24)");
   auto* grid = command::addRepeatable(app, "--grid", grids,
                                       "an output PASS.PORT to export (default: all); with --diff a grid's "
                                       "name, or NAME=NAME for two with different names; may be repeated");
@@ -132,7 +132,7 @@ int exportGrids(const Options& options, const GlobalOptions& global) {
   if (!(options.framesPerSecond > 0.0) || !std::isfinite(options.framesPerSecond))
     throw Error("--fps: expected a number above 0");
   const auto [first, last] =
-      options.frames.empty() ? std::pair(0, 0) : command::parseFrames("--frame", options.frames);
+      options.frames.empty() ? std::pair(0, 0) : command::parseFrames("--frames", options.frames);
   const bool sequence = options.frames.find("..") != std::string::npos;
   const auto fileOf = [&](int frame) {
     return sequence ? command::numberedName(options.output, frame) : options.output;
@@ -182,7 +182,7 @@ Json listOfPipeline(const fs::path& file, const GlobalOptions& global) {
 
 Json listOfRun(const Options& options, const GlobalOptions& global) {
   Session session(options, global, options.levels.empty() ? std::vector<int>{} : levelsOf(options));
-  const int frame = options.frames.empty() ? 0 : command::parseFrames("--frame", options.frames).first;
+  const int frame = options.frames.empty() ? 0 : command::parseFrames("--frames", options.frames).first;
   const double time = options.run.time + frame / options.framesPerSecond;
   Json list = Json::array();
   for (const NamedField& named : session.exporter.render(time, frame)) {

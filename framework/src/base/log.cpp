@@ -169,7 +169,7 @@ struct Progress::State {
       if (terminal) clearStatus();
       if (terminal) statusLine.clear();
     }
-    logInformation("{}, {:.1f} s", unit.empty() || done == 0 ? what : text(-1.0), elapsed());
+    if (done > 0) logInformation("{}, {:.1f} s", unit.empty() ? what : text(-1.0), elapsed());
   }
 };
 

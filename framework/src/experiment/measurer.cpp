@@ -7,6 +7,7 @@
 #include <set>
 #include <thread>
 
+#include "base/process.h"
 #include "experiment/plan.h"
 #include "experiment/turns.h"
 #include "lumivox/base/error.h"

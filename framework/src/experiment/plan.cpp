@@ -254,14 +254,14 @@ std::string repeatingCommand(const ReportOptions& options, const std::string& sc
       fmt::format("lumivox report {} --pipeline {}", shellQuoted(scene), shellQuoted(pipeline));
   for (const auto& [name, value] : parameters)
     if (name != kAccumulatedFrames) command += " --set " + shellQuoted(name + "=" + value.text());
-  if (framesOf(parameters) > 1) command += fmt::format(" --frames {}", framesOf(parameters));
+  if (framesOf(parameters) > 1) command += fmt::format(" --accumulate {}", framesOf(parameters));
   command +=
       fmt::format(" --no-sweep --resolution {}x{} --spp {} --subpixels {} --repeats {} --seeds {} --seed {}",
                   width, height, samples, options.subpixels, options.repeats, options.seeds, options.seed);
   if (options.flickerPairs != ReportOptions{}.flickerPairs)
     command += fmt::format(" --flicker-frames {}", options.flickerPairs);
   if (!options.camera.empty()) command += " --camera " + shellQuoted(options.camera);
-  if (options.time != 0.0) command += fmt::format(" --time {}", options.time);
+  if (options.time != 0.0) command += fmt::format(" --time {}s", options.time);
   for (const std::string& argument : options.repeatArguments) command += " " + shellQuoted(argument);
   return command;
 }
