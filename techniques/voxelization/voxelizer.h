@@ -1,5 +1,5 @@
-// What all voxelizers of triangles share: where the grid lies, the list of fragments, and that static
-// geometry is voxelized once.
+// Common parts of all voxelizers of triangles: where the grid lies, the list of fragments, and static
+// geometry that is voxelized once.
 #pragma once
 
 #include <functional>
@@ -46,18 +46,18 @@ VoxelFragments listBehind(PassContext& frame, const GridPlacement& grid, const V
 
 /// Block ListGrid of list_grid.glsl, for shaders that append to no list.
 gpu::ResourceBinding gridBinding(const GridPlacement& grid, std::uint64_t capacity = 0);
-/// What appends to a list of fragments (fragment_list.glsl).
+/// Bindings for appending to a list of fragments (fragment_list.glsl).
 shader::BindingSet appending(const VoxelFragments& list);
 
-/// Block View of view_axis.glsl: what lies between two depths, in voxels, along axis 0, 1 or 2, one pixel a
+/// Block View of view_axis.glsl: the slice between two depths, in voxels, along axis 0, 1 or 2, one pixel a
 /// column of voxels in a square target of the grid's longest side.
 gpu::ResourceBinding viewAlong(const GridPlacement& grid, int axis, float depthLow, float depthHigh);
 
-/// What all passes have that make a grid of their own.
+/// The base of all passes that make a grid of their own.
 class GridPass : public Pass {
  public:
   std::string checkParameters() const override;
-  /// What voxels of the scene's surface in this grid depend on.
+  /// Sources that voxels of the scene's surface in this grid depend on.
   Reads readsFrom() const override;
 
  protected:
@@ -87,7 +87,7 @@ class GridPass : public Pass {
   Param<int> resolution{this, "resolution", 64, within(1, kLargestGrid),
                         "voxels along the longest side of the grid"};
   Param<Around> around{this, "around", Around::scene,
-                       "the grid holds the whole scene, or moves with the camera by whole voxels"};
+                       "the grid contains the whole scene, or moves with the camera by whole voxels"};
   Param<float> extent{this, "extent",
                       0.0f, within(0.0f, 1e9f),
                       "m",  "side of a grid around the camera; needed there, unused else"};

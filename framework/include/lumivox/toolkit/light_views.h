@@ -1,4 +1,4 @@
-// What the lights see, drawn as layers of one array: the frame of shadow maps and of reflective shadow maps.
+// Views of the lights, drawn as layers of one array: the frame of shadow maps and of reflective shadow maps.
 #pragma once
 
 #include <functional>
@@ -33,7 +33,7 @@ class LightViewPass : public Pass {
   LightViewPass(int size, ParamRange<int> sizes, int areaSize, ParamRange<int> areaSizes)
       : size_(this, "size", size, sizes, "texels along a side of the view of a light without extent"),
         areaSamples_(this, "area_samples", 16, within(1, 1024),
-                     "point samples that stand for all emissive triangles together"),
+                     "point samples that represent all emissive triangles together"),
         areaSize_(this, "area_size", areaSize, areaSizes,
                   "texels along a side of each cube face of an area sample") {}
   LightViews placed(PassContext& frame) const {
