@@ -29,20 +29,26 @@ install(FILES README.md LICENSE DESTINATION ${data})
 install(DIRECTORY techniques DESTINATION ${data} FILES_MATCHING PATTERN "README.md" PATTERN "*.png")
 install(FILES LICENSE DESTINATION share/doc/lumivox RENAME copyright)
 
-# Written by the programs that were just installed, from their own descriptions.
+# Written by the programs that were just installed, from their own descriptions: manual pages, completions, and grammars for editors.
 install(CODE [[
   set(prefix $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX})
+  function(write_by program file)
+    cmake_path(GET file PARENT_PATH folder)
+    file(MAKE_DIRECTORY ${prefix}/share/${folder})
+    message(STATUS "Installing: ${prefix}/share/${file}")
+    execute_process(COMMAND ${prefix}/bin/${program} ${ARGN} OUTPUT_FILE ${prefix}/share/${file} COMMAND_ERROR_IS_FATAL ANY)
+  endfunction()
   foreach(program lumivox vdbexport)
-    foreach(text IN ITEMS "--print-man;man/man1/${program}.1" "--print-completion=bash;bash-completion/completions/${program}"
-                          "--print-completion=zsh;zsh/site-functions/_${program}")
-      list(GET text 0 option)
-      list(GET text 1 file)
-      cmake_path(GET file PARENT_PATH folder)
-      file(MAKE_DIRECTORY ${prefix}/share/${folder})
-      message(STATUS "Installing: ${prefix}/share/${file}")
-      execute_process(COMMAND ${prefix}/bin/${program} ${option} OUTPUT_FILE ${prefix}/share/${file} COMMAND_ERROR_IS_FATAL ANY)
-    endforeach()
+    write_by(${program} man/man1/${program}.1 --print-man)
+    write_by(${program} bash-completion/completions/${program} --print-completion bash)
+    write_by(${program} zsh/site-functions/_${program} --print-completion zsh)
+    write_by(${program} fish/vendor_completions.d/${program}.fish --print-completion fish)
   endforeach()
+  write_by(lumivox lumivox/editors/lumivox.tmLanguage.json describe --highlighting textmate)
+  write_by(lumivox lumivox/editors/vim/syntax/lumivox.vim describe --highlighting vim)
+  file(MAKE_DIRECTORY ${prefix}/share/lumivox/editors/vim/ftdetect)
+  file(WRITE ${prefix}/share/lumivox/editors/vim/ftdetect/lumivox.vim
+    "autocmd BufRead,BufNewFile *.scene,*.pipeline,*.sweep,*.reproduction setfiletype lumivox\n")
 ]])
 
 # Everything that is installed, and none of the tests: `ninja -C build sdk && cmake --install build`, or `cd build && cpack -G DEB`.

@@ -96,7 +96,7 @@ TEST_CASE("a pass that crashes or hangs costs one cell, and the battery goes on"
   const HostilePlace place;
   const Battery hostile = place.run(
       {"abort", "paint", "fault", "spin", "refuse", "exhaust", "nan"},
-      "--time-limit 3 -o '" + place.file("page") + "' --store '" + place.file("results.sqlite") + "'");
+      "--time-limit 3s -o '" + place.file("page") + "' --store '" + place.file("results.sqlite") + "'");
   CHECK(hostile.result.exitCode == 1);
   REQUIRE(hostile.cells.size() == 7);
   const auto check = [&](std::size_t index, const char* outcome, const std::string& said) {

@@ -96,7 +96,7 @@ TEST_CASE(
     "a report with a budget measures every default point, and names the points that it had no time for") {
   const Place place;
   const CommandResult made =
-      place.run("report", {"slow", "tire"}, {"--budget", "0.5", "-o", place.file("page.html")});
+      place.run("report", {"slow", "tire"}, {"--budget", "0.5s", "-o", place.file("page.html")});
   INFO(made.errors);
   const Json record = Json::parse(place.read("page.json")), scene = record.at("scenes").at(0);
   CHECK(record.at("budget_s") == 0.5);
@@ -126,7 +126,7 @@ TEST_CASE(
   const Place place;
   const std::vector<std::string> store{"--store", place.file("results.sqlite")};
   std::vector<std::string> more = store;
-  more.insert(more.end(), {"--budget", "600", "-o", place.file("page.html")});
+  more.insert(more.end(), {"--budget", "600s", "-o", place.file("page.html")});
   const CommandResult made = place.run("report", {"slow"}, more);
   INFO(made.errors);
   REQUIRE(made.exitCode == 0);
@@ -348,7 +348,7 @@ TEST_CASE("a battery that is killed has stored the cells that were run") {
   };
   Started battery({"--techniques", Place::techniques(), "stress", "--quick", "--workers", "1", "--case",
                    "camera_on_surface", "--pipeline", place.file("good.pipeline"), "--pipeline",
-                   place.file("spin.pipeline"), "--time-limit", "600", "--store", store});
+                   place.file("spin.pipeline"), "--time-limit", "600s", "--store", store});
   REQUIRE(becomes([&] { return cells().size() == 1; }));
   battery.signalAfter(std::chrono::milliseconds(0), SIGKILL);
   battery.wait();

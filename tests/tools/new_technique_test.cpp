@@ -148,7 +148,7 @@ TEST_CASE("bash completes commands, options and the words that an option takes")
   CHECK(completed("lumivox render scenes/co", 2) == "\n");  // left to the shell, which completes files
 }
 
-TEST_CASE("zsh takes its completion") {
+TEST_CASE("zsh takes its completion, and completes commands and options by it") {
   const CommandResult script = runCommand("lumivox --print-completion zsh");
   REQUIRE(script.exitCode == 0);
   CHECK(script.output.rfind("#compdef lumivox\n", 0) == 0);
@@ -156,5 +156,50 @@ TEST_CASE("zsh takes its completion") {
   checkRefused(runCommand("lumivox --print-completion tcsh"), "tcsh");
   if (runCommand("command -v zsh").exitCode != 0) return skip("zsh is not installed");
   const TemporaryDirectory work;
-  CHECK(runCommand("zsh -n '" + work.write("_lumivox", script.output).string() + "'").exitCode == 0);
+  const std::string file = work.write("_lumivox", script.output).string();
+  CHECK(runCommand("zsh -n '" + file + "'").exitCode == 0);
+  // Its own functions are answered by ones that print what they are asked to offer.
+  const auto offered = [&](const std::string& words, int current, const std::string& prefix) {
+    const std::string test = work.write("offer.zsh",
+                                        "_describe() { local name=${@[-1]}; print -l -- \"${(@P)name}\" }\n"
+                                        "compadd() { print -l -- \"$@\" }\n_files() { print files }\n"
+                                        "words=(" +
+                                            words + "); CURRENT=" + std::to_string(current) +
+                                            "; PREFIX=" + prefix + "\nsource '" + file + "'\n")
+                                 .string();
+    const CommandResult result = runCommand("zsh -f '" + test + "'");
+    INFO(result.errors);
+    CHECK(result.errors.empty());
+    return result.output;
+  };
+  CHECK(contains(offered("lumivox ren", 2, "ren"), "render:renders"));
+  CHECK(contains(offered("lumivox new t", 3, "t"), "technique:"));
+  CHECK(contains(offered("lumivox render --keep", 3, "--keep"), "--keep-everything:"));
+  CHECK(contains(offered("lumivox render --ar", 3, "--ar"), "--arithmetic:"));  // of every command
+  CHECK(offered("lumivox render --arithmetic e", 4, "e") == "exact\nfast\n");
+  CHECK(offered("lumivox render scenes/co", 3, "scenes/co") == "files\n");
+}
+
+TEST_CASE("fish takes its completion, and completes commands, options and words by it") {
+  const CommandResult script = runCommand("lumivox --print-completion fish");
+  REQUIRE(script.exitCode == 0);
+  CHECK(contains(script.output, "complete -c lumivox -n '__lumivox_at render' -l keep-everything"));
+  CHECK(contains(script.output, "complete -c lumivox -l arithmetic -x -a 'exact fast'"));
+  if (runCommand("command -v fish").exitCode != 0) return skip("fish is not installed");
+  const TemporaryDirectory work;
+  const std::string file = work.write("lumivox.fish", script.output).string();
+  const auto offered = [&](const std::string& line) {
+    const CommandResult result =
+        runCommand("HOME='" + work.path().string() + "' fish --no-config -c 'source " + file +
+                   "; complete -C \"" + line + "\"'");
+    INFO(result.errors);
+    CHECK(result.errors.empty());
+    return result.output;
+  };
+  CHECK(contains(offered("lumivox ren"), "render\t"));
+  CHECK(contains(offered("lumivox new t"), "technique\t"));
+  CHECK(contains(offered("lumivox render --keep"), "--keep-everything"));
+  CHECK(contains(offered("lumivox render --arith"), "--arithmetic"));
+  CHECK(contains(offered("lumivox render --arithmetic e"), "exact"));
+  CHECK_FALSE(contains(offered("lumivox render --quick"), "--quick"));  // of another command
 }

@@ -88,7 +88,17 @@ TEST_CASE(
   // The device's own shaders, and the reader of volume files, lie beside the libraries.
   installed.mustRun(installed.work(), "lumivox device --only dispatches --repeats 1");
 
-  CHECK(contains(readFile(installed.prefix() / "share/man/man1/vdbexport.1"), "\\fB\\-\\-grid\\fR"));
+  const fs::path share = installed.prefix() / "share";
+  CHECK(contains(readFile(share / "man/man1/vdbexport.1"), "\\fB\\-\\-grid\\fR"));
+  for (const auto& [file, part] : std::vector<std::pair<std::string, std::string>>{
+           {"fish/vendor_completions.d/lumivox.fish", "-l keep-everything"},
+           {"zsh/site-functions/_vdbexport", "#compdef vdbexport"},
+           {"lumivox/editors/lumivox.tmLanguage.json", "source.lumivox"},
+           {"lumivox/editors/vim/syntax/lumivox.vim", "syntax keyword lumivoxBlock camera"},
+           {"lumivox/editors/vim/ftdetect/lumivox.vim", "*.scene,*.pipeline"}}) {
+    INFO(file);
+    CHECK(contains(readFile(share / file), part));
+  }
 
   installed.mustRun(installed.work(), "lumivox new technique glow --in lab");
   const fs::path lab = installed.work() / "lab";

@@ -74,8 +74,8 @@ std::string wordsOf(const CLI::App& command) {
 std::string unknownCommand(const CLI::App& app, const std::string& word) {
   std::vector<std::string> known;
   for (const CLI::App* command : commandsOf(app)) known.push_back(command->get_name());
-  return fmt::format("'{}' is no command of {}; expected one of {}{}", word, wordsOf(app), fmt::join(known, ", "),
-                     suggestion(word, known));
+  return fmt::format("'{}' is no command of {}; expected one of {}{}", word, wordsOf(app),
+                     fmt::join(known, ", "), suggestion(word, known));
 }
 
 /// What is wrong with the words that no command took; empty when all were taken.
@@ -285,25 +285,26 @@ CLI::Option* addRepeatable(CLI::App& app, const std::string& names,
 double secondsOf(const std::string& option, const std::string& text) {
   const std::optional<double> seconds = quantityOf(text, dsl::kTime, true);
   if (seconds && *seconds > 0.0) return *seconds;
-  throw Error(fmt::format("{} '{}': expected a time above 0 with its unit ({}), such as 16ms or 0.5s", option, text,
-                          dsl::unitNames(dsl::kTime)));
+  throw Error(fmt::format("{} '{}': expected a time above 0 with its unit ({}), such as 16ms or 0.5s", option,
+                          text, dsl::unitNames(dsl::kTime)));
 }
 
 namespace {
 
 /// An option whose value is text that `read` understands; Error otherwise.
-CLI::Option* addText(CLI::App& app, const std::string& names, const std::string& type, const std::string& text,
-                     std::function<void(const std::string&)> read) {
+CLI::Option* addText(CLI::App& app, const std::string& names, const std::string& type,
+                     const std::string& text, std::function<void(const std::string&)> read) {
   return app
-      .add_option_function<std::string>(names,
-                                        [read = std::move(read)](const std::string& value) {
-                                          try {
-                                            read(value);
-                                          } catch (const Error& error) {
-                                            throw CLI::ValidationError(error.what());
-                                          }
-                                        },
-                                        text)
+      .add_option_function<std::string>(
+          names,
+          [read = std::move(read)](const std::string& value) {
+            try {
+              read(value);
+            } catch (const Error& error) {
+              throw CLI::ValidationError(error.what());
+            }
+          },
+          text)
       ->type_name(type);
 }
 
@@ -315,12 +316,13 @@ CLI::Option* addDuration(CLI::App& app, const std::string& names, double& second
 }
 
 CLI::Option* addTime(CLI::App& app, double& seconds) {
-  return addText(app, "--time", "TIME", "when in the scene's animation, such as 300ms; without a unit in seconds",
+  return addText(app, "--time", "TIME",
+                 "when in the scene's animation, such as 300ms; without a unit in seconds",
                  [&seconds](const std::string& value) {
                    const std::optional<double> read = quantityOf(value, dsl::kTime, false);
                    if (!read)
-                     throw Error(fmt::format("--time '{}': expected a time in {}, such as 300ms or 0.5s", value,
-                                             dsl::unitNames(dsl::kTime)));
+                     throw Error(fmt::format("--time '{}': expected a time in {}, such as 300ms or 0.5s",
+                                             value, dsl::unitNames(dsl::kTime)));
                    seconds = *read;
                  });
 }

@@ -64,8 +64,9 @@ std::string helpOf(const CLI::App& command);
 /// The command that these words name, such as "results list"; Error with the nearest one otherwise.
 const CLI::App& commandNamed(const CLI::App& app, const std::vector<std::string>& words);
 
-/// Reads the options and sets the level of messages. A word that is no command or option is named with the nearest. The exit code when nothing is left to do: help and the
-/// version are good, everything else is bad input.
+/// Reads the options and sets the level of messages. A word that is no command or option is named with the
+/// nearest. The exit code when nothing is left to do: help and the version are good, everything else is bad
+/// input.
 std::optional<int> parseOptions(CLI::App& app, const GlobalOptions& global, int count, char** arguments);
 
 /// The exit code of `work`; what it throws becomes a message on standard error and kBadInput.
@@ -77,16 +78,18 @@ CLI::Option* addRepeatable(CLI::App& app, const std::string& names, std::vector<
 CLI::Option* addRepeatable(CLI::App& app, const std::string& names,
                            std::vector<std::filesystem::path>& values, const std::string& text);
 
-/// Seconds of a time as the texts write it: "300ms", "0.5 s", "2min", above 0; Error, with the option's name and the
-/// units, otherwise and for a number without a unit.
+/// Seconds of a time as the texts write it: "300ms", "0.5 s", "2min", above 0; Error, with the option's name
+/// and the units, otherwise and for a number without a unit.
 double secondsOf(const std::string& option, const std::string& text);
-/// Options of one value with a unit. `addDuration`: above 0, in seconds; the unit is required. `addTime`: a moment in
-/// seconds, and `addLength`: at least 0 metres; as in the texts a number without a unit is one of these.
+/// Options of one value with a unit. `addDuration`: above 0, in seconds; the unit is required. `addTime`: a
+/// moment in seconds, and `addLength`: at least 0 metres; as in the texts a number without a unit is one of
+/// these.
 CLI::Option* addDuration(CLI::App& app, const std::string& names, double& seconds, const std::string& text);
 CLI::Option* addTime(CLI::App& app, double& seconds);
 CLI::Option* addLength(CLI::App& app, const std::string& names, double& metres, const std::string& text);
 /// --seed: a whole number from 0.
-CLI::Option* addSeed(CLI::App& app, std::uint64_t& seed, const std::string& text = "of the random numbers of techniques");
+CLI::Option* addSeed(CLI::App& app, std::uint64_t& seed,
+                     const std::string& text = "of the random numbers of techniques");
 
 /// "640x360"; Error otherwise.
 std::pair<int, int> parseResolution(const std::string& text);

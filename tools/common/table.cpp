@@ -12,7 +12,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-constexpr std::size_t kGap = 2;         // between columns
+constexpr std::size_t kGap = 2;          // between columns
 constexpr std::size_t kLeastWords = 16;  // a column of words is not broken to less
 
 bool looksLikeNumber(const std::string& text) {
@@ -97,7 +97,8 @@ std::vector<std::string> linesOf(const std::string& text, std::size_t width, boo
   return lines;
 }
 
-std::string block(const Rows& rows, const std::vector<Column>& columns, const std::vector<std::size_t>& chosen) {
+std::string block(const Rows& rows, const std::vector<Column>& columns,
+                  const std::vector<std::size_t>& chosen) {
   std::string text;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     std::vector<std::vector<std::string>> cells;

@@ -14,7 +14,8 @@ void Commands::onChosen(CLI::App* subcommand, Work work) {
 }
 
 void addHelpCommand(Commands& commands) {
-  auto* command = commands.app.add_subcommand("help", "prints what a command takes, as --help does behind it");
+  auto* command =
+      commands.app.add_subcommand("help", "prints what a command takes, as --help does behind it");
   auto words = std::make_shared<std::vector<std::string>>();
   command->add_option("COMMAND", *words, "a command, such as render or results list (default: all commands)");
   const CLI::App& app = commands.app;

@@ -36,7 +36,7 @@ void addDeviceCommand(Commands& commands);     // device
 void addShadersCommand(Commands& commands);    // shaders
 void addNewCommand(Commands& commands);        // new
 
-void addHelpCommand(Commands& commands);       // help
+void addHelpCommand(Commands& commands);  // help
 
 enum class TextKind { scene, pipeline, sweep, reproduction };
 /// By the extension, else by the blocks; Error when it is none of them.

@@ -77,14 +77,15 @@ std::string asText(const PruningRecord& record) {
   const Explanation& explanation = record.explanation;
   const bool timed = record.prunedMs.repeats > 0;
   const std::vector<Reason> reasons = reasonsOf(explanation);
-  std::string text = fmt::format("{} of {} passes kept; variants: {} possible, {} compiled, {} needed\n",
-                                 explanation.passesKept, explanation.passesTotal, explanation.variantsPossible,
-                                 explanation.variantsCompiled, explanation.variantsNeeded);
+  std::string text =
+      fmt::format("{} of {} passes kept; variants: {} possible, {} compiled, {} needed\n",
+                  explanation.passesKept, explanation.passesTotal, explanation.variantsPossible,
+                  explanation.variantsCompiled, explanation.variantsNeeded);
   if (timed)
     text += fmt::format("{} of the time of a first frame saved, {} of the next ones with a moving camera\n",
                         formatPercent(record.savedShare()), formatPercent(record.savedShareNext()));
-  text += fmt::format("memory of the passes {} in place of {}; same image: {}\n", formatBytes(record.prunedBytes),
-                      formatBytes(record.unprunedBytes),
+  text += fmt::format("memory of the passes {} in place of {}; same image: {}\n",
+                      formatBytes(record.prunedBytes), formatBytes(record.unprunedBytes),
                       record.sameImage ? painted(Paint::good, "yes") : painted(Paint::bad, "NO"));
   text += reasons.empty() ? std::string("nothing is left out\n")
                           : fmt::format("{} {} left out for {} {}\n", explanation.leftOut.size(),
@@ -262,7 +263,8 @@ void addExplainCommand(Commands& commands) {
       "TEXT", options->texts,
       "a scene and a pipeline: in full; several scenes or pipelines: as a matrix (no pipeline: "
       "every committed one)");
-  addRepeatable(*command, "--pipeline", options->pipelines, "a further pipeline's text, for a matrix; may be repeated");
+  addRepeatable(*command, "--pipeline", options->pipelines,
+                "a further pipeline's text, for a matrix; may be repeated");
   command->add_flag("--all", options->all, "every committed scene, as a matrix");
   command->add_flag("--no-times", options->noTimes,
                     "only what is left out and whether the image is the same; much faster");

@@ -41,8 +41,11 @@ void MeasureOptions::addTo(CLI::App& app, const std::string& store, const std::s
 ReportOptions MeasureOptions::asked(const GlobalOptions& global, const std::string& doing,
                                     const std::string& unit) const {
   ReportOptions asked = options;
-  const auto isPipeline = [](const std::filesystem::path& file) { return kindOfText(file) == TextKind::pipeline; };
-  const auto pipelines = std::stable_partition(asked.scenes.begin(), asked.scenes.end(), std::not_fn(isPipeline));
+  const auto isPipeline = [](const std::filesystem::path& file) {
+    return kindOfText(file) == TextKind::pipeline;
+  };
+  const auto pipelines =
+      std::stable_partition(asked.scenes.begin(), asked.scenes.end(), std::not_fn(isPipeline));
   asked.pipelines.insert(asked.pipelines.end(), pipelines, asked.scenes.end());
   asked.scenes.erase(pipelines, asked.scenes.end());
   if (asked.scenes.empty()) throw Error("no scene; expected a scene's text");
@@ -60,10 +63,9 @@ ReportOptions MeasureOptions::asked(const GlobalOptions& global, const std::stri
 
 std::function<void(std::size_t, std::size_t, double)> progressLine(const std::string& what,
                                                                    const std::string& unit) {
-  return [line = std::make_shared<Progress>(what, 0, unit)](std::size_t done, std::size_t total,
-                                                            double secondsLeft) {
-    line->show(done, total, secondsLeft);
-  };
+  return
+      [line = std::make_shared<Progress>(what, 0, unit)](
+          std::size_t done, std::size_t total, double secondsLeft) { line->show(done, total, secondsLeft); };
 }
 
 std::vector<std::string> repeatArguments(const GlobalOptions& global) {

@@ -13,13 +13,15 @@ struct MeasureOptions {
 
   /// `store`: the meaning of --store here; `scenes`: that of the positional texts.
   void addTo(CLI::App& app, const std::string& store, const std::string& scenes = "the scenes' texts");
-  /// Everything that was asked for, in the words of the framework. Pipelines' texts among the scenes are pipelines.
+  /// Everything that was asked for, in the words of the framework. Pipelines' texts among the scenes are
+  /// pipelines.
   ReportOptions asked(const GlobalOptions& global, const std::string& doing = "measuring",
                       const std::string& unit = "points") const;
 };
 
 /// Tells how far a command is by one line of progress; `unit`: the plural of what is counted.
-std::function<void(std::size_t, std::size_t, double)> progressLine(const std::string& what, const std::string& unit);
+std::function<void(std::size_t, std::size_t, double)> progressLine(const std::string& what,
+                                                                   const std::string& unit);
 
 /// The options of every command that a repeating one needs too.
 std::vector<std::string> repeatArguments(const GlobalOptions& global);

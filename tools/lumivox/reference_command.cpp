@@ -17,7 +17,7 @@ struct ReferenceCommand {
   std::filesystem::path scene, output;
   std::string resolution;
   ReferenceOptions options;
-  bool noCache = false;
+  bool noCache = false, json = false;
 };
 
 int reference(ReferenceCommand command, const GlobalOptions& global) {
@@ -45,6 +45,16 @@ int reference(ReferenceCommand command, const GlobalOptions& global) {
   }
   logInformation("{}: {} x {}, {} samples per pixel", command.output.string(), full.width(), full.height(),
                  command.options.samplesPerPixel);
+  if (command.json) {
+    Json layers = Json::array();
+    for (const auto& [name, image] : reference.layers)
+      if (!name.empty()) layers.push_back(name);
+    printJson({{"file", command.output.string()},
+               {"width", full.width()},
+               {"height", full.height()},
+               {"samples_per_pixel", command.options.samplesPerPixel},
+               {"layers", layers}});
+  }
   return kGood;
 }
 
@@ -74,11 +84,13 @@ void addReferenceCommand(Commands& commands) {
   command->add_option("--camera", options.camera, "the scene's camera of this name (default: the first)");
   command->add_option("--resolution", all->resolution,
                       "width and height in pixels, such as 640x360 (default: the camera's)");
-  addLength(*command, "--occlusion-distance", options.occlusionDistance,
-            "of ambient occlusion, such as 0.5m; without a unit in metres (default: a tenth of the diagonal of the "
-            "scene's bounds)");
+  addLength(
+      *command, "--occlusion-distance", options.occlusionDistance,
+      "of ambient occlusion, such as 0.5m; without a unit in metres (default: a tenth of the diagonal of the "
+      "scene's bounds)");
   command->add_option("--threads", options.threads, "default: all")->check(CLI::Range(0, 4096));
   command->add_flag("--no-cache", all->noCache, "neither read nor write the cache of references");
+  command->add_flag("--json", all->json, "print the file, its size and its layers as JSON");
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] { return reference(*all, global); });
 }

@@ -8,6 +8,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/image.h"
+#include "lumivox/base/interruption.h"
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/measure/metrics.h"
@@ -23,7 +24,7 @@ struct RenderCommand {
   std::string frames, onlyOutput;
   double framesPerSecond = 24.0;
   int accumulate = 0;  ///< frames an image; 0: each is made alone
-  bool keepEverything = false, health = false, checkReads = false;
+  bool keepEverything = false, health = false, checkReads = false, json = false;
 };
 
 /// The frame that is shown at one time, after the frames that it accumulates. Findings are those of all of
@@ -109,16 +110,22 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
   PipelineExecutor executor(*device, techniques, scene, pipeline, options);
 
   std::size_t findings = 0;
+  Json images = Json::array(), found = Json::array();
+  InterruptionNote interruption;
   BackgroundWriter writer;
-  Progress progress("rendering", static_cast<std::uint64_t>(last - first + 1) *
-                                     static_cast<std::uint64_t>(std::max(command.accumulate, 1)));
+  Progress progress("rendering",
+                    static_cast<std::uint64_t>(last - first + 1) *
+                        static_cast<std::uint64_t>(std::max(command.accumulate, 1)),
+                    "frames");
   for (int frame = first; frame <= last; ++frame) {
     const double time = command.run.time + (animation ? frame / command.framesPerSecond : 0.0);
     FrameResult result = renderShown(command, executor, time, frame, progress);
-    for (const auto* found : {&result.healthFindings, &result.readsFindings}) {
-      for (const std::string& finding : *found)
-        std::cerr << (animation ? fmt::format("frame {}: ", frame) : std::string()) << finding << "\n";
-      findings += found->size();
+    for (const auto* list : {&result.healthFindings, &result.readsFindings}) {
+      for (const std::string& finding : *list) {
+        logMessage(LogLevel::quiet, (animation ? fmt::format("frame {}: ", frame) : std::string()) + finding);
+        found.push_back({{"frame", frame}, {"finding", finding}});
+      }
+      findings += list->size();
     }
     for (const std::string& note : result.notes) logInformation("{}", note);
     const fs::path file = animation ? numberedName(command.output, frame) : command.output;
@@ -126,11 +133,18 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
     if (animation) attributes["lumivox.frame"] = fmt::format("{}", frame);
     if (command.accumulate > 0) attributes["lumivox.accumulate"] = fmt::format("{}", command.accumulate);
     logInformation("{}: {:.1f} ms", file.string(), result.frameMs);
+    images.push_back(
+        {{"file", file.string()}, {"frame", frame}, {"time", time}, {"frame_ms", result.frameMs}});
+    // Those before this one are written, or it says which is not.
+    if (animation)
+      interruption.say(fmt::format("interrupted: images before {} are kept; to go on: --frames {}..{} in {}",
+                                   file.string(), frame, last, global.commandLine));
     writer.submit([&command, file, made = std::move(result), attributes = std::move(attributes)]() mutable {
       writeFrame(command, file, std::move(made), attributes);
     });
   }
   writer.finish();
+  if (command.json) printJson({{"images", images}, {"findings", found}});
   return findings == 0 ? kGood : kNotGood;
 }
 
@@ -164,6 +178,7 @@ void addRenderCommand(Commands& commands) {
       "--check-reads", options->checkReads,
       "for authors of techniques: make every frame a second time from scratch, and name passes whose "
       "Reads, Needs or uses() leave out what they depend on");
+  command->add_flag("--json", options->json, "print the images' files, times and findings as JSON");
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] { return render(*options, global); });
 }

@@ -98,6 +98,7 @@ int report(const ReportCommand& command, const GlobalOptions& global) {
   for (const std::string& text : command.equalErrors)
     options.equalErrors.push_back(positiveNumberOf("--equal-error", text));
   const ReportFiles files = reportFiles(options.output);
+  options.output = files.page;  // also where points are kept meanwhile
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();
   const ReportSummary summary = makeReport(
@@ -124,9 +125,10 @@ void addReportCommand(Commands& commands) {
   command->add_option("-o,--out", all->measure.options.output,
                       "the page; .csv and .json go beside it (default out/report/index.html)");
   all->measure.addTo(*command, "a results store that the measured points are added to (default: none)");
-  addDuration(*command, "--budget", all->measure.options.budgetSeconds,
-              "time for measuring, such as 30s or 5min, counted when the references are there: all default points, "
-              "then as many points of the sweeps as there is time for (default: no limit)");
+  addDuration(
+      *command, "--budget", all->measure.options.budgetSeconds,
+      "time for measuring, such as 30s or 5min, counted when the references are there: all default points, "
+      "then as many points of the sweeps as there is time for (default: no limit)");
   command
       ->add_option("--voxels", all->measure.options.voxelResolution,
                    "adds a section on the voxelizers at this resolution (default: none)")

@@ -209,16 +209,17 @@ void write(const fs::path& output, const std::vector<ReproducedResult>& results)
 }
 
 /// What an interruption would say after so many of the chosen results.
-std::string keptText(const ReproduceCommand& command, const std::vector<PublishedResult>& chosen, std::size_t done,
-                     const GlobalOptions& global) {
+std::string keptText(const ReproduceCommand& command, const std::vector<PublishedResult>& chosen,
+                     std::size_t done, const GlobalOptions& global) {
   std::vector<std::string> rest;
   for (std::size_t i = done; i < chosen.size(); ++i) rest.push_back(chosen[i].id);
   const std::string kept =
       !command.record.empty() ? fmt::format("{} keeps {} of {}", command.record.string(), done, chosen.size())
-      : !command.store.empty() ? fmt::format("{} keeps the set-ups of {} of {}", command.store.string(), done, chosen.size())
-                               : std::string("nothing is kept without --record or --store");
-  return fmt::format("interrupted: {}; still to measure: {}; to go on, name them in {}", kept, fmt::join(rest, " "),
-                     global.commandLine);
+      : !command.store.empty()
+          ? fmt::format("{} keeps the set-ups of {} of {}", command.store.string(), done, chosen.size())
+          : std::string("nothing is kept without --record or --store");
+  return fmt::format("interrupted: {}; still to measure: {}; to go on, name them in {}", kept,
+                     fmt::join(rest, " "), global.commandLine);
 }
 
 int measure(const ReproduceCommand& command, const GlobalOptions& global) {
@@ -256,7 +257,8 @@ int measure(const ReproduceCommand& command, const GlobalOptions& global) {
   for (const PublishedResult& result : chosen) {
     logInformation("{}: {}", result.id, result.title);
     options.progress = progressLine(
-        chosen.size() == 1 ? result.id : fmt::format("{} ({} of {})", result.id, results.size() + 1, chosen.size()),
+        chosen.size() == 1 ? result.id
+                           : fmt::format("{} ({} of {})", result.id, results.size() + 1, chosen.size()),
         "steps");
     note.say(keptText(command, chosen, results.size(), global));
     results.push_back(lumivox::reproduce(

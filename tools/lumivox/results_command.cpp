@@ -76,7 +76,8 @@ struct ResultsCommand {
     addRepeatable(app, "--set", filter.parameters, "only runs with this parameter, as name=value");
     app.add_option("--on", filter.device, "only runs whose device's name contains this");
     app.add_option("--since", filter.since, "only runs from this day on, such as 2026-01-31");
-    app.add_option("--run", filter.ids, "only the run with this number; may be repeated")->allow_extra_args(false);
+    app.add_option("--run", filter.ids, "only the run with this number; may be repeated")
+        ->allow_extra_args(false);
     auto* onlyFailed = app.add_flag("--failed", failed, "only runs that failed");
     app.add_flag("--good", good, "only runs that did not fail")->excludes(onlyFailed);
   }

@@ -98,11 +98,14 @@ std::string runsTable(const std::vector<StoredRun>& runs) {
   rows[0].push_back("State");
   for (const StoredRun& run : runs) {
     const ReportPoint& point = run.point;
-    std::vector<std::string> row{
-        stem(point.scene),            std::to_string(run.id),
-        stem(point.pipeline),         parametersText(run.identity.parameters),
-        seedsText(run.identity),      fmt::format("{}x{}", run.identity.width, run.identity.height),
-        quartilesText(point.frameMs), formatBytes(point.peakBytes)};
+    std::vector<std::string> row{stem(point.scene),
+                                 std::to_string(run.id),
+                                 stem(point.pipeline),
+                                 parametersText(run.identity.parameters),
+                                 seedsText(run.identity),
+                                 fmt::format("{}x{}", run.identity.width, run.identity.height),
+                                 quartilesText(point.frameMs),
+                                 formatBytes(point.peakBytes)};
     for (const std::string& output : outputs)
       row.push_back(rmseText(errorOf(point, output, output != kWholeImage)));
     row.push_back(!point.failure.empty()         ? painted(Paint::bad, "failed: ") + point.failure

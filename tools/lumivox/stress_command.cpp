@@ -112,18 +112,22 @@ int stress(const StressCommand& command, const GlobalOptions& global) {
   }
   if (command.list) return listCases(options, techniques, command.json);
   Progress progress("stress", 0, "cells");
-  options.progress = [&progress](const StressCell& cell, std::size_t done, std::size_t total, double secondsLeft) {
-    const std::string what =
-        fmt::format("{}, {}: {}", std::filesystem::path(cell.pipeline).stem().string(), cell.name, stressValueText(cell));
+  options.progress = [&progress](const StressCell& cell, std::size_t done, std::size_t total,
+                                 double secondsLeft) {
+    const std::string what = fmt::format("{}, {}: {}", std::filesystem::path(cell.pipeline).stem().string(),
+                                         cell.name, stressValueText(cell));
     // What is well passes by in the line of progress.
     const bool well = cell.outcome == StressOutcome::stable || cell.outcome == StressOutcome::notApplicable;
     logMessage(well ? LogLevel::details : LogLevel::information, what);
     progress.show(done, total, secondsLeft, what);
   };
   InterruptionNote note;
-  note.say(options.store.empty() ? "interrupted: nothing is kept without --store"
-                                 : fmt::format("interrupted: {} keeps the cells that have run; results list --stress shows them; the whole battery again: {}",
-                                               options.store.string(), global.commandLine));
+  note.say(
+      options.store.empty()
+          ? "interrupted: nothing is kept without --store"
+          : fmt::format(
+                "interrupted: {} keeps the cells that have run; results list --stress shows them; the whole battery again: {}",
+                options.store.string(), global.commandLine));
   return tell(runStress(options, techniques), command.json);
 }
 

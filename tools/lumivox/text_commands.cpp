@@ -6,6 +6,7 @@
 #include <set>
 
 #include "command.h"
+#include "highlighting.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
@@ -94,7 +95,7 @@ int check(const std::vector<fs::path>& files, bool json, const GlobalOptions& gl
 
 // ---- fmt
 
-int formatFiles(const std::vector<fs::path>& files, bool onlyCheck, bool quiet) {
+int formatFiles(const std::vector<fs::path>& files, bool onlyCheck, bool json, bool quiet) {
   // All files are read before the first is written: one wrong text leaves every file as it was.
   std::vector<Diagnostic> findings;
   std::vector<std::pair<fs::path, std::string>> changed;
@@ -107,14 +108,20 @@ int formatFiles(const std::vector<fs::path>& files, bool onlyCheck, bool quiet) 
     if (formatted != source) changed.emplace_back(file, std::move(formatted));
   }
   if (!findings.empty()) throw DiagnosticsError(findings);
+  Json list = Json::array();
+  for (const fs::path& file : files)
+    list.push_back({{"file", file.string()},
+                    {"changed", std::any_of(changed.begin(), changed.end(),
+                                            [&](const auto& one) { return one.first == file; })}});
   for (const auto& [file, text] : changed) {
     if (onlyCheck) {
-      print(file.string() + ": would be reformatted\n");
+      if (!json) print(file.string() + ": would be reformatted\n");
     } else {
       writeFileAtomically(file, text);
-      if (!quiet) print(file.string() + ": reformatted\n");
+      if (!quiet && !json) print(file.string() + ": reformatted\n");
     }
   }
+  if (json) printJson(list);
   return onlyCheck && !changed.empty() ? kNotGood : kGood;
 }
 
@@ -243,7 +250,7 @@ std::string describeInTechniques(TechniqueSet& techniques, const std::string& wo
   return text;
 }
 
-int describe(const std::string& word, const GlobalOptions& global) {
+int describe(const std::string& word, bool asJson, const GlobalOptions& global) {
   TechniqueSet techniques = global.techniqueSet();
   std::vector<std::string> known;
   std::string text;
@@ -266,7 +273,17 @@ int describe(const std::string& word, const GlobalOptions& global) {
         word, nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
   }
   text.erase(text.find_last_not_of('\n') + 1);
-  print(text + "\n");
+  if (asJson) {
+    Json list = Json::array();
+    for (std::size_t begin = 0; begin < text.size();) {
+      const std::size_t end = std::min(text.find("\n\n", begin), text.size());
+      list.push_back(text.substr(begin, end - begin));
+      begin = text.find_first_not_of('\n', end);
+    }
+    printJson({{"word", word}, {"found", list}});
+  } else {
+    print(text + "\n");
+  }
   return kGood;
 }
 
@@ -378,19 +395,33 @@ void addTextCommands(Commands& commands) {
     auto onlyCheck = std::make_shared<bool>(false);
     command->add_option("FILE", *files, "scenes, pipelines, sweeps and published tables")->required();
     command->add_flag("--check", *onlyCheck, "change nothing; exit code 1 when a file would change");
-    commands.onChosen(command, [=, &global] { return formatFiles(*files, *onlyCheck, global.quiet); });
+    auto json = std::make_shared<bool>(false);
+    command->add_flag("--json", *json, "print which files change as JSON");
+    commands.onChosen(command, [=, &global] { return formatFiles(*files, *onlyCheck, *json, global.quiet); });
   }
   {
     auto* command = commands.app.add_subcommand("describe", "explains a word of the texts");
     auto word = std::make_shared<std::string>();
-    auto markdown = std::make_shared<bool>(false);
+    auto markdown = std::make_shared<bool>(false), json = std::make_shared<bool>(false);
+    auto highlighting = std::make_shared<std::string>();
     auto* positional = command->add_option(
         "WORD", *word, "a block, property, port kind, technique, pass, port or parameter");
     command->add_flag("--markdown", *markdown, "print the whole reference")->excludes(positional);
-    commands.onChosen(command, [=, &global] {
+    command
+        ->add_option("--highlighting", *highlighting,
+                     "print the grammar by which an editor colours the texts: textmate (JSON) or vim")
+        ->check(CLI::IsMember({"textmate", "vim"}))
+        ->excludes(positional);
+    command->add_flag("--json", *json, "print every place where the word occurs as JSON");
+    commands.onChosen(command, [=, &global]() -> int {
       if (*markdown) return describeAsMarkdown(global);
+      if (!highlighting->empty()) {
+        const HighlightedWords words = highlightedWords();
+        print(*highlighting == "vim" ? vimSyntax(words) : textMateGrammar(words));
+        return kGood;
+      }
       if (word->empty()) throw Error("describe: expected a word, or --markdown for the whole reference");
-      return describe(*word, global);
+      return describe(*word, *json, global);
     });
   }
 }

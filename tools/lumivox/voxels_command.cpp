@@ -97,7 +97,8 @@ int voxels(const VoxelsCommand& command, const GlobalOptions& global) {
   const auto device = global.openDevice();
   std::vector<VoxelizerRecord> all;
   InterruptionNote note;
-  note.say("interrupted: measurements of voxelizers are kept only when all are done; from the start: " + global.commandLine);
+  note.say("interrupted: measurements of voxelizers are kept only when all are done; from the start: " +
+           global.commandLine);
   for (const std::filesystem::path& file : command.scenes) {
     options.progress = progressLine("voxelizers on " + stem(file.string()), "steps");
     const std::vector<VoxelizerRecord> records =
@@ -126,7 +127,7 @@ void addVoxelsCommand(Commands& commands) {
   command->add_option("SCENE", all->scenes, "the scenes' texts")->required();
   addRepeatable(*command, "--resolution", all->resolutions,
                 "voxels along the longest side, 1..1024; several as 32,64,128 (default 64)");
-  addRepeatable(*command, "--pipelines", options.pipelines,
+  addRepeatable(*command, "--pipeline,--pipelines", options.pipelines,
                 "a pipeline's text or a folder of them; may be repeated (default: the committed voxelizers)");
   addRepeatable(*command, "--set", options.settings,
                 "a parameter, as name=value, of those pipelines that have it");

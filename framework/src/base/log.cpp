@@ -119,7 +119,7 @@ struct Progress::State {
   /// "rendering: 12 of 48 images, about 5 s left".
   std::string text(double secondsLeft) const {
     const double share = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0.0;
-    std::string line = unit.empty()  ? fmt::format("{}: {:.0f} %", what, share * 100)
+    std::string line = unit.empty() ? fmt::format("{}: {:.0f} %", what, share * 100)
                        : total == 0 ? fmt::format("{}: {} {}", what, done.load(), unit)
                                     : fmt::format("{}: {} of {} {}", what, done.load(), total, unit);
     if (!std::isfinite(secondsLeft)) secondsLeft = share > 0.0 ? elapsed() * (1.0 - share) / share : -1.0;
@@ -135,8 +135,8 @@ struct Progress::State {
     const std::size_t used = shownWidth(line);
     if (total > 0 && used + kLeastBar + kFrame <= columns) {
       const std::size_t bar = std::min(kMostBar, columns - used - kFrame);
-      const auto filled = static_cast<std::size_t>(static_cast<double>(bar) *
-                                                   std::min(1.0, static_cast<double>(done) / static_cast<double>(total)));
+      const auto filled = static_cast<std::size_t>(
+          static_cast<double>(bar) * std::min(1.0, static_cast<double>(done) / static_cast<double>(total)));
       line = "[" + std::string(filled, '#') + std::string(bar - filled, ' ') + "] " + line;
     }
     return doing.empty() ? line : cutTo(line + "; " + doing, columns);

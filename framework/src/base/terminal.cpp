@@ -47,7 +47,10 @@ bool takesColour(int descriptor) {
 
 std::string painted(Paint paint, std::string_view text, bool colour) {
   if (!colour) return std::string(text);
-  const char* code = paint == Paint::heading ? "1" : paint == Paint::good ? "32" : paint == Paint::bad ? "31" : "33";
+  const char* code = paint == Paint::heading ? "1"
+                     : paint == Paint::good  ? "32"
+                     : paint == Paint::bad   ? "31"
+                                             : "33";
   return fmt::format("\x1b[{}m{}\x1b[0m", code, text);
 }
 

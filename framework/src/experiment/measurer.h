@@ -45,8 +45,8 @@ class Measurer {
 
   /// Measures the points together, at most kBatch at once, and stores them; gives them back as they are in
   /// the store now. Points that another process measures are left to it, and waited for at the end. `done` is
-  /// told how many points were measured here and how many by others: of a batch point after point, the last of
-  /// them when all are timed.
+  /// told how many points were measured here and how many by others: of a batch point after point, the last
+  /// of them when all are timed.
   std::vector<StoredRun> measure(const std::vector<WantedPoint>& points,
                                  const std::function<void(std::size_t, std::size_t)>& done = {});
   /// Times the first of these points that the store holds once more, at most as many as are timed together,

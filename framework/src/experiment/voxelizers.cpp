@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
-#include <limits>
 #include <set>
 
 #include "base/process.h"
@@ -281,7 +281,7 @@ class Measurement {
   gpu::Device& device_;
   TechniqueSource& techniques_;
   const VoxelizerOptions& options_;
-  std::vector<Reference> references_;  ///< of the scene and time at hand
+  std::vector<Reference> references_;         ///< of the scene and time at hand
   std::size_t done_ = 0, pipelinesHeld_ = 0;  ///< steps; pipelines whose repeats are still to come
   const std::size_t total_;
 };

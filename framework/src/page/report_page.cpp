@@ -124,7 +124,10 @@ Json reportJson(const ReportRecord& record) {
 
 namespace lumivox {
 
-ReportFiles reportFiles(const std::filesystem::path& file) {
+ReportFiles reportFiles(const std::filesystem::path& output) {
+  // A folder, as other commands take it, holds the page under its usual name.
+  const bool folder = !output.has_extension() || std::filesystem::is_directory(output);
+  const std::filesystem::path file = folder ? output / "index.html" : output;
   const ReportFiles files{file, std::filesystem::path(file).replace_extension(".csv"),
                           std::filesystem::path(file).replace_extension(".json")};
   if (files.page == files.csv || files.page == files.json)

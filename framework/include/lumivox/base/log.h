@@ -46,12 +46,13 @@ class LogCapture {
   std::string text_;
 };
 
-/// Warnings told more than once are written once; this writes how often each was repeated. The end of a program.
+/// Warnings told more than once are written once; this writes how often each was repeated. The end of a
+/// program.
 void logRepeatedWarnings();
 
 /// How far a command has come, on stderr. In a terminal one line that fits it and stays below the messages;
-/// elsewhere plain lines: the first counted point at once, then at intervals, and the last. Nothing when quiet.
-/// Of several the latest that moved is shown. Thread-safe.
+/// elsewhere plain lines: the first counted point at once, then at intervals, and the last. Nothing when
+/// quiet. Of several the latest that moved is shown. Thread-safe.
 class Progress {
  public:
   /// `unit`: the plural of what is counted, such as "points"; without one only the share is shown, and lines
@@ -61,8 +62,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   void advance(std::uint64_t steps = 1);
-  /// `done` of `total` steps are there; the rest takes about `secondsLeft`, NaN: as the steps so far. `doing`: the
-  /// latest or next of them.
+  /// `done` of `total` steps are there; the rest takes about `secondsLeft`, NaN: as the steps so far.
+  /// `doing`: the latest or next of them.
   void show(std::uint64_t done, std::uint64_t total, double secondsLeft, const std::string& doing = {});
 
  private:
@@ -70,8 +71,8 @@ class Progress {
   State* state_;
 };
 
-/// Takes the line of progress off the terminal, before something else is written there. It returns with the next
-/// step or message.
+/// Takes the line of progress off the terminal, before something else is written there. It returns with the
+/// next step or message.
 void clearProgressLine();
 
 }  // namespace lumivox

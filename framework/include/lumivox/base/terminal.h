@@ -10,8 +10,8 @@ namespace lumivox {
 /// Width of what is no terminal, and of a terminal that does not tell its own.
 inline constexpr int kUsualColumns = 100;
 
-/// Columns of the terminal behind a file descriptor, at least 20: $COLUMNS where it is a number, else what the
-/// terminal says, else kUsualColumns.
+/// Columns of the terminal behind a file descriptor, at least 20: $COLUMNS where it is a number, else what
+/// the terminal says, else kUsualColumns.
 int terminalColumns(int descriptor);
 /// Whether it is a terminal that takes colours: NO_COLOR is unset or empty and TERM is not "dumb".
 bool takesColour(int descriptor);

@@ -23,8 +23,8 @@ struct ReproduceOptions {
   std::uint64_t seed = 1;
   int referenceSamples = 0;  ///< per pixel, for the errors that go to a store; 0: referenceSamplesFor()
   std::vector<std::string> repeatArguments;  ///< further options that a repeating command needs
-  /// Told after every step: a set-up's warm-up, its timed frames, what a store takes of it, a panel. The time left is
-  /// NaN: as the steps before.
+  /// Told after every step: a set-up's warm-up, its timed frames, what a store takes of it, a panel. The time
+  /// left is NaN: as the steps before.
   std::function<void(std::size_t done, std::size_t total, double secondsLeft)> progress;
 };
 

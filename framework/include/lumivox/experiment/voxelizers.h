@@ -46,8 +46,8 @@ struct VoxelizerOptions {
   /// Measured again with every triangle split into four, as often as this, at the first resolution: how time
   /// grows with triangles.
   int subdivisions = 0;
-  /// Told after every step: the warm-up of a voxelizer, and each of its timed frames. The time left is NaN: as the
-  /// steps before.
+  /// Told after every step: the warm-up of a voxelizer, and each of its timed frames. The time left is NaN:
+  /// as the steps before.
   std::function<void(std::size_t done, std::size_t total, double secondsLeft)> progress;
 };
 

@@ -10,9 +10,10 @@ namespace lumivox {
 struct ReportFiles {
   std::filesystem::path page, csv, json;
 };
-/// The page, and beside it the same stem with .csv and .json. Error, so before any work, when one of them
-/// cannot be written or the packaged chart library is absent.
-ReportFiles reportFiles(const std::filesystem::path& page);
+/// The page, and beside it the same stem with .csv and .json; index.html in a folder, which is what has no
+/// extension. Error, so before any work, when one of them cannot be written or the packaged chart library is
+/// absent.
+ReportFiles reportFiles(const std::filesystem::path& output);
 
 /// Every number of the page is in the JSON, but for those that a reader derives from others.
 void writeReport(const ReportFiles& files, const ReportRecord& record);

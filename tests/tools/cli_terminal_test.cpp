@@ -1,0 +1,357 @@
+// What a person sees and types: one line of progress, tables and help that fit, colours, words that are
+// nearly right, units, and what an interrupted command says.
+#include <algorithm>
+#include <regex>
+#include <sstream>
+
+#include "lumivox/pipeline/pipeline.h"
+#include "lumivox/pipeline/sweep_text.h"
+#include "lumivox/results/reproduction.h"
+#include "lumivox/scene/text.h"
+#include "tools/cli_support.h"
+#include "tools/started.h"
+#include "tools/terminal.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+using Json = nlohmann::json;
+
+namespace {
+
+/// A pipeline of the technique that does what none may do, one point for each value.
+class Place : public Workplace {
+ public:
+  Place() {
+    write(
+        "slow.pipeline",
+        "pipeline \"Slow\" {\n  param value 1 in 0..10\n  pass paint hostile.paint { deed paint  value $value }\n\n"
+        "  output direct paint.radiance\n}\n\nsweep values { value [1 2 3 4] }\n");
+  }
+  std::string quoted(const std::string& name) const { return "'" + file(name) + "'"; }
+  /// The program with that technique.
+  static std::string program() {
+    return "lumivox --techniques '" + (binaryDirectory() / "tests/plugins/hostile").string() + "' ";
+  }
+  /// Options that measure as little as can be.
+  static std::string quick() { return " --resolution 8x8 --spp 4 --subpixels 1 --repeats 3 --seeds 2 "; }
+};
+
+std::size_t countOf(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+/// Without "\x1b[1m" and its like.
+std::string withoutColours(const std::string& text) {
+  return std::regex_replace(text, std::regex("\x1b\\[[0-9]*m"), "");
+}
+
+}  // namespace
+
+TEST_CASE("progress in a terminal is one line that fits its width, whatever that is") {
+  const Place place;
+  for (const int columns : {40, 80}) {
+    INFO(columns);
+    const TerminalResult shown =
+        runInTerminal("lumivox reference " + place.quoted("room.scene") +
+                          " --resolution 96x64 --spp 64 --no-cache -o " + place.quoted("reference.exr"),
+                      columns);
+    INFO(shown.written);
+    REQUIRE(shown.exitCode == 0);
+    CHECK(countOf(shown.written, "reference of Little room") > 2);
+    // Lines of progress begin with a carriage return and are never ended by a line feed.
+    std::size_t lines = 0;
+    for (std::size_t at = shown.written.find("\r\x1b[K"); at != std::string::npos;
+         at = shown.written.find("\r\x1b[K", at + 1)) {
+      const std::size_t end = std::min(shown.written.find_first_of("\r\n", at + 4), shown.written.size());
+      const std::string line = shown.written.substr(at + 4, end - at - 4);
+      if (!contains(line, " left")) continue;
+      ++lines;
+      INFO(line);
+      CHECK(shownWidth(line) < static_cast<std::size_t>(columns));
+    }
+    CHECK(lines > 1);
+  }
+}
+
+TEST_CASE(
+    "measuring commands tell done, total and time left from the first point on, outside of a terminal too") {
+  const Place place;
+  const std::string inputs = place.quoted("room.scene") + " --pipeline " + place.quoted("slow.pipeline");
+  const std::string store = " --store " + place.quoted("results.sqlite");
+  for (const std::string& command : {"report " + inputs + place.quick() + "-o " + place.quoted("page.html"),
+                                     "sweep " + inputs + place.quick() + store}) {
+    const CommandResult result = runCommand(place.program() + command);
+    INFO(command << "\n" << result.errors);
+    REQUIRE(result.exitCode == 0);
+    CHECK(contains(result.errors, "measuring: 1 of 4 points, about "));
+    CHECK(contains(result.errors, "measuring: 4 of 4 points, "));
+  }
+  const CommandResult tuned =
+      runCommand(place.program() + "tune " + inputs + place.quick() +
+                 "--budget 1000s --evaluations 6 --store " + place.quoted("tuned.sqlite"));
+  INFO(tuned.errors);
+  CHECK(contains(tuned.errors, "tuning: 1 of 6 points at most, about "));
+  const CommandResult voxels = runCommand("lumivox voxels " + place.quoted("room.scene") +
+                                          " --resolution 8,16 --repeats 2 --no-sweep --pipeline '" +
+                                          committedPipeline("voxelizers/conservative") + "'");
+  INFO(voxels.errors);
+  CHECK(voxels.exitCode == 0);
+  CHECK(contains(voxels.errors, "voxelizers on room: 1 of 6 steps, about "));
+  CHECK(contains(voxels.errors, "voxelizers on room: 6 of 6 steps, "));
+}
+
+TEST_CASE("in a terminal a measuring command ends without its line of progress, and quiet ones show none") {
+  const Place place;
+  const std::string command = place.program() + "report " + place.quoted("room.scene") + " --pipeline " +
+                              place.quoted("slow.pipeline") + place.quick() + "-o " +
+                              place.quoted("page.html");
+  const TerminalResult shown = runInTerminal(command, 100);
+  INFO(shown.written);
+  REQUIRE(shown.exitCode == 0);
+  CHECK(contains(shown.written, "] measuring: 1 of 4 points"));
+  CHECK(widestLine(withoutColours(shown.written)) <
+        160);  // messages that name files may be longer than the terminal
+  CHECK(shown.written.rfind("points, about") < shown.written.find("Pipeline"));
+  const TerminalResult quiet = runInTerminal(command + " --quiet", 100);
+  CHECK_FALSE(contains(quiet.written, "measuring"));
+}
+
+TEST_CASE("a repeated warning is told once, and at the end how often it was repeated") {
+  const Place place;
+  place.write("direct.pipeline", readFile(committedPipeline("direct_lighting")));
+  const CommandResult result =
+      runCommand("lumivox voxels " + place.quoted("room.scene") + " --resolution 8,16,32 --pipeline " +
+                 place.quoted("direct.pipeline"));
+  INFO(result.errors);
+  CHECK(result.exitCode == 1);
+  CHECK(countOf(result.errors, "warning: ") == 2);
+  CHECK(countOf(result.errors, "it has no parameter 'resolution'\n") == 1);
+  CHECK(contains(result.errors, "it has no parameter 'resolution' (3 times)\n"));
+}
+
+TEST_CASE("tables fit 80 and 100 columns by blocks, and lose nothing") {
+  const Place place;
+  const std::string store = place.quoted("results.sqlite"), image = place.quoted("image.exr");
+  REQUIRE(runCommand(place.program() + "-q sweep " + place.quoted("room.scene") + " --pipeline " +
+                     place.quoted("slow.pipeline") + place.quick() + "--store " + store)
+              .exitCode == 0);
+  REQUIRE(
+      runCommand("lumivox -q reference " + place.quoted("room.scene") + " --spp 2 -o " + image).exitCode ==
+      0);
+  const std::string room = place.quoted("room.scene"),
+                    conservative = committedPipeline("voxelizers/conservative"),
+                    cones = committedPipeline("voxel_cone_tracing");
+  const std::vector<std::pair<std::string, std::vector<std::string>>> commands{
+      {"list pipelines", {"voxel_cone_tracing", ".pipeline"}},
+      {"list passes", {"direct_lighting.gbuffer"}},
+      {"stress --list", {"camera_on_surface", "cells"}},
+      {"results list --store " + store, {"value=4", "Memory", "good"}},
+      {"results front --store " + store, {"value=4"}},
+      {"compare " + image + " " + image, {"RMSE", "FLIP LDR", "NaN or Inf", "indirect_diffuse"}},
+      {"voxels -q " + room + " --resolution 8 --repeats 1 --pipeline '" + conservative + "'",
+       {"recall", "oblique holes %"}},
+      {"explain -q " + room + " '" + cones + "' --set resolution=8 --repeats 1 --resolution 8x8",
+       {"passes kept", "whole frame", "reasons"}},
+      {"help render", {"--keep-everything", "Options of every command"}}};
+  for (const auto& [command, parts] : commands)
+    for (const int columns : {80, 100}) {
+      const CommandResult result = runCommand("COLUMNS=" + std::to_string(columns) + " " +
+                                              (binaryDirectory() / "bin/lumivox").string() + " " + command);
+      INFO(command << "\n" << result.output << result.errors);
+      REQUIRE(result.exitCode == 0);
+      for (const std::string& part : parts) CHECK(contains(result.output, part));
+      std::istringstream lines(result.output);
+      for (std::string line; std::getline(lines, line);) {
+        // What has no space cannot be broken: names of files.
+        if (contains(line, "/") && line.find(' ', line.find_first_not_of(' ')) == std::string::npos) continue;
+        if (contains(line, place.path().string())) continue;
+        INFO(line);
+        CHECK(shownWidth(line) <= static_cast<std::size_t>(columns));
+      }
+    }
+}
+
+TEST_CASE("explain begins with its summary and names what has the same reason together") {
+  const Place place;
+  const CommandResult result =
+      runCommand("lumivox explain -q --no-times " + place.quoted("room.scene") + " '" +
+                 committedPipeline("voxel_cone_tracing") + "' --set resolution=8 --resolution 8x8");
+  INFO(result.output << result.errors);
+  REQUIRE(result.exitCode == 0);
+  CHECK(std::regex_search(result.output, std::regex("^[0-9]+ of [0-9]+ passes kept; ")));
+  std::smatch counts;
+  REQUIRE(std::regex_search(result.output, counts,
+                            std::regex("([0-9]+) things left out for ([0-9]+) reasons?\n")));
+  CHECK(std::stoi(counts[1]) > std::stoi(counts[2]));
+}
+
+TEST_CASE("colours are for terminals, and NO_COLOR is heard") {
+  CHECK(contains(runInTerminal("lumivox list techniques", 100).written, "\x1b[1m"));
+  CHECK_FALSE(contains(runInTerminal("NO_COLOR=1 lumivox list techniques", 100).written, "\x1b[1m"));
+  CHECK_FALSE(contains(runInTerminal("TERM=dumb lumivox list techniques", 100).written, "\x1b[1m"));
+  CHECK_FALSE(contains(runCommand("lumivox list techniques").output, "\x1b"));
+}
+
+TEST_CASE("an interrupted animation says which images are kept and how it goes on") {
+  const Place place;
+  Started command({"render", place.scene(), committedPipeline("direct_lighting"), "--resolution", "16x16",
+                   "--frames", "0..99999", "-o", place.file("frame.exr")},
+                  place.file("errors.txt"));
+  REQUIRE(becomes([&] { return place.has("frame_0002.exr"); }));
+  command.signalAfter(std::chrono::milliseconds(0), SIGINT);
+  const int status = command.wait();
+  CHECK((WIFSIGNALED(status) && WTERMSIG(status) == SIGINT));
+  std::smatch said;
+  const std::string errors = place.read("errors.txt");
+  INFO(errors.substr(errors.size() - std::min<std::size_t>(errors.size(), 600)));
+  REQUIRE(std::regex_search(
+      errors, said,
+      std::regex(
+          "interrupted: images before .*frame_0*([0-9]+)\\.exr are kept; to go on: --frames ([0-9]+)\\.\\.99999 in lumivox render ")));
+  CHECK(said[1] == said[2]);
+  // Every image before that is there and whole.
+  const int next = std::stoi(said[1]);
+  REQUIRE(next >= 1);
+  CHECK(place.has("frame_0000.exr"));
+}
+
+TEST_CASE("a word that is no command or option is named with the nearest one") {
+  checkRefused(runCommand("lumivox rendr a b -o c.exr"), "'rendr' is no command of lumivox");
+  checkRefused(runCommand("lumivox rendr"), "did you mean 'render'?");
+  checkRefused(runCommand("lumivox --device software results lst"), "'lst' is no command of lumivox results");
+  checkRefused(runCommand("lumivox results lst"), "did you mean 'list'?");
+  checkRefused(runCommand("lumivox render a.scene b.pipeline -o c.exr --resolutoin 8x8"),
+               "lumivox render has no option '--resolutoin'; did you mean '--resolution'?");
+  checkRefused(runCommand("lumivox help rendr"), "did you mean 'render'?");
+}
+
+TEST_CASE("help is asked for before or behind a command, and ends with the options of every command") {
+  const CommandResult help = runCommand("lumivox help render"), behind = runCommand("lumivox render --help");
+  CHECK(help.exitCode == 0);
+  CHECK(behind.exitCode == 0);
+  CHECK(contains(help.output, "--keep-everything"));
+  for (const char* command :
+       {"check", "render", "report", "results list", "stress", "new technique", "cache prune"}) {
+    INFO(command);
+    for (const CommandResult& result : {runCommand(std::string("lumivox help ") + command),
+                                        runCommand(std::string("lumivox ") + command + " --help")}) {
+      CHECK(result.exitCode == 0);
+      for (const char* part : {"Options of every command", "--assets", "--arithmetic", "--strict", "--quiet"})
+        CHECK(contains(result.output, part));
+    }
+  }
+  CHECK(contains(runCommand("lumivox help").output, "reproduce"));
+}
+
+TEST_CASE("an option never takes the scene for its own, and pipelines are told from scenes") {
+  const Place place;
+  const std::string slow = place.quoted("slow.pipeline"), room = place.quoted("room.scene");
+  for (const std::string& inputs : {"--pipeline " + slow + " " + room, room + " " + slow}) {
+    const CommandResult result = runCommand(place.program() + "report " + inputs + place.quick() +
+                                            "--no-sweep --json -o " + place.quoted("page.html"));
+    INFO(inputs << "\n" << result.errors);
+    REQUIRE(result.exitCode == 0);
+    CHECK(Json::parse(result.output).at("scenes").at(0).at("points").size() == 1);
+  }
+  checkRefused(runCommand("lumivox report " + slow), "expected a scene's text");
+}
+
+TEST_CASE("times have units as in the texts, and a budget without one is refused") {
+  const Place place;
+  const std::string room = place.quoted("room.scene");
+  checkRefused(runCommand("lumivox report " + room + " --budget 30"),
+               "--budget '30': expected a time above 0 with its unit (m");
+  checkRefused(runCommand("lumivox report " + room + " --budget 0s"), "above 0");
+  checkRefused(runCommand("lumivox tune " + room + " --budget 16"), "--budget '16'");
+  checkRefused(runCommand("lumivox stress --time-limit 3"), "--time-limit '3'");
+  checkRefused(runCommand("lumivox report " + room + " --equal-time 3"), "--equal-time '3'");
+  const std::string render = "lumivox render " + room + " '" + committedPipeline("direct_lighting") +
+                             "' -q --resolution 8x8 --json -o " + place.quoted("image.exr");
+  for (const char* time : {"300ms", "0.3s", "0.3", "'0.3 s'"}) {
+    const CommandResult result = runCommand(render + " --time " + time);
+    INFO(time << "\n" << result.errors);
+    REQUIRE(result.exitCode == 0);
+    CHECK(Json::parse(result.output).at("images").at(0).at("time").get<double>() == Approx(0.3));
+  }
+  checkRefused(runCommand(render + " --time 3kg"), "--time '3kg': expected a time in ");
+  checkRefused(runCommand("lumivox reference " + room + " --occlusion-distance 1s -o a.exr"), "such as 0.5m");
+}
+
+TEST_CASE("a seed is a whole number from 0 in every command") {
+  const Place place;
+  const std::string room = place.quoted("room.scene");
+  const std::vector<std::string> commands{
+      "render " + room + " '" + committedPipeline("direct_lighting") + "' -o " + place.quoted("image.exr"),
+      "reference " + room + " -o " + place.quoted("image.exr"), "report " + room, "voxels " + room,
+      "reproduce"};
+  for (const std::string& command : commands)
+    for (const char* seed : {"-1", "1.5", "one", "18446744073709551616"}) {
+      INFO(command << " " << seed);
+      checkRefused(runCommand("lumivox " + command + " --seed " + seed),
+                   std::string("--seed '") + seed + "': expected a whole number from 0");
+    }
+  checkRefused(runCommand("vdbexport " + room + " --list --seed -1"), "--seed '-1'");
+}
+
+TEST_CASE("render, reference, describe and fmt answer in JSON") {
+  const Place place;
+  const std::string room = place.quoted("room.scene");
+  const CommandResult rendered =
+      runCommand("lumivox render " + room + " '" + committedPipeline("direct_lighting") +
+                 "' -q --resolution 8x8 --frames 0..1 --json -o " + place.quoted("image.exr"));
+  INFO(rendered.errors);
+  const Json images = Json::parse(rendered.output).at("images");
+  REQUIRE(images.size() == 2);
+  CHECK(images.at(1).at("frame") == 1);
+  CHECK(images.at(1).at("file") == place.file("image_0001.exr"));
+  CHECK(images.at(1).at("frame_ms").get<double>() > 0.0);
+  const Json reference = Json::parse(
+      runCommand("lumivox reference " + room + " -q --spp 2 --json -o " + place.quoted("reference.exr"))
+          .output);
+  CHECK(reference.at("width") == 24);
+  CHECK(reference.at("samples_per_pixel") == 2);
+  CHECK(std::count(reference.at("layers").begin(), reference.at("layers").end(), "indirect_glossy") == 1);
+  const Json described = Json::parse(runCommand("lumivox describe camera --json").output);
+  CHECK(described.at("word") == "camera");
+  CHECK(described.at("found").size() > 1);
+  const std::string untidy = place.write("untidy.scene", "scene   \"A\" { }\n").string();
+  const CommandResult formatted = runCommand("lumivox fmt --check --json '" + untidy + "' " + room);
+  CHECK(formatted.exitCode == 1);
+  CHECK(Json::parse(formatted.output).at(0).at("changed") == true);
+  CHECK(Json::parse(formatted.output).at(1).at("changed") == false);
+}
+
+TEST_CASE("the grammars of editors have every word of the texts") {
+  const CommandResult textMate = runCommand("lumivox describe --highlighting textmate"),
+                      vim = runCommand("lumivox describe --highlighting vim");
+  REQUIRE(textMate.exitCode == 0);
+  REQUIRE(vim.exitCode == 0);
+  const Json grammar = Json::parse(textMate.output);
+  CHECK(grammar.at("scopeName") == "source.lumivox");
+  CHECK(grammar.at("fileTypes") == Json{"scene", "pipeline", "sweep", "reproduction"});
+  std::string patterns;
+  for (const Json& pattern : grammar.at("patterns"))
+    if (pattern.contains("match")) patterns += "|" + pattern.at("match").get<std::string>();
+  std::replace_if(
+      patterns.begin(), patterns.end(), [](char c) { return c == '(' || c == ')' || c == ':' || c == '?'; },
+      '|');
+  for (const auto* specifications : {&sceneSpecifications(), &pipelineSpecifications(),
+                                     &sweepSpecifications(), &reproductionSpecifications()})
+    for (const std::string& word : dsl::words(*specifications)) {
+      INFO(word);
+      CHECK(contains(patterns, "|" + word + "|"));
+      CHECK(
+          std::regex_search(vim.output, std::regex("syntax keyword lumivox(Block|Property) " + word + "\n")));
+    }
+  checkRefused(runCommand("lumivox describe --highlighting emacs"), "emacs");
+  if (runCommand("command -v vim").exitCode != 0) return skip("vim is not installed");
+  const Place place;
+  const std::string file = place.write("lumivox.vim", vim.output).string();
+  const CommandResult read = runCommand(
+      "vim -u NONE -es -c 'syntax on' -c 'source " + file + "' -c 'redir! > " + place.file("groups.txt") +
+      "' -c 'silent highlight lumivoxBlock' -c 'qa!' " + place.quoted("room.scene"));
+  INFO(read.output << read.errors);
+  CHECK(contains(place.read("groups.txt"), "Keyword"));
+}
