@@ -7,7 +7,6 @@
 
 #include <cstdlib>
 #include <string>
-#include <vector>
 
 #include "lumivox/base/terminal.h"
 #include "support/support.h"
@@ -40,28 +39,6 @@ inline TerminalResult runInTerminal(const std::string& command, int columns) {
   waitpid(child, &status, 0);
   result.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return result;
-}
-
-/// The pieces between line feeds and carriage returns, as wide as they are shown.
-inline std::vector<std::string> piecesOf(const std::string& written) {
-  std::vector<std::string> pieces{""};
-  for (std::size_t i = 0; i < written.size(); ++i) {
-    if (written[i] == '\n' || written[i] == '\r') {
-      pieces.emplace_back();
-    } else if (written.compare(i, 3, "\x1b[K") == 0) {
-      i += 2;
-    } else {
-      pieces.back() += written[i];
-    }
-  }
-  return pieces;
-}
-
-/// The widest line of a text.
-inline std::size_t widestLine(const std::string& text) {
-  std::size_t widest = 0;
-  for (const std::string& piece : piecesOf(text)) widest = std::max(widest, shownWidth(piece));
-  return widest;
 }
 
 }  // namespace lumivox::test

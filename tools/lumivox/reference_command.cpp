@@ -5,6 +5,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/image.h"
+#include "lumivox/base/interruption.h"
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/measure/metrics.h"
@@ -32,6 +33,9 @@ int reference(ReferenceCommand command, const GlobalOptions& global) {
   command.options.progress = !global.quiet;
   const Scene scene = global.loadScene(command.scene);
   scene.camera(command.options.camera);
+  InterruptionNote interruption;
+  interruption.say("interrupted: nothing of a reference is kept before it is done; from the start: " +
+                   global.commandLine);
   LayeredImage reference = command.options.useCache ? cachedReference(scene, command.options)
                                                     : renderReference(scene, command.options);
   const ImageBuffer full = reference.layers.at("full");

@@ -112,6 +112,7 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
   std::size_t findings = 0;
   Json images = Json::array(), found = Json::array();
   InterruptionNote interruption;
+  interruption.say("interrupted before the first image was written");
   BackgroundWriter writer;
   Progress progress("rendering",
                     static_cast<std::uint64_t>(last - first + 1) *
@@ -135,12 +136,12 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
     logInformation("{}: {:.1f} ms", file.string(), result.frameMs);
     images.push_back(
         {{"file", file.string()}, {"frame", frame}, {"time", time}, {"frame_ms", result.frameMs}});
-    // Those before this one are written, or it says which is not.
-    if (animation)
-      interruption.say(fmt::format("interrupted: images before {} are kept; to go on: --frames {}..{} in {}",
-                                   file.string(), frame, last, global.commandLine));
-    writer.submit([&command, file, made = std::move(result), attributes = std::move(attributes)]() mutable {
+    writer.submit([&, frame, file, end = last, made = std::move(result),
+                   attributes = std::move(attributes)]() mutable {
       writeFrame(command, file, std::move(made), attributes);
+      if (frame < end)
+        interruption.say(fmt::format("interrupted: images up to {} are kept; to go on: --frames {}..{} in {}",
+                                     file.string(), frame + 1, end, global.commandLine));
     });
   }
   writer.finish();
