@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 #include <tuple>
 
 #include "lumivox/base/error.h"
@@ -219,13 +220,22 @@ void ResultsStore::State::insertErrors(std::int64_t id, const ReportPoint& point
 /// Inside a transaction.
 bool ResultsStore::State::add(const StoredRun& run, const std::vector<StoredImage>& images, bool complete) {
   if (complete) Statement(database, "DELETE FROM claims WHERE key = ?").run(run.identity.key());
-  Statement(database, "DELETE FROM runs WHERE key = ? AND NOT complete").run(run.identity.key());
+  // A run keeps its number when its times are there.
+  std::optional<std::int64_t> number;
+  if (Statement untimed(database, "SELECT id FROM runs WHERE key = ? AND NOT complete");
+      untimed.bind(run.identity.key()).step())
+    number = untimed.integer(0);
+  if (number) Statement(database, "DELETE FROM runs WHERE id = ?").run(*number);
   // A failure may have had causes that are gone; it gives way to a result.
   if (run.point.failure.empty() && complete)
     Statement(database, "DELETE FROM runs WHERE key = ? AND failure <> ''").run(run.identity.key());
   Statement there(database, "SELECT 1 FROM runs WHERE key = ?");
   if (there.bind(run.identity.key()).step()) return false;
-  const std::int64_t id = insertRun(run, complete);
+  std::int64_t id = insertRun(run, complete);
+  if (number) {
+    Statement(database, "UPDATE runs SET id = ? WHERE id = ?").run(*number, id);
+    id = *number;
+  }
   insertNames(id, run);
   insertTimes(id, run.point);
   insertWork(id, run.point);
