@@ -7,6 +7,7 @@
 #include "lumivox/analysis/judge.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/page/contact_sheet.h"
 #include "lumivox/page/reproduction_page.h"
 #include "support/support.h"
 

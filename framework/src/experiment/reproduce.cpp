@@ -19,8 +19,10 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/voxelizers.h"
+#include "lumivox/measure/exposure.h"
 #include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/ports.h"
+#include "lumivox/reference/emission.h"
 #include "lumivox/results/text.h"
 
 namespace lumivox {
@@ -87,7 +89,7 @@ class Reproduction {
     if (store_ != nullptr) store();
     setUps_.clear();  // their memory, which images may need
     for (const PublishedPanel& panel : result_.published.panels) result_.panels.push_back(show(panel));
-    expose();
+    result_.exposure = meter_.exposure();
     return std::move(result_);
   }
 
@@ -379,6 +381,7 @@ class Reproduction {
       logWarning("{}: {}: {}", result_.published.id, panel.name, error.what());
     }
     if (!shown.image.empty()) {
+      meter(panel, *scene, shown.image);
       const ImageBuffer bright = luminance(shown.image);
       const Health health = scanHealth(bright.values().data(), bright.values().size(), 1);
       shown.meanLuminance =
@@ -444,14 +447,13 @@ class Reproduction {
     return layer->mean;
   }
 
-  /// One exposure for all panels: the brightest of them keeps its lights.
-  void expose() {
-    result_.exposure = 1.0;
-    double smallest = std::numeric_limits<double>::infinity();
-    for (const ShownPanel& panel : result_.panels)
-      if (!panel.image.empty() && panel.meanLuminance > 0.0)
-        smallest = std::min(smallest, static_cast<double>(displayExposure(panel.image)));
-    if (std::isfinite(smallest)) result_.exposure = smallest;
+  /// To the exposure of all panels.
+  void meter(const PublishedPanel& panel, const Scene& scene, const ImageBuffer& image) {
+    // A pass may make images that are none of the camera.
+    const auto [width, height] = sizeOf(panel, scene);
+    const bool seen = image.width() == width && image.height() == height;
+    meter_.add(image, seen ? emittingPixels(scene, snapshotOf(scene, panel.time, panel.camera, width, height))
+                           : std::vector<unsigned char>{});
   }
 
   gpu::Device& device_;
@@ -459,6 +461,7 @@ class Reproduction {
   const ReproduceOptions& options_;
   const std::function<Scene(const fs::path&)>& loadScene_;
   ReproducedResult result_;
+  ExposureMeter meter_;
   std::map<std::pair<fs::path, int>, std::unique_ptr<Scene>> scenes_;  // by file and subdivisions
   std::map<fs::path, std::string> whyAbsent_;
   ResultsStore* store_;
