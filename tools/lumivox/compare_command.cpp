@@ -152,7 +152,7 @@ void addPanels(Sheet& sheet, const LayerPair& pair, const ImageBuffer& image, co
                const ImageBuffer& flipMap, const Display& display) {
   sheet.panels.push_back({shown(pair.first), withoutAlpha(image), display});
   sheet.panels.push_back({"reference: " + shown(pair.second), withoutAlpha(reference), display});
-  sheet.panels.push_back({"FLIP (HDR), from 0 (black) to 1 (yellow)", falseColour(flipMap), {}});
+  sheet.panels.push_back({"FLIP (HDR), 0 to 1", falseColour(flipMap), {}});
 }
 
 int compareFiles(const CompareCommand& command) {

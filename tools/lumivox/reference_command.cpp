@@ -37,8 +37,11 @@ int reference(ReferenceCommand command, const GlobalOptions& global) {
                                                     : renderReference(scene, command.options);
   const ImageBuffer full = reference.layers.at("full");
   const ReferenceOptions& options = command.options;
-  const double exposure = given.value_or(displayExposure(
-      scene, snapshotOf(scene, options.time, options.camera, options.width, options.height), full));
+  ExposureMeter meter;
+  if (!given)
+    meterImage(meter, scene, snapshotOf(scene, options.time, options.camera, options.width, options.height),
+               full);
+  const double exposure = given.value_or(meter.exposure());
   if (extension == ".png") {
     writePng(command.output, full, {exposure, command.display.toneCurve()});
   } else {

@@ -13,9 +13,7 @@
 #include "lumivox/base/log.h"
 #include "lumivox/base/video.h"
 #include "lumivox/experiment/report.h"
-#include "lumivox/measure/exposure.h"
 #include "lumivox/page/contact_sheet.h"
-#include "lumivox/reference/emission.h"
 
 namespace lumivox::command {
 namespace {
@@ -84,7 +82,7 @@ std::uint64_t bytesOf(const FrameResult& frame) {
 std::set<int> spread(int first, int last, int most) {
   std::set<int> frames;
   for (int i = 0; i < most; ++i)
-    frames.insert(first + static_cast<int>(std::lround(double{1} * (last - first) * i / (most - 1))));
+    frames.insert(first + static_cast<int>(std::lround(static_cast<double>(last - first) * i / (most - 1))));
   return frames;
 }
 
@@ -98,9 +96,9 @@ class Metering {
   }
 
   void add(const RenderCommand& command, const Scene& scene, int frame, const FrameResult& result) {
-    const SceneSnapshot snapshot = snapshotOf(scene, command.timeOf(frame), command.run.camera,
-                                              command.run.size().first, command.run.size().second);
-    meter_.add(requireImage(command, result), emittingPixels(scene, snapshot));
+    const auto [width, height] = command.run.size();
+    meterImage(meter_, scene, snapshotOf(scene, command.timeOf(frame), command.run.camera, width, height),
+               mainImage(command, result));
   }
   double exposure() const { return meter_.exposure(); }
 

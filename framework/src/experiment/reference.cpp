@@ -7,7 +7,6 @@
 
 #include "experiment/measure.h"
 #include "lumivox/base/error.h"
-#include "lumivox/measure/exposure.h"
 #include "lumivox/reference/emission.h"
 
 namespace lumivox {
@@ -63,9 +62,11 @@ std::optional<ReferenceLayer> referenceLayer(const LayeredImage& reference, cons
   return sum;
 }
 
-double displayExposure(const Scene& scene, const SceneSnapshot& snapshot, const ImageBuffer& image) {
+void meterImage(ExposureMeter& meter, const Scene& scene, const SceneSnapshot& snapshot,
+                const ImageBuffer& image) {
+  if (image.empty()) return;
   const bool seen = image.width() == snapshot.camera.width && image.height() == snapshot.camera.height;
-  return displayExposure(image, seen ? emittingPixels(scene, snapshot) : std::vector<unsigned char>{});
+  meter.add(image, seen ? emittingPixels(scene, snapshot) : std::vector<unsigned char>{});
 }
 
 }  // namespace lumivox
@@ -124,10 +125,13 @@ const ImageError& SceneReference::errorOfNothing(const std::string& name) {
 }
 
 double SceneReference::exposure() {
-  if (!exposure_)
-    exposure_ = displayExposure(
-        *scene_, snapshotOf(*scene_, options_.time, options_.camera, options_.width, options_.height),
-        layers_.layers.at("full"));
+  if (!exposure_) {
+    ExposureMeter meter;
+    meterImage(meter, *scene_,
+               snapshotOf(*scene_, options_.time, options_.camera, options_.width, options_.height),
+               layers_.layers.at("full"));
+    exposure_ = meter.exposure();
+  }
   return *exposure_;
 }
 

@@ -19,10 +19,8 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/voxelizers.h"
-#include "lumivox/measure/exposure.h"
 #include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/ports.h"
-#include "lumivox/reference/emission.h"
 #include "lumivox/results/text.h"
 
 namespace lumivox {
@@ -381,7 +379,9 @@ class Reproduction {
       logWarning("{}: {}: {}", result_.published.id, panel.name, error.what());
     }
     if (!shown.image.empty()) {
-      meter(panel, *scene, shown.image);
+      // A pass may make images that are none of the camera, of another size.
+      const auto [width, height] = sizeOf(panel, *scene);
+      meterImage(meter_, *scene, snapshotOf(*scene, panel.time, panel.camera, width, height), shown.image);
       const ImageBuffer bright = luminance(shown.image);
       const Health health = scanHealth(bright.values().data(), bright.values().size(), 1);
       shown.meanLuminance =
@@ -445,15 +445,6 @@ class Reproduction {
       return {};
     }
     return layer->mean;
-  }
-
-  /// To the exposure of all panels.
-  void meter(const PublishedPanel& panel, const Scene& scene, const ImageBuffer& image) {
-    // A pass may make images that are none of the camera.
-    const auto [width, height] = sizeOf(panel, scene);
-    const bool seen = image.width() == width && image.height() == height;
-    meter_.add(image, seen ? emittingPixels(scene, snapshotOf(scene, panel.time, panel.camera, width, height))
-                           : std::vector<unsigned char>{});
   }
 
   gpu::Device& device_;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lumivox/gpu/device.h"
+#include "lumivox/measure/exposure.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/plugin/loader.h"
 #include "lumivox/reference/path_tracer.h"
@@ -84,9 +85,10 @@ std::optional<ReferenceLayer> referenceLayer(const LayeredImage& reference, cons
 /// there is none of them.
 ImageBuffer compositeImage(const FrameResult& frame);
 
-/// The exposure of an image of the scene: of what does not emit in it (reference/emission.h). An image of
-/// another size than the snapshot's camera counts as a whole.
-double displayExposure(const Scene& scene, const SceneSnapshot& snapshot, const ImageBuffer& image);
+/// Adds an image of the scene to an exposure, without the pixels that emit (reference/emission.h). Of an
+/// image of another size than the snapshot's camera every pixel counts; an empty one is passed over.
+void meterImage(ExposureMeter& meter, const Scene& scene, const SceneSnapshot& snapshot,
+                const ImageBuffer& image);
 
 /// Renders pruned and unpruned alternately, `repeats` times each after one warm-up. With 0 only the warm-up
 /// is rendered, for the images, the bytes and the variants; nothing is timed.
