@@ -220,7 +220,8 @@ TEST_CASE(
   const CommandResult outputs = runCommand(command);
   INFO(outputs.errors);
   REQUIRE(outputs.exitCode == 0);
-  CHECK(contains(outputs.errors, "4 panels"));  // whole image, direct, indirect_diffuse, indirect_glossy
+  CHECK(contains(outputs.errors,
+                 "4 panels"));  // direct, final, which is the whole image, indirect_diffuse, indirect_glossy
   const ByteImage sheet = readByteImage(place.path() / "- a sheet.png");
   CHECK(sheet.width == 2 * 166 + 6);
   CHECK(place.fileCount() == 5);  // room.obj, room.mtl, room.scene, the cache and the sheet

@@ -1,6 +1,7 @@
 // render: images alone.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -177,7 +178,10 @@ class Files {
     }
     const int width = sheetPanelWidth(static_cast<int>(result.outputs.size()) + 1);
     const ImageBuffer whole = compositeImage(result);
-    if (command_.onlyOutput.empty() && !whole.empty()) add("whole image", whole, width);
+    const bool isOutput = std::any_of(result.outputs.begin(), result.outputs.end(), [&](const auto& output) {
+      return output.second.values() == whole.values();
+    });
+    if (command_.onlyOutput.empty() && !whole.empty() && !isOutput) add("whole image", whole, width);
     for (const auto& [name, image] : result.outputs) {
       const bool shown = image.channels() == 1 || image.channels() == 3;
       if (shown && !image.empty()) add(name, image, width);
