@@ -107,6 +107,23 @@ TEST_CASE("a pipeline names no scenes, and no parameter takes a word of sweeps")
   CHECK_THAT(reserved, Contains("a.pipeline:2:9: 'seeds' is a word of sweeps"));
 }
 
+TEST_CASE("accumulated frames are an axis of every pipeline, of whole numbers from 1 on, and no parameter") {
+  CHECK(valuesOf("frames times 2 in 1..8") == std::vector<std::string>{"1", "2", "4", "8"});
+  const auto points = withSweep("sweep s { frames [1 16]  n [1 2] }\n").sweeps.at(0).points();
+  REQUIRE(points.size() == 4);
+  CHECK(points[2].at("frames").number == 16.0);
+  CHECK_THAT(
+      findingsOf("sweep s { frames [0] }\n"),
+      Contains("a.pipeline:8:19: this value does not fit the parameter 'frames'") && Contains("1..65536"));
+  CHECK_THAT(findingsOf("sweep s { frames [1 2.5] }\n"), Contains("a whole number"));
+  CHECK_THAT(findingsOf("sweep s { frames [2 s] }\n"), Contains("does not fit the parameter 'frames'"));
+  CHECK_THAT(findingsOf("sweep s { frames [many] }\n"), Contains("does not fit the parameter 'frames'"));
+  const std::string reserved = test::messageOf<DiagnosticsError>([] {
+    Pipeline::parse("pipeline \"P\" {\n  param frames 1\n  pass a t.p { n $frames }\n}\n", "a.pipeline");
+  });
+  CHECK_THAT(reserved, Contains("a.pipeline:2:9: 'frames' is a word of sweeps"));
+}
+
 TEST_CASE("the table of the sweep texts has the words that the reader knows") {
   const std::vector<std::string> words = dsl::words(sweepSpecifications());
   CHECK(std::set<std::string>(words.begin(), words.end()) ==

@@ -51,8 +51,12 @@ class SweepPlan {
           std::make_unique<LoadedPipeline>(withSettings(*share.pipeline, options_.measure.settings)));
       all.push_back(loaded_.back().get());
       if (!options_.measure.openSweeps) share.sweep.axes.clear();
-      wanted.emplace_back(&text.sweeps[share.block],
-                          pointsOfSweeps(all.back()->pipeline, all.back()->settings, {share.sweep}));
+      const bool progressive = isProgressive(*share.pipeline, techniques_);
+      if (std::string note = withoutFrames(*share.pipeline, {share.sweep}, progressive); !note.empty())
+        summary.notes.push_back(std::move(note));
+      wanted.emplace_back(
+          &text.sweeps[share.block],
+          pointsOfSweeps(all.back()->pipeline, all.back()->settings, {share.sweep}, progressive));
     }
     requireKnownSettings(all, options_.measure.settings);
     for (std::size_t i = 0; i < wanted.size(); ++i)

@@ -23,6 +23,16 @@ dsl::PropertySpecification listOf(const char* word, bool required, const char* m
   return specification;
 }
 
+/// What an axis of accumulated frames takes, as if it were a parameter of every pipeline.
+PipelineParameter accumulatedFrames() {
+  PipelineParameter frames;
+  frames.name = kAccumulatedFrames;
+  frames.value.number = 1.0;
+  frames.low = 1.0;
+  frames.high = kMostAccumulatedFrames;
+  return frames;
+}
+
 /// A sum or product without the last digits that binary fractions leave: 0.3, not 0.30000000000000004.
 double rounded(double value) {
   return std::stod(fmt::format("{:.12g}", value));
@@ -256,14 +266,18 @@ Sweep fittedSweep(const SweepBlock& block, const Pipeline& pipeline, const dsl::
   sweep.isList = block.isList;
   sweep.seeds = block.seeds;
   for (const SweepAxis& axis : block.axes) {
-    const PipelineParameter* parameter = findParameter(pipeline, axis.parameter);
+    static const PipelineParameter kFrames = accumulatedFrames();
+    const PipelineParameter* parameter =
+        axis.parameter == kFrames.name ? &kFrames : findParameter(pipeline, axis.parameter);
     if (parameter == nullptr) {
       lacking.push_back(&axis);
       continue;
     }
     std::vector<ParameterValue> values;
     for (const SweepValue& one : axis.values) {
-      const std::string misfit = parameter->misfit(one.value);
+      std::string misfit = parameter->misfit(one.value);
+      if (misfit.empty() && parameter == &kFrames && one.value.number != std::floor(one.value.number))
+        misfit = "must be a whole number";
       if (misfit.empty()) {
         values.push_back(one.value);
         values.back().dimension = parameter->value.dimension;
@@ -307,7 +321,8 @@ dsl::BlockSpecification sweepSpecification(SweepHome home) {
   static const char* const kAxes =
       "Each parameter has a list, `resolution [16 32 64]`, or steps, `resolution times 2 in 16..64` and `cones "
       "plus 2 in 4..12`. The points are the grid over all axes, or with `sweep NAME list { ... }` those along "
-      "them: the first values together, then the second ones; an axis of one value holds for all.";
+      "them: the first values together, then the second ones; an axis of one value holds for all. The axis `frames` is "
+      "no parameter: a pipeline that accumulates is measured after so many frames of the still scene.";
   dsl::BlockSpecification sweep;
   sweep.word = "sweep";
   sweep.name = dsl::HeaderUse::required;

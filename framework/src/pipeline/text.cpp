@@ -186,7 +186,7 @@ class TextReader : TextFindings {
              fmt::format("the default of '{}' is {}, which does not fit", parameter.name, value->text()),
              misfitExpectation(misfit));
     }
-    for (const char* word : {kSweptScenes, kSweptPipelines, kSweptSeeds}) {
+    for (const char* word : {kSweptScenes, kSweptPipelines, kSweptSeeds, kAccumulatedFrames}) {
       if (parameter.name == word)
         report(values[0].place, values[0].length, fmt::format("'{}' is a word of sweeps", word),
                "another name for the parameter");

@@ -52,6 +52,10 @@ struct PipelineParameter {
   std::string misfit(const ParameterValue& candidate) const;
 };
 
+/// An axis of sweeps that is no parameter: how many frames of the still scene are accumulated, from 1 on.
+inline constexpr const char* kAccumulatedFrames = "frames";
+inline constexpr int kMostAccumulatedFrames = 1 << 16;
+
 /// `sweep NAME { parameter [values] ... }`: the grid over its lists. `sweep NAME list { ... }`: the points
 /// along them, the first values of all lists together, then the second ones.
 struct Sweep {

@@ -49,10 +49,9 @@ struct WorkBound {
   double ms = 0.0;
 };
 
-/// The axis of a progressive pipeline: how many frames of the still scene it accumulates, as a parameter of
-/// the points that take more than one.
-inline constexpr const char* kAccumulatedFrames = "frames";
-int framesOf(const ParameterValues& parameters);  ///< 1 without the axis
+/// The frames that a point accumulates (kAccumulatedFrames is among its parameters where these are more than
+/// one); 1 without the axis.
+int framesOf(const ParameterValues& parameters);
 
 /// One sweep point: both error and time, in one record.
 struct ReportPoint {
