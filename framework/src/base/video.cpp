@@ -140,6 +140,7 @@ void VideoWriter::finish() {
   if (!s.encoder) throw Error(fmt::format("{}: a video needs at least one frame", s.file.string()));
   s.encoder->closeInput();
   s.requireSuccess();
+  if (!fs::exists(s.encoded())) throw Error(fmt::format("{}: ffmpeg wrote no video", s.file.string()));
   writeFileAtomically(s.file, readFile(s.encoded(), kLargestVideo));
 }
 

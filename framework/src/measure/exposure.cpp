@@ -41,7 +41,7 @@ double ExposureMeter::exposure() const {
   }
   constexpr double kSteps = 100.0;  // per EV
   const double exposure = std::round(kSteps * (std::log2(kKey) - sum / static_cast<double>(count))) / kSteps;
-  return std::clamp(exposure, -kLargestExposure, kLargestExposure);
+  return std::clamp(exposure, -kLargestExposure, kLargestExposure) + 0.0;  // no minus zero
 }
 
 double displayExposure(const ImageBuffer& image, std::span<const unsigned char> emitting) {
