@@ -25,14 +25,14 @@ SceneBuilder panel(bool towards) {
 
 }  // namespace
 
-TEST_CASE("a pixel emits where its centre shows the shining side of an area light, and nowhere else") {
+TEST_CASE("a pixel emits where it or a neighbour shows the shining side of an area light, and nowhere else") {
   const SceneBuilder front = panel(true), back = panel(false);
   const std::vector<unsigned char> pixels = emittingPixels(front.scene, snapshotOf(front.scene, 0.0));
   REQUIRE(pixels.size() == 1600);
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 40; ++x) {
       CAPTURE(x, y);
-      REQUIRE(int{pixels[static_cast<std::size_t>(40 * y + x)]} == (x >= 10 && x < 30 && y >= 10 && y < 30));
+      REQUIRE(int{pixels[static_cast<std::size_t>(40 * y + x)]} == (x >= 9 && x <= 30 && y >= 9 && y <= 30));
     }
   CHECK(countOf(emittingPixels(back.scene, snapshotOf(back.scene, 0.0))) == 0);
 }
@@ -51,9 +51,13 @@ TEST_CASE("pixels that emit are those in which the reference without any further
   const LayeredImage reference = renderReference(scene, options);
   const std::vector<unsigned char> pixels = emittingPixels(scene, snapshotOf(scene, 0.0));
   REQUIRE(countOf(pixels) > 5);
-  // The lamp of 15 W/(sr m2) is far brighter than what it lights.
-  std::size_t apart = 0;
-  for (std::size_t i = 0; i < pixels.size(); ++i)
-    apart += (pixels[i] != 0) != (reference.layers.at("direct").values()[3 * i] > 7.5f) ? 1 : 0;
-  CHECK(apart <= 4);  // on its silhouette
+  // The lamp of 15 W/(sr m2) is far brighter than what it lights, also in a hundredth of a pixel.
+  std::size_t shining = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const bool shines = reference.layers.at("direct").values()[3 * i] > 7.5f;
+    shining += shines ? 1 : 0;
+    if (shines) CHECK(int{pixels[i]} == 1);
+  }
+  REQUIRE(shining > 5);
+  CHECK(countOf(pixels) < 4 * shining);
 }

@@ -224,7 +224,7 @@ TEST_CASE(
                  "4 panels"));  // direct, final, which is the whole image, indirect_diffuse, indirect_glossy
   const ByteImage sheet = readByteImage(place.path() / "- a sheet.png");
   CHECK(sheet.width == 2 * 166 + 6);
-  CHECK(place.fileCount() == 5);  // room.obj, room.mtl, room.scene, the cache and the sheet
+  CHECK(place.fileCount() == 4);  // room.obj, room.mtl, room.scene and the sheet
   const CommandResult frames = runCommand(command + " --frames 0..5 --resolution 30x20");
   REQUIRE(frames.exitCode == 0);
   CHECK(contains(frames.errors, "6 panels"));

@@ -124,12 +124,14 @@ ImageBuffer thumbnail(const ImageBuffer& image, const Display& display, int most
 ImageBuffer contactSheet(const Sheet& wanted) {
   const int count = static_cast<int>(wanted.panels.size());
   if (count == 0) throw Error(fmt::format("{}: there are no panels for a sheet", wanted.title));
-  int width = kLeast, height = 0;
+  int widest = 0, height = 0;
   for (const SheetPanel& panel : wanted.panels) {
-    width = std::max(width, panel.image.width());
+    widest = std::max(widest, panel.image.width());
     height = std::max(height, panel.image.height());
   }
-  if (height == 0) height = width * 3 / 4;  // nothing but reasons
+  const int width = std::max(kLeast, widest);
+  if (widest > 0) height = height * width / widest;  // small images are enlarged
+  if (height == 0) height = width * 3 / 4;           // nothing but reasons
   const int columns = columnsOf(count, wanted.columns);
   const int rows = (count + columns - 1) / columns;
   std::size_t nameLines = 1;

@@ -7,9 +7,10 @@
 
 namespace lumivox {
 
-/// For each pixel of the snapshot's camera, row by row from the top, 1 where the ray through its centre meets
-/// the shining side of an emissive surface, or nothing while the environment shines; else 0. Empty when the
-/// scene has neither, without any ray. Media are passed through.
+/// For each pixel of the snapshot's camera, row by row from the top, whether it shows something that shines:
+/// 1 where the ray through its centre meets the shining side of an emissive surface, and in the eight pixels
+/// around it, since a silhouette is a mixture; 1 where it meets nothing while the environment shines; else 0.
+/// Empty when the scene has neither, without any ray. Media are passed through.
 std::vector<unsigned char> emittingPixels(const Scene& scene, const SceneSnapshot& snapshot);
 
 }  // namespace lumivox
