@@ -23,7 +23,8 @@ std::vector<unsigned char> emittingPixels(const Scene& scene, const SceneSnapsho
       reference::Hit hit;
       if (!rays.closestHit(camera.eye, direction, hit))
         emits[y * width + x] = traits.environment ? 1 : 0;
-      else if (rays.emissionTowards(rays.triangles[hit.triangle], direction) != glm::vec3(0.0f))
+      else if (const reference::TriangleRecord& triangle = rays.triangles[hit.triangle];
+               rays.materials[triangle.material].emissive && glm::dot(triangle.normal, direction) < 0.0f)
         lamps[y * width + x] = 1;
     }
   });
