@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kDirect = 1.0f;
 
-/// What it paints comes nearer to the reference with every frame.
+/// A pass whose image comes nearer to the reference with every frame.
 class Progressive : public Toy {
  public:
   using Toy::Toy;

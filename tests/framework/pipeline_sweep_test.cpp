@@ -85,9 +85,9 @@ TEST_CASE("seeds of a sweep are whole numbers, each once, beside parameters or a
   CHECK(pipeline.sweeps[1].points()[0].empty());
   const std::string wrong = findingsOf("sweep s { seeds [1 1 -2 0.5 many] }\n");
   CHECK_THAT(wrong, Contains("a.pipeline:8:20: the seed 1 is given twice"));
-  CHECK_THAT(wrong, Contains("a.pipeline:8:22: this is no seed"));
-  CHECK_THAT(wrong, Contains("a.pipeline:8:25: this is no seed"));
-  CHECK_THAT(wrong, Contains("a.pipeline:8:29: this is no seed"));
+  CHECK_THAT(wrong, Contains("a.pipeline:8:22: this is not a seed"));
+  CHECK_THAT(wrong, Contains("a.pipeline:8:25: this is not a seed"));
+  CHECK_THAT(wrong, Contains("a.pipeline:8:29: this is not a seed"));
 }
 
 TEST_CASE("a list of unequal axes, an unknown kind and a sweep with too many points are refused") {
@@ -104,7 +104,7 @@ TEST_CASE("a pipeline names no scenes, and no parameter takes a word of sweeps")
   const std::string reserved = test::messageOf<DiagnosticsError>([] {
     Pipeline::parse("pipeline \"P\" {\n  param seeds 1\n  pass a t.p { n $seeds }\n}\n", "a.pipeline");
   });
-  CHECK_THAT(reserved, Contains("a.pipeline:2:9: 'seeds' is a word of sweeps"));
+  CHECK_THAT(reserved, Contains("a.pipeline:2:9: 'seeds' is a reserved word of sweeps"));
 }
 
 TEST_CASE("accumulated frames are an axis of every pipeline, of whole numbers from 1 on, and no parameter") {
@@ -121,7 +121,7 @@ TEST_CASE("accumulated frames are an axis of every pipeline, of whole numbers fr
   const std::string reserved = test::messageOf<DiagnosticsError>([] {
     Pipeline::parse("pipeline \"P\" {\n  param frames 1\n  pass a t.p { n $frames }\n}\n", "a.pipeline");
   });
-  CHECK_THAT(reserved, Contains("a.pipeline:2:9: 'frames' is a word of sweeps"));
+  CHECK_THAT(reserved, Contains("a.pipeline:2:9: 'frames' is a reserved word of sweeps"));
 }
 
 TEST_CASE("the table of the sweep texts has the words that the reader knows") {

@@ -118,7 +118,7 @@ async function main(file) {
   for (const control of body.tag("select", "input")) {
     const at = control.value, values = control.tagName === "INPUT" ? [control.attributes.min, control.attributes.max]
       : control.tag("option").map(option => option.attributes.value).filter(value => value !== at);
-    // What is drawn is told apart by the images that are drawn.
+    // Drawings are told apart by the images that are drawn.
     body.tag("canvas").forEach(canvas => { canvas.calls.length = 0; });
     let before = seen(), changed = 0;
     for (const value of values) {

@@ -173,7 +173,7 @@ std::vector<unsigned char> displayBytes(const ImageBuffer& linear, const Display
 
 std::string encodePng(const ImageBuffer& linear, const Display& display) {
   const std::size_t rowBytes = static_cast<std::size_t>(linear.width()) * kChannels;
-  requireMemory(4 * linear.pixelCount() * kChannels, "a PNG while it is made");
+  requireMemory(4 * linear.pixelCount() * kChannels, "encoding a PNG");
   const std::string data = zlibStream(filtered(displayBytes(linear, display), rowBytes));
   constexpr std::size_t kLongestChunk = 0x7fffffff;  // Sec. 5.3
   if (data.size() > kLongestChunk) {

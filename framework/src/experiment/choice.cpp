@@ -63,7 +63,7 @@ std::vector<const LoadedPipeline*> PipelineChoice::forScene(
   const auto folder = committedScenes(scene.file.parent_path());
   if (!folder)
     throw Error(fmt::format(
-        "{}: no folder 'pipelines' beside the scene and no project around here; name one with --pipeline",
+        "{}: no folder 'pipelines' beside the scene and no project in this folder or above; name one with --pipeline",
         scene.file.string()));
   std::vector<LoadedPipeline>& all = committed_[*folder];
   if (all.empty()) all = loadAll(pipelinesIn(*folder / "pipelines"), options_.settings);

@@ -199,8 +199,8 @@ std::string withoutFrames(const Pipeline& pipeline, const std::vector<Sweep>& sw
     return std::any_of(sweep.axes.begin(), sweep.axes.end(), isFrames);
   });
   if (progressive || !swept) return {};
-  return fmt::format("pipeline \"{}\" does not accumulate and goes without the axis '{}'", pipeline.name,
-                     kAccumulatedFrames);
+  return fmt::format("pipeline \"{}\" does not accumulate and is measured without the axis '{}'",
+                     pipeline.name, kAccumulatedFrames);
 }
 
 std::vector<PlannedPoint> plannedPoints(const Pipeline& pipeline, const ParameterValues& settings,

@@ -25,7 +25,7 @@ std::vector<PlannedPoint> plannedPoints(const Pipeline& pipeline, const Paramete
 /// The points of these sweeps alone.
 std::vector<PlannedPoint> pointsOfSweeps(const Pipeline& pipeline, const ParameterValues& settings,
                                          const std::vector<Sweep>& sweeps, bool progressive);
-/// "pipeline "X" does not accumulate and goes without the axis 'frames'", where a sweep has that axis; else
+/// "pipeline "X" does not accumulate and is measured without the axis 'frames'", where a sweep has that axis; else
 /// empty.
 std::string withoutFrames(const Pipeline& pipeline, const std::vector<Sweep>& sweeps, bool progressive);
 

@@ -23,7 +23,7 @@ dsl::PropertySpecification listOf(const char* word, bool required, const char* m
   return specification;
 }
 
-/// What an axis of accumulated frames takes, as if it were a parameter of every pipeline.
+/// The values of an axis of accumulated frames, as if it were a parameter of every pipeline.
 PipelineParameter accumulatedFrames() {
   PipelineParameter frames;
   frames.name = kAccumulatedFrames;
@@ -50,7 +50,7 @@ class SweepReader : TextFindings {
     for (const dsl::Item& item : block.items) {
       anything = true;
       if (item.block) {
-        report(item.block->place, item.block->word, "a sweep holds no blocks", "parameter [values]");
+        report(item.block->place, item.block->word, "a sweep cannot contain blocks", "parameter [values]");
       } else if (item.property->word == kSweptSeeds) {
         readSeeds(*item.property);
       } else if (item.property->word == kSweptScenes || item.property->word == kSweptPipelines) {
@@ -112,7 +112,7 @@ class SweepReader : TextFindings {
                          item.number >= 0.0 && item.number <= kLargestSeed;
       const auto seed = whole ? static_cast<std::uint64_t>(item.number) : 0;
       if (!whole) {
-        report(item.place, item.length, "this is no seed", "whole numbers from 0 to 2^53");
+        report(item.place, item.length, "this is not a seed", "whole numbers from 0 to 2^53");
       } else if (std::find(sweep_.seeds.begin(), sweep_.seeds.end(), seed) != sweep_.seeds.end()) {
         report(item.place, item.length, fmt::format("the seed {} is given twice", seed));
       } else {
@@ -135,7 +135,8 @@ class SweepReader : TextFindings {
     std::vector<std::filesystem::path>& files = scenes ? sweep_.scenes : sweep_.pipelines;
     for (const dsl::Value& item : *items) {
       if (item.kind != dsl::ValueKind::text && item.kind != dsl::ValueKind::word) {
-        report(item.place, item.length, "this names no file", "a path beside the text, in double quotes");
+        report(item.place, item.length, "this is not the name of a file",
+               "a path beside the text, in double quotes");
         continue;
       }
       const std::filesystem::path file = besideText(item);
@@ -189,7 +190,7 @@ class SweepReader : TextFindings {
         fmt::format("{} {} in LOW..HIGH", property.word, multiplies ? "times 2" : "plus 8");
     const bool shaped = values.size() == 4 && values[1].kind == dsl::ValueKind::number &&
                         values[2].isPlainWord() && values[2].text == "in" && isNumberRange(values[3]);
-    if (!shaped) return report(property.place, property.word, "steps are not written like this", form);
+    if (!shaped) return report(property.place, property.word, "malformed steps", form);
     const dsl::Value& low = values[3].items[0];
     const dsl::Value& high = values[3].items[1];
     const dsl::Dimension dimension = low.unit ? low.unit->dimension : dsl::kNoDimension;
@@ -232,7 +233,7 @@ class SweepReader : TextFindings {
         report(axis.place, axis.parameter,
                fmt::format("'{}' has {} values, but '{}' has {}", axis.parameter, axis.values.size(),
                            longest->parameter, points),
-               "as many in every axis of a list, or one that holds for all");
+               "as many in every axis of a list, or one value for all");
     }
   }
 
@@ -321,8 +322,8 @@ dsl::BlockSpecification sweepSpecification(SweepHome home) {
   static const char* const kAxes =
       "Each parameter has a list, `resolution [16 32 64]`, or steps, `resolution times 2 in 16..64` and `cones "
       "plus 2 in 4..12`. The points are the grid over all axes, or with `sweep NAME list { ... }` those along "
-      "them: the first values together, then the second ones; an axis of one value holds for all. The axis `frames` is "
-      "no parameter: a pipeline that accumulates is measured after so many frames of the still scene.";
+      "them: the first values together, then the second ones; an axis of one value applies to all. The axis `frames` "
+      "is not a parameter: a pipeline that accumulates is measured after that many frames of the still scene.";
   dsl::BlockSpecification sweep;
   sweep.word = "sweep";
   sweep.name = dsl::HeaderUse::required;
@@ -333,8 +334,8 @@ dsl::BlockSpecification sweepSpecification(SweepHome home) {
   } else {
     sweep.meaning = fmt::format(
         "`sweep NAME {{ scenes [...] pipelines [...] parameter [values] }}`: what `lumivox sweep` measures, every "
-        "pipeline at every point on every scene. {} A pipeline without one of the parameters goes without that "
-        "axis, which is said.",
+        "pipeline at every point on every scene. {} A pipeline without one of the parameters is measured "
+        "without that axis, with a note.",
         kAxes);
     sweep.required = true;
     sweep.properties = {listOf(kSweptScenes, true, "files of scenes, beside the text"),

@@ -80,9 +80,9 @@ struct ReferenceLayer {
 };
 std::optional<ReferenceLayer> referenceLayer(const LayeredImage& reference, const std::string& name);
 
-/// What an output adds to the whole image: the output named "final" or contributing final if there is one,
-/// else the sum of the radiance components (direct, indirect_diffuse, indirect_glossy, scattered). Empty when
-/// there is none of them.
+/// The part of the whole image that an output adds: the output named "final" or contributing final if there
+/// is one, else the sum of the radiance components (direct, indirect_diffuse, indirect_glossy, scattered).
+/// Empty when there is none of them.
 ImageBuffer compositeImage(const FrameResult& frame);
 
 /// Adds an image of the scene to an exposure, without the pixels that emit (reference/emission.h). Of an

@@ -14,7 +14,7 @@ struct ReportFiles {
 /// cannot be written or the packaged chart library is absent.
 ReportFiles reportFiles(const std::filesystem::path& page);
 
-/// Every number of the page stands in the JSON, but for those that a reader makes of others.
+/// Every number of the page is in the JSON, but for those that a reader derives from others.
 void writeReport(const ReportFiles& files, const ReportRecord& record);
 
 }  // namespace lumivox

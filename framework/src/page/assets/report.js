@@ -133,7 +133,7 @@
       h("h3", null, "Bias and noise apart"),
       caption("What the RMSE is made of: the squares of bias, of the image's own noise and of the reference's noise add up to the mean square "
         + "over seeds. More samples or more frames take the image's noise away, never the bias. Techniques without random numbers have "
-        + "none; two seeds alone tell noise only roughly, and the uncertainties are then bounds."
+        + "none; two seeds alone estimate the noise only roughly, and the uncertainties are then bounds."
         + (moves ? " Flicker: RMS of the changes from frame to frame, 1/24 s apart, that the reference does not make, its noise taken off." : "")
         + " All in W/(sr m²), ± one standard uncertainty."),
       parts(true), others && folded("Other points of the sweeps", parts(false))];
@@ -324,7 +324,7 @@
   show(
     h("header", null, h("h1", null, "Lumivox report"),
       h("p", { class: "soft" }, "How wrong, how fast, and what was left out. Measured on " + data.device.renderer + ", " + data.date
-        + ". The same numbers stand in the .csv and .json files beside this page." + outOfTime),
+        + ". The same numbers are in the .csv and .json files beside this page." + outOfTime),
       h("nav", null, link("summary", "Summary"), link("needed", "What was needed"),
         data.scenes.map((scene, index) => link("scene-" + index, sceneTitle(scene))), data.voxels && link("voxels", "Voxels"),
         data.stress && link("stress", "Where it breaks"), link("device", "Device and contents"))),
