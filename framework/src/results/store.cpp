@@ -167,6 +167,7 @@ void ResultsStore::State::insertNames(std::int64_t id, const StoredRun& run) {
     provenance.run(id, "flicker", fmt::format("{} pairs", run.identity.flickerPairs), "");
   if (!run.point.whyNotCounted.empty()) provenance.run(id, "not_counted", run.point.whyNotCounted, "");
   for (const std::string& output : run.identity.kept) provenance.run(id, "kept", output, "");
+  if (!run.identity.display.empty()) provenance.run(id, "display", run.identity.display, "");
   for (const auto& [name, hash] : run.identity.techniques) provenance.run(id, "technique", name, hash);
   Statement health(database, "INSERT INTO health VALUES (?,?,?)");
   int position = 0;
@@ -317,6 +318,7 @@ void ResultsStore::State::readNames(StoredRun& run) const {
     if (kind == "flicker") run.identity.flickerPairs = std::atoi(provenance.text(1).c_str());
     if (kind == "not_counted") run.point.whyNotCounted = provenance.text(1);
     if (kind == "kept") run.identity.kept.push_back(provenance.text(1));
+    if (kind == "display") run.identity.display = provenance.text(1);
     if (kind == "scene") run.identity.sceneHash = hash;
     if (kind == "pipeline") run.identity.pipelineHash = hash;
     if (kind == "framework") run.identity.framework = hash;
