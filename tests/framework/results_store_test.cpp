@@ -120,6 +120,7 @@ TEST_CASE("a second run with the same key is not stored, but a result takes the 
   failed.point.failure = "4 GiB do not fit";
   failed.point.errors.clear();
   CHECK(store.add(failed));
+  CHECK(store.find(key)->id == 1);  // the number that the untimed one had
   CHECK_FALSE(store.add(failed));
   CHECK(store.add(runNumber(6)));
   CHECK_FALSE(store.add(failed));
@@ -439,6 +440,7 @@ TEST_CASE("a run without times is known to nobody but who goes on with it, and g
   StoredRun failed = run;
   failed.point.failure = "it did not fit";
   CHECK(store.add(failed));
+  CHECK(store.find(key)->id == 1);  // the number that the untimed one had
   CHECK_FALSE(store.findUntimed(key));
   CHECK(store.images(key).empty());
   store.addUntimed(run);
