@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/table.h"
+#include "lumivox/base/display.h"
 #include "lumivox/gpu/device.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/plugin/loader.h"
@@ -56,6 +57,20 @@ struct RunOptions {
   RenderOptions renderOptions(const Pipeline& pipeline) const;
 };
 
+/// How images are displayed, in every command that makes one or takes a measure that depends on it.
+struct DisplayOptions {
+  std::string exposure = "auto", tone = "srgb";
+
+  void addTo(CLI::App& app);
+  void addExposureTo(CLI::App& app);  ///< alone: of commands that only measure
+  void addToneTo(CLI::App& app);
+  std::optional<double> given() const;  ///< EV; nothing for auto. Error otherwise
+  Tone toneCurve() const { return toneNamed(tone); }
+};
+
+/// Of an EXR file: EV at which its scene is displayed.
+inline constexpr const char* kExposureAttribute = "lumivox.exposure_ev";
+
 /// This command line as a shell would read it, with the program's plain name in front.
 std::string asTyped(const std::string& program, int count, char** arguments);
 
@@ -93,6 +108,9 @@ CLI::Option* addSeed(CLI::App& app, std::uint64_t& seed,
 
 /// "640x360"; Error otherwise.
 std::pair<int, int> parseResolution(const std::string& text);
+
+/// Refuses (Error that names the option) a name that does not end in .png.
+void requirePng(const std::string& option, const std::filesystem::path& file);
 
 /// Frames of an animation: "3..9" or "3"; both ends belong to it. `option` is named in the Error otherwise.
 std::pair<int, int> parseFrames(const std::string& option, const std::string& text);

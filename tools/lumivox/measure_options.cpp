@@ -18,6 +18,7 @@ void MeasureOptions::addTo(CLI::App& app, const std::string& store, const std::s
   addRepeatable(app, "--pipeline", options.pipelines,
                 "a pipeline's text; may be repeated (default: every committed one that suits the scene)");
   run.addTo(app);
+  display.addExposureTo(app);
   app.add_option("--spp", options.referenceSamples,
                  "the reference's samples per pixel (default: by the size of the image)")
       ->check(CLI::Range(1, 1 << 24));
@@ -54,6 +55,8 @@ ReportOptions MeasureOptions::asked(const GlobalOptions& global, const std::stri
   asked.time = run.time;
   asked.seed = run.seed;
   std::tie(asked.width, asked.height) = run.size();
+  asked.exposure = display.given();
+  asked.tone = display.toneCurve();
   asked.openSweeps = !noSweep;
   asked.commandLine = global.commandLine;
   asked.repeatArguments = repeatArguments(global);

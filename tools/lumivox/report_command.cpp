@@ -83,6 +83,10 @@ void printSummary(const ReportSummary& summary) {
         formatMilliseconds(pruning.unprunedMs.median), formatPercent(pruning.savedShareNext()),
         formatMilliseconds(pruning.nextUnprunedMs.median - pruning.nextPrunedMs.median),
         formatMilliseconds(pruning.nextUnprunedMs.median), pruning.sameImage ? "yes" : "NO");
+  for (const auto& [scene, display] : summary.displays)
+    text += fmt::format("{}: images, SSIM and LDR-FLIP at {}, tone {}\n",
+                        std::filesystem::path(scene).stem().string(), exposureText(display.exposure),
+                        name(display.tone));
   if (summary.takenUp > 0)
     text += fmt::format("{} of {} points were taken up from an interrupted report\n", summary.takenUp,
                         summary.points.size());
@@ -129,6 +133,7 @@ void addReportCommand(Commands& commands) {
       *command, "--budget", all->measure.options.budgetSeconds,
       "time for measuring, such as 30s or 5min, counted when the references are there: all default points, "
       "then as many points of the sweeps as there is time for (default: no limit)");
+  all->measure.display.addToneTo(*command);
   command
       ->add_option("--voxels", all->measure.options.voxelResolution,
                    "adds a section on the voxelizers at this resolution (default: none)")
