@@ -85,7 +85,7 @@ std::string basisText(const PipelineComparison& comparison) {
   for (const auto& [pipeline, as] : comparison.same)
     text += fmt::format("{} comes to the same passes as {} in this scene\n", shortName(pipeline), shortName(as));
   if (comparison.equalForAll)
-    text += "all pipelines have the same error at their default parameters: it tells nothing apart\n";
+    text += "all pipelines have a point with the same error, to the bit: this light tells nothing apart\n";
   if (comparison.undecided > 0)
     text += fmt::format(
         "{} of {} points have fewer than {} timed frames or seeds: whether they are better is undecided\n",

@@ -135,17 +135,14 @@ std::string contentKey(const StoredRun& run) {
   return key;
 }
 
-bool isEqualForAll(const PipelineComparison& comparison, const std::vector<const ReportPoint*>& points) {
-  std::set<std::size_t> pipelines;
-  double low = std::numeric_limits<double>::infinity(), high = 0.0;
-  for (const ComparedPoint& point : comparison.points) {
-    if (!points[point.source]->sweep.empty()) continue;
-    pipelines.insert(point.pipeline);
-    low = std::min(low, point.tradeOff.error.value);
-    high = std::max(high, point.tradeOff.error.value);
-  }
-  return pipelines.size() > 1 && pipelines.size() == comparison.pipelines.size() &&
-         high - low <= kSameErrorShare * high;
+bool isEqualForAll(const PipelineComparison& comparison) {
+  if (comparison.pipelines.size() < 2) return false;
+  std::vector<std::set<double>> errors(comparison.pipelines.size());
+  for (const ComparedPoint& point : comparison.points) errors[point.pipeline].insert(point.tradeOff.error.value);
+  return std::any_of(errors[0].begin(), errors[0].end(), [&](double error) {
+    return std::all_of(errors.begin(), errors.end(),
+                       [&](const std::set<double>& own) { return own.count(error) != 0; });
+  });
 }
 
 /// The better it tells pipelines apart, the more.
@@ -309,7 +306,7 @@ PipelineComparison comparePipelines(const std::vector<const ReportPoint*>& point
   comparison.errors = limitsOr(limits.errors, rangeOf(tradeOffs, &TradeOff::error));
   fillTables(comparison, tradeOffs);
   fillRanges(comparison);
-  comparison.equalForAll = isEqualForAll(comparison, points);
+  comparison.equalForAll = isEqualForAll(comparison);
   return comparison;
 }
 

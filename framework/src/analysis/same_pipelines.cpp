@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace lumivox {
 namespace {
@@ -31,28 +30,30 @@ bool same(const ReportPoint& a, const ReportPoint& b) {
 
 struct OnePipeline {
   std::string file;
-  const ReportPoint* defaults = nullptr;
-  std::set<std::vector<std::string>> passes;  ///< at all of its points
+  std::vector<const ReportPoint*> points;
 };
 
+/// Those with the fewest parameters first.
 std::vector<OnePipeline> pipelinesOf(const std::vector<const ReportPoint*>& points) {
   std::vector<OnePipeline> pipelines;
   for (const ReportPoint* point : points) {
-    if (!point->failure.empty() || point->passOrder.empty()) continue;
+    if (!point->failure.empty() || point->passOrder.empty() || point->errors.empty()) continue;
     auto own = std::find_if(pipelines.begin(), pipelines.end(),
                             [&](const OnePipeline& one) { return one.file == point->pipeline; });
-    if (own == pipelines.end()) own = pipelines.insert(pipelines.end(), {point->pipeline, nullptr, {}});
-    if (point->sweep.empty() && own->defaults == nullptr) own->defaults = point;
-    own->passes.insert(passesOf(*point));
+    if (own == pipelines.end()) own = pipelines.insert(pipelines.end(), {point->pipeline, {}});
+    own->points.push_back(point);
   }
-  const auto lacksDefaults = [](const OnePipeline& one) {
-    return one.defaults == nullptr || one.defaults->errors.empty();
-  };
-  pipelines.erase(std::remove_if(pipelines.begin(), pipelines.end(), lacksDefaults), pipelines.end());
   std::stable_sort(pipelines.begin(), pipelines.end(), [](const OnePipeline& a, const OnePipeline& b) {
-    return a.defaults->parameters.size() < b.defaults->parameters.size();
+    return a.points.front()->parameters.size() < b.points.front()->parameters.size();
   });
   return pipelines;
+}
+
+bool holdsAll(const OnePipeline& other, const OnePipeline& one) {
+  return std::all_of(one.points.begin(), one.points.end(), [&](const ReportPoint* point) {
+    return std::any_of(other.points.begin(), other.points.end(),
+                       [&](const ReportPoint* candidate) { return same(*point, *candidate); });
+  });
 }
 
 }  // namespace
@@ -61,14 +62,9 @@ std::map<std::string, std::string> samePipelines(const std::vector<const ReportP
   std::map<std::string, std::string> result;
   const std::vector<OnePipeline> pipelines = pipelinesOf(points);
   for (std::size_t i = 0; i < pipelines.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) {
-      const OnePipeline &one = pipelines[i], &other = pipelines[j];
-      if (result.count(other.file) != 0 || !same(*one.defaults, *other.defaults) ||
-          !std::includes(other.passes.begin(), other.passes.end(), one.passes.begin(), one.passes.end()))
-        continue;
-      result[one.file] = other.file;
-      break;
-    }
+    for (std::size_t j = 0; j < i && result.count(pipelines[i].file) == 0; ++j)
+      if (result.count(pipelines[j].file) == 0 && holdsAll(pipelines[j], pipelines[i]))
+        result[pipelines[i].file] = pipelines[j].file;
   return result;
 }
 

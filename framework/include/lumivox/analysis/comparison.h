@@ -66,8 +66,8 @@ struct PipelineComparison {
   std::size_t undecided = 0;
   /// Pipelines that are not among these, and the one that each comes to the same passes as: samePipelines().
   std::map<std::string, std::string> same;
-  /// The default points of all pipelines, two at least, have the same error within kSameErrorShare: it tells
-  /// nothing apart. Direct light that all pipelines share, for instance.
+  /// Every pipeline, of two at least, has a point with one and the same error, to the bit: the component tells
+  /// nothing apart. Direct light that all pipelines make with the same passes, for instance.
   bool equalForAll = false;
 
   /// Whether some of its points are on the Pareto front: no other pipeline beats it at their budgets.
@@ -79,9 +79,6 @@ struct ComparisonLimits {
   std::vector<double> budgetsMs, errors;
   TimeFloor floor = {};  ///< of the device that the points were timed on
 };
-
-/// Errors that lie within this share of each other are the same.
-inline constexpr double kSameErrorShare = 0.005;
 
 /// Names of the components that pipelines can be compared in: first those that tell techniques apart, the
 /// indirect ones; the last is "final", the whole image.

@@ -67,10 +67,15 @@ const comparisonOf = (function () {
     const all = datasets.flatMap(set => set.data);
     const times = all.flatMap(point => [point.low, point.high]).filter(value => value > 0);
     const errors = all.flatMap(point => [point.y, point.y + point.uncertainty, point.y - point.uncertainty]).filter(value => value > 0);
-    // A tenth of the span on both sides, of a factor of 1.2 at least.
+    // A tenth of the span on both sides. What spans little is shown as it is, else ticks would be missing.
     const fitted = values => {
-      const low = Math.min(...values), high = Math.max(...values), space = Math.max(1.02, Math.pow(high / low, 0.1), 1.2 / (high / low));
-      return { min: low / space, max: high * space };
+      const low = Math.min(...values), high = Math.max(...values);
+      if (high < 3 * low) {
+        const space = Math.max(0.1 * (high - low), 0.01 * high);
+        return { type: "linear", min: Math.max(0, low - space), max: high + space };
+      }
+      const space = Math.pow(high / low, 0.1);
+      return { type: "logarithmic", min: low / space, max: high * space };
     };
     const x = fitted(times), y = fitted(errors);
     const steps = comparison.front.map(at => ({ x: comparison.points[at].frame_ms.median, y: comparison.points[at].error.value }));
@@ -83,15 +88,19 @@ const comparisonOf = (function () {
       options: {
         animation: false, maintainAspectRatio: false,
         scales: {
-          x: { type: "logarithmic", title: { display: true, text: "frame time, ms" }, ...x, ticks: { maxRotation: 0, autoSkipPadding: 16, callback: tick } },
-          y: { type: "logarithmic", title: { display: true, text: metrics[comparison.metric] + (unit && ", " + unit) }, ...y,
-               ticks: { autoSkipPadding: 10, callback: tick } } },
+          x: { title: { display: true, text: "frame time, ms" }, ...x, ticks: { maxRotation: 0, autoSkipPadding: 16, callback: tickOf(x) } },
+          y: { title: { display: true, text: metrics[comparison.metric] + (unit && ", " + unit) }, ...y,
+               ticks: { autoSkipPadding: 10, callback: tickOf(y) } } },
         plugins: {
           legend: { display: false },
           tooltip: { filter: item => item.raw.text !== undefined,
                      callbacks: { label: item => item.dataset.label + ", " + item.raw.text } } } } };
   }
-  const tick = value => number(value);
+  // Of an axis that begins and ends anywhere the ends have no numbers of their own.
+  const tickOf = axis => value => {
+    const nice = axis.type === "linear" ? value !== axis.min && value !== axis.max : [1, 2, 5].includes(Number(value.toExponential().split("e")[0]));
+    return nice ? number(value) : null;
+  };
 
   // ---- tables
 
@@ -102,7 +111,7 @@ const comparisonOf = (function () {
       .filter(([name, value]) => others.some(other => other.parameters[name] !== value))));
   }
   const columns = (...titles) => titles.map(title => typeof title === "string" ? { title } : { title: title[0], kind: title[1] });
-  const named = file => [swatch(file), " ", pipelineName(file)];
+  const named = file => [swatch(file), pipelineName(file)];
 
   /** From which budget on which pipeline has the least error. */
   function rangeTable(comparison) {
@@ -187,9 +196,9 @@ const comparisonOf = (function () {
       const own = comparison.points.filter(one => one.file === point.pipeline);
       if (point.failure) return h("span", { class: "bad" }, "failed");
       if (own.length === 0) return soft("has none of it");
-      if (own.some(one => one.beaten_by === null)) return h("span", { class: "good" }, "on the front");
-      const by = new Set(own.map(one => comparison.points[one.beaten_by]).filter(one => one.file !== point.pipeline).map(one => one.file));
-      return ["beaten by ", [...by].slice(0, 1).map(pipelineName), by.size > 1 && " and " + (by.size - 1) + " more"];
+      if (own.some(one => one.beaten_by === null)) return h("span", { class: "good" }, "on it");
+      const by = [...new Set(own.map(one => comparison.points[one.beaten_by]).filter(one => one.file !== point.pipeline).map(one => shortName(one.file)))];
+      return h("span", { title: "by " + listed(by) }, "beaten");
     };
     const rows = points.map(point => {
       const error = errorNumber(errorOf(point, comparison.component, comparison.against === "bias" ? "bias" : "miss"), metric);
@@ -206,15 +215,15 @@ const comparisonOf = (function () {
     });
     const last = value => isNumber(value) ? value : Infinity;
     rows.sort((a, b) => last(a.value) === last(b.value) ? 0 : last(a.value) - last(b.value));
-    return table(columns("Pipeline", ["Frame, ms", "number"], [metrics[metric] + ", " + titleOf(comparison), "number"],
-                         ...(isWhole(comparison) ? [] : [[metrics[metric] + ", whole image against full transport", "number"]]),
-                         ["Memory", "number"], ["Leaving out saves", "number"], "Error and time"), rows);
+    return table(columns("Pipeline", ["Frame, ms", "number"], [metrics[metric] + ", " + lightOf(comparison), "number"],
+                         ...(isWhole(comparison) ? [] : [[metrics[metric] + ", whole image", "number"]]),
+                         ["Memory", "number"], ["Leaving out saves", "number"], "Front"), rows);
   }
 
   // ---- what is shown first
 
-  const titleOf = comparison => componentTitle(comparison.component).toLowerCase() + " against "
-    + (comparison.component === "final" && comparison.against === "bias" ? "one's own bounces" : against[comparison.against]);
+  const lightOf = comparison => componentTitle(comparison.component).toLowerCase();
+  const titleOf = comparison => lightOf(comparison) + " against " + against[comparison.against];
 
   /** What the claims of a scene's fronts rest on. */
   function basis(scene) {
@@ -270,7 +279,7 @@ const comparisonOf = (function () {
       follow(() => place.replaceChildren(h("div", null, make())));
       return place;
     };
-    const legend = following(() => h("ul", { class: "legend" }, chosen().pipelines.map(one => h("li", null, swatch(one.file), " ", shortName(one.file)))));
+    const legend = following(() => h("ul", { class: "legend" }, chosen().pipelines.map(one => h("li", null, swatch(one.file), shortName(one.file)))));
     return {
       plot: h("figure", { class: "plot" }, choices, drawn.frame, legend,
         h("figcaption", null, "Down and to the left is better. Filled: on the Pareto front. Grey: least error within a time. Bars: quartiles of "

@@ -50,9 +50,11 @@ const lumivox = (function () {
    *  cells, or { cells, kind, pipeline, isDefault }. */
   function table(columns, rows) {
     const body = h("tbody");
+    // Default points stand out where there are others.
+    const mixed = rows.some(row => row.isDefault === false);
     const lines = rows.map((row, at) => {
       const { cells, kind, pipeline, isDefault } = Array.isArray(row) ? { cells: row } : row;
-      const line = h("tr", { class: kind || null }, cells.map((cell, index) =>
+      const line = h("tr", { class: (kind === "default" && isDefault && !mixed ? null : kind) || null }, cells.map((cell, index) =>
         h("td", { class: columns[index].kind, "data-title": columns[index].title }, isSorted(cell) ? cell.show : cell)));
       const keys = cells.map((cell, index) => isSorted(cell) ? cell.value : line.children[index].textContent);
       return { line, keys, at, pipeline, isDefault };
@@ -113,7 +115,8 @@ const lumivox = (function () {
   const significant = (value, digits) => String(Number(value.toPrecision(digits)));
   const number = value => isNumber(value) ? significant(value, 3) : "-";
   const oneDigit = value => isNumber(value) ? significant(value, 1) : "-";
-  const milliseconds = value => !isNumber(value) ? "-" : Math.abs(value) >= 99.95 ? value.toFixed(0) : significant(value, 3);
+  const milliseconds = value => !isNumber(value) ? "-" : Math.abs(value) >= 99.95 ? value.toFixed(0)
+    : Math.abs(value) >= 1e-3 ? value.toPrecision(3) : significant(value, 3);
   const percent = share => isNumber(share) ? (100 * share).toFixed(1) + " %" : "-";
   function bytes(count) {
     if (!isNumber(count)) return "-";

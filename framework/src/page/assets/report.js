@@ -10,7 +10,7 @@
   const bad = text => h("span", { class: "bad" }, text);
   const columns = (...titles) => titles.map(title => typeof title === "string" ? { title } : { title: title[0], kind: title[1], hidden: title[2] === "hidden" });
   const plural = (count, one, many) => count + " " + (count === 1 ? one : many || one + "s");
-  const named = file => [swatch(file), " ", pipelineName(file)];
+  const named = file => [swatch(file), pipelineName(file)];
   const rowOf = (point, cells) => ({ kind: point.default ? "default" : "", pipeline: point.pipeline, isDefault: point.default, cells });
 
   /** The parameters in which a point differs from the default one of its pipeline; all of them in the title. */
@@ -161,7 +161,7 @@
         h("div", { class: "bar-parts", role: "img", "aria-label": shortName(point.pipeline) + ": " + parts(point).map(part => part.name + " " + text(part.value)).join(", ") },
           parts(point).map(part => h("span", { class: part.kind, style: "width:" + (100 * part.value / most).toFixed(3) + "%", title: part.name + ": " + text(part.value) }))),
         h("div", { class: "bar-total" }, text(sums[at])))),
-      h("ul", { class: "legend" }, [...used].map(([name, kind]) => h("li", null, h("span", { class: "key " + kind }), " ", broken(name)))));
+      h("ul", { class: "legend" }, [...used].map(([name, kind]) => h("li", null, h("span", { class: "key " + kind }), broken(name)))));
   }
 
   /** The operations that there are most of: "12.3 M texture samples d3 rgba16f mips; 4.56 M buffer reads". */
@@ -284,17 +284,17 @@
     const id = name => "scene-" + index + (name ? "-" + name : "");
     const compared = comparisonOf(scene);
     const sections = images.brief ? [] : [
-      ["fronts", "Fronts, equal time, equal error", compared.sections],
-      ["images", "Images, reference and FLIP maps", imagesOf.all(scene, index)],
-      ["errors", "Error numbers", errors(scene)], ["noise", "Bias and noise apart", noise(scene)],
-      ["slopes", "Convergence", slopes(scene)], ["times", "Time and memory per pass", times(scene)],
-      ["needed", "What was needed", needed(scene)], ["health", "Health", health(scene)],
-      ["commands", "Parameters and commands", commands(scene)], ["reference", "The reference and its noise", reference(scene)]]
-      .filter(([, , content]) => content !== null);
+      ["fronts", "Fronts", "Fronts, equal time, equal error", compared.sections],
+      ["images", "Images", "Images, reference and FLIP maps", imagesOf.all(scene, index)],
+      ["errors", "Errors", "Error numbers", errors(scene)], ["noise", "Noise", "Bias and noise apart", noise(scene)],
+      ["slopes", "Convergence", "Convergence", slopes(scene)], ["times", "Time and memory", "Time and memory per pass", times(scene)],
+      ["needed", "What was needed", "What was needed", needed(scene)], ["health", "Health", "Health", health(scene)],
+      ["commands", "Commands", "Parameters and commands", commands(scene)],
+      ["reference", "Reference", "The reference and its noise", reference(scene)]].filter(([, , , content]) => content !== null);
     return h("section", { class: "scene", "aria-label": sceneTitle(scene) },
       h("div", { class: "scene-bar", id: id() }, h("h2", null, sceneTitle(scene)),
-        sections.length > 0 && h("nav", { "aria-label": "sections of " + sceneTitle(scene) }, sections.map(([name, title]) => link(id(name), title)))),
-      overview(scene, index, compared), sections.map(([name, title, content]) => section(id(name), title, content)));
+        sections.length > 0 && h("nav", { "aria-label": "sections of " + sceneTitle(scene) }, sections.map(([name, brief]) => link(id(name), brief)))),
+      overview(scene, index, compared), sections.map(([name, , title, content]) => section(id(name), title, content)));
   }
 
   // ---- all scenes together
@@ -348,14 +348,13 @@
   }
 
   const left = data.scenes.reduce((sum, scene) => sum + scene.left_out_points.length, 0);
-  const outOfTime = left === 0 ? "" : `. Measured within a budget of ${data.budget_s} s, default points first: for ${plural(left, "point")} of sweeps there `
-    + "was no time";
+  const outOfTime = left === 0 ? "" : `; no time for ${plural(left, "point")} of sweeps in ${data.budget_s} s`;
   const voxels = data.voxels && !images.brief, stress = data.stress && !images.brief;
   show(
     h("header", { class: "bar" }, h("h1", null, "Lumivox report"),
       h("nav", { "aria-label": "parts of the report" }, data.scenes.map((scene, index) => link("scene-" + index, sceneTitle(scene))),
-        link("summary", "All scenes and points"), voxels && link("voxels", "Voxels"), stress && link("stress", "Where it breaks"),
-        link("device", "Device and contents")),
+        link("summary", "All points"), voxels && link("voxels", "Voxels"), stress && link("stress", "Where it breaks"),
+        link("device", "Device")),
       h("p", { class: "soft" }, data.device.renderer + ", " + data.date + outOfTime)),
     h("main", null, data.scenes.map(sceneParts),
       h("section", { class: "rest", "aria-label": "all scenes" }, summary(),
