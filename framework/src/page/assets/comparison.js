@@ -251,6 +251,11 @@ const comparisonOf = (function () {
     }).join("");
   }
 
+  /** The points for which there was no time; null: none. */
+  const leftOut = scene => scene.left_out_points.length === 0 ? null : lumivox.folded(
+    `For ${scene.left_out_points.length} points of the sweeps there was no time within the budget of ${data.budget_s} s`,
+    list(scene.left_out_points.map(point => shortName(point.pipeline) + ": " + parametersText(point.parameters))));
+
   /** Of a scene: { plot, defaults, follow, chosen, sections }; null plot: there is nothing to compare. `follow` is told whenever
    *  something else is chosen. */
   return function (scene) {
@@ -259,7 +264,7 @@ const comparisonOf = (function () {
     const followers = [];
     const nothing = scene.components.filter(component => !comparisons.some(one => one.component === component));
     if (!led || led.front.length === 0)
-      return { plot: h("p", null, "No pipeline has an error to compare by."), defaults: null, chosen: () => null, follow: () => {}, equal: null, sections: null };
+      return { plot: h("p", null, "No pipeline has an error to compare by."), defaults: null, chosen: () => null, follow: () => {}, equal: null, sections: leftOut(scene) };
     const keyOf = one => one.component + "/" + one.against;
     let key = keyOf(led), metric = led.metric;
     const chosen = () => comparisons.find(one => keyOf(one) === key && one.metric === metric) || led;
@@ -293,9 +298,7 @@ const comparisonOf = (function () {
           + "of its own beats: the tables interpolate along them." + basis(scene)),
         Object.keys(scene.same_passes).length > 0 && list(Object.entries(scene.same_passes).map(([file, as]) =>
           shortName(file) + " comes to the same passes as " + shortName(as) + " in this scene, and is not compared apart.")),
-        scene.left_out_points.length > 0 && lumivox.folded(
-          `For ${scene.left_out_points.length} points of the sweeps there was no time within the budget of ${data.budget_s} s`,
-          list(scene.left_out_points.map(point => shortName(point.pipeline) + ": " + parametersText(point.parameters)))),
+        leftOut(scene),
         nothing.length > 0 && caption("Nothing to compare: " + nothing.map(componentTitle).join(", ")
           + " has no error, since neither the reference nor any image has such light."),
         caption("In the tables below the logarithm of the error is linear in that of the time between two measured points of one "
