@@ -1,6 +1,6 @@
-# What makes a first build short: headers that many sources include are read once and kept precompiled, and sources of the framework and of the
-# tools are compiled several at a time. No source relies on either: each includes what it uses, and the presets "debug" and "sanitize"
-# compile each alone. Techniques are always compiled file by file: they are what changes.
+# Measures that make a first build short: headers that many sources include are read once and kept precompiled, and sources of the framework
+# and of the tools are compiled several at a time. No source relies on either: each includes what it uses, and the presets "debug" and "sanitize"
+# compile each alone. Techniques are always compiled file by file, since they change most often.
 # lumivox_precompile(TARGET [HEADERS headers...] [FROM other]): a set of headers of the target's own, or that of another target.
 # lumivox_compile_together(TARGET): several sources at a time.
 # lumivox_compile_quickly(TARGET...): with less optimisation, for what spends its time in other code: commands, records, pages, plans.

@@ -1,6 +1,6 @@
-# What `cmake --install build --prefix P` copies, after `ninja -C build sdk`: programs, libraries, headers, the CMake package, and below
-# share/lumivox what they read: shaders/common, scenes, templates, guides. Libraries are found relative to each other, and data relative to
-# the program, so that P may lie anywhere and be moved.
+# Files that `cmake --install build --prefix P` copies, after `ninja -C build sdk`: programs, libraries, headers, the CMake package, and
+# below share/lumivox what they read: shaders/common, scenes, templates, guides. Libraries are found relative to each other, and data
+# relative to the program, so that P may lie anywhere and be moved.
 include(CMakePackageConfigHelpers)
 
 set(data share/lumivox)

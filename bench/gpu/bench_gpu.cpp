@@ -1,5 +1,5 @@
-// What a frame costs the host: draws, and the bounds of what moves. bench_gpu [draws] [vertices] [repeats],
-// or bench_gpu --quick
+// The cost of a frame on the host: draws, and the bounds of what moves. bench_gpu [draws] [vertices]
+// [repeats], or bench_gpu --quick
 //
 // The draws are those of the g-buffer: one for each part of the scene, each of one triangle that covers no
 // more than a pixel, so that the host has most of the work.

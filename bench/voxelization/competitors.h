@@ -1,4 +1,4 @@
-// What the voxelizers are compared with: loops over triangles on the CPU, and OpenVDB.
+// Competitors of the voxelizers: loops over triangles on the CPU, and OpenVDB.
 #pragma once
 
 #include <cstdint>

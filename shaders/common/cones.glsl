@@ -6,7 +6,7 @@
 
 const float kOpaque = 0.999;  // what lies behind this opacity adds less than a thousandth
 
-// What is seen through `front`.
+// The colour and opacity of `back` seen through `front`.
 vec4 over(vec4 front, vec4 back) { return front + (1.0 - front.a) * back; }
 
 // Half of a cone's diameter over its height.

@@ -1,7 +1,7 @@
 // Means that do not depend on the order of what is averaged, which is that of the threads: each item adds its share of the mean as an
 // integer, and integer sums are the same in any order (Crassin & Green 2012, Sec. 22.4, but exact):
 //   sum over items of round(value * weight * unit),  |value| <= 1 and weights that sum to 1, so that the sum fits into 32 bits.
-// What is larger is divided by a range first, best by that of its own voxel, so that a dark one beside a very bright one keeps its light.
+// Larger values are divided by a range first, best by that of its own voxel, so that a dark one beside a very bright one keeps its light.
 #ifndef LUMIVOX_INTEGER_MEAN
 #define LUMIVOX_INTEGER_MEAN
 

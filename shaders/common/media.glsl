@@ -111,7 +111,7 @@ vec3 opticalDepth(vec3 origin, vec3 direction, float reach, int mostSteps) {
   return depth;
 }
 
-// What is left of a light sample's light on its way to a point.
+// The transmittance of a light sample's light on its way to a point.
 vec3 transmittanceToLight(LightSample light, vec3 posWorld, int mostSteps) {
   vec3 direction;
   float reach;

@@ -14,7 +14,7 @@ struct ObjectData {
   mat4 normalToWorld;  // upper 3x3
 };
 
-// What one draw is of.
+// The data of one draw.
 layout(std140, binding = 0) uniform Draw {
   int objectIndex;
   int materialIndex;

@@ -1,5 +1,5 @@
 #version 450
-// What the camera sees: the attributes of the nearest surface, in linear units.
+// The visible surfaces: the attributes of the nearest surface, in linear units.
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
 #pragma lumivox axis GLOSSY 0 1

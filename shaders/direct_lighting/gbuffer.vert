@@ -1,5 +1,5 @@
 #version 450
-// What the camera sees: geometry stage.
+// The visible surfaces: geometry stage.
 #define SCENE_VERTICES
 #include "common/scene.glsl"
 

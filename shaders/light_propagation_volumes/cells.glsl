@@ -9,7 +9,7 @@ const float kSideFace = (2.0 / 3.0 * kPi - kFarFace) / 4.0;
 const float kAlong = 0.89442719099991588;   // 2 / sqrt 5
 const float kAcross = 0.44721359549995794;  // 1 / sqrt 5
 
-// What leaves a cell of intensity I(w) = c . Y(w) across one of its faces is the sum over the five faces of the neighbour behind it,
+// The flux that leaves a cell of intensity I(w) = c . Y(w) through one of its faces is the sum over the neighbour's five other faces,
 //   solid angle * I(direction of its centre) = kCrossing0 c0 + kCrossing1 c1 . n,  n the normal of the face.
 const float kCrossing0 = (kFarFace + 4.0 * kSideFace) * kY0;
 const float kCrossing1 = (kFarFace + 4.0 * kAlong * kSideFace) * kY1;

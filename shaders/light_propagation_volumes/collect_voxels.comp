@@ -79,8 +79,8 @@ void main() {
         ivec3 cell = home;
         cell[u] = cellU;
         cell[v] = cellV;
-        // What lies before the true place of a wall that was moved comes before it. What lies beyond is not there: a fragment is as large as
-        // its voxel, wherever its surface ends.
+        // Fragments before the true place of a moved wall come before it. Those beyond do not exist: a fragment is as large as its voxel,
+        // wherever its surface ends.
         vec3 middle = position;
         middle[u] = 0.5 * float(max(first.x, kParts * cellU) + min(last.x, kParts * cellU + kParts - 1) + 1) / float(kParts);
         middle[v] = 0.5 * float(max(first.y, kParts * cellV) + min(last.y, kParts * cellV + kParts - 1) + 1) / float(kParts);

@@ -1,7 +1,7 @@
-// What the voxels of Doghramachi 2013 keep of their surfaces (thesis 004 Sec. 4.3.1, Listings 4.27 to 4.29), as integers so that the order
-// does not matter: a mean and a most contrasting albedo, and for each of four groups of normals, those nearest to one face of a
-// tetrahedron, the mean normal and position and the covered parts. Deviates from the published atomic maximum (packed_voxels.glsl): a mean
-// depends on all surfaces.
+// The surface data of Doghramachi 2013's voxels (thesis 004 Sec. 4.3.1, Listings 4.27 to 4.29), as integers so that the order does not
+// matter: a mean and a most contrasting albedo, and for each of four groups of normals, those nearest to one face of a tetrahedron, the
+// mean normal and position and the covered parts. Deviates from the published atomic maximum (packed_voxels.glsl): a mean depends on all
+// surfaces.
 #include "common/integer_mean.glsl"
 #include "parts.glsl"
 #include "tetrahedron.glsl"

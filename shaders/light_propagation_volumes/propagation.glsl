@@ -1,4 +1,4 @@
-// What both shaders of the propagation share.
+// Common parts of both shaders of the propagation.
 #include "cells.glsl"
 
 layout(constant_id = 0) const int cosineLobe = 0;  // 1: flux leaves again as a clamped cosine around the face, as published

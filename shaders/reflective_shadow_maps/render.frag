@@ -62,6 +62,6 @@ void main() {
   }
   outPosition = vec4(posWorld, 1.0);
   outNormal = vec4(normal, crossSection / max(dot(geometricNormal, toLight), kSmallestCosine));
-  // What arrives in the cross-section, whatever the slant: exact also where the patch is seen edge-on.
+  // The flux through the cross-section, whatever the slant: exact also where the patch is seen edge-on.
   outFlux = vec4(albedo * perpendicular * crossSection, float(lightIndex));
 }

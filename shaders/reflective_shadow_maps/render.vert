@@ -1,5 +1,5 @@
 #version 450
-// What a light sees: geometry stage.
+// The view of a light: geometry stage.
 #define SCENE_VERTICES
 #include "common/scene.glsl"
 

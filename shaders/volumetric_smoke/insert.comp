@@ -76,7 +76,7 @@ void main() {
       }
   if (most <= 0.0) return;  // inside something solid
 
-  // What rounding leaves over goes to the densest voxel, so that the mass is whole.
+  // The remainder of rounding goes to the densest voxel, so that the mass is whole.
   uint given = 0u;
   for (int z = first.z; z <= last.z; ++z)
     for (int y = first.y; y <= last.y; ++y)

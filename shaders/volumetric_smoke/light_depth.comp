@@ -1,5 +1,5 @@
 #version 450
-// What the media that vary let through between every point of a grid and every light sample, one slab of the texture a light: what a march
+// Transmittance of the varying media between every point of a grid and every light sample, one slab of the texture a light: what a march
 // from each sample of each ray would find, once a frame. Not the depth: between a point in thick smoke and one outside of it, half of the
 // light is a better guess than half of the depth, which lets nothing through.
 #pragma lumivox axis MEDIUM even varying

@@ -28,7 +28,7 @@ float dither(ivec2 texel) {
   return pattern[texel.x & 3][(size.y - 1 - texel.y) & 3];
 }
 
-// What Listing 4.52 finds in the grid: at most one particle counts.
+// The amount that Listing 4.52 finds in the grid: at most one particle counts.
 float amountAt(vec3 posWorld) {
   float amount = 0.0;
   for (int i = 0; i < mediumCount; ++i) {

@@ -55,7 +55,7 @@ vec4 slab(vec4 value, float length) {
 // The usual case, two whole children along each axis, without loops: the mean over four columns, each seen from both its ends.
 vec4 pair(vec4 a, vec4 b) { return over(a, b) + over(b, a); }
 
-// What the three axes see as one value.
+// One value from those of the three axes.
 vec4 facing(vec4 x, vec4 y, vec4 z) {
   float largest = max(x.a, max(y.a, z.a));
   if (largest <= 0.0) return vec4(0.0);

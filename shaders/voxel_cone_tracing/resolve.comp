@@ -64,7 +64,7 @@ void main() {
   if (isOccupied(brick, item % 64u)) imageStore(radianceImage, voxel, surfacesIn(sums[sumsOf(brick, item % 64u)]));
 }
 #else
-// What arrives at a point from all sides, W/m^2, and is not lost on the way.
+// The light that reaches a point from all sides, W/m^2.
 vec3 fluence(vec3 posWorld) {
   vec3 sum = vec3(0.0);
 #if LIGHTS

@@ -6,7 +6,7 @@
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 
-// What a fragment of coverage 1 adds to the sum of coverages of a voxel with so many.
+// The share that a fragment of coverage 1 adds to the sum of coverages of a voxel with so many.
 uint fullShare(uint fragments) { return shareOf(1.0 / float(fragments)); }
 
 #ifdef AVERAGING

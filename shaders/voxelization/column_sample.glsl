@@ -21,13 +21,13 @@ vec3 barycentric(mat3 corners, vec2 point) {
   return mix(result, kMiddle, toMiddle > kInset ? kInset / toMiddle : 1.0);
 }
 
-// What the triangle leaves in a column: the fragment of every voxel there, but for its place.
+// The sample of the triangle in a column: the fragment of every voxel there, but for its place.
 struct ColumnSample {
   vec3 centre;  // point of the triangle nearest to the middle of the column
   VoxelFragment fragment;
 };
 
-// What all fragments of a material share.
+// The part that all fragments of a material share.
 VoxelFragment fragmentOf(MaterialData material) {
   VoxelFragment fragment;
   fragment.voxel = fragment.offset = fragment.normal = 0u;

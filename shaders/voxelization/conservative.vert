@@ -24,7 +24,7 @@ layout(location = 6) flat out int dominantAxis;
 layout(location = 7) flat out vec2 cornerTexcoords[3];
 #endif
 
-// What decides is the exact test of each voxel: the rasteriser must only miss none. It places corners on a grid of 1/256 pixel or finer.
+// The exact test of each voxel decides: the rasteriser must only miss none. It places corners on a grid of 1/256 pixel or finer.
 const float kEnlarged = 0.5 + 1.0 / 64.0;
 
 // Corner `k` of the triangle enlarged by half a pixel (Hasselgren et al. 2005, Sec. 42.2): the crossing of its two shifted edges.

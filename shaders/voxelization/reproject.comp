@@ -54,7 +54,7 @@ void main() {
   fragment.emission = packShared(radiance);
   fragments[index] = fragment;
 #if REFLECTED
-  // What it emits itself is another's part.
+  // Its own emission is added elsewhere.
   reflected[index] = packShared(max(texelFetch(direct, pixel, 0).rgb - radiance, 0.0));
 #endif
 }

@@ -65,7 +65,7 @@ Overlap overlapOf(mat3 corners, ivec3 size) {
   return o;
 }
 
-// What is not a number lies in no interval.
+// NaN lies in no interval.
 bool within(mat3 axes, mat3 ranges, vec2 centre) {
   vec3 value = vec3(dot(axes[0].xy, centre), dot(axes[1].xy, centre), dot(axes[2].xy, centre));
   return value.x >= ranges[0].x && value.x <= ranges[0].y && value.y >= ranges[1].x && value.y <= ranges[1].y && value.z >= ranges[2].x &&

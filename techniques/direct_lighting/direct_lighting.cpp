@@ -85,7 +85,7 @@ class ShadowMapPass : public Pass {
   Param<int> size{this, "size", 512, within(16, 8192),
                   "texels along a side of the view of a light without extent"};
   Param<int> areaSamples{this, "area_samples", 16, within(1, 1024),
-                         "point samples that stand for all emissive triangles together"};
+                         "point samples that represent all emissive triangles together"};
   Param<int> areaSize{this, "area_size", 128, within(16, 4096),
                       "texels along a side of each cube face of an area sample"};
   Out<ShadowMap> depth{this, "depth", "every light as point samples, with depth seen from each"};

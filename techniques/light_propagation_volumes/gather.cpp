@@ -1,4 +1,4 @@
-// What the surfaces receive from the grids, and what they give on to reflections: thesis Gomes 2015,
+// Light that surfaces receive from the grids, and that they pass on to reflections: thesis Gomes 2015,
 // Sec. 4.3.4 and 4.3.5.
 #include <fmt/format.h>
 
@@ -35,14 +35,14 @@ class GatherPass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<ShGrid> light{this, "light", "all light that passed each cell"};
   In<OccludedFaces> faces{this, "faces", Presence::optional,
-                          "what surfaces close; needed with 'lookup reachable'"};
+                          "the faces that surfaces occlude; needed with 'lookup reachable'"};
   Param<float> blend{this, "blend", kBlendCells, within(0.5f, 64.0f),
                      "cells over which a grid is blended into the coarser one"};
   Param<float> offset{this, "offset", 1.0f, within(0.0f, 4.0f),
                       "of the lookup from the surface along its normal, in cells"};
   Param<float> exponent{
       this, "exponent", 1.0f, within(0.1f, 10.0f),
-      "of the radiance before the albedo, a matter of taste (Listing 4.36); 1 conserves energy"};
+      "of the radiance before the albedo, an artistic choice (Listing 4.36); 1 conserves energy"};
   Param<Negative> negative{
       this, "negative", Negative::closure,
       "two bands can make irradiance negative: keep what the two sides of a surface differ by, and neither below 0; or cut off"};
@@ -62,7 +62,7 @@ class GatherPass : public Pass {
                      "indirect light reflected by the diffuse lobe, W/(sr m^2)"};
   Out<Image> clipped{
       this, "clipped", Contributes::nothing, Needs::nothing,
-      "radiance that two bands made negative, before it was mended, as positive values, W/(sr m^2)"};
+      "radiance that two bands made negative, before its correction, as positive values, W/(sr m^2)"};
 
   void run(PassContext& frame) override {
     requireFlux(*light);
@@ -115,7 +115,7 @@ class GatherPass : public Pass {
     const double all = sum(light), negative = sum(cut);
     if (all > 0.0)
       frame.note(
-          fmt::format("{:.2g} % of the light of the image was negative in two bands before it was mended",
+          fmt::format("{:.2g} % of the light of the image was negative in two bands before its correction",
                       100.0 * negative / all));
   }
 };

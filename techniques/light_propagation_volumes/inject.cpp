@@ -78,7 +78,7 @@ class Inject : public Pass {
   }
 
  protected:
-  /// What surfaces close; without it nothing but the packed voxels occludes.
+  /// The faces that surfaces occlude; without them only the packed voxels occlude.
   virtual bool findsFaces() const { return true; }
   /// Virtual lights to the coefficients of the cells.
   virtual void fillCells(PassContext& frame, const ShGrid::Level& level, OccludedFaces::Level& surfaces) {
@@ -112,10 +112,10 @@ class Inject : public Pass {
       this, "lobe", Lobe::forward,
       "what a virtual light sends out: nothing backwards, or, as published, a clamped cosine, of which two bands let a seventh out at the back"};
   Out<ShGrid> light{this, "light", "virtual point lights, W/sr"};
-  Out<OccludedFaces> faces{this, "faces", "what surfaces close of the faces between the cells"};
+  Out<OccludedFaces> faces{this, "faces", "the faces between the cells that surfaces occlude"};
 
  private:
-  /// The faces that surfaces close, and how far these were moved.
+  /// The faces that surfaces occlude, and how far these were moved.
   void findFaces(PassContext& frame, OccludedFaces::Level& level) {
     const GridPlacement& grid = level.grid;
     if (fragments->grid.voxelSize > grid.voxelSize * 1.001f)

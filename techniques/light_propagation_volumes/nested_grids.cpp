@@ -96,7 +96,7 @@ const gpu::TextureRef& facesOrUnread(const gpu::TextureRef& faces, const ShGrid:
 void requireFlux(const ShGrid& light) {
   if (light.quantity != ShGrid::Quantity::flux || light.unit != 1.0f)
     throw Error(fmt::format(
-        "input 'light' holds {} in units of {}; expected the flux of each cell in units of 1 W/sr, "
+        "input 'light' contains {} in units of {}; expected the flux of each cell in units of 1 W/sr, "
         "as light_propagation_volumes.inject_rsm and propagate make it",
         name(light.quantity), light.unit));
 }

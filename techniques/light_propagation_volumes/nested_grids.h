@@ -1,4 +1,4 @@
-// What all stages share: where the nested grids lie, and textures of their cells.
+// Common parts of all stages: where the nested grids lie, and textures of their cells.
 #pragma once
 
 #include <string>
@@ -42,7 +42,7 @@ const gpu::TextureRef& facesOrUnread(const gpu::TextureRef& faces, const ShGrid:
 
 /// Refuses light that is not the flux of its cells, W/sr.
 void requireFlux(const ShGrid& light);
-/// Refuses light without faces for all of its levels: without them nobody knows what surfaces close.
+/// Refuses light without faces for all of its levels: without them it is not known what surfaces occlude.
 void requireFaces(const ShGrid& light, const In<OccludedFaces>& faces);
 /// Refuses light without the packed voxels that it was injected from.
 void requirePackedVoxels(const ShGrid& light, const In<OccludedFaces>& faces);

@@ -1,12 +1,11 @@
-// What the stages of light propagation know of the surfaces in their cells: a kind of port of this
-// technique's own.
+// Knowledge of the surfaces in the cells of light propagation: a kind of port of this technique's own.
 #pragma once
 
 #include "lumivox/pipeline/port.h"
 
 namespace lumivox::light_propagation_volumes {
 
-/// Which faces between cells surfaces close, in the nested grids of an ShGrid.
+/// The faces between cells that surfaces occlude, in the nested grids of an ShGrid.
 struct OccludedFaces {
   struct Level {
     GridPlacement grid;  ///< of the cells
@@ -26,14 +25,14 @@ struct PortTraits<light_propagation_volumes::OccludedFaces> {
   static PortKind kind() {
     return {
         "OccludedFaces",
-        "which faces between the cells of an ShGrid surfaces close",
+        "the faces between the cells of an ShGrid that surfaces occlude",
         {{"occluded", "d3 rgba8, for each level, one voxel larger",
-          "xyz the shares of the faces to the voxels at lower x, y and z that surfaces close; or null"},
+          "xyz the shares of the faces to the voxels at lower x, y and z that surfaces occlude; or null"},
          {"moved", "d3 rgba8, for each level, one voxel larger",
           "of the same faces, as bytes: how far surfaces were moved to lie on them, fourteenths of a voxel: the low four bits of those that look down the axis and truly lie above, the high ones the other way; or null"},
          {"packed", "buffer, for each level",
           "five words a voxel, x first (thesis Gomes 2015, Listings 4.26 to 4.29): albedo over pi behind its contrast, and for each face of a tetrahedron a normal behind its closeness to it; 0: no surface; or null"}},
-        {{"occluded", "shares of the faces to the voxels at lower x, y and z that surfaces close", "1"}}};
+        {{"occluded", "shares of the faces to the voxels at lower x, y and z that surfaces occlude", "1"}}};
   }
   static void contents(const light_propagation_volumes::OccludedFaces& port, PortContents& contents) {
     for (std::size_t i = 0; i < port.levels.size(); ++i) {

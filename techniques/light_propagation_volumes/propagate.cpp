@@ -36,12 +36,12 @@ class PropagatePass : public Pass {
 
   In<ShGrid> injected{this, "light", "virtual point lights"};
   In<OccludedFaces> faces{this, "faces", Presence::optional,
-                          "what surfaces close, from the same injection; always needed"};
+                          "the faces that surfaces occlude, from the same injection; always needed"};
   Param<int> iterations{this, "iterations", 64, within(1, 4096),
                         "steps from cell to cell; light that has not arrived then is lost"};
   Param<Lobe> lobe{
       this, "lobe", Lobe::straight,
-      "flux goes on in the direction in which it came, or, as published, leaves as a clamped cosine around the face"};
+      "flux continues in the direction in which it came, or, as published, leaves as a clamped cosine around the face"};
   Param<float> fluxAmplifier{this, "flux_amplifier", 1.0f, within(0.0f, 100.0f),
                              "factor of every step; 1 conserves energy"};
   Param<float> occlusionAmplifier{this, "occlusion_amplifier", 1.0f, within(0.0f, 100.0f),
@@ -145,7 +145,7 @@ class PropagatePass : public Pass {
     const glm::ivec3 wholeBricks = (level.grid.resolution + kBrick - 1) / kBrick * kBrick;
     for (int i = 0; i < iterations; ++i) {
       const auto now = static_cast<std::size_t>(i % 2), next = 1 - now;
-      // What the last iteration brings has not passed its cell yet: it is still travelling.
+      // The flux of the last iteration has not passed its cell yet: it is still travelling.
       const bool passes = i + 1 < iterations && !publishedTransfer();
       frame.dispatch(program,
                      {propagate::parameters({.resolution = level.grid.resolution,

@@ -21,7 +21,7 @@ class RenderPass : public Pass {
   Param<int> size{this, "size", 256, within(8, 4096),
                   "texels along a side of the view of a light without extent"};
   Param<int> areaSamples{this, "area_samples", 16, within(1, 1024),
-                         "point samples that stand for all emissive triangles together"};
+                         "point samples that represent all emissive triangles together"};
   Param<int> areaSize{this, "area_size", 64, within(8, 2048),
                       "texels along a side of each cube face of an area sample"};
   Out<ReflectiveShadowMap> map{this, "map", "what each light sees: position, normal, area, reflected flux"};

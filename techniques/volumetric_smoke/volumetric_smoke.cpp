@@ -62,10 +62,10 @@ class InsertPass : public Pass {
                           "voxels that are solid: particles share out their mass among the free ones",
                           Needs::particles};
   Param<int> resolution{this, "resolution", 64, within(8, kLargestGrid),
-                        "voxels along the longest side of the box that holds all particles of a medium"};
+                        "voxels along the longest side of the box that encloses all particles of a medium"};
   Param<Deposit> deposit{
       this, "deposit", Deposit::clouds,
-      "a particle as the cloud that it is, or all of it in the one voxel that holds its middle, as published"};
+      "a particle as the cloud that it is, or all of it in the one voxel that contains its centre, as published"};
   Out<ScatteringGrid> media{this, "media", "density, extinction and scattering of every medium"};
 
   Reads readsFrom() const override { return Reads::geometry | Reads::media; }

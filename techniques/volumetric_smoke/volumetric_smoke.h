@@ -1,4 +1,4 @@
-// What the marches through media share.
+// Common parts of the marches through media.
 #pragma once
 
 #include "lumivox/plugin/technique.h"

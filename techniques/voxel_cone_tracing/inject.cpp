@@ -106,7 +106,8 @@ class InjectPass : public Pass {
     return sums;
   }
 
-  /// What each fragment reflects, and of each voxel the number and the brightest of its fragments.
+  /// The radiance that each fragment reflects, and of each voxel the number and the brightest of its
+  /// fragments.
   void light(PassContext& frame, const Sums& sums, const gpu::BufferRef& radiances, float mostRadiance) {
     const LightBinding lights(shadow);
     MediaBinding bound;

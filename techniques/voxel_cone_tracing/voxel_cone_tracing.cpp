@@ -105,7 +105,7 @@ class GatherPass : public Pass {
     const RadianceGrid& input = *grid;
     if (input.holdsMedia && media.present())
       throw Error(
-          "voxel_cone_tracing.gather: the voxels of 'grid' hold the media already, and 'media' would dim what the cones see once more; expected 'media' to be left out, or 'store_media off' in voxel_cone_tracing.inject");
+          "voxel_cone_tracing.gather: the voxels of 'grid' already contain the media, and 'media' would dim what the cones see once more; expected 'media' to be left out, or 'store_media off' in voxel_cone_tracing.inject");
     const MediaBinding bound(frame, media);
     gather::Variant variant;
     variant.diffuse = diffuse.wanted();

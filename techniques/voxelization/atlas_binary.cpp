@@ -15,7 +15,7 @@ class AtlasBinaryPass : public BitVoxelizer {
   Param<float> pointSize{
       this, "point_size", 1.0f, within(1.0f, 16.0f),
       "side of a texel's point across the stacks, in voxels; above 1 it closes holes of an atlas "
-      "with too few texels, and thickens what stands along the stacks"};
+      "with too few texels, and thickens surfaces along the stacks"};
 
   void mark(PassContext& frame, const GridPlacement& grid, const gpu::Texture& words,
             const Draws& draws) override {

@@ -1,4 +1,4 @@
-// What voxelizers of single bits share: words for atomic operations, and what a gatherer can take from them.
+// Common parts of voxelizers of single bits: words for atomic operations, and the output for a gatherer.
 #pragma once
 
 #include <cstdint>

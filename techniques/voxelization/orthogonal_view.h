@@ -11,7 +11,7 @@ using OrthogonalView = shaders::voxelization::View;
 /// Pixels along a side of the square target of all views of a grid.
 int viewSide(const GridPlacement& grid);
 
-/// What lies between two depths, in voxels, along axis 0, 1 or 2.
+/// The slice between two depths, in voxels, along axis 0, 1 or 2.
 OrthogonalView viewAlong(const VoxelFragments& list, int axis, float depthLow, float depthHigh);
 
 /// The view's block.

@@ -1,4 +1,4 @@
-// What the camera sees becomes voxels (Mavridis & Papaioannou 2011, Sec. 3.2).
+// Voxels from the surfaces that the camera sees (Mavridis & Papaioannou 2011, Sec. 3.2).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ class ReprojectPass : public GridPass {
                               light.width, light.height, image.width, image.height));
     if (list.reflected != nullptr)
       throw Error(
-          "input 'fragments' brings direct light along already; expected input 'direct' at one "
+          "input 'fragments' already contains direct light; expected input 'direct' at one "
           "reprojection only");
   }
 };

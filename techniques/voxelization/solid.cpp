@@ -63,7 +63,8 @@ class SolidPass : public BitVoxelizer {
         rooms.push_back(name);
     }
     if (!rooms.empty())
-      frame.warn(fmt::format("closed but facing inwards, so taken for rooms full of air: {}", listed(rooms)));
+      frame.warn(
+          fmt::format("closed but facing inwards, so treated as rooms full of air: {}", listed(rooms)));
     if (objects.empty()) return;
     const gpu::TextureRef parity = bitWords(frame, grid, "parity");
     Aside aside(frame, mostTriangles_);

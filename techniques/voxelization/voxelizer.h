@@ -1,5 +1,5 @@
-// What all voxelizers of triangles share: where the grid lies, the list of fragments, and that geometry which
-// stands still is voxelized once.
+// Common parts of all voxelizers of triangles: where the grid lies, the list of fragments, and static
+// geometry that is voxelized once.
 #pragma once
 
 #include <string>
@@ -20,21 +20,21 @@ constexpr auto words(Around) {
   return std::array{"scene", "camera"};
 }
 
-/// What appends to a list of fragments is bound to: the count and the fragments.
+/// Bindings for appending to a list of fragments: the count and the fragments.
 shader::BindingSet appending(const VoxelFragments& list);
 
 /// Bounds of what lies within `bounds` in object space, in voxels; a voxel more on every side, since the
 /// device's arithmetic may round otherwise.
 Bounds boundsInGrid(const Bounds& bounds, const glm::mat4& toWorld, const GridPlacement& grid);
 
-/// What all passes have that make a grid of their own.
+/// The base of all passes that make a grid of their own.
 class GridPass : public Pass {
  public:
   std::string checkParameters() const override;
 
  protected:
   GridPlacement placement(PassContext& frame) const;
-  /// What voxels of the scene's surface in this grid depend on.
+  /// Sources that voxels of the scene's surface in this grid depend on.
   Reads readsSurface() const;
 
   using Draws = std::vector<const SceneDraw*>;
@@ -42,14 +42,14 @@ class GridPass : public Pass {
     Draws still, moving;
   };
   static DrawsByMotion drawsByMotion(PassContext& frame);
-  /// What the voxels of still geometry depend on: where the grid lies, and where their objects are.
+  /// The key of voxels of static geometry: where the grid lies, and where their objects are.
   using StaticKey = std::pair<GridPlacement, std::vector<glm::mat4>>;
   static StaticKey staticKey(const PassContext& frame, const GridPlacement& grid, const Draws& still);
 
   Param<int> resolution{this, "resolution", 64, within(1, kLargestGrid),
                         "voxels along the longest side of the grid"};
   Param<Around> around{this, "around", Around::scene,
-                       "the grid holds the whole scene, or moves with the camera by whole voxels"};
+                       "the grid contains the whole scene, or moves with the camera by whole voxels"};
   Param<float> extent{this, "extent",
                       0.0f, within(0.0f, 1e9f),
                       "m",  "side of a grid around the camera; needed there, unused else"};

@@ -1,4 +1,4 @@
-// What counts as a change between two stored results.
+// Changes between two stored results.
 #include <cmath>
 
 #include "lumivox/analysis/changes.h"

@@ -156,7 +156,7 @@ TEST_CASE("of too few repeats nothing is beaten, and a machine's mood is no diff
   CHECK(beats(right, here));
   right.error.enoughRepeats = false;
   CHECK_FALSE(beats(right, here));
-  // What is interpolated from it is as undecided.
+  // A value interpolated from it is as undecided.
   CHECK_FALSE(errorAtTime({at(5.0, 0.2), right}, {0, 1}, 7.0).value.enoughRepeats);
   CHECK(errorAtTime({at(5.0, 0.2), here}, {0, 1}, 7.0).value.enoughRepeats);
   CHECK_FALSE(medianOf(statisticsOf({1.0, 2.0})).enoughRepeats);

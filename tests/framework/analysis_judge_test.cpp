@@ -176,7 +176,7 @@ TEST_CASE("a row over another one is judged by their quotient, and stands in no 
   CHECK(table.rows[2].publishedRatio == Approx(3.0));
   CHECK(table.rows[2].ratio == Approx(2.6));
   CHECK(table.rows[2].verdict == Verdict::reproduced);
-  // What stands in for the published set-up below makes the quotient one that stands in, too.
+  // A substitute for the published set-up below makes the quotient a substitute, too.
   base.whyNot = "another model";
   const JudgedTable substitute = judge({base, quotient});
   CHECK(substitute.rows[1].ratio == Approx(2.6));

@@ -77,7 +77,7 @@ mode_t kindAt(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("what is no regular file is refused by its kind, without waiting and without reading") {
+TEST_CASE("what is not a regular file is refused by its kind, without waiting and without reading") {
   const TemporaryDirectory directory;
   const auto fifo = directory.path() / "fifo";
   REQUIRE(mkfifo(fifo.c_str(), 0600) == 0);
@@ -152,7 +152,7 @@ TEST_CASE("writing to a device or a FIFO writes through it and leaves it what it
   REQUIRE(mkfifo(fifo.c_str(), 0600) == 0);
   requireNoWaiting([&] {
     CHECK_THAT(messageOf<Error>([&] { writeFileAtomically(fifo, std::string_view("x")); }),
-               Contains("FIFO that nobody reads"));
+               Contains("FIFO without a reader"));
     const int reader = open(fifo.c_str(), O_RDONLY | O_NONBLOCK);
     writeFileAtomically(fifo, std::string_view("through"));
     char bytes[16] = {};

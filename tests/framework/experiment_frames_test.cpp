@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kDirect = 1.0f;
 
-/// What it paints comes nearer to the reference with every frame.
+/// A pass whose image comes nearer to the reference with every frame.
 class Progressive : public Toy {
  public:
   using Toy::Toy;
@@ -133,6 +133,28 @@ TEST_CASE("points after more and more frames are planned for progressive pipelin
   CHECK(framesIn("paint", "direct") == std::vector<int>{1});
   options.frames = 1;
   CHECK(framesIn("progressive", "direct") == std::vector<int>{1});
+}
+
+TEST_CASE("an axis of frames in a sweep is planned for progressive pipelines, and others go without it") {
+  Toys toys;
+  const auto framesIn = [&](const std::string& pass) {
+    Pipeline pipeline = toyPipeline(pass, "direct");
+    ParameterValue one, four;
+    one.number = 1.0;
+    four.number = 4.0;
+    pipeline.sweeps.push_back({"steps", false, {{kAccumulatedFrames, {one, four}}}, {}});
+    const experiment::LoadedPipeline loaded = experiment::withSettings(pipeline, {});
+    std::vector<int> frames;
+    for (const experiment::PlannedPoint& point : experiment::pointsFor(loaded, toys, {}))
+      frames.push_back(framesOf(point.parameters));
+    return frames;
+  };
+  CHECK(framesIn("progressive") == std::vector<int>{1, 4});
+  CHECK(framesIn("paint") == std::vector<int>{1});
+  const Sweep steps{"steps", false, {{kAccumulatedFrames, {}}}, {}};
+  CHECK(experiment::withoutFrames(toyPipeline("paint", "direct"), {steps}, false)
+            .find("without the axis 'frames'") != std::string::npos);
+  CHECK(experiment::withoutFrames(toyPipeline("paint", "direct"), {steps}, true).empty());
 }
 
 TEST_CASE(

@@ -21,10 +21,11 @@ class Turns {
         "pipeline \"Toy\" {\n  pass a toys.paint { }\n  output direct a.radiance\n}\n", "toy.pipeline");
   }
   Turn turn(const std::string& name, ReportPoint& point) {
-    return {name, [this, name, &point] {
-              events.push_back("open " + name);
-              return experiment::TimedPoint({device(), toys_, scene_, options_, 8, 8}, pipeline_, point);
-            }};
+    return {
+        name, [this, name, &point](const std::shared_ptr<TransientMemory>& memory) {
+          events.push_back("open " + name);
+          return experiment::TimedPoint({device(), toys_, scene_, options_, 8, 8, memory}, pipeline_, point);
+        }};
   }
   std::vector<std::string> events;
 
@@ -42,7 +43,7 @@ TEST_CASE("points that are timed in turns have all their repeats and frames, and
   ReportPoint points[3];
   std::vector<Turn> all;
   for (ReportPoint& point : points) all.push_back(turns.turn("point", point));
-  experiment::timeInTurns(all, 3, 2);
+  experiment::timeInTurns(device(), all, 3, 2);
   for (std::size_t i = 0; i < 3; ++i) {
     CHECK(all[i].failure.empty());
     CHECK(points[i].frameMs.repeats == 3);
@@ -64,17 +65,17 @@ TEST_CASE("a point that fits alone but not beside others is timed after them, an
   std::size_t open = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     const auto make = all[i].open;
-    all[i].open = [&open, make, i, &turns] {
+    all[i].open = [&open, make, i, &turns](const std::shared_ptr<TransientMemory>& memory) {
       if (i == 2 && open > 0) {
         turns.events.push_back("refuse c");
         throw Error("c does not fit");
       }
       ++open;
-      return make();
+      return make(memory);
     };
     all[i].read = [&open](experiment::TimedPoint&) { --open; };
   }
-  experiment::timeInTurns(all, 3, 0);
+  experiment::timeInTurns(device(), all, 3, 0);
   CHECK(turns.events == std::vector<std::string>{"open a", "open b", "refuse c", "open c", "open d"});
   for (std::size_t i = 0; i < 4; ++i) {
     INFO(i << all[i].failure);
@@ -94,8 +95,8 @@ TEST_CASE(
   all[1].read = [&](experiment::TimedPoint&) {
     if (++readings == 1) throw Error("no memory for a moment");
   };
-  all[2].open = []() -> experiment::TimedPoint { throw Error("never"); };
-  experiment::timeInTurns(all, 3, 1);
+  all[2].open = [](const auto&) -> experiment::TimedPoint { throw Error("never"); };
+  experiment::timeInTurns(device(), all, 3, 1);
   CHECK(turns.events == std::vector<std::string>{"open a", "open b", "open d", "open b"});
   CHECK(readings == 2);
   CHECK(all[2].failure == "never");

@@ -144,7 +144,7 @@ TEST_CASE("resources that fit alone but not together are refused with what is he
                  Catch::Contains("512.0 KiB of all other textures and buffers"));
   CHECK_THAT(messageOf<Error>([&] { Buffer(small, kLimit / 2 + 4, "fourth"); }),
              Catch::Contains("buffer 'fourth'") && Catch::Contains("of the limit of 1.0 MiB"));
-  // What would read the same when rounded is told in bytes.
+  // Sizes that would read the same when rounded are given in bytes.
   CHECK_THAT(messageOf<Error>([&] { Buffer(small, kLimit / 2 + 4, "fifth"); }),
              Catch::Contains("needs 524292 B, but only 524288 B of the limit"));
   second.reset();

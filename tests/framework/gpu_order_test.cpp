@@ -119,8 +119,8 @@ TEST_CASE("a device that lacks something is told apart by the name of every limi
     CHECK(unmet == fmt::format("{} is {}, and {} are needed ({})", lacking.name, lacking.least - 1,
                                lacking.least, lacking.why));
   }
-  // What OpenGL 4.5 promises for vertex shaders (table 23.57), where all geometry is read from storage
-  // buffers.
+  // The limits that OpenGL 4.5 guarantees for vertex shaders (table 23.57), where all geometry is read from
+  // storage buffers.
   CHECK_THAT(unmetRequirements([](const Requirement& one) {
                return std::string(one.name) == "GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS" ? 0 : one.least;
              }),
@@ -138,7 +138,7 @@ std::string declarationsOf(const std::string& glsl) {
   return declarations;
 }
 
-/// What one stage of a program uses, read from its GLSL, which SPIRV-Cross writes in one form.
+/// The resources that one stage of a program uses, read from its GLSL, which SPIRV-Cross writes in one form.
 std::map<std::string, std::int64_t> usesOf(const std::string& text, Stage stage) {
   const std::string glsl = declarationsOf(text);
   const auto count = [&](const char* pattern) {

@@ -1,4 +1,4 @@
-// What textures hold and how they are read.
+// Contents of textures and how they are read.
 #include <cmath>
 #include <cstring>
 

@@ -225,8 +225,8 @@ TEST_CASE("FLIP, SSIM and the percentile state an uncertainty that shrinks with 
   CHECK(little.ssimUncertainty < 0.01 * much.ssimUncertainty);
   CHECK(little.percentile95Uncertainty < 0.01 * much.percentile95Uncertainty);
   CHECK(little.flipUncertainty > 0.0);
-  // What is stated covers what the noise does: the same comparison against a reference with noise of that
-  // size.
+  // The stated error covers the effect of the noise: the same comparison against a reference with noise of
+  // that size.
   ImageBuffer noisy = reference;
   RandomStream stream(43, 0);
   for (std::size_t pixel = 0; pixel < noisy.pixelCount(); ++pixel) {

@@ -166,7 +166,8 @@ TEST_CASE("random triangles touch every voxel that holds one of their points, an
         if (sampled.inside(voxel)) sampled.insert(voxel);
       }
     CHECK(subset(sampled, reference.certain));
-    // What the samples miss is grazed: shrunk by two sample distances, the voxel is not touched any more.
+    // Voxels that the samples miss are grazed: shrunk by two sample distances, the voxel is not touched any
+    // more.
     const VoxelReference deep = trueVoxels(std::span(&triangle, 1), resolution, 0.06);
     CHECK(subset(deep.certain, sampled));
     CHECK(subset(deep.certain, reference.certain));

@@ -190,7 +190,7 @@ TEST_CASE("a passage of a card is written from the kept results, and what stands
   CHECK(written(ratios) ==
         "x <!-- reproduced ratios table-1; a; b -->1 : 3.3, published 1 : 3: *reproduced*; the whole table "
         "*not reproduced*<!-- end --> y\n");
-  // What shows how a passage is written is none.
+  // An example of how a passage is written is none.
   const std::string shown = "```text\n<!-- reproduced table nothing --> ...\n```\n";
   CHECK(written(shown + ratios) == shown + written(ratios));
   // Again, and nothing changes.
@@ -256,6 +256,6 @@ TEST_CASE("kept results that no longer fit their text are told apart") {
   CHECK_THAT(stale([](auto& t) { t.differences = {"nothing"}; }), Contains("other words"));
   CHECK_THAT(stale([](auto& t) { t.panels.emplace_back(); }), Contains("panels"));
   CHECK_THAT(stale([](auto& t) { t.curves.emplace_back(); }), Contains("curves"));
-  CHECK_THAT(staleReproductions({}, {text})[0], Contains("table-1: nothing is kept"));
+  CHECK_THAT(staleReproductions({}, {text})[0], Contains("table-1: nothing is recorded"));
   CHECK_THAT(staleReproductions({kept}, {})[0], Contains("no such text"));
 }

@@ -159,7 +159,7 @@ TEST_CASE("a parameter of the wrong type is refused with the right one") {
   CHECK_THAT(findings("pass v toy.voxels { layout sparce }\noutput o v.grid"),
              Contains("expected one of dense, sparse"));
   CHECK_THAT(findings("pass v toy.voxels { layout [dense] }\noutput o v.grid"),
-             Contains("this is no value for the parameter 'layout'; expected one of dense, sparse"));
+             Contains("this is not a value for the parameter 'layout'; expected one of dense, sparse"));
 }
 
 TEST_CASE("a parameter in a unit of another dimension is refused") {
@@ -182,7 +182,7 @@ TEST_CASE("a default or sweep value that does not fit the pass's parameter is re
       "sweep big { size [16 128] }\n");
   CHECK_THAT(text,
              Contains("'$size' is 99, which does not fit 'resolution'; expected a whole number in 1..64"));
-  CHECK_THAT(text, Contains("sweep 'big' makes 'size' 128, which does not fit 'resolution'"));
+  CHECK_THAT(text, Contains("sweep 'big' sets 'size' to 128, which does not fit 'resolution'"));
 }
 
 TEST_CASE("a property given twice, or with two values, is refused") {
@@ -194,7 +194,7 @@ TEST_CASE("a property given twice, or with two values, is refused") {
 
 TEST_CASE("a block inside a pass is refused") {
   CHECK_THAT(findings("pass v toy.voxels { inner { } }\noutput o v.grid"),
-             Contains("a pass holds no blocks"));
+             Contains("a pass cannot contain blocks"));
 }
 
 TEST_CASE("parameters that contradict each other are refused in the pass's words") {
@@ -248,6 +248,6 @@ TEST_CASE("a setting given to a pipeline must exist and fit") {
 TEST_CASE("a pipeline that makes no part of an image needs no output, and one that makes some does") {
   accept("pass voxels toy.voxels { }");
   CHECK_THAT(findings("pass voxels toy.voxels { }\npass gather toy.gather { grid voxels }"),
-             Contains("test.pipeline:3:6: the pipeline has no output, so that nobody sees what "
-                      "'gather.diffuse' makes; expected output NAME gather.diffuse"));
+             Contains("test.pipeline:3:6: the pipeline has no output, so 'gather.diffuse' is "
+                      "never shown; expected output NAME gather.diffuse"));
 }

@@ -79,7 +79,7 @@ TEST_CASE("a pass that never has enough room ends in an error with its name, and
   PipelineExecutor executor =
       f.executor("pass counter toy.counter { wanted 5 learns off }\noutput direct counter.image");
   executor.render(0.0, 0);
-  CHECK_THROWS_WITH(executor.render(0.1, 1), Contains("pass counter: no room for what it counts (5)"));
+  CHECK_THROWS_WITH(executor.render(0.1, 1), Contains("pass counter: no room for its count (5)"));
   // The error left nothing behind: frame 0 is there again.
   CHECK(first(executor.render(0.0, 0), "direct") == 1.0f);
 }

@@ -1,4 +1,4 @@
-// What goes wrong inside a pass: every error names the pass, once.
+// Errors inside a pass: every error names the pass, once.
 #include <new>
 
 #include "pipeline_toys.h"

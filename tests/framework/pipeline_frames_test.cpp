@@ -198,7 +198,7 @@ TEST_CASE("another scene runs again what reads what differs, with the bits of a 
   CHECK(changed([](Scene& s) { s.environment.x = 2.0f; }) == Ran{"environment"});
   CHECK(changed([](Scene& s) { s.media[0].extinction.x = 3.0f; }) == Ran{"media"});
   CHECK(changed([](Scene& s) { s.lights[0].power.x = 4.0f; }) == Ran{"lights"});
-  // What shines has the material or the triangles, so lights may be others too.
+  // Emissive objects have the material or the triangles, so the lights may change too.
   CHECK(changed([](Scene& s) { s.materials[0].diffuse.x = 0.25f; }) == Ran{"materials", "lights"});
   CHECK(changed([](Scene& s) { s.positions[1].x = 5.0f; }) == Ran{"lights", "geometry"});
   // With the last light a trait goes: everything begins anew.
@@ -429,7 +429,7 @@ TEST_CASE("checking reads names the pass that was not run again though what it r
   REQUIRE(findings.size() == 3);
   CHECK_THAT(findings[0],
              Contains("pass lies, port image: ") &&
-                 Contains("it was not run again: it reads more than its readsFrom() says (geometry)"));
+                 Contains("it was not run again: it reads more than its readsFrom() declares (geometry)"));
   CHECK_THAT(findings[1], Contains("pass keeps, port image: ") && Contains("whose key leaves out"));
   CHECK(findings[2] == needs);
 }

@@ -85,9 +85,9 @@ TEST_CASE("seeds of a sweep are whole numbers, each once, beside parameters or a
   CHECK(pipeline.sweeps[1].points()[0].empty());
   const std::string wrong = findingsOf("sweep s { seeds [1 1 -2 0.5 many] }\n");
   CHECK_THAT(wrong, Contains("a.pipeline:8:20: the seed 1 is given twice"));
-  CHECK_THAT(wrong, Contains("a.pipeline:8:22: this is no seed"));
-  CHECK_THAT(wrong, Contains("a.pipeline:8:25: this is no seed"));
-  CHECK_THAT(wrong, Contains("a.pipeline:8:29: this is no seed"));
+  CHECK_THAT(wrong, Contains("a.pipeline:8:22: this is not a seed"));
+  CHECK_THAT(wrong, Contains("a.pipeline:8:25: this is not a seed"));
+  CHECK_THAT(wrong, Contains("a.pipeline:8:29: this is not a seed"));
 }
 
 TEST_CASE("a list of unequal axes, an unknown kind and a sweep with too many points are refused") {
@@ -104,7 +104,24 @@ TEST_CASE("a pipeline names no scenes, and no parameter takes a word of sweeps")
   const std::string reserved = test::messageOf<DiagnosticsError>([] {
     Pipeline::parse("pipeline \"P\" {\n  param seeds 1\n  pass a t.p { n $seeds }\n}\n", "a.pipeline");
   });
-  CHECK_THAT(reserved, Contains("a.pipeline:2:9: 'seeds' is a word of sweeps"));
+  CHECK_THAT(reserved, Contains("a.pipeline:2:9: 'seeds' is a reserved word of sweeps"));
+}
+
+TEST_CASE("accumulated frames are an axis of every pipeline, of whole numbers from 1 on, and no parameter") {
+  CHECK(valuesOf("frames times 2 in 1..8") == std::vector<std::string>{"1", "2", "4", "8"});
+  const auto points = withSweep("sweep s { frames [1 16]  n [1 2] }\n").sweeps.at(0).points();
+  REQUIRE(points.size() == 4);
+  CHECK(points[2].at("frames").number == 16.0);
+  CHECK_THAT(
+      findingsOf("sweep s { frames [0] }\n"),
+      Contains("a.pipeline:8:19: this value does not fit the parameter 'frames'") && Contains("1..65536"));
+  CHECK_THAT(findingsOf("sweep s { frames [1 2.5] }\n"), Contains("a whole number"));
+  CHECK_THAT(findingsOf("sweep s { frames [2 s] }\n"), Contains("does not fit the parameter 'frames'"));
+  CHECK_THAT(findingsOf("sweep s { frames [many] }\n"), Contains("does not fit the parameter 'frames'"));
+  const std::string reserved = test::messageOf<DiagnosticsError>([] {
+    Pipeline::parse("pipeline \"P\" {\n  param frames 1\n  pass a t.p { n $frames }\n}\n", "a.pipeline");
+  });
+  CHECK_THAT(reserved, Contains("a.pipeline:2:9: 'frames' is a reserved word of sweeps"));
 }
 
 TEST_CASE("the table of the sweep texts has the words that the reader knows") {

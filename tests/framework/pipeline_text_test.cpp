@@ -72,7 +72,7 @@ TEST_CASE("settings are read like values of the text, with units, words and rang
   CHECK(values.at("filter").word == "slow");
   CHECK(values.at("step").number == Approx(0.05));
   CHECK(pipeline.settings({}).empty());
-  // What a value prints can be given again.
+  // The printed form of a value can be given again.
   CHECK(pipeline.settings({"step=" + values.at("step").text()}) ==
         ParameterValues{{"step", values.at("step")}});
 }
@@ -138,7 +138,7 @@ TEST_CASE("a pass without technique and name is refused") {
 
 TEST_CASE("a parameter without a value is refused") {
   CHECK_THAT(findingsOfBody("param n"),
-             Contains("a param is not written like this; expected param NAME DEFAULT in LOW..HIGH"));
+             Contains("malformed param; expected param NAME DEFAULT in LOW..HIGH"));
 }
 
 TEST_CASE("a range in another unit than the default is refused") {
@@ -147,9 +147,8 @@ TEST_CASE("a range in another unit than the default is refused") {
 }
 
 TEST_CASE("an output that names no output of a pass is refused") {
-  CHECK_THAT(findingsOfBody("output x 5"),
-             Contains("an output is not written like this; expected output NAME pass.port"));
-  CHECK_THAT(findingsOfBody("output x a.b.c"), Contains("this names no output of a pass"));
+  CHECK_THAT(findingsOfBody("output x 5"), Contains("malformed output; expected output NAME pass.port"));
+  CHECK_THAT(findingsOfBody("output x a.b.c"), Contains("this is not an output of a pass"));
 }
 
 TEST_CASE("an unknown block in a pipeline text is refused with the nearest known one") {

@@ -191,7 +191,7 @@ TEST_CASE("the shader pack beside a library is read with it, and must be its own
   }
   pack.technique = "another";
   shader::writeShaderPack(directory.path() / "good.shaderpack", pack);
-  CHECK_THAT(reasonFor("good", directory.path()), Contains("holds the shaders of 'another'"));
+  CHECK_THAT(reasonFor("good", directory.path()), Contains("contains the shaders of 'another'"));
 }
 
 TEST_CASE(

@@ -162,8 +162,7 @@ TEST_CASE("a damaged reference in the cache is made anew and said so") {
 
 namespace {
 
-/// What a stranger writes who knows how an entry is made: every statement of it is theirs, and its hash is
-/// right.
+/// A forged entry, by one who knows how it is made: every statement of it is theirs, and its hash is right.
 void writeHostileEntry(const std::filesystem::path& file, LayeredImage image) {
   Hasher hasher;
   for (const auto& [name, layer] : image.layers) {
@@ -212,7 +211,7 @@ TEST_CASE("an entry of the cache that lies about itself is refused and made anew
     writeHostileEntry(entry, changed);
     const LogCapture log;
     CHECK(sameBits(good, cachedReference(scene, options)));
-    CHECK_THAT(log.text(), Catch::Contains("damaged") && Catch::Contains("made anew"));
+    CHECK_THAT(log.text(), Catch::Contains("damaged") && Catch::Contains("rendered again"));
     CHECK(readFile(entry) == bytes);
   }
   // The same door lets the unchanged one through.
@@ -239,7 +238,7 @@ TEST_CASE("neither a FIFO nor a link in the cache is waited for, followed or kep
     }
     const LogCapture log;
     CHECK(sameBits(good, cachedReference(scene, cached())));
-    CHECK_THAT(log.text(), Catch::Contains("made anew"));
+    CHECK_THAT(log.text(), Catch::Contains("rendered again"));
     CHECK(std::filesystem::is_regular_file(std::filesystem::symlink_status(entry)));
     CHECK(readFile(victim) == "precious");
   }
@@ -277,7 +276,7 @@ TEST_CASE("the cache keeps to its limit: what was not used for longest gives way
   const LogCapture log;
   cachedReference(scene, withSeed(4));
   CHECK(seeds() == "4 1 3 ");
-  CHECK_THAT(log.text(), Catch::Contains("gave way"));
+  CHECK_THAT(log.text(), Catch::Contains("least recently used"));
   setenv("LUMIVOX_CACHE_LIMIT", "a lot", 1);
   CHECK_THAT(messageOf<Error>([] { referenceCacheLimit(); }), Catch::Contains("a lot"));
   unsetenv("LUMIVOX_CACHE_LIMIT");

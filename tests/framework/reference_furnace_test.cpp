@@ -31,7 +31,7 @@ double geometricSeries(double albedo, int terms) {
 TEST_CASE("a closed furnace of albedo a returns E / (1 - a) within 0.2 %") {
   for (const float albedo : {0.2f, 0.5f, 0.8f, 0.95f}) {
     CAPTURE(albedo);
-    // What is cut off is a^(B+2) of the whole: below 1e-5 here.
+    // The part cut off is a^(B+2) of the whole: below 1e-5 here.
     ReferenceOptions options =
         quietly(albedo < 0.9f ? 64 : 8, static_cast<int>(std::ceil(std::log(1e-5) / std::log(albedo))));
     options.roulette = false;

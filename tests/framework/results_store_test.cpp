@@ -409,3 +409,43 @@ TEST_CASE("merging takes over what is not there, once") {
   CHECK(controls[0].frameMsAgain.value == 12.0);
   CHECK(theirs.runs().size() == 3);
 }
+
+TEST_CASE("a run without times is known to nobody but who goes on with it, and goes when the run is added") {
+  const TemporaryDirectory directory;
+  ResultsStore store(directory.path() / "results.sqlite");
+  StoredRun run = runNumber(1);
+  const std::string key = run.identity.key();
+  store.addUntimed(run, {{"final", "full", "", 0.0, "old"}});
+  store.addUntimed(run, {{"final", "full", "", 0.0, "png"}});
+  CHECK_FALSE(store.contains(key));
+  CHECK_FALSE(store.find(key));
+  CHECK(store.runs().empty());
+  CHECK(store.count().untimed == 1);
+  REQUIRE(store.findUntimed(key));
+  CHECK(store.findUntimed(key)->point.errors.size() == 1);
+  CHECK(store.findUntimed(key)->point.passWork == run.point.passWork);
+  REQUIRE(store.images(key).size() == 1);
+  CHECK(store.images(key)[0].png == "png");
+  // Whoever measures it goes on claiming it.
+  CHECK(store.claim({key}).front());
+  ResultsStore other(directory.path() / "other.sqlite");
+  CHECK(other.merge(store).runs == 0);
+  CHECK(other.count().untimed == 0);
+
+  // A failure takes its place as a result does, and is none that a run without times could push out.
+  StoredRun failed = run;
+  failed.point.failure = "it did not fit";
+  CHECK(store.add(failed));
+  CHECK_FALSE(store.findUntimed(key));
+  CHECK(store.images(key).empty());
+  store.addUntimed(run);
+  CHECK_FALSE(store.findUntimed(key));
+  CHECK(store.find(key)->point.failure == "it did not fit");
+  CHECK(store.add(run));
+  CHECK(store.find(key)->point.failure.empty());
+
+  store.addUntimed(runNumber(2));
+  CHECK(store.remove({}) == 1);
+  CHECK(store.count().runs == 0);
+  CHECK(store.count().untimed == 0);
+}

@@ -145,12 +145,12 @@ TEST_CASE("normals and texture coordinates that are not finite are replaced and 
 }
 
 TEST_CASE("each way in which an OBJ file can be no OBJ file gives one error with its line") {
-  CHECK_THAT(OneMesh("").error(), Contains("m.obj: holds no faces"));
-  CHECK_THAT(OneMesh("# nothing\nv 0 0 0\n").error(), Contains("m.obj: holds no faces"));
+  CHECK_THAT(OneMesh("").error(), Contains("m.obj: contains no faces"));
+  CHECK_THAT(OneMesh("# nothing\nv 0 0 0\n").error(), Contains("m.obj: contains no faces"));
   CHECK_THAT(OneMesh("v 0 0 0\nv 1 0\n").error(),
              Contains("m.obj:2: statement 'v' has 2 numbers") && Contains("truncated"));
   CHECK_THAT(OneMesh("v 0 0 0\nv 1 x 0\nf 1 1 1\n").error(),
-             Contains("m.obj:2: 'x' in statement 'v' is no number"));
+             Contains("m.obj:2: 'x' in statement 'v' is not a number"));
   CHECK_THAT(OneMesh("v 0 0 0\nf 1 2\n").error(), Contains("m.obj:2: a face with 2 corners"));
   CHECK_THAT(OneMesh("v 0 0 0\nf 1 2 x\n").error(), Contains("m.obj:2: malformed corner 'x'"));
   CHECK_THAT(OneMesh("v 0 0 0\nf 1/2/3/4 1 1\n").error(), Contains("malformed corner '1/2/3/4'"));
@@ -162,8 +162,8 @@ TEST_CASE("each way in which an OBJ file can be no OBJ file gives one error with
                                  "ELF\0\0\1",
                                  7))
                  .error(),
-             Contains("m.obj:1:") && Contains("begins no statement of an OBJ file"));
-  CHECK_THAT(OneMesh("{\"asset\": 1}\n").error(), Contains("begins no statement of an OBJ file"));
+             Contains("m.obj:1:") && Contains("is not a statement of an OBJ file"));
+  CHECK_THAT(OneMesh("{\"asset\": 1}\n").error(), Contains("is not a statement of an OBJ file"));
   CHECK_THAT(OneMesh("v 0 0 0\nf 1 1 1\n").error(), Contains("no triangle is left"));
   std::string huge = "v 0 0 0\nf";
   for (int i = 0; i < 2000; ++i) huge += " 1";
@@ -211,7 +211,7 @@ TEST_CASE("each way in which an MTL file can be wrong gives one error with its l
     mesh.directory.write("m.mtl", mtl);
     return mesh.error();
   };
-  CHECK_THAT(errorOf(""), Contains("m.mtl: holds no material"));
+  CHECK_THAT(errorOf(""), Contains("m.mtl: contains no material"));
   CHECK_THAT(errorOf("newmtl a\nKd 0.5 0.5\n"),
              Contains("m.mtl:2: 'Kd' of material 'a' is ''; expected three numbers"));
   CHECK_THAT(errorOf("newmtl a\nKd 0.5 red 0\n"), Contains("m.mtl:2: 'Kd' of material 'a' is 'red'"));
@@ -219,7 +219,7 @@ TEST_CASE("each way in which an MTL file can be wrong gives one error with its l
   CHECK_THAT(errorOf("newmtl a\nKs 1 1 -1\n"), Contains("'Ks' of material 'a' is negative"));
   CHECK_THAT(errorOf("Kd 1 1 1\n"), Contains("m.mtl:1: 'Kd' before the first newmtl"));
   CHECK_THAT(errorOf("newmtl\n"), Contains("m.mtl:1: newmtl without a name"));
-  CHECK_THAT(errorOf(std::string("newmtl a\n\0\0", 11)), Contains("m.mtl: holds a zero byte"));
+  CHECK_THAT(errorOf(std::string("newmtl a\n\0\0", 11)), Contains("m.mtl: contains a zero byte"));
 }
 
 TEST_CASE("maps that the house does not know are named, once for a model") {

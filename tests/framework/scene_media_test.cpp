@@ -168,7 +168,8 @@ TEST_CASE("what is no density is refused with the file, the grid and what was ex
   auto vectors = openvdb::Vec3SGrid::create();
   vectors->setName("flow");
   text.write("a.vdb", {vectors});
-  CHECK_THAT(text.refusal(medium), Contains("grid 'flow' holds values of type vec3s") && Contains("float"));
+  CHECK_THAT(text.refusal(medium),
+             Contains("grid 'flow' contains values of type vec3s") && Contains("float"));
   auto distances = ramp(unit);
   distances->setGridClass(openvdb::GRID_LEVEL_SET);
   text.write("a.vdb", {distances});

@@ -167,7 +167,8 @@ TEST_CASE("an animation that moves nothing and a selection of nothing are refuse
 }
 
 TEST_CASE("sequences and frame numbers in file names belong together") {
-  CHECK_THAT(sceneWith("mesh b { file \"m_##.obj\" }"), Contains("holds '#' but the mesh has no sequence"));
+  CHECK_THAT(sceneWith("mesh b { file \"m_##.obj\" }"),
+             Contains("contains '#' but the mesh has no sequence"));
   CHECK_THAT(sceneWith("mesh b { file \"m.obj\"  sequence 0..3 }"),
              Contains("has no place for the frame number"));
   CHECK_THAT(sceneWith("mesh b { file \"m.obj\"  rate 24 }"), Contains("'rate' without a sequence"));
@@ -205,7 +206,7 @@ TEST_CASE("a model in a folder that is not beside the text may be absent when th
   SceneLoadOptions options;
   options.assetPath = {directory.path() / "assets"};
   const std::string text = test::messageOf<AbsentError>([&] { loadScene(file, options); });
-  CHECK_THAT(text, Contains("the model of mesh 'b' 'no_such_model/b.obj' was not found; sought at"));
+  CHECK_THAT(text, Contains("the model of mesh 'b' 'no_such_model/b.obj' was not found; searched"));
   CHECK_THAT(text, Contains((directory.path() / "assets/no_such_model/b.obj").string()));
   CHECK_THAT(text, Contains("shared/models/no_such_model/b.obj"));
 }

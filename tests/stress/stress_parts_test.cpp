@@ -64,7 +64,7 @@ TEST_CASE("a card's list below its heading explains cases, by patterns and for s
   CHECK(rowFor(rows, "points", "resolution_lowest") == rows.data());
   CHECK(rowFor(rows, "slicing", "resolution_lowest") == nullptr);
   CHECK(rowFor(rows, "anything", "moved_far") == rows.data() + 1);
-  // What speaks of one pipeline goes before what speaks of all, wherever it stands.
+  // A row about one pipeline goes before one about all, wherever it is.
   const std::vector<CardRow> both{{{"thin_wall"}, "all", ""}, {{"points/thin_*"}, "one", ""}};
   CHECK(rowFor(both, "points", "thin_wall")->what == "one");
   CHECK(rowFor(both, "slicing", "thin_wall")->what == "all");
@@ -216,7 +216,7 @@ TEST_CASE("a worker that answers nonsense is one broken cell") {
   workers.options.workers = 1;
   const std::vector<StressCell> cells = workers.run();
   CHECK(brokenOf(cells) == 1);
-  CHECK(cells[0].detail.find("answered what is no cell") != std::string::npos);
+  CHECK(cells[0].detail.find("did not answer with a cell") != std::string::npos);
 }
 
 TEST_CASE("when workers no longer start, what was not run says so and takes no stored cell's place") {

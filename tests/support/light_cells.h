@@ -48,7 +48,7 @@ inline gpu::TextureRef filledPixels(const glm::vec4& value) {
 
 using light_propagation_volumes::OccludedFaces;
 
-/// Light with the faces that surfaces close.
+/// Light with the faces that surfaces occlude.
 struct LitCells : ShGrid {
   OccludedFaces faces;
 };

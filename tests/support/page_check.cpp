@@ -62,7 +62,7 @@ constexpr const char* kProbe = R"js(
     if (inside.length === 0) wrong(canvas, "its chart has no point within its axes");
   }
 
-  // What a reader sees of a control's doing: the text of the page and the pixels of the canvases around it.
+  // The visible effect of a control: the text of the page and the pixels of the canvases around it.
   const around = control => {
     let place = control;
     while (place !== document.body && place.querySelector("canvas") === null) place = place.parentElement;

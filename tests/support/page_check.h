@@ -1,4 +1,4 @@
-// What is wrong with a page, as a browser without a network sees it: any page of the laboratory.
+// Defects of a page, as a browser without a network sees it: any page of the laboratory.
 #pragma once
 
 #include <filesystem>

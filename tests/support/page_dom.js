@@ -130,7 +130,7 @@ async function main(file) {
     const box = control.attributes.type === "checkbox", at = box ? control.checked : control.value;
     const values = box ? [!at] : control.tagName === "INPUT" ? [control.attributes.min, control.attributes.max]
       : control.tag("option").map(option => option.attributes.value).filter(value => value !== at);
-    // What is drawn is told apart by the images that are drawn.
+    // Drawings are told apart by the images that are drawn.
     body.tag("canvas").forEach(canvas => { canvas.calls.length = 0; });
     let before = seen(), changed = 0;
     for (const value of values) {

@@ -1,4 +1,4 @@
-// What several test files share.
+// Helpers that several test files share.
 #pragma once
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// What the light of surfaces depends on beside the diffuse albedo: the Phong lobe, and the holes of alpha
+// Dependence of the light of surfaces on more than the diffuse albedo: the Phong lobe, and the holes of alpha
 // masks.
 #include <glm/gtc/constants.hpp>
 

@@ -62,7 +62,8 @@ RadianceGrid reflected(const ShGrid& light, const AttributeGrid& surfaces) {
   return reflect.output<RadianceGrid>("radiance");
 }
 
-/// What a mirror of specular albedo 1 and this exponent at `position` shows the eye, for each of many places.
+/// The radiance that a mirror of specular albedo 1 and this exponent at `position` shows the eye, for each of
+/// many places.
 double shown(const RadianceGrid& radiance, const glm::dvec3& eye, const glm::vec3& position,
              const glm::vec3& normal, float exponent) {
   SceneBuilder builder = emptyScene();

@@ -18,7 +18,7 @@ constexpr int kSide = 8;       // cells
 constexpr float kSize = 0.5f;  // m
 constexpr double kFace = kSize * kSize;
 
-/// What an injection makes of one grid.
+/// The result of an injection for one grid.
 struct Injected : ShGrid::Level, OccludedFaces::Level {};
 
 /// An injection pass over cells of half a metre.

@@ -87,7 +87,7 @@ ReflectiveShadowMap mapOf(const std::vector<Texel>& texels) {
   return map;
 }
 
-/// What a white surface at the origin that faces up reflects, by so many samples.
+/// The light reflected by a white surface at the origin that faces up, by so many samples.
 glm::vec3 reflectedAtOrigin(const ReflectiveShadowMap& map, const char* method, int samples) {
   SceneBuilder builder;
   builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);

@@ -72,7 +72,7 @@ TEST_CASE("voxelized smoke of 10^-3 to 10^5 / m, in 32 steps, scatters what a sl
             march(builder.scene, slab, gbuffer, 32, {{"light_depth", depth}, {"start", "dithered"}});
         double squares = 0.0, worstTransmittance = 0.0;
         for (int i = 0; i < kPixels * kPixels; ++i) {
-          // What trilinear densities add outside of the layer is what they lack inside.
+          // Trilinear densities add outside of the layer as much as they lack inside.
           const double through = extinction * 0.5 / -views[i].z, ratio = views[i].z / travel.z;
           const double wanted = 0.8 * henyeyGreenstein(0.3, -glm::dot(views[i], travel)) * 2.0 /
                                 (1.0 + ratio) * -std::expm1(-(1.0 + ratio) * through);

@@ -249,7 +249,7 @@ TEST_CASE("light depths in a volume give the image of marching to the light from
                      1.0f - 2.0f * static_cast<float>(i / kPixels) / kPixels, -1.0f);
   });
   const ImageBuffer marched = march(builder.scene, grid, gbuffer, 32, {{"light_depth", "march"}}).scattered;
-  // What is near is integrated; trilinear interpolation of the rest: a finer grid errs less.
+  // Near media are integrated; trilinear interpolation of the rest: a finer grid errs less.
   double errors[2];
   for (const int level : {0, 1}) {
     const ImageBuffer volume =

@@ -14,7 +14,7 @@ constexpr int kResolution = 128;
 constexpr double kVoxel = 2.0 / kResolution;       // m
 constexpr double kSumOfWeights = 1.0 + 4 * 0.707;  // Listing 4.12, not normalised
 
-/// What a point in the middle gathers as printed, from samples no further than `reach` voxels.
+/// The light that a point in the middle gathers as printed, from samples no further than `reach` voxels.
 double gatheredAsPublished(const RadianceGrid& grid, double environment, double coneRatio, double reach) {
   GatherSettings settings;
   settings.asPublished = true;

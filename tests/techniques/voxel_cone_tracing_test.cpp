@@ -440,7 +440,7 @@ TEST_CASE("the filter gives the same bits whether it follows the occupied bricks
         RadianceGrid grid = injectedGrid(scene, resolution);
         REQUIRE(grid.occupied.bricks != nullptr);
         if (!follow) grid.occupied = {};
-        // What the pool gives may hold anything.
+        // Textures from the pool may contain anything.
         const int count = grid.radiance->description().levels;
         for (int level = 1; level < count; ++level) grid.radiance->clear(glm::vec4(7.0f), level);
         grid = filtered(grid, opacity);
@@ -503,7 +503,7 @@ TEST_CASE(
            ++level)
         CHECK((to.resolution[axis] >> level) % 2 == 0);
     }
-    // What was added is empty: all light and opacity lies where fragments can be.
+    // The added part is empty: all light and opacity lies where fragments can be.
     const std::vector<float> texels = inject.output<RadianceGrid>("radiance").radiance->downloadFloats(0);
     for (int z = 0; z < texture.depth; ++z)
       for (int y = 0; y < texture.height; ++y)

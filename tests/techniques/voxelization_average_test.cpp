@@ -223,7 +223,8 @@ TEST_CASE("a hundred thousand fragments of one voxel neither overflow nor lose t
   CHECK(albedo.x == Approx(0.25).epsilon(1e-3));
   CHECK(albedo.z == Approx(1.0).epsilon(1e-3));
   CHECK(albedo.w == Approx(1.0).epsilon(1e-3));
-  // What all fragments share is rounded alike above and below the fraction: the mean of equals is exact.
+  // Values common to all fragments are rounded alike above and below the fraction: the mean of equals is
+  // exact.
   CHECK(Averages::texel(averages.emission, {0, 0, 0}).x == Approx(2.0).epsilon(1e-6));
 }
 

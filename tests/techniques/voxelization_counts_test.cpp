@@ -115,7 +115,7 @@ TEST_CASE(
     least = std::min(least, sequence.fragments("touched").size());
     most = std::max(most, sequence.fragments("touched").size());
   }
-  // What the first guess of 12 sides of the grid and 4 voxels a triangle has no room for.
+  // More than the first guess of 12 sides of the grid and 4 voxels a triangle has room for.
   CHECK(least < 200);
   CHECK(most > 12u * kSide * kSide + 4u * 140u);
 }

@@ -1,5 +1,5 @@
-// What all voxelizers share: static geometry is voxelized once, what moves in every frame, and no
-// frame can be told from the first one of a fresh run.
+// Common behaviour of all voxelizers: static geometry is voxelized once, moving geometry in every frame, and
+// no frame can be told from the first one of a fresh run.
 #include <cmath>
 #include <cstring>
 

@@ -1,4 +1,4 @@
-// What fragments tell of the surface at their place, whichever voxelizer made them: its texture, its normal.
+// The surface data of fragments at their place, whichever voxelizer made them: its texture, its normal.
 #include <array>
 #include <cmath>
 

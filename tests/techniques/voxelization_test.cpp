@@ -208,7 +208,7 @@ TEST_CASE("an empty scene and a resolution of one voxel are no special cases") {
   CHECK(!voxelize(scene, 3).occupied.empty());
 }
 
-TEST_CASE("the grid holds the whole scene whatever the resolution") {
+TEST_CASE("the grid contains the whole scene whatever the resolution") {
   const Scene scene = randomTriangles(50, 0.5f, 5);
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   for (const int resolution : {1, 2, 3, 63, 64, 65}) {

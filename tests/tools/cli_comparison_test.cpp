@@ -1,4 +1,4 @@
-// What a store says of pipelines against each other, and what many scenes needed, on the command line.
+// Comparison of pipelines in a store, and the needs of many scenes, on the command line.
 #include <regex>
 #include <sstream>
 

@@ -112,7 +112,7 @@ TEST_CASE("the snippets of the guide that need packages run where these are ther
     CHECK(result.exitCode == 0);
     CHECK_FALSE(result.output.empty());
     if (contains(snippet.modules, "pandas")) CHECK(contains(result.output, "parameter_samples"));
-    if (contains(snippet.modules, "OpenImageIO")) CHECK(contains(result.output, "(16, 24, 3)"));
+    if (contains(snippet.modules, "OpenImageIO")) CHECK(contains(result.output, "(16, 24, "));
   }
   CHECK(count == 2);
   if (!lacking.empty()) {

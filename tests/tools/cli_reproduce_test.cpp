@@ -49,9 +49,9 @@ TEST_CASE("check tells everything that is wrong in a published table, each at it
         "wrong_references.reproduction:7:24: this value does not fit the parameter 'area_samples'",
         "wrong_references.reproduction:8:34: pipeline \"Direct lighting\" has no pass 'gbufer'",
         "did you mean 'gbuffer'", "wrong_references.reproduction:9:3: row 'b' does not say whose fragments",
-        "wrong_references.reproduction:10:33: this names no output of a pass",
+        "wrong_references.reproduction:10:33: this is not an output of a pass",
         "wrong_references.reproduction:11:35: there is no file",
-        "wrong_references.reproduction:12:47: a frame rate is that of the frame"}) {
+        "wrong_references.reproduction:12:47: a frame rate is that of the whole frame"}) {
     INFO(finding << "\n" << references.errors);
     CHECK(contains(references.errors, finding));
   }
@@ -80,7 +80,7 @@ TEST_CASE("check tells everything that is wrong in a published figure, each at i
         "wrong_figure.reproduction:12:10: pipeline \"Volumetric smoke\" has no parameter 'resolutions'",
         "did you mean 'resolution'", "wrong_figure.reproduction:17:10: the parameter 'pixels' is a word",
         "wrong_figure.reproduction:22:5: this point measures something else",
-        "wrong_figure.reproduction:24:22: this names no output of a pass",
+        "wrong_figure.reproduction:24:22: this is not an output of a pass",
         "wrong_figure.reproduction:26:11: pipeline \"Volumetric smoke\" has no parameter 'stepz'",
         "wrong_figure.reproduction:28:37: there is no file"}) {
     INFO(finding << "\n" << references.errors);
@@ -266,7 +266,7 @@ TEST_CASE(
   CHECK(curve["verdict"] == "reproduced");
   CHECK(curve["exponent"].get<double>() == Approx(2.0).margin(0.35));
   CHECK(curve["points"][2]["x"] == 32);
-  // What is split covers the same voxels; a voxel that it shares has one fragment of each triangle.
+  // A split triangle covers the same voxels; a shared voxel has one fragment of each part.
   const Json& split = figure["curves"][1];
   const double triangles = split["points"][0]["x"];
   CHECK(split["points"][1]["x"] == 4 * triangles);
@@ -368,7 +368,7 @@ TEST_CASE(
   directory.write("scenes/reproductions/room.reproduction", mended);
   const auto stale = inProject("--cards --check");
   CHECK(stale.exitCode == 1);
-  CHECK(contains(stale.errors, "row 'voxels, 64' is kept with 45 as published, the text has 46"));
+  CHECK(contains(stale.errors, "row 'voxels, 64' is recorded with 45 as published, but the text has 46"));
 
   // A damaged file is refused before anything is measured, and stays as it is.
   directory.write(kept, "{");

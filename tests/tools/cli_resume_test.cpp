@@ -81,7 +81,7 @@ TEST_CASE("a report that is killed goes on where it stopped, says so, and gives 
     CHECK(point.at("frame_ms").at("repeats") == 3);
     CHECK(point.at("passes").at(0).at("device_ms").at("median") > 0.0);
   }
-  // What was kept is what stands there.
+  // The kept runs are unchanged.
   for (const StoredRun& run : kept)
     CHECK(std::any_of(points.begin(), points.end(), [&](const Json& point) {
       return point.at("frame_ms").at("median") == run.point.frameMs.median;
@@ -136,7 +136,7 @@ TEST_CASE(
   CHECK(contains(made.errors, "4 of 4 points"));
   const CommandResult sweep = place.run("sweep", {"slow"}, store);
   INFO(sweep.errors);
-  CHECK(contains(sweep.output, "0 measured, 4 held already"));
+  CHECK(contains(sweep.output, "0 measured, 4 already in the store"));
   // And the point that was timed twice: with a budget, one.
   const ResultsStore stored(place.file("results.sqlite"), ResultsStore::Mode::read);
   CHECK(stored.controls(stored.runs().front().identity).size() == 1);
@@ -210,7 +210,7 @@ TEST_CASE("two sweeps into one store measure each point once, and both end with 
     CHECK(times == 1);
   }
   CHECK(runsIn(store) == 10);
-  // What was timed first was timed twice.
+  // The first point was timed twice.
   const ResultsStore results(store, ResultsStore::Mode::read);
   CHECK(results.controls(results.runs().front().identity).size() >= 6);
 }
@@ -231,6 +231,104 @@ TEST_CASE("points that a killed sweep had claimed are measured by the next") {
   CHECK(next.exitCode == 0);
   CHECK(Json::parse(next.output).at("measured") == 4);
   CHECK(runsIn(store) == 4);
+}
+
+TEST_CASE(
+    "a sweep that is killed in a batch loses the point at work and the times, and measures only those anew") {
+  const Place place;
+  const std::string store = place.file("results.sqlite");
+  const std::vector<std::string> words = place.words("sweep", {"slow"}, {"--store", store});
+  {
+    Started sweep(words, place.file("first.txt"));
+    REQUIRE(becomes([&] { return place.has("first.txt") && contains(place.read("first.txt"), "value=3"); }));
+    sweep.signalAfter(std::chrono::milliseconds(0), SIGKILL);
+    sweep.wait();
+  }
+  const auto key = [&](int value) {
+    for (const StoredRun& run : ResultsStore(store, ResultsStore::Mode::read).runs())
+      if (run.point.parameters.at("value").number == value) return run.identity.key();
+    return std::string();
+  };
+  REQUIRE(runsIn(store) == 0);
+  CHECK(ResultsStore(store, ResultsStore::Mode::read).count().untimed == 2);
+  // Nothing shows them as results.
+  CHECK(contains(runCommand("lumivox results list --store '" + store + "'").output, "0 runs"));
+  const CommandResult next = place.run("sweep", {"slow"}, {"--store", store, "--json"});
+  INFO(next.errors);
+  CHECK(next.exitCode == 0);
+  CHECK(Json::parse(next.output).at("measured") == 4);
+  for (const char* value : {"1", "2", "3", "4"}) {
+    INFO(value);
+    const bool kept = contains(next.errors, std::string("value=") + value + ": taken up from");
+    CHECK(kept == (*value <= '2'));
+  }
+  // They are what a sweep gives that nothing interrupts, times included.
+  const std::string whole = place.file("whole.sqlite");
+  REQUIRE(place.run("sweep", {"slow"}, {"--store", whole}).exitCode == 0);
+  const ResultsStore resumed(store, ResultsStore::Mode::read), undisturbed(whole, ResultsStore::Mode::read);
+  CHECK(resumed.count().untimed == 0);
+  for (int value = 1; value <= 4; ++value) {
+    const StoredRun a = resumed.find(key(value)).value(), b = undisturbed.find(key(value)).value();
+    CHECK(a.point.frameMs.repeats == 3);
+    CHECK(a.point.passDeviceMs.at("paint").repeats == 3);
+    CHECK(a.point.peakBytes == b.point.peakBytes);
+    CHECK(a.point.passWork == b.point.passWork);
+    CHECK(a.point.parameters == b.point.parameters);
+    REQUIRE(a.point.errors.size() == b.point.errors.size());
+    for (std::size_t i = 0; i < a.point.errors.size(); ++i)
+      CHECK(a.point.errors[i].error.rmse.value == b.point.errors[i].error.rmse.value);
+  }
+}
+
+TEST_CASE("a report that is killed in a batch has the images of its points when it goes on") {
+  const Place place;
+  const std::string checkpoint = place.file("page.unfinished.sqlite");
+  // Alone in its batch: the report measures default points first.
+  {
+    Started report(place.words("report", {"slow"}, {"-o", place.file("page.html")}), place.file("first.txt"));
+    // The default point is value=1; of the others the first two are there when the third is begun.
+    REQUIRE(becomes([&] { return place.has("first.txt") && contains(place.read("first.txt"), "value=4"); }));
+    report.signalAfter(std::chrono::milliseconds(0), SIGKILL);
+    report.wait();
+  }
+  {
+    const ResultsStore kept(checkpoint, ResultsStore::Mode::read);
+    CHECK(kept.count().runs == 1);
+    CHECK(kept.count().untimed == 2);
+  }
+  const CommandResult again = place.run("report", {"slow"}, {"-o", place.file("page.html")});
+  INFO(again.errors);
+  REQUIRE(again.exitCode == 0);
+  CHECK(contains(again.output, "1 of 4 points were taken up"));
+  CHECK(contains(again.errors, "value=3: taken up from"));
+  CHECK_FALSE(std::filesystem::exists(checkpoint));
+  REQUIRE(place.run("report", {"slow"}, {"-o", place.file("whole.html")}).exitCode == 0);
+  CHECK(pageRecords(place.read("page.html"), "images") == pageRecords(place.read("whole.html"), "images"));
+}
+
+TEST_CASE("Ctrl-C says what is kept, and the command that goes on from there") {
+  const Place place;
+  const std::string store = place.file("results.sqlite");
+  const std::vector<std::string> words = place.words("sweep", {"slow"}, {"--store", store});
+  for (const int signal : {SIGINT, SIGTERM}) {
+    INFO("signal " << signal);
+    for (const std::string& earlier : {store, place.file("said.txt")}) std::filesystem::remove(earlier);
+    Started sweep(words, place.file("said.txt"));
+    REQUIRE(becomes([&] { return place.has("said.txt") && contains(place.read("said.txt"), "value=3"); }));
+    sweep.signalAfter(std::chrono::milliseconds(0), signal);
+    const int status = sweep.wait();
+    // As without the message: a shell sees that a signal ended it.
+    CHECK(WIFSIGNALED(status));
+    CHECK(WTERMSIG(status) == signal);
+    const std::string said = place.read("said.txt");
+    INFO(said);
+    CHECK(contains(said,
+                   "interrupted: " + store + " keeps 0 points, and 2 more but for their times; to go on: "));
+    std::string typed = "lumivox";
+    for (const std::string& word : words) typed += " " + word;
+    CHECK(contains(said, "to go on: " + typed + "\n"));
+    CHECK(ResultsStore(store, ResultsStore::Mode::read).count().untimed == 2);
+  }
 }
 
 TEST_CASE("a battery that is killed has stored the cells that were run") {

@@ -48,7 +48,7 @@ TEST_CASE("a sweep measures what the store lacks, and the same sweep again measu
   const std::string text = runCommand("lumivox -q sweep " + kScene + " --pipeline " + sweep.pipeline +
                                       " --store " + sweep.store + " --plan")
                                .output;
-  CHECK(text.find("2 points are missing, 0 held already") != std::string::npos);
+  CHECK(text.find("2 points are missing, 0 already in the store") != std::string::npos);
   const CommandResult first = sweep.run();
   INFO(first.errors);
   REQUIRE(first.exitCode == 0);

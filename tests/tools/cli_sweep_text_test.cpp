@@ -32,16 +32,15 @@ TEST_CASE("check tells everything that is wrong in a text of sweeps, each at its
   for (const char* finding :
        {"did you mean 'grid'", "wrong_words.sweep:2:46: there is no file",
         "wrong_words.sweep:2:62: ", "is given twice", "wrong_words.sweep:3:14: the seed 2 is given twice",
-        "wrong_words.sweep:3:16: this is no seed", "wrong_words.sweep:3:20: this is no seed",
+        "wrong_words.sweep:3:16: this is not a seed", "wrong_words.sweep:3:20: this is not a seed",
         "wrong_words.sweep:4:21: this value does not fit",
         "wrong_words.sweep:5:3: 'resolution' is swept twice",
         "wrong_words.sweep:6:3: a sweep needs a list of values; expected cones [a b c]",
         "wrong_words.sweep:7:15: these steps never reach the upper end",
-        "wrong_words.sweep:8:23: the range runs backwards",
-        "wrong_words.sweep:9:3: steps are not written like this",
+        "wrong_words.sweep:8:23: the range runs backwards", "wrong_words.sweep:9:3: malformed steps",
         "wrong_words.sweep:1:1: the sweep lacks its pipelines",
         "wrong_words.sweep:11:1: unknown block 'pipeline'", "a second sweep named 'Words'",
-        "wrong_words.sweep:14:14: this names no file"}) {
+        "wrong_words.sweep:14:14: this is not the name of a file"}) {
     INFO(finding);
     CHECK(contains(words.errors, finding));
   }

@@ -242,7 +242,8 @@ TEST_CASE("bad input of the voxels command is refused before any work, and names
   checkRefused(measure(place, "--pipelines '" + place.file("nowhere") + "'"), "nowhere");
   checkRefused(measure(place, "--camera nobody"), "nobody");
   fs::create_directory(place.path() / "empty");
-  checkRefused(measure(place, "--pipelines '" + place.file("empty") + "'"), "the folder holds no pipeline");
+  checkRefused(measure(place, "--pipelines '" + place.file("empty") + "'"),
+               "the folder contains no pipeline");
   place.write("wrong.pipeline", "pipeline \"Wrong\" {\n  pass a voxelization.conservativ { }\n}\n");
   checkRefused(measure(place, "--pipelines '" + place.file("wrong.pipeline") + "'"), "conservativ");
   place.write("file", "");

@@ -230,7 +230,7 @@ TEST_CASE("no line of a guide or card is longer than 140 characters, but for wha
       if (entry.is_directory()) texts.push_back(entry.path() / "README.md");
   for (const fs::path& file : texts) {
     if (file.filename() == "reference.md") continue;  // lumivox describe --markdown
-    // What lumivox reproduce --cards writes between its marks.
+    // Without the text that lumivox reproduce --cards writes between its marks.
     const std::string text = withoutGenerated(readFile(file));
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) {

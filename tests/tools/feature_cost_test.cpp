@@ -40,8 +40,8 @@ Scene sceneOf(std::string text) {
   return loadScene(directory.write("made.scene", text));
 }
 
-/// What a pipeline does on a scene, in short words: "pass gather" runs in the first frame, "again gather" in
-/// the one after it, "program voxel_cone_tracing/gather" is needed, with "gather GLOSSY=1" among its axes.
+/// The work of a pipeline on a scene, in short words: "pass gather" runs in the first frame, "again gather"
+/// in the one after it, "program voxel_cone_tracing/gather" is needed, with "gather GLOSSY=1" among its axes.
 struct Cost {
   std::set<std::string> words;
   std::map<std::string, std::uint64_t> bytes;  ///< per pass
@@ -85,7 +85,7 @@ Cost costOf(const std::string& sceneText, const Pipeline& text) {
   return cost;
 }
 
-/// What the second scene costs more; of programs that are new the axes are not repeated.
+/// The extra cost of the second scene; axes of new programs are not repeated.
 std::set<std::string> gained(const Cost& before, const Cost& after) {
   std::set<std::string> words;
   std::set_difference(after.words.begin(), after.words.end(), before.words.begin(), before.words.end(),

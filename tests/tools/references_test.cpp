@@ -120,7 +120,7 @@ bool isName(const std::string& word) {
 }
 
 std::vector<Citation> citationsOf(const std::string& text) {
-  // What stands before a number that is no year of a work.
+  // Words before a number that is no year of a work.
   static const std::set<std::string> kNoNames = {"RFC",     "January",  "February", "March",  "April",
                                                  "May",     "June",     "July",     "August", "September",
                                                  "October", "November", "December"};

@@ -1,4 +1,4 @@
-// What the scenes promise about their images, asked of the path tracer.
+// Promises of the scenes about their images, checked with the path tracer.
 #include "lumivox/reference/path_tracer.h"
 #include "lumivox/scene/scene.h"
 #include "support/support.h"

@@ -1,5 +1,4 @@
-// What is installed, used as somebody does who has never seen the tree: a technique of one's own, outside of
-// it.
+// The installed files, used by somebody who has never seen the tree: a technique of one's own, outside of it.
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -132,7 +131,7 @@ TEST_CASE(
   CHECK(contains(installed.mustRun(lab, "vdbexport --list grid.vdb"), "seen"));
   CHECK(contains(installed.mustRun(lab, "lumivox describe SeenVoxels --techniques build/lib/techniques"),
                  "voxels in which a surface is seen"));
-  // What the camera sees touches the surface, and it sees most of it, but not all.
+  // Visible voxels touch the surface, and cover most of it, but not all.
   writeFileAtomically(lab / "scenes/pipelines/marked.pipeline",
                       "pipeline \"Seen voxels alone\" {\n  param resolution 32 in 8..512\n"
                       "  pass gbuffer direct_lighting.gbuffer { }\n"

@@ -155,11 +155,11 @@ TEST_CASE("a malformed constraint is an error at its line") {
     return errors;
   };
   CHECK_THAT(message("MASK"),
-             Catch::Contains("'MASK' is no axis") && Catch::Contains("did you mean 'MASKS'"));
+             Catch::Contains("'MASK' is not an axis") && Catch::Contains("did you mean 'MASKS'"));
   CHECK_THAT(message("(MASKS"), Catch::Contains("expected ')'"));
   CHECK_THAT(message("MASKS ||"), Catch::Contains("at the end"));
   CHECK_THAT(message("MASKS MASKS"), Catch::Contains("expected an operator"));
-  CHECK_THAT(message("MASKS == spot"), Catch::Contains("no value of MASKS"));
+  CHECK_THAT(message("MASKS == spot"), Catch::Contains("nor a value of MASKS"));
 }
 
 TEST_CASE("wrong declarations are errors at their line") {

@@ -23,7 +23,7 @@ namespace {
 
 // ---- a pass that gives every kind of port, with known content ------------------------------------------
 
-/// What the pass put into its ports: kept here, so that the test reads the device by itself.
+/// The contents of the pass's ports: kept here, so that the test reads the device by itself.
 struct Content {
   GridPlacement grid;
   VoxelFragments fragments;

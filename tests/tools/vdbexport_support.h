@@ -1,4 +1,4 @@
-// What the tests of exported grids share: reading as other programs do, and grids with known content.
+// Helpers for the tests of exported grids: reading as other programs do, and grids with known content.
 #pragma once
 
 #include <openvdb/io/File.h>

@@ -13,27 +13,29 @@
 namespace lumivox::command {
 
 void GlobalOptions::addTo(CLI::App& app) {
-  addRepeatable(app, "--assets", assets,
-                "a folder to seek models in; then $LUMIVOX_ASSETS, then ../shared/models beside the project; "
-                "may be repeated");
-  addRepeatable(app, "--techniques", techniques, "a folder to seek technique libraries in; may be repeated");
+  addRepeatable(
+      app, "--assets", assets,
+      "a folder to search for models; then $LUMIVOX_ASSETS, then ../shared/models beside the project; "
+      "may be repeated");
+  addRepeatable(app, "--techniques", techniques,
+                "a folder to search for technique libraries; may be repeated");
   app.add_option("--device", device, "auto, software, surfaceless, or the number of an EGL device");
   app.add_option("--shaders", shaders, "how programs reach the driver: spirv, glsl or auto")
       ->check(CLI::IsMember({"auto", "spirv", "glsl"}));
   app.add_option(
          "--arithmetic", arithmetic,
-         "exact: the same bits on every driver; fast: sums and products fused and reordered as a driver likes, "
-         "as a renderer ships them, for times")
+         "exact: the same bits on every driver; fast: sums and products fused and reordered at the driver's choice, "
+         "as in a released renderer, for timing")
       ->check(CLI::IsMember({"exact", "fast"}));
   app.add_flag("--debug-context", debugContext,
                "the driver explains each error at the command that made it; slower (default: whether "
                "$LUMIVOX_DEBUG_CONTEXT is set)");
   app.add_option("--memory", memory,
-                 "most memory of textures and buffers together, as 4GiB: what a smaller device would refuse "
+                 "limit on the memory of all textures and buffers, such as 4GiB, as on a smaller device "
                  "(default: what the device has)")
       ->transform(CLI::AsSizeValue(false));
   app.add_flag("--strict", strict, "refuse what would otherwise be dropped with a warning");
-  auto* quietFlag = app.add_flag("-q,--quiet", quiet, "no progress, no messages but errors");
+  auto* quietFlag = app.add_flag("-q,--quiet", quiet, "no progress and no messages except errors");
   app.add_flag("-v,--verbose", verbose, "more messages")->excludes(quietFlag);
 }
 
@@ -80,7 +82,7 @@ void RunOptions::addTo(CLI::App& app) {
   addRepeatable(app, "--set", settings, "a parameter of the pipeline, as name=value");
   app.add_option("--camera", camera, "the scene's camera of this name (default: the first)");
   app.add_option("--resolution", resolution,
-                 "width and height in pixels, as 640x360 (default: the camera's)");
+                 "width and height in pixels, such as 640x360 (default: the camera's)");
   app.add_option("--time", time, "seconds");
   app.add_option("--seed", seed, "of the random numbers of techniques");
 }
@@ -171,8 +173,8 @@ std::pair<int, int> parseResolution(const std::string& text) {
   if (text.size() > 16 || std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) != 2 ||
       static_cast<std::size_t>(used) != text.size() || width < 1 || height < 1 || width > kMost ||
       height > kMost)
-    throw Error(fmt::format("--resolution '{}': expected WIDTHxHEIGHT in pixels, each in 1..{}, as 640x360",
-                            text, kMost));
+    throw Error(fmt::format(
+        "--resolution '{}': expected WIDTHxHEIGHT in pixels, each in 1..{}, such as 640x360", text, kMost));
   return {width, height};
 }
 
@@ -184,7 +186,8 @@ std::pair<int, int> parseFrames(const std::string& option, const std::string& te
     return {first, last};
   used = 0;
   if (std::sscanf(text.c_str(), "%d%n", &first, &used) == 1 && whole() && first >= 0) return {first, first};
-  throw Error(fmt::format("{} '{}': expected FIRST..LAST, whole numbers from 0, as 0..47", option, text));
+  throw Error(
+      fmt::format("{} '{}': expected FIRST..LAST, whole numbers from 0, such as 0..47", option, text));
 }
 
 std::filesystem::path numberedName(const std::filesystem::path& output, int frame) {

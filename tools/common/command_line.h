@@ -1,5 +1,5 @@
-// What the programs of the project share about their command lines: options, exit codes, tables, numbered
-// files and what a result says about where it comes from.
+// Common parts of the programs' command lines: options, exit codes, tables, numbered files and the provenance
+// of a result.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -43,7 +43,7 @@ struct GlobalOptions {
   TechniqueSet techniqueSet() const;
 };
 
-/// What every command that runs a pipeline knows.
+/// Options of every command that runs a pipeline.
 struct RunOptions {
   std::vector<std::string> settings;
   std::string camera, resolution;
@@ -55,7 +55,7 @@ struct RunOptions {
   RenderOptions renderOptions(const Pipeline& pipeline) const;
 };
 
-/// What a shell would read as this command line, with the program's plain name in front.
+/// This command line as a shell would read it, with the program's plain name in front.
 std::string asTyped(const std::string& program, int count, char** arguments);
 
 /// Reads the options and sets the level of messages. The exit code when nothing is left to do: help and the

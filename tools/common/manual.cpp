@@ -135,8 +135,8 @@ std::string manualPage(const CLI::App& app, const std::string& version) {
       if (words.empty() || option->get_name() != "--help") text += optionEntry(*option);
   });
   text +=
-      ".SH EXIT STATUS\n.TP\n.B 0\ndone, and good\n.TP\n.B 1\ndone, and what was checked is not good\n"
-      ".TP\n.B 2\nbad input, or something is absent; nothing was written\n";
+      ".SH EXIT STATUS\n.TP\n.B 0\nsuccess\n.TP\n.B 1\ndone, but a check failed\n"
+      ".TP\n.B 2\nbad input, or something is missing; nothing was written\n";
   return text;
 }
 

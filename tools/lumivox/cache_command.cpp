@@ -83,21 +83,23 @@ int prune(const CacheCommand& command) {
 }  // namespace
 
 void addCacheCommand(Commands& commands) {
-  auto* command = commands.app.add_subcommand("cache", "the references that are kept for later");
+  auto* command = commands.app.add_subcommand("cache", "lists or removes cached references");
   command->require_subcommand(1);
   auto options = std::make_shared<CacheCommand>();
-  auto* listing = command->add_subcommand("list", "what is kept, the last used first");
+  auto* listing =
+      command->add_subcommand("list", "lists the cached references, the most recently used first");
   listing->add_flag("--json", options->json, "print JSON");
   commands.onChosen(listing, [=] { return list(*options); });
 
-  auto* pruning = command->add_subcommand("prune", "removes what was not used for longest");
-  auto* limit =
-      pruning->add_option("--limit", options->limit,
-                          "keep at most so much, as 500MiB (default: $LUMIVOX_CACHE_LIMIT, else 4GiB)");
-  pruning->add_option("--unused-for", options->unusedDays, "remove what was not used for so many days, too")
+  auto* pruning = command->add_subcommand("prune", "removes the least recently used references");
+  auto* limit = pruning->add_option(
+      "--limit", options->limit,
+      "keep at most this much, such as 500MiB (default: $LUMIVOX_CACHE_LIMIT, else 4GiB)");
+  pruning
+      ->add_option("--unused-for", options->unusedDays, "also remove references not used for this many days")
       ->check(CLI::Range(0.0, 36500.0));
   pruning->add_flag("--all", options->all, "keep nothing")->excludes(limit);
-  pruning->add_flag("--dry-run", options->dryRun, "only say what would go");
+  pruning->add_flag("--dry-run", options->dryRun, "only report what would be removed");
   commands.onChosen(pruning, [=] { return prune(*options); });
 }
 

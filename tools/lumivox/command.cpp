@@ -28,7 +28,8 @@ TextKind kindOfText(const std::filesystem::path& file) {
     for (const dsl::Item& item : document.items)
       if (item.block && item.block->word == word) return kind;
   throw Error(fmt::format(
-      "{}: no text of ours; expected a block 'scene', 'pipeline', 'sweep' or 'reproduction'", file.string()));
+      "{}: not a text of Lumivox; expected a block 'scene', 'pipeline', 'sweep' or 'reproduction'",
+      file.string()));
 }
 
 std::string stem(const std::string& file) {

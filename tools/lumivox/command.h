@@ -1,5 +1,4 @@
-// What the commands of the command line share. One file per group of commands; each adds its subcommands to
-// the application.
+// Common parts of the commands. One file per group of commands; each adds its subcommands to the application.
 #pragma once
 
 #include <filesystem>

@@ -148,7 +148,7 @@ int compareFiles(const CompareCommand& command) {
 
 void addCompareCommand(Commands& commands) {
   auto* command = commands.app.add_subcommand(
-      "compare", "how far an image is from another; NaN and Inf are counted, not spread");
+      "compare", "measures the difference between two images; NaN and Inf are counted, not propagated");
   auto options = std::make_shared<CompareCommand>();
   command->add_option("IMAGE", options->image, "an EXR file")->required();
   command

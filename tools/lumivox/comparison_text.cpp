@@ -76,7 +76,7 @@ std::string equalText(const PipelineComparison& comparison, const std::vector<do
          "measured points, never beyond them\n";
 }
 
-/// What the claims rest on.
+/// The basis of the claims.
 std::string basisText(const PipelineComparison& comparison) {
   std::string text =
       fmt::format("times count as different beyond {:.1f} %{}\n", 100.0 * comparison.timeShare,

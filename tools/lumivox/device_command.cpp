@@ -25,7 +25,7 @@ int device(const DeviceCommand& command, const GlobalOptions& global) {
     logInformation("{} of {}: {}", done + 1, total, name);
   };
   const std::filesystem::path file = command.store.empty() ? ResultsStore::defaultFile() : command.store;
-  ResultsStore store(file);  // a place that cannot be written is told before the work
+  ResultsStore store(file);  // a store that cannot be written is refused before the work
   const auto device = global.openDevice();
   const std::vector<PeakRate> peakRates = measurePeakRates(*device, options);
   store.add(peakRates);
@@ -73,8 +73,8 @@ int device(const DeviceCommand& command, const GlobalOptions& global) {
 }  // namespace
 
 void addDeviceCommand(Commands& commands) {
-  auto* command = commands.app.add_subcommand(
-      "device", "measures what this device can do at most, and keeps it in the results store");
+  auto* command =
+      commands.app.add_subcommand("device", "measures the peak rates of this device and stores them");
   auto all = std::make_shared<DeviceCommand>();
   command->add_option("--store", all->store,
                       "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)");

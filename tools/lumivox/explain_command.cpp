@@ -126,7 +126,7 @@ std::vector<std::string> cellRow(const NeededCell& cell) {
   return row;
 }
 
-/// What has no place in the tables: why a cell is empty, and which pipelines do not suit.
+/// Remarks below the tables: why a cell is empty, and which pipelines do not suit.
 std::string remark(const NeededCell& cell, bool wholeScene) {
   if (!cell.absent.empty())
     return wrapped(fmt::format("{}: {}{}: {}", cell.failed ? "failed" : "absent", stem(cell.scene),

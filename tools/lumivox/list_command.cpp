@@ -107,7 +107,7 @@ std::string asTable(const Json& list, const std::vector<std::string>& columns) {
 }  // namespace
 
 void addListCommand(Commands& commands) {
-  auto* command = commands.app.add_subcommand("list", "lists what there is");
+  auto* command = commands.app.add_subcommand("list", "lists scenes, pipelines, techniques or passes");
   auto what = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false);
   command->add_option("WHAT", *what, "scenes, pipelines, techniques or passes")

@@ -84,7 +84,7 @@ double millisecondsOf(const std::string& option, const std::string& text) {
   if (end != text.c_str() && std::isfinite(number) && number > 0.0)
     for (const dsl::Unit& known : dsl::knownUnits())
       if (known.name == unit && known.dimension == dsl::kTime) return number * known.toBase * 1000.0;
-  throw Error(fmt::format("{} '{}': expected a time above 0, as 16ms or 0.5s", option, text));
+  throw Error(fmt::format("{} '{}': expected a time above 0, such as 16ms or 0.5s", option, text));
 }
 
 double positiveNumberOf(const std::string& option, const std::string& text) {

@@ -66,16 +66,16 @@ int newTechniqueCommand(const std::string& name, const fs::path& in, const Globa
 }  // namespace
 
 void addNewCommand(Commands& commands) {
-  auto* command = commands.app.add_subcommand("new", "writes something to start from");
+  auto* command = commands.app.add_subcommand("new", "writes a starting point");
   command->require_subcommand(1);
   command->fallthrough();
   auto* technique = command->add_subcommand(
       "technique", "a working technique: C++, shader, paper card, pipeline and test, to be built at once");
   auto name = std::make_shared<std::string>();
   auto in = std::make_shared<fs::path>();
-  technique->add_option("NAME", *name, "of the technique, as my_paper")->required();
+  technique->add_option("NAME", *name, "of the technique, such as my_paper")->required();
   technique->add_option("--in", *in,
-                        "the project that it goes into, which is made when it is not there (default: the "
+                        "the project that it is added to, created where missing (default: the "
                         "project around the working folder, else a new folder NAME)");
   const GlobalOptions& global = commands.global;
   commands.onChosen(technique, [=, &global] { return newTechniqueCommand(*name, *in, global); });

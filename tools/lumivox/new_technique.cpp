@@ -68,12 +68,12 @@ std::string nameDefect(const std::string& name) {
   if (name.empty() || name.size() > kLongestName || !std::all_of(name.begin(), name.end(), fits) ||
       name.front() < 'a' || name.back() == '_' || name.find("__") != std::string::npos)
     return fmt::format(
-        "'{}' is no name of a technique; expected at most {} small letters, digits and single underscores "
-        "that begin with a letter and end with a letter or digit, as my_paper",
+        "'{}' is not a name for a technique; expected at most {} small letters, digits and single underscores "
+        "that begin with a letter and end with a letter or digit, such as my_paper",
         name, kLongestName);
   if (reservedWords().count(name) != 0)
     return fmt::format(
-        "'{}' is a word of C++ or of the framework; expected a name that becomes a C++ namespace, as my_paper",
+        "'{}' is a word of C++ or of the framework; expected a name that becomes a C++ namespace, such as my_paper",
         name);
   return {};
 }
@@ -94,7 +94,7 @@ std::vector<fs::path> newTechnique(const fs::path& templates, const std::string&
     const bool isEmpty = fs::is_directory(project, ignored) && fs::is_empty(project, ignored);
     if (fs::exists(fs::symlink_status(project, ignored)) && !isEmpty)
       throw Error(fmt::format(
-          "{}: exists and is no project with techniques; expected a new or empty folder, or one with "
+          "{}: exists and is not a project with techniques; expected a new or empty folder, or one with "
           "CMakeLists.txt and techniques/",
           project.string()));
     addTemplates(files, templates / "project", name);

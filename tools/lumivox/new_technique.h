@@ -10,8 +10,8 @@ namespace lumivox::command {
 /// The word that stands for the technique's name in the templates' texts and file names.
 inline constexpr const char* kNameInTemplates = "technique_name";
 
-/// Why this is no name of a technique, in words ("..., expected ..."); empty when it is one. The name becomes
-/// a folder, a C++ namespace, a library and a word of pipeline texts.
+/// Why this is not a name for a technique, in words ("..., expected ..."); empty when it is one. The name
+/// becomes a folder, a C++ namespace, a library and a word of pipeline texts.
 std::string nameDefect(const std::string& name);
 
 /// A project with techniques: this tree, or a folder that newTechnique has made.

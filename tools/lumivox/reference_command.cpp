@@ -64,7 +64,7 @@ void addReferenceCommand(Commands& commands) {
   command
       ->add_option(
           "--bounce-layers", options.bounceLayers,
-          "numbers N of bounces, as 1,2,4: layers bounces_N, bounces_N_diffuse and bounces_N_glossy with "
+          "numbers N of bounces, such as 1,2,4: layers bounces_N, bounces_N_diffuse and bounces_N_glossy with "
           "up to N of them")
       ->delimiter(',')
       ->check(CLI::Range(1, 1 << 16));
@@ -72,7 +72,7 @@ void addReferenceCommand(Commands& commands) {
   command->add_option("--time", options.time, "seconds");
   command->add_option("--camera", options.camera, "the scene's camera of this name (default: the first)");
   command->add_option("--resolution", all->resolution,
-                      "width and height in pixels, as 640x360 (default: the camera's)");
+                      "width and height in pixels, such as 640x360 (default: the camera's)");
   command
       ->add_option("--occlusion-distance", options.occlusionDistance,
                    "metres, of ambient occlusion (default: a tenth of the diagonal of the scene's bounds)")

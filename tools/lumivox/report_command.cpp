@@ -16,7 +16,7 @@
 namespace lumivox::command {
 namespace {
 
-/// What there was no time for, "scene, pipeline: cones=6" each, in a line for each pipeline.
+/// Points for which there was no time, "scene, pipeline: cones=6" each, in a line for each pipeline.
 std::string leftOutText(const std::vector<std::string>& leftOut) {
   std::vector<std::pair<std::string, std::string>> lines;
   for (const std::string& one : leftOut) {
@@ -130,8 +130,9 @@ void addReportCommand(Commands& commands) {
       ->add_option("--voxels", all->measure.options.voxelResolution,
                    "adds a section on the voxelizers at this resolution (default: none)")
       ->check(CLI::Range(1, 1024));
-  addRepeatable(*command, "--equal-time", all->equalTimes,
-                "a budget of the table of equal time, as 16ms; may be repeated (default: round numbers)");
+  addRepeatable(
+      *command, "--equal-time", all->equalTimes,
+      "a budget of the table of equal time, such as 16ms; may be repeated (default: round numbers)");
   addRepeatable(*command, "--equal-error", all->equalErrors,
                 "an error of the table of equal error; may be repeated (default: round numbers)");
   command->add_flag("--brief", all->brief,

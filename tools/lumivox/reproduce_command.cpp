@@ -192,7 +192,7 @@ int writeCards(const ReproduceCommand& command) {
     const std::string is = fs::exists(file) ? readFile(file) : std::string();
     if (is == text) continue;
     if (command.check) {
-      complain(fmt::format("{}:{}: this is not what was measured; lumivox reproduce --cards writes it",
+      complain(fmt::format("{}:{}: this differs from the measurement; lumivox reproduce --cards rewrites it",
                            file.string(), firstDifference(is, text)));
     } else {
       writeFileAtomically(file, text);
@@ -286,13 +286,12 @@ void addReproduceCommand(Commands& commands) {
   command->add_option("--figures", all->figures,
                       "folder for sheets (.png) and curves (.csv, .svg) (default: out/reproductions)");
   auto* recordOption = command->add_option(
-      "--record", all->record,
-      "a file .json that keeps the results: those that were measured take the place of what it has of them");
+      "--record", all->record, "a file .json that keeps the results: newly measured ones replace its own");
   auto* cards = command->add_flag(
       "--cards", all->cards,
       "writes docs/benchmarks/reproductions.md and what cards and guides quote from the kept results; alone, from "
       "docs/benchmarks/reproductions.json and without measuring");
-  command->add_flag("--check", all->check, "with --cards: writes nothing, and tells what would change")
+  command->add_flag("--check", all->check, "with --cards: writes nothing, and reports what would change")
       ->needs(cards);
   command->add_option(
       "--store", all->store,

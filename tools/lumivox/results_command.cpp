@@ -60,7 +60,7 @@ struct ResultsCommand {
     auto* flag = app.add_flag("--stress", stress, "cells of the stress battery in place of runs");
     app.add_option("--family", cells.family, "only cells of this family of cases")->needs(flag);
     app.add_option("--case", cells.name, "only cells of this case")->needs(flag);
-    app.add_option("--technique", cells.technique, "only cells of pipelines that stand for this technique")
+    app.add_option("--technique", cells.technique, "only cells of pipelines that represent this technique")
         ->needs(flag);
     app.add_option("--outcome", outcome, "only cells with this outcome")
         ->needs(flag)
@@ -76,7 +76,7 @@ struct ResultsCommand {
     app.add_option("--pipeline", filter.pipeline, "only runs of this pipeline: file, its stem, or title");
     addRepeatable(app, "--set", filter.parameters, "only runs with this parameter, as name=value");
     app.add_option("--on", filter.device, "only runs whose device's name contains this");
-    app.add_option("--since", filter.since, "only runs from this day on, as 2026-01-31");
+    app.add_option("--since", filter.since, "only runs from this day on, such as 2026-01-31");
     app.add_option("--run", filter.ids, "only the runs with these numbers");
     auto* onlyFailed = app.add_flag("--failed", failed, "only runs that failed");
     app.add_flag("--good", good, "only runs that did not fail")->excludes(onlyFailed);
@@ -272,7 +272,7 @@ std::filesystem::path storeOf(const std::string& text, const ResultsCommand& com
   return isStore(text) ? std::filesystem::path(text) : command.file();
 }
 
-/// What times of the same thing differ by on the machines of a store's runs.
+/// The difference between times of the same thing on the machines of a store's runs.
 TimeFloor floorOf(const std::filesystem::path& file) {
   const ResultsStore store(file, ResultsStore::Mode::read);
   TimeFloor floor;
@@ -377,7 +377,7 @@ int compareRuns(const ResultsCommand& command, const std::string& before, const 
 }  // namespace
 
 void addResultsCommands(Commands& commands) {
-  auto* results = commands.app.add_subcommand("results", "what a results store holds");
+  auto* results = commands.app.add_subcommand("results", "shows and changes the contents of a results store");
   results->require_subcommand(1);
   results->fallthrough();
   auto command = std::make_shared<ResultsCommand>();
@@ -410,15 +410,17 @@ void addResultsCommands(Commands& commands) {
     subcommand->add_flag("--json", command->json, "print everything as JSON in place of the table");
     return subcommand;
   };
-  addComparison("front", "which pipelines no other beats in time and error", ComparisonTable::front);
+  addComparison("front", "lists the pipelines that no other beats in both time and error",
+                ComparisonTable::front);
   addRepeatable(*addComparison("equal-time", "the error that each pipeline reaches within a time",
                                ComparisonTable::equalTime),
-                "--budget", command->budgets, "a time, as 16ms; may be repeated (default: round numbers)");
+                "--budget", command->budgets,
+                "a time, such as 16ms; may be repeated (default: round numbers)");
   addRepeatable(*addComparison("equal-error", "the time that each pipeline needs for an error",
                                ComparisonTable::equalError),
                 "--error", command->errors, "an error; may be repeated (default: round numbers)");
   auto* merge =
-      add("merge", "takes over the runs, stress cells and peak rates of other stores that are not there yet",
+      add("merge", "copies the runs, stress cells and peak rates that this store lacks from other stores",
           mergeResults);
   command->addStoreTo(*merge);
   merge->add_option("STORE", command->others, "the other stores")->required();
@@ -426,15 +428,15 @@ void addResultsCommands(Commands& commands) {
   command->addFilterTo(*remove);
   command->addStressTo(*remove);
   remove->add_flag("--all", command->all, "every run");
-  remove->add_flag("--dry-run", command->dryRun, "only tell which");
+  remove->add_flag("--dry-run", command->dryRun, "only list them");
 
   auto* compare = commands.app.add_subcommand(
-      "compare-runs", "what changed significantly between two stored runs, or two results stores");
+      "compare-runs", "lists significant changes between two stored runs, or two results stores");
   auto before = std::make_shared<std::string>(), after = std::make_shared<std::string>();
   compare->add_option("BEFORE", *before, "a results store, or the number of a run in --store")->required();
   compare->add_option("AFTER", *after, "the same")->required();
   command->addFilterTo(*compare);
-  compare->add_flag("--all", command->all, "also what did not change significantly");
+  compare->add_flag("--all", command->all, "also list insignificant changes");
   compare->add_flag("--json", command->json, "print JSON in place of the table");
   commands.onChosen(compare, [=] { return compareRuns(*command, *before, *after); });
 }

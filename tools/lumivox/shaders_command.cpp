@@ -58,7 +58,7 @@ std::vector<int> parseVariant(const shader::PackedProgram& program, const std::s
     const shader::Axis& axis = program.axes[i];
     const auto found = std::find(axis.values.begin(), axis.values.end(), words[i]);
     if (found == axis.values.end())
-      throw Error(fmt::format("--variant: '{}' is no value of the axis {}; expected one of {}", words[i],
+      throw Error(fmt::format("--variant: '{}' is not a value of the axis {}; expected one of {}", words[i],
                               axis.name, fmt::join(axis.values, ", ")));
     values.push_back(axis.value(static_cast<std::size_t>(found - axis.values.begin())));
   }
@@ -68,7 +68,7 @@ std::vector<int> parseVariant(const shader::PackedProgram& program, const std::s
 int printProgram(const ShadersCommand& command, const GlobalOptions& global) {
   const std::size_t slash = command.program.find('/');
   if (slash == std::string::npos)
-    throw Error(fmt::format("--print '{}': expected TECHNIQUE/PROGRAM, as voxel_cone_tracing/gather",
+    throw Error(fmt::format("--print '{}': expected TECHNIQUE/PROGRAM, such as voxel_cone_tracing/gather",
                             command.program));
   TechniqueSet techniques = global.techniqueSet();
   const std::string techniqueName = command.program.substr(0, slash);
@@ -158,7 +158,7 @@ void addShadersCommand(Commands& commands) {
   command->add_option("--print", options->program,
                       "TECHNIQUE/PROGRAM: print a variant of it as GLSL; needs no scene");
   command->add_option("--variant", options->variant,
-                      "of --print: one value per axis, as 1,0 (default: the first)");
+                      "of --print: one value per axis, such as 1,0 (default: the first)");
   command->add_flag("--keep-everything", options->keepEverything,
                     "the variants that are needed when nothing is left out");
   command->add_flag("--json", options->json, "print JSON");

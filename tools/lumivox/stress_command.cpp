@@ -71,18 +71,19 @@ int tell(const StressSummary& summary, bool json) {
   return summary.sound() ? kGood : kNotGood;
 }
 
-/// What a store holds, without running anything.
+/// Prints the contents of a store without running anything.
 int tellStored(const StressCommand& command, const GlobalOptions& global) {
   const StressOptions& options = command.options;
   if (!options.pipelines.empty() || !options.families.empty() || !options.cases.empty() || options.quick ||
       !options.store.empty())
-    throw Error("stress --from shows what a store holds; of the other choices only TECHNIQUE goes with it");
+    throw Error(
+        "stress --from shows the contents of a store; of the other arguments only TECHNIQUE can be combined with it");
   CellFilter filter;
   filter.technique = options.technique;
   StressSummary summary;
   summary.cells = newestCells(ResultsStore(command.from, ResultsStore::Mode::read).stressCells(filter));
   if (summary.cells.empty())
-    throw Error(command.from.string() + ": the store holds no such cells of the stress battery");
+    throw Error(command.from.string() + ": the store has no such cells of the stress battery");
   if (!options.output.empty()) {
     requireWritable(options.output / "index.html");
     summary.page = writeStressPage(options.output, summary.cells, global.commandLine);
@@ -122,14 +123,14 @@ int stress(const StressCommand& command, const GlobalOptions& global) {
 void addStressCommand(Commands& commands) {
   auto* command = commands.app.add_subcommand(
       "stress",
-      "where each technique breaks: every pipeline on every extreme case, in processes of their own");
+      "shows where each technique breaks: every pipeline on every extreme case, in separate processes");
   auto all = std::make_shared<StressCommand>();
   StressOptions& options = all->options;
   command->add_option("TECHNIQUE", options.technique,
-                      "only pipelines that stand for this technique (default: all)");
+                      "only pipelines that represent this technique (default: all)");
   addRepeatable(*command, "--family", options.families, "only cases of this family; may be repeated");
   addRepeatable(*command, "--case", options.cases,
-                "only this case, quick or not; may hold '*'; may be repeated");
+                "only this case, quick or not; may contain '*'; may be repeated");
   addRepeatable(*command, "--pipeline", options.pipelines,
                 "pipelines' texts (default: every committed one, voxelizers too); may be repeated");
   command->add_flag("--quick", options.quick, "the quick cases alone, at small sizes");
@@ -138,15 +139,16 @@ void addStressCommand(Commands& commands) {
                    "seconds for one cell (default 60 with --quick, else 600)")
       ->check(CLI::Range(0.1, 86400.0));
   command
-      ->add_option("--workers", options.workers,
-                   "processes at the same time (default: one a processor on a software rasteriser, else one)")
+      ->add_option(
+          "--workers", options.workers,
+          "processes at the same time (default: one per processor on a software rasteriser, else one)")
       ->check(CLI::Range(1, 256));
   command->add_option("-o,--out", options.output,
                       "a folder for the page, its images and index.json (default: none)");
   command->add_option("--store", options.store,
                       "a results store that the cells are added to (default: none)");
   command->add_option("--from", all->from, "show the newest cells of this results store and run nothing");
-  command->add_flag("--list", all->list, "only tell which cases there are");
+  command->add_flag("--list", all->list, "only list the cases");
   command->add_flag("--json", all->json, "print JSON in place of the tables");
   command->add_flag("--worker", all->worker)->group("");  // for the battery itself
   command->add_option("--worker-memory", all->workerMemory)->group("");

@@ -13,7 +13,7 @@
 namespace lumivox::command {
 namespace {
 
-/// What the matrix shows: one word for each outcome.
+/// A cell of the matrix: one word for each outcome.
 const char* mark(StressOutcome outcome) {
   switch (outcome) {
     case StressOutcome::stable:

@@ -59,7 +59,7 @@ int sweep(const SweepCommand& command, const GlobalOptions& global) {
             ? fmt::format("{} points are missing", summary.missing.size())
             : fmt::format("{} measured{}", summary.measured,
                           summary.failed == 0 ? "" : fmt::format(", {} of them failed", summary.failed));
-    text += fmt::format("{}, {} held already; {}\n", done, summary.held, file.string());
+    text += fmt::format("{}, {} already in the store; {}\n", done, summary.held, file.string());
     print(text);
   }
   const bool good = std::all_of(summary.runs.begin(), summary.runs.end(), [](const StoredRun& run) {
@@ -72,12 +72,12 @@ int sweep(const SweepCommand& command, const GlobalOptions& global) {
 
 void addSweepCommand(Commands& commands) {
   auto* command = commands.app.add_subcommand(
-      "sweep", "measures every point of the pipelines' sweeps that the results store does not hold yet");
+      "sweep", "measures every point of the pipelines' sweeps that is not in the results store yet");
   auto all = std::make_shared<SweepCommand>();
   all->measure.addTo(*command,
                      "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)",
                      "the scenes' texts, and texts of sweeps that name scenes and pipelines themselves");
-  command->add_flag("--plan", all->plan, "only tell which points are missing");
+  command->add_flag("--plan", all->plan, "only list the missing points");
   command->add_flag("--retry-failed", all->retryFailed, "measure points that failed before once more");
   auto* json = command->add_flag("--json", all->json, "print JSON in place of the table");
   command->add_flag("--csv", all->csv, "print the runs as CSV in place of the table")->excludes(json);

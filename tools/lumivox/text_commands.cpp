@@ -34,7 +34,7 @@ Json findingAsJson(const Diagnostic& finding) {
           {"suggestion", finding.suggestion}};
 }
 
-/// What is wrong with one file: findings with their places, or one message for what has none.
+/// Errors in one file: findings with their places, or one message for an error without a place.
 struct CheckedFile {
   std::vector<Diagnostic> findings;
   std::string message;
@@ -109,10 +109,10 @@ int formatFiles(const std::vector<fs::path>& files, bool onlyCheck, bool quiet) 
   if (!findings.empty()) throw DiagnosticsError(findings);
   for (const auto& [file, text] : changed) {
     if (onlyCheck) {
-      print(file.string() + ": would be laid out anew\n");
+      print(file.string() + ": would be reformatted\n");
     } else {
       writeFileAtomically(file, text);
-      if (!quiet) print(file.string() + ": laid out anew\n");
+      if (!quiet) print(file.string() + ": reformatted\n");
     }
   }
   return onlyCheck && !changed.empty() ? kNotGood : kGood;
@@ -196,7 +196,7 @@ std::vector<const PortKind*> portKinds(TechniqueSet& techniques, std::vector<std
 std::string kindText(const PortKind& kind) {
   std::string text = fmt::format("port kind {}\n  {}\n", kind.name, kind.meaning);
   for (const PortResource& one : kind.resources)
-    text += fmt::format("  holds {} ({}): {}{}\n", one.name, one.shape, one.meaning,
+    text += fmt::format("  contains {} ({}): {}{}\n", one.name, one.shape, one.meaning,
                         one.sign == PortResource::Sign::any ? "; may be negative" : "");
   for (const PortField& one : kind.fields)
     text += fmt::format("  exported as {} ({}): {}\n", one.name, one.unit, one.quantity);
@@ -365,7 +365,7 @@ int describeAsMarkdown(const GlobalOptions& global) {
 void addTextCommands(Commands& commands) {
   const GlobalOptions& global = commands.global;
   {
-    auto* command = commands.app.add_subcommand("check", "finds everything that is wrong in texts");
+    auto* command = commands.app.add_subcommand("check", "finds all errors in texts");
     auto files = std::make_shared<std::vector<fs::path>>();
     auto json = std::make_shared<bool>(false);
     command->add_option("FILE", *files, "scenes, pipelines, sweeps and published tables")->required();
@@ -373,7 +373,7 @@ void addTextCommands(Commands& commands) {
     commands.onChosen(command, [=, &global] { return check(*files, *json, global); });
   }
   {
-    auto* command = commands.app.add_subcommand("fmt", "lays texts out in the one canonical way");
+    auto* command = commands.app.add_subcommand("fmt", "formats texts in the canonical way");
     auto files = std::make_shared<std::vector<fs::path>>();
     auto onlyCheck = std::make_shared<bool>(false);
     command->add_option("FILE", *files, "scenes, pipelines, sweeps and published tables")->required();
@@ -381,7 +381,7 @@ void addTextCommands(Commands& commands) {
     commands.onChosen(command, [=, &global] { return formatFiles(*files, *onlyCheck, global.quiet); });
   }
   {
-    auto* command = commands.app.add_subcommand("describe", "tells what a word of the texts means");
+    auto* command = commands.app.add_subcommand("describe", "explains a word of the texts");
     auto word = std::make_shared<std::string>();
     auto markdown = std::make_shared<bool>(false);
     auto* positional = command->add_option(

@@ -36,10 +36,10 @@ std::string resultText(const TuneResult& result, const TuneOptions& options) {
   const std::string limit = options.budgetMs
                                 ? fmt::format("{} ms", formatMilliseconds(*options.budgetMs))
                                 : fmt::format("{} {}", options.metric, threeDigits(*options.errorLimit));
-  text += fmt::format("{} points seen{}; limit {}; only the front is shown\n", result.seen.size(),
-                      result.exhausted ? ", every neighbour of what is ahead among them"
-                                       : ", then the evaluations were used up",
-                      limit);
+  text += fmt::format(
+      "{} points measured{}; limit {}; only the Pareto front is shown\n", result.seen.size(),
+      result.exhausted ? ", every neighbour of the best among them" : ", then the evaluations were used up",
+      limit);
   if (!result.winner) text += "nothing fits within " + limit + "\n";
   for (const std::string& unsuited : result.unsuited) text += "not run: " + unsuited + "\n";
   return text;
@@ -97,14 +97,14 @@ void addTuneCommand(Commands& commands) {
   auto all = std::make_shared<TuneCommand>();
   all->measure.addTo(*command,
                      "the results store (default: $LUMIVOX_RESULTS, else results.sqlite in the cache)");
-  auto* budget = command->add_option("--budget", all->budget, "most time for a frame, as 16ms");
+  auto* budget = command->add_option("--budget", all->budget, "time limit of a frame, such as 16ms");
   auto* error = command->add_option_function<double>(
       "--error",
       [all](double value) {
         all->error = value;
         all->hasError = true;
       },
-      "most error, in the unit of the metric");
+      "error limit, in the unit of the metric");
   budget->excludes(error);
   command->add_option("--metric", all->tune.metric,
                       "flip (default), rmse, relative_mse, percentile95, flip_ldr, ...");
@@ -112,7 +112,7 @@ void addTuneCommand(Commands& commands) {
                       "the pipelines' output that is judged (default: the whole image)");
   command->add_flag("--bias", all->tune.bias,
                     "judge against the technique's own model (one bounce) in place of full transport");
-  command->add_option("--evaluations", all->tune.evaluations, "most points to look at (default 60)")
+  command->add_option("--evaluations", all->tune.evaluations, "most points to measure (default 60)")
       ->check(CLI::Range(1, 100000));
   command->add_option("-o,--out", all->output, "writes the best pipeline's text, its parameters as defaults");
   auto* json = command->add_flag("--json", all->json, "print JSON in place of the table");

@@ -35,7 +35,7 @@ std::vector<int> resolutionsOf(const std::vector<std::string>& texts) {
       const auto read = std::from_chars(text.data() + start, text.data() + end, value);
       if (read.ec != std::errc() || read.ptr != text.data() + end)
         throw Error(fmt::format(
-            "--resolution '{}': expected voxels along the longest side, as 64 or 32,64,128", text));
+            "--resolution '{}': expected voxels along the longest side, such as 64 or 32,64,128", text));
       resolutions.push_back(value);
       start = end + 1;
     }

@@ -16,7 +16,7 @@ struct Vertex {
   glm::dvec2 texcoord{0};
 };
 
-/// What the MTL keys Kd, Ks, Ns, Ke, map_Kd and map_d hold.
+/// Values of the MTL keys Kd, Ks, Ns, Ke, map_Kd and map_d.
 struct ObjMaterial {
   std::string name;
   glm::dvec3 diffuse{0};   ///< albedo
@@ -32,7 +32,7 @@ class ObjModel {
   ObjModel(std::string name, std::string comment);
 
   void material(ObjMaterial material) { materials_.push_back(std::move(material)); }
-  /// What follows belongs to this object and has this material (declared before).
+  /// Later faces belong to this object and have this material (declared before).
   void object(const std::string& name, const std::string& material);
 
   void triangle(const Vertex& a, const Vertex& b, const Vertex& c);

@@ -330,7 +330,7 @@ class Merger {
     }
   }
 
-  /// What a stage reads must be what the stage before it writes.
+  /// The inputs of a stage must be the outputs of the stage before it.
   void stageInterfaces(const ProgramPlan::Variant& variant) {
     for (std::size_t i = 1; i < variant.jobs.size(); ++i) {
       const Artifact& before = variant.jobs[i - 1]->artifact;

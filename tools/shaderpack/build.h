@@ -20,7 +20,7 @@ struct BuildOptions {
   unsigned threads = 0;  ///< 0: one per core
 };
 
-/// What the generated header needs of a program beyond the pack.
+/// Data of a program that the generated header needs beyond the pack.
 struct ProgramInterface {
   std::vector<StructLayout> structs;                  ///< nested ones first
   std::map<std::string, std::uint32_t> elementBytes;  ///< of storage blocks that end with an open array

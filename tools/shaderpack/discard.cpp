@@ -50,7 +50,7 @@ class Walk {
     }
   }
 
-  /// What needs derivatives that a discard may have made undefined: the name of the sampler, "" for a
+  /// A use of derivatives that a discard may have made undefined: the name of the sampler, "" for a
   /// derivative; nothing where all is well.
   std::optional<std::string> run() {
     follow(entry_);

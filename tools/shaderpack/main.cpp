@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
   app.add_option("--technique", options.technique, "Name of the technique")->required();
   app.add_option("--source", options.source, "Folder of its entry files")->required();
   app.add_option("--include", options.includes,
-                 "Where #include \"...\" is sought besides the including file's folder");
+                 "Folder searched for #include \"...\", besides that of the including file");
   app.add_option("--cache", options.cache, "Folder of compiled stages, kept from run to run")->required();
   app.add_option("--pack", pack, "The pack to write")->required();
   app.add_option("--header", header, "The C++ header to write")->required();

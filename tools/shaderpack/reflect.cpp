@@ -1,4 +1,4 @@
-// What a stage asks of the C++ side, found by SPIRV-Cross in its SPIR-V.
+// The interface of a stage to the C++ side, found by SPIRV-Cross in its SPIR-V.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -91,7 +91,7 @@ class Expander {
       if (word == "endif") --conditionDepth_;
       if (word == "version") {
         if (!isEntry)
-          fail(place, "#version belongs into the entry file, or nowhere: 450 core is set for every shader");
+          fail(place, "#version belongs in the entry file, or nowhere: 450 core is set for every shader");
         if (rest != "450" && rest != "450 core")
           fail(place, "expected #version 450 core, or no #version at all");
         line.clear();
@@ -124,7 +124,7 @@ class Expander {
     if (found == candidates.end()) {
       std::string sought;
       for (const auto& path : candidates) sought += "\n  " + path.string();
-      fail(place, fmt::format("cannot find \"{}\"; sought{}", name, sought));
+      fail(place, fmt::format("cannot find \"{}\"; searched{}", name, sought));
     }
     const std::filesystem::path file = found->lexically_normal();
     // Every file counts once. The guard lets the preprocessor decide when the first mention is inside a
@@ -160,7 +160,7 @@ class Expander {
         axis.name.find_first_of("abcdefghijklmnopqrstuvwxyz") != std::string::npos) {
       fail(place,
            fmt::format(
-               "'{}' is no name of an axis; expected capitals, as in '#pragma lumivox axis TEXTURES 0 1'",
+               "'{}' is not a name for an axis; expected capitals, as in '#pragma lumivox axis TEXTURES 0 1'",
                axis.name));
     }
     for (std::string value; words >> value;) {
@@ -292,10 +292,10 @@ class ConstraintParser {
     std::vector<std::string> known;
     for (const shader::Axis& axis : axes_) known.push_back(axis.name);
     const std::string nearest = nearestWord(word, known);
-    fail(requirement_.place, fmt::format("in 'require {}': '{}' is no axis{}; the axes are {}", text_, word,
-                                         compared != nullptr ? " and no value of " + compared->name : "",
-                                         fmt::join(known, ", ")) +
-                                 (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+    fail(requirement_.place,
+         fmt::format("in 'require {}': '{}' is not an axis{}; the axes are {}", text_, word,
+                     compared != nullptr ? " nor a value of " + compared->name : "", fmt::join(known, ", ")) +
+             (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
   }
 
   const Requirement& requirement_;

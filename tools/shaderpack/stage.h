@@ -52,7 +52,7 @@ struct Artifact {
   std::string warnings;
 };
 
-/// What a stage is compiled from.
+/// The source of a stage.
 struct StageSource {
   const ExpandedSource* source = nullptr;
   gpu::Stage stage{};

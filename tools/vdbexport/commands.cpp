@@ -29,17 +29,16 @@ void Options::addTo(CLI::App& app) {
   app.add_option("--frame", frames,
                  "F or FIRST..LAST: a range gives numbered files, out_0007.vdb or a run of # in the name");
   app.add_option("--fps", framesPerSecond, "frames per second of --frame (default 24)");
-  auto* grid =
-      command::addRepeatable(app, "--grid", grids,
-                             "an output PASS.PORT to export (default: all); with --diff a grid's "
-                             "name, or NAME=NAME for two that are called differently; may be repeated");
+  auto* grid = command::addRepeatable(app, "--grid", grids,
+                                      "an output PASS.PORT to export (default: all); with --diff a grid's "
+                                      "name, or NAME=NAME for two with different names; may be repeated");
   app.add_flag("--all", all, "every output that can be exported")->excludes(grid);
   command::addRepeatable(app, "--level", levels,
                          "a level of the grids, 0 the finest, or 'all' (default: 0); may be repeated");
   app.add_flag("--half", half, "store floats with 16 bits");
-  auto* listing = app.add_flag("--list", list, "say what can be exported, or what a .vdb file holds");
+  auto* listing = app.add_flag("--list", list, "list what can be exported, or what a .vdb file contains");
   app.add_flag("--diff", diff, "compare two .vdb files grid by grid, voxel by voxel")->excludes(listing);
-  app.add_option("--tolerance", tolerance, "of --diff: differences up to this are none (default 0)");
+  app.add_option("--tolerance", tolerance, "of --diff: differences up to this are ignored (default 0)");
   app.add_flag("--json", json, "print JSON (--list, --diff)");
 }
 
@@ -99,7 +98,7 @@ struct Session {
 
 namespace {
 
-/// What an empty grid means: in a sequence a frame without smoke, else that there is nothing to look at.
+/// Refuses an empty grid: in a sequence it is a frame without smoke, else there is nothing to look at.
 void refuseEmpty(const std::vector<openvdb::GridBase::ConstPtr>& grids, bool sequence, const fs::path& file) {
   std::vector<std::string> empty;
   for (const auto& grid : grids)

@@ -262,10 +262,10 @@ GridDifference difference(const openvdb::GridBase& first, const openvdb::GridBas
           first, second, tolerance, what, result))
     return result;
   if (first.valueType() != second.valueType())
-    throw Error(fmt::format("{}: grid '{}' holds {} and grid '{}' holds {}; expected the same type", what,
-                            first.getName(), first.valueType(), second.getName(), second.valueType()));
-  throw Error(fmt::format("{}: grid '{}' holds {}; expected numbers, vectors or bools", what, first.getName(),
-                          first.valueType()));
+    throw Error(fmt::format("{}: grid '{}' contains {} and grid '{}' contains {}; expected the same type",
+                            what, first.getName(), first.valueType(), second.getName(), second.valueType()));
+  throw Error(fmt::format("{}: grid '{}' contains {}; expected numbers, vectors or bools", what,
+                          first.getName(), first.valueType()));
 }
 
 }  // namespace lumivox::vdb

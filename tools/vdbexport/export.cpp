@@ -143,7 +143,7 @@ void Exporter::dropCopies(std::vector<Source>& sources) const {
         continue;
       const std::size_t others = fieldsOf(*other).size();
       if (others > fields || (others == fields && k > i)) {
-        logDetails("{} holds the same grid as {}", sources[i].text(), sources[k].text());
+        logDetails("{} contains the same grid as {}", sources[i].text(), sources[k].text());
         return true;
       }
     }
@@ -183,7 +183,7 @@ std::vector<NamedField> Exporter::render(double time, int frame) {
   for (const Source& source : sources) {
     const OutBase* output = outputOf(source);
     const std::string why = output == nullptr           ? whyLeftOut(source)
-                            : fieldsOf(*output).empty() ? "it holds none"
+                            : fieldsOf(*output).empty() ? "it contains none"
                                                         : "";
     if (!why.empty()) {
       const std::string text = fmt::format("{}: there is no grid: {}", source.text(), why);

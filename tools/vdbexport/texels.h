@@ -1,4 +1,4 @@
-// What a mip level of a volume holds, on the host: its texels that are not zero.
+// A mip level of a volume on the host: its texels that are not zero.
 #pragma once
 
 #include <array>

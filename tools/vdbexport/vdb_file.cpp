@@ -109,7 +109,7 @@ std::vector<openvdb::GridBase::Ptr> readVdb(const fs::path& file) {
   lumivox::MemoryBuffer buffer(bytes);
   std::istream stream(&buffer);
   try {
-    // Without this, a stream that ends too early would be taken for zeros.
+    // Without this, a stream that ends too early would be read as zeros.
     stream.exceptions(std::ios::failbit | std::ios::badbit);
     openvdb::io::Stream whole(stream, /*delayLoad=*/false);
     const openvdb::GridPtrVecPtr grids = whole.getGrids();
@@ -117,7 +117,7 @@ std::vector<openvdb::GridBase::Ptr> readVdb(const fs::path& file) {
   } catch (const std::ios_base::failure&) {
     refuse(file, "it ends too early, or its parts contradict each other");
   } catch (const std::bad_alloc&) {
-    refuse(file, "it asks for more memory than there is");
+    refuse(file, "it needs more memory than is available");
   } catch (const std::exception& error) {
     refuse(file, error.what());
   }

@@ -60,7 +60,7 @@ void fillTables(PipelineComparison& comparison, const std::vector<TradeOff>& tra
     markBest(comparison.pipelines, column, &ComparedPipeline::atError, comparison.timeShare);
 }
 
-/// The points of the front within a budget that give the least error, one per pipeline.
+/// The points of the Pareto front within a budget that give the least error, one per pipeline.
 std::vector<std::size_t> bestWithin(const PipelineComparison& comparison, double budgetMs) {
   std::vector<std::optional<std::size_t>> ofPipeline(comparison.pipelines.size());
   for (std::size_t i = 0; i < comparison.points.size(); ++i) {

@@ -8,7 +8,7 @@
 namespace lumivox {
 namespace {
 
-/// A segment of a front in logarithms, from x1 to x2; u: relative uncertainties.
+/// A segment of a Pareto front in logarithms, from x1 to x2; u: relative uncertainties.
 struct Segment {
   double x1, x2, y1, y2;
   double ux1, ux2, uy1, uy2;

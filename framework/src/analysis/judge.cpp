@@ -28,7 +28,7 @@ double comparable(const MeasuredRow& row) {
                                                       : row.published;
 }
 
-/// What was measured, with its uncertainty. Fragments and bytes are counted, the same in every repeat.
+/// The measured value with its uncertainty. Fragments and bytes are counted, the same in every repeat.
 Measured measuredValue(const MeasuredSetUp& setUp, PublishedQuantity quantity) {
   Measured value = medianOf(*setUp.measured);
   value.enoughRepeats = value.enoughRepeats || !isTime(quantity);
@@ -44,8 +44,8 @@ bool usable(const MeasuredRow& row) {
   return row.measured && row.measured->median > 0.0;
 }
 
-/// What a row is divided by: the one that it names, else the first comparable one of its measure, else the
-/// first that was measured at all.
+/// The row that a row is divided by: the one that it names, else the first comparable one of its measure,
+/// else the first that was measured at all.
 const MeasuredRow* referenceOf(const std::vector<MeasuredRow>& rows, const MeasuredRow& divided) {
   if (!divided.over.empty()) {
     for (const MeasuredRow& row : rows)
@@ -61,7 +61,7 @@ const MeasuredRow* referenceOf(const std::vector<MeasuredRow>& rows, const Measu
 
 JudgedRow judgeRow(const MeasuredRow& row, const MeasuredRow* reference) {
   JudgedRow judged{Verdict::notComparable, kNothing, kNothing, kNothing, kNothing, row.whyNot};
-  // What is divided by something that stands in for another is no more comparable than that.
+  // A quotient is no more comparable than the set-up that it is divided by.
   if (judged.why.empty() && !row.over.empty() && reference != nullptr) judged.why = reference->whyNot;
   if (reference != nullptr) judged.publishedRatio = comparable(row) / comparable(*reference);
   if (!usable(row)) {

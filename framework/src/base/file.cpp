@@ -49,7 +49,7 @@ const char* kindOf(mode_t mode) {
   if (S_ISCHR(mode) || S_ISBLK(mode)) return "a device";
   if (S_ISFIFO(mode)) return "a FIFO";
   if (S_ISSOCK(mode)) return "a socket";
-  return "no regular file";
+  return "not a regular file";
 }
 
 /// A regular file opened for reading. Without O_NONBLOCK the call itself would wait for the writer of a FIFO;
@@ -99,7 +99,7 @@ void writeToDisk(int descriptor, std::span<const std::byte> bytes, const std::fi
   if (fsync(descriptor) != 0 && errno != EINVAL) fail(path, "write");
 }
 
-/// What a name to be written to stands for, once symbolic links are followed.
+/// The target of a name to be written to, once symbolic links are followed.
 struct Target {
   std::filesystem::path path;
   std::optional<struct stat> status;  ///< absent: there is nothing yet
@@ -147,7 +147,7 @@ Target targetOf(const std::filesystem::path& path) {
   return target;
 }
 
-/// For what is no file: one of this process's own open files goes on where it stands, anything else is
+/// For what is no file: one of this process's own open files continues where it is, anything else is
 /// opened.
 void writeThrough(const Target& target, std::span<const std::byte> bytes, const std::filesystem::path& path) {
   std::cout.flush();
@@ -163,7 +163,7 @@ void writeThrough(const Target& target, std::span<const std::byte> bytes, const 
                             ? fcntl(number, F_DUPFD_CLOEXEC, 0)
                             : open(target.path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
   if (file.get() < 0 && errno == ENXIO)
-    throw Error(fmt::format("{}: cannot write: is a FIFO that nobody reads", path.string()));
+    throw Error(fmt::format("{}: cannot write: is a FIFO without a reader", path.string()));
   if (file.get() < 0) fail(path, "write");
   // Only the opening must not wait.
   if (number < 0) fcntl(file.get(), F_SETFL, fcntl(file.get(), F_GETFL) & ~O_NONBLOCK);

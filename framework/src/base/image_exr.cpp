@@ -160,8 +160,8 @@ std::uint64_t mostExpansion(Imf::Compression compression) {
 void checkPart(const Imf::MultiPartInputFile& file, int part, std::uint64_t fileBytes) {
   const Imf::Header& header = file.header(part);
   if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE) {
-    throw Error(fmt::format("holds a part of type '{}'; expected scanlines or tiles with one value a pixel",
-                            header.type()));
+    throw Error(fmt::format(
+        "contains a part of type '{}'; expected scanlines or tiles with one value a pixel", header.type()));
   }
   if (!file.partComplete(part)) throw Error("is incomplete: pixels are missing");
   const Imath::Box2i window = header.dataWindow();
@@ -187,8 +187,8 @@ void checkPart(const Imf::MultiPartInputFile& file, int part, std::uint64_t file
     throw Error(fmt::format("has {} channels; expected at most {}", channelCount, kMostChannels));
   const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   if (pixels * storedBytes > fileBytes * mostExpansion(header.compression())) {
-    throw Error(fmt::format("claims {} x {} pixels with {} channels, which {} cannot hold", width, height,
-                            channelCount, formatBytes(fileBytes)));
+    throw Error(fmt::format("claims {} x {} pixels with {} channels, too many for a file of {}", width,
+                            height, channelCount, formatBytes(fileBytes)));
   }
   requireMemory(pixels * channelCount * sizeof(float),
                 fmt::format("an EXR of {} x {} pixels with {} channels", width, height, channelCount));
@@ -271,7 +271,7 @@ void addAttributes(const std::map<std::string, std::string>& attributes, Imf::He
   for (const auto& [name, value] : attributes) {
     if (name.empty() || name.size() > kLongestName || kReserved.count(name) != 0 ||
         header.find(name) != header.end()) {
-      throw Error(fmt::format("cannot hold an attribute named '{}'", name));
+      throw Error(fmt::format("cannot store an attribute named '{}'", name));
     }
     header.insert(name, Imf::StringAttribute(value));
   }
@@ -306,16 +306,16 @@ LayeredImage readExr(const std::filesystem::path& path) {
     for (int part = 0; part < file.parts(); ++part) {
       checkPart(file, part, bytes.size());
       if (file.header(part).dataWindow() != file.header(0).dataWindow()) {
-        throw Error("holds parts of different sizes; expected one size");
+        throw Error("contains parts of different sizes; expected one size");
       }
     }
     for (int part = 0; part < file.parts(); ++part) readPart(file, part, result);
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path.string(), error.what()));
   } catch (const std::bad_alloc&) {
-    throw Error(fmt::format("{}: needs more memory than there is", path.string()));
+    throw Error(fmt::format("{}: needs more memory than is available", path.string()));
   } catch (const std::exception& error) {
-    throw Error(fmt::format("{}: is no readable OpenEXR image: {}", path.string(), error.what()));
+    throw Error(fmt::format("{}: is not a readable OpenEXR image: {}", path.string(), error.what()));
   }
   return result;
 }
@@ -328,7 +328,7 @@ std::map<std::string, std::string> readExrAttributes(const std::filesystem::path
     MemoryInput stream(bytes, path.string());
     char begin[8];  // the format's number and its version
     stream.read(begin, sizeof(begin));
-    if (!Imf::isImfMagic(begin)) throw Error("is no OpenEXR image");
+    if (!Imf::isImfMagic(begin)) throw Error("is not an OpenEXR image");
     int version = static_cast<unsigned char>(begin[4]) | static_cast<unsigned char>(begin[5]) << 8 |
                   static_cast<unsigned char>(begin[6]) << 16 | static_cast<unsigned char>(begin[7]) << 24;
     Imf::Header header;

@@ -172,7 +172,7 @@ std::string encodePng(const ImageBuffer& linear, float exposure) {
         fmt::format("an image with {} channels cannot become a PNG; expected 1 or 3", linear.channels()));
   }
   const std::size_t rowBytes = static_cast<std::size_t>(linear.width()) * kChannels;
-  requireMemory(4 * linear.pixelCount() * kChannels, "a PNG while it is made");
+  requireMemory(4 * linear.pixelCount() * kChannels, "encoding a PNG");
   const std::string data = zlibStream(filtered(bytesOf(linear, exposure), rowBytes));
   constexpr std::size_t kLongestChunk = 0x7fffffff;  // Sec. 5.3
   if (data.size() > kLongestChunk) {

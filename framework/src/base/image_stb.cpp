@@ -85,7 +85,7 @@ void checkJpeg(Bytes bytes) {
 void checkTga(Bytes bytes) {
   constexpr std::size_t kHeader = 18;
   constexpr unsigned kRunLengthCoded = 8;
-  if (bytes.size() < kHeader) refuse("is no PNG, JPG or TGA");
+  if (bytes.size() < kHeader) refuse("is not a PNG, JPG or TGA");
   const auto littleEndian16 = [&](std::size_t at) {
     return std::size_t{bytes[at]} | std::size_t{bytes[at + 1]} << 8;
   };
@@ -113,7 +113,7 @@ ByteImage decode(Bytes bytes) {
   const int size = static_cast<int>(bytes.size());
   ByteImage image;
   if (stbi_info_from_memory(bytes.data(), size, &image.width, &image.height, &image.channels) == 0) {
-    refuse(fmt::format("is no readable PNG, JPG or TGA: {}", stbi_failure_reason()));
+    refuse(fmt::format("is not a readable PNG, JPG or TGA: {}", stbi_failure_reason()));
   }
   if (bytes[0] == 0x89) {
     checkPng(bytes);
@@ -129,7 +129,7 @@ ByteImage decode(Bytes bytes) {
   requireMemory(valueCount * 4, fmt::format("an image of {} x {} pixels", image.width, image.height));
   const std::unique_ptr<stbi_uc, decltype(&std::free)> pixels(
       stbi_load_from_memory(bytes.data(), size, &image.width, &image.height, &image.channels, 0), &std::free);
-  if (!pixels) refuse(fmt::format("is no readable PNG, JPG or TGA: {}", stbi_failure_reason()));
+  if (!pixels) refuse(fmt::format("is not a readable PNG, JPG or TGA: {}", stbi_failure_reason()));
   image.values.assign(pixels.get(), pixels.get() + valueCount);
   return image;
 }

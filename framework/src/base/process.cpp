@@ -10,7 +10,9 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstring>
+#include <deque>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -39,8 +41,8 @@ class OpenFile {
     createParentDirectories(file);
     handle_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
     if (handle_ < 0)
-      throw Error(fmt::format("{}: cannot be opened to wait for others with: {}", file.string(),
-                              std::strerror(errno)));
+      throw Error(
+          fmt::format("{}: cannot be opened as a lock file: {}", file.string(), std::strerror(errno)));
   }
   ~OpenFile() {
     if (handle_ >= 0) close(handle_);
@@ -134,7 +136,7 @@ MachineLock::MachineLock(For purpose) {
     // Measuring is possible all the same.
     static std::atomic<bool> told = false;
     if (!told.exchange(true))
-      logWarning("nobody is waited for, and times may be disturbed by others: {}", error.what());
+      logWarning("not waiting for other processes, which may disturb the times: {}", error.what());
   }
 }
 
@@ -152,8 +154,9 @@ int MachineLock::lockedFor(For purpose) {
       std::this_thread::sleep_for(kPause);
     }
     if (!std::exchange(told, true))
-      logInformation("waiting for {}{}", holdersText(),
-                     purpose == For::timing ? ", whose work would disturb the times" : ", which takes times");
+      logInformation(
+          "waiting for {}{}", holdersText(),
+          purpose == For::timing ? ", whose work would disturb the times" : ", which is taking times");
     one.lock(kind);
   };
   take(gate, LOCK_EX);
@@ -163,6 +166,54 @@ int MachineLock::lockedFor(For purpose) {
 
 MachineLock::~MachineLock() {
   if (lock_ >= 0) close(lock_);
+}
+
+// ---- interruptions
+// ------------------------------------------------------------------------------------------------
+
+namespace {
+
+constexpr int kInterruptions[] = {SIGINT, SIGTERM, SIGHUP};
+
+std::atomic<const std::string*> lastWord{nullptr};
+static_assert(std::atomic<const std::string*>::is_always_lock_free);
+
+/// Texts that were said. None is freed, since a signal may be reading it.
+std::deque<std::string> wordsSaid;
+int notes = 0;
+
+/// Calls only what may be called from a signal handler.
+void endWithWord(int signal) {
+  if (const std::string* word = lastWord.load()) [[maybe_unused]]
+    const ssize_t written = write(STDERR_FILENO, word->data(), word->size());
+  std::signal(signal, SIG_DFL);
+  raise(signal);
+}
+
+void replaceHandler(int signal, void (*from)(int), void (*to)(int)) {
+  struct sigaction current {};
+  sigaction(signal, nullptr, &current);
+  // Who was started to ignore it goes on ignoring it.
+  if (current.sa_handler == from) std::signal(signal, to);
+}
+
+}  // namespace
+
+InterruptionNote::InterruptionNote() {
+  if (notes++ > 0) return;
+  for (const int signal : kInterruptions) replaceHandler(signal, SIG_DFL, endWithWord);
+}
+
+InterruptionNote::~InterruptionNote() {
+  if (--notes > 0) return;
+  for (const int signal : kInterruptions) replaceHandler(signal, endWithWord, SIG_DFL);
+  lastWord = nullptr;
+}
+
+void InterruptionNote::say(const std::string& text) {
+  // A line of its own, since "^C" or a progress bar may stand in this one.
+  wordsSaid.push_back("\n" + text + "\n");
+  lastWord = &wordsSaid.back();
 }
 
 }  // namespace lumivox

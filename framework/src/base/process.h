@@ -1,4 +1,5 @@
-// Processes told apart on one machine, and one at a time while times are taken.
+// Processes told apart on one machine, one at a time while times are taken, and what they say when they are
+// interrupted.
 #pragma once
 
 #include <cstdint>
@@ -35,6 +36,17 @@ class MachineLock {
  private:
   static int lockedFor(For purpose);
   int lock_ = -1;
+};
+
+/// While it lives, SIGINT (Ctrl-C), SIGTERM and SIGHUP end the process as ever, but with a word on stderr
+/// about what is kept. Of several the last to speak is heard.
+class InterruptionNote {
+ public:
+  InterruptionNote();
+  ~InterruptionNote();
+  InterruptionNote(const InterruptionNote&) = delete;
+  InterruptionNote& operator=(const InterruptionNote&) = delete;
+  void say(const std::string& text);
 };
 
 }  // namespace lumivox

@@ -293,7 +293,7 @@ class Lexer {
     if (c == '=' || c == ';' || c == ',' || c == ':') {
       report(place, 1, fmt::format("unexpected '{}'", c), "words and values separated by blanks");
     } else if (c == '+' || c == '-') {
-      report(place, 1, fmt::format("'{}' without a number", c), "digits right behind the sign");
+      report(place, 1, fmt::format("'{}' without a number", c), "digits right after the sign");
     } else {
       report(place, 1, fmt::format("unexpected character '{}'", character),
              "a word, a number, a string in double quotes, or one of { } [ ] .. $ #");

@@ -7,8 +7,8 @@
 namespace lumivox::dsl {
 namespace {
 
-/// Recursive descent over the tokens. After an error it goes on at the next word that starts a line, or at a
-/// brace.
+/// Recursive descent over the tokens. After an error it continues at the next word that starts a line, or at
+/// a brace.
 class Parser {
  public:
   Parser(Document& document, std::vector<Token> tokens) : document_(document), tokens_(std::move(tokens)) {}
@@ -495,7 +495,7 @@ Document parse(std::string source, std::filesystem::path file) {
   }
   if (const auto place = firstControlCharacter(document)) {
     Diagnostic finding =
-        document.finding(*place, 1, "not a text file: it holds control characters", "UTF-8 text");
+        document.finding(*place, 1, "not a text file: it contains control characters", "UTF-8 text");
     finding.sourceLine.clear();
     document.findings.push_back(std::move(finding));
     return document;

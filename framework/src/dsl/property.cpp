@@ -1,4 +1,4 @@
-// What one property's values must be.
+// Checks of one property's values.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -226,7 +226,7 @@ class PropertyChecker {
     if (withUnit == 0 || withUnit == property_.values.size() || (withUnit == 1 && last.unit)) return;
     report(last.place, last.length,
            fmt::format("only some components of property '{}' have a unit", property_.word),
-           "a unit behind every component, or one behind the last for all");
+           "a unit after every component, or one after the last for all");
   }
 
   const Document& document_;

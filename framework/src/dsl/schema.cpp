@@ -88,7 +88,7 @@ class BlockChecker {
         checkItem(*item.block);
       }
     }
-    // What stands behind the end of a truncated text is not missing.
+    // Properties after the end of a truncated text are not missing.
     if (block_.closed) checkMissing();
   }
 
@@ -114,7 +114,7 @@ class BlockChecker {
       const Value& extra = block_.header[allowed];
       report(extra.place, extra.length,
              fmt::format("unexpected '{}' in the header of block '{}'", extra.text, block_.word),
-             allowed == 0 ? "'{' right behind the word"
+             allowed == 0 ? "'{' right after the word"
                           : fmt::format("'{{' behind {} value{}", allowed, allowed == 1 ? "" : "s"));
     }
   }
@@ -193,7 +193,7 @@ class BlockChecker {
                       [&](const PropertySpecification* one) { return one->word == inner.word; });
       if (isProperty) {
         return report(inner.place, length, fmt::format("'{}' is a property, not a block", inner.word),
-                      fmt::format("{} and its values; a block behind them starts a new line", inner.word));
+                      fmt::format("{} and its values; a block after them starts a new line", inner.word));
       }
       std::vector<std::string> known;
       for (const BlockSpecification& one : specification_.blocks) known.push_back(one.word);

@@ -7,6 +7,7 @@
 #include "experiment/measure.h"
 #include "experiment/plan.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/log.h"
 #include "lumivox/results/text.h"
 
 namespace lumivox::experiment {
@@ -62,7 +63,7 @@ std::vector<const LoadedPipeline*> PipelineChoice::forScene(
   const auto folder = committedScenes(scene.file.parent_path());
   if (!folder)
     throw Error(fmt::format(
-        "{}: no folder 'pipelines' beside the scene and no project around here; name one with --pipeline",
+        "{}: no folder 'pipelines' beside the scene and no project in this folder or above; name one with --pipeline",
         scene.file.string()));
   std::vector<LoadedPipeline>& all = committed_[*folder];
   if (all.empty()) all = loadAll(pipelinesIn(*folder / "pipelines"), options_.settings);
@@ -99,22 +100,10 @@ std::string PipelineChoice::missingTechnique(const Pipeline& pipeline) {
 
 std::vector<PlannedPoint> pointsFor(const LoadedPipeline& loaded, TechniqueSource& techniques,
                                     const ReportOptions& options) {
-  std::vector<PlannedPoint> points = plannedPoints(loaded.pipeline, loaded.settings, options.openSweeps);
-  if (options.frames <= 1 || !isProgressive(loaded.pipeline, techniques)) return points;
-  const auto plain =
-      std::find_if(points.begin(), points.end(), [](const PlannedPoint& point) { return point.isDefault; });
-  PlannedPoint accumulating = *plain;
-  if (accumulating.parameters.count(kAccumulatedFrames) != 0)
-    throw Error(fmt::format("{}: a parameter may not be called '{}' where frames are accumulated",
-                            loaded.shown, kAccumulatedFrames));
-  accumulating.sweep = kAccumulatedFrames;
-  accumulating.isDefault = false;
-  for (int frames = 1; frames < options.frames;) {
-    frames = std::min(2 * frames, options.frames);
-    accumulating.parameters[kAccumulatedFrames].number = frames;
-    points.push_back(accumulating);
-  }
-  return points;
+  const bool progressive = isProgressive(loaded.pipeline, techniques);
+  const std::string note = withoutFrames(loaded.pipeline, loaded.pipeline.sweeps, progressive);
+  if (options.openSweeps && !note.empty()) logInformation("{}: {}", loaded.shown, note);
+  return plannedPoints(loaded.pipeline, loaded.settings, options.openSweeps, progressive, options.frames);
 }
 
 std::pair<int, int> measuredSize(const gpu::Device& device, const Scene& scene,

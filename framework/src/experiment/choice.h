@@ -1,4 +1,4 @@
-// What a report and a sweep measure: which pipelines on a scene, at which size, against which reference.
+// The choice of a report and a sweep: which pipelines on a scene, at which size, against which reference.
 #pragma once
 
 #include <map>

@@ -33,6 +33,7 @@ RenderOptions renderOptions(const TimingContext& context, const ReportPoint& poi
   options.camera = context.options.camera;
   options.width = context.width;
   options.height = context.height;
+  options.transientMemory = context.transientMemory;
   return options;
 }
 
@@ -120,9 +121,9 @@ std::string whyFailed(const std::function<void()>& work) {
   } catch (const Error& error) {
     return error.what();
   } catch (const std::bad_alloc&) {
-    return "out of memory, without a word about what was too large";
+    return "out of memory; what was too large is not known";
   } catch (const std::exception& error) {
-    return fmt::format("an error that nobody foresaw: {}", error.what());
+    return fmt::format("an unexpected error: {}", error.what());
   }
   return {};
 }
@@ -324,9 +325,8 @@ struct TimedPoint::State {
   const Pipeline& pipeline;
   RenderOptions options;
   const KeptOutputs kept;
-  const double time;                  ///< s
-  const int frames;                   ///< accumulated by the point
-  const std::uint64_t bytesOfOthers;  ///< of points that are timed at the same time
+  const double time;  ///< s
+  const int frames;   ///< accumulated by the point
   std::optional<PipelineExecutor> executor;
   bool moving = false;  ///< the executor is that of moved frames
   int index = 0;        ///< of the frame that was rendered last
@@ -345,7 +345,6 @@ struct TimedPoint::State {
         kept(std::move(keptOutputs)),
         time(context.options.time),
         frames(framesOf(pointToTime.parameters)),
-        bytesOfOthers(context.device.allocatedBytes()),
         now(time) {}
 
   /// A new executor, with its first frame.
@@ -374,7 +373,7 @@ TimedPoint::TimedPoint(const TimingContext& context, const Pipeline& pipeline, R
                        const KeptOutputs& kept)
     : state_(std::make_unique<State>(context, pipeline, point, kept)) {
   const FrameResult frame = state_->warmUp();
-  point.peakBytes = frame.peakBytes - state_->bytesOfOthers;
+  point.peakBytes = frame.peakBytes;
   point.passOrder.clear();  // of an attempt that failed
   for (const PassRecord& pass : frame.passes) {
     point.passOrder.push_back(pass.name);

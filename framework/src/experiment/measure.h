@@ -53,6 +53,7 @@ struct TimingContext {
   const Scene& scene;
   const ReportOptions& options;
   int width, height;
+  std::shared_ptr<TransientMemory> transientMemory = nullptr;  ///< RenderOptions::transientMemory
 };
 struct MeasureContext : TimingContext {
   SceneReference& reference;

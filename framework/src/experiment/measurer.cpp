@@ -7,7 +7,6 @@
 #include <set>
 #include <thread>
 
-#include "base/process.h"
 #include "experiment/plan.h"
 #include "experiment/turns.h"
 #include "lumivox/base/error.h"
@@ -75,6 +74,26 @@ Measurer::Measurer(gpu::Device& device, TechniqueSet& techniques, const ReportOp
       images_(images) {
   std::tie(width_, height_) = measuredSize(device_, scene_, options_);
   referenceOptions_ = referenceOptionsOf(options_, width_, height_);
+  noteProgress();
+}
+
+void nameAs(ReportPoint& point, const ReportPoint& here) {
+  point.scene = here.scene;
+  point.pipeline = here.pipeline;
+  point.sweep = here.sweep;
+  point.parameters = here.parameters;
+  point.command = here.command;
+}
+
+void Measurer::noteProgress() {
+  const ResultsStore::Count count = store_.count();
+  const std::string untimed =
+      count.untimed == 0 ? std::string() : fmt::format(", and {} more but for their times", count.untimed);
+  const std::string kept =
+      count.runs + count.untimed == 0
+          ? std::string("interrupted before the first point was measured")
+          : fmt::format("interrupted: {} keeps {} points{}", store_.file().string(), count.runs, untimed);
+  note_.say(options_.commandLine.empty() ? kept : kept + "; to go on: " + options_.commandLine);
 }
 
 StoredRun Measurer::open(const WantedPoint& point) const {
@@ -163,6 +182,7 @@ std::vector<StoredRun> Measurer::measure(const std::vector<WantedPoint>& points,
       entry.run.created = dateText();
       store_.add(entry.run, entry.images);
     }
+    noteProgress();
     if (done) done(batch.size(), byOthers);
   }
   std::vector<StoredRun> result;
@@ -175,7 +195,7 @@ std::string Measurer::waitingText(const std::vector<WantedPoint>& pending) const
     if (const std::optional<RunClaim> claim = store_.claimedByOther(key(point)))
       return fmt::format("waiting for {} points, the first of which process {} measures{}", pending.size(),
                          claim->process, claim->command.empty() ? "" : ": " + claim->command);
-  return fmt::format("waiting for {} points that others measure", pending.size());
+  return fmt::format("waiting for {} points that other processes measure", pending.size());
 }
 
 void Measurer::control(const std::vector<WantedPoint>& points, std::size_t most) {
@@ -225,7 +245,7 @@ void Measurer::makeReference(const std::vector<WantedPoint>& points) {
     options.camera = options_.camera;
     options.width = width_;
     options.height = height_;
-    // A pipeline that fails is told so when it is measured.
+    // A pipeline that fails is reported when it is measured.
     whyFailed([&] {
       const PipelineExecutor executor(device_, techniques_, scene_, point.loaded->pipeline, options);
       for (const auto& [output, bounces] : bouncesOf(executor))
@@ -242,30 +262,53 @@ double Measurer::secondsOf(const WantedPoint& point) const {
   return found == seconds_.end() ? 0.0 : found->second;
 }
 
+bool Measurer::takeUp(Entry& entry) const {
+  const std::string key = entry.run.identity.key();
+  std::optional<StoredRun> kept = store_.findUntimed(key);
+  if (!kept) return false;
+  std::vector<StoredImage> images = store_.images(key);
+  if (images_ == Images::kept && images.empty()) return false;
+  logInformation("{}: taken up from {}, but for its times", runText(entry.run), store_.file().string());
+  nameAs(kept->point, entry.run.point);
+  entry.run.point = std::move(kept->point);
+  entry.images = std::move(images);
+  return true;
+}
+
+void Measurer::measureUntimed(Entry& entry) {
+  logInformation("{}", runText(entry.run));
+  const std::string why = whyFailed([&] {
+    PointRecord record;
+    record.point = entry.run.point;
+    const ReportOptions options = optionsOf(entry.run.identity);
+    const MeasureContext context{{device_, techniques_, scene_, options, width_, height_}, reference()};
+    measureErrors(context, entry.loaded->pipeline, record);
+    measureFlicker(context, entry.loaded->pipeline, record);
+    countWork(context, entry.loaded->pipeline, record.point);
+    entry.run.point = std::move(record.point);
+    if (images_ == Images::kept) entry.images = storedImages(record.images);
+  });
+  entry.run.created = dateText();
+  if (why.empty()) {
+    store_.addUntimed(entry.run, entry.images);
+  } else {
+    failed(entry.run, why);
+    store_.add(entry.run);
+  }
+  noteProgress();
+}
+
 void Measurer::measureBatch(Batch& batch) {
   using Clock = std::chrono::steady_clock;
   const auto secondsSince = [](Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
   };
-  SceneReference& sceneReference = reference();
   std::vector<std::string> keys;
   for (const Entry& entry : batch) keys.push_back(entry.run.identity.key());
   for (Entry& entry : batch) {
     const MachineLock working(MachineLock::For::work);
     const Clock::time_point start = Clock::now();
-    logInformation("{}", runText(entry.run));
-    const std::string why = whyFailed([&] {
-      PointRecord record;
-      record.point = entry.run.point;
-      const ReportOptions options = optionsOf(entry.run.identity);
-      const MeasureContext context{{device_, techniques_, scene_, options, width_, height_}, sceneReference};
-      measureErrors(context, entry.loaded->pipeline, record);
-      measureFlicker(context, entry.loaded->pipeline, record);
-      countWork(context, entry.loaded->pipeline, record.point);
-      entry.run.point = std::move(record.point);
-      if (images_ == Images::kept) entry.images = storedImages(record.images);
-    });
-    if (!why.empty()) failed(entry.run, why);
+    if (!takeUp(entry)) measureUntimed(entry);
     seconds_[entry.run.identity.key()] = secondsSince(start);
     store_.claim(keys);  // still at it
   }
@@ -285,14 +328,14 @@ void Measurer::timeTogether(Batch& batch) {
   for (Entry& entry : batch) {
     if (!entry.run.point.failure.empty()) continue;
     entries.push_back(&entry);
-    turns.push_back({runText(entry.run), [&] {
+    turns.push_back({runText(entry.run), [&](const std::shared_ptr<TransientMemory>& memory) {
                        const ReportOptions options = optionsOf(entry.run.identity);
-                       return TimedPoint({device_, techniques_, scene_, options, width_, height_},
+                       return TimedPoint({device_, techniques_, scene_, options, width_, height_, memory},
                                          entry.loaded->pipeline, entry.run.point);
                      }});
   }
   const int repeats = std::max(1, options_.repeats);
-  timeInTurns(turns, repeats, repeats);
+  timeInTurns(device_, turns, repeats, repeats);
   for (std::size_t i = 0; i < turns.size(); ++i)
     if (!turns[i].failure.empty()) failed(entries[i]->run, turns[i].failure);
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/process.h"
 #include "experiment/choice.h"
 #include "experiment/measure.h"
 #include "lumivox/results/store.h"
@@ -23,8 +24,9 @@ struct WantedPoint {
 
 class Measurer {
  public:
-  /// Points whose timed frames take turns. Each keeps its resources while it waits, and an interruption loses
-  /// the batch.
+  /// Points whose timed frames take turns, each keeping its results while it waits. What is known of a point
+  /// before its times is in the store at once, so that an interruption loses the point at work and the times
+  /// of the batch.
   static constexpr std::size_t kBatch = 6;
 
   enum class Images { no, kept };
@@ -32,7 +34,7 @@ class Measurer {
   Measurer(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options, ResultsStore& store,
            Scene scene, std::string sceneShown, Images images = Images::no);
 
-  /// What the store holds of these points, in their order, before anything is measured. A failure counts as
+  /// Which of these points the store holds, in their order, before anything is measured. A failure counts as
   /// held unless `retryFailed`.
   std::vector<bool> held(const std::vector<WantedPoint>& points, bool retryFailed) const;
   std::string key(const WantedPoint& point) const;
@@ -49,7 +51,7 @@ class Measurer {
   /// Times the first of these points that the store holds once more, at most as many as are timed together,
   /// in the same way: what differs is the machine's mood.
   void control(const std::vector<WantedPoint>& points, std::size_t most = kBatch);
-  /// What the controls in a store say of this device.
+  /// How far times of the same thing differ on this device, from the controls in a store.
   TimeFloor floor(const ResultsStore& store) const;
   TimeFloor floor() const { return floor(store_); }
   /// Those that the store holds are taken from it, the others are measured.
@@ -79,6 +81,12 @@ class Measurer {
   /// meanwhile, out of `pending`.
   Batch claimed(std::vector<WantedPoint>& pending, std::size_t& byOthers);
   void measureBatch(Batch& batch);
+  /// Errors, images and work of a point that an interrupted run has left; false: there are none.
+  bool takeUp(Entry& entry) const;
+  /// Measures them, and keeps them until the times are there.
+  void measureUntimed(Entry& entry);
+  /// What an interruption would say now.
+  void noteProgress();
   void timeTogether(Batch& batch);
   std::string waitingText(const std::vector<WantedPoint>& pending) const;
 
@@ -93,6 +101,10 @@ class Measurer {
   ReferenceOptions referenceOptions_;
   std::optional<SceneReference> reference_;
   std::map<std::string, double> seconds_;  ///< by key
+  InterruptionNote note_;
 };
+
+/// Gives a point that was measured elsewhere the names, parameters and command that it has here.
+void nameAs(ReportPoint& point, const ReportPoint& here);
 
 }  // namespace lumivox::experiment

@@ -17,7 +17,8 @@ ReportOptions withPipelines(ReportOptions options) {
                                                              : options.scenes.front().parent_path());
   if (folder) options.pipelines = pipelinesIn(*folder / "pipelines");
   if (options.pipelines.empty())
-    throw Error("no folder 'pipelines' beside the scene and no project around here; name a pipeline");
+    throw Error(
+        "no folder 'pipelines' beside the scene and no project in this folder or above; name a pipeline");
   return options;
 }
 

@@ -179,7 +179,7 @@ void addPoint(std::vector<PlannedPoint>& points, PlannedPoint point) {
 }  // namespace
 
 std::vector<PlannedPoint> pointsOfSweeps(const Pipeline& pipeline, const ParameterValues& settings,
-                                         const std::vector<Sweep>& sweeps) {
+                                         const std::vector<Sweep>& sweeps, bool progressive) {
   const ParameterValues defaults = defaultsOf(pipeline, settings);
   std::vector<PlannedPoint> points;
   for (const Sweep& sweep : sweeps)
@@ -187,16 +187,33 @@ std::vector<PlannedPoint> pointsOfSweeps(const Pipeline& pipeline, const Paramet
       ParameterValues values = defaults;
       for (const auto& [name, value] : swept)
         if (settings.find(name) == settings.end()) values[name] = value;
+      if (!progressive || framesOf(values) == 1) values.erase(kAccumulatedFrames);
       addPoint(points, {sweep.name, values, sameParameters(values, defaults), sweep.seeds});
     }
   return points;
 }
 
+std::string withoutFrames(const Pipeline& pipeline, const std::vector<Sweep>& sweeps, bool progressive) {
+  const auto isFrames = [](const auto& axis) { return axis.first == kAccumulatedFrames; };
+  const bool swept = std::any_of(sweeps.begin(), sweeps.end(), [&](const Sweep& sweep) {
+    return std::any_of(sweep.axes.begin(), sweep.axes.end(), isFrames);
+  });
+  if (progressive || !swept) return {};
+  return fmt::format("pipeline \"{}\" does not accumulate and is measured without the axis '{}'",
+                     pipeline.name, kAccumulatedFrames);
+}
+
 std::vector<PlannedPoint> plannedPoints(const Pipeline& pipeline, const ParameterValues& settings,
-                                        bool openSweeps) {
+                                        bool openSweeps, bool progressive, int frames) {
   std::vector<PlannedPoint> points =
-      pointsOfSweeps(pipeline, settings, openSweeps ? pipeline.sweeps : std::vector<Sweep>());
+      pointsOfSweeps(pipeline, settings, openSweeps ? pipeline.sweeps : std::vector<Sweep>(), progressive);
   addPoint(points, {"", defaultsOf(pipeline, settings), true, {}});
+  PlannedPoint accumulating{kAccumulatedFrames, defaultsOf(pipeline, settings), false, {}};
+  for (int now = 1; progressive && now < frames;) {
+    now = std::min(2 * now, frames);
+    accumulating.parameters[kAccumulatedFrames].number = now;
+    addPoint(points, accumulating);
+  }
   return points;
 }
 

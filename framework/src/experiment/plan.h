@@ -18,12 +18,16 @@ struct PlannedPoint {
 };
 
 /// The default point and the points of every sweep, each once. Settings pin their axes. A point of several
-/// sweeps has the seeds of all.
+/// sweeps has the seeds of all. A progressive pipeline also has its default point after 2, 4 .. `frames`
+/// frames; any other goes without an axis of frames.
 std::vector<PlannedPoint> plannedPoints(const Pipeline& pipeline, const ParameterValues& settings,
-                                        bool openSweeps);
+                                        bool openSweeps, bool progressive = false, int frames = 1);
 /// The points of these sweeps alone.
 std::vector<PlannedPoint> pointsOfSweeps(const Pipeline& pipeline, const ParameterValues& settings,
-                                         const std::vector<Sweep>& sweeps);
+                                         const std::vector<Sweep>& sweeps, bool progressive);
+/// "pipeline "X" does not accumulate and is measured without the axis 'frames'", where a sweep has that axis; else
+/// empty.
+std::string withoutFrames(const Pipeline& pipeline, const std::vector<Sweep>& sweeps, bool progressive);
 
 /// Of the assignments "name=value", those whose parameter the pipeline has.
 std::vector<std::string> settingsFor(const Pipeline& pipeline, const std::vector<std::string>& assignments);

@@ -1,4 +1,4 @@
-// What leaving out saves, and the whole image of a pipeline.
+// The saving by leaving out, and the whole image of a pipeline.
 #include <cmath>
 #include <cstring>
 
@@ -143,7 +143,7 @@ ImageBuffer compositeImage(const FrameResult& frame) {
       continue;
     }
     if (!sum.sameShape(image))
-      throw Error("output '" + name + "': its image has another size or number of channels than the others");
+      throw Error("output '" + name + "': its image differs from the others in size or number of channels");
     for (std::size_t i = 0; i < sum.values().size(); ++i) sum.values()[i] += image.values()[i];
   }
   return sum;

@@ -45,7 +45,8 @@ class Checkpoint {
       if (!finished && !store.runs().empty()) return;
       std::filesystem::remove(store.file());
     } catch (const std::exception& error) {
-      logWarning("{}: it is of no more use, and cannot be removed: {}", store.file().string(), error.what());
+      logWarning("{}: it is no longer needed, but cannot be removed: {}", store.file().string(),
+                 error.what());
     }
   }
   Checkpoint(const Checkpoint&) = delete;
@@ -262,10 +263,7 @@ class SceneReport {
     StoredRun kept = checkpoint_.find(opened.identity.key()).value();
     record.created = kept.created;
     record.point = std::move(kept.point);
-    record.point.scene = opened.point.scene;
-    record.point.pipeline = opened.point.pipeline;
-    record.point.sweep = opened.point.sweep;
-    record.point.command = opened.point.command;
+    nameAs(record.point, opened.point);
     for (const auto& [pass, work] : record.point.passWork)
       record.point.passBounds[pass] = lowerBounds(work, peakRates);
     record.images = outputImages(checkpoint_.images(opened.identity.key()));

@@ -78,7 +78,7 @@ class Reproduction {
     for (const PublishedCurve& curve : result_.published.curves)
       result_.curves.push_back({curve.name, curve.over, curve.points.front().quantity, curve.growth,
                                 std::vector<MeasuredPoint>(curve.points.size())});
-    // What is measured stays where it is from here on.
+    // Measured rows stay where they are from here on.
     for (std::size_t i = 0; i < result_.rows.size(); ++i) place(result_.published.rows[i], result_.rows[i]);
     for (std::size_t i = 0; i < result_.curves.size(); ++i) placeCurve(i);
     time();
@@ -95,15 +95,18 @@ class Reproduction {
   void time() {
     std::vector<Turn> turns;
     for (TimedSetUp& setUp : setUps_)
-      turns.push_back(
-          {setUp.loaded.shown,
-           [&] { return TimedPoint(timingOf(setUp), setUp.loaded.pipeline, setUp.run.point, setUp.kept); },
-           [&](TimedPoint& timed) {
-             for (const auto& [published, measured] : setUp.answers)
-               readOff(setUp, timed.executor(), *published, *measured);
-           }});
+      turns.push_back({setUp.loaded.shown,
+                       [&](const std::shared_ptr<TransientMemory>& memory) {
+                         TimingContext context = timingOf(setUp);
+                         context.transientMemory = memory;
+                         return TimedPoint(context, setUp.loaded.pipeline, setUp.run.point, setUp.kept);
+                       },
+                       [&](TimedPoint& timed) {
+                         for (const auto& [published, measured] : setUp.answers)
+                           readOff(setUp, timed.executor(), *published, *measured);
+                       }});
     // A store takes the times of later frames too.
-    timeInTurns(turns, options_.repeats, store_ == nullptr ? 0 : options_.repeats);
+    timeInTurns(device_, turns, options_.repeats, store_ == nullptr ? 0 : options_.repeats);
     for (std::size_t i = 0; i < turns.size(); ++i) {
       TimedSetUp& setUp = setUps_[i];
       setUp.failure = turns[i].failure;
@@ -130,8 +133,8 @@ class Reproduction {
     return {device_, techniques_, *setUp.scene, setUp.options, setUp.width, setUp.height};
   }
 
-  /// What a sweep would store: the times, and errors and work, which are measured apart from them. The
-  /// verdict stands whether this succeeds or not.
+  /// The points that a sweep would store: the times, and errors and work, which are measured apart from them.
+  /// The verdict stands whether this succeeds or not.
   void store() {
     // A scene that was made finer here is none that a sweep could name.
     for (TimedSetUp& setUp : setUps_)
@@ -143,7 +146,7 @@ class Reproduction {
     for (const auto& [pass, port] : setUp.kept) run.identity.kept.push_back(pass + "." + port);
     std::sort(run.identity.kept.begin(), run.identity.kept.end());
     if (const auto held = store_->find(run.identity.key()); held && held->point.failure.empty()) {
-      logInformation("{}: the store has this set-up already, which stays", setUp.loaded.shown);
+      logInformation("{}: the store already has this set-up, which is kept", setUp.loaded.shown);
       return;
     }
     guarded(setUp, [&] {
@@ -207,7 +210,7 @@ class Reproduction {
     if (published.pipeline)
       for (const std::string& technique : published.pipeline->techniques())
         if (techniques_.technique(technique) == nullptr) {
-          whyNot = fmt::format("the technique '{}' is not here", technique);
+          whyNot = fmt::format("the technique '{}' is not available", technique);
           return nullptr;
         }
     return sceneOf(published, whyNot);
@@ -356,7 +359,7 @@ class Reproduction {
     const std::optional<OccupiedVoxels> voxels = output == nullptr ? std::nullopt : occupiedVoxels(*output);
     if (!voxels || voxels->fragments == 0)
       throw Error(
-          fmt::format("{}: output {}.{} holds no voxel fragments", row.place.text(), row.pass, row.port));
+          fmt::format("{}: output {}.{} has no voxel fragments", row.place.text(), row.pass, row.port));
     return static_cast<double>(voxels->fragments);
   }
 
@@ -419,7 +422,7 @@ class Reproduction {
     }
     const auto* image = dynamic_cast<const Out<Image>*>(output);
     if (image == nullptr)
-      throw Error(fmt::format("{}: {}.{} is no image", panel.place.text(), panel.pass, panel.port));
+      throw Error(fmt::format("{}: {}.{} is not an image", panel.place.text(), panel.pass, panel.port));
     const gpu::Texture& texture = *image->value().texture;
     return imageOf(texture, gpu::componentCount(texture.description().format) < 3 ? 1 : 3);
   }

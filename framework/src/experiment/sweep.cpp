@@ -51,8 +51,12 @@ class SweepPlan {
           std::make_unique<LoadedPipeline>(withSettings(*share.pipeline, options_.measure.settings)));
       all.push_back(loaded_.back().get());
       if (!options_.measure.openSweeps) share.sweep.axes.clear();
-      wanted.emplace_back(&text.sweeps[share.block],
-                          pointsOfSweeps(all.back()->pipeline, all.back()->settings, {share.sweep}));
+      const bool progressive = isProgressive(*share.pipeline, techniques_);
+      if (std::string note = withoutFrames(*share.pipeline, {share.sweep}, progressive); !note.empty())
+        summary.notes.push_back(std::move(note));
+      wanted.emplace_back(
+          &text.sweeps[share.block],
+          pointsOfSweeps(all.back()->pipeline, all.back()->settings, {share.sweep}, progressive));
     }
     requireKnownSettings(all, options_.measure.settings);
     for (std::size_t i = 0; i < wanted.size(); ++i)
@@ -60,7 +64,7 @@ class SweepPlan {
         addPoints(planOf(scene), all[i], wanted[i].second);
   }
 
-  /// What the store lacks; counts what it holds.
+  /// Collects the points that the store lacks; counts those it has.
   std::size_t findMissing(SweepSummary& summary) {
     std::size_t total = 0;
     for (ScenePlan& plan : plans_) {
@@ -123,7 +127,7 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
   const ReportOptions& measure = options.measure;
   if (measure.scenes.empty() && options.texts.empty()) throw Error("a sweep needs at least one scene");
   if (measure.scenes.empty() && !measure.pipelines.empty())
-    throw Error("the text of a sweep names its pipelines; --pipeline goes with a scene");
+    throw Error("the text of a sweep names its pipelines; --pipeline is for scenes only");
   SweepSummary summary;
   PipelineChoice choice(measure, techniques);
   SweepPlan plan(device, techniques, options, store, loadScene);
@@ -150,7 +154,7 @@ SweepSummary runSweep(gpu::Device& device, TechniqueSet& techniques, const Sweep
     for (const StoredRun& run : scene.measurer->measure(scene.missing, done))
       summary.failed += run.point.failure.empty() ? 0 : 1;
   }
-  // What was timed first is timed again at the end: how far apart times of the same thing are here.
+  // The first point is timed again at the end: how far apart times of the same thing are here.
   if (first != nullptr && summary.measured > 0) first->measurer->control(first->missing);
   for (const std::string& key : summary.keys)
     if (std::optional<StoredRun> stored = store.find(key)) summary.runs.push_back(std::move(*stored));

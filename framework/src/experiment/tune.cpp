@@ -19,7 +19,8 @@ namespace {
 
 using namespace experiment;
 
-constexpr double kNearLimit = 2.0;  // points of the front beyond this many times the limit are not followed
+constexpr double kNearLimit =
+    2.0;  // points of the Pareto front beyond this many times the limit are not followed
 
 /// Whether a parameter of the pipeline goes to a whole number of some pass.
 bool isWhole(const Pipeline& pipeline, TechniqueSource& techniques, const std::string& name) {
@@ -82,9 +83,9 @@ class Search {
     return !usedUp_;
   }
 
-  /// Points beside those ahead and beside the best that were not followed yet. The front itself would be too
-  /// much: it holds whatever cannot be told apart from the best, and on a plateau of the error, where times
-  /// are as good as equal, that would use up the evaluations.
+  /// Points beside those ahead and beside the best that were not followed yet. The Pareto front itself would
+  /// be too much: it holds whatever cannot be told apart from the best, and on a plateau of the error, where
+  /// times are as good as equal, that would use up the evaluations.
   std::vector<WantedPoint> neighbours() {
     std::vector<std::vector<WantedPoint>> lists;
     for (const std::size_t index : ahead()) follow(seen_[index], lists);
@@ -206,7 +207,7 @@ class Search {
       }
     }
     for (const PipelineParameter& parameter : pipeline.parameters) {
-      // What the command line sets stays.
+      // Parameters set on the command line stay.
       if (wanted.loaded->settings.count(parameter.name) != 0) continue;
       const ParameterValue& now = wanted.point.parameters.at(parameter.name);
       for (ParameterValue& value : steps(pipeline, parameter, now)) {
@@ -235,7 +236,8 @@ class Search {
       value.number = std::clamp(whole ? std::round(number) : number, *parameter.low, *parameter.high);
       result.push_back(value);
     };
-    // Doubling and halving, then finer steps around: the front is followed down to a factor of sqrt(2).
+    // Doubling and halving, then finer steps around: the Pareto front is followed down to a factor of
+    // sqrt(2).
     for (const double factor : {2.0, 0.5, std::sqrt(2.0), std::sqrt(0.5)}) step(now.number * factor);
     if (now.number == 0.0) step(0.5 * *parameter.high);
     if (*parameter.low <= 0.0 && *parameter.high > 0.0) step(0.0);
@@ -292,7 +294,7 @@ TuneResult tune(gpu::Device& device, TechniqueSet& techniques, const TuneOptions
   for (bool more = search.look(first); more;) {
     const std::vector<WantedPoint> next = search.neighbours();
     if (next.empty()) break;
-    logInformation("tuning: {} neighbours of what is ahead", next.size());
+    logInformation("tuning: {} neighbours of the best points", next.size());
     more = search.look(next);
   }
   TuneResult result = search.finish();

@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "base/process.h"
+#include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
+#include "pipeline/pool.h"
 
 namespace lumivox::experiment {
 namespace {
@@ -18,19 +20,25 @@ struct Held {
 };
 
 /// Takes points from the front as long as they fit beside each other; the first one in any case.
-std::vector<Held> holdTogether(std::deque<Turn*>& waiting) {
+std::vector<Held> holdTogether(gpu::Device& device, std::deque<Turn*>& waiting) {
+  const auto memory = std::make_shared<TransientMemory>(device);
   std::vector<Held> held;
   while (!waiting.empty()) {
     Turn* turn = waiting.front();
-    const std::string why = whyFailed([&] { held.push_back({turn, turn->open()}); });
+    const std::string why = whyFailed([&] { held.push_back({turn, turn->open(memory)}); });
     if (!why.empty() && !held.empty()) {
-      logInformation("{}: timed after the {} points before it, beside which it fails: {}", turn->name,
+      logInformation("{}: timed after the {} points before it, since it fails beside them: {}", turn->name,
                      held.size(), why);
       break;
     }
     waiting.pop_front();
     if (!why.empty()) turn->failure = why;
   }
+  std::uint64_t alone = 0;
+  for (const Held& one : held) alone += one.point->executor().memory().bytes;
+  if (held.size() > 1)
+    logDetails("{} points hold {} of textures and buffers together; each alone, they would hold {}",
+               held.size(), formatBytes(device.allocatedBytes()), formatBytes(alone));
   return held;
 }
 
@@ -48,13 +56,13 @@ void forEach(std::vector<Held>& held, std::vector<Turn*>& failed, const Work& wo
 
 }  // namespace
 
-void timeInTurns(std::vector<Turn>& turns, int repeats, int nextFrames) {
+void timeInTurns(gpu::Device& device, std::vector<Turn>& turns, int repeats, int nextFrames) {
   const MachineLock alone(MachineLock::For::timing);
   std::deque<Turn*> waiting;
   for (Turn& turn : turns) waiting.push_back(&turn);
   std::vector<Turn*> again;  // they failed beside others
   const auto time = [&](std::deque<Turn*>& some) {
-    std::vector<Held> held = holdTogether(some);
+    std::vector<Held> held = holdTogether(device, some);
     std::vector<Turn*> failed;
     for (int repeat = 0; repeat < repeats; ++repeat)
       forEach(held, failed, [](Held& one) { one.point->timeFrame(); });
@@ -64,7 +72,7 @@ void timeInTurns(std::vector<Turn>& turns, int repeats, int nextFrames) {
     });
     for (int frame = 0; frame < nextFrames; ++frame)
       forEach(held, failed, [](Held& one) { one.point->timeNextFrame(); });
-    // What these are for needs no more than a claim does.
+    // Their purpose needs no more than a claim does.
     const int parts = std::min(nextFrames, kLeastRepeats);
     for (int frame = 0; frame < parts; ++frame)
       forEach(held, failed, [](Held& one) { one.point->timeStillFrame(); });

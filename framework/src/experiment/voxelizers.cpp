@@ -50,7 +50,7 @@ std::vector<std::filesystem::path> pipelineFiles(const VoxelizerOptions& options
     }
     const std::vector<std::filesystem::path> inside = pipelinesIn(place);
     if (inside.empty())
-      throw Error(fmt::format("{}: the folder holds no pipeline; expected *.pipeline", place.string()));
+      throw Error(fmt::format("{}: the folder contains no pipeline; expected *.pipeline", place.string()));
     files.insert(files.end(), inside.begin(), inside.end());
   }
   return files;
@@ -206,7 +206,7 @@ class Measurement {
     std::vector<std::string> names;
     for (const PortKind* kind : FrameworkPorts::kinds())
       if (holdsVoxels(*kind)) names.push_back(kind->name);
-    return fmt::format("a kind that holds voxels ({}) that no other pass reads", fmt::join(names, ", "));
+    return fmt::format("a kind that contains voxels ({}) that no other pass reads", fmt::join(names, ", "));
   }
 
   /// Renders the warm-up frame and judges its voxels.
@@ -242,7 +242,7 @@ class Measurement {
     }
   }
 
-  /// What is right in one grid.
+  /// The reference in one grid.
   struct Reference {
     GridPlacement grid;
     VoxelReference voxels;

@@ -31,14 +31,14 @@ Buffer::Buffer(Device& device, std::uint64_t sizeBytes, std::string label)
     glDeleteBuffers(1, &handle_);
     throw;
   }
-  device_->allocated(sizeBytes_);
+  device_->allocated(this, sizeBytes_);
 }
 
 Buffer::~Buffer() {
   device_->use();
   glDeleteBuffers(1, &handle_);
   device_->forgetBindings();
-  device_->freed(sizeBytes_);
+  device_->freed(this, sizeBytes_);
 }
 
 void Buffer::upload(std::span<const std::byte> bytes, std::uint64_t offsetBytes) {

@@ -113,7 +113,7 @@ void attach(GLuint framebuffer, GLenum point, const Texture& texture, int layer)
 }
 
 [[noreturn]] void refuseSamples(const DeviceState& state, int samples) {
-  throw Error(fmt::format("{} samples per pixel asked for, but {} has 1 to {}", samples, state.info.renderer,
+  throw Error(fmt::format("{} samples per pixel requested, but {} has 1 to {}", samples, state.info.renderer,
                           state.info.maxSamples));
 }
 
@@ -160,7 +160,7 @@ std::uint64_t clearedBytes(const RenderTargets& targets) {
   return bytes;
 }
 
-/// What all targets have in common, or the size that is given where there are none.
+/// The common size of all targets, or the given one where there are none.
 glm::ivec2 sizeOf(const RenderTargets& targets) {
   if (targets.colours.empty() && targets.depth == nullptr) return {targets.width, targets.height};
   glm::ivec2 size(0);
@@ -215,7 +215,7 @@ GLuint makeFramebuffer(DeviceState& state, const RenderTargets& targets, glm::iv
   }
   const GLenum status = glCheckNamedFramebufferStatus(framebuffer, GL_DRAW_FRAMEBUFFER);
   try {
-    state.check("choosing what to draw to");
+    state.check("choosing the render targets");
     if (status != GL_FRAMEBUFFER_COMPLETE)
       throw Error(fmt::format("cannot draw to these targets: {}", framebufferProblem(status)));
     // A device may take more samples than it is asked for, in other places (9.2.1). Mesa tells 0: nothing.
@@ -223,7 +223,7 @@ GLuint makeFramebuffer(DeviceState& state, const RenderTargets& targets, glm::iv
       GLint samples = 0;
       glGetNamedFramebufferParameteriv(framebuffer, GL_SAMPLES, &samples);
       if (samples != 0 && samples != targets.samples)
-        throw Error(fmt::format("{} samples per pixel asked for, but {} would take {}", targets.samples,
+        throw Error(fmt::format("{} samples per pixel requested, but {} would take {}", targets.samples,
                                 state.info.renderer, samples));
     }
   } catch (...) {
@@ -404,7 +404,7 @@ void Device::finish() {
   state_->use();
   glFinish();
   state_->underWay = false;
-  state_->check("running what the device was given");
+  state_->check("running the device's commands");
 }
 
 }  // namespace lumivox::gpu

@@ -190,7 +190,7 @@ void DeviceState::check(const std::string& what) {
   GLenum error = glGetError();
   if (error != GL_NO_ERROR && !messages.hasErrors())
     messages.addError(fmt::format("{}{}", errorName(error),
-                                  debug ? "" : " (with --debug-context it tells the pass and the reason)"));
+                                  debug ? "" : " (with --debug-context it names the pass and the reason)"));
   // A lost context repeats its error for ever.
   for (int i = 0; i < 16 && error != GL_NO_ERROR; ++i) error = glGetError();
   if (messages.hasErrors()) throw Error(messages.takeErrors(what));
@@ -221,7 +221,7 @@ void DeviceState::requireDeviceMemory(std::uint64_t bytes, const std::string& wh
     refuse(memoryBytes - std::min(memoryBytes, allocatedBytes),
            fmt::format("of the limit of {} are", formatBytes(memoryBytes)));
   if (bytes < kNotWorthAsking) return;
-  // What is held already is missing from what is available: drivers fill new resources with zeros.
+  // Memory in use is already missing from the available memory: drivers fill new resources with zeros.
   if (info.software) {
     if (const std::uint64_t available = availableMemory(); bytes > available)
       refuse(available, "of memory are");
@@ -233,18 +233,25 @@ void DeviceState::requireDeviceMemory(std::uint64_t bytes, const std::string& wh
   }
 }
 
-void DeviceState::allocated(std::uint64_t bytes) {
+void DeviceState::allocated(const void* resource, std::uint64_t bytes) {
   allocatedBytes += bytes;
   peakBytes = std::max(peakBytes, allocatedBytes);
+  if (account == nullptr) return;
+  charged.emplace(resource, account);
+  account->add(bytes);
 }
 
-void DeviceState::freed(std::uint64_t bytes) {
+void DeviceState::freed(const void* resource, std::uint64_t bytes) {
   assert(allocatedBytes >= bytes);
   allocatedBytes -= bytes;
+  const auto owner = charged.find(resource);
+  if (owner == charged.end()) return;
+  owner->second->remove(bytes);
+  charged.erase(owner);
 }
 
 void DeviceState::forgetBindings() {
-  // No object has this name, so that the next bind is never taken for a repetition.
+  // No object has this name, so the next bind is never mistaken for a repetition.
   constexpr GLuint kNothing = ~GLuint{0};
   cache.program = kNothing;
   std::fill(cache.sampled.begin(), cache.sampled.end(), BindingCache::Sampled{kNothing, kNothing});

@@ -1,4 +1,4 @@
-// What the driver says while commands run. No OpenGL here, so that it can be tested without a driver that
+// Messages of the driver while commands run. No OpenGL here, so that it can be tested without a driver that
 // speaks.
 #pragma once
 

@@ -11,8 +11,8 @@ namespace {
     limit, #limit, least, why                  \
   }
 
-// What the committed techniques may use. OpenGL 4.5 (tables 23.55 to 23.72) promises less of storage buffers,
-// of which a vertex shader may have none, and enough of the others.
+// Resources that the committed techniques may use. OpenGL 4.5 (tables 23.55 to 23.72) promises less of
+// storage buffers, of which a vertex shader may have none, and enough of the others.
 constexpr Requirement kRequirements[] = {
     LUMIVOX_REQUIREMENT(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, 16, "storage buffers bound at a time"),
     LUMIVOX_REQUIREMENT(GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS, 16, "storage buffers of a program"),

@@ -1,4 +1,4 @@
-// What Lumivox asks of a device beyond an OpenGL 4.5 core context: docs/gpu.md.
+// Requirements on a device beyond an OpenGL 4.5 core context: docs/gpu.md.
 #pragma once
 
 #include <cstdint>

@@ -9,9 +9,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "gpu/driver_messages.h"
+#include "gpu/memory.h"
 #include "gpu/uniform_ring.h"
 #include "lumivox/gpu/device.h"
 
@@ -74,8 +76,8 @@ class UniformBuffer : public UniformRing::Fences {
   std::array<GLsync, UniformRing::kSegments> fences_{};
 };
 
-/// What a framebuffer draws to: handle and layer of each colour target and of depth, and the size and samples
-/// of one without targets. Words, so that it is compared as a whole.
+/// The targets of a framebuffer: handle and layer of each colour target and of depth, and the size and
+/// samples of one without targets. Words, so that it is compared as a whole.
 using FramebufferKey = std::vector<std::int64_t>;
 
 /// Framebuffers that were made and checked before.
@@ -92,7 +94,7 @@ class FramebufferCache {
   std::map<FramebufferKey, GLuint> framebuffers_;
 };
 
-/// What is bound now, so that a draw binds only what differs from the one before.
+/// The current bindings, so that a draw binds only what differs from the one before.
 struct BindingCache {
   struct Sampled {
     GLuint texture = 0, sampler = 0;
@@ -111,6 +113,10 @@ struct BindingCache {
   std::vector<GLuint> storage;
   std::vector<Uniform> uniforms;
 };
+
+/// Read-only resources by their contents, as long as somebody holds them.
+template <class Resource>
+using SharedResources = std::map<ContentHash, std::weak_ptr<const Resource>>;
 
 struct DeviceLimits {
   GLint textureSize2d = 0, textureLayers = 0, textureSize3d = 0;
@@ -141,8 +147,8 @@ struct DeviceState {
   /// " beside the 1.5 GiB of all other textures and buffers"
   std::string besideText() const;
   void downloaded(std::uint64_t bytes);
-  void allocated(std::uint64_t bytes);
-  void freed(std::uint64_t bytes);
+  void allocated(const void* resource, std::uint64_t bytes);
+  void freed(const void* resource, std::uint64_t bytes);
   void bind(const Program& program, std::span<const ResourceBinding> bindings);
   /// Before a command that moves or fills: makes what shaders wrote visible to it, unless a barrier did so
   /// already.
@@ -162,6 +168,10 @@ struct DeviceState {
   const Arithmetic arithmetic;
   DriverMessages messages;
   std::uint64_t allocatedBytes = 0, peakBytes = 0;
+  std::shared_ptr<MemoryAccount> account;  ///< charged for what is allocated now; null: none
+  std::unordered_map<const void*, std::shared_ptr<MemoryAccount>> charged;  ///< by resource that is alive
+  SharedResources<Texture> sharedTextures;
+  SharedResources<Buffer> sharedBuffers;
   Device::Transfers transfers;
   bool underWay = false;  ///< dispatches or draws since the last finish()
   std::array<GLuint, 8> samplers{};

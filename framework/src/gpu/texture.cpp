@@ -131,7 +131,7 @@ Texture::Texture(Device& device, const TextureDescription& description, std::str
     glDeleteTextures(1, &handle_);
     throw;
   }
-  device_->allocated(sizeBytes());
+  device_->allocated(this, sizeBytes());
 }
 
 Texture::~Texture() {
@@ -139,7 +139,7 @@ Texture::~Texture() {
   device_->framebuffers.forget(handle_);
   glDeleteTextures(1, &handle_);
   device_->forgetBindings();
-  device_->freed(sizeBytes());
+  device_->freed(this, sizeBytes());
 }
 
 void Texture::upload(int level, std::span<const std::byte> texels) {

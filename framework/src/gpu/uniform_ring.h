@@ -14,7 +14,7 @@ class UniformRing {
  public:
   static constexpr std::size_t kSegments = 4;
 
-  /// What the ring asks of the device.
+  /// The device as the ring uses it.
   class Fences {
    public:
     virtual ~Fences() = default;
@@ -32,7 +32,7 @@ class UniformRing {
   void reserve(std::size_t bytes);
   /// The place of a block of the command that room was reserved for.
   std::size_t place(std::size_t bytes);
-  /// What a block takes, with the gap before the next.
+  /// The room of a block, with the gap before the next.
   std::size_t roomFor(std::size_t bytes) const { return (bytes + alignment_ - 1) / alignment_ * alignment_; }
 
   std::size_t segmentBytes() const { return segmentBytes_; }

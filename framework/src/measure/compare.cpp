@@ -215,8 +215,8 @@ ImageBuffer withNoiseDoubled(const ImageBuffer& reference, const ImageBuffer& de
   return noisy;
 }
 
-/// What the reference's noise may have moved in the metrics that have no simple derivative: doubling it moves
-/// them about as far as the noise that is there already did.
+/// The effect of the reference's noise on metrics that have no simple derivative: doubling it moves them
+/// about as far as the noise that is there already did.
 void addPerceived(ImageError& result, const Perceived& measured, const Perceived* moved) {
   result.percentile95 = measured.percentile95;
   result.ssim = measured.ssim;

@@ -137,7 +137,7 @@ struct Filters {
 
 // ---- the two pipelines
 
-/// What FLIP compares, for one image.
+/// The data that FLIP compares, for one image.
 struct Percept {
   std::vector<dvec3> lab;  ///< filtered by contrast sensitivity, Hunt-adjusted
   Plane edges, points;     ///< strength of the features
@@ -181,7 +181,7 @@ Percept perceive(int width, int height, const Filters& filters, const Rgb& rgb) 
       for (std::size_t i = begin; i < begin + static_cast<std::size_t>(width); ++i) {
         const double blueYellow =
             filters.wideShare * wide.values[i] + (1.0 - filters.wideShare) * narrow.values[i];
-        // What the display cannot show is clipped before the distance is taken.
+        // Colours beyond the display's gamut are clipped before the distance is taken.
         const dvec3 shown = rgbFromOpponent({achromatic.values[i], redGreen.values[i], blueYellow});
         percept.lab[i] = huntLabFromRgb(glm::clamp(shown, 0.0, 1.0));
       }
@@ -214,7 +214,7 @@ double flipOf(const Percept& image, const Percept& reference, std::size_t pixel)
   return std::clamp(std::pow(colour, 1.0 - feature), 0.0, 1.0);
 }
 
-/// What the eye makes of an image as the display shows it.
+/// An image as the eye perceives it on the display.
 template <class Tone>
 Percept perceiveWith(const ImageBuffer& source, const Filters& filters, const Tone& tone) {
   const auto channels = static_cast<std::size_t>(source.channels());

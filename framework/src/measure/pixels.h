@@ -1,5 +1,4 @@
-// What the metrics of this part share: which pixels count, and pairs of images that differ in no other
-// pixel.
+// Common parts of the metrics: which pixels count, and pairs of images that differ in no other pixel.
 #pragma once
 
 #include <array>
@@ -16,7 +15,7 @@ namespace lumivox {
 /// Rec. 709 luminance of linear R, G, B (ITU-R BT.709, item 3.2).
 inline constexpr std::array<double, 3> kLuminanceWeights = {0.2126, 0.7152, 0.0722};
 
-/// What cannot be told.
+/// An unknown value.
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Whether all channels of a pixel that hold radiance are finite. A pixel of which one is not counts nowhere:

@@ -1,4 +1,4 @@
-// What a cut-out mask leaves of a triangle in a voxel.
+// The part of a triangle in a voxel that a cut-out mask leaves.
 #pragma once
 
 #include <array>

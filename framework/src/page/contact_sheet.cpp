@@ -27,7 +27,7 @@ constexpr int kMargin = 6;   // around panels and text
 constexpr int kLeast = 160;  // width of a panel below which its name would not fit
 constexpr float kPaper = 1.0f, kInk = 0.0f, kEmpty = 0.8f;  // display values
 
-/// What the font cannot write is a question mark.
+/// The text with question marks for characters that the font lacks.
 std::string printable(const std::string& text) {
   std::string result;
   for (const char c : text)

@@ -30,7 +30,7 @@ std::string html(const Document& document) {
   if (document.charts) scripts += script(chartLibrary());
   scripts += script(assets::kPageJs);
   for (const char* text : document.scripts) scripts += script(text);
-  // What is put in may hold such words itself, so that the page is put together from its end.
+  // Inserted text may contain such words itself, so the page is put together from its end.
   std::string page = assets::kPageHtml;
   for (const auto& [name, text] : {std::pair<std::string, std::string>{"{{scripts}}", scripts},
                                    {"{{records}}", records},
@@ -60,7 +60,7 @@ std::string chartLibrary() {
     }
     sought += (sought.empty() ? "" : ", ") + place;
   }
-  throw AbsentError("Chart.js not found; the report needs the Debian package libjs-chart.js; sought: " +
+  throw AbsentError("Chart.js not found; the report needs the Debian package libjs-chart.js; searched: " +
                     sought);
 }
 

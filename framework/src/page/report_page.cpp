@@ -22,7 +22,7 @@ using Json = nlohmann::ordered_json;
 /// The metrics that the page compares pipelines by.
 constexpr const char* kMetrics[] = {kDefaultMetric, "rmse", "relative_mse", "percentile95"};
 
-/// What leaving out saved of a time, where that is more than the spread of the repeats.
+/// The share of a time saved by leaving out, where it exceeds the spread of the repeats.
 Json savingJson(const TimingStatistics& pruned, const TimingStatistics& unpruned) {
   const Measured before = medianOf(unpruned), after = medianOf(pruned);
   const char* told = !decidable(before, after)                       ? "undecided"

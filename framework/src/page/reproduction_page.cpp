@@ -120,7 +120,7 @@ std::string reproductionRule() {
       "Ratios are to the first comparable row, or to the row that is named. A row is reproduced when its measured ratio, {1} standard uncertainties to "
       "both sides, lies within a factor of {0} of the published one; not reproduced when all of that lies beyond; not "
       "comparable when the set-up is not here or is another one, or when the uncertainty reaches across the limit. A table "
-      "is reproduced when a row is, none is not, and no two rows stand in the other order than published. Frame rates "
+      "is reproduced when a row is, none is not, and no two rows are in another order than published. Frame rates "
       "count as times of frames. Brackets behind times are quartiles. A curve grows as a power of what it is drawn over: less than linearly where the exponent, {1} "
       "standard uncertainties to both sides, is below 1, linearly where from its first point to its last it grows as that does within the same factor. Images "
       "have no verdict.",

@@ -171,7 +171,7 @@ std::string withReproducedPassages(const std::string& markdown, const std::files
                       wordsEnd = markdown.find(kOpeningEnd, words), closing = markdown.find(kClosing, words),
                       next = markdown.find(kOpening, words);
     if (wordsEnd == std::string::npos || closing == std::string::npos || closing < wordsEnd || next < closing)
-      fail(fmt::format("this passage of reproduced figures has no end; expected {} behind it", kClosing));
+      fail(fmt::format("this passage of reproduced figures has no end; expected {} after it", kClosing));
     const std::size_t inside = wordsEnd + std::string_view(kOpeningEnd).size();
     text += markdown.substr(at, inside - at);
     try {

@@ -24,7 +24,7 @@ Reads whatChanged(const Scene& scene, const SceneSnapshot& before, const SceneSn
     if (!otherOrigin && a.toWorld == b.toWorld && a.positions == b.positions && a.normals == b.normals)
       continue;
     changed = changed | Reads::geometry;
-    // What emits is a light.
+    // Emissive objects are lights.
     if (emits(scene, scene.objects[i])) changed = changed | Reads::lights;
   }
   if (otherOrigin || before.lights != after.lights) changed = changed | Reads::lights;

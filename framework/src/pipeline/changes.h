@@ -1,4 +1,4 @@
-// What differs between two frames of a scene, and between two scenes.
+// Differences between two frames of a scene, and between two scenes.
 #pragma once
 
 #include "lumivox/pipeline/pass.h"

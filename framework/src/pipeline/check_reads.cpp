@@ -44,7 +44,7 @@ std::string differenceOfImages(const OutBase& whole, const OutBase* lean) {
   const ImageBuffer other = lean != nullptr
                                 ? imageOf(*lean->textures().front(), channels)
                                 : neutralImage(image.width(), image.height(), whole.contributes());
-  if (!image.sameShape(other)) return "its size is another one";
+  if (!image.sameShape(other)) return "its size differs";
   std::size_t different = 0;
   for (std::size_t i = 0; i < image.values().size(); ++i)
     different += image.values()[i] != other.values()[i] ? 1 : 0;
@@ -59,7 +59,7 @@ class Comparison {
     for (const PassRecord& record : records) ran_[record.name] = record.ran;
   }
 
-  /// What is out of date.
+  /// Finds outputs that are out of date.
   void compareWithScratch(const BoundGraph& scratch) {
     forEachOutput([&](std::size_t pass, const OutBase& output, OutputIndex index) -> std::string {
       const OutBase& anew = scratch.output(index);
@@ -71,13 +71,13 @@ class Comparison {
     });
   }
 
-  /// What was left out though it makes a difference; `lean` is up to date.
+  /// Finds parts left out though they make a difference; `lean` is up to date.
   void compareWithWhole(const BoundGraph& lean, const BoundGraph& whole) {
     forEachOutput([&](std::size_t pass, const OutBase&, OutputIndex index) -> std::string {
       const OutBase &less = lean.output(index), &everything = whole.output(index);
       const OutputPlan& planned = plan_.output(index);
       if (!everything.hasValue() || !everything.kind().isSameType(portKind<Image>())) return {};
-      // What nobody would read may be anything where its inputs are left out.
+      // An output that nobody reads may be anything where its inputs are left out.
       if (!planned.wanted && (planned.lacksNeed || (planned.impossible && isShown(index)))) {
         const std::string difference = differenceOfImages(everything, nullptr);
         return difference.empty()
@@ -123,7 +123,7 @@ class Comparison {
   std::string whyStale(std::size_t pass) {
     const BoundPass& bound = graph_.passes[pass];
     if (!ran_[bound.name])
-      return fmt::format("it was not run again: it reads more than its readsFrom() says ({})",
+      return fmt::format("it was not run again: it reads more than its readsFrom() declares ({})",
                          readsText(readsOf(*bound.object)));
     std::vector<std::string> suspects;
     addStaleSources(pass, suspects);
@@ -158,7 +158,7 @@ class Comparison {
     return pass.kept ? plan_.output(index).why : pass.why;
   }
 
-  /// What the pass and those before it go without.
+  /// The parts that the pass and those before it leave out.
   std::string whyLess(std::size_t pass) const {
     std::vector<std::string> left;
     std::vector<bool> seen(graph_.passes.size(), false);

@@ -53,7 +53,7 @@ bool FrameContext::allHadRoom() {
       if (one.judge(*this, count)) continue;
       enough = false;
       if (attempts_ == kMostAttempts)
-        throw Error(fmt::format("no room for what it counts ({}) after {} attempts", count, kMostAttempts));
+        throw Error(fmt::format("no room for its count ({}) after {} attempts", count, kMostAttempts));
     } catch (const std::exception& error) {
       attempts_ = 0;
       throw Error("pass " + one.pass + ": " + error.what());
@@ -137,7 +137,7 @@ gpu::Device::Elapsed FrameContext::run(Pass& pass, const std::string& name, bool
   device_.enterPass(name);
   try {
     pass.run(*this);
-    // What a pass wrote is there for every later one, whatever that does with it.
+    // The writes of a pass are visible to every later one, however it reads them.
     device_.barrier();
     elapsed.hostMs = since(start);
   } catch (...) {

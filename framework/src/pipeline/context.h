@@ -1,4 +1,4 @@
-// What a pass sees while it runs; one for the executor and for the harness.
+// The frame as a pass sees it while it runs; one for the executor and for the harness.
 #pragma once
 
 #include <functional>
@@ -17,13 +17,14 @@ namespace lumivox {
 
 class FrameContext : public PassContext {
  public:
-  FrameContext(gpu::Device& device, const Scene& scene, bool keepsEverything)
+  FrameContext(gpu::Device& device, const Scene& scene, bool keepsEverything,
+               const std::shared_ptr<TransientMemory>& transientMemory = nullptr)
       : device_(device),
         scene_(&scene),
         keepsEverything_(keepsEverything),
         traits_(keepsEverything ? SceneTraits::everything() : SceneTraits::of(scene)),
         shaders_(device),
-        pool_(device, !keepsEverything) {}
+        pool_(device, !keepsEverything, transientMemory) {}
 
   gpu::Device& device() override { return device_; }
   shader::ShaderLibrary& shaders() override { return shaders_; }
@@ -55,7 +56,7 @@ class FrameContext : public PassContext {
   /// Whether histories are carried from frame to frame.
   void setAccumulates(bool accumulates) { accumulates_ = accumulates; }
   void setInspects(bool inspects) { inspects_ = inspects; }
-  /// What passes told about themselves since the last call, each with its pass's name.
+  /// Notes of passes about themselves since the last call, each with its pass's name.
   std::vector<std::string> takeNotes() { return std::exchange(notes_, {}); }
   /// Parts of passes that were taken over from earlier frames, by pass.
   struct Reused {

@@ -44,8 +44,9 @@ PipelineExecutor::State::State(gpu::Device& gpuDevice, TechniqueSource& source, 
       pipeline(text),
       options(renderOptions),
       graph(bindPipeline(pipeline, source, renderOptions.parameters)),
-      context(gpuDevice, sceneToRender, renderOptions.keepEverything),
+      context(gpuDevice, sceneToRender, renderOptions.keepEverything, renderOptions.transientMemory),
       timers(gpuDevice) {
+  const gpu::Charging charging(device, account);
   scene->camera(options.camera);
   for (const BoundOutput& output : graph.outputs) outputNames.push_back(output.name);
   for (const std::string& wanted : options.wanted) {
@@ -76,6 +77,7 @@ PipelineExecutor::State::State(gpu::Device& gpuDevice, TechniqueSource& source, 
   if (options.checkReads) {
     RenderOptions plain = options;
     plain.checkReads = plain.health = plain.countWork = false;
+    plain.transientMemory = nullptr;
     scratch = std::make_unique<PipelineExecutor>(device, techniques, *scene, pipeline, plain);
     plain.keepEverything = true;
     whole = std::make_unique<PipelineExecutor>(device, techniques, *scene, pipeline, plain);
@@ -196,7 +198,7 @@ PipelineExecutor::State::Clock::time_point PipelineExecutor::State::startFrame(I
   // Frames whose passes the device times follow each other without a gap, so that it never waits for the
   // host.
   if (instrument != Instrument::stamps) device.finish();
-  device.resetPeak();
+  account->resetPeak();
   return Clock::now();
 }
 
@@ -251,6 +253,7 @@ void PipelineExecutor::State::runPass(std::size_t index, Instrument instrument, 
 
 FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameIndex, Images images,
                                            Timing timing, Clock::time_point start) {
+  const gpu::Charging charging(device, account);
   planned();
   const Reads changed = changesSince(snapshot, frameIndex);
   const bool otherSize =
@@ -264,7 +267,7 @@ FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameInde
 
   const Instrument instrument = instrumentOf(timing);
   std::optional<FrameResult> result = attempt(changed, instrument, start);
-  // What was rendered lacks something: nothing of it is kept, and the frame's time is that of all attempts.
+  // An incomplete frame is rendered again: nothing of it is kept, and the time is that of all attempts.
   while (!result) result = attempt(Reads::nothing, instrument, start);
   if (timing == Timing::passes) result->frameMs = std::numeric_limits<double>::quiet_NaN();
   if (options.accumulate) holdHistories();
@@ -334,8 +337,8 @@ std::optional<FrameResult> PipelineExecutor::State::attempt(Reads changed, Instr
     return std::nullopt;
   }
   result.frameMs = millisecondsSince(start) - scanMs;
-  result.peakBytes = device.peakBytes();
-  if (freesUnused) context.pool().endFrame();
+  result.peakBytes = account->peakBytes();
+  context.pool().endFrame(freesUnused);
   return result;
 }
 
@@ -369,7 +372,7 @@ void PipelineExecutor::State::collectImages(FrameResult& result, Images images) 
     }
     const std::vector<gpu::TextureRef> textures = output.textures();
     if (textures.empty())
-      throw Error(fmt::format("pass output '{}' holds no texture", graph.outputText(bound.source)));
+      throw Error(fmt::format("pass output '{}' has no texture", graph.outputText(bound.source)));
     const gpu::TextureDescription& size = textures.front()->description();
     if (size.width != last->camera.width || size.height != last->camera.height)
       throw Error(fmt::format(
@@ -453,6 +456,10 @@ Explanation PipelineExecutor::explain() const {
   run.poolBytes = s.context.pool().bytes();
   run.sharedBytes = s.context.pool().sharedBytes();
   return explainRun(run);
+}
+
+MemoryUse PipelineExecutor::memory() const {
+  return {state_->account->bytes(), state_->account->sharedBytes()};
 }
 
 const std::vector<std::string>& PipelineExecutor::outputNames() const {

@@ -1,4 +1,4 @@
-// What an executor carries from frame to frame, and what happens to it when parameters or the scene change.
+// The state that an executor carries from frame to frame, and its reaction to changed parameters or scenes.
 #include <algorithm>
 
 #include "pipeline/changes.h"

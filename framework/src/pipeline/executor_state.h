@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "gpu/memory.h"
 #include "pipeline/context.h"
 #include "pipeline/graph.h"
 #include "pipeline/prune.h"
@@ -19,6 +20,7 @@ struct PipelineExecutor::State {
   const Scene* scene;
   Pipeline pipeline;
   RenderOptions options;
+  const std::shared_ptr<gpu::MemoryAccount> account = std::make_shared<gpu::MemoryAccount>();
   BoundGraph graph;
   PruneRequest request;
   SceneTraits sceneTraits;  ///< of the scene as it is, with --keep-everything too
@@ -61,8 +63,8 @@ struct PipelineExecutor::State {
   bool readsWhatChanged(std::size_t pass, Reads changed, const SceneSnapshot& snapshot) const;
 
   // ---- what is carried from frame to frame
-  /// What counts as a source for PassContext::accumulated(): with --keep-everything too, passes count like
-  /// those of a run that leaves out what it can.
+  /// Sources for PassContext::accumulated(): with --keep-everything too, passes count like those of a run
+  /// that leaves out what it can.
   std::vector<std::vector<OutputIndex>> sourcesThatCount();
   std::map<std::string, int> indirectBounces() const;
   void countStillFrames(Reads changed, const SceneSnapshot& snapshot);

@@ -123,7 +123,7 @@ void explainTime(const ExplainedRun& run, Explanation& explanation) {
   for (const FrameContext::Reused& part : run.reusedParts) {
     explanation.leftOut.push_back({LeftOut::Level::time,
                                    fmt::format("{}: {} in later frames", part.pass, part.what),
-                                   "made once while what it depends on stands still", part.pass});
+                                   "made once and kept while nothing it depends on changes", part.pass});
   }
 }
 

@@ -1,4 +1,4 @@
-// What a run does without, in words.
+// The parts that a run leaves out, in words.
 #pragma once
 
 #include <map>

@@ -2,19 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
+
+#include "gpu/memory.h"
 
 namespace lumivox {
 namespace {
 
-/// A surface texture with all mips; diffuse maps as rgba16f, since their linear values would lose the darks
-/// in 8 bits.
-std::unique_ptr<gpu::Texture> upload(gpu::Device& device, const SurfaceTexture& source) {
+gpu::TextureDescription descriptionOf(const SurfaceTexture& source) {
   gpu::TextureDescription description;
   description.format = source.mask ? gpu::Format::r16f : gpu::Format::rgba16f;
   description.width = source.width;
   description.height = source.height;
   description.levels = gpu::fullLevelCount(source.width, source.height);
+  return description;
+}
+
+/// A surface texture with all mips; diffuse maps as rgba16f, since their linear values would lose the darks
+/// in 8 bits.
+std::unique_ptr<gpu::Texture> upload(gpu::Device& device, const SurfaceTexture& source) {
+  const gpu::TextureDescription description = descriptionOf(source);
   auto texture = std::make_unique<gpu::Texture>(device, description, source.name);
   if (source.mask) {
     texture->uploadFloats(0, source.values);
@@ -39,40 +47,71 @@ std::unique_ptr<gpu::Buffer> bufferOf(gpu::Device& device, const std::vector<T>&
   return buffer;
 }
 
+/// The same for what nothing ever writes to.
+template <class T>
+std::shared_ptr<const gpu::Buffer> sharedBufferOf(gpu::Device& device, const std::vector<T>& values,
+                                                  const char* label) {
+  return gpu::sharedResource<gpu::Buffer>(device, Hasher().add(std::uint64_t{sizeof(T)}).add(values).finish(),
+                                          [&] { return bufferOf(device, values, label); });
+}
+
+std::shared_ptr<const gpu::Texture> sharedTextureOf(gpu::Device& device, const SurfaceTexture& source) {
+  return gpu::sharedResource<gpu::Texture>(
+      device, Hasher().add(source.mask).add(source.width).add(source.height).add(source.values).finish(),
+      [&] { return upload(device, source); });
+}
+
+/// 1 x 1 texel.
+std::shared_ptr<const gpu::Texture> whiteTextureOf(gpu::Device& device) {
+  return gpu::sharedResource<gpu::Texture>(device, hashOf("white"), [&] {
+    auto texture = std::make_unique<gpu::Texture>(device, gpu::TextureDescription{}, "white");
+    texture->clear(glm::vec4(1.0f));
+    return texture;
+  });
+}
+
+bool deforms(const Scene& scene) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [](const Object& object) { return object.sequence.has_value(); });
+}
+
 }  // namespace
 
 struct GpuScene::State {
-  gpu::Device& device;
-  const Scene& scene;
-  std::unique_ptr<gpu::Buffer> positions, normals, texcoords, indices, materials, objects;
-  std::unique_ptr<gpu::Texture> white;
-  std::vector<std::unique_ptr<gpu::Texture>> textures;
+  /// Null while no vertex moves in its object's space; then these are the positions and normals.
+  std::unique_ptr<gpu::Buffer> ownPositions, ownNormals;
+  std::unique_ptr<gpu::Buffer> objects;
+  std::shared_ptr<const gpu::Buffer> positions, normals, texcoords, indices, materials;
+  std::shared_ptr<const gpu::Texture> white;
+  std::vector<std::shared_ptr<const gpu::Texture>> textures;
   std::vector<SceneDraw> draws;
+  std::vector<std::uint32_t> firstVertices;  ///< of each object
 };
 
-GpuScene::GpuScene(gpu::Device& device, const Scene& scene)
-    : state_(new State{device, scene, {}, {}, {}, {}, {}, {}, {}, {}, {}}) {
+GpuScene::GpuScene(gpu::Device& device, const Scene& scene) : state_(new State{}) {
   State& s = *state_;
   static_assert(sizeof(glm::vec3) == 12 && sizeof(glm::vec2) == 8);
-  s.positions = bufferOf(device, scene.positions, "scene positions");
-  s.normals = bufferOf(device, scene.normals, "scene normals");
-  s.texcoords = bufferOf(device, scene.texcoords, "scene texture coordinates");
-  s.indices = bufferOf(device, scene.indices, "scene indices");
+  if (deforms(scene)) {
+    s.ownPositions = bufferOf(device, scene.positions, "scene positions");
+    s.ownNormals = bufferOf(device, scene.normals, "scene normals");
+  } else {
+    s.positions = sharedBufferOf(device, scene.positions, "scene positions");
+    s.normals = sharedBufferOf(device, scene.normals, "scene normals");
+  }
+  s.texcoords = sharedBufferOf(device, scene.texcoords, "scene texture coordinates");
+  s.indices = sharedBufferOf(device, scene.indices, "scene indices");
   std::vector<MaterialData> materials;
   for (const Material& material : scene.materials) {
     materials.push_back({glm::vec4(material.diffuse, 0.0f), glm::vec4(material.specular, material.exponent),
                          glm::vec4(material.emission, 0.0f)});
   }
-  s.materials = bufferOf(device, materials, "scene materials");
+  s.materials = sharedBufferOf(device, materials, "scene materials");
   s.objects = bufferOf(device, std::vector<ObjectData>(scene.objects.size()), "scene objects");
-
-  gpu::TextureDescription one;
-  one.format = gpu::Format::rgba16f;
-  s.white = std::make_unique<gpu::Texture>(device, one, "white");
-  s.white->clear(glm::vec4(1.0f));
-  for (const SurfaceTexture& texture : scene.textures) s.textures.push_back(upload(device, texture));
+  s.white = whiteTextureOf(device);
+  for (const SurfaceTexture& texture : scene.textures) s.textures.push_back(sharedTextureOf(device, texture));
 
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    s.firstVertices.push_back(scene.objects[o].firstVertex);
     for (const Part& part : scene.objects[o].parts) {
       const Material& material = scene.materials[static_cast<std::size_t>(part.material)];
       const auto textureOf = [&](int index) {
@@ -89,24 +128,25 @@ GpuScene::~GpuScene() = default;
 
 void GpuScene::update(const SceneSnapshot& snapshot) {
   State& s = *state_;
-  assert(snapshot.objects.size() == s.scene.objects.size());
+  assert(snapshot.objects.size() == s.firstVertices.size());
   std::vector<ObjectData> objects;
   for (std::size_t o = 0; o < snapshot.objects.size(); ++o) {
     const ObjectState& state = snapshot.objects[o];
     objects.push_back({state.toWorld, glm::mat4(state.normalToWorld)});
     if (state.positions.empty()) continue;
-    const std::uint64_t offset = std::uint64_t{s.scene.objects[o].firstVertex} * sizeof(glm::vec3);
-    s.positions->upload(std::as_bytes(std::span(state.positions)), offset);
-    s.normals->upload(std::as_bytes(std::span(state.normals)), offset);
+    assert(s.ownPositions != nullptr);
+    const std::uint64_t offset = std::uint64_t{s.firstVertices[o]} * sizeof(glm::vec3);
+    s.ownPositions->upload(std::as_bytes(std::span(state.positions)), offset);
+    s.ownNormals->upload(std::as_bytes(std::span(state.normals)), offset);
   }
   if (!objects.empty()) s.objects->upload(std::as_bytes(std::span(objects)));
 }
 
 const gpu::Buffer& GpuScene::positions() const {
-  return *state_->positions;
+  return state_->ownPositions ? *state_->ownPositions : *state_->positions;
 }
 const gpu::Buffer& GpuScene::normals() const {
-  return *state_->normals;
+  return state_->ownNormals ? *state_->ownNormals : *state_->normals;
 }
 const gpu::Buffer& GpuScene::texcoords() const {
   return *state_->texcoords;
@@ -125,15 +165,6 @@ const gpu::Texture& GpuScene::whiteTexture() const {
 }
 const std::vector<SceneDraw>& GpuScene::draws() const {
   return state_->draws;
-}
-
-std::uint64_t GpuScene::sizeBytes() const {
-  const State& s = *state_;
-  std::uint64_t total = s.white->sizeBytes();
-  for (const auto* buffer : {&s.positions, &s.normals, &s.texcoords, &s.indices, &s.materials, &s.objects})
-    total += (*buffer)->sizeBytes();
-  for (const auto& texture : s.textures) total += texture->sizeBytes();
-  return total;
 }
 
 }  // namespace lumivox

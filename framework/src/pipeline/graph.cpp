@@ -129,7 +129,7 @@ class Binder {
     std::set<std::string> given;
     for (const dsl::Item& item : text.block->items) {
       if (item.block) {
-        report(item.block->place, static_cast<int>(item.block->word.size()), "a pass holds no blocks",
+        report(item.block->place, static_cast<int>(item.block->word.size()), "a pass cannot contain blocks",
                "inputs and parameters");
         continue;
       }
@@ -247,7 +247,7 @@ class Binder {
     const OutBase& output = *outputs[static_cast<std::size_t>(port)];
     if (output.kind().name == kind.name && !output.kind().isSameType(kind)) {
       report(place, length,
-             fmt::format("output '{}.{}' and {} both call their kind {}, but mean different types", passName,
+             fmt::format("output '{}.{}' and {} both name their kind {}, but have different types", passName,
                          output.name(), reader, kind.name),
              "techniques that share the header of the kind");
       return {};
@@ -283,8 +283,7 @@ class Binder {
       for (const OutBase* output : graph_.passes[i].object->outputs()) {
         if (output->contributes() == Contributes::nothing) continue;
         const std::string port = graph_.passes[i].name + "." + output->name();
-        report(pipeline_.passes[i],
-               fmt::format("the pipeline has no output, so that nobody sees what '{}' makes", port),
+        report(pipeline_.passes[i], fmt::format("the pipeline has no output, so '{}' is never shown", port),
                "output NAME " + port);
         return;
       }
@@ -297,7 +296,7 @@ class Binder {
     if (value.kind != dsl::ValueKind::parameter) {
       const auto constant = parameterValue(value);
       if (!constant) {
-        report(value, fmt::format("this is no value for the parameter '{}'", parameter.name()),
+        report(value, fmt::format("this is not a value for the parameter '{}'", parameter.name()),
                expectation(parameter));
         return;
       }
@@ -322,7 +321,7 @@ class Binder {
         for (const ParameterValue& one : values) {
           if (const std::string misfit = tryValue(parameter, one); !misfit.empty()) {
             report(value,
-                   fmt::format("sweep '{}' makes '{}' {}, which does not fit '{}'", sweep.name, name,
+                   fmt::format("sweep '{}' sets '{}' to {}, which does not fit '{}'", sweep.name, name,
                                one.text(), parameter.name()),
                    misfitExpectation(misfit));
           }

@@ -1,4 +1,4 @@
-// What passes leave for later frames: things made once while they stand still, and histories.
+// Memory of passes for later frames: results that are made once and kept, and histories.
 #pragma once
 
 #include <map>
@@ -23,7 +23,7 @@ class PassMemory {
   void beginRun(const std::string& pass);
   /// Gives back what was kept and this run did not ask for.
   void endRun(const std::string& pass);
-  /// What the frame left is what the next one finds.
+  /// Hands what the frame left to the next one.
   void commitFrame();
   /// The frame is rendered again, or failed: what it left is forgotten.
   void abandonFrame();

@@ -50,9 +50,10 @@ struct PrunePlan {
 
 PrunePlan prune(const BoundGraph& graph, const PruneRequest& request);
 
-/// What a pass reads besides its inputs: what it says, and histories where it has an input of that kind.
+/// Sources that a pass reads besides its inputs: those it declares, and histories where it has an input of
+/// that kind.
 Reads readsOf(const Pass& pass);
-/// What a pass reads of this frame: its connected inputs, but for those that the scene or the parameters make
+/// Outputs that a pass reads of this frame: its connected inputs, without those that scene or parameters make
 /// useless.
 std::vector<OutputIndex> sourcesRead(const BoundPass& pass, const PruneRequest& request);
 /// The same of the frame before: inputs that are histories. None in a run that does not accumulate.

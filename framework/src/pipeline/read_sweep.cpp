@@ -23,6 +23,16 @@ dsl::PropertySpecification listOf(const char* word, bool required, const char* m
   return specification;
 }
 
+/// The values of an axis of accumulated frames, as if it were a parameter of every pipeline.
+PipelineParameter accumulatedFrames() {
+  PipelineParameter frames;
+  frames.name = kAccumulatedFrames;
+  frames.value.number = 1.0;
+  frames.low = 1.0;
+  frames.high = kMostAccumulatedFrames;
+  return frames;
+}
+
 /// A sum or product without the last digits that binary fractions leave: 0.3, not 0.30000000000000004.
 double rounded(double value) {
   return std::stod(fmt::format("{:.12g}", value));
@@ -40,7 +50,7 @@ class SweepReader : TextFindings {
     for (const dsl::Item& item : block.items) {
       anything = true;
       if (item.block) {
-        report(item.block->place, item.block->word, "a sweep holds no blocks", "parameter [values]");
+        report(item.block->place, item.block->word, "a sweep cannot contain blocks", "parameter [values]");
       } else if (item.property->word == kSweptSeeds) {
         readSeeds(*item.property);
       } else if (item.property->word == kSweptScenes || item.property->word == kSweptPipelines) {
@@ -102,7 +112,7 @@ class SweepReader : TextFindings {
                          item.number >= 0.0 && item.number <= kLargestSeed;
       const auto seed = whole ? static_cast<std::uint64_t>(item.number) : 0;
       if (!whole) {
-        report(item.place, item.length, "this is no seed", "whole numbers from 0 to 2^53");
+        report(item.place, item.length, "this is not a seed", "whole numbers from 0 to 2^53");
       } else if (std::find(sweep_.seeds.begin(), sweep_.seeds.end(), seed) != sweep_.seeds.end()) {
         report(item.place, item.length, fmt::format("the seed {} is given twice", seed));
       } else {
@@ -125,7 +135,8 @@ class SweepReader : TextFindings {
     std::vector<std::filesystem::path>& files = scenes ? sweep_.scenes : sweep_.pipelines;
     for (const dsl::Value& item : *items) {
       if (item.kind != dsl::ValueKind::text && item.kind != dsl::ValueKind::word) {
-        report(item.place, item.length, "this names no file", "a path beside the text, in double quotes");
+        report(item.place, item.length, "this is not the name of a file",
+               "a path beside the text, in double quotes");
         continue;
       }
       const std::filesystem::path file = besideText(item);
@@ -179,7 +190,7 @@ class SweepReader : TextFindings {
         fmt::format("{} {} in LOW..HIGH", property.word, multiplies ? "times 2" : "plus 8");
     const bool shaped = values.size() == 4 && values[1].kind == dsl::ValueKind::number &&
                         values[2].isPlainWord() && values[2].text == "in" && isNumberRange(values[3]);
-    if (!shaped) return report(property.place, property.word, "steps are not written like this", form);
+    if (!shaped) return report(property.place, property.word, "malformed steps", form);
     const dsl::Value& low = values[3].items[0];
     const dsl::Value& high = values[3].items[1];
     const dsl::Dimension dimension = low.unit ? low.unit->dimension : dsl::kNoDimension;
@@ -222,7 +233,7 @@ class SweepReader : TextFindings {
         report(axis.place, axis.parameter,
                fmt::format("'{}' has {} values, but '{}' has {}", axis.parameter, axis.values.size(),
                            longest->parameter, points),
-               "as many in every axis of a list, or one that holds for all");
+               "as many in every axis of a list, or one value for all");
     }
   }
 
@@ -256,14 +267,18 @@ Sweep fittedSweep(const SweepBlock& block, const Pipeline& pipeline, const dsl::
   sweep.isList = block.isList;
   sweep.seeds = block.seeds;
   for (const SweepAxis& axis : block.axes) {
-    const PipelineParameter* parameter = findParameter(pipeline, axis.parameter);
+    static const PipelineParameter kFrames = accumulatedFrames();
+    const PipelineParameter* parameter =
+        axis.parameter == kFrames.name ? &kFrames : findParameter(pipeline, axis.parameter);
     if (parameter == nullptr) {
       lacking.push_back(&axis);
       continue;
     }
     std::vector<ParameterValue> values;
     for (const SweepValue& one : axis.values) {
-      const std::string misfit = parameter->misfit(one.value);
+      std::string misfit = parameter->misfit(one.value);
+      if (misfit.empty() && parameter == &kFrames && one.value.number != std::floor(one.value.number))
+        misfit = "must be a whole number";
       if (misfit.empty()) {
         values.push_back(one.value);
         values.back().dimension = parameter->value.dimension;
@@ -307,7 +322,8 @@ dsl::BlockSpecification sweepSpecification(SweepHome home) {
   static const char* const kAxes =
       "Each parameter has a list, `resolution [16 32 64]`, or steps, `resolution times 2 in 16..64` and `cones "
       "plus 2 in 4..12`. The points are the grid over all axes, or with `sweep NAME list { ... }` those along "
-      "them: the first values together, then the second ones; an axis of one value holds for all.";
+      "them: the first values together, then the second ones; an axis of one value applies to all. The axis `frames` "
+      "is not a parameter: a pipeline that accumulates is measured after that many frames of the still scene.";
   dsl::BlockSpecification sweep;
   sweep.word = "sweep";
   sweep.name = dsl::HeaderUse::required;
@@ -318,8 +334,8 @@ dsl::BlockSpecification sweepSpecification(SweepHome home) {
   } else {
     sweep.meaning = fmt::format(
         "`sweep NAME {{ scenes [...] pipelines [...] parameter [values] }}`: what `lumivox sweep` measures, every "
-        "pipeline at every point on every scene. {} A pipeline without one of the parameters goes without that "
-        "axis, which is said.",
+        "pipeline at every point on every scene. {} A pipeline without one of the parameters is measured "
+        "without that axis, with a note.",
         kAxes);
     sweep.required = true;
     sweep.properties = {listOf(kSweptScenes, true, "files of scenes, beside the text"),

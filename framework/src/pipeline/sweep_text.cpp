@@ -105,8 +105,9 @@ std::vector<SweepShare> sweepShares(const SweepText& text, TechniqueSource& tech
         continue;
       }
       for (const std::string& name : missing->second)
-        notes.push_back(fmt::format("{}: pipeline \"{}\" has no parameter '{}' and goes without that axis",
-                                    axis.place.text(), name, axis.parameter));
+        notes.push_back(
+            fmt::format("{}: pipeline \"{}\" has no parameter '{}' and is measured without that axis",
+                        axis.place.text(), name, axis.parameter));
     }
   }
   throwOrLog(std::move(findings));

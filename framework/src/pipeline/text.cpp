@@ -156,7 +156,7 @@ class TextReader : TextFindings {
                         (isNumberRange(values[3]) || values[3].kind == dsl::ValueKind::list);
     const auto value = values.size() >= 2 ? parameterValue(values[1]) : std::nullopt;
     if (values.empty() || !values[0].isPlainWord() || !value || (values.size() != 2 && !ranged)) {
-      report(property.place, property.word, "a param is not written like this", kForm);
+      report(property.place, property.word, "malformed param", kForm);
       return;
     }
     PipelineParameter parameter;
@@ -186,9 +186,9 @@ class TextReader : TextFindings {
              fmt::format("the default of '{}' is {}, which does not fit", parameter.name, value->text()),
              misfitExpectation(misfit));
     }
-    for (const char* word : {kSweptScenes, kSweptPipelines, kSweptSeeds}) {
+    for (const char* word : {kSweptScenes, kSweptPipelines, kSweptSeeds, kAccumulatedFrames}) {
       if (parameter.name == word)
-        report(values[0].place, values[0].length, fmt::format("'{}' is a word of sweeps", word),
+        report(values[0].place, values[0].length, fmt::format("'{}' is a reserved word of sweeps", word),
                "another name for the parameter");
     }
     for (const PipelineParameter& other : pipeline_.parameters) {
@@ -203,7 +203,7 @@ class TextReader : TextFindings {
   void readOutput(const dsl::Property& property) {
     const auto& values = property.values;
     if (values.size() != 2 || !values[0].isPlainWord() || values[1].kind != dsl::ValueKind::word) {
-      report(property.place, property.word, "an output is not written like this", "output NAME pass.port");
+      report(property.place, property.word, "malformed output", "output NAME pass.port");
       return;
     }
     for (const Pipeline::Output& other : pipeline_.outputs) {
@@ -214,7 +214,7 @@ class TextReader : TextFindings {
     }
     const auto parts = splitDotted(values[1]);
     if (!parts) {
-      report(values[1].place, values[1].length, "this names no output of a pass", "pass.port");
+      report(values[1].place, values[1].length, "this is not an output of a pass", "pass.port");
       return;
     }
     pipeline_.outputs.push_back({values[0].text, parts->first, parts->second, values[1].place});

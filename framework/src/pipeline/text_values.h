@@ -1,4 +1,4 @@
-// What readers of pipelines, sweeps and published tables have in common, and binding with them.
+// Common parts of the readers of pipelines, sweeps and published tables, and binding with them.
 #pragma once
 
 #include <filesystem>

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What makes one library unfit; carries the reason.
+/// A library that is unfit; carries the reason.
 class Unfit : public Error {
  public:
   using Error::Error;
@@ -35,8 +35,7 @@ class Registry : public TechniqueRegistry {
     technique_.paper = std::move(paper);
   }
   void add(PassEntry entry) override {
-    if (entry.name.empty() || !entry.make)
-      throw Unfit("it registers a pass without a name or without a way to make it");
+    if (entry.name.empty() || !entry.make) throw Unfit("it registers a pass without a name or a factory");
     if (technique_.find(entry.name) != nullptr)
       throw Unfit(fmt::format("it registers the pass '{}' twice", entry.name));
     technique_.passes.push_back(std::move(entry));
@@ -80,7 +79,8 @@ std::unique_ptr<Technique> open(const std::string& name, const fs::path& library
   if (fs::exists(pack)) {
     technique->shaders = shader::readShaderPack(pack);
     if (technique->shaders.technique != name) {
-      throw Unfit(fmt::format("{} holds the shaders of '{}'", pack.string(), technique->shaders.technique));
+      throw Unfit(
+          fmt::format("{} contains the shaders of '{}'", pack.string(), technique->shaders.technique));
     }
   }
   return technique;

@@ -102,8 +102,8 @@ ContentHash contentOf(const LayeredImage& image) {
 
 constexpr const char* kContentHash = "content";
 
-/// What keeps an entry from being the wanted reference; empty when nothing does. It is believed in nothing:
-/// what it says of itself is compared with what it has to be.
+/// The defect that keeps an entry from being the wanted reference; empty when there is none. It is not
+/// trusted: what it says of itself is compared with what it has to be.
 std::string defectOf(LayeredImage& entry, const Scene& scene, const ResolvedOptions& resolved) {
   const auto stated = entry.attributes.find(kContentHash);
   const std::string hash = stated == entry.attributes.end() ? std::string() : stated->second;
@@ -145,9 +145,9 @@ std::optional<LayeredImage> readEntry(const std::filesystem::path& file, const S
     LayeredImage image = readExr(file);
     const std::string defect = defectOf(image, scene, resolved);
     if (defect.empty()) return image;
-    logWarning("{}: this cached reference is damaged ({}); it is made anew", file.string(), defect);
+    logWarning("{}: this cached reference is damaged ({}); it is rendered again", file.string(), defect);
   } catch (const Error& error) {
-    logWarning("this cached reference is damaged and is made anew: {}", error.what());
+    logWarning("this cached reference is damaged and is rendered again: {}", error.what());
   }
   return std::nullopt;
 }
@@ -160,7 +160,7 @@ void keep(const std::filesystem::path& file, const LayeredImage& image) {
   writeExr(file, image);
   const PrunedReferences pruned = pruneReferences(referenceCacheLimit());
   if (pruned.removed > 0) {
-    logInformation("the cache of references is full: {} not used for longest gave way ({})", pruned.removed,
+    logInformation("the cache of references is full: removed the {} least recently used ({})", pruned.removed,
                    formatBytes(pruned.removedBytes));
   }
 }

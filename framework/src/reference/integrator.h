@@ -25,7 +25,7 @@ struct LateLight {
   LateLight times(const glm::vec3& factor) const { return {factor * middle, factor * late}; }
 };
 
-/// What one path says about a pixel; radiance, components as in path_tracer.h.
+/// The contribution of one path to a pixel; radiance, components as in path_tracer.h.
 struct PathSample {
   glm::vec3 direct{0.0f};
   glm::vec3 oneBounceDiffuse{0.0f}, oneBounceGlossy{0.0f};
@@ -49,7 +49,7 @@ struct MediaPathSample {
   glm::vec3 full() const { return transmittance * surfaces.full() + scattered(); }
 };
 
-/// What one path brings over up to N bounces, for every N that has layers of its own: radiance that is
+/// The light of one path over up to N bounces, for every N that has layers of its own: radiance that is
 /// reflected by the lobes of the first surface, or scattered to the camera by media.
 struct BounceSums {
   struct Sum {
@@ -138,7 +138,7 @@ struct Integrator {
     int bounces;
     bool scattered;
   };
-  /// What light meets behind a point in a direction that was chosen with a density, through media. Calls
+  /// The light that arrives at a point in a direction that was chosen with a density, through media. Calls
   /// arrive(Arrival) for all of it.
   template <class Rays, class Arrive>
   void walk(Rays& rays, RandomStream& random, glm::vec3 origin, glm::vec3 direction, float density,

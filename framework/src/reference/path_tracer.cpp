@@ -137,7 +137,7 @@ void warnOfCutOff(const std::map<std::string, std::string>& attributes) {
       cutOff->radius > 0.0 && cutOff->radius < 1.0
           ? fmt::format("about {:.0f} bounces leave out 1 %",
                         bounces + std::ceil(std::log(kTolerable / cutOff->share) / std::log(cutOff->radius)))
-          : "the light hardly shrinks from bounce to bounce";
+          : "the light hardly decreases from bounce to bounce";
   logWarning(
       "reference of {}: paths end after {} bounces, which leaves out about {:.2g} % of the light; {} (--bounces)",
       text("scene"), bounces, 100.0 * cutOff->share, enough);
@@ -160,7 +160,7 @@ LayeredImage renderReference(const Scene& scene, const ReferenceOptions& given) 
   const ReferenceOptions& options = resolved.options;
   if (options.samplesPerPixel < 2) {
     throw Error(
-        "reference: one sample per pixel; expected at least 2, because the noise is told from their spread");
+        "reference: one sample per pixel; expected at least 2, because the noise is estimated from their spread");
   }
   const Tracer tracer(scene, resolved);
   Film film(options.width, options.height, !tracer.media.empty(), options.bounceLayers);

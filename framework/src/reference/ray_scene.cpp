@@ -158,7 +158,7 @@ void RayScene::attach(unsigned geometryId, std::uint32_t begin, std::uint32_t en
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene_.get(), geometry, geometryId);
   rtcReleaseGeometry(geometry);
-  throwOnEmbreeError(device_.get(), "take over the triangles");
+  throwOnEmbreeError(device_.get(), "commit the triangles");
 }
 
 void RayScene::filter(const RTCFilterFunctionNArguments* arguments) {

@@ -16,8 +16,7 @@
 
 namespace lumivox::reference {
 
-/// What shading reads of a triangle: two cache lines side by side, the second only for curved or textured
-/// ones.
+/// Data of a triangle for shading: two cache lines side by side, the second only for curved or textured ones.
 struct alignas(64) TriangleRecord {
   glm::vec3 corner;        ///< first vertex, metres relative to the snapshot's origin
   glm::vec3 edge1, edge2;  ///< from the first to the second and third vertex

@@ -29,7 +29,7 @@ bool isEntry(const std::string& name) {
          name.ends_with(kSuffix);
 }
 
-/// What writeFileAtomically names a file before it is whole.
+/// Whether this is writeFileAtomically's name for a file before it is whole.
 bool isHalfWritten(const std::string& name) {
   return name.starts_with(fmt::format(".{}", kPrefix)) && name.ends_with(".new");
 }
@@ -88,7 +88,7 @@ std::vector<KeptReference> keptReferences(bool withAttributes) {
       try {
         entry.attributes = readExrAttributes(file);
       } catch (const Error&) {
-        // Damaged: listed without them, and made anew when it is wanted.
+        // Damaged: listed without them, and rendered again when it is wanted.
       }
     }
     kept.push_back(std::move(entry));

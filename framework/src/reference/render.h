@@ -18,8 +18,8 @@
 
 namespace lumivox::reference {
 
-/// What the image depends on, in the one form that the tracer and the cache's key share: nothing left at
-/// "the default".
+/// Options that the image depends on, in the one form that the tracer and the cache's key share: nothing left
+/// at "the default".
 struct ResolvedOptions {
   ReferenceOptions options;
   SceneSnapshot snapshot;  ///< at options.time, from options.camera, at the resolution of the image
@@ -158,7 +158,7 @@ class PixelStatistics {
   double count_ = 0.0;
 };
 
-/// What the limit on bounces costs.
+/// The cost of the limit on bounces.
 struct CutOff {
   double share = 0.0;   ///< of all light that paths of more bounces would bring, estimated; 1: without end
   double radius = 0.0;  ///< of what is missing, the share that one further bounce leaves
@@ -287,7 +287,7 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
   }
 }
 
-/// What the attributes of a reference say of it; nothing when they say nothing that can be right.
+/// The cut-off recorded in the attributes of a reference; none when they contain no plausible one.
 std::optional<CutOff> cutOffIn(const std::map<std::string, std::string>& attributes);
 
 /// Says so when the limit on bounces costs more than a hundredth, by the attributes of a reference.

@@ -12,7 +12,7 @@ double millisecondsOf(const ReportPoint& point, const std::string& pass) {
   return time == point.passDeviceMs.end() ? 0.0 : time->second.median;
 }
 
-/// What a pass does, and what limits it; null when that was not counted.
+/// The work of a pass and its limit; null when it was not counted.
 Json limitJson(const ReportPoint& point, const std::string& pass) {
   Json json = Json::object();
   const auto work = point.passWork.find(pass);

@@ -28,7 +28,7 @@ int framesOf(const ParameterValues& parameters) {
 }
 
 CostParts costParts(const ReportPoint& point) {
-  // What is left of the longer time; a machine's mood may make it the shorter one.
+  // The remainder of the longer time; a machine's mood may make it the shorter one.
   const auto left = [](const TimingStatistics& all, const TimingStatistics& part) {
     const Measured a = medianOf(all), b = medianOf(part);
     return Measured{std::max(0.0, a.value - b.value), std::hypot(a.uncertainty, b.uncertainty)};

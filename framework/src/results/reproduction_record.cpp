@@ -188,31 +188,31 @@ std::string countText(std::size_t count, const char* what) {
 
 void compareRows(const ReproducedResult& kept, const PublishedResult& text, std::vector<std::string>& stale) {
   if (kept.rows.size() != text.rows.size())
-    return stale.push_back(fmt::format("{}: {} kept, {} in the text", text.id,
+    return stale.push_back(fmt::format("{}: {} recorded, {} in the text", text.id,
                                        countText(kept.rows.size(), "row"), text.rows.size()));
   for (std::size_t i = 0; i < text.rows.size(); ++i) {
     const MeasuredRow& was = kept.rows[i];
     const PublishedRow& is = text.rows[i];
     if (was.name != is.name || was.over != is.over || was.quantity != is.quantity)
       stale.push_back(
-          fmt::format("{}: row '{}' is kept where the text has '{}'", text.id, was.name, is.name));
+          fmt::format("{}: row '{}' is recorded where the text has '{}'", text.id, was.name, is.name));
     else if (was.published != is.published)
-      stale.push_back(fmt::format("{}: row '{}' is kept with {:g} as published, the text has {:g}", text.id,
-                                  is.name, was.published, is.published));
+      stale.push_back(fmt::format("{}: row '{}' is recorded with {:g} as published, but the text has {:g}",
+                                  text.id, is.name, was.published, is.published));
     else if (const std::string& why = is.absent.empty() ? is.substitute : is.absent;
              !why.empty() && was.whyNot != why && (was.measured || !is.absent.empty()))
-      stale.push_back(fmt::format("{}: row '{}' is {} in the text, which is not kept so", text.id, is.name,
+      stale.push_back(fmt::format("{}: row '{}' is {} in the text, but not in the record", text.id, is.name,
                                   is.absent.empty() ? "a substitute" : "absent"));
     else if (is.absent.empty() && is.substitute.empty() && was.measured && !was.whyNot.empty())
-      stale.push_back(
-          fmt::format("{}: row '{}' is kept as not comparable, the text does not say so", text.id, is.name));
+      stale.push_back(fmt::format("{}: row '{}' is recorded as not comparable, which the text does not say",
+                                  text.id, is.name));
   }
 }
 
 void compareFigures(const ReproducedResult& kept, const PublishedResult& text,
                     std::vector<std::string>& stale) {
   const auto report = [&](const char* what) {
-    stale.push_back(fmt::format("{}: the {} that are kept are not those of the text", text.id, what));
+    stale.push_back(fmt::format("{}: the recorded {} are not those of the text", text.id, what));
   };
   bool same = kept.curves.size() == text.curves.size();
   for (std::size_t i = 0; same && i < text.curves.size(); ++i)
@@ -249,7 +249,7 @@ std::vector<ReproducedResult> readReproductions(const std::filesystem::path& fil
     }
   } catch (const nlohmann::json::exception& error) {
     throw Error(
-        fmt::format("{}{}: no results of reproductions as `lumivox reproduce --record` writes them: {}",
+        fmt::format("{}{}: not results of reproductions as `lumivox reproduce --record` writes them: {}",
                     file.string(), place, error.what()));
   } catch (const Error& error) {
     throw Error(fmt::format("{}{}: {}", file.string(), place, error.what()));
@@ -264,7 +264,7 @@ std::vector<std::string> staleReproductions(const std::vector<ReproducedResult>&
     const auto kept = std::find_if(results.begin(), results.end(),
                                    [&](const ReproducedResult& one) { return one.published.id == text.id; });
     if (kept == results.end()) {
-      stale.push_back(fmt::format("{}: nothing is kept", text.id));
+      stale.push_back(fmt::format("{}: nothing is recorded", text.id));
       continue;
     }
     compareRows(*kept, text, stale);
@@ -272,12 +272,12 @@ std::vector<std::string> staleReproductions(const std::vector<ReproducedResult>&
     if (kept->published.title != text.title || kept->published.paper != text.paper ||
         kept->published.device != text.device || kept->published.differences != text.differences)
       stale.push_back(
-          fmt::format("{}: title, paper, device or differences are kept in other words", text.id));
+          fmt::format("{}: title, paper, device or differences are not those of the text", text.id));
   }
   for (const ReproducedResult& kept : results)
     if (std::none_of(published.begin(), published.end(),
                      [&](const PublishedResult& text) { return text.id == kept.published.id; }))
-      stale.push_back(fmt::format("{}: it is kept, but there is no such text", kept.published.id));
+      stale.push_back(fmt::format("{}: it is recorded, but there is no such text", kept.published.id));
   return stale;
 }
 

@@ -35,12 +35,12 @@ PropertySpecification required(PropertySpecification specification) {
 }
 
 constexpr double kMostSubdivisions = 6;  // 4096 triangles of one
-/// What the path tracer keeps apart (reference/path_tracer.h).
+/// Layers of the path tracer (reference/path_tracer.h).
 constexpr const char* kReferenceLayers[] = {
     "direct", "one_bounce_diffuse", "one_bounce_glossy", "one_bounce", "indirect_diffuse", "indirect_glossy",
     "full",   "ambient_occlusion",  "scattered_single",  "scattered"};
 
-/// What a text says for all of its rows, points and panels, and each of them for itself.
+/// Properties that a text gives for all of its rows, points and panels, and each of them for itself.
 std::vector<PropertySpecification> setUpProperties() {
   PropertySpecification measures = property(
       "measures", PropertyType::word,
@@ -54,7 +54,7 @@ std::vector<PropertySpecification> setUpProperties() {
   time.defaultText = "0 s";
   PropertySpecification subdivisions =
       property("subdivisions", PropertyType::integer,
-               "how often every triangle of the scene is split into four before");
+               "how many times every triangle of the scene is split into four first");
   subdivisions.low = 0;
   subdivisions.high = kMostSubdivisions;
   subdivisions.defaultText = "0";
@@ -71,10 +71,9 @@ std::vector<PropertySpecification> setUpProperties() {
           "output", PropertyType::output,
           "an output that is kept, for passes that no image needs; whose fragments are counted; whose image "
           "a panel shows, in place of the pipeline's whole image"),
-      property("absent", PropertyType::text,
-               "why there is nothing to measure or to show here: not comparable"),
+      property("absent", PropertyType::text, "why nothing can be measured or shown here: not comparable"),
       property("substitute", PropertyType::text,
-               "what stands in for a published set-up that is unknown or not here: measured, but not "
+               "the stand-in for a published set-up that is unknown or unavailable: measured, but not "
                "comparable")};
 }
 
@@ -84,7 +83,7 @@ BlockSpecification setSpecification() {
   set.repeatable = false;
   set.open = true;
   set.meaning =
-      "parameters of the pipeline, each with its value; those of a row, point or panel come over those of a curve, and "
+      "parameters of the pipeline, each with its value; those of a row, point or panel override those of a curve, and "
       "these over those of the whole text";
   return set;
 }
@@ -110,7 +109,7 @@ BlockSpecification rowSpecification() {
   published.low = 1e-9;
   return partSpecification(
       "row", dsl::HeaderUse::required,
-      "one published number. What it does not say itself the whole text says.",
+      "one published number. Properties that it lacks are those of the whole text.",
       {published,
        property("over", PropertyType::text,
                 "name of the row that this one is divided by; without it the first one that is comparable")});
@@ -119,16 +118,16 @@ BlockSpecification rowSpecification() {
 BlockSpecification curveSpecification() {
   PropertySpecification growth =
       property("growth", PropertyType::word,
-               "what the paper says of how the curve grows; without it there is no verdict");
+               "the growth that the paper states for the curve; without it there is no verdict");
   for (const Growth one : {Growth::sublinear, Growth::linear, Growth::superlinear})
     growth.choices.push_back(name(one));
   BlockSpecification point = partSpecification(
       "point", dsl::HeaderUse::none,
-      "one point of the curve. What it does not say itself the curve says, and the whole text.", {});
+      "one point of the curve. Properties that it lacks are those of the curve, or of the whole text.", {});
   point.required = true;
   return partSpecification(
       "curve", dsl::HeaderUse::required,
-      "one curve of a figure: what is measured over what changes from point to point",
+      "one curve of a figure: a measured quantity over one that changes from point to point",
       {required(property("over", PropertyType::name,
                          "the horizontal axis: triangles (of the scene), or a parameter of the pipeline")),
        growth},
@@ -141,7 +140,7 @@ BlockSpecification panelSpecification() {
                "layer of the path-traced reference that is shown in place of a pipeline");
   for (const char* layer : kReferenceLayers) reference.choices.push_back(layer);
   return partSpecification("panel", dsl::HeaderUse::required,
-                           "one image of a figure. What it does not say itself the whole text says.",
+                           "one image of a figure. Properties that it lacks are those of the whole text.",
                            {reference});
 }
 
@@ -161,11 +160,11 @@ BlockSpecification makeSpecification() {
   image.high = kLargestImage;
   PropertySpecification picture = image;
   picture.word = "picture";
-  picture.meaning = "the word of older texts for `image`";
-  PropertySpecification softwareScale = property(
-      "software_scale", PropertyType::number,
-      "what image sides and scaled parameters are multiplied by on a software rasteriser, unless --scale says "
-      "otherwise");
+  picture.meaning = "the name of `image` in older texts";
+  PropertySpecification softwareScale =
+      property("software_scale", PropertyType::number,
+               "factor of image sides and scaled parameters on a software rasteriser, unless --scale says "
+               "otherwise");
   softwareScale.low = kSmallestScale;
   softwareScale.high = 1.0;
   softwareScale.defaultText = "1";
@@ -174,7 +173,7 @@ BlockSpecification makeSpecification() {
       "how the set-up differs from the published one, or what is not known of it, without changing the verdict");
   differs.repeatable = true;
   PropertySpecification columns =
-      property("columns", PropertyType::integer, "of the sheet of panels; without it as square as it goes");
+      property("columns", PropertyType::integer, "of the sheet of panels; without it as square as possible");
   columns.low = 1;
   columns.high = 64;
   result.properties = {
@@ -197,7 +196,7 @@ const BlockSpecification& resultSpecification() {
   return reproductionSpecifications().front();
 }
 
-/// What is known of the set-up so far: the text's, a curve's over it, then the row's, point's or panel's.
+/// The set-up as known so far: the text's, a curve's over it, then the row's, point's or panel's.
 struct SetUp {
   const dsl::Property* scene = nullptr;
   const dsl::Property* pipeline = nullptr;
@@ -219,7 +218,7 @@ class ResultReader : TextFindings {
     const dsl::Block* main = nullptr;
     for (const dsl::Item& item : document_.items)
       if (item.block && item.block->word == "reproduction" && main == nullptr) main = item.block.get();
-    // What the tables refuse has no meaning to read.
+    // A block that the tables refuse has no meaning to read.
     if (main == nullptr || !findings_.empty()) return;
     const dsl::CheckedBlock block(*main, resultSpecification());
     result_.id = block.name();
@@ -280,7 +279,7 @@ class ResultReader : TextFindings {
     result_.rows.push_back(std::move(row));
   }
 
-  /// What a row is divided by stands in the same text, measures the same, and is divided by nothing itself.
+  /// The divisor of a row is in the same text, measures the same, and is divided by nothing itself.
   void readOver(const std::vector<const dsl::Block*>& blocks) {
     std::vector<std::string> names;
     for (const PublishedRow& row : result_.rows) names.push_back(row.name);
@@ -317,7 +316,7 @@ class ResultReader : TextFindings {
       PublishedSetUp one;
       readSetUp(*point, setUp(inside, shared), fmt::format("a point of curve '{}'", curve.name), one);
       if (one.quantity != shared.quantity)
-        report(point->place, point->word, "this point measures something else than its curve",
+        report(point->place, point->word, "this point measures something other than its curve",
                fmt::format("{}, as the others", name(shared.quantity)));
       requireAxis(*checked.find("over"), curve.over, one);
       curve.points.push_back(std::move(one));
@@ -375,7 +374,7 @@ class ResultReader : TextFindings {
     if (target.quantity == PublishedQuantity::frameRate) {
       for (const dsl::Item& item : block.items)
         if (item.property && item.property->word == "passes")
-          report(item.property->place, item.property->word, "a frame rate is that of the frame",
+          report(item.property->place, item.property->word, "a frame rate is that of the whole frame",
                  "measures time, or no passes");
     } else if (setting.passes != nullptr) {
       for (const dsl::Value& value : setting.passes->values.front().items) {
@@ -389,7 +388,7 @@ class ResultReader : TextFindings {
         std::tie(target.pass, target.port) = *parts;
         requirePass(value, target.pass, *target.pipeline);
       } else {
-        report(value.place, value.length, "this names no output of a pass", "pass.port");
+        report(value.place, value.length, "this is not an output of a pass", "pass.port");
       }
     }
     if (target.quantity == PublishedQuantity::fragments && target.pass.empty())
@@ -449,7 +448,7 @@ class ResultReader : TextFindings {
                  oneOf(names, "no pass"), nearestWord(name, names));
   }
 
-  /// What stands in the table is read for every row.
+  /// Properties of the table are read for every row but reported once.
   void reportOnce(const SourcePlace& place, int length, std::string what, std::string expected,
                   std::string suggestion = {}) {
     const bool known = std::any_of(findings_.begin(), findings_.end(), [&](const Diagnostic& other) {

@@ -26,6 +26,7 @@ constexpr const char* kRunColumns =
     "key, created, version, scene, scene_name, pipeline, pipeline_name, sweep, is_default, camera, time, "
     "width, height, seed, seeds, repeats, subpixels, reference_samples, device, driver, shader_input, host, "
     "framework_share, failure, command";
+const std::string kColumnsWritten = std::string(kRunColumns) + ", complete";
 constexpr const char* kTimings[] = {"frame",     "next_frame",  "pass_device",
                                     "pass_host", "still_frame", "moved_frame"};
 
@@ -44,7 +45,7 @@ bool matches(const RunFilter& filter, const StoredRun& run) {
   return std::all_of(filter.parameters.begin(), filter.parameters.end(), [&](const std::string& setting) {
     const std::size_t equals = setting.find('=');
     if (equals == std::string::npos)
-      throw Error(fmt::format("'{}' is no setting; expected name=value", setting));
+      throw Error(fmt::format("'{}' is not a setting; expected name=value", setting));
     const auto found = run.identity.parameters.find(setting.substr(0, equals));
     return found != run.identity.parameters.end() && found->second == setting.substr(equals + 1);
   });
@@ -102,6 +103,7 @@ void ResultsStore::State::requireSchema() {
       database.execute(results::kSchema3);
       database.execute(results::kSchema4);
       database.execute(results::kSchema5);
+      database.execute(results::kSchema6);
       database.execute(fmt::format("PRAGMA user_version = {}", results::kSchemaVersion).c_str());
       database.execute(fmt::format("PRAGMA application_id = {}", results::kApplicationId).c_str());
     }
@@ -118,14 +120,15 @@ void ResultsStore::State::requireSchema() {
     if (schema < 3) database.execute(results::kSchema3);
     if (schema < 4) database.execute(results::kSchema4);
     if (schema < 5) database.execute(results::kSchema5);
+    if (schema < 6) database.execute(results::kSchema6);
     if (schema < results::kSchemaVersion)
       database.execute(fmt::format("PRAGMA user_version = {}", results::kSchemaVersion).c_str());
     transaction.commit();
     schema = database.pragma("user_version");
   }
   if (schema < 1 || schema > results::kSchemaVersion) refuse(fmt::format("it has schema {}", schema));
-  for (const results::WordsOfSchema5& words : results::kWordsOfSchema5)
-    if (schema < 5 && schema >= words.since) database.execute(words.view);
+  for (const results::NamesOfOlder& names : results::kNamesOfOlder)
+    if (schema >= names.since && schema <= names.until) database.execute(names.view);
 }
 
 const fs::path& ResultsStore::file() const {
@@ -133,22 +136,22 @@ const fs::path& ResultsStore::file() const {
 }
 
 bool ResultsStore::contains(const std::string& key) const {
-  Statement statement(state_->database, "SELECT 1 FROM runs WHERE key = ?");
+  Statement statement(state_->database, "SELECT 1 FROM runs WHERE key = ? AND complete");
   return statement.bind(key).step();
 }
 
-std::int64_t ResultsStore::State::insertRun(const StoredRun& run) {
+std::int64_t ResultsStore::State::insertRun(const StoredRun& run, bool complete) {
   const RunIdentity& identity = run.identity;
   Statement insert(
       database,
-      fmt::format("INSERT INTO runs ({}) VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)",
-                  kRunColumns)
+      fmt::format("INSERT INTO runs ({}) VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)",
+                  kColumnsWritten)
           .c_str());
   insert.run(identity.key(), run.created, run.version, run.point.scene, run.sceneName, run.point.pipeline,
              run.pipelineName, run.point.sweep, run.isDefault, identity.camera, identity.time, identity.width,
              identity.height, identity.seed, identity.seeds, identity.repeats, identity.subpixels,
              identity.referenceSamples, identity.device, identity.driver, identity.shaderInput, identity.host,
-             run.point.frameworkShare, run.point.failure, run.point.command);
+             run.point.frameworkShare, run.point.failure, run.point.command, complete);
   return database.lastRow();
 }
 
@@ -214,14 +217,15 @@ void ResultsStore::State::insertErrors(std::int64_t id, const ReportPoint& point
 }
 
 /// Inside a transaction.
-bool ResultsStore::State::add(const StoredRun& run, const std::vector<StoredImage>& images) {
-  Statement(database, "DELETE FROM claims WHERE key = ?").run(run.identity.key());
+bool ResultsStore::State::add(const StoredRun& run, const std::vector<StoredImage>& images, bool complete) {
+  if (complete) Statement(database, "DELETE FROM claims WHERE key = ?").run(run.identity.key());
+  Statement(database, "DELETE FROM runs WHERE key = ? AND NOT complete").run(run.identity.key());
   // A failure may have had causes that are gone; it gives way to a result.
-  if (run.point.failure.empty())
+  if (run.point.failure.empty() && complete)
     Statement(database, "DELETE FROM runs WHERE key = ? AND failure <> ''").run(run.identity.key());
   Statement there(database, "SELECT 1 FROM runs WHERE key = ?");
   if (there.bind(run.identity.key()).step()) return false;
-  const std::int64_t id = insertRun(run);
+  const std::int64_t id = insertRun(run, complete);
   insertNames(id, run);
   insertTimes(id, run.point);
   insertWork(id, run.point);
@@ -236,9 +240,27 @@ bool ResultsStore::State::add(const StoredRun& run, const std::vector<StoredImag
 
 bool ResultsStore::add(const StoredRun& run, const std::vector<StoredImage>& images) {
   Transaction transaction(state_->database);
-  const bool added = state_->add(run, images);
+  const bool added = state_->add(run, images, /*complete=*/true);
   transaction.commit();
   return added;
+}
+
+void ResultsStore::addUntimed(const StoredRun& run, const std::vector<StoredImage>& images) {
+  Transaction transaction(state_->database);
+  state_->add(run, images, /*complete=*/false);
+  transaction.commit();
+}
+
+std::optional<StoredRun> ResultsStore::findUntimed(const std::string& key) const {
+  return state_->find(key, /*complete=*/false);
+}
+
+ResultsStore::Count ResultsStore::count() const {
+  Statement row(state_->database, "SELECT count(*) FILTER (WHERE complete), count(*) FROM runs");
+  row.step();
+  const auto complete = static_cast<std::size_t>(row.integer(0)),
+             all = static_cast<std::size_t>(row.integer(1));
+  return {complete, all - complete};
 }
 
 /// Column 0 is the id, then kRunColumns.
@@ -357,26 +379,36 @@ void ResultsStore::State::readAll(StoredRun& run) const {
   readErrors(run);
 }
 
-std::optional<StoredRun> ResultsStore::find(const std::string& key) const {
-  Statement row(state_->database, fmt::format("SELECT id, {} FROM runs WHERE key = ?", kRunColumns).c_str());
-  if (!row.bind(key).step()) return std::nullopt;
-  StoredRun run = state_->runAt(row);
-  state_->readNames(run);
-  state_->readAll(run);
+std::optional<StoredRun> ResultsStore::State::find(const std::string& key, bool complete) const {
+  Statement row(database,
+                fmt::format("SELECT id, {} FROM runs WHERE key = ? AND complete = ?", kRunColumns).c_str());
+  if (!row.bind(key, complete).step()) return std::nullopt;
+  StoredRun run = runAt(row);
+  readNames(run);
+  readAll(run);
   return run;
 }
 
-std::vector<StoredRun> ResultsStore::runs(const RunFilter& filter) const {
+std::optional<StoredRun> ResultsStore::find(const std::string& key) const {
+  return state_->find(key, /*complete=*/true);
+}
+
+std::vector<StoredRun> ResultsStore::State::runs(const RunFilter& filter, bool complete) const {
   std::vector<StoredRun> result;
-  Statement row(state_->database, fmt::format("SELECT id, {} FROM runs ORDER BY id", kRunColumns).c_str());
-  while (row.step()) {
-    StoredRun run = state_->runAt(row);
-    state_->readNames(run);
+  Statement row(database,
+                fmt::format("SELECT id, {} FROM runs WHERE complete = ? ORDER BY id", kRunColumns).c_str());
+  for (row.bind(complete); row.step();) {
+    StoredRun run = runAt(row);
+    readNames(run);
     if (!matches(filter, run)) continue;
-    state_->readAll(run);
+    readAll(run);
     result.push_back(std::move(run));
   }
   return result;
+}
+
+std::vector<StoredRun> ResultsStore::runs(const RunFilter& filter) const {
+  return state_->runs(filter, /*complete=*/true);
 }
 
 std::vector<StoredImage> ResultsStore::images(const std::string& key) const {
@@ -396,6 +428,7 @@ std::size_t ResultsStore::remove(const RunFilter& filter) {
   Transaction transaction(state_->database);
   Statement statement(state_->database, "DELETE FROM runs WHERE id = ?");
   for (const StoredRun& run : chosen) statement.run(run.id);
+  for (const StoredRun& run : state_->runs(filter, /*complete=*/false)) statement.run(run.id);
   transaction.commit();
   return chosen.size();
 }
@@ -407,7 +440,7 @@ MergeCount ResultsStore::merge(const ResultsStore& other) {
   Transaction transaction(state_->database);
   MergeCount count;
   for (const StoredRun& run : theirs)
-    count.runs += state_->add(run, other.images(run.identity.key())) ? 1 : 0;
+    count.runs += state_->add(run, other.images(run.identity.key()), /*complete=*/true) ? 1 : 0;
   std::map<std::string, std::string> created;
   for (const StressCell& cell : stressCells()) created[cell.key()] = cell.created;
   std::vector<StressCell> cells;

@@ -5,7 +5,7 @@
 
 namespace lumivox::results {
 
-inline constexpr std::int64_t kSchemaVersion = 5;           // PRAGMA user_version
+inline constexpr std::int64_t kSchemaVersion = 6;           // PRAGMA user_version
 inline constexpr std::int64_t kApplicationId = 0x4c4d5658;  // PRAGMA application_id: "LMVX"
 
 inline constexpr const char* kSchema = R"sql(
@@ -106,7 +106,7 @@ CREATE TABLE health (
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-/// What schema 2 adds to schema 1.
+/// Additions of schema 2 to schema 1.
 inline constexpr const char* kSchema2 = R"sql(
 CREATE TABLE stress_cells (
   id INTEGER PRIMARY KEY,
@@ -161,7 +161,7 @@ CREATE TABLE ceilings (
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-/// What schema 3 adds to schema 2.
+/// Additions of schema 3 to schema 2.
 inline constexpr const char* kSchema3 = R"sql(
 CREATE TABLE work (
   run INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE,
@@ -172,7 +172,7 @@ CREATE TABLE work (
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-/// What schema 4 adds to schema 3.
+/// Additions of schema 4 to schema 3.
 inline constexpr const char* kSchema4 = R"sql(
 ALTER TABLE errors ADD COLUMN per_seed INTEGER NOT NULL DEFAULT 0;
 CREATE TABLE notes (
@@ -211,7 +211,7 @@ CREATE TABLE claims (
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-/// What schema 5 changes in schema 4: one word for each thing.
+/// Changes of schema 5 to schema 4: one word for each thing.
 inline constexpr const char* kSchema5 = R"sql(
 ALTER TABLE runs RENAME COLUMN truth_samples TO reference_samples;
 ALTER TABLE errors RENAME COLUMN truth TO reference;
@@ -224,25 +224,32 @@ UPDATE metrics SET name = 'non_finite_reference' WHERE name = 'non_finite_truth'
 UPDATE metrics SET name = 'non_finite_image' WHERE name = 'non_finite_picture';
 )sql";
 
-/// Shows the words of schema 5 where an older store is only read: views of this connection, before the
-/// tables.
-struct WordsOfSchema5 {
-  std::int64_t since;  ///< the schema that brought the table
+/// What schema 6 adds to schema 5: runs that lack their times.
+inline constexpr const char* kSchema6 = R"sql(
+ALTER TABLE runs ADD COLUMN complete INTEGER NOT NULL DEFAULT 1;
+)sql";
+
+/// Shows the names of the last schema where an older store is only read: views of this connection, before
+/// the tables.
+struct NamesOfOlder {
+  std::int64_t since, until;  ///< the schemas that need it, both included
   const char* view;
 };
-inline constexpr WordsOfSchema5 kWordsOfSchema5[] = {
-    {1, "CREATE TEMP VIEW runs AS SELECT *, truth_samples AS reference_samples FROM main.runs"},
-    {1,
+inline constexpr NamesOfOlder kNamesOfOlder[] = {
+    {1, 4,
+     "CREATE TEMP VIEW runs AS SELECT *, truth_samples AS reference_samples, 1 AS complete FROM main.runs"},
+    {5, 5, "CREATE TEMP VIEW runs AS SELECT *, 1 AS complete FROM main.runs"},
+    {1, 4,
      "CREATE TEMP VIEW metrics AS SELECT run, position, CASE name WHEN 'non_finite_truth' THEN "
      "'non_finite_reference' WHEN 'non_finite_picture' THEN 'non_finite_image' ELSE name END AS name, value, "
      "uncertainty, of_nothing FROM main.metrics"},
-    {2,
+    {2, 4,
      "CREATE TEMP VIEW stress_cells AS SELECT id, key, created, version, replace(family, "
      "'picture_and_camera', 'image_and_camera') AS family, name, pipeline, technique, size, outcome, measure, "
      "unit, value, uncertainty, limit_value, detail, explanation, picture AS image, command, seconds, "
      "pipeline_hash, framework, device, driver, shader_input, host FROM main.stress_cells"},
-    {2, "CREATE TEMP VIEW peak_rates AS SELECT * FROM main.ceilings"},
-    {4, "CREATE TEMP VIEW images AS SELECT *, truth AS reference FROM main.pictures"},
+    {2, 4, "CREATE TEMP VIEW peak_rates AS SELECT * FROM main.ceilings"},
+    {4, 4, "CREATE TEMP VIEW images AS SELECT *, truth AS reference FROM main.pictures"},
 };
 
 }  // namespace lumivox::results

@@ -23,12 +23,14 @@ struct ResultsStore::State {
   State(const std::filesystem::path& file, Mode openMode)
       : database(file, openMode == Mode::write), mode(openMode) {}
   void requireSchema();
-  std::int64_t insertRun(const StoredRun& run);
+  std::int64_t insertRun(const StoredRun& run, bool complete);
   void insertTimes(std::int64_t id, const ReportPoint& point);
   void insertWork(std::int64_t id, const ReportPoint& point);
   void insertErrors(std::int64_t id, const ReportPoint& point);
   void insertNames(std::int64_t id, const StoredRun& run);
-  bool add(const StoredRun& run, const std::vector<StoredImage>& images = {});
+  bool add(const StoredRun& run, const std::vector<StoredImage>& images, bool complete);
+  std::optional<StoredRun> find(const std::string& key, bool complete) const;
+  std::vector<StoredRun> runs(const RunFilter& filter, bool complete) const;
   void addCells(const std::vector<StressCell>& cells);
   void addPeakRates(const std::vector<PeakRate>& peakRates);
   void addControls(const State& other);  ///< of runs that are here

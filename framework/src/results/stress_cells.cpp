@@ -100,7 +100,8 @@ StressCell stressCellFrom(const std::string& text) {
     cell.techniques = json.at("techniques").get<std::map<std::string, std::string>>();
     return cell;
   } catch (const nlohmann::json::exception& error) {
-    throw Error(fmt::format("'{}' is no cell of the stress battery: {}", text.substr(0, 200), error.what()));
+    throw Error(
+        fmt::format("'{}' is not a cell of the stress battery: {}", text.substr(0, 200), error.what()));
   }
 }
 

@@ -40,11 +40,11 @@ glm::uvec3 groups(std::uint32_t invocations) {
 gpu::TextureRef texture(gpu::Device& device, TextureKind kind, Format format, int size, int levels = 1) {
   const int depth = kind == TextureKind::d3 ? size : 1;
   return std::make_shared<Texture>(device, gpu::TextureDescription{kind, format, size, size, depth, levels},
-                                   "what the device is measured with");
+                                   "device measurement");
 }
 
 gpu::BufferRef buffer(gpu::Device& device, std::uint64_t bytes) {
-  return std::make_shared<Buffer>(device, bytes, "what the device is measured with");
+  return std::make_shared<Buffer>(device, bytes, "device measurement");
 }
 
 // ---- sampling
@@ -181,7 +181,7 @@ Kernel imageKernel(shader::ShaderLibrary& library, TextureKind kind, Format form
          code::image::volume(*target), code::image::volumeWords(*target), code::image::results(*results)},
         groups(invocations));
   };
-  // What a texel holds in the end: the row of an image, the slice of a volume.
+  // The final value of a texel: the row of an image, the slice of a volume.
   const auto texelsOfRow = static_cast<std::size_t>(volume ? size * size : size);
   const auto words = [=] {
     const std::vector<std::byte> bytes = target->download();
@@ -235,7 +235,7 @@ Kernel bufferKernel(shader::ShaderLibrary& library, int access, std::uint64_t by
   }
   const auto* program = &library.program(code::buffer::kProgram, Variant{.access = access}.key());
   const std::uint32_t invocations = access == Variant::accessContend ? kContenders : kInvocations;
-  // What the caches cannot hold is passed through from end to end.
+  // Buffers larger than the caches are read from end to end.
   const std::uint32_t apart = bytes > kCachedBytes ? kInvocations : kCachedApart;
   const auto run = [=, &library](std::uint32_t rounds) {
     code::buffer::Parameters parameters{};

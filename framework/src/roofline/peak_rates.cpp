@@ -50,7 +50,7 @@ std::uint32_t roundsFor(gpu::Device& device, const Kernel& kernel, double millis
 
 // ---- how far from the limit -----------------------------------------------------------------------------
 
-/// What the device has one of, by how the names of operations begin.
+/// Resources of the device, by how the names of operations begin.
 constexpr std::array<std::pair<std::string_view, const char*>, 20> kResources{{
     {"texture_samples", "texture sampling"},
     {"image_reads", "image access"},
@@ -160,7 +160,7 @@ std::vector<PeakRate> storedPeakRates(const gpu::Device& device, const std::file
                            .peakRates(identity.device, identity.driver, identity.shaderInput, identity.host);
       if (!peakRates.empty()) return peakRates;
     } catch (const Error& error) {
-      // What is measured does not need them.
+      // The measurements do not need them.
       logWarning("no peak rates of the device: {}", error.what());
     }
   }

@@ -239,7 +239,7 @@ class AtlasMaker {
     for (std::size_t i = 0; i < triangles.size(); ++i)
       for (const std::uint32_t next : patch.beyond[triangles[i]]) {
         if (next == kNobody || taken[next]) continue;
-        // What has no area lies on the sides of its neighbours and goes with any of them.
+        // Triangles without area lie on the sides of their neighbours and go with any of them.
         const glm::dvec3& normal = patch.normals[next];
         if (normal != glm::dvec3(0.0) && glm::dot(normal, patch.normals[seed]) < cosine) continue;
         taken[next] = true;

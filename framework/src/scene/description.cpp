@@ -40,7 +40,7 @@ class Reader {
     for (const dsl::Item& item : scene.items) {
       if (!item.block || !known(grammar_, *item.block)) continue;
       checkReferences(*item.block);
-      // What the grammar has already refused is not judged further.
+      // Blocks that the grammar has refused are not judged further.
       std::vector<Diagnostic> refusals;
       dsl::check(document_, *item.block, specificationOf(grammar_, item.block->word), refusals);
       if (refusals.empty() && !holdsParameters(*item.block) && item.block->closed) read(*item.block);
@@ -248,8 +248,8 @@ class Reader {
     mesh.name = block.name();
     if (mesh.name.find('/') != std::string::npos) {
       report(block.block().header.front().place, block.block().header.front().length,
-             fmt::format("the mesh name '{}' holds a '/'", mesh.name),
-             "a name without '/', which parts mesh and object");
+             fmt::format("the mesh name '{}' contains a '/'", mesh.name),
+             "a name without '/', which separates mesh and object");
     }
     if (auto file = placed(block, "file")) mesh.file = *file;
     if (const auto material = placed(block, "material")) mesh.material = material->text;
@@ -280,7 +280,7 @@ class Reader {
     const bool hasPattern = mesh.file.text.find('#') != std::string::npos;
     if (!block.has("sequence")) {
       if (hasPattern) {
-        report(mesh.file.place, mesh.file.length, "the file name holds '#' but the mesh has no sequence",
+        report(mesh.file.place, mesh.file.length, "the file name contains '#' but the mesh has no sequence",
                "sequence FIRST..LAST");
       }
       for (const char* word : {"rate", "loop"}) {
@@ -340,8 +340,8 @@ class Reader {
     text.file = placed(block, "file");
     text.grid = placed(block, "grid");
     if (text.file && medium.particles > 0) {
-      report(*block.find("file"), "a medium of particles and of a file",
-             "one of the two; others are media of their own");
+      report(*block.find("file"), "a medium both of particles and of a file",
+             "one of the two; the other can be a medium of its own");
     }
     readBox(block, medium, text.file.has_value());
     readParticles(block, medium);

@@ -1,4 +1,4 @@
-// What a scene text says, before any model is read. Places stay with it, so that what only a model can tell
+// The content of a scene text, before any model is read. It keeps its places, so that what only a model shows
 // is reported at its line.
 #pragma once
 

@@ -122,7 +122,7 @@ class Loader {
 
   fs::path found(const std::string& name, const std::string& what) const {
     if (const auto path = assets_.find(name)) return *path;
-    throw AbsentError(fmt::format("{}: {} '{}' was not found; sought at {}", document_.file.string(), what,
+    throw AbsentError(fmt::format("{}: {} '{}' was not found; searched {}", document_.file.string(), what,
                                   name, assets_.soughtAt(name)));
   }
 

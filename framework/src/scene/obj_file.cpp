@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a surface is where no material file says: the neutral grey of the usual scans.
+// The albedo of a surface without a material file: the neutral grey of the usual scans.
 constexpr float kUnknownAlbedo = 0.8f;
 
 glm::vec3 vectorOf(const tinyobj::real_t* values) {
@@ -47,7 +47,7 @@ class MaterialTable {
     for (const std::string& name : scan.materialNames) {
       if (numbers_.count(name) == 0) addUnknown(name, scan.materialFiles);
     }
-    // What stands before the first usemtl has a material too.
+    // Faces before the first usemtl have a material too.
     fallback_ = static_cast<std::uint32_t>(table_.size());
     table_.push_back(grey("default"));
     if (!unsupported_.empty()) {
@@ -74,9 +74,10 @@ class MaterialTable {
 
   void addUnknown(const std::string& name, const std::vector<std::string>& files) {
     if (options_.needsMaterials) {
-      complain(fmt::format(
-          "{}: material '{}' is in none of its material files ({}); grey {} stands in", objFile_.string(),
-          name, files.empty() ? "it names none" : fmt::format("{}", fmt::join(files, ", ")), kUnknownAlbedo));
+      complain(fmt::format("{}: material '{}' is in none of its material files ({}); grey {} is used instead",
+                           objFile_.string(), name,
+                           files.empty() ? "it names none" : fmt::format("{}", fmt::join(files, ", ")),
+                           kUnknownAlbedo));
     }
     numbers_[name] = static_cast<int>(table_.size());
     table_.push_back(grey(name));
@@ -195,7 +196,7 @@ std::vector<std::uint32_t> cutPolygons(const ObjScan& scan, const fs::path& path
   constexpr bool kTriangulate = true, kColours = false;
   if (!tinyobj::LoadObj(&attributes, &shapes, &ignored, nullptr, &errors, &stream, nullptr, kTriangulate,
                         kColours)) {
-    throw Error(fmt::format("{}: its polygons cannot be cut: {}", path.string(), errors));
+    throw Error(fmt::format("{}: its polygons cannot be triangulated: {}", path.string(), errors));
   }
   std::vector<std::uint32_t> triangles;
   for (const tinyobj::shape_t& shape : shapes) {
@@ -275,8 +276,8 @@ ObjFile readObjFile(const fs::path& path, const ModelOptions& options, Hasher& h
   hasher.add(file.text);
   file.scan = scanObj(file.text, path);
   if (file.scan.faces == 0 && file.scan.brokenFaces.count == 0) {
-    throw Error(
-        fmt::format("{}: holds no faces; expected an OBJ text with 'v' and 'f' statements", path.string()));
+    throw Error(fmt::format("{}: contains no faces; expected an OBJ text with 'v' and 'f' statements",
+                            path.string()));
   }
   if (!file.scan.unusedStatements.empty()) {
     const std::string text = fmt::format("{}: statements without triangles are not used: {}", path.string(),

@@ -217,7 +217,7 @@ class ObjScanner {
       const Reading reading = readNumber(word, value);
       if (reading == Reading::malformed) {
         refuse(file_, lines_.line(),
-               fmt::format("'{}' in statement '{}' is no number", shown(word), statement), "numbers");
+               fmt::format("'{}' in statement '{}' is not a number", shown(word), statement), "numbers");
       }
       finite = finite && reading == Reading::finite;
       values[count] = reading == Reading::finite ? static_cast<float>(value) : 0.0f;
@@ -328,7 +328,7 @@ class ObjScanner {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
     });
     if (!isWord || (word.front() >= '0' && word.front() <= '9')) {
-      refuse(file_, lines_.line(), fmt::format("'{}' begins no statement of an OBJ file", shown(word)),
+      refuse(file_, lines_.line(), fmt::format("'{}' is not a statement of an OBJ file", shown(word)),
              "v, vt, vn, f, g, o, usemtl, ...");
     }
     constexpr std::size_t kMostNamed = 16;
@@ -375,7 +375,8 @@ int lineOfFace(const std::string& text, int a, int b, int c) {
 
 std::set<std::string> scanMtl(std::string& text, const std::filesystem::path& file) {
   if (const std::size_t at = text.find('\0'); at != std::string::npos) {
-    throw Error(fmt::format("{}: holds a zero byte at offset {}; expected an MTL text", file.string(), at));
+    throw Error(
+        fmt::format("{}: contains a zero byte at offset {}; expected an MTL text", file.string(), at));
   }
   Lines lines(text);
   std::set<std::string> withDiffuse;
@@ -413,7 +414,7 @@ std::set<std::string> scanMtl(std::string& text, const std::filesystem::path& fi
     }
   }
   if (!any)
-    throw Error(fmt::format("{}: holds no material; expected an MTL text with newmtl", file.string()));
+    throw Error(fmt::format("{}: contains no material; expected an MTL text with newmtl", file.string()));
   return withDiffuse;
 }
 

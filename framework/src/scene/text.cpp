@@ -67,7 +67,7 @@ BlockSpecification block(const char* word, HeaderUse name, const char* meaning,
 BlockSpecification camera() {
   BlockSpecification key =
       block("key", HeaderUse::none,
-            "a point of the camera's path; between keys eye and target move linearly, outside they rest",
+            "a point of the camera's path; between keys eye and target move linearly, outside they stay",
             {Row("time", PropertyType::number, "when the camera is there", dsl::kTime).required(),
              Row("eye", PropertyType::vector3, "where it is", dsl::kLength).required(),
              Row("target", PropertyType::vector3, "where it looks", dsl::kLength).required()});
@@ -129,9 +129,9 @@ BlockSpecification mesh() {
                  .required(),
              Row("material", PropertyType::name, "one material for the whole mesh in place of the file's"),
              Row("crease", PropertyType::number,
-                 "makes smooth normals anew where faces meet at no more than this angle, 0 deg for flat "
+                 "recomputes smooth normals where faces meet at no more than this angle, 0 deg for flat "
                  "faces; without it the file's "
-                 "normals hold and only missing ones are made, with 30 deg",
+                 "normals are kept and only missing ones are computed, with 30 deg",
                  dsl::kAngle)
                  .between(0, 180.0 * kDegree),
              Row("scale", PropertyType::oneOrThree,

@@ -15,7 +15,7 @@ class CountingProgram {
   /// To be linked in place of the stages that it was made from.
   std::vector<gpu::StageCode> stages() const;
   gpu::ResourceBinding counters() const;
-  /// What was done since the last call, with these resources bound.
+  /// Work done since the last call, with these resources bound.
   Work take(const std::vector<gpu::ResourceBinding>& bound);
 
  private:

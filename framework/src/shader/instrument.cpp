@@ -72,7 +72,7 @@ class Module {
     bool hasResult = false, hasType = false;
     spv::HasResultAndType(operation, &hasResult, &hasType);
     if (hasResult && hasType && w.size() >= 2) typeOf_[w[1]] = w[0];
-    // What is made of a variable stands for it: a part of it, or the texture that was read from it.
+    // Values derived from a variable are traced to it: a part of it, or the texture that was read from it.
     switch (operation) {
       case spv::OpVariable:
         variableOf_[w[1]] = w[1];
@@ -126,7 +126,7 @@ class Module {
     const auto binding = bindings_.find(variable->second);
     return binding == bindings_.end() ? std::nullopt : std::optional(binding->second);
   }
-  /// What a pointer points into; Function, for one that is not known, costs nothing.
+  /// The storage class of a pointer; Function, for one that is not known, costs nothing.
   spv::StorageClass storage(Id pointer) const {
     const Type& t = typeOfValue(pointer);
     return t.operation == spv::OpTypePointer ? static_cast<spv::StorageClass>(t.operands[0])
@@ -157,7 +157,7 @@ bool Module::spread(spv::Op operation, Operands w) {
   bool hasResult = false, hasType = false;
   spv::HasResultAndType(operation, &hasResult, &hasType);
   if (operation == spv::OpStore) {
-    // What was stored in a variable of the invocation's own comes back from it.
+    // Values stored in a variable of the invocation's own come back from it.
     const auto variable = variableOf_.find(w[0]);
     if (variable == variableOf_.end() || storage(w[0]) == spv::StorageClassUniform) return false;
     return (differs(w[1]) || differs(w[0])) && divergent_.insert(variable->second).second;
@@ -422,7 +422,7 @@ CountingCode instrument(std::span<const std::uint32_t> spirv, std::uint32_t bind
                         std::uint32_t firstCounter) {
   constexpr std::uint32_t kVersion14 = 0x00010400;
   if (spirv.size() < kHeaderWords || spirv[0] != spv::MagicNumber)
-    throw Error("what is to be counted is no SPIR-V");
+    throw Error("the code to be counted is not SPIR-V");
   if (spirv[1] >= kVersion14)
     throw Error(fmt::format("SPIR-V {}.{} cannot be counted; expected a version before 1.4", spirv[1] >> 16,
                             spirv[1] >> 8 & 0xffu));

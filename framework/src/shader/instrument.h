@@ -20,7 +20,7 @@ struct TextureAccess {
   auto operator<=>(const TextureAccess&) const = default;
 };
 
-/// What one pass of one invocation through a block does.
+/// The work of one pass of one invocation through a block.
 struct BlockWork {
   Work work;                               ///< what does not depend on what is bound
   std::map<TextureAccess, double> access;  ///< how often

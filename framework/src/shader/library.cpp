@@ -38,7 +38,7 @@ const char* name(gpu::TextureKind kind) {
   return "";
 }
 
-/// What is wrong with giving this resource to this binding; empty when nothing is.
+/// The mismatch between this resource and this binding; empty when there is none.
 struct Mismatch {
   const PackedBinding& expected;
 
@@ -64,7 +64,7 @@ struct Mismatch {
     if (std::string wrong = texture(image.texture); !wrong.empty()) return wrong;
     const gpu::TextureDescription& d = image.texture->description();
     if (expected.format && d.format != *expected.format) {
-      return fmt::format("texture '{}' holds {}, but the shader declares {}", image.texture->label(),
+      return fmt::format("texture '{}' has the format {}, but the shader declares {}", image.texture->label(),
                          gpu::name(d.format), gpu::name(*expected.format));
     }
     if (image.level < 0 || image.level >= d.levels) {
@@ -88,7 +88,7 @@ struct Mismatch {
   }
 };
 
-/// What a program is asked for by, without a copy of anything.
+/// The key by which a program is requested, without copying anything.
 struct ProgramRequest {
   std::string_view technique, program;
   std::span<const int> values;
@@ -136,7 +136,7 @@ struct ShaderLibrary::State {
   Work work;
   gpu::Device::Transfers transfers, own;  ///< when work was taken last; of counting itself since then
 
-  /// What counting itself moves and clears is nobody's work.
+  /// Runs the counting's own moves and clears, which count as no work.
   template <class Counting>
   void apart(Counting&& counting) {
     const gpu::Device::Transfers before = device.transfers();

@@ -136,7 +136,7 @@ class Battery {
       throw Error(fmt::format("a worker of the stress battery was not ready within {:g} s", kStartLimit));
     if (answer.state == Child::State::answered)
       throw Error(
-          fmt::format("a worker of the stress battery said '{}' in place of being ready", answer.line));
+          fmt::format("a worker of the stress battery said '{}' instead of being ready", answer.line));
     throw Error(fmt::format("a worker of the stress battery {}: {}", child->ending(), child->lastWords()));
   }
 
@@ -184,7 +184,7 @@ class Battery {
         cell = stressCellFrom(answer.line);
         return true;
       } catch (const Error& error) {
-        what = fmt::format("its process answered what is no cell: {}", error.what());
+        what = fmt::format("its process did not answer with a cell: {}", error.what());
       }
     } else if (answer.state == Child::State::silent) {
       what = fmt::format("no answer within {:g} s; its process was ended", limit_);

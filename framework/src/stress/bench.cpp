@@ -88,7 +88,8 @@ ParameterValues batteryValues(const Pipeline& pipeline, bool quick) {
   if (!quick || pipeline.sweeps.empty()) return values;
   const std::vector<ParameterValues> points = pipeline.sweeps.front().points();
   if (!points.empty())
-    for (const auto& [name, value] : points.front()) values[name] = value;
+    for (const auto& [name, value] : points.front())
+      if (name != kAccumulatedFrames) values[name] = value;
   return values;
 }
 

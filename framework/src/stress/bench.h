@@ -10,7 +10,7 @@
 
 namespace lumivox::stress {
 
-/// What a bench stands on. Everything but the pipeline is the same for all cells of a worker.
+/// The surroundings of a bench. Everything but the pipeline is the same for all cells of a worker.
 struct Ground {
   gpu::Device& device;
   gpu::DeviceOptions deviceOptions;  ///< for a second device like the first
@@ -45,7 +45,7 @@ class PipelineBench : public Bench {
   LayeredImage reference(const Scene& scene, const Shot& shot, int samplesPerPixel, int threads) override;
   void show(const ImageBuffer& image) override;
 
-  /// What show() was given last, else the last whole image that was rendered; empty: none.
+  /// The image last given to show(), else the last whole image that was rendered; empty: none.
   const ImageBuffer& shown() const;
 
  private:

@@ -34,7 +34,7 @@ std::vector<CardRow> whereItBreaks(const std::string& card);
 const CardRow* rowFor(const std::vector<CardRow>& rows, const std::string& pipelineStem,
                       const std::string& caseName);
 
-/// What the cards say of a cell.
+/// The answer of the cards for a cell.
 struct CardAnswer {
   std::string explanation;
   std::string contradiction;  ///< a row speaks of the cell, but of other numbers: it explains nothing

@@ -1,4 +1,4 @@
-// What several families of cases need.
+// Tools shared by several families of cases.
 #pragma once
 
 #include <map>

@@ -1,6 +1,6 @@
-// What a case of the battery is written with. A case knows neither techniques nor passes: it makes scenes,
-// has the pipeline under test render them, and compares what comes out with closed forms, with the reference,
-// or with the pipeline's own image of an equivalent scene. A cell that is biased or diverges by a property of
+// Tools for writing a case of the battery. A case knows neither techniques nor passes: it makes scenes, has
+// the pipeline under test render them, and compares what comes out with closed forms, with the reference, or
+// with the pipeline's own image of an equivalent scene. A cell that is biased or diverges by a property of
 // the published method is explained in the technique's paper card: docs/stress.md.
 #pragma once
 
@@ -100,7 +100,7 @@ class Bench {
   virtual void show(const ImageBuffer& image) = 0;
 };
 
-/// What a case found. `outcome` follows from value and limit unless the case says otherwise.
+/// The finding of a case. `outcome` follows from value and limit unless the case says otherwise.
 struct Finding {
   StressOutcome outcome = StressOutcome::stable;
   std::string

@@ -58,7 +58,7 @@ std::vector<double> valuesOf(const PipelineParameter& parameter, bool quick) {
   return values;
 }
 
-/// What keeps the error from falling further.
+/// The term that keeps the error from falling further.
 std::string limitingTerm(const std::vector<Level>& levels, const std::vector<double>& values,
                          const std::vector<double>& errors, const std::vector<double>& changes) {
   const Measured& last = levels.back().error;
@@ -121,7 +121,7 @@ Scene roomOf(const Bench& bench) {
                   bench.quick() ? "" : "light lamp area { mesh room/ceiling_lamp  radiance 8 6 4 }"));
 }
 
-/// What a parameter does to the images or voxels of a pipeline.
+/// The effect of a parameter on the images or voxels of a pipeline.
 class Refinement {
  public:
   Refinement(Bench& bench, std::string name) : bench_(bench), name_(std::move(name)), scene_(roomOf(bench)) {

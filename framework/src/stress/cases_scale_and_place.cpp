@@ -176,8 +176,9 @@ std::vector<Case> scaleAndPlaceCases() {
   for (const int resolution : {63, 65})
     cases.push_back(
         {info(fmt::format("grid_{}", resolution),
-              fmt::format("a grid of {} along its longest side is no power of two: nearly the image of 64",
-                          resolution),
+              fmt::format(
+                  "a grid of {} along its longest side, which is not a power of two: nearly the image of 64",
+                  resolution),
               false),
          [resolution](Bench& bench) { return gridBeside64(bench, resolution); }});
   return cases;

@@ -27,7 +27,7 @@ Scene closedBox(const Bench& bench, double albedo) {
                                          albedo));
 }
 
-/// What the path tracer's sum over bounces converges like.
+/// The convergence of the path tracer's sum over bounces.
 struct ReferenceSeries {
   double radius = 0.0;     ///< measured share that a further bounce leaves of what is missing
   int bounces = 0;         ///< the most that were measured

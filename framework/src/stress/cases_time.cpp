@@ -70,7 +70,7 @@ Finding lastAgainstAlone(Bench& bench, const std::vector<double>& times, const E
   const Scene scene = everythingMoves(bench);
   const std::size_t last = times.size() - 1;
   const Edit editLast = [&](std::size_t, SceneSnapshot& snapshot) { edit(last, snapshot); };
-  // What stays from earlier frames stays in few samples and pixels too.
+  // Remains of earlier frames show in few samples and pixels too.
   Shot shot;
   if (bench.quick()) {
     shot.width = shot.height = 32;

@@ -23,7 +23,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What is kept of standard error.
+/// The bytes of standard error that are kept.
 constexpr std::size_t kWordsKept = 4096;
 
 std::vector<char*> pointersTo(std::vector<std::string>& texts) {
@@ -116,7 +116,7 @@ Child::Answer Child::receive(double seconds) {
       return answer;
     }
     if (!answersOpen_) {
-      // What it still says may hold the reason.
+      // Its last messages may contain the reason.
       while (messagesOpen_) read(messages_, errors_, messagesOpen_);
       return {State::ended, {}};
     }
@@ -132,7 +132,7 @@ Child::Answer Child::receive(double seconds) {
 
 std::string Child::ending() {
   if (!status_) {
-    // What it started ends with it, while its number is still its own.
+    // Its own children end with it, while its number is still its own.
     siginfo_t information{};
     while (waitid(P_PID, static_cast<id_t>(process_), &information, WEXITED | WNOWAIT) != 0 &&
            errno == EINTR) {

@@ -1,5 +1,5 @@
-// What cases measure: differences from an equivalent scene, light where none may be, and the distance to the
-// reference.
+// Measures of the cases: differences from an equivalent scene, light where none may be, and the distance to
+// the reference.
 #pragma once
 
 #include <optional>

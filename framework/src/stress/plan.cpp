@@ -94,7 +94,7 @@ std::vector<StressJob> plannedStress(const StressOptions& options, TechniqueSour
     }
   }
   if (!options.technique.empty())
-    requireKnown("technique that a pipeline here stands for", {options.technique}, subjects);
+    requireKnown("technique that a pipeline here represents", {options.technique}, subjects);
   requireKnown("family of stress cases", options.families, families);
   requireKnown("stress case", options.cases, names);
   return jobs;

@@ -1,4 +1,4 @@
-// What the battery and its workers say to each other: one JSON object a line.
+// Messages between the battery and its workers: one JSON object a line.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace lumivox::stress {
 
-/// What a worker says when its device is open, before anything is asked.
+/// The first message of a worker, when its device is open, before anything is asked.
 struct WorkerDevice {
   std::string device, driver, shaderInput;  ///< as in StressCell
   bool software = false;                    ///< rasterises on the processors

@@ -52,9 +52,9 @@ void runGuarded(const Case& one, Bench& bench, StressCell& cell) {
   } catch (const Error& refusal) {
     end(cell, StressOutcome::refused, refusal.what());
   } catch (const std::bad_alloc&) {
-    end(cell, StressOutcome::broken, "out of memory, without a word about what was too large");
+    end(cell, StressOutcome::broken, "out of memory; what was too large is not known");
   } catch (const std::exception& error) {
-    end(cell, StressOutcome::broken, fmt::format("an error that nobody foresaw: {}", error.what()));
+    end(cell, StressOutcome::broken, fmt::format("an unexpected error: {}", error.what()));
   }
 }
 

@@ -16,7 +16,7 @@ StressCell cellBefore(const CellRequest& request, const std::string& family, Tec
 StressCell runCell(Ground& ground, const CellRequest& request,
                    const std::vector<std::string>& repeatArguments);
 
-/// What the device is called in results.
+/// Fills in the names of the device.
 void describeDevice(StressCell& cell, const WorkerDevice& device);
 
 }  // namespace lumivox::stress

@@ -23,7 +23,7 @@ GridPlacement placeGrid(const Bounds& bounds, int resolution) {
   // Half of a thousandth of a voxel keeps a wall on the bounds from falling between two voxels by rounding.
   grid.voxelSize *= 1.0005f;
   for (int axis = 0; axis < 3; ++axis) {
-    // What is flat lies in the middle of a voxel, not between two.
+    // A flat scene lies in the middle of a voxel, not between two.
     const int cells = std::max(static_cast<int>(std::ceil(extent[axis] / grid.voxelSize)), 1) + 2 * margin;
     grid.resolution[axis] = std::clamp(cells, 1, resolution);
     const float slack = static_cast<float>(grid.resolution[axis]) * grid.voxelSize - extent[axis];

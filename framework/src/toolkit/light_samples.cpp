@@ -108,7 +108,7 @@ std::size_t maskedEmitters(const Scene& scene) {
 }
 
 std::vector<AreaLight> areaLightsOf(const Scene& scene, const SceneSnapshot& snapshot) {
-  // What 2^14 points miss of one triangle is below a thousandth of it.
+  // The error of 2^14 points on one triangle is below a thousandth of it.
   constexpr std::size_t kEnoughPoints = std::size_t{1} << 14, kFewestPoints = 16;
   const std::size_t points = std::clamp(kMostMaskPoints / std::max<std::size_t>(maskedEmitters(scene), 1),
                                         kFewestPoints, kEnoughPoints);

@@ -53,7 +53,7 @@ openvdb::GridBase::Ptr readGrid(std::string_view bytes, const std::string& name,
   }
   if (grid == nullptr) {
     const std::string list = names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
-    if (name.empty()) refuse("holds several grids and the text names none", "grid NAME, one of " + list);
+    if (name.empty()) refuse("contains several grids and the text names none", "grid NAME, one of " + list);
     const std::string nearest = nearestWord(name, names);
     refuse(fmt::format("has no grid '{}'", name),
            "one of " + list + (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
@@ -64,13 +64,13 @@ openvdb::GridBase::Ptr readGrid(std::string_view bytes, const std::string& name,
 /// A float grid that can be a density.
 openvdb::FloatGrid::Ptr densityGrid(const openvdb::GridBase::Ptr& grid, const Refusal& refuse) {
   auto density = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
-  if (density == nullptr) refuse(fmt::format("holds values of type {}", grid->valueType()), "type float");
+  if (density == nullptr) refuse(fmt::format("contains values of type {}", grid->valueType()), "type float");
   if (!grid->transform().isLinear()) {
     refuse(fmt::format("has a transform that is not linear ({})", grid->transform().mapType()),
            "a linear one, without perspective");
   }
   if (grid->getGridClass() == openvdb::GRID_LEVEL_SET)
-    refuse("is a level set, which holds distances", "a density (class fog volume)");
+    refuse("is a level set, which contains distances", "a density (class fog volume)");
   if (density->background() != 0.0f)
     refuse(fmt::format("has the background {}, which has no end", density->background()), "0");
   if (density->activeVoxelCount() == 0) refuse("is empty", "at least one active voxel");

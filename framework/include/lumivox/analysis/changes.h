@@ -1,4 +1,4 @@
-// What changed significantly between two sets of stored results.
+// Significant changes between two sets of stored results.
 #pragma once
 
 #include <string>

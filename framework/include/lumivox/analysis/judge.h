@@ -15,7 +15,7 @@ inline constexpr double kReproducedSigmas = 2.0;
 
 /// The rule. Times and frame rates are divided by the first row of either that is comparable, fragments and
 /// memory by the first of their own; a row that says so by the row that it names. A table is reproduced when
-/// at least one row is, none is not, and no two comparable rows stand in the other order than published by
+/// at least one row is, none is not, and no two comparable rows are in another order than published by
 /// more than their uncertainty.
 JudgedTable judge(const std::vector<MeasuredRow>& rows);
 

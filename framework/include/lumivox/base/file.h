@@ -29,7 +29,7 @@ std::string readFile(const std::filesystem::path& path, std::uint64_t limitBytes
 /// The first bytes of a file, at most `limitBytes`; refuses what readFile refuses, but no size.
 std::string readFileStart(const std::filesystem::path& path, std::uint64_t limitBytes);
 
-/// Refuses (Error) what exists under this name and is no regular file: for libraries that open files by
+/// Refuses (Error) what exists under this name and is not a regular file: for libraries that open files by
 /// themselves.
 void requireRegularFile(const std::filesystem::path& path);
 

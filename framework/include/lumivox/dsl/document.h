@@ -7,7 +7,7 @@
 // plain word starts the next property. (A dotted or slashed word is no plain word.) `param NAME VALUE in
 // RANGE` is one property: `in` never starts a statement. The names of units are no plain words either when
 // they follow a number on its line: `30 deg`, `40 /m`, `4cm`. Values other than plain words may go on in the
-// next line. `include "file"` may stand wherever a property or a block may; the items of the file take its
+// next line. `include "file"` may appear wherever a property or a block may; the items of the file take its
 // place.
 #pragma once
 

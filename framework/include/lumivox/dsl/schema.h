@@ -10,7 +10,7 @@
 
 namespace lumivox::dsl {
 
-/// What the values of a property must be. `oneOrThree`: one number for all channels or axes, or three.
+/// The kind of values that a property takes. `oneOrThree`: one number for all channels or axes, or three.
 /// `axisAndNumber`: an axis (three plain numbers) and a number with the property's dimension. `name`: a word,
 /// path or string that names something. `output`: a.b. `list`: numbers of the dimension, or words, in
 /// brackets. `flag`: on or off. `any`: whatever; its owner checks it. In vectors either every component has a
@@ -90,7 +90,7 @@ class CheckedBlock {
 /// The numbers of a property's values in base units, with the unit rule of vectors. Words are skipped.
 std::vector<double> numbersInBaseUnits(const Property& property);
 
-/// Checks every top-level item of a text against the blocks that may stand there, with everything inside.
+/// Checks every top-level item of a text against the blocks allowed there, with everything inside.
 void check(const Document& document, const std::vector<BlockSpecification>& allowed,
            std::vector<Diagnostic>& findings);
 

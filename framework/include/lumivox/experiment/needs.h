@@ -1,4 +1,4 @@
-// What scenes really needed of pipelines: each pipeline on each scene, with and without leaving out.
+// Parts of pipelines that scenes really needed: each pipeline on each scene, with and without leaving out.
 #pragma once
 
 #include <filesystem>
@@ -23,7 +23,7 @@ struct NeededCell {
 /// Every pipeline of `options` (none: every committed one) on every scene of it, scene by scene, at the
 /// default parameters with `settings`. With `repeats` 0 nothing is timed, which is much faster. A scene that
 /// cannot be loaded for want of a model, and a pipeline that fails on a scene, say so in their cells. `done`
-/// is told after each cell. Error for a wrong text.
+/// is called after each cell. Error for a wrong text.
 std::vector<NeededCell> measureNeeded(
     gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
     const std::function<Scene(const std::filesystem::path&)>& loadScene,

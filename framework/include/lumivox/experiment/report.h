@@ -76,9 +76,9 @@ struct ReferenceLayer {
 };
 std::optional<ReferenceLayer> referenceLayer(const LayeredImage& reference, const std::string& name);
 
-/// What an output adds to the whole image: the output named "final" or contributing final if there is one,
-/// else the sum of the radiance components (direct, indirect_diffuse, indirect_glossy, scattered). Empty when
-/// there is none of them.
+/// The part of the whole image that an output adds: the output named "final" or contributing final if there
+/// is one, else the sum of the radiance components (direct, indirect_diffuse, indirect_glossy, scattered).
+/// Empty when there is none of them.
 ImageBuffer compositeImage(const FrameResult& frame);
 
 /// Renders pruned and unpruned alternately, `repeats` times each after one warm-up. With 0 only the warm-up

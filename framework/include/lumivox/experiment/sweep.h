@@ -31,7 +31,8 @@ struct SweepSummary {
 
 /// Measures every pipeline at every point of its sweeps on every scene, and what the texts name, but for what
 /// the store holds. Each seed of a sweep's axis is a run of its own with that seed alone.
-/// Each batch of points is stored as soon as it is measured, so an interruption loses at most one batch.
+/// Errors, images and work of a point are stored as soon as they are measured, its times with those of its
+/// batch: an interruption loses the point at work and the times of the batch.
 /// Errors are measured apart from times; the timed frames of a batch take turns, and the first batch is timed
 /// again at the end, which gives the floor below which differences of times say nothing (TimeFloor). Several
 /// processes may sweep into one store: each leaves the points to the others that they are at, and while one

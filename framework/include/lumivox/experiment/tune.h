@@ -45,9 +45,9 @@ struct TuneResult {
 /// and 1/sqrt(2), at 0 where its range begins there, and at its other words. Followed are the fastest point,
 /// by rising time those whose error differs from that of the last one followed (differ()), and the winner:
 /// the least error by value of all points within the budget, or the least time within the error. The front
-/// also holds what cannot be told apart from these, which is not followed. The search ends when there are
-/// none left, or after `evaluations`. Throws as makeReport; Error when the limits contradict themselves or
-/// the metric or output is unknown.
+/// also contains points that cannot be told apart from these, which is not followed. The search ends when
+/// there are none left, or after `evaluations`. Throws as makeReport; Error when the limits contradict
+/// themselves or the metric or output is unknown.
 TuneResult tune(gpu::Device& device, TechniqueSet& techniques, const TuneOptions& options,
                 ResultsStore& store, const std::function<Scene(const std::filesystem::path&)>& loadScene);
 

@@ -1,12 +1,11 @@
 // The only door to OpenGL. An OpenGL 4.5 core context without a display, the resources in it and the commands
 // on them. No OpenGL name appears in this header; a Device is used on the thread that made it.
 //
-// What a shader author must know:
-// - Clip space: x to the right, y UP, z from 0 (near) to 1 (far), as glm::perspectiveRH_ZO gives. Row 0 of
-// what is drawn is the TOP of
-//   the image (clip y = +1), so texel (x, y) means the same in raster passes (gl_FragCoord), compute passes
-//   and sampled textures: texture coordinates of a clip position are u = 0.5 + 0.5 x, v = 0.5 - 0.5 y. Front
-//   faces stay counter-clockwise with y up.
+// Conventions for shader authors:
+// - Clip space: x to the right, y UP, z from 0 (near) to 1 (far), as glm::perspectiveRH_ZO gives. Row 0
+//   of a rendered image is its TOP (clip y = +1), so texel (x, y) means the same in raster passes
+//   (gl_FragCoord), compute passes and sampled textures: texture coordinates of a clip position are u = 0.5 +
+//   0.5 x, v = 0.5 - 0.5 y. Front faces stay counter-clockwise with y up.
 // - Nothing is culled. The depth test passes where depth <= stored. Depth buffers clear to 1, colours to 0.
 // - Bindings of sampled textures, images, storage buffers and uniform blocks are four separate number spaces.
 #pragma once
@@ -171,9 +170,9 @@ struct SpecialisationValue {
 
 enum class ShaderInput { automatic, spirv, glsl };
 
-/// What a driver may do with sums and products. `exact`: one expression, neither fused nor reordered, so that
-/// all drivers and both routes give the same bits. `fast`: whatever OpenGL allows, as a renderer ships it:
-/// for times.
+/// The freedom of a driver in sums and products. `exact`: one expression, neither fused nor reordered, so
+/// that all drivers and both routes give the same bits. `fast`: whatever OpenGL allows, as a renderer ships
+/// it: for times.
 enum class Arithmetic { exact, fast };
 
 /// A linked program. Errors carry the driver's log and the name.
@@ -299,7 +298,7 @@ struct DeviceOptions {
   std::uint64_t memoryBytes = 0;  ///< textures and buffers may take so much together; 0: what the device has
   Arithmetic arithmetic = Arithmetic::exact;
   /// A context in which the driver explains every error at the command that made it, at the cost of time.
-  /// Without it errors are told when the device is waited for. Default: whether $LUMIVOX_DEBUG_CONTEXT is
+  /// Without it errors are reported when the device is waited for. Default: whether $LUMIVOX_DEBUG_CONTEXT is
   /// set.
   bool debugContext = debugContextAsked();
   static bool debugContextAsked();

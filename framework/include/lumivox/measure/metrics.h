@@ -74,11 +74,11 @@ ImageBuffer flipLdr(const ImageBuffer& linearImage, const ImageBuffer& linearRef
 ImageBuffer flipHdr(const ImageBuffer& linearImage, const ImageBuffer& linearReference,
                     double pixelsPerDegree = 67.0206);
 
-/// What the mean square error of an image with random numbers is made of: bias² + noise² + referenceNoise².
-/// The squares are unbiased estimates; where chance makes one negative, its root is given as 0.
+/// Terms of the mean square error of an image with random numbers: bias² + noise² + referenceNoise². The
+/// squares are unbiased estimates; where chance makes one negative, its root is given as 0.
 struct ErrorParts {
   Measured bias{std::numeric_limits<double>::quiet_NaN(),
-                0.0};  ///< RMS of what stays when noise is averaged away; NaN when it cannot be told
+                0.0};  ///< RMS of the error left when noise is averaged away; NaN: unknown
   Measured noise{std::numeric_limits<double>::quiet_NaN(),
                  0.0};          ///< RMS of the image's own noise; NaN for a single image
   double referenceNoise = 0.0;  ///< RMS of the reference's noise; 0 when it is not known

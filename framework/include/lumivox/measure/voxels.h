@@ -91,7 +91,7 @@ class TriangleBoxTest {
 /// 1024 voxels no better than four of its steps (4 * 2^-24 * 1024 = 2.4e-4), and a voxelizer adds its own.
 inline constexpr double kContactTolerance = 1e-3;
 
-/// What is right. A voxel that is possible but not certain is touched by no more than the tolerance, or is
+/// The right answer. A voxel that is possible but not certain is touched by no more than the tolerance, or is
 /// missed by no more than it: either answer is right there.
 struct VoxelReference {
   VoxelSet certain;   ///< the box shrunk by the tolerance on every side is touched

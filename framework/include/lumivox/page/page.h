@@ -19,7 +19,7 @@ enum class ReportDetail {
   brief  ///< of each scene the first screen alone, with the images of the default points; CSV and JSON are whole
 };
 
-/// Every number of the page stands in the JSON, but for those that a reader makes of others.
+/// Every number of the page is in the JSON, but for those that a reader derives from others.
 void writeReport(const ReportFiles& files, const ReportRecord& record,
                  ReportDetail detail = ReportDetail::whole);
 

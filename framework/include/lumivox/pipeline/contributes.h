@@ -14,7 +14,7 @@ enum class Contributes {
   final
 };
 const char* name(Contributes component);  ///< "direct", "indirect_diffuse", ...
-/// What an output shows where there is nothing to compute: 1 (nothing is occluded) for ambient occlusion,
+/// The value of an output where nothing is computed: 1 (nothing is occluded) for ambient occlusion,
 /// else 0 (black).
 float neutralElement(Contributes component);
 int channelsOf(Contributes component);  ///< of its images: 1 for ambient occlusion, else 3

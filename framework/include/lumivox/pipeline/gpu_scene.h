@@ -1,5 +1,6 @@
 // A scene on the device: vertex, index and material buffers, textures, and drawing. Shared by all passes;
-// uploaded on first use. GLSL side: shaders/common/scene.glsl.
+// uploaded on first use. What nothing writes to is on a device once, whoever uses it: equal bits, one
+// resource. GLSL side: shaders/common/scene.glsl.
 #pragma once
 
 #include <memory>
@@ -35,6 +36,7 @@ struct SceneDraw {
 
 class GpuScene {
  public:
+  /// The scene may go afterwards.
   GpuScene(gpu::Device& device, const Scene& scene);
   ~GpuScene();
 
@@ -49,7 +51,6 @@ class GpuScene {
   const gpu::Buffer& objects() const;        ///< ObjectData each
   const gpu::Texture& whiteTexture() const;  ///< 1x1 white: the neutral diffuse texture and mask
   const std::vector<SceneDraw>& draws() const;
-  std::uint64_t sizeBytes() const;
 
  private:
   struct State;

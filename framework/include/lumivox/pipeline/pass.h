@@ -1,4 +1,4 @@
-// What a technique author writes: a pass is a class whose members are its contract.
+// A pass, written by the author of a technique: a class whose members are its contract.
 #pragma once
 
 #include <any>
@@ -23,7 +23,7 @@ namespace lumivox {
 class GpuScene;
 class Pass;
 
-/// What the scene must have for an output (or a whole pass) to differ from its neutral element.
+/// Contents that a scene must have for an output (or a whole pass) to differ from its neutral element.
 enum class Needs : std::uint32_t {
   nothing = 0,
   anyLight = 1u << 0,
@@ -42,9 +42,9 @@ constexpr Needs operator|(Needs a, Needs b) {
 /// The first need that the scene does not meet, in words ("a glossy material"), or empty.
 std::string unmetNeed(Needs needs, const SceneTraits& traits);
 
-/// What a pass reads besides its inputs and parameters. A pass is run again only when one of these or an
-/// input changed. materials: with their textures. lights: also the motion of emissive objects. camera: also
-/// the size of the image. partOfCamera: only what Pass::readsOfCamera() returns. time: also the frame's
+/// Sources that a pass reads besides its inputs and parameters. A pass is run again only when one of these or
+/// an input changed. materials: with their textures. lights: also the motion of emissive objects. camera:
+/// also the size of the image. partOfCamera: only what Pass::readsOfCamera() returns. time: also the frame's
 /// index. history: what earlier frames left, by PassContext::history() and accumulated(); such a pass runs in
 /// every frame of a run that accumulates (RenderOptions::accumulate).
 enum class Reads : std::uint32_t {
@@ -99,7 +99,7 @@ class OutBase : public PortBase {
   bool wanted() const { return wanted_; }
   virtual bool hasValue() const = 0;
   virtual void reset() = 0;
-  /// What the value holds; nothing without one.
+  /// Contents of the value; none without a value.
   virtual PortContents contents() const = 0;
   /// The textures among it.
   std::vector<gpu::TextureRef> textures() const;
@@ -149,7 +149,7 @@ class InBase : public PortBase {
   InBase(Pass* pass, std::string name, const PortKind& kind, Presence presence, std::string meaning,
          Needs needs);
   Presence presence() const { return presence_; }
-  /// What the scene must have for this input to be read. Without it nothing is made for its sake.
+  /// Contents that the scene must have for this input to be read. Without them nothing is made for its sake.
   Needs needs() const { return needs_; }
   /// False when nothing is connected or what is connected was pruned away: the pass then uses the variant
   /// without this input.
@@ -307,7 +307,7 @@ class WordParam : public ParamBase {
   std::size_t value_, default_;
 };
 
-/// One word out of a few. The enumeration counts from 0, and beside it stands what texts call its values:
+/// One word out of a few. The enumeration counts from 0, and beside it are the names of its values in texts:
 ///   enum class Lobe { straight, cosine };
 ///   constexpr auto words(Lobe) { return std::array{"straight", "cosine"}; }
 template <class Word>
@@ -337,8 +337,8 @@ class PassContext {
   virtual GpuScene& scene() = 0;
   virtual const Scene& sceneDescription() const = 0;
   virtual const SceneSnapshot& snapshot() const = 0;
-  /// What the scene has; all of it with --keep-everything. Choose variants by this, never by looking at the
-  /// scene.
+  /// Traits of the scene; all of them with --keep-everything. Choose variants by this, never by looking at
+  /// the scene.
   virtual const SceneTraits& traits() const = 0;
   /// True with --keep-everything: every draw uses the fullest variant, with neutral textures.
   virtual bool keepsEverything() const = 0;
@@ -354,14 +354,14 @@ class PassContext {
   /// anything of it is given out. It may throw an Error and warn() through the context that it is given.
   using CountJudge = std::function<bool(PassContext& frame, std::uint32_t count)>;
   virtual void judgeLater(gpu::BufferRef counts, std::uint64_t offsetBytes, CountJudge judge) = 0;
-  /// Told to the user once per run, with the pass's name.
+  /// A warning to the user, once per run, with the pass's name.
   virtual void warn(const std::string& text) = 0;
-  /// What a pass makes once while it stands still: the result of make(), or what an earlier frame made where
-  /// that had the same `what` and `key`. The key holds what the thing depends on and what changes while the
-  /// pass lives, compared by ==: placements, the place of a grid. It needs neither parameters, seed nor the
-  /// contents of the scene, since nothing is kept over their change, nor over
-  /// PipelineExecutor::invalidate(); with --keep-everything nothing is kept at all. What a run of the pass
-  /// does not ask for is given back. explain() tells what was taken over.
+  /// A result that is made once and kept while it stays valid: that of make(), or of an earlier frame with
+  /// the same `what` and `key`. The key holds what the thing depends on and what changes while the pass
+  /// lives, compared by ==: placements, the place of a grid. It needs neither parameters, seed nor the
+  /// contents of the scene, since nothing is kept over their change, nor over PipelineExecutor::invalidate();
+  /// with --keep-everything nothing is kept at all. A result that a run does not ask for is released.
+  /// explain() reports what was reused.
   template <class Key, class Make>
   const auto& kept(const std::string& what, const Key& key, Make&& make) {
     using Value = std::decay_t<std::invoke_result_t<Make&>>;
@@ -387,7 +387,8 @@ class PassContext {
   /// first frame and in runs that do not accumulate. Needs Reads::history.
   virtual int accumulated() const = 0;
   /// True when this run is inspected (RenderOptions::health): what a pass measures about itself may then cost
-  /// time, and is told with note(), a sentence that begins in the middle: "1.1 % of the irradiance was ...".
+  /// time, and is reported with note(), a sentence that begins in the middle: "1.1 % of the irradiance was
+  /// ...".
   virtual bool inspects() const = 0;
   virtual void note(const std::string& text) = 0;
 
@@ -423,7 +424,7 @@ class PassContext {
   /// least.
   gpu::BufferRef elements(const shader::StorageSlot& block, std::uint64_t count, const std::string& label);
 
-  /// What kept() holds under one name.
+  /// An entry of kept() under one name.
   struct Kept {
     std::any key, value;
   };
@@ -438,7 +439,7 @@ class Pass {
  public:
   virtual ~Pass() = default;
   virtual void run(PassContext& frame) = 0;
-  /// What it reads besides its inputs.
+  /// Sources read besides the inputs.
   virtual Reads readsFrom() const { return Reads::nothing; }
   /// With Reads::partOfCamera: what it reads of the camera, such as where its grids lie. While that stays the
   /// same, a moved camera is no reason to run the pass again.
@@ -452,7 +453,7 @@ class Pass {
   /// True for a pass whose work is the host's: it is timed by the host's clock, with the device idle before
   /// and after.
   virtual bool worksOnHost() const { return false; }
-  /// What the scene must have for the pass as a whole.
+  /// Contents that the scene must have for the pass as a whole.
   virtual Needs needs() const { return Needs::nothing; }
   /// Contradictions between parameters, in words; empty when there are none.
   virtual std::string checkParameters() const { return {}; }

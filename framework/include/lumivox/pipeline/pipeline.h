@@ -30,6 +30,7 @@ class ShaderLibrary;
 class OutBase;
 class Pass;
 class PassContext;
+class TransientMemory;  ///< of pipeline/pool.h
 template <class Port>
 class Out;
 
@@ -51,6 +52,10 @@ struct PipelineParameter {
   /// "must be in 16..512" when the value does not fit the declaration, else empty.
   std::string misfit(const ParameterValue& candidate) const;
 };
+
+/// An axis of sweeps that is no parameter: how many frames of the still scene are accumulated, from 1 on.
+inline constexpr const char* kAccumulatedFrames = "frames";
+inline constexpr int kMostAccumulatedFrames = 1 << 16;
 
 /// `sweep NAME { parameter [values] ... }`: the grid over its lists. `sweep NAME list { ... }`: the points
 /// along them, the first values of all lists together, then the second ones.
@@ -122,6 +127,17 @@ struct RenderOptions {
       false;  ///< camera, lights and objects may change in ways that the scene text does not announce
   std::string camera;
   int width = 0, height = 0;  ///< 0: the camera's
+  /// Where resources wait that no pass uses, for several executors of one device, of which one renders at a
+  /// time. Null: each has its own.
+  std::shared_ptr<TransientMemory> transientMemory{};
+};
+
+/// Bytes of an executor's textures and buffers, as if it were alone on the device.
+struct MemoryUse {
+  std::uint64_t bytes = 0;  ///< the scene's included
+  /// Of them, the parts of the scene that nothing writes to: they are on the device once, whichever executors
+  /// hold them.
+  std::uint64_t sharedBytes = 0;
 };
 
 struct PassRecord {
@@ -144,6 +160,7 @@ struct FrameResult {
   std::vector<PassRecord> passes;
   double frameMs = 0;          ///< whole frame, device idle before and after; with Timing::passes NaN
   double betweenPassesMs = 0;  ///< of the host, outside of the passes: what the framework itself costs
+  /// The most that MemoryUse::bytes was meanwhile, whatever else is on the device.
   std::uint64_t peakBytes = 0;
   /// With `checkReads`: "pass voxels, port grid: 96 of 4096 bytes differ from a run from scratch; ..."
   std::vector<std::string> readsFindings;
@@ -152,7 +169,7 @@ struct FrameResult {
   std::vector<std::string> notes;
 };
 
-/// One thing that a run does without.
+/// One thing that a run leaves out.
 struct LeftOut {
   enum class Level { plugin, pass, variant, resource, time } level;
   std::string what, why;
@@ -162,8 +179,8 @@ struct LeftOut {
 };
 const char* name(LeftOut::Level level);
 
-/// What a pipeline does without on a scene. Variants, shared memory and times are known once a frame was
-/// rendered.
+/// The parts of a pipeline that are left out on a scene. Variants, shared memory and times are known once a
+/// frame was rendered.
 struct Explanation {
   std::vector<LeftOut> leftOut;
   std::size_t passesKept = 0, passesTotal = 0;
@@ -182,7 +199,7 @@ class PipelineExecutor {
   ~PipelineExecutor();
 
   enum class Images { no, yes };
-  /// What is timed: the frame as a whole, without any instrument inside of it, or its passes, for
+  /// The thing timed: the frame as a whole, without any instrument inside of it, or its passes, for
   /// timedPasses(). Where the device keeps time for its passes, such a frame waits for nothing; where it does
   /// not (DeviceInfo::timerQueriesTrusted), it waits before and after every pass.
   enum class Timing { frame, passes };
@@ -195,7 +212,7 @@ class PipelineExecutor {
   /// The passes of every frame that was rendered with Timing::passes since the last call, in their order,
   /// with their device times. Waits for the device.
   std::vector<std::vector<PassRecord>> timedPasses();
-  /// Forgets cached results and what passes keep while it stands still, so that the next frame runs every
+  /// Forgets cached results and what passes keep between frames, so that the next frame runs every
   /// kept pass. Histories stay.
   void invalidate();
   /// The next frame finds no history and counts as the first.
@@ -213,6 +230,7 @@ class PipelineExecutor {
   void setScene(const Scene& scene);
 
   Explanation explain() const;
+  MemoryUse memory() const;                             ///< at this moment
   const std::vector<std::string>& outputNames() const;  ///< kept and pruned; a pruned one renders as black
   shader::ShaderLibrary& shaders();
   /// Keeps an output of a pass alive after each render, and its pass with it; for exporters and tests. Error
@@ -271,7 +289,7 @@ class PassHarness {
   std::unique_ptr<State> state_;
 };
 
-/// What an output shows that was left out: its neutral element everywhere.
+/// The image of an output that was left out: its neutral element everywhere.
 ImageBuffer neutralImage(int width, int height, Contributes component);
 
 /// A texture's image as the framework stores images: row 0 on top.

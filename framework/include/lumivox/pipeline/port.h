@@ -1,4 +1,4 @@
-// What is known of a kind of port, in one place: the textures and buffers that it holds, the fields that are
+// Knowledge of a kind of port, in one place: the textures and buffers that it holds, the fields that are
 // exported of it, which voxels it occupies. The exporter, the health scan, the stress battery, the measures
 // of voxels and the documentation read this and nothing else, so that a technique may bring a kind of its
 // own:
@@ -132,7 +132,7 @@ struct VoxelsRead {
 };
 using VoxelSource = std::variant<VoxelTexels, VoxelBits, VoxelList, VoxelsFilled, VoxelsRead>;
 
-/// What a value of a kind of port holds now: filled by PortTraits<Port>::contents().
+/// The contents of a value of a kind of port: filled by PortTraits<Port>::contents().
 class PortContents {
  public:
   struct Resource {
@@ -146,7 +146,7 @@ class PortContents {
     int level = 0;  ///< 0 is the finest
     VoxelBox box;
     VoxelSource source;
-    /// What else is needed to read the values: a medium's extinction.
+    /// Constants needed to read the values: a medium's extinction.
     std::vector<std::pair<std::string, std::variant<std::string, float, glm::vec3>>> constants{};
   };
   struct Occupancy {
@@ -176,7 +176,7 @@ class PortContents {
   std::vector<Occupancy> occupancy_;  ///< none or one
 };
 
-/// What is known of a kind of port; see above.
+/// Traits of a kind of port; see above.
 template <class Port>
 struct PortTraits;
 

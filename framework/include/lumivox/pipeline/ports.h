@@ -1,6 +1,6 @@
-// What flows between passes. A port carries a meaning, not just a format, so that stages of different papers
-// fit together. All are cheap to copy: they share their resources. Image-sized textures have row 0 at the
-// TOP of the image. Each kind has a header of its own, with all that is known of it (pipeline/port.h);
+// Values that flow between passes. A port carries a meaning, not just a format, so that stages of different
+// papers fit together. All are cheap to copy: they share their resources. Image-sized textures have row 0 at
+// the TOP of the image. Each kind has a header of its own, with all that is known of it (pipeline/port.h);
 // docs/reference.md has the table.
 #pragma once
 

@@ -50,7 +50,7 @@ struct SweepText {
   static SweepText parse(std::string source, std::filesystem::path file);
 };
 
-/// What a sweep block asks of one of its pipelines.
+/// One pipeline's share of a sweep block.
 struct SweepShare {
   std::size_t block = 0;  ///< in SweepText::sweeps
   std::shared_ptr<const Pipeline> pipeline;

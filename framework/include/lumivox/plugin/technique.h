@@ -68,7 +68,7 @@ consteval TechniqueVersionRecord techniqueVersionHere() {
   return record;
 }
 
-/// What differs between a version record and the framework's own, in words: "the headers are '...', expected
+/// Differences between a version record and the framework's own, in words: "the headers are '...', expected
 /// '...'"; empty when nothing does. Strings of a broken record may lack their end.
 std::string versionDifference(const TechniqueVersionRecord& theirs);
 

@@ -21,8 +21,8 @@ struct KeptReference {
 /// All in the cache directory, the last used first. `withAttributes` reads the heads of the files.
 std::vector<KeptReference> keptReferences(bool withAttributes = true);
 
-/// What all together may take: $LUMIVOX_CACHE_LIMIT (bytes, or as "500MiB"), else 4 GiB. Error when that is
-/// no size.
+/// Limit on the size of all entries together: $LUMIVOX_CACHE_LIMIT (bytes, or as "500MiB"), else 4 GiB.
+/// Error when it is not a size.
 std::uint64_t referenceCacheLimit();
 
 struct PrunedReferences {

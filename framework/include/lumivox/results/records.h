@@ -1,4 +1,4 @@
-// What was measured, as plain values: errors, times, work, and what leaving out saved.
+// Measurements as plain values: errors, times, work, and what leaving out saved.
 #pragma once
 
 #include <cstdint>
@@ -49,10 +49,9 @@ struct WorkBound {
   double ms = 0.0;
 };
 
-/// The axis of a progressive pipeline: how many frames of the still scene it accumulates, as a parameter of
-/// the points that take more than one.
-inline constexpr const char* kAccumulatedFrames = "frames";
-int framesOf(const ParameterValues& parameters);  ///< 1 without the axis
+/// The frames that a point accumulates (kAccumulatedFrames is among its parameters where these are more than
+/// one); 1 without the axis.
+int framesOf(const ParameterValues& parameters);
 
 /// One sweep point: both error and time, in one record.
 struct ReportPoint {
@@ -64,9 +63,9 @@ struct ReportPoint {
   TimingStatistics movedFrameMs;       ///< of one before which the camera and every light have moved
   std::map<std::string, TimingStatistics> passDeviceMs, passHostMs;
   std::map<std::string, std::uint64_t> passBytes;
-  /// What each pass does, counted in a frame of its own.
+  /// The work of each pass, counted in a frame of its own.
   std::map<std::string, Work> passWork;
-  /// What each pass takes at least: one bound per resource, the largest first. Empty without the peak rates
+  /// Lower bounds on the time of each pass: one per resource, the largest first. Empty without the peak rates
   /// of this device.
   std::map<std::string, std::vector<WorkBound>> passBounds;
   std::string whyNotCounted;           ///< empty when passWork is there
@@ -80,14 +79,14 @@ struct ReportPoint {
   std::string command;  ///< that repeats it
 };
 
-/// What a frame costs, apart: once (preprocessing), when something moves, and every time. NaN where that is
-/// not known: it was not measured, or the point is one of several frames.
+/// The cost of a frame in parts: once (preprocessing), when something moves, and every time. NaN where that
+/// is not known: it was not measured, or the point is one of several frames.
 struct CostParts {
   Measured onceMs, movingMs, everyFrameMs;
 };
 CostParts costParts(const ReportPoint& point);
 
-/// What leaving out saves, measured: the pruned and the unpruned pipeline timed alternately in one run.
+/// The saving by leaving out, measured: the pruned and the unpruned pipeline timed alternately in one run.
 struct PruningRecord {
   std::string scene, pipeline;
   Explanation explanation;                        ///< savedMs is filled in for passes
@@ -104,7 +103,7 @@ struct PruningRecord {
   double savedShareNext() const;  ///< of that of a frame that follows another, with a moving camera
 };
 
-/// What one device can do at most, measured: `lumivox device`.
+/// A peak rate of one device, measured: `lumivox device`.
 struct PeakRate {
   std::string name;       ///< "texture_sampling_rgba16f_3d"
   std::string unit;       ///< "samples/s", "writes/s", "operations/s", "bytes/s"

@@ -1,4 +1,4 @@
-// What a report holds between measuring and writing: the records, and images already encoded.
+// The contents of a report between measuring and writing: the records, and images already encoded.
 #pragma once
 
 #include <filesystem>
@@ -86,7 +86,7 @@ struct ReportRecord {
   std::vector<TechniqueRecord> techniques;
   std::vector<SkippedTechnique> skipped;
   std::vector<SceneRecord> scenes;
-  std::vector<PeakRate> peakRates;      ///< of this device; empty when nobody has measured them
+  std::vector<PeakRate> peakRates;      ///< of this device; empty when they were not measured
   std::vector<VoxelizerRecord> voxels;  ///< only when they were asked for
   std::vector<StressCell> stress;       ///< that the results store holds, the newest of each
 };

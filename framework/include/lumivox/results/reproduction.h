@@ -16,7 +16,7 @@
 
 namespace lumivox {
 
-/// What a published number measures, and its unit in the text.
+/// The quantity of a published number, and its unit in the text.
 enum class PublishedQuantity {
   time,       ///< of passes or of the frame, ms
   frameRate,  ///< of the frame, 1/s; compared as the frame's time
@@ -29,7 +29,7 @@ inline constexpr PublishedQuantity kPublishedQuantities[] = {
 const char* name(PublishedQuantity quantity);  ///< "frame_rate"
 const char* unit(PublishedQuantity quantity);  ///< "1/s"
 
-/// What is measured or shown for one number, point or panel.
+/// The set-up measured or shown for one number, point or panel.
 struct PublishedSetUp {
   SourcePlace place;
   PublishedQuantity quantity = PublishedQuantity::time;
@@ -38,12 +38,12 @@ struct PublishedSetUp {
   std::string camera;
   double time = 0.0;  ///< s
   ParameterValues settings;
-  int subdivisions = 0;             ///< how often every triangle of the scene is split into four before
+  int subdivisions = 0;             ///< how many times every triangle of the scene is split into four first
   std::vector<std::string> passes;  ///< whose times or bytes are added up; empty: the whole frame
   std::string pass,
       port;  ///< an output that is kept: its fragments are counted, its image is shown; may be empty
   std::string absent;      ///< why it cannot be measured
-  std::string substitute;  ///< what stands in for the published set-up, so that a verdict would not count
+  std::string substitute;  ///< the stand-in for the published set-up, so that a verdict would not count
 };
 
 /// One number of a published table, and how it is measured here.
@@ -53,7 +53,7 @@ struct PublishedRow : PublishedSetUp {
   std::string over;        ///< the row that it is divided by; empty: the first one
 };
 
-/// What a paper says of how a number grows.
+/// The growth that a paper states for a number.
 enum class Growth { unsaid, sublinear, linear, superlinear };
 const char* name(Growth growth);
 
@@ -154,7 +154,7 @@ struct JudgedCurve {
 struct ShownPanel {
   std::string name;
   ImageBuffer image;   ///< linear; empty where there is none
-  std::string whyNot;  ///< why there is none, or what stands in for it
+  std::string whyNot;  ///< why there is none, or its stand-in
   bool failed = false;
   double meanLuminance = 0.0;  ///< W/(sr m²); NaN where there is no image
 };

@@ -51,7 +51,7 @@ struct RepeatedControl {
 /// How far apart two times of the same thing were found on one machine, as a share of the smaller.
 struct TimeFloor {
   double frame = 0.0, nextFrame = 0.0;
-  int controls = 0;  ///< that say so; 0: nobody has looked
+  int controls = 0;  ///< that say so; 0: not examined
 };
 /// The largest of the controls.
 TimeFloor timeFloorOf(const std::vector<RepeatedControl>& controls);
@@ -69,7 +69,7 @@ struct StoredImage {
 /// Hash of the framework's libraries as they are loaded: part of every identity.
 std::string frameworkHash();
 
-/// What times depend on besides the work.
+/// The machine that times depend on, besides the work.
 struct DeviceIdentity {
   std::string device, driver, shaderInput, host;
 };

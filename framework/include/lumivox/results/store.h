@@ -18,7 +18,7 @@ namespace lumivox {
 struct RunClaim {
   std::string machine;  ///< and its start and name space of processes: where `process` means something
   int process = 0;
-  std::uint64_t started = 0;  ///< of the process, so that another one with its number is told apart
+  std::uint64_t started = 0;  ///< of the process, distinguishes another one with its number
   std::string command;        ///< its command line
   std::int64_t expires = 0;   ///< s since 1970
 };
@@ -63,6 +63,10 @@ class ResultsStore {
   /// In one transaction: all of it or nothing, whatever happens. Returns false, and stores nothing, when
   /// another process has stored a run with this key meanwhile. A failed run is replaced by one that did not.
   bool add(const StoredRun& run, const std::vector<StoredImage>& images = {});
+  /// Keeps a run whose errors, images and work are there, but no times, for whoever goes on with it: only
+  /// findUntimed() and images() know of it. It goes when the run is added.
+  void addUntimed(const StoredRun& run, const std::vector<StoredImage>& images = {});
+  std::optional<StoredRun> findUntimed(const std::string& key) const;
   /// Those that were stored with a run.
   std::vector<StoredImage> images(const std::string& key) const;
 
@@ -83,9 +87,13 @@ class ResultsStore {
   static constexpr int kControls = 20;
   static constexpr int kClaimSeconds = 3600;
 
+  struct Count {
+    std::size_t runs = 0, untimed = 0;
+  };
+  Count count() const;
   /// By id, so in the order of storing.
   std::vector<StoredRun> runs(const RunFilter& filter = {}) const;
-  /// How many were removed.
+  /// How many were removed, those without times not counted.
   std::size_t remove(const RunFilter& filter);
   /// Takes over the runs of another store that are not here, its controls, and the cells and peak rates that
   /// are not here or are older here. In one transaction.

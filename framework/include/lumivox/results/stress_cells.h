@@ -11,7 +11,7 @@
 
 namespace lumivox {
 
-/// What became of one pipeline on one stress case.
+/// The outcome of one pipeline on one stress case.
 enum class StressOutcome {
   stable,         ///< healthy, and within the case's limit
   biased,         ///< healthy, bounded, and beyond the limit: `value` says by how much
@@ -29,7 +29,7 @@ struct StressCell {
   std::string created, version;
   std::string family, name;  ///< of the case
   std::string pipeline;      ///< file as given
-  std::string technique;     ///< the technique that the pipeline stands for
+  std::string technique;     ///< the technique that the pipeline represents
   std::string size;          ///< "quick" or "full"
   StressOutcome outcome = StressOutcome::stable;
   std::string measure, unit;  ///< of value and limit; empty when only health was looked at

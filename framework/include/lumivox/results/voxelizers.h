@@ -1,4 +1,4 @@
-// What a voxelizer was measured at: time, memory and what its grid gets wrong. Definitions: docs/metrics.md.
+// Measurements of a voxelizer: time, memory and the errors of its grid. Definitions: docs/metrics.md.
 #pragma once
 
 #include <cstdint>

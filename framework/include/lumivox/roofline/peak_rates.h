@@ -1,4 +1,4 @@
-// What this device can do at most, measured, and how far a pass is from that.
+// Measured peak rates of this device, and how far a pass is from them.
 #pragma once
 
 #include <filesystem>
@@ -28,7 +28,7 @@ std::vector<PeakRate> measurePeakRates(gpu::Device& device, const PeakRateOption
 std::vector<std::string> peakRateNames();
 
 /// Of this device, driver and host, the store's peak rates: those of options.store, else of the store of a
-/// user who names none. Empty when nobody has measured them.
+/// user who names none. Empty when they were not measured.
 std::vector<PeakRate> storedPeakRates(const gpu::Device& device, const std::filesystem::path& store);
 
 /// One bound per resource, the largest first: no pass can be faster than that. On one resource times add;

@@ -171,7 +171,7 @@ struct Scene {
       const std::string& wanted = {}) const;  ///< first when empty; Error listing the names otherwise
 };
 
-/// What a scene has, and so what a pipeline can leave out. Computed from the content, never declared.
+/// Features of a scene, and so what a pipeline can leave out. Computed from the content, never declared.
 struct SceneTraits {
   bool triangles = false, textures = false, masks = false, glossy = false, emission = false,
        environment = false, medium = false, particles = false;
@@ -235,7 +235,7 @@ struct SceneSnapshot {
 /// the loader keeps as Object::sweptBounds. The object must have vertices.
 std::pair<glm::dvec3, glm::dvec3> sweptBoundsOf(const Scene& scene, const Object& object);
 
-/// Within which ambient occlusion looks for surfaces where nobody says otherwise, m: a tenth of the diagonal
+/// Distance within which ambient occlusion looks for surfaces by default, m: a tenth of the diagonal
 /// of the scene's bounds; 0 without a triangle.
 double ambientOcclusionDistance(const Bounds& bounds);
 

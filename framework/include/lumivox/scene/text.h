@@ -11,7 +11,7 @@
 
 namespace lumivox {
 
-/// One block, `scene NAME { ... }`, with everything that may stand inside.
+/// One block, `scene NAME { ... }`, with everything that it may contain.
 const std::vector<dsl::BlockSpecification>& sceneSpecifications();
 
 /// As loadScene, for a text: `file` names it in messages, and relative paths start beside it.

@@ -87,7 +87,7 @@ class ShaderLibrary {
   /// From now on every program counts what it does: the same results, several times slower. Call it before
   /// the first program is asked for. AbsentError when the device takes its programs as GLSL.
   void countWork();
-  /// What all programs did since the last call, in operations by name.
+  /// The work of all programs since the last call, in operations by name.
   Work takeWork();
 
  private:

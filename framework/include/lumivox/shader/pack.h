@@ -15,15 +15,15 @@
 
 namespace lumivox::shader {
 
-/// What a variant is chosen by. The macro of the axis holds the number itself where the values are numbers,
-/// and 0, 1, 2... where they are words; then every word has a macro of its own too: axis LIGHT with value
-/// spot gives LIGHT_SPOT.
+/// An axis by which a variant is chosen. The macro of the axis holds the number itself where the values are
+/// numbers, and 0, 1, 2... where they are words; then every word has a macro of its own too: axis LIGHT with
+/// value spot gives LIGHT_SPOT.
 struct Axis {
   std::string name;                 ///< as in the shader, e.g. "GLOSSY"
   std::vector<std::string> values;  ///< in the order of declaration; the first is the default
   bool named = false;               ///< the values are words
 
-  /// What the macro of the axis is for value `index`.
+  /// The macro of the axis for value `index`.
   int value(std::size_t index) const;
   /// The word or number for what the macro is.
   std::string text(int value) const;

@@ -69,7 +69,7 @@ struct UniformSlot {
   }
 };
 
-/// What a command is given: bindings and sets of them, in braces. What the program's variant does not have is
+/// The arguments of a command: bindings and sets of them, in braces. Those that the variant does not have are
 /// left out, so that all that is there may be given to every variant.
 class BindingSet {
  public:

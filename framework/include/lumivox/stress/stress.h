@@ -25,7 +25,7 @@ struct StressCaseInfo {
 struct StressJob {
   StressCaseInfo info;
   std::filesystem::path pipeline;
-  std::string technique;  ///< that the pipeline stands for
+  std::string technique;  ///< that the pipeline represents
 };
 
 struct StressOptions {
@@ -64,7 +64,7 @@ struct StressSummary {
 /// A cell is in the store as soon as it was run. A worker that is lost is one broken cell.
 StressSummary runStress(const StressOptions& options, TechniqueSource& techniques);
 
-/// What a worker stands on.
+/// The device and options of a worker.
 struct StressWorker {
   gpu::DeviceOptions device;
   SceneLoadOptions sceneLoad;
@@ -75,7 +75,7 @@ struct StressWorker {
 /// output, until the input ends. What anything else prints goes to standard error.
 void serveStress(const StressWorker& worker, TechniqueSource& techniques);
 
-/// The technique that a pipeline stands for: the one whose name its file's stem begins with (the longest);
+/// The technique that a pipeline represents: the one whose name its file's stem begins with (the longest);
 /// else that of the last pass, for a pipeline without outputs; else that of the pass behind its first output
 /// other than direct light, or behind its first output.
 std::string techniqueOf(const Pipeline& pipeline, TechniqueSource& techniques);

@@ -1,5 +1,5 @@
-// What shaders that include a file of shaders/common are bound to, as sets that stand in the braces of a
-// dispatch or a draw beside the pass's own bindings. They go by name: each program has its own numbers.
+// Bindings of shaders that include a file of shaders/common, as sets inside the braces of a dispatch
+// or a draw beside the pass's own bindings. They go by name: each program has its own numbers.
 #pragma once
 
 #include "lumivox/pipeline/gpu_scene.h"
@@ -24,8 +24,8 @@ class SceneBinding : public shader::BindingSet {
   SceneBinding(PassContext& frame, const SceneDraw& draw);
   /// For shaders that take several draws at a time: those with these textures (null: none).
   SceneBinding(PassContext& frame, const gpu::Texture* diffuse, const gpu::Texture* mask);
-  /// What the axes TEXTURES and MASKS of the shader are: whether the draw's own material needs them, and
-  /// always with --keep-everything.
+  /// Values of the shader's axes TEXTURES and MASKS: whether the draw's own material needs them, and always
+  /// with --keep-everything.
   int textures = 0, masks = 0;
 };
 
@@ -46,7 +46,7 @@ class LightBinding : public shader::BindingSet {
   int count = 0;  ///< of lights
 };
 
-/// What lights see (common/rsm.glsl): rsmPosition, rsmNormal, rsmFlux, and the lights with their views.
+/// Reflective shadow maps (common/rsm.glsl): rsmPosition, rsmNormal, rsmFlux, the lights with their views.
 class ReflectiveShadowMapBinding : public shader::BindingSet {
  public:
   explicit ReflectiveShadowMapBinding(const ReflectiveShadowMap& map);

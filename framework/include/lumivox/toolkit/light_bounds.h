@@ -6,8 +6,8 @@
 
 namespace lumivox {
 
-/// What no surface can reflect diffusely: all lights at this distance, nearer than which the asker does not
-/// look, and the brightest emitter before it, W/(sr m^2). Above 0.
+/// A bound on diffusely reflected radiance: all lights at this distance, nearer than which the caller does
+/// not look, and the brightest emitter nearer than it, W/(sr m^2). Above 0.
 float largestRadiance(const Scene& scene, const SceneSnapshot& snapshot, float nearest);
 
 /// The largest flux that the surfaces of the scene can reflect: all that its lights emit towards it, W, in

@@ -25,7 +25,7 @@ struct LightSampleData {
 };
 static_assert(sizeof(LightSampleData) == 64);
 
-/// What one light sample sees through one layer of a shadow array or of a reflective shadow map; an unused
+/// The view of one light sample through one layer of a shadow array or of a reflective shadow map; an unused
 /// one (behind an area light) is left empty.
 struct LightView {
   glm::mat4 worldToClip{1.0f};  ///< x, y in [-1,1] with y up, z in [0,1]

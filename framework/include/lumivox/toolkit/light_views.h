@@ -1,4 +1,4 @@
-// What the lights see, drawn as layers of one array: the frame of shadow maps and of reflective shadow maps.
+// Views of the lights, drawn as layers of one array: the frame of shadow maps and of reflective shadow maps.
 #pragma once
 
 #include <functional>

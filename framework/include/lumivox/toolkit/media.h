@@ -16,7 +16,7 @@ struct MediumData {
   glm::vec4 gridLowVoxel, gridExtent;
 };
 
-/// What a shader that includes common/media.glsl is bound to; nothing without media.
+/// Bindings of a shader that includes common/media.glsl; none without media.
 class MediaBinding : public shader::BindingSet {
  public:
   MediaBinding() = default;

@@ -1,6 +1,6 @@
 "use strict";
-// What every page needs: its records, elements, texts of numbers, tables and charts. A page is built as elements before it is
-// shown, and texts go in as texts, so that nothing in a record can be taken for markup.
+// The basis of every page: its records, elements, texts of numbers, tables and charts. A page is built as elements before it is shown, and
+// texts go in as texts, so that nothing in a record can be taken for markup.
 const lumivox = (function () {
   const records = id => {
     const block = document.getElementById(id);

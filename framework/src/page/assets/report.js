@@ -113,7 +113,7 @@
     return [
       caption("What the RMSE is made of: the squares of bias, of the image's own noise and of the reference's noise add up to the mean square "
         + "over seeds. More samples or more frames take the image's noise away, never the bias. Techniques without random numbers have "
-        + "none; two seeds alone tell noise only roughly, and the uncertainties are then bounds."
+        + "none; two seeds alone estimate the noise only roughly, and the uncertainties are then bounds."
         + (moves ? " Flicker: RMS of the changes from frame to frame, 1/24 s apart, that the reference does not make, its noise taken off." : "")
         + " All in W/(sr m²), ± one standard uncertainty."),
       table(columns("Pipeline", "Parameters", "Output", "Against",
@@ -360,6 +360,6 @@
       h("section", { class: "rest", "aria-label": "all scenes" }, summary(),
         voxels && section("voxels", "Voxels", voxelSection(data.voxels, data.voxel_scaling)),
         stress && section("stress", "Where each technique breaks", stressSection(data.stress, "")), provenance()),
-      h("p", { class: "caption" }, "The same numbers stand in the .csv and .json files beside this page.",
+      h("p", { class: "caption" }, "The same numbers are in the .csv and .json files beside this page.",
         images.brief && " This is the brief page: the first screen of each scene alone.")));
 })();

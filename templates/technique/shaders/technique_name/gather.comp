@@ -1,5 +1,5 @@
 #version 450
-// What a Lambert surface reflects of light of one radiance L from all sides: the irradiance is pi L, of which albedo / pi is reflected.
+// Reflection of a Lambert surface under the same radiance L from all sides: the irradiance is pi L, of which albedo / pi is reflected.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -4,7 +4,7 @@
 
 namespace lumivox {
 
-/// What the camera sees, per pixel. Positions are metres relative to the snapshot's origin.
+/// The surfaces that the camera sees, per pixel. Positions are metres relative to the snapshot's origin.
 struct GBuffer {
   gpu::TextureRef position;
   gpu::TextureRef normal;

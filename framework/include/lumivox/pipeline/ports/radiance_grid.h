@@ -23,7 +23,7 @@ struct RadianceGrid {
   gpu::TextureRef radiance;
   float unit = 1.0f;     ///< W/(sr m^2): keeps very bright and very dark light within half floats
   int filledLevels = 0;  ///< mip levels that hold values, finest first; 0: all that the texture has
-  /// What the opacity of a coarser voxel is that of: the whole of it, as seen through; or a path of one
+  /// The meaning of a coarser voxel's opacity: that of the whole voxel, as seen through; or of a path of one
   /// finest voxel's length in it, which is what the plain mean of the children gives for a uniform medium.
   enum class Opacity { ofVoxel, ofFinestVoxel } opacity = Opacity::ofVoxel;
   bool holdsMedia = false;  ///< participating media are in the voxels beside the surfaces

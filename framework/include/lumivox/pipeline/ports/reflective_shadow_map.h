@@ -4,8 +4,9 @@
 
 namespace lumivox {
 
-/// What each light sees, as a source of one-bounce light (Dachsbacher & Stamminger 2005): every texel is a
-/// small light. Lights and layers are those of a ShadowMap with the same settings; all layers have one size.
+/// The surfaces that each light sees, as a source of one-bounce light (Dachsbacher & Stamminger 2005): every
+/// texel is a small light. Lights and layers are those of a ShadowMap with the same settings; all layers have
+/// one size.
 struct ReflectiveShadowMap {
   gpu::BufferRef lights;
   gpu::BufferRef views;

@@ -8,7 +8,7 @@ namespace lumivox {
 
 /// Light in voxels as spherical-harmonic coefficients up to band 1, in one or more nested grids.
 struct ShGrid {
-  /// What a coefficient is one of. flux: of the intensity, W/sr, of the light that a voxel sends or that
+  /// The quantity of the coefficients. flux: of the intensity, W/sr, of the light that a voxel sends or that
   /// passes it, which grows with the voxel's face. radiance: of the radiance there, W/(sr m^2).
   enum class Quantity { flux, radiance };
   struct Level {
