@@ -221,7 +221,8 @@ std::vector<const ReportPoint*> pointersTo(const std::vector<ReportPoint>& point
 
 }  // namespace
 
-TEST_CASE("indirect light against its own bounces leads, and what is equal for all pipelines is told apart from it") {
+TEST_CASE(
+    "indirect light against its own bounces leads, and what is equal for all pipelines is told apart from it") {
   const std::vector<ReportPoint> points{layeredPoint("a", 1, 1.0, 0.2), layeredPoint("b", 1, 2.0, 0.1)};
   const auto comparisons = compareComponents(pointersTo(points), {"rmse", kDefaultMetric}, {});
   const auto led = ledComparison(comparisons);

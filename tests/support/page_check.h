@@ -32,7 +32,8 @@ struct PageFindings {
   std::string text() const;                        ///< all problems, one a line
 };
 
-/// Opens all details, moves every slider, tries every choice and box and sorts every table. The page's file stays as it is.
+/// Opens all details, moves every slider, tries every choice and box and sorts every table. The page's file
+/// stays as it is.
 PageFindings checkPage(Browser& browser, const std::filesystem::path& page);
 
 /// The first place of the text where it would load something from elsewhere; empty: nowhere.

@@ -43,19 +43,20 @@ std::optional<std::string> pythonWith(const std::string& modules) {
 struct Files {
   Workplace place;
   Files() {
-    place.write("direct.pipeline",
-                "pipeline \"Direct\" {\n  param samples 4 in 1..16\n  pass gbuffer direct_lighting.gbuffer { }\n"
-                "  pass shadow direct_lighting.shadow_map { size 64  area_samples $samples }\n"
-                "  pass direct direct_lighting.shade { gbuffer gbuffer  shadow shadow.depth }\n  output direct "
-                "direct.radiance\n}\nsweep samples { samples [1 4] }\n");
+    place.write(
+        "direct.pipeline",
+        "pipeline \"Direct\" {\n  param samples 4 in 1..16\n  pass gbuffer direct_lighting.gbuffer { }\n"
+        "  pass shadow direct_lighting.shadow_map { size 64  area_samples $samples }\n"
+        "  pass direct direct_lighting.shade { gbuffer gbuffer  shadow shadow.depth }\n  output direct "
+        "direct.radiance\n}\nsweep samples { samples [1 4] }\n");
     const std::string both = "'" + place.scene() + "' ";
     REQUIRE(runCommand("lumivox render " + both + "'" + place.file("direct.pipeline") + "' -q -o '" +
                        place.file("image.exr") + "'")
                 .exitCode == 0);
     const CommandResult report =
         runCommand("lumivox report " + both + "--pipeline '" + place.file("direct.pipeline") +
-                   "' -q --spp 16 --subpixels 1 --repeats 2 --store '" + place.file("results.sqlite") + "' -o '" +
-                   place.file("index.html") + "'");
+                   "' -q --spp 16 --subpixels 1 --repeats 2 --store '" + place.file("results.sqlite") +
+                   "' -o '" + place.file("index.html") + "'");
     INFO(report.errors);
     REQUIRE(report.exitCode == 0);
   }
@@ -63,7 +64,8 @@ struct Files {
 
 CommandResult runSnippet(const Files& files, const std::string& python, const Snippet& snippet) {
   files.place.write("snippet.py", snippet.text);
-  return runCommand("cd '" + files.place.path().string() + "' && PYTHONDONTWRITEBYTECODE=1 " + python + " snippet.py");
+  return runCommand("cd '" + files.place.path().string() + "' && PYTHONDONTWRITEBYTECODE=1 " + python +
+                    " snippet.py");
 }
 
 }  // namespace

@@ -131,7 +131,8 @@ TEST_CASE("a report and the store that it adds to give the same CSV, with a colu
   auto rows = parseCsv(report), stored = parseCsv(exported.output);
   REQUIRE(rows.size() == stored.size());
   const auto byCommand = [](const auto& a, const auto& b) {
-    return a.at("command") + a.at("output") + a.at("against") < b.at("command") + b.at("output") + b.at("against");
+    return a.at("command") + a.at("output") + a.at("against") <
+           b.at("command") + b.at("output") + b.at("against");
   };
   std::sort(rows.begin(), rows.end(), byCommand);
   std::sort(stored.begin(), stored.end(), byCommand);

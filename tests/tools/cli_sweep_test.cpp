@@ -35,7 +35,8 @@ struct Sweep {
   }
   CommandResult run(const std::string& more = {}, const std::string& format = "--json") const {
     return runCommand("lumivox -q sweep " + kScene + " --pipeline " + pipeline + " --store " + store +
-                      " --resolution 16x16 --spp 4 --subpixels 1 --repeats 2 --seeds 1 " + format + " " + more);
+                      " --resolution 16x16 --spp 4 --subpixels 1 --repeats 2 --seeds 1 " + format + " " +
+                      more);
   }
 };
 

@@ -203,9 +203,9 @@ TEST_CASE("names and commands stay texts on the page, whatever they hold") {
   INFO(texts(page.at("problems")));
   CHECK(page.at("problems").empty());
   const std::string text = page.at("text"), html = readFile(place.path() / "page.html");
-  for (const char* part :
-       {"<img src=x onerror=alert(1)>", "</script><script>alert(1)</script>", "A & B <device>", "one&<i>",
-        "it does not fit <at all>", "not run: the scene has no <light>", "lumivox report <x>", "12 of \"3\""}) {
+  for (const char* part : {"<img src=x onerror=alert(1)>", "</script><script>alert(1)</script>",
+                           "A & B <device>", "one&<i>", "it does not fit <at all>",
+                           "not run: the scene has no <light>", "lumivox report <x>", "12 of \"3\""}) {
     INFO(part);
     CHECK(contains(text, part));
   }
@@ -228,8 +228,10 @@ TEST_CASE("the first screen, the fronts and the table of what was needed say wha
   CHECK(defaults[2][4] == "75.0 %");
   CHECK(defaults[2][5] == "on it");
   CHECK(contains(text, "What breaks: 1 point of three failed."));
-  CHECK(contains(text, "What was needed: 2 of 5 passes of 1 pipeline; leaving out the rest saves up to 75.0 % of a first "
-                       "frame (one&<i>) and 4.0 MiB of memory, and changes no image by a single bit."));
+  CHECK(contains(
+      text,
+      "What was needed: 2 of 5 passes of 1 pipeline; leaving out the rest saves up to 75.0 % of a first "
+      "frame (one&<i>) and 4.0 MiB of memory, and changes no image by a single bit."));
   const Json summary = tableWith(page, {"Scene", "Pipeline", "Parameters"});
   REQUIRE(summary.size() == 8);
   CHECK(summary[1][2] == "samples 1");
@@ -254,7 +256,8 @@ TEST_CASE("the first screen, the fronts and the table of what was needed say wha
   const Json slopes = tableWith(page, {"Pipeline", "Parameter", "Others"});
   REQUIRE(slopes.size() > 2);
   CHECK(slopes[1][1] == "samples 1 .. 4");
-  const Json frames = tableWith(page, {"Pipeline", "Parameters", "Frame, ms", "Next frame, only what changed, ms"});
+  const Json frames =
+      tableWith(page, {"Pipeline", "Parameters", "Frame, ms", "Next frame, only what changed, ms"});
   REQUIRE(frames.size() == 7);
   CHECK(contains(frames[1][4], "0.500 ± "));
   CHECK(contains(frames[1][5], "0.250 ± "));
@@ -275,7 +278,8 @@ TEST_CASE("pipelines that come to the same passes share a row, and light that al
     point.point.errors.push_back(direct);
   }
   // "two" becomes what "one" is.
-  for (std::size_t i = 0; i < 3; ++i) record.scenes[0].points[3 + i].point.errors = record.scenes[0].points[i].point.errors;
+  for (std::size_t i = 0; i < 3; ++i)
+    record.scenes[0].points[3 + i].point.errors = record.scenes[0].points[i].point.errors;
   PointRecord other = record.scenes[0].points[0];
   other.point.pipeline = "other.pipeline";
   other.point.passOrder = {"draw"};
@@ -286,17 +290,20 @@ TEST_CASE("pipelines that come to the same passes share a row, and light that al
   CHECK(page.at("problems").empty());
   const Json defaults = tableWith(page, {"Pipeline", "Frame, ms"});
   REQUIRE(defaults.size() == 3);  // one and two; other
-  CHECK(contains(texts(Json::array({defaults[1][0], defaults[2][0]})), "one&<i> and two&<i>: the same passes here"));
+  CHECK(contains(texts(Json::array({defaults[1][0], defaults[2][0]})),
+                 "one&<i> and two&<i>: the same passes here"));
   CHECK(contains(page.at("text"), "Direct light is the same in all pipelines (FLIP 0.125 ± 0)"));
   CHECK(contains(page.at("text"), "two&<i> comes to the same passes as one&<i> in this scene"));
 }
 
-TEST_CASE("a brief page holds the first screens and the images of the default points alone, its files everything") {
+TEST_CASE(
+    "a brief page holds the first screens and the images of the default points alone, its files everything") {
   if (lacksNode()) return;
   const TemporaryDirectory place;
   ReportRecord record = badlyNamedReport();
   for (PointRecord& point : record.scenes[0].points) point.images = {{kWholeImage, "final", "png", {}}};
-  const ReportFiles whole = reportFiles(place.path() / "whole.html"), brief = reportFiles(place.path() / "brief.html");
+  const ReportFiles whole = reportFiles(place.path() / "whole.html"),
+                    brief = reportFiles(place.path() / "brief.html");
   writeReport(whole, record);
   writeReport(brief, record, ReportDetail::brief);
   CHECK(readFile(whole.json) == readFile(brief.json));

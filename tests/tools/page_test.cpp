@@ -89,7 +89,8 @@ TEST_CASE("the check finds nothing wrong with a good page and something wrong wi
            Break{"<h1", "<div style=\"width:1900px\">wide</div><h1", "too wide for a desk"},
            Break{"<h1", "<div style=\"width:850px\">wide</div><h1", "too wide for a tablet"},
            Break{"<h1", "<div style=\"position:absolute;top:30px\">above</div><h1", "lie upon each other"},
-           Break{"<h1", "<p style=\"width:60px;overflow:hidden;white-space:nowrap\">a long text</p><h1", "is cut"},
+           Break{"<h1", "<p style=\"width:60px;overflow:hidden;white-space:nowrap\">a long text</p><h1",
+                 "is cut"},
            Break{"<h1", "<p style=\"color:#bbb\">pale</p><h1", "on a light page: “pale” has a contrast of"},
            Break{"<label>", "<span>", "no name for a screen reader"},
        }) {
@@ -145,10 +146,10 @@ TEST_CASE(
   CHECK(blank.hasProblem("it is blank"));
 
   // A brief page passes the same check.
-  const CommandResult brief =
-      runCommand("lumivox report '" + place.scene() + "' --pipeline '" + committedPipeline("voxel_cone_tracing") +
-                 "' -q --brief --no-sweep --set resolution=8 --resolution 24x24 --spp 16 --subpixels 1 --repeats 2 -o '" +
-                 place.file("brief.html") + "'");
+  const CommandResult brief = runCommand(
+      "lumivox report '" + place.scene() + "' --pipeline '" + committedPipeline("voxel_cone_tracing") +
+      "' -q --brief --no-sweep --set resolution=8 --resolution 24x24 --spp 16 --subpixels 1 --repeats 2 -o '" +
+      place.file("brief.html") + "'");
   INFO(brief.errors);
   REQUIRE(brief.exitCode == 0);
   const PageFindings small = checkPage(browser, place.file("brief.html"));

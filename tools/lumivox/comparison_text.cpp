@@ -83,7 +83,8 @@ std::string basisText(const PipelineComparison& comparison) {
                   comparison.controls == 0 ? ", no point was timed twice here"
                                            : fmt::format(" ({} points timed twice)", comparison.controls));
   for (const auto& [pipeline, as] : comparison.same)
-    text += fmt::format("{} comes to the same passes as {} in this scene\n", shortName(pipeline), shortName(as));
+    text +=
+        fmt::format("{} comes to the same passes as {} in this scene\n", shortName(pipeline), shortName(as));
   if (comparison.equalForAll)
     text += "all pipelines have a point with the same error, to the bit: this light tells nothing apart\n";
   if (comparison.undecided > 0)

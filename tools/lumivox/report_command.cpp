@@ -46,8 +46,7 @@ void printSummary(const ReportSummary& summary) {
   const std::vector<std::string> outputs = judgedOutputs(points);
 
   std::vector<std::vector<std::string>> rows{{"Scene", "Pipeline", "Parameters", "Frame ms"}};
-  for (const std::string& output : outputs)
-    rows[0].push_back(errorHeading(output));
+  for (const std::string& output : outputs) rows[0].push_back(errorHeading(output));
   rows[0].push_back("Memory");
   rows[0].push_back("Health");
   for (const ReportPoint& point : summary.points) {
@@ -96,7 +95,9 @@ int report(const ReportCommand& command, const GlobalOptions& global) {
   const auto device = global.openDevice();
   const ReportSummary summary = makeReport(
       *device, techniques, options, [&](const std::filesystem::path& file) { return global.loadScene(file); },
-      [&](const ReportRecord& record) { writeReport(files, record, command.brief ? ReportDetail::brief : ReportDetail::whole); });
+      [&](const ReportRecord& record) {
+        writeReport(files, record, command.brief ? ReportDetail::brief : ReportDetail::whole);
+      });
   if (command.json) {
     print(readFile(files.json));
   } else if (command.csv) {
@@ -135,9 +136,10 @@ void addReportCommand(Commands& commands) {
       "a budget of the table of equal time, such as 16ms; may be repeated (default: round numbers)");
   addRepeatable(*command, "--equal-error", all->equalErrors,
                 "an error of the table of equal error; may be repeated (default: round numbers)");
-  command->add_flag("--brief", all->brief,
-                    "a page of one screen per scene, with the images of the default points alone; CSV and JSON "
-                    "hold everything");
+  command->add_flag(
+      "--brief", all->brief,
+      "a page of one screen per scene, with the images of the default points alone; CSV and JSON "
+      "hold everything");
   auto* json = command->add_flag("--json", all->json, "print the JSON in place of the table");
   command->add_flag("--csv", all->csv, "print the CSV in place of the table")->excludes(json);
   const GlobalOptions& global = commands.global;

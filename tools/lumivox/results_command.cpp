@@ -174,9 +174,9 @@ int comparePipelinesOf(const ResultsCommand& command, ComparisonTable table) {
     text += group.title + "\n";
     for (const PipelineComparison& comparison : askedComparisons(command, points, limits)) {
       text += comparison.points.empty()
-                  ? fmt::format("no run has a {} of {}\n", command.metric,
-                                comparison.component == name(Contributes::final) ? kWholeImage
-                                                                                 : comparison.component)
+                  ? fmt::format(
+                        "no run has a {} of {}\n", command.metric,
+                        comparison.component == name(Contributes::final) ? kWholeImage : comparison.component)
                   : comparisonText(comparison, table);
       Json json = toJson(comparison);
       json["runs"] = group.title;
@@ -399,13 +399,16 @@ void addResultsCommands(Commands& commands) {
     auto* subcommand =
         add(name, meaning, [table](const ResultsCommand& asked) { return comparePipelinesOf(asked, table); });
     command->addFilterTo(*subcommand);
-    subcommand->add_option("--component", command->component,
-                           "indirect_diffuse, direct, ..., whole_image (default: the indirect component that most "
-                           "pipelines have, then whole_image)");
+    subcommand->add_option(
+        "--component", command->component,
+        "indirect_diffuse, direct, ..., whole_image (default: the indirect component that most "
+        "pipelines have, then whole_image)");
     subcommand->add_option("--metric", command->metric,
                            "flip (default), rmse, relative_mse, percentile95, ...");
-    subcommand->add_option("--against", command->against, "misses (full transport; default for whole_image) or bias (the own model; default "
-                           "for components)")
+    subcommand
+        ->add_option("--against", command->against,
+                     "misses (full transport; default for whole_image) or bias (the own model; default "
+                     "for components)")
         ->check(CLI::IsMember({"misses", "bias"}));
     subcommand->add_flag("--json", command->json, "print everything as JSON in place of the table");
     return subcommand;

@@ -79,8 +79,7 @@ std::string runsTable(const std::vector<StoredRun>& runs) {
   const std::vector<std::string> outputs = judgedOutputs(points);
   std::vector<std::vector<std::string>> rows{
       {"Run", "Scene", "Pipeline", "Parameters", "Seeds", "Size", "Frame ms", "Memory"}};
-  for (const std::string& output : outputs)
-    rows[0].push_back(errorHeading(output));
+  for (const std::string& output : outputs) rows[0].push_back(errorHeading(output));
   rows[0].push_back("State");
   for (const StoredRun& run : runs) {
     const ReportPoint& point = run.point;

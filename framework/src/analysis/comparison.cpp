@@ -138,7 +138,8 @@ std::string contentKey(const StoredRun& run) {
 bool isEqualForAll(const PipelineComparison& comparison) {
   if (comparison.pipelines.size() < 2) return false;
   std::vector<std::set<double>> errors(comparison.pipelines.size());
-  for (const ComparedPoint& point : comparison.points) errors[point.pipeline].insert(point.tradeOff.error.value);
+  for (const ComparedPoint& point : comparison.points)
+    errors[point.pipeline].insert(point.tradeOff.error.value);
   return std::any_of(errors[0].begin(), errors[0].end(), [&](double error) {
     return std::all_of(errors.begin(), errors.end(),
                        [&](const std::set<double>& own) { return own.count(error) != 0; });
@@ -336,8 +337,7 @@ std::optional<std::size_t> ledComparison(const std::vector<PipelineComparison>& 
   const std::string metric = hasDefault ? kDefaultMetric : comparisons.front().metric;
   std::optional<std::size_t> led;
   for (std::size_t i = 0; i < comparisons.size(); ++i)
-    if (comparisons[i].metric == metric &&
-        (!led || tellingOf(comparisons[i]) > tellingOf(comparisons[*led])))
+    if (comparisons[i].metric == metric && (!led || tellingOf(comparisons[i]) > tellingOf(comparisons[*led])))
       led = i;
   return led;
 }

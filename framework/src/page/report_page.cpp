@@ -52,8 +52,7 @@ Json sceneJson(const ReportRecord& record, const SceneRecord& scene) {
   const std::vector<PipelineComparison> comparisons =
       compareComponents(points, {std::begin(kMetrics), std::end(kMetrics)},
                         {record.equalTimesMs, record.equalErrors, scene.floor});
-  for (const PipelineComparison& comparison : comparisons)
-    json["comparisons"].push_back(toJson(comparison));
+  for (const PipelineComparison& comparison : comparisons) json["comparisons"].push_back(toJson(comparison));
   const std::optional<std::size_t> led = ledComparison(comparisons);
   json["led_comparison"] = led ? Json(*led) : Json(nullptr);
   return json;

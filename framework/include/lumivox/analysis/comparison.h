@@ -66,8 +66,8 @@ struct PipelineComparison {
   std::size_t undecided = 0;
   /// Pipelines that are not among these, and the one that each comes to the same passes as: samePipelines().
   std::map<std::string, std::string> same;
-  /// Every pipeline, of two at least, has a point with one and the same error, to the bit: the component tells
-  /// nothing apart. Direct light that all pipelines make with the same passes, for instance.
+  /// Every pipeline, of two at least, has a point with one and the same error, to the bit: the component
+  /// tells nothing apart. Direct light that all pipelines make with the same passes, for instance.
   bool equalForAll = false;
 
   /// Whether some of its points are on the Pareto front: no other pipeline beats it at their budgets.
@@ -108,8 +108,8 @@ std::vector<PipelineComparison> compareComponents(const std::vector<const Report
                                                   const ComparisonLimits& limits);
 
 /// The comparison that a reader is shown first, an index: the indirect component that most pipelines have and
-/// that differs between them, against the techniques' own model; where there is none, the whole image, or what
-/// there is. Of the metric kDefaultMetric, or of the first one's. Empty: there is nothing to compare.
+/// that differs between them, against the techniques' own model; where there is none, the whole image, or
+/// what there is. Of the metric kDefaultMetric, or of the first one's. Empty: there is nothing to compare.
 std::optional<std::size_t> ledComparison(const std::vector<PipelineComparison>& comparisons);
 
 /// Stored runs that can be set against each other: one scene with its content, camera, time, size of the

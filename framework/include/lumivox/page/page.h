@@ -16,7 +16,8 @@ ReportFiles reportFiles(const std::filesystem::path& page);
 
 enum class ReportDetail {
   whole,
-  brief  ///< of each scene the first screen alone, with the images of the default points; CSV and JSON are whole
+  brief  ///< of each scene the first screen alone, with the images of the default points; CSV and JSON are
+         ///< whole
 };
 
 /// Every number of the page is in the JSON, but for those that a reader derives from others.
