@@ -287,13 +287,17 @@ PageFindings checkPage(Browser& browser, const std::filesystem::path& page) {
   };
   browser.emulate("screen", "light");
   browser.open(page, kDesk[0], kDesk[1]);
-  const nlohmann::json first = browser.evaluate(kFirstScreen);
-  const auto end = [&](const char* what) {
-    return first.at(what).is_null() ? std::numeric_limits<double>::infinity() : first.at(what).get<double>();
-  };
-  findings.height = first.at("height");
-  findings.firstChartEnds = end("chart");
-  findings.firstImageEnds = end("image");
+  for (const int(&size)[2] : {kTablet, kDesk}) {
+    browser.resize(size[0], size[1]);
+    const nlohmann::json first = browser.evaluate(kFirstScreen);
+    const auto later = [&](double& end, const char* what) {
+      end = std::max(end, first.at(what).is_null() ? std::numeric_limits<double>::infinity()
+                                                   : first.at(what).get<double>());
+    };
+    later(findings.firstChartEnds, "chart");
+    later(findings.firstImageEnds, "image");
+    findings.height = first.at("height");
+  }
   const nlohmann::json found = browser.evaluate(kProbe);
   findings.canvases = found.at("canvases");
   findings.charts = found.at("charts");

@@ -11,8 +11,9 @@ namespace lumivox::test {
 
 struct PageFindings {
   std::size_t canvases = 0, charts = 0, tables = 0, rows = 0, images = 0, links = 0;
-  /// Of the page as it opens in a window of 1400 x 900: its height, and where the first chart and the first
-  /// image end, CSS pixels; infinite when there is none or it is folded.
+  /// Of the page as it opens: its height in a window of 1400 x 900, and where the first chart and the first
+  /// image end there or in one of 800 x 900, whichever is later, CSS pixels; infinite when there is none or
+  /// it is folded.
   double height = 0.0, firstChartEnds = 0.0, firstImageEnds = 0.0;
   struct Control {
     std::string name;         ///< its tag and attributes

@@ -197,7 +197,8 @@ const comparisonOf = (function () {
       if (point.failure) return h("span", { class: "bad" }, "failed");
       if (own.length === 0) return soft("has none of it");
       if (own.some(one => one.beaten_by === null)) return h("span", { class: "good" }, "on it");
-      const by = [...new Set(own.map(one => comparison.points[one.beaten_by]).filter(one => one.file !== point.pipeline).map(one => shortName(one.file)))];
+      const others = own.map(one => comparison.points[one.beaten_by].file).filter(file => file !== point.pipeline);
+      const by = [...new Set(others.map(shortName))];
       return h("span", { title: "by " + listed(by) }, "beaten");
     };
     const rows = points.map(point => {
@@ -246,8 +247,8 @@ const comparisonOf = (function () {
     if (components.length === 0) return null;
     return components.map(component => {
       const one = equal.find(other => other.component === component);
-      return componentTitle(component) + " light is the same in all pipelines (FLIP " + plain(one.points.find(point => scene.points[point.source].default).error)
-        + "): it tells nothing apart. ";
+      const error = one.points.find(point => scene.points[point.source].default).error;
+      return componentTitle(component) + " light is the same in all pipelines (FLIP " + plain(error) + "): it tells nothing apart. ";
     }).join("");
   }
 
@@ -264,7 +265,8 @@ const comparisonOf = (function () {
     const followers = [];
     const nothing = scene.components.filter(component => !comparisons.some(one => one.component === component));
     if (!led || led.front.length === 0)
-      return { plot: h("p", null, "No pipeline has an error to compare by."), defaults: null, chosen: () => null, follow: () => {}, equal: null, sections: leftOut(scene) };
+      return { plot: h("p", null, "No pipeline has an error to compare by."), defaults: null, equal: null, sections: leftOut(scene),
+               chosen: () => null, follow: () => {} };
     const keyOf = one => one.component + "/" + one.against;
     let key = keyOf(led), metric = led.metric;
     const chosen = () => comparisons.find(one => keyOf(one) === key && one.metric === metric) || led;

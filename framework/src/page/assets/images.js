@@ -54,7 +54,8 @@ const imagesOf = (function () {
     });
     if (figures.length === 0) return null;
     const reference = own.references.find(one => one.layer === layer);
-    const first = reference && figure(pngAddress(reference.png), "reference: " + layer, "reference", ["reference ", h("span", { class: "soft" }, layer)]);
+    const first = reference && figure(pngAddress(reference.png), "reference: " + layer, "reference",
+                                      ["reference ", h("span", { class: "soft" }, layer)]);
     return h("div", { class: "row", role: "group", "aria-label": "images of " + componentTitle(comparison.component) }, first, figures);
   }
 
@@ -65,7 +66,8 @@ const imagesOf = (function () {
     const referenceFigure = layer => {
       const reference = own.references.find(one => one.layer === layer);
       if (!reference) return null;
-      if (!references.some(one => one.title === "reference: " + layer)) references.push({ title: "reference: " + layer, address: pngAddress(reference.png) });
+      if (!references.some(one => one.title === "reference: " + layer))
+        references.push({ title: "reference: " + layer, address: pngAddress(reference.png) });
       return figure(pngAddress(reference.png), "reference: " + layer, "reference", "reference: " + layer);
     };
     own.points.forEach((outputs, index) => {

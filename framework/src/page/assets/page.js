@@ -180,7 +180,7 @@ const lumivox = (function () {
                      star: "M6 1h2v5h5v2h-5v5h-2v-5h-5v-2h5z" };
   function swatch(pipeline) {
     const { shape, index } = style(pipeline);
-    const drawing = document.createElementNS("http://www.w3.org/2000/svg", "svg"), path = document.createElementNS("http://www.w3.org/2000/svg", "path");
+    const [drawing, path] = ["svg", "path"].map(tag => document.createElementNS("http://www.w3.org/2000/svg", tag));
     for (const [name, value] of Object.entries({ class: "swatch line-" + index % colours.light.length, viewBox: "0 0 14 14", "aria-hidden": "true" }))
       drawing.setAttribute(name, value);
     path.setAttribute("d", outlines[shape]);

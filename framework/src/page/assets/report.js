@@ -8,7 +8,8 @@
   const timesOf = time => time && time.repeats > 0;
   const good = text => h("span", { class: "good" }, text);
   const bad = text => h("span", { class: "bad" }, text);
-  const columns = (...titles) => titles.map(title => typeof title === "string" ? { title } : { title: title[0], kind: title[1], hidden: title[2] === "hidden" });
+  const columns = (...titles) => titles.map(title => typeof title === "string" ? { title }
+    : { title: title[0], kind: title[1], hidden: title[2] === "hidden" });
   const plural = (count, one, many) => count + " " + (count === 1 ? one : many || one + "s");
   const named = file => [swatch(file), pipelineName(file)];
   const rowOf = (point, cells) => ({ kind: point.default ? "default" : "", pipeline: point.pipeline, isDefault: point.default, cells });
@@ -52,13 +53,16 @@
     if (own.length === 0) return h("p", null, h("b", null, "What was needed: "), "not measured.");
     const sum = member => own.reduce((total, one) => total + one[member], 0);
     const savings = own.filter(one => one.first_frame_saves.told === "saved")
-      .map(one => ({ name: shortName(one.pipeline), share: one.first_frame_saves.ms / one.first_frame_saves.of_ms })).sort((a, b) => b.share - a.share);
+      .map(one => ({ name: shortName(one.pipeline), share: one.first_frame_saves.ms / one.first_frame_saves.of_ms }))
+      .sort((a, b) => b.share - a.share);
     const differing = own.filter(one => !one.same_image);
     return h("p", null, h("b", null, "What was needed: "),
       `${sum("passes_kept")} of ${sum("passes_total")} passes of ${plural(own.length, "pipeline")}; leaving out the rest `,
-      savings.length > 0 ? `saves up to ${percent(savings[0].share)} of a first frame (${savings[0].name})` : "saves no time that could be measured",
+      savings.length > 0 ? `saves up to ${percent(savings[0].share)} of a first frame (${savings[0].name})`
+                         : "saves no time that could be measured",
       ` and ${bytes(Math.max(0, sum("bytes_keep_everything") - sum("bytes")))} of memory, and `,
-      differing.length === 0 ? "changes no image by a single bit." : bad("CHANGES the image of " + listed(differing.map(one => shortName(one.pipeline))) + "."));
+      differing.length === 0 ? "changes no image by a single bit."
+                             : bad("CHANGES the image of " + listed(differing.map(one => shortName(one.pipeline))) + "."));
   }
 
   /** Number, camera, size and reference, in a line. */
@@ -76,11 +80,12 @@
       return [imagesOf.row(scene, index, comparison),
               layer && h("p", { class: "caption" }, "Default parameters, shown at exposure " + number(layer.display_exposure) + ".")];
     };
-    const row = h("div", null, chosenRow());
+    const row = h("div", { class: "images" }, chosenRow());
     compared.follow(() => row.replaceChildren(h("div", null, chosenRow())));
     return h("div", { class: "overview" }, sceneLine(scene),
-      h("div", { class: "two" }, compared.plot, h("div", null, compared.defaults, compared.equal && h("p", { class: "caption" }, compared.equal))),
-      row, breaks(scene), neededSentence(scene));
+      h("div", { class: "two" }, compared.plot,
+        h("div", { class: "defaults" }, compared.defaults, compared.equal && h("p", { class: "caption" }, compared.equal))),
+      row, h("div", { class: "told-of" }, breaks(scene), neededSentence(scene)));
   }
 
   // ---- the sections of a scene
@@ -149,8 +154,9 @@
     for (const point of points) for (const pass of point.passes) totals.set(pass.pass, (totals.get(pass.pass) || 0) + of(pass));
     const largest = [...totals].filter(([, total]) => total > 0).sort((a, b) => b[1] - a[1]).map(([name]) => name).slice(0, 8);
     const parts = point => {
-      const own = largest.map((name, index) => ({ name, kind: "pass-" + index, value: point.passes.filter(pass => pass.pass === name).reduce((sum, pass) => sum + of(pass), 0) }));
-      own.push({ name: "other passes", kind: "pass-other", value: point.passes.filter(pass => !largest.includes(pass.pass)).reduce((sum, pass) => sum + of(pass), 0) });
+      const sum = wanted => point.passes.filter(pass => wanted(pass.pass)).reduce((total, pass) => total + of(pass), 0);
+      const own = largest.map((name, index) => ({ name, kind: "pass-" + index, value: sum(one => one === name) }));
+      own.push({ name: "other passes", kind: "pass-other", value: sum(one => !largest.includes(one)) });
       if (rest) own.push({ name: "between passes", kind: "pass-between", value: rest(point) });
       return own.filter(part => part.value > 0);
     };
@@ -158,8 +164,10 @@
     const used = new Map(points.flatMap(parts).map(part => [part.name, part.kind]));
     return h("figure", { class: "bars" }, h("figcaption", null, h("b", null, title)),
       points.map((point, at) => h("div", { class: "bar" }, h("div", { class: "bar-name" }, pipelineName(point.pipeline)),
-        h("div", { class: "bar-parts", role: "img", "aria-label": shortName(point.pipeline) + ": " + parts(point).map(part => part.name + " " + text(part.value)).join(", ") },
-          parts(point).map(part => h("span", { class: part.kind, style: "width:" + (100 * part.value / most).toFixed(3) + "%", title: part.name + ": " + text(part.value) }))),
+        h("div", { class: "bar-parts", role: "img",
+                   "aria-label": shortName(point.pipeline) + ": " + parts(point).map(part => part.name + " " + text(part.value)).join(", ") },
+          parts(point).map(part => h("span", { class: part.kind, style: "width:" + (100 * part.value / most).toFixed(3) + "%",
+                                               title: part.name + ": " + text(part.value) }))),
         h("div", { class: "bar-total" }, text(sums[at])))),
       h("ul", { class: "legend" }, [...used].map(([name, kind]) => h("li", null, h("span", { class: "key " + kind }), broken(name)))));
   }
