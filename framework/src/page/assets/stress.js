@@ -25,7 +25,9 @@ const stressSection = (function () {
     const cases = axis(cells, "family", "case"), techniques = axis(cells, "technique", "pipeline");
     const pipelines = techniques.flatMap(one => one.names);
     const at = (name, pipeline) => cells.findLastIndex(cell => cell.case === name && cell.pipeline === pipeline);
-    const text = cell => cell.outcome === "not_applicable" ? "" : hasNumber(cell) ? number(cell.value) + unit(cell) : words(cell.outcome);
+    // Long units are in the title, so that a dozen columns fit.
+    const brief = cell => cell.unit.length > 3 ? "" : unit(cell);
+    const text = cell => cell.outcome === "not_applicable" ? "" : hasNumber(cell) ? number(cell.value) + brief(cell) : words(cell.outcome);
     const place = (name, pipeline) => {
       const index = at(name, pipeline), cell = cells[index];
       if (!cell) return h("td", null);
