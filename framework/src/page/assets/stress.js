@@ -35,7 +35,7 @@ const stressSection = (function () {
       return h("td", { class: "cell " + cell.outcome, title: shortName(pipeline) + ", " + name + ": " + value + (cell.measure ? "; " + cell.measure : "") },
                text(cell) && h("a", { href: "#cell-" + index }, text(cell)));
     };
-    return h("div", { class: "scroll", tabindex: 0 }, h("table", { class: "stress" },
+    return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "pipelines and cases" }, h("table", { class: "stress" },
       // Names of the columns stand upright, so that a dozen and more fit.
       h("thead", null,
         h("tr", null, h("th", null), techniques.map(one => h("th", { class: "group", colspan: one.names.length }, words(one.group)))),
