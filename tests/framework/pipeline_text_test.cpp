@@ -143,7 +143,7 @@ TEST_CASE("a parameter without a value is refused") {
 
 TEST_CASE("a range in another unit than the default is refused") {
   CHECK_THAT(findingsOfBody("param n 1 cm in 1..2 s"),
-             Contains("the range's unit measures time; expected length, as the default"));
+             Contains("the range has a unit of time; expected a unit of length, as the default"));
 }
 
 TEST_CASE("an output that names no output of a pass is refused") {

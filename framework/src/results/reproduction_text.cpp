@@ -487,6 +487,7 @@ PublishedResult PublishedResult::load(const fs::path& file) {
   result.document = std::make_shared<const dsl::Document>(dsl::parseFile(file));
   std::vector<Diagnostic> findings = result.document->findings;
   ResultReader(result, *result.document, findings).read();
+  dsl::dropConsequences(*result.document, findings);
   throwOrLog(std::move(findings));
   return result;
 }

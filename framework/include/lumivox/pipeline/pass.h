@@ -91,8 +91,9 @@ class PortBase {
 class OutBase : public PortBase {
  public:
   OutBase(Pass* pass, std::string name, const PortKind& kind, Contributes contributes, Needs needs,
-          std::string meaning);
+          std::string meaning, Levels levels);
   Contributes contributes() const { return contributes_; }
+  Levels levels() const { return levels_; }
   Needs needs() const { return needs_; }
   /// Whether anything wants this output in this run: false when it was pruned. A pass asks before it computes
   /// the output.
@@ -109,6 +110,7 @@ class OutBase : public PortBase {
   friend class PassHarness;
   Contributes contributes_;
   Needs needs_;
+  Levels levels_;
   bool wanted_ = true;
 };
 
@@ -118,10 +120,10 @@ template <class Port>
 class Out : public OutBase {
  public:
   Out(Pass* pass, std::string name, Contributes contributes = Contributes::nothing,
-      Needs needs = Needs::nothing, std::string meaning = {})
-      : OutBase(pass, std::move(name), portKind<Port>(), contributes, needs, std::move(meaning)) {}
-  Out(Pass* pass, std::string name, std::string meaning)
-      : Out(pass, std::move(name), Contributes::nothing, Needs::nothing, std::move(meaning)) {}
+      Needs needs = Needs::nothing, std::string meaning = {}, Levels levels = Levels::unspecified)
+      : OutBase(pass, std::move(name), portKind<Port>(), contributes, needs, std::move(meaning), levels) {}
+  Out(Pass* pass, std::string name, std::string meaning, Levels levels = Levels::unspecified)
+      : Out(pass, std::move(name), Contributes::nothing, Needs::nothing, std::move(meaning), levels) {}
   Out& operator=(Port value) {
     value_ = std::move(value);
     return *this;
@@ -147,8 +149,9 @@ enum class Presence { required, optional, history };
 class InBase : public PortBase {
  public:
   InBase(Pass* pass, std::string name, const PortKind& kind, Presence presence, std::string meaning,
-         Needs needs);
+         Needs needs, Expects expects);
   Presence presence() const { return presence_; }
+  const Expects& expects() const { return expects_; }
   /// Contents that the scene must have for this input to be read. Without them nothing is made for its sake.
   Needs needs() const { return needs_; }
   /// False when nothing is connected or what is connected was pruned away: the pass then uses the variant
@@ -170,17 +173,19 @@ class InBase : public PortBase {
  private:
   Presence presence_;
   Needs needs_;
+  Expects expects_;
 };
 
 template <class Port>
 class In : public InBase {
  public:
-  In(Pass* pass, std::string name, std::string meaning = {})
+  In(Pass* pass, std::string name, std::string meaning = {}, Expects expects = {})
       : InBase(pass, std::move(name), portKind<Port>(), Presence::required, std::move(meaning),
-               Needs::nothing) {}
+               Needs::nothing, expects) {}
   /// `needs` is for inputs that are not required: what the scene must have for the input to be read.
-  In(Pass* pass, std::string name, Presence presence, std::string meaning = {}, Needs needs = Needs::nothing)
-      : InBase(pass, std::move(name), portKind<Port>(), presence, std::move(meaning), needs) {}
+  In(Pass* pass, std::string name, Presence presence, std::string meaning = {}, Needs needs = Needs::nothing,
+     Expects expects = {})
+      : InBase(pass, std::move(name), portKind<Port>(), presence, std::move(meaning), needs, expects) {}
   const Port& operator*() const {
     return presence() == Presence::history ? *held_ : static_cast<const Out<Port>*>(source_)->value();
   }

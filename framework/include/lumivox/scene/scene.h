@@ -261,8 +261,9 @@ struct SceneLoadOptions {
 /// path (the message lists where it was sought).
 Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
-/// The findings of a text without loading any model: what `lumivox check` prints. Missing files are findings
-/// too, unless the model is sought on the asset path only.
+/// Loads the scene like loadScene(), but goes on behind every finding; DiagnosticsError with all of them,
+/// those of models and images at the line that names the file. An absent model is a finding too. Warnings are
+/// logged with their places.
 void checkScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
 }  // namespace lumivox
