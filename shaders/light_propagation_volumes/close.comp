@@ -13,10 +13,8 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters {
   vec3 listLow;       // m, of the grid of the fragments
   float listVoxel;    // m
-  vec3 gridLow;       // m, of the cells
-  float cellSize;     // m
-  ivec3 resolution;   // of the parts: one more than the cells
 };
+#include "cell_grid.glsl"
 // For each axis, parts of the face towards the lower neighbour.
 layout(binding = 0, r32ui) uniform uimage3D partsX;
 layout(binding = 1, r32ui) uniform uimage3D partsY;

@@ -15,11 +15,9 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters {
   vec3 listLow;      // m, of the grid of the fragments
   float listVoxel;   // m
-  vec3 gridLow;      // m, of the cells
-  float cellSize;    // m
-  ivec3 resolution;
   int twoSided;
 };
+#include "cell_grid.glsl"
 layout(binding = 5) uniform sampler3D occluded;
 
 // Listing 4.27: contrast of a colour in 7 bits, behind it the colour in 8 bits each.

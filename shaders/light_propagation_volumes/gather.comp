@@ -11,10 +11,8 @@ layout(constant_id = 1) const int closure = 1;       // 0: what two bands make n
 layout(constant_id = 2) const int ownLobe = 0;       // 1: lobe and unit of Listing 4.35
 layout(constant_id = 3) const int radialBlend = 0;   // 1: blended as in Listing 4.36
 
+#include "cell_grid.glsl"
 layout(std140, binding = 0) uniform Parameters {
-  vec3 gridLow;        // m
-  float cellSize;      // m
-  ivec3 resolution;
   float blend;         // width of the seam, cells
   float offset;        // of the lookup along the normal, cells
   float exponent;      // of the radiance

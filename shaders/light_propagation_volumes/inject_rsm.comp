@@ -11,11 +11,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(std140, binding = 0) uniform Parameters {
-  vec3 gridLow;       // m
-  float cellSize;     // m
-  ivec3 resolution;
-};
+#include "cell_grid.glsl"
 layout(binding = 0) uniform sampler2DArray rsmPosition;
 layout(binding = 1) uniform sampler2DArray rsmNormal;
 layout(binding = 2) uniform sampler2DArray rsmFlux;

@@ -9,10 +9,8 @@
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
+#include "cell_grid.glsl"
 layout(std140, binding = 0) uniform Parameters {
-  vec3 gridLow;       // m
-  float cellSize;     // m
-  ivec3 resolution;
   float largestFlux;  // W
   int lightCount;
 };

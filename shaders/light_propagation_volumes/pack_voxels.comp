@@ -9,10 +9,8 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters {
   vec3 listLow;      // m, of the grid of the fragments
   float listVoxel;   // m
-  vec3 gridLow;      // m, of the voxels
-  float cellSize;    // m
-  ivec3 resolution;
 };
+#include "cell_grid.glsl"
 layout(std430, binding = 3) buffer Words { PackedVoxel words[]; };
 
 void main() {

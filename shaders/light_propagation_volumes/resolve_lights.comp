@@ -8,8 +8,8 @@
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
+#include "cell_grid.glsl"
 layout(std140, binding = 0) uniform Parameters {
-  ivec3 resolution;
   float meanCosine;    // 0: the one at which nothing leaves backwards
 };
 layout(binding = 0, rgba32f) uniform writeonly image3D red;

@@ -9,8 +9,8 @@ layout(constant_id = 0) const int cosineLobe = 0;
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
+#include "cell_grid.glsl"
 layout(std140, binding = 0) uniform Parameters {
-  ivec3 resolution;
   float outsideShare;   // light in a cell of this size over that in one of the outside
   vec3 cellInOutside;   // size of a cell in texture coordinates of the outside
   float occlusion;

@@ -8,12 +8,8 @@
 layout(local_size_x = 64) in;
 #include "common/scene.glsl"
 
-layout(std140, binding = 1) uniform Grid {
-  vec3 gridLow;     // m
-  float voxelSize;  // m
-  ivec3 resolution;
-  float pointSize;  // voxels
-};
+layout(std140, binding = 1) uniform Point { float pointSize; };  // voxels
+#include "list_grid.glsl"
 layout(binding = 0, r32ui) uniform uimage3D words;
 #include "grid_corner.glsl"
 #include "surface_texture.glsl"

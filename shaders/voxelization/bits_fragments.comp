@@ -1,13 +1,9 @@
 #version 450
 // A black opaque fragment for every set voxel that has no surface sample: it blocks light and reflects none.
 #include "bits.glsl"
-#include "common/voxel.glsl"
+#include "fragment_list.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-
-layout(std430, binding = 0) buffer Count { uint fragmentCount; };
-layout(std140, binding = 0) uniform Parameters { int capacity; };
-layout(std430, binding = 1) writeonly buffer Fragments { VoxelFragment fragments[]; };
 
 void main() {
   ivec3 place = ivec3(gl_GlobalInvocationID);

@@ -1,5 +1,5 @@
 // The fragment that a triangle leaves in the voxels of a column; the same to the bit for every voxelizer that goes by columns.
-// Including files declare the textures before, as the axes TEXTURES and MASKS say.
+#include "textures.glsl"
 #include "triangle.glsl"
 
 // How far inside an edge, in voxels, the sample of a column lies whose middle the triangle does not cover. On the edge itself, where the next

@@ -5,26 +5,11 @@
 #pragma lumivox axis MASKS 0 1
 #define SCENE_MATERIALS
 #include "common/scene.glsl"
-#include "common/voxel.glsl"
+#include "fragment_list.glsl"
 
-layout(std140, binding = 1) uniform Grid {
-  vec3 gridLow;
-  float voxelSize;
-  ivec3 resolution;
-  int firstIndex;
-  int capacity;
-};
 // 1: every voxel that the triangle touches in depth; 0: only the one at the middle of the column.
 layout(constant_id = 0) const int depthRange = 1;
 
-layout(std430, binding = 7) buffer Count { uint fragmentCount; };
-layout(std430, binding = 8) writeonly buffer Fragments { VoxelFragment fragments[]; };
-#if TEXTURES
-layout(binding = 0) uniform sampler2D diffuseTexture;
-#endif
-#if MASKS
-layout(binding = 1) uniform sampler2D maskTexture;
-#endif
 #include "column_sample.glsl"
 
 layout(location = 0) flat in mat3 corners;

@@ -5,15 +5,10 @@
 #define SCENE_VERTICES
 #include "common/scene.glsl"
 #include "common/voxel.glsl"
+#include "list_grid.glsl"
 layout(std430, binding = 6) readonly buffer Indices { uint indices[]; };
 
-layout(std140, binding = 1) uniform Grid {
-  vec3 gridLow;     // m
-  float voxelSize;  // m
-  ivec3 resolution;
-  int firstIndex;   // of this draw
-  int capacity;     // fragments that fit into the list
-};
+layout(std140, binding = 1) uniform Part { int firstIndex; };
 #include "corners.glsl"
 
 // Corners, normals and texture coordinates of the triangle, permuted so that z is the dominant axis; in voxels.

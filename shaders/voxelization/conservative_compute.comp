@@ -11,24 +11,16 @@
 #define SCENE_GEOMETRY
 #define SCENE_MATERIALS
 #include "common/scene.glsl"
-#include "common/voxel.glsl"
+#include "fragment_list.glsl"
 
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 
 layout(std430, binding = 6) readonly buffer Indices { uint indices[]; };
-layout(std140, binding = 1) uniform Grid {
-  vec3 gridLow;     // m
-  float voxelSize;  // m
-  ivec3 resolution;
-  int capacity;     // fragments that fit into the list
-  int rowCapacity;
-};
+layout(std140, binding = 1) uniform Limits { int rowCapacity; };
 // 1: every voxel that the triangle touches in depth; 0: only the one at the middle of the column.
 layout(constant_id = 0) const int depthRange = 1;
 
-layout(std430, binding = 7) buffer Count { uint fragmentCount; };
-layout(std430, binding = 8) writeonly buffer Fragments { VoxelFragment fragments[]; };
 // Triangles of one draw, for one work group: first index, number of triangles, object, material. In a uniform block, so that a group loads
 // its object and material once and not per thread.
 const int kMostBatches = 1024;  // 16 KiB, what OpenGL guarantees
@@ -43,12 +35,6 @@ layout(std430, binding = 9) buffer Rows {
   uint rowGroupsX, rowGroupsY, rowGroupsZ;  // of the dispatch over them
   TileRow rows[];
 };
-#if TEXTURES
-layout(binding = 0) uniform sampler2D diffuseTexture;
-#endif
-#if MASKS
-layout(binding = 1) uniform sampler2D maskTexture;
-#endif
 #include "corners.glsl"
 #include "column_sample.glsl"
 

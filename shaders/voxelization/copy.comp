@@ -1,14 +1,12 @@
 #version 450
 // The fragments of another list become the first ones of this list.
-#include "common/voxel.glsl"
+#include "fragment_list.glsl"
 
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 
 layout(std430, binding = 0) readonly buffer BaseCount { uint baseCount; };
 layout(std430, binding = 1) readonly buffer BaseFragments { VoxelFragment baseFragments[]; };
-layout(std430, binding = 2) writeonly buffer Count { uint fragmentCount; };
-layout(std430, binding = 3) writeonly buffer Fragments { VoxelFragment fragments[]; };
 
 void main() {
   uint index = listIndex();

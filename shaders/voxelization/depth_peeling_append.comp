@@ -1,12 +1,10 @@
 #version 450
 // The pixels of a layer become fragments.
-#include "common/voxel.glsl"
+#include "fragment_list.glsl"
 #include "view_axis.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(std430, binding = 7) buffer Count { uint fragmentCount; };
-layout(std430, binding = 8) writeonly buffer Fragments { VoxelFragment fragments[]; };
 // The last layer along each axis that shows something, counted from 1.
 layout(std430, binding = 9) buffer Deepest { uint deepest[3]; };
 layout(std140, binding = 0) uniform Layer { int layer; };

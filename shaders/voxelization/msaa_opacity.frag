@@ -13,16 +13,9 @@
 #include "sample_grid.glsl"
 
 #if TARGET == TARGET_LIST
-layout(std430, binding = 7) buffer Count { uint fragmentCount; };
-layout(std430, binding = 8) writeonly buffer Fragments { VoxelFragment fragments[]; };
+#include "fragment_list.glsl"
 #else
 layout(binding = 0, r32ui) uniform uimage3D sampleMasks;
-#endif
-#if TEXTURES
-layout(binding = 0) uniform sampler2D diffuseTexture;
-#endif
-#if MASKS
-layout(binding = 1) uniform sampler2D maskTexture;
 #endif
 #include "column_sample.glsl"
 

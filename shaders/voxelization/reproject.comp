@@ -4,18 +4,10 @@
 // With REFLECTED a point brings the direct light along that the renderer computed there.
 #pragma lumivox axis EMISSION 0 1
 #pragma lumivox axis REFLECTED 0 1
-#include "common/voxel.glsl"
+#include "fragment_list.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(std140, binding = 0) uniform Grid {
-  vec3 gridLow;     // m
-  float voxelSize;  // m
-  ivec3 resolution;
-  int capacity;
-};
-layout(std430, binding = 0) buffer Count { uint fragmentCount; };
-layout(std430, binding = 1) writeonly buffer Fragments { VoxelFragment fragments[]; };
 #if REFLECTED
 layout(std430, binding = 2) writeonly buffer Reflected { uint reflected[]; };
 layout(binding = 4) uniform sampler2D direct;  // W/(sr m^2): what leaves the surface towards the camera without indirect light

@@ -4,9 +4,7 @@
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
 #include "view_sample.glsl"
-
-layout(std430, binding = 7) buffer Count { uint fragmentCount; };
-layout(std430, binding = 8) writeonly buffer Fragments { VoxelFragment fragments[]; };
+#include "fragment_list.glsl"
 
 void main() {
   VoxelFragment fragment = sampleView();

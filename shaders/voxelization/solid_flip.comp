@@ -12,13 +12,11 @@
 layout(local_size_x = 64) in;
 #include "common/list.glsl"
 
-layout(std140, binding = 1) uniform Grid {
-  vec3 gridLow;     // m
-  float voxelSize;  // m
-  ivec3 resolution;
-  int firstTriangle;  // of this object in the list
+layout(std140, binding = 1) uniform Surface {
+  int firstTriangle;  // in the list
   int triangleCount;
 };
+#include "list_grid.glsl"
 #include "grid_corner.glsl"
 layout(std430, binding = 7) readonly buffer Triangles { uint triangles[]; };  // of closed surfaces
 #include "aside.glsl"

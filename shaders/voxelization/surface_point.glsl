@@ -2,16 +2,7 @@
 #define SCENE_GEOMETRY
 #define SCENE_MATERIALS
 #include "common/scene.glsl"
-#include "common/voxel.glsl"
-
-layout(std140, binding = 1) uniform Grid {
-  vec3 gridLow;     // m
-  float voxelSize;  // m
-  ivec3 resolution;
-  int capacity;  // fragments that fit into the list
-};
-layout(std430, binding = 7) buffer Count { uint fragmentCount; };
-layout(std430, binding = 8) writeonly buffer Fragments { VoxelFragment fragments[]; };
+#include "fragment_list.glsl"
 #include "grid_corner.glsl"
 #include "surface_texture.glsl"
 

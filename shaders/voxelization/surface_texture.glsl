@@ -1,11 +1,6 @@
 // Textures and masks at points of triangles, as the axes TEXTURES and MASKS say.
 // Including files declare the scene's geometry and grid_corner.glsl before.
-#if TEXTURES
-layout(binding = 0) uniform sampler2D diffuseTexture;
-#endif
-#if MASKS
-layout(binding = 1) uniform sampler2D maskTexture;
-#endif
+#include "textures.glsl"
 
 struct SurfaceTexture {
   vec3 albedo;  // that the material's is multiplied by

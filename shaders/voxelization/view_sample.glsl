@@ -9,12 +9,7 @@ layout(location = 1) in vec3 normalWorld;
 #if TEXTURES || MASKS
 layout(location = 2) in vec2 texcoord;
 #endif
-#if TEXTURES
-layout(binding = 0) uniform sampler2D diffuseTexture;
-#endif
-#if MASKS
-layout(binding = 1) uniform sampler2D maskTexture;
-#endif
+#include "textures.glsl"
 
 VoxelFragment sampleView() {
   MaterialData material = materials[materialIndex];

@@ -28,11 +28,6 @@ glm::mat4 worldToClip(const SceneSnapshot& snapshot) {
          glm::lookAtRH(camera.eye, camera.eye + camera.forward, camera.up);
 }
 
-/// The image-sized textures are kept in 32-bit floats: positions and radiances of any scale.
-gpu::TextureRef floatImage(PassContext& frame, const char* label) {
-  return frame.image(gpu::Format::rgba32f, label);
-}
-
 class GBufferPass : public Pass {
   Out<GBuffer> gbuffer{this, "gbuffer",
                        "position, normals and material of the nearest surface in each pixel"};
@@ -42,76 +37,54 @@ class GBufferPass : public Pass {
   void run(PassContext& frame) override {
     const SceneTraits& traits = frame.traits();
     GBuffer result;
-    result.position = floatImage(frame, "g-buffer position");
-    result.normal = floatImage(frame, "g-buffer normal");
-    result.geometricNormal = floatImage(frame, "g-buffer geometric normal");
-    result.diffuse = floatImage(frame, "g-buffer diffuse albedo");
-    if (traits.glossy) result.specular = floatImage(frame, "g-buffer specular");
-    if (traits.emission) result.emission = floatImage(frame, "g-buffer emission");
+    result.position = frame.image("g-buffer position");
+    result.normal = frame.image("g-buffer normal");
+    result.geometricNormal = frame.image("g-buffer geometric normal");
+    result.diffuse = frame.image("g-buffer diffuse albedo");
+    if (traits.glossy) result.specular = frame.image("g-buffer specular");
+    if (traits.emission) result.emission = frame.image("g-buffer emission");
     const glm::ivec3 size = pixels(frame);
     const gpu::TextureRef depth =
         frame.texture({gpu::TextureKind::d2, gpu::Format::depth32f, size.x, size.y, 1, 1}, "g-buffer depth");
 
-    gpu::RenderTargets targets;
+    gpu::RenderTargets targets{.depth = depth.get()};
     for (const gpu::TextureRef& texture : {result.position, result.normal, result.geometricNormal,
                                            result.diffuse, result.specular, result.emission}) {
       targets.colours.push_back({texture.get(), -1});
     }
     while (targets.colours.back().texture == nullptr) targets.colours.pop_back();
-    targets.depth = depth.get();
-    gpu::RasterState state;
-    state.depthTest = state.depthWrite = state.depthClamp = true;
-    drawScene(frame, targets, state);
+    const gpu::Drawing drawing =
+        frame.device().drawTo(targets, {.depthTest = true, .depthWrite = true, .depthClamp = true});
+    for (const SceneDraw& draw : frame.scene().draws())
+      drawPart(frame, draw, gbuffer::Variant{.glossy = traits.glossy, .emission = traits.emission},
+               {gbuffer::view({worldToClip(frame.snapshot())}),
+                gbuffer::eye({frame.snapshot().camera.eye, glm::vec2(pixels(frame))})});
     gbuffer = result;
-  }
-
-  static void drawScene(PassContext& frame, const gpu::RenderTargets& targets,
-                        const gpu::RasterState& state) {
-    const auto view = gbuffer::view({worldToClip(frame.snapshot())});
-    const auto eye = gbuffer::eye({frame.snapshot().camera.eye, glm::vec2(pixels(frame))});
-    const gpu::Drawing drawing = frame.device().drawTo(targets, state);
-    for (const SceneDraw& draw : frame.scene().draws()) {
-      const SceneBinding scene(frame, draw);
-      const gbuffer::Variant variant{.textures = scene.textures,
-                                     .masks = scene.masks,
-                                     .glossy = frame.traits().glossy,
-                                     .emission = frame.traits().emission};
-      drawPart(frame, frame.program(variant), {scene, view, eye}, draw);
-    }
   }
 };
 
-class ShadowMapPass : public Pass {
-  Param<int> size{this, "size", 512, within(16, 8192),
-                  "texels along a side of the view of a light without extent"};
-  Param<int> areaSamples{this, "area_samples", 16, within(1, 1024),
-                         "point samples that represent all emissive triangles together"};
-  Param<int> areaSize{this, "area_size", 128, within(16, 4096),
-                      "texels along a side of each cube face of an area sample"};
+class ShadowMapPass : public LightViewPass {
+ public:
+  ShadowMapPass() : LightViewPass(512, within(16, 8192), 128, within(16, 4096)) {}
+
+ private:
   Out<ShadowMap> depth{this, "depth", "every light as point samples, with depth seen from each"};
 
-  Reads readsFrom() const override { return Reads::geometry | Reads::materials | Reads::lights; }
-  Needs needs() const override { return Needs::anyLight; }
-
   void run(PassContext& frame) override {
-    const LightViews views = placeLightViews(frame, areaSamples, size, areaSize);
+    const LightViews views = placed(frame);
     const ShadowMap result{views.lights, views.views,
                            views.layers(frame, gpu::Format::depth32f, "shadow depth"), views.lightCount(),
                            views.layerCount()};
-    gpu::RasterState state;
-    state.depthTest = state.depthWrite = state.depthClamp = true;
-    state.depthBiasSlope = 1.5f;
-    state.depthBiasConstant = 2.0f;
+    const gpu::RasterState state{.depthTest = true,
+                                 .depthWrite = true,
+                                 .depthClamp = true,
+                                 .depthBiasSlope = 1.5f,
+                                 .depthBiasConstant = 2.0f};
     const auto targets = [&](int layer) {
-      gpu::RenderTargets one;
-      one.depth = result.depth.get();
-      one.depthLayer = layer;
-      return one;
+      return gpu::RenderTargets{.depth = result.depth.get(), .depthLayer = layer};
     };
     drawLightViews(frame, views, state, targets, [&](const LightViewDrawn& drawn, const SceneDraw& draw) {
-      const SceneBinding scene(frame, draw);
-      drawPart(frame, frame.program(shadow_map::Variant{scene.masks}),
-               {scene, shadow_map::view({drawn.view.worldToClip})}, draw);
+      drawPart(frame, draw, shadow_map::Variant{}, {shadow_map::view({drawn.view.worldToClip})});
     });
     depth = result;
   }
@@ -133,23 +106,20 @@ class ShadePass : public Pass {
 
   void run(PassContext& frame) override {
     const LightBinding lights(shadow);
-    MediaBinding bound;
-    if (shadow.present()) bound = MediaBinding(frame, media);
-    shade::Variant variant;
-    variant.lights = shadow.present();
-    variant.shadows = shadow.present() && shadows;
-    variant.glossy = gbuffer->specular != nullptr;
-    variant.emission = frame.traits().emission;
-    variant.medium = bound.axis;
-    const Image result{floatImage(frame, "direct radiance")};
+    const MediaBinding bound(frame, media, shadow.present());
+    const shade::Variant variant{.lights = shadow.present(),
+                                 .shadows = shadow.present() && shadows,
+                                 .glossy = gbuffer->specular != nullptr,
+                                 .emission = frame.traits().emission,
+                                 .medium = bound.axis};
+    radiance = Image{frame.image("direct radiance")};
     frame.dispatch(frame.program(variant),
                    {shade::parameters({.eyeWorld = frame.snapshot().camera.eye,
                                        .lightCount = lights.count,
                                        .environment = frame.sceneDescription().environment,
                                        .mediumSteps = mediumSteps}),
-                    GBufferBinding(*gbuffer), lights, bound, shade::radianceImage(result.texture)},
+                    GBufferBinding(*gbuffer), lights, bound, shade::radianceImage(radiance->texture)},
                    pixels(frame));
-    radiance = result;
   }
 };
 
@@ -184,21 +154,16 @@ class ComposePass : public Pass {
                                    .glossy = glossy.present(),
                                    .transmittance = transmittance.present(),
                                    .scattered = scattered.present()};
-    const gpu::TextureRef none;
-    const auto read = [&](const In<Image>& input) -> const gpu::TextureRef& {
-      return input.present() ? input->texture : none;
-    };
-    const Image result{floatImage(frame, "final radiance")};
+    radiance = Image{frame.image("final radiance")};
     using gpu::Sampling;
     frame.dispatch(frame.program(variant),
                    {compose::directRadiance(direct->texture, Sampling::nearest),
-                    compose::diffuseRadiance(read(diffuse), Sampling::nearest),
-                    compose::glossyRadiance(read(glossy), Sampling::nearest),
-                    compose::mediaTransmittance(read(transmittance), Sampling::nearest),
-                    compose::scatteredRadiance(read(scattered), Sampling::nearest),
-                    compose::radianceImage(result.texture)},
+                    compose::diffuseRadiance(textureOf(diffuse), Sampling::nearest),
+                    compose::glossyRadiance(textureOf(glossy), Sampling::nearest),
+                    compose::mediaTransmittance(textureOf(transmittance), Sampling::nearest),
+                    compose::scatteredRadiance(textureOf(scattered), Sampling::nearest),
+                    compose::radianceImage(radiance->texture)},
                    pixels(frame));
-    radiance = result;
   }
 };
 

@@ -2,15 +2,10 @@
 // Sec. 4.3.4 and 4.3.5.
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "light_propagation_volumes_shaders.h"
 #include "nested_grids.h"
 
 namespace lumivox::light_propagation_volumes {
 namespace {
-
-using namespace shaders::light_propagation_volumes;
 
 constexpr float kBlendCells = 4.0f;  // width of the seam between two grids, Listing 4.36
 // Listing 4.36: the finer of two grids of 32 cells counts alone up to 12 of them from the eye, and not at all
@@ -18,19 +13,14 @@ constexpr float kBlendCells = 4.0f;  // width of the seam between two grids, Lis
 constexpr float kInnerReach = 12.0f / 32.0f, kOuterReach = 16.0f / 32.0f;
 
 float longestSide(const GridPlacement& grid) {
-  const glm::ivec3& cells = grid.resolution;
-  return grid.voxelSize * static_cast<float>(std::max({cells.x, cells.y, cells.z}));
+  return grid.voxelSize * static_cast<float>(grid.longest());
 }
 
 class GatherPass : public Pass {
   enum class Negative { closure, clip };
-  friend constexpr auto words(Negative) { return std::array{"closure", "clip"}; }
   enum class Lookup { reachable, filtered };
-  friend constexpr auto words(Lookup) { return std::array{"reachable", "filtered"}; }
   enum class Lobe { arriving, normal };
-  friend constexpr auto words(Lobe) { return std::array{"arriving", "normal"}; }
   enum class Seam { border, radial };
-  friend constexpr auto words(Seam) { return std::array{"border", "radial"}; }
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<ShGrid> light{this, "light", "all light that passed each cell"};
@@ -68,24 +58,19 @@ class GatherPass : public Pass {
     requireFlux(*light);
     const bool filtered = asPublished || lookup == Lookup::filtered;
     if (!filtered) requireFaces(*light, faces);
-    const Image result{frame.image(gpu::Format::rgba32f, "indirect diffuse radiance")};
-    const Image cut{frame.image(gpu::Format::rgba32f, "clipped radiance")};
-    gather::Constants constants;
-    constants.filtered = filtered;
-    constants.ownLobe = asPublished || lobe == Lobe::normal;
-    constants.radialBlend = asPublished || seam == Seam::radial;
-    constants.closure = negative == Negative::closure && !asPublished;
+    diffuse = Image{frame.image("indirect diffuse radiance")};
+    clipped = Image{frame.image("clipped radiance")};
+    const gather::Constants constants{.filtered = filtered,
+                                      .closure = negative == Negative::closure && !asPublished,
+                                      .ownLobe = asPublished || lobe == Lobe::normal,
+                                      .radialBlend = asPublished || seam == Seam::radial};
     const std::size_t levels = light->levels.size();
-    for (std::size_t i = levels; i-- > 0;) {
+    forEachLevel(*light, [&](std::size_t i) {
       const ShGrid::Level& level = light->levels[i];
-      const OccludedFaces::Level surfaces =
-          faces.present() && i < faces->levels.size() ? faces->levels[i] : OccludedFaces::Level{};
+      const bool known = faces.present() && i < faces->levels.size();
       const float side = longestSide(level.grid);
       frame.dispatch(frame.program(gather::Variant{}, constants),
-                     {gather::parameters({.gridLow = level.grid.low,
-                                          .cellSize = level.grid.voxelSize,
-                                          .resolution = level.grid.resolution,
-                                          .blend = blend,
+                     {gather::parameters({.blend = blend,
                                           .offset = offset,
                                           .exponent = exponent,
                                           .first = i + 1 == levels,
@@ -94,14 +79,11 @@ class GatherPass : public Pass {
                                           .innerReach = kInnerReach * side,
                                           .outerReach = kOuterReach * side}),
                       GBufferBinding(*gbuffer), sampled(level, gpu::Sampling::linear),
-                      gather::occluded(facesOrUnread(surfaces.occluded, level), gpu::Sampling::nearest),
-                      gather::moved(facesOrUnread(surfaces.moved, level), gpu::Sampling::nearest),
-                      gather::diffuseImage(result.texture), gather::clippedImage(cut.texture)},
+                      facesOf(known ? faces->levels[i] : OccludedFaces::Level{}, level),
+                      gather::diffuseImage(diffuse->texture), gather::clippedImage(clipped->texture)},
                      pixels(frame));
-    }
-    if (frame.inspects()) tellShare(frame, *result.texture, *cut.texture);
-    diffuse = result;
-    clipped = cut;
+    });
+    if (frame.inspects()) tellShare(frame, *diffuse->texture, *clipped->texture);
   }
 
   /// How much two bands made negative, of all that reaches the image.
@@ -139,62 +121,52 @@ class ReflectPass : public Pass {
 
   void run(PassContext& frame) override {
     requireFlux(*light);
+    const glm::ivec3& size = surfaces->grid.resolution;
     RadianceGrid result;
     result.grid = surfaces->grid;
-    const glm::ivec3& size = result.grid.resolution;
     result.radiance = frame.volume(size, gpu::Format::rgba32f, "reflection grid",
                                    gpu::fullLevelCount(size.x, size.y, size.z));
     result.filledLevels = 1;
+    radiance = result;
     if (asPublished)
       reflectAsPublished(frame, result);
     else
       reflectCrossing(frame, result);
-    radiance = result;
   }
 
   void reflectAsPublished(PassContext& frame, const RadianceGrid& result) {
-    const ShGrid::Level& level = light->levels.front();
     frame.dispatch(frame.program(reflect_published::kProgram),
-                   {reflect_published::parameters({.gridLow = level.grid.low,
-                                                   .cellSize = level.grid.voxelSize,
-                                                   .resolution = level.grid.resolution,
-                                                   .fadeDistance = 0.5f * longestSide(result.grid),
+                   {reflect_published::parameters({.fadeDistance = 0.5f * longestSide(result.grid),
                                                    .reflectionLow = result.grid.low,
                                                    .voxelSize = result.grid.voxelSize,
                                                    .centre = frame.snapshot().camera.eye}),
-                    sampled(level, gpu::Sampling::linear),
+                    sampled(light->levels.front(), gpu::Sampling::linear),
                     reflect_published::surfaceAlbedo(surfaces->albedo, gpu::Sampling::nearest),
                     reflect_published::radianceImage(result.radiance)},
                    result.grid.resolution);
   }
 
   void reflectCrossing(PassContext& frame, const RadianceGrid& result) {
-    const std::size_t levels = light->levels.size();
-    for (std::size_t i = levels; i-- > 0;) {
-      const ShGrid::Level& level = light->levels[i];
+    forEachLevel(*light, [&](std::size_t i) {
       frame.dispatch(frame.program(reflect::kProgram),
-                     {reflect::parameters({.gridLow = level.grid.low,
-                                           .cellSize = level.grid.voxelSize,
-                                           .resolution = level.grid.resolution,
-                                           .blend = kBlendCells,
+                     {reflect::parameters({.blend = kBlendCells,
                                            .reflectionLow = result.grid.low,
                                            .voxelSize = result.grid.voxelSize,
-                                           .first = i + 1 == levels,
+                                           .first = i + 1 == light->levels.size(),
                                            .last = i == 0,
                                            .fades = fade > 0.0f,
                                            .fadeWidth = fade}),
-                      sampled(level, gpu::Sampling::linear),
+                      sampled(light->levels[i], gpu::Sampling::linear),
                       reflect::surfaceAlbedo(surfaces->albedo, gpu::Sampling::nearest),
                       reflect::surfaceNormal(surfaces->normal, gpu::Sampling::nearest),
                       reflect::radianceImage(result.radiance)},
                      result.grid.resolution);
-    }
+    });
   }
 };
 
 class TracePass : public Pass {
   enum class Fade { falls, grows, none };
-  friend constexpr auto words(Fade) { return std::array{"falls", "grows", "none"}; }
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<RadianceGrid> grid{this, "grid", "the reflection grid with its mips", Levels::all};
@@ -215,11 +187,10 @@ class TracePass : public Pass {
     const GridPlacement place{
         grid->grid.low, grid->grid.voxelSize, {texture.width, texture.height, texture.depth}};
     const float side = longestSide(place);
-    trace::Constants constants;
-    constants.fade = asPublished || fade == Fade::grows ? 2 : fade == Fade::falls ? 1 : 0;
-    const Image result{frame.image(gpu::Format::rgba32f, "indirect glossy radiance")};
+    const int fading = asPublished || fade == Fade::grows ? 2 : fade == Fade::falls ? 1 : 0;
+    glossy = Image{frame.image("indirect glossy radiance")};
     frame.dispatch(
-        frame.program(trace::Variant{}, constants),
+        frame.program(trace::Variant{}, trace::Constants{.fade = fading}),
         {trace::parameters({.gridLow = place.low,
                             .voxelSize = place.voxelSize,
                             .gridExtent = glm::vec3(place.resolution) * place.voxelSize,
@@ -228,9 +199,8 @@ class TracePass : public Pass {
                             .fadeDistance = 0.5f * side,
                             .unit = grid->unit}),
          GBufferBinding(*gbuffer), trace::radianceGrid(grid->radiance, gpu::Sampling::linearMipsBorder),
-         trace::glossyImage(result.texture)},
+         trace::glossyImage(glossy->texture)},
         pixels(frame));
-    glossy = result;
   }
 };
 

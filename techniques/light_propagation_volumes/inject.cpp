@@ -6,49 +6,39 @@
 #include <algorithm>
 #include <span>
 
-#include "light_propagation_volumes_shaders.h"
+#include "lumivox/toolkit/light_bounds.h"
 #include "nested_grids.h"
 
 namespace lumivox::light_propagation_volumes {
 namespace {
 
-using namespace shaders::light_propagation_volumes;
-
 constexpr int kLargestVoxelGrid = 96;  // cells along a side whose voxels fit into 128 MiB, which every driver
                                        // can address
-
-std::uint64_t cellCount(const GridPlacement& grid) {
-  return static_cast<std::uint64_t>(grid.resolution.x) * static_cast<std::uint64_t>(grid.resolution.y) *
-         static_cast<std::uint64_t>(grid.resolution.z);
-}
 
 /// Bricks of 4 x 4 x 4 cells that hold anything: marked by passes over surfaces and lights, walked by those
 /// over cells. Their number stays on the device (bricks.glsl).
 struct BrickList {
   gpu::BufferRef flags, list;
+  BrickList(PassContext& frame, const glm::ivec3& cells) {
+    const std::uint64_t count = GridPlacement{.resolution = (cells + kBrick - 1) / kBrick}.voxelCount();
+    flags = frame.emptyElements(close::brickFlags, count, "marked bricks");
+    list = frame.buffer((3 + count) * sizeof(std::uint32_t), "list of bricks");
+    const std::array<std::uint32_t, 3> groups{0, 1, 1};
+    list->uploadValues(std::span<const std::uint32_t>(groups));
+  }
+  shader::BindingSet bindings() const {
+    return {shader::StorageSlot{"BrickFlags"}(flags), shader::StorageSlot{"BrickList"}(list)};
+  }
 };
-
-BrickList emptyBricks(PassContext& frame, const glm::ivec3& cells) {
-  const glm::ivec3 bricks = (cells + kBrick - 1) / kBrick;
-  const std::uint64_t count = static_cast<std::uint64_t>(bricks.x) * static_cast<std::uint64_t>(bricks.y) *
-                              static_cast<std::uint64_t>(bricks.z);
-  BrickList result{frame.buffer(count * sizeof(std::uint32_t), "marked bricks"),
-                   frame.buffer((3 + count) * sizeof(std::uint32_t), "list of bricks")};
-  result.flags->clear();
-  const std::array<std::uint32_t, 3> groups{0, 1, 1};
-  result.list->uploadValues(std::span<const std::uint32_t>(groups));
-  return result;
-}
 
 /// An invocation for each cell of the listed bricks, and a barrier.
 void walkBricks(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
                 const BrickList& bricks) {
-  frame.dispatchIndirect(program, {bindings, shader::StorageSlot{"BrickList"}(bricks.list)}, *bricks.list);
+  frame.dispatchIndirect(program, {bindings, bricks.bindings()}, *bricks.list);
 }
 
 class Inject : public Pass {
   enum class Lobe { forward, cosine };
-  friend constexpr auto words(Lobe) { return std::array{"forward", "cosine"}; }
 
  public:
   Reads readsFrom() const override { return Reads::partOfCamera | Reads::geometry | Reads::lights; }
@@ -83,15 +73,15 @@ class Inject : public Pass {
   /// Virtual lights to the coefficients of the cells.
   virtual void fillCells(PassContext& frame, const ShGrid::Level& level, OccludedFaces::Level& surfaces) {
     const GridPlacement& grid = level.grid;
-    const gpu::BufferRef sums = frame.elements(resolve_lights::sums, cellCount(grid), "virtual lights");
-    sums->clear();
-    const BrickList lit = emptyBricks(frame, grid.resolution);
+    const gpu::BufferRef sums =
+        frame.emptyElements(resolve_lights::sums, grid.voxelCount(), "virtual lights");
+    const BrickList lit(frame, grid.resolution);
     addLights(frame, grid, surfaces, sums, lit);
     for (const gpu::TextureRef& channel : level.coefficients) channel->clear(glm::vec4(0.0f));
     // A clamped cosine has the mean cosine 2/3; 0 asks for that of the default lobe.
     const float meanCosine = lobe == Lobe::cosine ? 2.0f / 3.0f : 0.0f;
     walkBricks(frame, frame.program(resolve_lights::kProgram),
-               {resolve_lights::parameters({grid.resolution, meanCosine}), resolve_lights::sums(sums),
+               {cellsBinding(grid), resolve_lights::parameters({meanCosine}), resolve_lights::sums(sums),
                 images(level.coefficients)},
                lit);
   }
@@ -123,23 +113,21 @@ class Inject : public Pass {
           fmt::format("the fragments have voxels of {} m and the cells {} m: surfaces have holes; voxelize "
                       "with a higher resolution",
                       fragments->grid.voxelSize, grid.voxelSize));
-    const glm::ivec3 size = grid.resolution + 1;
+    GridPlacement walls = grid;
+    walls.resolution += 1;
     const auto empty = [&](gpu::Format format, const char* label) {
-      gpu::TextureRef texture = frame.volume(size, format, label);
-      texture->clear(glm::vec4(0.0f));
-      return texture;
+      return frame.emptyVolume(walls.resolution, format, label);
     };
     Channels parts, filled;  // of the three axes
     for (std::size_t axis = 0; axis < 3; ++axis) {
       parts[axis] = empty(gpu::Format::r32ui, "parts of faces");
       filled[axis] = empty(gpu::Format::r32ui, "parts of faces, corners filled");
     }
-    const BrickList bricks = emptyBricks(frame, size);
-    forEachFragment(
-        frame, frame.program(close::kProgram),
-        {close::parameters({fragments->grid.low, fragments->grid.voxelSize, grid.low, grid.voxelSize, size}),
-         images(parts, kParts), close::brickFlags(bricks.flags), close::brickList(bricks.list)},
-        *fragments);
+    const BrickList bricks(frame, walls.resolution);
+    forEachFragment(frame, frame.program(close::kProgram),
+                    {cellsBinding(walls), close::parameters({fragments->grid.low, fragments->grid.voxelSize}),
+                     images(parts, kParts), bricks.bindings()},
+                    *fragments);
     for (int round = 0; round < 2; ++round) {
       walkBricks(frame, frame.program(fill_corners::kProgram),
                  {images(parts, kParts), images(filled, kFilled)}, bricks);
@@ -166,22 +154,17 @@ class InjectRsmPass : public Inject {
     for (const int step : {Variant::stepWeigh, Variant::stepAdd})
       frame.dispatch(
           frame.program(Variant{step}),
-          {inject_rsm::parameters({grid.low, grid.voxelSize, grid.resolution}),
-           ReflectiveShadowMapBinding(*map), inject_rsm::moved(surfaces.moved, gpu::Sampling::nearest),
-           inject_rsm::sums(sums), inject_rsm::brickFlags(lit.flags), inject_rsm::brickList(lit.list)},
+          {cellsBinding(grid), ReflectiveShadowMapBinding(*map),
+           inject_rsm::moved(surfaces.moved, gpu::Sampling::nearest), inject_rsm::sums(sums), lit.bindings()},
           {layers.width, layers.height, layers.depth});
   }
 };
 
 class InjectVoxelsPass : public Inject {
   enum class Albedo { mean, contrast };
-  friend constexpr auto words(Albedo) { return std::array{"mean", "contrast"}; }
   enum class Normals { all, closest };
-  friend constexpr auto words(Normals) { return std::array{"all", "closest"}; }
   enum class Area { covered, whole };
-  friend constexpr auto words(Area) { return std::array{"covered", "whole"}; }
   enum class Voxels { mean, packed };
-  friend constexpr auto words(Voxels) { return std::array{"mean", "packed"}; }
 
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
                        "lights and their visibility; without it only the environment shines"};
@@ -210,13 +193,12 @@ class InjectVoxelsPass : public Inject {
   void fillCells(PassContext& frame, const ShGrid::Level& level, OccludedFaces::Level& surfaces) override {
     if (!packed()) return Inject::fillCells(frame, level, surfaces);
     const GridPlacement& grid = level.grid;
-    surfaces.packed = frame.elements(pack_voxels::words, cellCount(grid), "packed voxels");
-    surfaces.packed->clear();
-    forEachFragment(frame, frame.program(pack_voxels::kProgram),
-                    {pack_voxels::parameters({fragments->grid.low, fragments->grid.voxelSize, grid.low,
-                                              grid.voxelSize, grid.resolution}),
-                     pack_voxels::words(surfaces.packed)},
-                    *fragments);
+    surfaces.packed = frame.emptyElements(pack_voxels::words, grid.voxelCount(), "packed voxels");
+    forEachFragment(
+        frame, frame.program(pack_voxels::kProgram),
+        {cellsBinding(grid), pack_voxels::parameters({fragments->grid.low, fragments->grid.voxelSize}),
+         pack_voxels::words(surfaces.packed)},
+        *fragments);
     const LightBinding lights(shadow);
     if (lights.count == 0) {
       for (const gpu::TextureRef& channel : level.coefficients) channel->clear(glm::vec4(0.0f));
@@ -224,8 +206,8 @@ class InjectVoxelsPass : public Inject {
     }
     frame.dispatch(
         frame.program(light_packed::kProgram),
-        {light_packed::parameters({grid.low, grid.voxelSize, grid.resolution,
-                                   largestFlux(frame.sceneDescription(), frame.snapshot()), lights.count}),
+        {cellsBinding(grid),
+         light_packed::parameters({largestFlux(frame.sceneDescription(), frame.snapshot()), lights.count}),
          light_packed::words(surfaces.packed), lights, images(level.coefficients)},
         grid.resolution);
   }
@@ -234,24 +216,20 @@ class InjectVoxelsPass : public Inject {
                  const gpu::BufferRef& sums, const BrickList& lit) override {
     const LightBinding lights(shadow);
     if (lights.count == 0) return;
-    const gpu::BufferRef collected = frame.elements(collect_voxels::voxels, cellCount(grid), "lit voxels");
-    collected->clear();
+    const gpu::BufferRef collected =
+        frame.emptyElements(collect_voxels::voxels, grid.voxelCount(), "lit voxels");
     using Variant = collect_voxels::Variant;
     for (const int step : {Variant::stepWeigh, Variant::stepAdd})
-      forEachFragment(
-          frame, frame.program(Variant{step}),
-          {collect_voxels::parameters({fragments->grid.low, fragments->grid.voxelSize, grid.low,
-                                       grid.voxelSize, grid.resolution, twoSided}),
-           collect_voxels::voxels(collected), collect_voxels::moved(surfaces.moved, gpu::Sampling::nearest),
-           collect_voxels::occluded(surfaces.occluded, gpu::Sampling::nearest),
-           collect_voxels::brickFlags(lit.flags), collect_voxels::brickList(lit.list)},
-          *fragments);
+      forEachFragment(frame, frame.program(Variant{step}),
+                      {cellsBinding(grid), lit.bindings(), collect_voxels::voxels(collected),
+                       collect_voxels::parameters({fragments->grid.low, fragments->grid.voxelSize, twoSided}),
+                       collect_voxels::moved(surfaces.moved, gpu::Sampling::nearest),
+                       collect_voxels::occluded(surfaces.occluded, gpu::Sampling::nearest)},
+                      *fragments);
     walkBricks(
         frame, frame.program(light_voxels::kProgram),
-        {light_voxels::parameters({.gridLow = grid.low,
-                                   .cellSize = grid.voxelSize,
-                                   .resolution = grid.resolution,
-                                   .largestFlux = largestFlux(frame.sceneDescription(), frame.snapshot()),
+        {cellsBinding(grid),
+         light_voxels::parameters({.largestFlux = largestFlux(frame.sceneDescription(), frame.snapshot()),
                                    .lightCount = lights.count,
                                    .contrastAlbedo = albedo == Albedo::contrast,
                                    .closestNormal = normals == Normals::closest,

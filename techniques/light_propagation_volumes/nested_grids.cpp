@@ -79,8 +79,13 @@ shader::BindingSet sampled(const Channels& channels, gpu::Sampling sampling,
   return set;
 }
 
+gpu::ResourceBinding cellsBinding(const GridPlacement& grid) {
+  return shader::UniformSlot<Cells>{"Cells"}({grid.low, grid.voxelSize, grid.resolution});
+}
+
 shader::BindingSet sampled(const ShGrid::Level& level, gpu::Sampling sampling) {
-  return sampled(Channels{level.channel(0), level.channel(1), level.channel(2)}, sampling);
+  return {cellsBinding(level.grid),
+          sampled(Channels{level.channel(0), level.channel(1), level.channel(2)}, sampling)};
 }
 
 shader::BindingSet images(const Channels& channels, const std::array<const char*, 3>& names) {
@@ -89,8 +94,12 @@ shader::BindingSet images(const Channels& channels, const std::array<const char*
   return set;
 }
 
-const gpu::TextureRef& facesOrUnread(const gpu::TextureRef& faces, const ShGrid::Level& level) {
-  return faces ? faces : level.coefficients[0];
+shader::BindingSet facesOf(const OccludedFaces::Level& faces, const ShGrid::Level& level) {
+  const auto orUnread = [&](const gpu::TextureRef& texture) -> const gpu::TextureRef& {
+    return texture ? texture : level.coefficients[0];
+  };
+  return {shader::SampledSlot{"occluded"}(orUnread(faces.occluded), gpu::Sampling::nearest),
+          shader::SampledSlot{"moved"}(orUnread(faces.moved), gpu::Sampling::nearest)};
 }
 
 void requireFlux(const ShGrid& light) {

@@ -4,13 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "light_propagation_volumes_shaders.h"
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/grid_placement.h"
-#include "lumivox/toolkit/light_bounds.h"
 #include "occluded_faces.h"
 
 namespace lumivox::light_propagation_volumes {
+
+using namespace shaders::light_propagation_volumes;
 
 inline constexpr int kBrick = 4;  // cells along a side of a brick, see propagate.comp
 
@@ -34,11 +36,21 @@ inline constexpr std::array<const char*, 3> kRgb{"red", "green", "blue"},
 shader::BindingSet sampled(const Channels& channels, gpu::Sampling sampling,
                            const std::array<const char*, 3>& names = kRgb);
 shader::BindingSet images(const Channels& channels, const std::array<const char*, 3>& names = kRgb);
-/// Of a grid that another technique may have made, without colour.
+/// Block Cells of cell_grid.glsl.
+gpu::ResourceBinding cellsBinding(const GridPlacement& grid);
+/// The light of a level, without colour where another technique may have made it so, and its cells.
 shader::BindingSet sampled(const ShGrid::Level& level, gpu::Sampling sampling);
 
-/// For a binding whose texture is read only where there are faces: these, or any other volume in their place.
-const gpu::TextureRef& facesOrUnread(const gpu::TextureRef& faces, const ShGrid::Level& level);
+/// `occluded` and `moved` of a level; where there are no such faces, which are then never read, another
+/// volume in their place.
+shader::BindingSet facesOf(const OccludedFaces::Level& faces, const ShGrid::Level& level);
+
+/// Calls work(i) for each level from the coarsest to the finest: what comes into a grid from outside is in
+/// the coarser one.
+template <class Work>
+void forEachLevel(const ShGrid& light, const Work& work) {
+  for (std::size_t i = light.levels.size(); i-- > 0;) work(i);
+}
 
 /// Refuses light that is not the flux of its cells, W/sr.
 void requireFlux(const ShGrid& light);

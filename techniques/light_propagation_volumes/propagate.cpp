@@ -1,14 +1,10 @@
 // Propagation from cell to cell: Kaplanyan & Dachsbacher 2010, Sec. 4.3; thesis Gomes 2015, Sec. 4.3.3.
-#include <algorithm>
 #include <cmath>
 
-#include "light_propagation_volumes_shaders.h"
 #include "nested_grids.h"
 
 namespace lumivox::light_propagation_volumes {
 namespace {
-
-using namespace shaders::light_propagation_volumes;
 
 /// Mean projected area of a cube of side 1, a quarter of its surface (Cauchy): light of the same radiance L
 /// everywhere passes a cell of size h with the intensity L 3/2 h^2.
@@ -22,17 +18,11 @@ struct Travelling {
 
 class PropagatePass : public Pass {
   enum class Lobe { straight, cosine };
-  friend constexpr auto words(Lobe) { return std::array{"straight", "cosine"}; }
   enum class Border { open, mirror };
-  friend constexpr auto words(Border) { return std::array{"open", "mirror"}; }
   enum class Method { folded, plain };
-  friend constexpr auto words(Method) { return std::array{"folded", "plain"}; }
   enum class Transfer { conserving, published };
-  friend constexpr auto words(Transfer) { return std::array{"conserving", "published"}; }
   enum class Occlusion { faces, normals };
-  friend constexpr auto words(Occlusion) { return std::array{"faces", "normals"}; }
   enum class Grids { nested, apart };
-  friend constexpr auto words(Grids) { return std::array{"nested", "apart"}; }
 
   In<ShGrid> injected{this, "light", "virtual point lights"};
   In<OccludedFaces> faces{this, "faces", Presence::optional,
@@ -73,8 +63,7 @@ class PropagatePass : public Pass {
     // Light that comes in from outside passes the faces of the border.
     if (!occludesByNormals() || !gridsApart()) requireFaces(*injected, faces);
     ShGrid total = *injected, left = *injected;
-    // From the coarsest to the finest: what comes into a grid from outside is in the coarser one.
-    for (std::size_t i = injected->levels.size(); i-- > 0;) {
+    forEachLevel(*injected, [&](std::size_t i) {
       const ShGrid::Level& level = injected->levels[i];
       const ShGrid::Level* outside = i + 1 < injected->levels.size() ? &total.levels[i + 1] : nullptr;
       const Channels sum = coefficientTextures(frame, level.grid.resolution, "sum of light");
@@ -83,7 +72,7 @@ class PropagatePass : public Pass {
       left.levels[i].coefficients = state.light[static_cast<std::size_t>(last)];
       // Where light stays in its cell, the last state is the sum already.
       total.levels[i].coefficients = publishedTransfer() ? left.levels[i].coefficients : sum;
-    }
+    });
     light = total;
     travelling = left;
   }
@@ -98,13 +87,12 @@ class PropagatePass : public Pass {
     Travelling result;
     for (std::size_t i = 0; i < 2; ++i) {
       result.light[i] = coefficientTextures(frame, resolution, "travelling light");
-      result.stamps[i] = frame.volume((resolution + kBrick - 1) / kBrick, gpu::Format::r32ui, "stamps");
-      result.stamps[i]->clear(glm::vec4(0.0f));
+      result.stamps[i] = frame.emptyVolume((resolution + kBrick - 1) / kBrick, gpu::Format::r32ui, "stamps");
     }
     for (const gpu::TextureRef& texture : result.light[1]) texture->clear(glm::vec4(0.0f));
 
     start::Variant variant;
-    start::Parameters parameters{.resolution = resolution, .occlusion = occlusionAmplifier};
+    start::Parameters parameters{.occlusion = occlusionAmplifier};
     shader::BindingSet fromOutside;
     const float cell = level.grid.voxelSize;
     if (outside != nullptr && !gridsApart()) {
@@ -120,12 +108,10 @@ class PropagatePass : public Pass {
       parameters.environment =
           glm::vec4(frame.sceneDescription().environment * (kMeanProjection * cell * cell), 0.0f);
     }
-    start::Constants constants;
-    constants.cosineLobe = lobe == Lobe::cosine;
-    frame.dispatch(frame.program(variant, constants),
+    frame.dispatch(frame.program(variant, start::Constants{.cosineLobe = lobe == Lobe::cosine}),
                    {start::parameters(parameters), sampled(level, gpu::Sampling::nearest), fromOutside,
-                    start::occluded(facesOrUnread(surfaces.occluded, level), gpu::Sampling::nearest),
-                    images(result.light[0], kNext), images(sum, kTotal), start::stampsNext(result.stamps[0])},
+                    facesOf(surfaces, level), images(result.light[0], kNext), images(sum, kTotal),
+                    start::stampsNext(result.stamps[0])},
                    resolution);
     return result;
   }
@@ -136,10 +122,9 @@ class PropagatePass : public Pass {
     const bool plain = publishedTransfer() || occludesByNormals() || method == Method::plain;
     propagate_plain::Variant variant;
     if (occludesByNormals()) variant.occlusion = propagate_plain::Variant::occlusionNormals;
-    propagate::Constants folded;
-    propagate_plain::Constants faceByFace;
-    folded.cosineLobe = faceByFace.cosineLobe = lobe == Lobe::cosine;
-    faceByFace.publishedTransfer = publishedTransfer();
+    const propagate::Constants folded{.cosineLobe = lobe == Lobe::cosine};
+    const propagate_plain::Constants faceByFace{.cosineLobe = folded.cosineLobe,
+                                                .publishedTransfer = publishedTransfer()};
     const shader::BoundProgram& program =
         plain ? frame.program(variant, faceByFace) : frame.program(propagate::Variant{}, folded);
     const glm::ivec3 wholeBricks = (level.grid.resolution + kBrick - 1) / kBrick * kBrick;
@@ -154,8 +139,7 @@ class PropagatePass : public Pass {
                                              .occlusion = occlusionAmplifier,
                                              .mirrors = border == Border::mirror,
                                              .addToTotal = passes}),
-                      sampled(state.light[now], gpu::Sampling::nearest),
-                      propagate::occluded(facesOrUnread(surfaces.occluded, level), gpu::Sampling::nearest),
+                      sampled(state.light[now], gpu::Sampling::nearest), facesOf(surfaces, level),
                       propagate::stamps(state.stamps[now], gpu::Sampling::nearest),
                       images(state.light[next], kNext), images(sum, kTotal),
                       propagate::stampsNext(state.stamps[next]), propagate_plain::words(surfaces.packed)},

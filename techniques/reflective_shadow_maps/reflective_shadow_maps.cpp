@@ -17,20 +17,15 @@ using namespace shaders::reflective_shadow_maps;
 constexpr int kLoopLimit = 60000;
 constexpr std::uint32_t kFan = 16;  // kFan in sum_tree.glsl
 
-class RenderPass : public Pass {
-  Param<int> size{this, "size", 256, within(8, 4096),
-                  "texels along a side of the view of a light without extent"};
-  Param<int> areaSamples{this, "area_samples", 16, within(1, 1024),
-                         "point samples that represent all emissive triangles together"};
-  Param<int> areaSize{this, "area_size", 64, within(8, 2048),
-                      "texels along a side of each cube face of an area sample"};
+class RenderPass : public LightViewPass {
+ public:
+  RenderPass() : LightViewPass(256, within(8, 4096), 64, within(8, 2048)) {}
+
+ private:
   Out<ReflectiveShadowMap> map{this, "map", "what each light sees: position, normal, area, reflected flux"};
 
-  Reads readsFrom() const override { return Reads::geometry | Reads::materials | Reads::lights; }
-  Needs needs() const override { return Needs::anyLight; }
-
   void run(PassContext& frame) override {
-    const LightViews views = placeLightViews(frame, areaSamples, size, areaSize);
+    const LightViews views = placed(frame);
     const auto layers = [&](const char* label) { return views.layers(frame, gpu::Format::rgba32f, label); };
     const ReflectiveShadowMap result{views.lights,
                                      views.views,
@@ -44,20 +39,16 @@ class RenderPass : public Pass {
       for (const gpu::TextureRef& texture : colours) texture->clear(glm::vec4(0.0f));
     const gpu::TextureRef depth =
         frame.texture({gpu::TextureKind::d2, gpu::Format::depth32f, views.side, views.side, 1, 1}, "depth");
-    gpu::RasterState state;
-    state.depthTest = state.depthWrite = state.depthClamp = true;
+    const gpu::RasterState state{.depthTest = true, .depthWrite = true, .depthClamp = true};
     const auto targets = [&](int layer) {
-      gpu::RenderTargets one;
+      gpu::RenderTargets one{.depth = depth.get()};
       for (const gpu::TextureRef& texture : colours) one.colours.push_back({texture.get(), layer});
-      one.depth = depth.get();
       return one;
     };
     drawLightViews(frame, views, state, targets, [&](const LightViewDrawn& drawn, const SceneDraw& draw) {
-      const SceneBinding scene(frame, draw);
-      drawPart(frame, frame.program(render::Variant{scene.textures, scene.masks}),
-               {scene, render::lights(result.lights),
-                render::view({drawn.view.worldToClip, drawn.light, 0.5f * static_cast<float>(views.side)})},
-               draw);
+      drawPart(frame, draw, render::Variant{},
+               {render::lights(result.lights),
+                render::view({drawn.view.worldToClip, drawn.light, 0.5f * static_cast<float>(views.side)})});
     });
     map = result;
   }
@@ -76,9 +67,7 @@ float publishedScale(int samples) {
 
 class GatherPass : public Pass {
   enum class Method { flux, projected, all };
-  friend constexpr auto words(Method) { return std::array{"flux", "projected", "all"}; }
   enum class Weights { exact, published };
-  friend constexpr auto words(Weights) { return std::array{"exact", "published"}; }
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<ReflectiveShadowMap> map{this, "map", Presence::optional,
@@ -98,10 +87,9 @@ class GatherPass : public Pass {
                      "indirect light reflected by the diffuse lobe, without occlusion, W/(sr m^2)"};
 
   void run(PassContext& frame) override {
-    const Image result{frame.image(gpu::Format::rgba32f, "indirect diffuse radiance")};
-    diffuse = result;
+    diffuse = Image{frame.image("indirect diffuse radiance")};
     if (!map.present() || map->lightCount == 0) {
-      result.texture->clear(glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+      diffuse->texture->clear(glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
       return;
     }
     gather::Parameters parameters{.width = map->flux->description().width,
@@ -122,11 +110,11 @@ class GatherPass : public Pass {
       frame.dispatch(
           frame.program(variant),
           {gather::parameters(parameters), GBufferBinding(*gbuffer), ReflectiveShadowMapBinding(*map),
-           gather::chosen(chosen), gather::diffuseImage(result.texture)},
+           gather::chosen(chosen), gather::diffuseImage(diffuse->texture)},
           pixels(frame));
     };
     if (method != Method::all) return add();
-    result.texture->clear(glm::vec4(0.0f));
+    diffuse->texture->clear(glm::vec4(0.0f));
     const int rows = parameters.width * map->layerCount, atOnce = kLoopLimit / (parameters.width + 1);
     for (parameters.firstRow = 0; parameters.firstRow < rows; parameters.firstRow += atOnce) {
       parameters.rows = std::min(atOnce, rows - parameters.firstRow);

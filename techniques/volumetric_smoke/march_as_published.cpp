@@ -1,22 +1,16 @@
 // Listings 4.51 to 4.53 of thesis Gomes 2015 as they are printed; ours is MarchPass.
-#include <array>
+#include <algorithm>
 #include <cmath>
 
 #include "volumetric_smoke.h"
-#include "volumetric_smoke_shaders.h"
 
 namespace lumivox::volumetric_smoke {
 namespace {
 
-namespace code = shaders::volumetric_smoke::march_as_published;
-
 class MarchAsPublishedPass : public Pass {
   enum class Dither { asPublished, bayer };
-  friend constexpr auto words(Dither) { return std::array{"as_published", "bayer"}; }
   enum class Cosine { asPublished, unitVectors };
-  friend constexpr auto words(Cosine) { return std::array{"as_published", "unit_vectors"}; }
   enum class Phase { asPublished, normalised };
-  friend constexpr auto words(Phase) { return std::array{"as_published", "normalised"}; }
 
   In<GBuffer> gbuffer{this, "gbuffer", "where the rays end"};
   In<ScatteringGrid> media{this, "media",
@@ -48,26 +42,25 @@ class MarchAsPublishedPass : public Pass {
     const CameraView& camera = frame.snapshot().camera;
     const int perSample = resolution == Resolution::half ? 2 : 1;
     const glm::ivec2 size = samplesOf(camera, perSample);
-    const Result result(frame, size);
-    result.transmittance->clear(glm::vec4(1.0f));
-    scattered = Image{result.scattered};
-    transmittance = Image{result.transmittance};
+    makeImages(frame, size, scattered, transmittance);
+    transmittance->texture->clear(glm::vec4(1.0f));
     const LightBinding lights(shadow);
     if (lights.count == 0) {
-      result.scattered->clear(glm::vec4(0.0f));
+      scattered->texture->clear(glm::vec4(0.0f));
       return;
     }
     const MediaBinding bound(frame, *media);
-    code::Constants constants;
-    constants.stepCount = steps;
-    constants.ditherIsPublished = dither == Dither::asPublished;
-    constants.cosineIsPublished = cosine == Cosine::asPublished;
-    constants.phaseIsPublished = phase == Phase::asPublished;
-    code::Parameters parameters{.size = size, .lightCount = lights.count};
+    const march_as_published::Constants constants{.stepCount = steps,
+                                                  .ditherIsPublished = dither == Dither::asPublished,
+                                                  .cosineIsPublished = cosine == Cosine::asPublished,
+                                                  .phaseIsPublished = phase == Phase::asPublished};
     const Bounds& scene = frame.snapshot().gridBounds;
     const glm::vec3 extent = scene.high - scene.low;
-    parameters.sceneCentre = 0.5f * (scene.low + scene.high);
-    parameters.unit = std::max(0.5f * std::max({extent.x, extent.y, extent.z}), 1e-30f);
+    march_as_published::Parameters parameters{
+        .size = size,
+        .lightCount = lights.count,
+        .unit = std::max(0.5f * std::max({extent.x, extent.y, extent.z}), 1e-30f),
+        .sceneCentre = 0.5f * (scene.low + scene.high)};
     const std::vector<Medium>& all = frame.sceneDescription().media;
     for (std::size_t i = 0; i < media->media.size(); ++i) {
       const ScatteringGrid::Medium& medium = media->media[i];
@@ -76,11 +69,12 @@ class MarchAsPublishedPass : public Pass {
       if (i < all.size() && all[i].particles > 0 && all[i].radius > 0.0)
         amount = static_cast<float>(std::pow(double(medium.grid.voxelSize), 3.0) / particleMass(all[i]));
     }
-    const code::Variant variant{bound.axis == MediaBinding::varying};
-    frame.dispatch(frame.program(variant, constants),
-                   {code::view(viewOf<code::View>(camera, perSample)), code::parameters(parameters),
-                    GBufferBinding(*gbuffer), lights, bound, code::scatteredImage(result.scattered)},
-                   {size, 1});
+    const march_as_published::Variant variant{bound.axis == MediaBinding::varying};
+    frame.dispatch(
+        frame.program(variant, constants),
+        {viewOf(camera, perSample), march_as_published::parameters(parameters), GBufferBinding(*gbuffer),
+         lights, bound, march_as_published::scatteredImage(scattered->texture)},
+        {size, 1});
   }
 };
 

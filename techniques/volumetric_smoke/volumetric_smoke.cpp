@@ -4,17 +4,13 @@
 #include "volumetric_smoke.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/grid_placement.h"
-#include "volumetric_smoke_shaders.h"
 
 namespace lumivox::volumetric_smoke {
 namespace {
-
-using namespace shaders::volumetric_smoke;
 
 constexpr double kUnitsPerParticle = 16777216.0;  // kUnits in insert.comp
 
@@ -33,8 +29,8 @@ class ParticlesPass : public Pass {
       if (medium.particles == 0) continue;
       const ParticleClock clock = particleClock(medium, frame.snapshot().time);
       const auto count = static_cast<std::uint32_t>(medium.particles);
-      Particles::Group group{static_cast<int>(i), medium.particles, {}};
-      group.offsets = frame.elements(particles::offsets, count, "particles");
+      Particles::Group group{static_cast<int>(i), medium.particles,
+                             frame.elements(particles::offsets, count, "particles")};
       frame.dispatchList(frame.program(particles::kProgram),
                          {particles::parameters({.count = count,
                                                  .seed = medium.seed,
@@ -55,7 +51,6 @@ class ParticlesPass : public Pass {
 /// Sec. 4.5, Listing 4.50: particles into the grid. Even media and volume files join here.
 class InsertPass : public Pass {
   enum class Deposit { clouds, counts };
-  friend constexpr auto words(Deposit) { return std::array{"clouds", "counts"}; }
 
   In<Particles> particles{this, "particles", Presence::optional, "where the particles are"};
   In<OccupancyGrid> space{this, "space", Presence::optional,
@@ -86,9 +81,7 @@ class InsertPass : public Pass {
         uploadVolume(frame, *medium.volume, one);
       } else if (medium.particles > 0) {
         const auto& groups = particles->groups;
-        const auto group = std::find_if(groups.begin(), groups.end(), [&](const Particles::Group& each) {
-          return each.medium == static_cast<int>(i);
-        });
+        const auto group = std::ranges::find(groups, static_cast<int>(i), &Particles::Group::medium);
         if (group == groups.end())
           throw Error("volumetric_smoke.insert: the particles of medium '" + medium.name +
                       "' are missing; expected them from the input 'particles'");
@@ -119,10 +112,8 @@ class InsertPass : public Pass {
     // Trilinear densities end half a voxel outside of the grid.
     result.bounds.low = result.grid.low - 0.5f * voxelSize;
     result.bounds.high = result.grid.low + voxelSize * (glm::vec3(size) + 0.5f);
-    const gpu::TextureRef low = frame.volume(size, gpu::Format::r32ui, "particle units"),
-                          high = frame.volume(size, gpu::Format::r32ui, "particle units, high words");
-    low->clear(glm::vec4(0.0f));
-    high->clear(glm::vec4(0.0f));
+    const gpu::TextureRef low = frame.emptyVolume(size, gpu::Format::r32ui, "particle units"),
+                          high = frame.emptyVolume(size, gpu::Format::r32ui, "particle units, high words");
     insert::Parameters parameters{.source = glm::vec3(medium.source - frame.snapshot().origin),
                                   .count = static_cast<std::uint32_t>(group.count),
                                   .gridLow = result.grid.low,
@@ -156,11 +147,8 @@ class InsertPass : public Pass {
 
 class MarchPass : public Pass {
   enum class LightDepth { volume, march };
-  friend constexpr auto words(LightDepth) { return std::array{"volume", "march"}; }
   enum class Start { dithered, middle };
-  friend constexpr auto words(Start) { return std::array{"dithered", "middle"}; }
   enum class Phase { normalised, asPublished };
-  friend constexpr auto words(Phase) { return std::array{"normalised", "as_published"}; }
 
   In<GBuffer> gbuffer{this, "gbuffer", "where the rays end"};
   In<ScatteringGrid> media{this, "media", "what they go through"};
@@ -198,29 +186,26 @@ class MarchPass : public Pass {
     const CameraView& camera = frame.snapshot().camera;
     const int perSample = resolution == Resolution::half ? 2 : 1;
     const glm::ivec2 size = samplesOf(camera, perSample);
-    const Result result(frame, size);
+    makeImages(frame, size, scattered, transmittance);
     const MediaBinding bound(frame, *media);
     const LightBinding lights(shadow);
-    march::Constants constants;
-    constants.stepCount = steps;
-    constants.lightSteps = lightSteps;
-    constants.exactCells = cells;
-    constants.dithered = start == Start::dithered;
-    constants.phaseIsPublished = phase == Phase::asPublished;
+    const march::Constants constants{.stepCount = steps,
+                                     .lightSteps = lightSteps,
+                                     .dithered = start == Start::dithered,
+                                     .phaseIsPublished = phase == Phase::asPublished,
+                                     .exactCells = cells};
     march::Parameters parameters{.size = size, .lightCount = lights.count};
     gpu::TextureRef transmittances;
     if (lights.count > 0 && bound.axis == MediaBinding::varying && lightDepth == LightDepth::volume)
       transmittances = makeTransmittances(frame, bound, lights, parameters);
     const march::Variant variant{bound.axis == MediaBinding::varying, lights.count > 0,
                                  transmittances != nullptr};
-    frame.dispatch(frame.program(variant, constants),
-                   {march::view(viewOf<march::View>(camera, perSample)), march::parameters(parameters),
-                    GBufferBinding(*gbuffer), lights, bound,
-                    march::lightTransmittance(transmittances, gpu::Sampling::linear),
-                    march::scatteredImage(result.scattered), march::transmittanceImage(result.transmittance)},
-                   {size, 1});
-    scattered = Image{result.scattered};
-    transmittance = Image{result.transmittance};
+    frame.dispatch(
+        frame.program(variant, constants),
+        {viewOf(camera, perSample), march::parameters(parameters), GBufferBinding(*gbuffer), lights, bound,
+         march::lightTransmittance(transmittances, gpu::Sampling::linear),
+         march::scatteredImage(scattered->texture), march::transmittanceImage(transmittance->texture)},
+        {size, 1});
   }
 
   /// Those to all lights side by side along z. Null where so many lights do not fit into a texture.
@@ -280,17 +265,15 @@ class UpsamplePass : public Pass {
     // By either side: half of one pixel is one.
     const gpu::TextureDescription& samples = scatteredSamples->texture->description();
     const int perSample = samples.width < camera.width || samples.height < camera.height ? 2 : 1;
-    const Result result(frame, {camera.width, camera.height});
+    makeImages(frame, {camera.width, camera.height}, scattered, transmittance);
     frame.dispatch(
         frame.program(upsample::kProgram),
-        {upsample::view(viewOf<upsample::View>(camera, perSample)), upsample::parameters({similarity}),
-         GBufferBinding(*gbuffer), MediaBinding(frame, *media),
+        {viewOf(camera, perSample), upsample::parameters({similarity}), GBufferBinding(*gbuffer),
+         MediaBinding(frame, *media),
          upsample::scatteredSamples(scatteredSamples->texture, gpu::Sampling::nearest),
          upsample::transmittanceSamples(transmittanceSamples->texture, gpu::Sampling::nearest),
-         upsample::scatteredImage(result.scattered), upsample::transmittanceImage(result.transmittance)},
+         upsample::scatteredImage(scattered->texture), upsample::transmittanceImage(transmittance->texture)},
         pixels(frame));
-    scattered = Image{result.scattered};
-    transmittance = Image{result.transmittance};
   }
 };
 

@@ -26,8 +26,7 @@ glm::ivec3 evenlyHalved(const glm::ivec3& size) {
 }
 
 class InjectPass : public Pass {
-  enum class Precision { whole, half };
-  friend constexpr auto words(Precision) { return std::array{"float", "half"}; }
+  enum class Precision { float_, half };
 
   In<VoxelFragments> fragments{this, "fragments", "surface samples"};
   In<ShadowMap> shadow{this, "shadow", Presence::optional,
@@ -44,7 +43,7 @@ class InjectPass : public Pass {
       "irradiance that all surfaces receive besides that of the lights, W/m^2: cones then see what no light reaches (thesis Fig. 66)"};
   Param<bool> twoSided{this, "two_sided", true,
                        "light on the back of a triangle counts; off, as published: only on the front"};
-  Param<Precision> precision{this, "precision", Precision::whole, "of the grid: 16 or 8 bytes a voxel"};
+  Param<Precision> precision{this, "precision", Precision::float_, "of the grid: 16 or 8 bytes a voxel"};
   Out<RadianceGrid> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
                              Levels::finest};
 
@@ -85,16 +84,15 @@ class InjectPass : public Pass {
   /// Finds the occupied bricks, and gives every occupied voxel its place among the sums. There are no more of
   /// them than fragments, so that nothing that happens on the device need be known here.
   Sums claimSums(PassContext& frame, const glm::ivec3& size, OccupiedBricks& occupied) const {
-    const auto volume = [](const glm::u64vec3& extent) { return extent.x * extent.y * extent.z; };
     Sums sums;
     sums.brickCount = (size + (OccupiedBricks::kSide - 1)) / OccupiedBricks::kSide;
-    const std::uint64_t bricks = volume(sums.brickCount), most = fragments->capacity;
-    sums.bricks = frame.elements(claim::bricks, bricks, "occupied voxels of bricks");
-    sums.voxels = frame.elements(add::sums, std::min(most, volume(size)), "sums of voxels");
+    const std::uint64_t bricks = GridPlacement{.resolution = sums.brickCount}.voxelCount(),
+                        voxels = GridPlacement{.resolution = size}.voxelCount(), most = fragments->capacity;
+    sums.bricks = frame.emptyElements(claim::bricks, bricks, "occupied voxels of bricks");
+    sums.voxels = frame.emptyElements(add::sums, std::min(most, voxels), "sums of voxels");
     occupied.bricks = frame.elements(claim::brickList, std::min(most, bricks), "occupied bricks");
     occupied.count = frame.buffer(OccupiedBricks::argumentsBytes(3), "occupied brick count");
-    const gpu::BufferRef totals = frame.buffer(2 * sizeof(std::uint32_t), "claimed bricks and voxels");
-    for (const gpu::BufferRef& zeroed : {sums.bricks, sums.voxels, totals}) zeroed->clear();
+    const gpu::BufferRef totals = frame.uploaded(std::array<std::uint32_t, 2>{}, "claimed bricks and voxels");
     const auto brickCount = claim::size({sums.brickCount});
     forEachFragment(frame, frame.program(mark::kProgram), {brickCount, mark::bricks(sums.bricks)},
                     *fragments);
@@ -111,12 +109,11 @@ class InjectPass : public Pass {
   /// fragments.
   void light(PassContext& frame, const Sums& sums, const gpu::BufferRef& radiances, float mostRadiance) {
     const LightBinding lights(shadow);
-    MediaBinding bound;
-    if (shadow.present()) bound = MediaBinding(frame, media);
-    inject::Variant variant;
-    variant.lights = variant.shadows = shadow.present();
-    variant.reflected = fragments->reflected != nullptr;
-    variant.medium = bound.axis;
+    const MediaBinding bound(frame, media, shadow.present());
+    const inject::Variant variant{.lights = shadow.present(),
+                                  .shadows = shadow.present(),
+                                  .reflected = fragments->reflected != nullptr,
+                                  .medium = bound.axis};
     forEachFragment(frame, frame.program(variant),
                     {inject::grid({.gridLow = fragments->grid.low,
                                    .voxelSize = fragments->grid.voxelSize,
@@ -135,12 +132,9 @@ class InjectPass : public Pass {
   void resolve(PassContext& frame, const Sums& sums, float mostRadiance, RadianceGrid& result) {
     result.holdsMedia = storeMedia && media.present();
     const LightBinding lights(shadow);
-    MediaBinding bound;
-    if (result.holdsMedia) bound = MediaBinding(frame, media);
-    resolve::Variant variant;
-    variant.lights = result.holdsMedia && shadow.present();
-    variant.medium = bound.axis;
-    const auto& program = frame.program(variant);
+    const MediaBinding bound(frame, media, result.holdsMedia);
+    const auto& program = frame.program(
+        resolve::Variant{.lights = result.holdsMedia && shadow.present(), .medium = bound.axis});
     const OccupiedBricks occupied = result.occupied;
     const shader::BindingSet bindings{
         resolve::parameters({.brickCount = sums.brickCount,

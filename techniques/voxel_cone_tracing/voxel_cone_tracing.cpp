@@ -18,7 +18,6 @@ using namespace shaders::voxel_cone_tracing;
 class FilterPass : public Pass {
   // In the order of filter.comp.
   enum class Opacity { facing, average, trilinear };
-  friend constexpr auto words(Opacity) { return std::array{"facing", "average", "trilinear"}; }
 
   In<RadianceGrid> radiance{this, "radiance", "the finest level"};
   Param<Opacity> opacity{
@@ -30,8 +29,7 @@ class FilterPass : public Pass {
     const gpu::TextureDescription& texture = radiance->radiance->description();
     const glm::ivec3 finest(texture.width, texture.height, texture.depth);
     const OccupiedBricks& occupied = radiance->occupied;
-    filter::Constants constants;
-    constants.rule = static_cast<int>(static_cast<Opacity>(opacity));
+    const filter::Constants constants{.rule = static_cast<int>(static_cast<Opacity>(opacity))};
     const auto sampling =
         opacity == Opacity::trilinear ? gpu::Sampling::linearOneMip : gpu::Sampling::nearest;
     for (int level = 1; level < texture.levels; ++level) {
@@ -62,7 +60,6 @@ class FilterPass : public Pass {
 
 class GatherPass : public Pass {
   enum class Distribution { cosine, published };
-  friend constexpr auto words(Distribution) { return std::array{"cosine", "published"}; }
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<RadianceGrid> grid{this, "grid", "pre-filtered radiance, one mip per halving", Levels::all};
@@ -107,22 +104,18 @@ class GatherPass : public Pass {
       throw Error(
           "voxel_cone_tracing.gather: the voxels of 'grid' already contain the media, and 'media' would dim what the cones see once more; expected 'media' to be left out, or 'store_media off' in voxel_cone_tracing.inject");
     const MediaBinding bound(frame, media);
-    gather::Variant variant;
-    variant.diffuse = diffuse.wanted();
-    variant.glossy = glossy.wanted() && gbuffer->specular != nullptr;
-    variant.environment = frame.traits().environment;
-    variant.medium = bound.axis;
-    gather::Constants constants;
-    constants.coneCount = cones;
-    constants.publishedCones = distribution == Distribution::published;
-    constants.asPublished = asPublished;
-    constants.opacityOfFinestVoxel = input.opacity == RadianceGrid::Opacity::ofFinestVoxel;
+    const gather::Variant variant{.diffuse = diffuse.wanted(),
+                                  .glossy = glossy.wanted() && gbuffer->specular != nullptr,
+                                  .environment = frame.traits().environment,
+                                  .medium = bound.axis};
+    const gather::Constants constants{
+        .coneCount = cones,
+        .publishedCones = distribution == Distribution::published,
+        .asPublished = asPublished,
+        .opacityOfFinestVoxel = input.opacity == RadianceGrid::Opacity::ofFinestVoxel};
     const glm::vec3 extent = glm::vec3(input.grid.resolution) * input.grid.voxelSize;
-    const auto image = [&](bool made, const char* label) {
-      return Image{made ? frame.image(gpu::Format::rgba32f, label) : nullptr};
-    };
-    const Image ofDiffuse = image(variant.diffuse, "indirect diffuse radiance"),
-                ofGlossy = image(variant.glossy, "indirect glossy radiance");
+    if (variant.diffuse) diffuse = Image{frame.image("indirect diffuse radiance")};
+    if (variant.glossy) glossy = Image{frame.image("indirect glossy radiance")};
     frame.dispatch(
         frame.program(variant, constants),
         {gather::parameters({.gridLow = input.grid.low,
@@ -143,10 +136,8 @@ class GatherPass : public Pass {
                              .seed = seedWords(frame)}),
          GBufferBinding(*gbuffer), bound,
          gather::radianceGrid(input.radiance, gpu::Sampling::linearMipsBorder),
-         gather::diffuseImage(ofDiffuse.texture), gather::glossyImage(ofGlossy.texture)},
+         gather::diffuseImage(textureOf(diffuse)), gather::glossyImage(textureOf(glossy))},
         pixels(frame));
-    if (variant.diffuse) diffuse = ofDiffuse;
-    if (variant.glossy) glossy = ofGlossy;
   }
 };
 

@@ -1,6 +1,7 @@
 // Work that one thread leaves to many.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "lumivox/pipeline/pass.h"
@@ -12,16 +13,26 @@ namespace lumivox::voxelization {
 class Aside {
  public:
   /// Room for so many items.
-  Aside(PassContext& frame, std::uint64_t mostItems);
+  Aside(PassContext& frame, std::uint64_t mostItems)
+      : buffer_(frame.buffer((kNothing.size() + mostItems) * sizeof(std::uint32_t), "items put aside")) {}
 
-  const gpu::BufferRef& buffer() const { return buffer_; }
-  /// Before the dispatch that puts items aside.
-  void clear();
-  /// Behind that dispatch and its barrier; a barrier follows.
-  void workOff(PassContext& frame, const shader::BoundProgram& program,
-               const shader::BindingSet& bindings) const;
+  /// An invocation for each of `items` by a program of `variant`, and then for those that it put aside by the
+  /// one with MANY.
+  template <class Variant, class Constants>
+  void dispatch(PassContext& frame, Variant variant, const Constants& constants,
+                const shader::BindingSet& bindings, std::uint64_t items) const {
+    const shader::BindingSet all{bindings, shader::StorageSlot{"Aside"}(buffer_)};
+    buffer_->uploadValues(std::span<const std::uint32_t>(kNothing));
+    frame.dispatchList(frame.program(variant, constants), all, items);
+    variant.many = 1;
+    frame.dispatchIndirect(frame.program(variant, constants), all, *buffer_);
+  }
 
  private:
+  static constexpr std::uint32_t kGroupsPerItem = 8;
+  /// Work groups along x, y and z, then the number of items.
+  static constexpr std::array<std::uint32_t, 4> kNothing{0, kGroupsPerItem, 1, 0};
+
   gpu::BufferRef buffer_;
 };
 

@@ -1,8 +1,6 @@
 // Common parts of voxelizers of single bits: words for atomic operations, and the output for a gatherer.
 #pragma once
 
-#include <cstdint>
-
 #include "voxelizer.h"
 
 namespace lumivox::voxelization {
@@ -11,18 +9,22 @@ namespace lumivox::voxelization {
 /// is voxel (i, j, 32 w + b). d3 r32ui.
 gpu::TextureRef bitWords(PassContext& frame, const GridPlacement& grid, const char* label);
 
-/// Sets the bits of the voxels of a list.
-void markFragments(PassContext& frame, const VoxelFragments& fragments, const gpu::Texture& words);
+/// The bits of the voxels of a list.
+gpu::TextureRef bitsOf(PassContext& frame, const VoxelFragments& fragments, const char* label);
 
-/// The stacks, with their hierarchy, of the voxels in `voxels` and, where there is one, in `surface`.
-BinaryGrid binaryGridOf(PassContext& frame, const GridPlacement& grid, const gpu::Texture& voxels,
-                        const gpu::Texture* surface);
+/// Words of voxels and, where there are surface samples beside them, of theirs (null: none); bits.glsl.
+struct BitWords {
+  gpu::TextureRef voxels, surface;
+  shader::BindingSet bindings() const;
+};
+
+/// The stacks, with their hierarchy, of all of these voxels.
+BinaryGrid binaryGridOf(PassContext& frame, const GridPlacement& grid, const BitWords& words);
 
 /// The bits of static geometry are kept, and in every frame those of what moves are added to a copy of
 /// them.
 class BitVoxelizer : public GridPass {
  public:
-  Reads readsFrom() const override { return readsSurface(); }
   void run(PassContext& frame) override;
 
  protected:
@@ -38,15 +40,7 @@ class BitVoxelizer : public GridPass {
                                 "a black opaque fragment for every set voxel that has no surface sample"};
 
  private:
-  /// Words of the result: what was voxelized, and the voxels of given surface samples (null: none).
-  struct Words {
-    gpu::TextureRef voxels, surface;
-  };
-  /// For the binding that variants without a surface do not have.
-  static const gpu::Texture& surfaceOf(const Words& words);
-  gpu::TextureRef wordsOf(PassContext& frame, const GridPlacement& grid);
-  OccupancyGrid opacityOf(PassContext& frame, const GridPlacement& grid, const Words& words) const;
-  VoxelFragments fragmentsOf(PassContext& frame, const GridPlacement& grid, const Words& words);
+  VoxelFragments fragmentsOf(PassContext& frame, const GridPlacement& grid, const BitWords& words);
 
   std::uint64_t room_ = 0;  ///< fragments that the list is made for, beside those of the surface
 };

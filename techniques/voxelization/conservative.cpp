@@ -4,15 +4,10 @@
 #include <algorithm>
 #include <map>
 
-#include "fragment_list.h"
-#include "voxelization_shaders.h"
 #include "voxelizer.h"
 
 namespace lumivox::voxelization {
 namespace {
-
-namespace rasterShader = shaders::voxelization::conservative;
-namespace computeShader = shaders::voxelization::conservative_compute;
 
 /// Triangles of one draw, for one work group: first index, number of triangles, object, material.
 using Batch = glm::uvec4;
@@ -35,9 +30,7 @@ BatchesByTextures batchesOf(const std::vector<const SceneDraw*>& draws) {
 
 class ConservativePass : public Voxelizer {
   enum class Depth { conservative, centre };
-  friend constexpr auto words(Depth) { return std::array{"conservative", "centre"}; }
   enum class Method { automatic, raster, compute };
-  friend constexpr auto words(Method) { return std::array{"automatic", "raster", "compute"}; }
 
   Param<Depth> depth{
       this, "depth", Depth::conservative,
@@ -48,9 +41,9 @@ class ConservativePass : public Voxelizer {
 
   /// Rows of tiles that fit into the list of large triangles; what does not is done without it.
   static constexpr std::uint32_t kRowCapacity = 1u << 17;
-  static constexpr std::size_t kBatchesAtOnce = std::tuple_size_v<decltype(computeShader::Batches::batches)>;
-  static constexpr std::uint64_t kRowBytes = 3 * sizeof(std::uint32_t),
-                                 kRowHeadBytes = 4 * sizeof(std::uint32_t);
+  static constexpr std::size_t kBatchesAtOnce =
+      std::tuple_size_v<decltype(conservative_compute::Batches::batches)>;
+  static constexpr std::uint64_t kRowHeadBytes = 4 * sizeof(std::uint32_t);
 
   void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) override {
     if (method == Method::raster || (method == Method::automatic && !prefersCompute(frame, draws))) {
@@ -71,27 +64,20 @@ class ConservativePass : public Voxelizer {
   }
 
   void rasterise(PassContext& frame, const VoxelFragments& list, const Draws& draws) {
-    gpu::RenderTargets targets;
-    targets.width = targets.height =
-        std::max({list.grid.resolution.x, list.grid.resolution.y, list.grid.resolution.z});
-    const gpu::Drawing drawing = frame.device().drawTo(targets, {});
-    rasterShader::Constants constants;
-    constants.depthRange = depth == Depth::conservative;
+    const int side = list.grid.longest();
+    const gpu::Drawing drawing = frame.device().drawTo({.width = side, .height = side}, {});
+    const conservative::Constants constants{.depthRange = depth == Depth::conservative};
     for (const SceneDraw* draw : draws) {
       const SceneBinding scene(frame, *draw);
-      const rasterShader::Variant variant{scene.textures, scene.masks};
-      frame.shaders().draw(
-          frame.program(variant, constants),
-          {scene, appending(list),
-           rasterShader::grid({list.grid.low, list.grid.voxelSize, list.grid.resolution,
-                               static_cast<int>(draw->firstIndex), static_cast<int>(list.capacity)})},
-          draw->indexCount);
+      frame.shaders().draw(frame.program(scene.in(conservative::Variant{}), constants),
+                           {scene, appending(list), conservative::part({static_cast<int>(draw->firstIndex)})},
+                           draw->indexCount);
     }
   }
 
   void compute(PassContext& frame, const VoxelFragments& list, const Draws& draws) {
-    const gpu::BufferRef rows =
-        frame.buffer(kRowHeadBytes + kRowCapacity * kRowBytes, "rows of large triangles");
+    const gpu::BufferRef rows = frame.buffer(
+        kRowHeadBytes + kRowCapacity * conservative_compute::rows.elementBytes, "rows of large triangles");
     for (const auto& [textures, batches] : batchesOf(draws)) {
       const std::span<const Batch> all(batches);
       for (std::size_t first = 0; first < all.size(); first += kBatchesAtOnce) {
@@ -105,16 +91,14 @@ class ConservativePass : public Voxelizer {
                       const gpu::Texture* mask, std::span<const Batch> batches, const gpu::BufferRef& rows) {
     const std::array<std::uint32_t, 4> noRows{0, 0, 1, 1};
     rows->uploadValues(std::span<const std::uint32_t>(noRows));
-    computeShader::Batches table{};
+    conservative_compute::Batches table{};
     std::copy(batches.begin(), batches.end(), std::begin(table.batches));
     const SceneBinding scene(frame, diffuse, mask);
-    computeShader::Variant variant{scene.textures, scene.masks};
-    computeShader::Constants constants;
-    constants.depthRange = depth == Depth::conservative;
-    const shader::BindingSet bindings{
-        scene, appending(list), computeShader::batches(table), computeShader::rows(rows),
-        computeShader::grid({list.grid.low, list.grid.voxelSize, list.grid.resolution,
-                             static_cast<int>(list.capacity), static_cast<int>(kRowCapacity)})};
+    auto variant = scene.in(conservative_compute::Variant{});
+    const conservative_compute::Constants constants{.depthRange = depth == Depth::conservative};
+    const shader::BindingSet bindings{scene, appending(list), conservative_compute::batches(table),
+                                      conservative_compute::rows(rows),
+                                      conservative_compute::limits({static_cast<int>(kRowCapacity)})};
     frame.shaders().dispatch(frame.program(variant, constants), bindings,
                              {static_cast<std::uint32_t>(batches.size()), 1, 1});
     frame.device().barrier();

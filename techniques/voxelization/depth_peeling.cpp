@@ -4,12 +4,10 @@
 
 #include <algorithm>
 
-#include "orthogonal_view.h"
+#include "voxelizer.h"
 
 namespace lumivox::voxelization {
 namespace {
-
-using namespace shaders::voxelization;
 
 class DepthPeelingPass : public Voxelizer {
   Param<int> layers{this, "layers", 64, within(1, 4096), "most layers that are peeled from one view"};
@@ -27,31 +25,30 @@ class DepthPeelingPass : public Voxelizer {
             texture(gpu::Format::r32f, "depth in voxels of a layer")};
   }
 
-  /// Layers that are peeled along each axis: as many as earlier frames found and one more, which must turn
-  /// out empty; of static geometry and of what moves.
-  struct Plan {
-    static constexpr int kFirst = 4;
-    std::array<int, 3> peeled{kFirst, kFirst, kFirst};
-    std::array<int, 3> deepest{};  ///< layer that showed something, counted from 1
+  /// Layers that are peeled along an axis: as many as earlier frames found and one more, which must turn out
+  /// empty.
+  struct Axis {
+    int peeled = 4;
+    int deepest = 0;  ///< layer that showed something, counted from 1
   };
 
   void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) override {
-    const int side = viewSide(list.grid);
+    const int side = list.grid.longest();
     const std::array<Layer, 2> pair{makeLayer(frame, side), makeLayer(frame, side)};
-    const gpu::BufferRef deepest = frame.buffer(3 * sizeof(std::uint32_t), "deepest layer along each axis");
-    deepest->clear();
-    Plan& plan = draws.front()->moving ? moving_ : static_;
+    const gpu::BufferRef deepest =
+        frame.uploaded(std::array<std::uint32_t, 3>{}, "deepest layer along each axis");
+    std::array<Axis, 3>& axes = draws.front()->moving ? moving_ : static_;
     for (int axis = 0; axis < 3; ++axis) {
-      const OrthogonalView view = viewAlong(list, axis, 0.0f, static_cast<float>(list.grid.resolution[axis]));
-      int& peeled = plan.peeled[static_cast<std::size_t>(axis)];
-      peeled = std::min<int>(peeled, layers);
-      for (int index = 0; index < peeled; ++index) {
+      const shader::BindingSet view{
+          viewAlong(list.grid, axis, 0.0f, static_cast<float>(list.grid.resolution[axis])), appending(list)};
+      Axis& plan = axes[static_cast<std::size_t>(axis)];
+      plan.peeled = std::min<int>(plan.peeled, layers);
+      for (int index = 0; index < plan.peeled; ++index) {
         const Layer &now = pair[static_cast<std::size_t>(index % 2)],
                     &before = pair[static_cast<std::size_t>((index + 1) % 2)];
         peel(frame, view, draws, now, index == 0 ? nullptr : before.depth);
         frame.dispatch(frame.program(depth_peeling_append::kProgram),
-                       {viewBinding(view), appending(list), depth_peeling_append::layer({index}),
-                        depth_peeling_append::deepest(deepest),
+                       {view, depth_peeling_append::layer({index}), depth_peeling_append::deepest(deepest),
                         depth_peeling_append::layerDepth(now.depth, gpu::Sampling::nearest),
                         depth_peeling_append::layerSurface(now.surface, gpu::Sampling::nearest),
                         depth_peeling_append::layerDepthInGrid(now.depthInGrid, gpu::Sampling::nearest)},
@@ -65,39 +62,31 @@ class DepthPeelingPass : public Voxelizer {
   }
 
   /// Whether the layers along an axis were all of them; `count` of them showed something.
-  bool wereAll(PassContext& frame, Plan& plan, int axis, int count) const {
-    int &peeled = plan.peeled[static_cast<std::size_t>(axis)],
-        &deepest = plan.deepest[static_cast<std::size_t>(axis)];
-    if (count == peeled && peeled < layers) {
-      peeled *= 2;
+  bool wereAll(PassContext& frame, Axis& plan, int axis, int count) const {
+    if (count == plan.peeled && plan.peeled < layers) {
+      plan.peeled *= 2;
       return false;
     }
     if (count == layers)
       frame.warn(fmt::format("peeled {} layers along {}, as many as asked for; there may be more", count,
                              "xyz"[axis]));
-    deepest = std::max(deepest, count);
-    peeled = deepest + 1;
+    plan.deepest = std::max(plan.deepest, count);
+    plan.peeled = plan.deepest + 1;
     return true;
   }
 
-  static void peel(PassContext& frame, const OrthogonalView& view, const Draws& draws, const Layer& layer,
+  static void peel(PassContext& frame, const shader::BindingSet& view, const Draws& draws, const Layer& layer,
                    const gpu::TextureRef& before) {
-    gpu::RenderTargets targets;
-    targets.colours = {{layer.surface.get()}, {layer.depthInGrid.get()}};
-    targets.depth = layer.depth.get();
-    gpu::RasterState state;
-    state.depthTest = state.depthWrite = true;
-    const gpu::Drawing drawing = frame.device().drawTo(targets, state);
-    for (const SceneDraw* draw : draws) {
-      const SceneBinding scene(frame, *draw);
-      const depth_peeling::Variant variant{scene.textures, scene.masks, before == nullptr};
-      drawPart(frame, frame.program(variant),
-               {scene, viewBinding(view), depth_peeling::layerBefore(before, gpu::Sampling::nearest)}, *draw);
-    }
+    const gpu::RenderTargets targets{.colours = {{layer.surface.get()}, {layer.depthInGrid.get()}},
+                                     .depth = layer.depth.get()};
+    const gpu::Drawing drawing = frame.device().drawTo(targets, {.depthTest = true, .depthWrite = true});
+    for (const SceneDraw* draw : draws)
+      drawPart(frame, *draw, depth_peeling::Variant{.first = before == nullptr},
+               {view, depth_peeling::layerBefore(before, gpu::Sampling::nearest)});
     frame.device().barrier();
   }
 
-  Plan static_, moving_;
+  std::array<Axis, 3> static_, moving_;  ///< of static geometry and of what moves
 };
 
 }  // namespace

@@ -5,14 +5,10 @@
 #include <algorithm>
 
 #include "lumivox/base/error.h"
-#include "orthogonal_view.h"
+#include "voxelizer.h"
 
 namespace lumivox::voxelization {
 namespace {
-
-namespace msaaShader = shaders::voxelization::msaa_opacity;
-namespace countShader = shaders::voxelization::msaa_opacity_count;
-namespace copyShader = shaders::voxelization::bits_copy;
 
 class MsaaOpacityPass : public Voxelizer {
   Param<int> samples{this, "samples", 8, within(2, 8), "per pixel; at most what the device has"};
@@ -53,72 +49,45 @@ class MsaaOpacityPass : public Voxelizer {
     int mostScale = 1;
     while (2 * mostScale <= supersampling) mostScale *= 2;
     for (int scale = 1; scale <= mostScale; scale *= 2)
-      rasterise(frame, list.grid, draws, static_cast<int>(list.capacity), msaaShader::Variant::targetList,
-                appending(list), scale, mostScale);
+      rasterise(frame, list.grid, draws, msaa_opacity::Variant::targetList, appending(list), scale,
+                mostScale);
   }
 
-  void rasterise(PassContext& frame, const GridPlacement& placement, const Draws& draws, int capacity,
-                 int target, const shader::BindingSet& results, int scale = 1, int mostScale = 1) const {
-    gpu::RenderTargets targets;
-    targets.width = targets.height = scale * viewSide(placement);
-    targets.samples = sampleCount_;
-    msaaShader::SampleGrid grid{};
-    grid.gridLow = placement.low;
-    grid.voxelSize = placement.voxelSize;
-    grid.resolution = placement.resolution;
-    grid.capacity = capacity;
-    grid.sampleCount = sampleCount_;
-    grid.thickness = thickness;
-    grid.scale = scale;
-    grid.mostScale = mostScale;
+  void rasterise(PassContext& frame, const GridPlacement& grid, const Draws& draws, int target,
+                 const shader::BindingSet& results, int scale = 1, int mostScale = 1) const {
+    const int side = scale * grid.longest();
+    SampleGrid pixels{
+        .sampleCount = sampleCount_, .thickness = thickness, .scale = scale, .mostScale = mostScale};
     for (std::size_t i = 0; i < positions_.size(); ++i)
-      grid.samples[i] = glm::vec4(positions_[i], 0.0f, 0.0f);
-    const gpu::Drawing drawing = frame.device().drawTo(targets, {});
+      pixels.samples[i] = glm::vec4(positions_[i], 0.0f, 0.0f);
+    const gpu::Drawing drawing =
+        frame.device().drawTo({.width = side, .height = side, .samples = sampleCount_}, {});
     for (const SceneDraw* draw : draws) {
-      grid.firstIndex = static_cast<int>(draw->firstIndex);
+      pixels.firstIndex = static_cast<int>(draw->firstIndex);
       const SceneBinding scene(frame, *draw);
-      const msaaShader::Variant variant{scene.textures, scene.masks, target};
-      frame.shaders().draw(frame.program(variant), {scene, msaaShader::sampleGrid(grid), results},
-                           draw->indexCount);
+      frame.shaders().draw(frame.program(scene.in(msaa_opacity::Variant{.target = target})),
+                           {scene, msaa_opacity::sampleGrid(pixels), results}, draw->indexCount);
     }
     frame.device().barrier();
   }
 
-  /// The covered samples of every voxel's three sides. Those of static geometry are kept.
-  gpu::TextureRef sideMasks(PassContext& frame, const GridPlacement& grid) {
-    const auto [still, moving] = drawsByMotion(frame);
-    const auto mark = [&](const gpu::Texture& masks, const Draws& draws) {
-      rasterise(frame, grid, draws, 0, msaaShader::Variant::targetMasks, {msaaShader::sampleMasks(masks)});
-    };
-    const gpu::TextureRef first =
-        frame.kept("samples of static geometry", staticKey(frame, grid, still), [&, &draws = still] {
-          gpu::TextureRef masks =
-              frame.volume(grid.resolution, gpu::Format::r32ui, "samples of static geometry");
-          masks->clear(glm::vec4(0.0f));
-          mark(*masks, draws);
-          return masks;
-        });
-    if (moving.empty()) return first;
-    const gpu::TextureRef masks = frame.volume(grid.resolution, gpu::Format::r32ui, "samples");
-    frame.dispatch(frame.program(copyShader::kProgram),
-                   {copyShader::source(*first), copyShader::target(*masks)}, grid.resolution);
-    mark(*masks, moving);
-    return masks;
-  }
-
   void countSides(PassContext& frame) {
     const GridPlacement grid = placement(frame);
-    const gpu::TextureRef masks = sideMasks(frame, grid);
+    // The covered samples of every voxel's three sides.
+    const gpu::TextureRef masks = markedWords(
+        frame, grid, grid.resolution, "samples", [&](const gpu::Texture& marked, const Draws& draws) {
+          rasterise(frame, grid, draws, msaa_opacity::Variant::targetMasks,
+                    {gridBinding(grid), msaa_opacity::sampleMasks(marked)});
+        });
     const std::array<Out<OccupancyGrid>*, 4> outputs{&opacityX, &opacityY, &opacityZ, &opacity};
     for (int side = 0; side < 4; ++side) {
       Out<OccupancyGrid>& output = *outputs[static_cast<std::size_t>(side)];
       if (!output.wanted()) continue;
-      const OccupancyGrid result{grid, frame.volume(grid.resolution, gpu::Format::r8, output.name())};
-      frame.dispatch(frame.program(countShader::kProgram),
-                     {countShader::sides({sampleCount_, side}), countShader::sampleMasks(*masks),
-                      countShader::opacity(*result.opacity)},
+      output = OccupancyGrid{grid, frame.volume(grid.resolution, gpu::Format::r8, output.name())};
+      frame.dispatch(frame.program(msaa_opacity_count::kProgram),
+                     {msaa_opacity_count::sides({sampleCount_, side}), msaa_opacity_count::sampleMasks(masks),
+                      msaa_opacity_count::opacity(output->opacity)},
                      grid.resolution);
-      output = result;
     }
   }
 

@@ -6,17 +6,13 @@
 #include <optional>
 
 #include "aside.h"
-#include "voxelization_shaders.h"
 #include "voxelizer.h"
 
 namespace lumivox::voxelization {
 namespace {
 
-namespace code = shaders::voxelization::points;
-
 class PointsPass : public Voxelizer {
   enum class Spread { random, regular };
-  friend constexpr auto words(Spread) { return std::array{"random", "regular"}; }
   // The paper's figures are made with 19 points; it finds 12 to 19 nearly perfect in most scenes.
   Param<int> points{this, "points", 19, within(1, 65536), "random points on each triangle"};
   Param<bool> adaptive{this, "adaptive", false,
@@ -60,7 +56,7 @@ class PointsPass : public Voxelizer {
   static void forEachArea(const Scene& scene, const Work& work) {
     for (const Object& object : scene.objects) {
       const glm::dmat3 linear(object.placement);
-      for (const Part& part : object.parts)
+      for (const lumivox::Part& part : object.parts)
         for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; i += 3) {
           const auto corner = [&](std::uint32_t k) {
             return glm::dvec3(scene.positions[scene.indices[i + k]]);
@@ -71,15 +67,12 @@ class PointsPass : public Voxelizer {
     }
   }
 
-  static double largestTriangle(const Scene& scene) {
-    double largest = 0.0;
-    forEachArea(scene, [&](double area) { largest = std::max(largest, area); });
-    return largest;
-  }
-
   void warnOfHoles(PassContext& frame, float voxelSize) {
     if (!adaptive) return;
-    if (!largestTriangle_) largestTriangle_ = largestTriangle(frame.sceneDescription());
+    if (!largestTriangle_) {
+      double& largest = largestTriangle_.emplace(0.0);
+      forEachArea(frame.sceneDescription(), [&](double area) { largest = std::max(largest, area); });
+    }
     const double asked =
         static_cast<double>(density) * *largestTriangle_ / (double{voxelSize} * double{voxelSize});
     if (asked > kMostPoints)
@@ -92,26 +85,17 @@ class PointsPass : public Voxelizer {
     warnOfHoles(frame, list.grid.voxelSize);
     std::uint32_t mostTriangles = 0;
     for (const SceneDraw* draw : draws) mostTriangles = std::max(mostTriangles, draw->indexCount / 3);
-    Aside aside(frame, mostTriangles);
-    for (const SceneDraw* draw : draws) appendDraw(frame, list, *draw, aside);
-  }
-
-  void appendDraw(PassContext& frame, const VoxelFragments& list, const SceneDraw& draw, Aside& aside) {
-    const SceneBinding scene(frame, draw);
-    code::Variant variant{scene.textures, scene.masks};
-    code::Constants constants;
-    constants.regular = spread == Spread::regular;
-    const std::uint32_t triangles = draw.indexCount / 3;
-    const shader::BindingSet bindings{
-        scene, appending(list), code::aside(aside.buffer()),
-        code::grid(
-            {list.grid.low, list.grid.voxelSize, list.grid.resolution, static_cast<int>(list.capacity)}),
-        code::points({static_cast<int>(draw.firstIndex / 3), static_cast<int>(triangles), points,
-                      adaptive ? density + 0.0f : 0.0f, seedWords(frame), kMostPoints})};
-    aside.clear();
-    frame.dispatchList(frame.program(variant, constants), bindings, triangles);
-    variant.many = 1;
-    aside.workOff(frame, frame.program(variant, constants), bindings);
+    const Aside aside(frame, mostTriangles);
+    for (const SceneDraw* draw : draws) {
+      const SceneBinding scene(frame, *draw);
+      const std::uint32_t triangles = draw->indexCount / 3;
+      aside.dispatch(
+          frame, scene.in(points::Variant{}), points::Constants{.regular = spread == Spread::regular},
+          {scene, appending(list),
+           points::points({static_cast<int>(draw->firstIndex / 3), static_cast<int>(triangles), points,
+                           adaptive ? density + 0.0f : 0.0f, seedWords(frame), kMostPoints})},
+          triangles);
+    }
   }
 
   std::optional<double> largestTriangle_;  ///< m^2, once it was needed

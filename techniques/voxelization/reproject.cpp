@@ -1,16 +1,11 @@
 // Voxels from the surfaces that the camera sees (Mavridis & Papaioannou 2011, Sec. 3.2).
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "fragment_list.h"
 #include "lumivox/base/error.h"
-#include "voxelization_shaders.h"
+#include "voxelizer.h"
 
 namespace lumivox::voxelization {
 namespace {
-
-namespace code = shaders::voxelization::reproject;
 
 class ReprojectPass : public GridPass {
   In<GBuffer> gbuffer{this, "gbuffer", "what the camera sees"};
@@ -26,8 +21,6 @@ class ReprojectPass : public GridPass {
                    Contributes::direct};
   Out<VoxelFragments> fragments{this, "fragments", "surface samples: first those of the input"};
 
-  Reads readsFrom() const override { return readsSurface(); }
-
   void run(PassContext& frame) override {
     const gpu::TextureDescription& image = gbuffer->position->description();
     VoxelFragments list =
@@ -35,18 +28,16 @@ class ReprojectPass : public GridPass {
                    std::uint64_t{static_cast<unsigned>(image.width)} * static_cast<unsigned>(image.height));
     if (direct.present()) {
       requireFits(list, image);
-      list.reflected = frame.elements(code::reflected, list.capacity, "direct light that fragments reflect");
+      list.reflected =
+          frame.elements(reproject::reflected, list.capacity, "direct light that fragments reflect");
       list.reflected->clear(VoxelFragments::kNotKnown);
     }
-    const gpu::TextureRef light = direct.present() ? direct->texture : nullptr;
-    const code::Variant variant{gbuffer->emission != nullptr, direct.present()};
+    const reproject::Variant variant{gbuffer->emission != nullptr, direct.present()};
     frame.dispatch(frame.program(variant),
-                   {code::grid({list.grid.low, list.grid.voxelSize, list.grid.resolution,
-                                static_cast<int>(list.capacity)}),
-                    appending(list), GBufferBinding(*gbuffer), code::reflected(list.reflected),
-                    code::direct(light, gpu::Sampling::nearest)},
+                   {appending(list), GBufferBinding(*gbuffer), reproject::reflected(list.reflected),
+                    reproject::direct(textureOf(direct), gpu::Sampling::nearest)},
                    {image.width, image.height, 1});
-    finishList(frame, list);
+    finishCount(frame, list.count, list.capacity);
     fragments = list;
   }
 

@@ -2,12 +2,10 @@
 // between two clip planes.
 #include <map>
 
-#include "orthogonal_view.h"
+#include "voxelizer.h"
 
 namespace lumivox::voxelization {
 namespace {
-
-namespace code = shaders::voxelization::slicing;
 
 class SlicingPass : public Voxelizer {
   Param<int> axes{this, "axes", 1, within(1, 3),
@@ -19,18 +17,18 @@ class SlicingPass : public Voxelizer {
   }
 
   void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) override {
-    gpu::RenderTargets targets;
-    targets.width = targets.height = viewSide(list.grid);
+    const int side = list.grid.longest();
     std::vector<Bounds> bounds;
     for (const SceneDraw* draw : draws) bounds.push_back(boundsOf(frame, *draw, list.grid));
-    const gpu::Drawing drawing = frame.device().drawTo(targets, {});
+    const gpu::Drawing drawing = frame.device().drawTo({.width = side, .height = side}, {});
     for (int axis = axes == 1 ? 2 : 0; axis < 3; ++axis) {
       for (int slice = 0; slice < list.grid.resolution[axis]; ++slice) {
         const auto low = static_cast<float>(slice), high = low + 1.0f;
-        Draws within;
-        for (std::size_t i = 0; i < draws.size(); ++i)
-          if (!(bounds[i].high[axis] < low) && !(bounds[i].low[axis] > high)) within.push_back(draws[i]);
-        drawSlice(frame, list, within, viewAlong(list, axis, low, high));
+        const shader::BindingSet bindings{viewAlong(list.grid, axis, low, high), appending(list)};
+        for (std::size_t i = 0; i < draws.size(); ++i) {
+          if (bounds[i].high[axis] < low || bounds[i].low[axis] > high) continue;
+          drawPart(frame, *draws[i], slicing::Variant{}, bindings);
+        }
       }
     }
   }
@@ -46,15 +44,6 @@ class SlicingPass : public Voxelizer {
         known->second.grow(scene.positions[scene.indices[i]]);
     }
     return boundsInGrid(known->second, state.toWorld, grid);
-  }
-
-  static void drawSlice(PassContext& frame, const VoxelFragments& list, const Draws& draws,
-                        const OrthogonalView& view) {
-    for (const SceneDraw* draw : draws) {
-      const SceneBinding scene(frame, *draw);
-      drawPart(frame, frame.program(code::Variant{scene.textures, scene.masks}),
-               {scene, viewBinding(view), appending(list)}, *draw);
-    }
   }
 
   std::map<std::uint32_t, Bounds> atRest_;  ///< of draws, by first index; object space

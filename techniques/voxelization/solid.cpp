@@ -7,12 +7,9 @@
 #include "aside.h"
 #include "bit_voxelizer.h"
 #include "lumivox/scene/topology.h"
-#include "voxelization_shaders.h"
 
 namespace lumivox::voxelization {
 namespace {
-
-using namespace shaders::voxelization;
 
 /// The closed surfaces of an object.
 struct ClosedSurface {
@@ -37,7 +34,6 @@ Columns columnsOf(const Bounds& bounds, const glm::mat4& toWorld, const GridPlac
 
 class SolidPass : public BitVoxelizer {
   enum class Inwards { leave, fill };
-  friend constexpr auto words(Inwards) { return std::array{"leave", "fill"}; }
 
   In<VoxelFragments> base{this, "fragments", Presence::optional,
                           "surface samples that the inside is added to; the grid is theirs then"};
@@ -67,27 +63,24 @@ class SolidPass : public BitVoxelizer {
           fmt::format("closed but facing inwards, so treated as rooms full of air: {}", listed(rooms)));
     if (objects.empty()) return;
     const gpu::TextureRef parity = bitWords(frame, grid, "parity");
-    Aside aside(frame, mostTriangles_);
+    const Aside aside(frame, mostTriangles_);
     // Within an object a second surface inside the first is a cavity; objects that overlap are both solid.
     for (const int object : objects) fillObject(frame, grid, words, *parity, aside, object);
   }
 
   void fillObject(PassContext& frame, const GridPlacement& grid, const gpu::Texture& words,
-                  const gpu::Texture& parity, Aside& aside, int object) const {
+                  const gpu::Texture& parity, const Aside& aside, int object) const {
     const ClosedSurface& closed = surfaces_[static_cast<std::size_t>(object)];
     const ObjectState& state = frame.snapshot().objects[static_cast<std::size_t>(object)];
     const Columns columns = state.positions.empty() ? columnsOf(closed.bounds, state.toWorld, grid)
                                                     : Columns{{0, 0}, {grid.resolution.x, grid.resolution.y}};
     if (columns.size.x <= 0 || columns.size.y <= 0) return;
-    const shader::BindingSet bindings{
-        SceneBinding(frame, SceneDraw{object}),
-        solid_flip::grid({grid.low, grid.voxelSize, grid.resolution, static_cast<int>(closed.firstTriangle),
-                          static_cast<int>(closed.triangleCount)}),
-        solid_flip::triangles(triangles_), solid_flip::aside(aside.buffer()), solid_flip::parity(parity)};
-    aside.clear();
-    using Variant = solid_flip::Variant;
-    frame.dispatchList(frame.program(Variant{0}), bindings, closed.triangleCount);
-    aside.workOff(frame, frame.program(Variant{1}), bindings);
+    aside.dispatch(frame, solid_flip::Variant{}, solid_flip::Constants{},
+                   {SceneBinding(frame, SceneDraw{object}), gridBinding(grid),
+                    solid_flip::surface(
+                        {static_cast<int>(closed.firstTriangle), static_cast<int>(closed.triangleCount)}),
+                    solid_flip::triangles(triangles_), solid_flip::parity(parity)},
+                   closed.triangleCount);
     frame.dispatch(frame.program(solid_fill::kProgram),
                    {solid_fill::parameters({columns.low, columns.size, grid.resolution.z}),
                     solid_fill::parity(parity), solid_fill::words(words)},
@@ -125,9 +118,7 @@ class SolidPass : public BitVoxelizer {
       mostTriangles_ = std::max(mostTriangles_, closed.triangleCount);
     }
     if (!open.empty()) frame.warn(fmt::format("not closed, so without an inside: {}", listed(open)));
-    triangles.resize(std::max<std::size_t>(triangles.size(), 1));
-    triangles_ = frame.buffer(triangles.size() * sizeof(std::uint32_t), "triangles of closed surfaces");
-    triangles_->upload(std::as_bytes(std::span(triangles)));
+    triangles_ = frame.uploaded(triangles, "triangles of closed surfaces");
   }
 
   static std::string listed(const std::vector<std::string>& names) {

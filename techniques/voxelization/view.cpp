@@ -1,11 +1,8 @@
 // The voxels of any voxelizer as an image, to look at.
 #include "bit_voxelizer.h"
-#include "voxelization_shaders.h"
 
 namespace lumivox::voxelization {
 namespace {
-
-namespace code = shaders::voxelization::view;
 
 class ViewPass : public Pass {
   In<VoxelFragments> fragments{this, "fragments", "voxels"};
@@ -18,13 +15,12 @@ class ViewPass : public Pass {
 
   void run(PassContext& frame) override {
     const GridPlacement& grid = fragments->grid;
-    const gpu::TextureRef words = bitWords(frame, grid, "bits");
-    markFragments(frame, *fragments, *words);
+    const gpu::TextureRef words = bitsOf(frame, *fragments, "bits");
     const CameraView& camera = frame.snapshot().camera;
-    const Image result{frame.image(gpu::Format::rgba32f, "image of voxels")};
+    image = Image{frame.image("image of voxels")};
     frame.dispatch(
-        frame.program(code::kProgram),
-        {code::parameters({.eyeGrid = (camera.eye - grid.low) / grid.voxelSize,
+        frame.program(view::kProgram),
+        {view::parameters({.eyeGrid = (camera.eye - grid.low) / grid.voxelSize,
                            .pixelWidth = 2.0f * camera.tanHalfFov / static_cast<float>(camera.height),
                            .right = camera.right,
                            .imageWidth = static_cast<float>(camera.width),
@@ -33,9 +29,8 @@ class ViewPass : public Pass {
                            .forward = camera.forward,
                            .cut = cut / grid.voxelSize,
                            .resolution = grid.resolution}),
-         code::words(words), code::image(result.texture)},
+         view::words(words), view::image(image->texture)},
         pixels(frame));
-    image = result;
   }
 };
 

@@ -13,8 +13,7 @@ LUMIVOX_TECHNIQUE(registry) {
   addAverage(registry);
   addPoints(registry);
   addReproject(registry);
-  addAtlasBinary(registry);
-  addAtlasAttributes(registry);
+  addAtlas(registry);
   addSolid(registry);
   addView(registry);
 }

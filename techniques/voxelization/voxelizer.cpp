@@ -3,22 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
-#include "fragment_list.h"
 #include "lumivox/base/error.h"
 
 namespace lumivox::voxelization {
 
-shader::BindingSet appending(const VoxelFragments& list) {
-  return {shader::StorageSlot{"Count"}(list.count), shader::StorageSlot{"Fragments"}(list.fragments)};
+namespace {
+
+constexpr std::uint64_t kWantedOffset = 4 * sizeof(std::uint32_t);  // in the words of countBuffer()
+
+void requireListable(std::uint64_t fragments) {
+  if (fragments > 0x7fffffffu) throw Error(fmt::format("{} fragments do not fit into one list", fragments));
 }
+
+}  // namespace
 
 Bounds boundsInGrid(const Bounds& bounds, const glm::mat4& toWorld, const GridPlacement& grid) {
   Bounds inGrid;
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 local((corner & 1) != 0 ? bounds.high.x : bounds.low.x,
-                          (corner & 2) != 0 ? bounds.high.y : bounds.low.y,
-                          (corner & 4) != 0 ? bounds.high.z : bounds.low.z);
+    const glm::vec3 local = glm::mix(bounds.low, bounds.high, glm::bvec3(corner & 1, corner & 2, corner & 4));
     inGrid.grow((glm::vec3(toWorld * glm::vec4(local, 1.0f)) - grid.low) / grid.voxelSize);
   }
   inGrid.low -= 1.0f;
@@ -26,9 +30,63 @@ Bounds boundsInGrid(const Bounds& bounds, const glm::mat4& toWorld, const GridPl
   return inGrid;
 }
 
-Reads GridPass::readsSurface() const {
-  const Reads surface = Reads::geometry | Reads::materials;
-  return around == Around::camera ? surface | Reads::camera : surface;
+gpu::BufferRef countBuffer(PassContext& frame, const char* label) {
+  gpu::BufferRef count = frame.buffer(kWantedOffset + sizeof(std::uint32_t), label);
+  count->clear();
+  return count;
+}
+
+void finishCount(PassContext& frame, const gpu::BufferRef& count, std::uint64_t capacity) {
+  frame.dispatch(frame.program(finish::kProgram),
+                 {finish::count(count), finish::parameters({static_cast<int>(capacity), kWorkGroupSize})},
+                 {1, 1, 1});
+}
+
+void finishGuessed(PassContext& frame, const gpu::BufferRef& count, std::uint64_t capacity,
+                   std::uint64_t base, std::uint64_t& room, bool repeats) {
+  finishCount(frame, count, capacity);
+  frame.judgeLater(count, kWantedOffset, [=, &room](PassContext&, std::uint32_t wanted) {
+    const bool fits = wanted <= capacity;
+    if (fits && !repeats) return true;
+    requireListable(wanted);
+    const std::uint64_t needed = std::max<std::uint64_t>(wanted, base + 1) - base;
+    room = repeats ? needed : needed + needed / 8;
+    return fits;
+  });
+}
+
+VoxelFragments listBehind(PassContext& frame, const GridPlacement& grid, const VoxelFragments* base,
+                          std::uint64_t more) {
+  VoxelFragments list;
+  list.grid = grid;
+  list.workGroupSize = kWorkGroupSize;
+  list.capacity = more + (base != nullptr ? base->capacity : 0);
+  requireListable(list.capacity);
+  list.count = countBuffer(frame, "voxel fragment count");
+  list.fragments = frame.elements(copy::fragments, list.capacity, "voxel fragments");
+  if (base == nullptr) return list;
+  assert(base->workGroupSize == kWorkGroupSize);
+  list.coverage = base->coverage;
+  list.reflected = base->reflected;  // of the first fragments, which are the same
+  frame.dispatchIndirect(
+      frame.program(copy::kProgram),
+      {copy::baseCount(base->count), copy::baseFragments(base->fragments), appending(list)}, *base->count,
+      VoxelFragments::kArgumentsBytes);
+  return list;
+}
+
+gpu::ResourceBinding gridBinding(const GridPlacement& grid, std::uint64_t capacity) {
+  return shader::UniformSlot<ListGrid>{"ListGrid"}(
+      {grid.low, grid.voxelSize, grid.resolution, static_cast<int>(capacity)});
+}
+
+shader::BindingSet appending(const VoxelFragments& list) {
+  return {gridBinding(list.grid, list.capacity), shader::StorageSlot{"Count"}(list.count),
+          shader::StorageSlot{"Fragments"}(list.fragments)};
+}
+
+gpu::ResourceBinding viewAlong(const GridPlacement& grid, int axis, float depthLow, float depthHigh) {
+  return shader::UniformSlot<View>{"View"}({static_cast<float>(grid.longest()), axis, depthLow, depthHigh});
 }
 
 std::string GridPass::checkParameters() const {
@@ -36,17 +94,15 @@ std::string GridPass::checkParameters() const {
   return {};
 }
 
+Reads GridPass::readsFrom() const {
+  const Reads surface = Reads::geometry | Reads::materials;
+  return around == Around::camera ? surface | Reads::camera : surface;
+}
+
 GridPlacement GridPass::placement(PassContext& frame) const {
   const SceneSnapshot& snapshot = frame.snapshot();
   if (around == Around::camera) return placeGridAround(snapshot.camera.eye, extent, resolution);
   return placeGrid(snapshot.gridBounds, resolution);
-}
-
-std::uint64_t Voxelizer::expectedFragments(const Scene& scene, const GridPlacement&) const {
-  // Surfaces fill about as many voxels as six sides of the grid, twice where they lie between two layers;
-  // every triangle touches at least one, mostly a few.
-  const auto side = static_cast<std::uint64_t>(resolution);
-  return 12 * side * side + 4 * scene.triangleCount();
 }
 
 GridPass::DrawsByMotion GridPass::drawsByMotion(PassContext& frame) {
@@ -56,63 +112,56 @@ GridPass::DrawsByMotion GridPass::drawsByMotion(PassContext& frame) {
   return result;
 }
 
-GridPass::StaticKey GridPass::staticKey(const PassContext& frame, const GridPlacement& grid,
-                                        const Draws& still) {
-  StaticKey key{grid, {}};
-  for (const SceneDraw* draw : still)
-    key.second.push_back(frame.snapshot().objects[static_cast<std::size_t>(draw->object)].toWorld);
-  return key;
+gpu::TextureRef GridPass::markedWords(PassContext& frame, const GridPlacement& grid, const glm::ivec3& size,
+                                      const std::string& label, const Mark& mark) {
+  const auto [still, moving] = drawsByMotion(frame);
+  const std::string ofStatic = label + " of static geometry";
+  const gpu::TextureRef first = keptWhile(frame, grid, still, ofStatic, [&, &draws = still] {
+    gpu::TextureRef words = frame.emptyVolume(size, gpu::Format::r32ui, ofStatic);
+    if (!draws.empty()) mark(*words, draws);
+    return words;
+  });
+  if (moving.empty()) return first;
+  const gpu::TextureRef words = frame.volume(size, gpu::Format::r32ui, label);
+  frame.dispatch(frame.program(bits_copy::kProgram), {bits_copy::source(first), bits_copy::target(words)},
+                 size);
+  mark(*words, moving);
+  return words;
 }
 
-VoxelFragments Voxelizer::emptyList(const GridPlacement& grid) const {
-  VoxelFragments list;
-  list.grid = grid;
-  list.workGroupSize = kWorkGroupSize;
-  list.coverage = coverage();
-  return list;
+std::uint64_t Voxelizer::expectedFragments(const Scene& scene, const GridPlacement&) const {
+  // Surfaces fill about as many voxels as six sides of the grid, twice where they lie between two layers;
+  // every triangle touches at least one, mostly a few.
+  const auto side = static_cast<std::uint64_t>(resolution);
+  return 12 * side * side + 4 * scene.triangleCount();
 }
 
-Voxelizer::StaticList Voxelizer::listOfStatic(PassContext& frame, const GridPlacement& grid,
-                                              const Draws& still) {
+VoxelFragments Voxelizer::listOfStatic(PassContext& frame, const GridPlacement& grid, const Draws& still) {
   // A first guess is no reason to ask for more than one buffer can have.
   const std::uint64_t most = frame.device().info().maxStorageBytes / VoxelFragments::kFragmentBytes;
   if (room_ == 0)
     room_ = std::max<std::uint64_t>(std::min(expectedFragments(frame.sceneDescription(), grid), most), 1);
-  VoxelFragments list = emptyList(grid);
-  list.count = countBuffer(frame, "count of static geometry");
-  list.fragments = frame.buffer(room_ * VoxelFragments::kFragmentBytes, "voxel fragments");
-  list.capacity = room_;
-  list.count->clear();
+  VoxelFragments list = listBehind(frame, grid, nullptr, room_);
+  list.coverage = coverage();
   if (!still.empty()) append(frame, list, still);
   frame.device().barrier();
-  return {list.fragments, list.count, list.capacity};
+  return list;
 }
 
 void Voxelizer::run(PassContext& frame) {
   if (!fragments.wanted()) return;
   const auto [still, moving] = drawsByMotion(frame);
   const GridPlacement grid = placement(frame);
-  const auto make = [&, &draws = still] { return listOfStatic(frame, grid, draws); };
-  const StaticList first =
-      still.empty() ? make()
-                    : frame.kept("fragments of static geometry", staticKey(frame, grid, still), make);
-  VoxelFragments list = emptyList(grid);
-  list.fragments = first.fragments;
-  list.capacity = first.capacity;
+  VoxelFragments list = keptWhile(frame, grid, still, "fragments of static geometry",
+                                  [&, &draws = still] { return listOfStatic(frame, grid, draws); });
   // A reader of an earlier frame may still hold the old count.
-  list.count = countBuffer(frame, "voxel fragment count");
-  copyCount(frame, *first.count, *list.count);
+  const gpu::BufferRef countOfStatic = std::exchange(list.count, countBuffer(frame, "voxel fragment count"));
+  frame.dispatch(frame.program(copy_count::kProgram),
+                 {copy_count::from(countOfStatic), copy_count::to(list.count)}, {1, 1, 1});
   if (!moving.empty()) append(frame, list, moving);
   frame.device().barrier();
-  finishList(frame, list);
   // Where nothing moves, the next list from nothing will be as long as this one.
-  const bool repeats = moving.empty() && around == Around::scene;
-  frame.judgeLater(list.count, kWantedOffset,
-                   [this, repeats, capacity = list.capacity](PassContext&, std::uint32_t count) {
-                     const bool fits = count <= capacity;
-                     if (!fits || repeats) room_ = std::max<std::uint64_t>(roomFor(count, !repeats), 1);
-                     return fits;
-                   });
+  finishGuessed(frame, list.count, list.capacity, 0, room_, moving.empty() && around == Around::scene);
   fragments = list;
 }
 

@@ -2,6 +2,7 @@
 // geometry that is voxelized once.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,42 +10,79 @@
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/grid_placement.h"
+#include "voxelization_shaders.h"
 
 namespace lumivox::voxelization {
+
+using namespace shaders::voxelization;
 
 inline constexpr int kWorkGroupSize = 64;  // of the passes that read a list of fragments
 
 /// Where the grid lies: around the whole scene, or around the camera, moving with it by whole voxels.
 enum class Around { scene, camera };
-constexpr auto words(Around) {
-  return std::array{"scene", "camera"};
-}
-
-/// Bindings for appending to a list of fragments: the count and the fragments.
-shader::BindingSet appending(const VoxelFragments& list);
 
 /// Bounds of what lies within `bounds` in object space, in voxels; a voxel more on every side, since the
 /// device's arithmetic may round otherwise.
 Bounds boundsInGrid(const Bounds& bounds, const glm::mat4& toWorld, const GridPlacement& grid);
 
+/// Words that count something on the device: how many there are, the groups of a dispatch over them, and how
+/// many were wanted, whether there was room for them or not. All but the first are set by finishCount().
+gpu::BufferRef countBuffer(PassContext& frame, const char* label);
+inline constexpr std::uint64_t kGroupsOffset = sizeof(std::uint32_t);
+
+/// Turns a number of items into the arguments of a dispatch over them, in groups of kWorkGroupSize. What
+/// there is no room for is cut off, and can be told from the number that was wanted.
+void finishCount(PassContext& frame, const gpu::BufferRef& count, std::uint64_t capacity);
+/// The same where `room` behind the first `base` items was a guess: a frame that wanted more is made anew
+/// with an eighth more than it needs. With `repeats`, where later frames will need as much as this one, the
+/// room becomes as much as that. Error for more than a list can hold.
+void finishGuessed(PassContext& frame, const gpu::BufferRef& count, std::uint64_t capacity,
+                   std::uint64_t base, std::uint64_t& room, bool repeats = false);
+
+/// A list in this grid with room for `more` fragments behind those of `base`, and those copied: all on the
+/// device. Without a base (null) it is empty. Error when it would be too large.
+VoxelFragments listBehind(PassContext& frame, const GridPlacement& grid, const VoxelFragments* base,
+                          std::uint64_t more);
+
+/// Block ListGrid of list_grid.glsl, for shaders that append to no list.
+gpu::ResourceBinding gridBinding(const GridPlacement& grid, std::uint64_t capacity = 0);
+/// Bindings for appending to a list of fragments (fragment_list.glsl).
+shader::BindingSet appending(const VoxelFragments& list);
+
+/// Block View of view_axis.glsl: the slice between two depths, in voxels, along axis 0, 1 or 2, one pixel a
+/// column of voxels in a square target of the grid's longest side.
+gpu::ResourceBinding viewAlong(const GridPlacement& grid, int axis, float depthLow, float depthHigh);
+
 /// The base of all passes that make a grid of their own.
 class GridPass : public Pass {
  public:
   std::string checkParameters() const override;
+  /// Sources that voxels of the scene's surface in this grid depend on.
+  Reads readsFrom() const override;
 
  protected:
   GridPlacement placement(PassContext& frame) const;
-  /// Sources that voxels of the scene's surface in this grid depend on.
-  Reads readsSurface() const;
 
   using Draws = std::vector<const SceneDraw*>;
   struct DrawsByMotion {
     Draws still, moving;
   };
   static DrawsByMotion drawsByMotion(PassContext& frame);
-  /// The key of voxels of static geometry: where the grid lies, and where their objects are.
-  using StaticKey = std::pair<GridPlacement, std::vector<glm::mat4>>;
-  static StaticKey staticKey(const PassContext& frame, const GridPlacement& grid, const Draws& still);
+  /// The result of make(), kept as long as the grid and the objects of these draws stay where they are.
+  template <class Make>
+  static auto keptWhile(PassContext& frame, const GridPlacement& grid, const Draws& still,
+                        const std::string& what, const Make& make) {
+    if (still.empty()) return make();
+    std::pair<GridPlacement, std::vector<glm::mat4>> key{grid, {}};
+    for (const SceneDraw* draw : still)
+      key.second.push_back(frame.snapshot().objects[static_cast<std::size_t>(draw->object)].toWorld);
+    return frame.kept(what, key, make);
+  }
+  /// Words, d3 r32ui, in which draws set bits. Those of static geometry are kept, and in every frame those of
+  /// what moves are added to a copy of them.
+  using Mark = std::function<void(const gpu::Texture& words, const Draws& draws)>;
+  static gpu::TextureRef markedWords(PassContext& frame, const GridPlacement& grid, const glm::ivec3& size,
+                                     const std::string& label, const Mark& mark);
 
   Param<int> resolution{this, "resolution", 64, within(1, kLargestGrid),
                         "voxels along the longest side of the grid"};
@@ -59,12 +97,10 @@ class GridPass : public Pass {
 /// frame anew: nothing has to be merged, and nothing old can stay.
 class Voxelizer : public GridPass {
  public:
-  Reads readsFrom() const override { return readsSurface(); }
   void run(PassContext& frame) override;
 
  protected:
-  /// Appends the fragments of these draws: the shader takes an index by adding to list.count, and writes
-  /// where the index is below list.capacity. The device's barrier follows.
+  /// Appends the fragments of these draws, of which there is one at least. The device's barrier follows.
   virtual void append(PassContext& frame, const VoxelFragments& list, const Draws& draws) = 0;
   /// How the coverages of one voxel's fragments are combined.
   virtual VoxelFragments::Coverage coverage() const { return VoxelFragments::Coverage::mean; }
@@ -74,18 +110,12 @@ class Voxelizer : public GridPass {
   Out<VoxelFragments> fragments{this, "fragments", "surface samples"};
 
  private:
-  /// The fragments of static geometry, in a list with room for those of what moves.
-  struct StaticList {
-    gpu::BufferRef fragments, count;
-    std::uint64_t capacity = 0;
-  };
-  StaticList listOfStatic(PassContext& frame, const GridPlacement& grid, const Draws& still);
-  VoxelFragments emptyList(const GridPlacement& grid) const;
+  VoxelFragments listOfStatic(PassContext& frame, const GridPlacement& grid, const Draws& still);
 
   std::uint64_t room_ = 0;  ///< fragments that the list is made for: a guess, or what earlier frames needed
 };
 
-/// Each registers the pass of its file.
+/// Each registers the passes of its file.
 void addConservative(TechniqueRegistry& registry);
 void addMsaaOpacity(TechniqueRegistry& registry);
 void addSlicing(TechniqueRegistry& registry);
@@ -93,8 +123,7 @@ void addDepthPeeling(TechniqueRegistry& registry);
 void addAverage(TechniqueRegistry& registry);
 void addPoints(TechniqueRegistry& registry);
 void addReproject(TechniqueRegistry& registry);
-void addAtlasBinary(TechniqueRegistry& registry);
-void addAtlasAttributes(TechniqueRegistry& registry);
+void addAtlas(TechniqueRegistry& registry);
 void addSolid(TechniqueRegistry& registry);
 void addView(TechniqueRegistry& registry);
 

@@ -24,7 +24,7 @@ class Painted : public Toy {
   Out<Image> radiance{this, "radiance", Contributes::direct};
   Reads readsFrom() const override { return Reads::camera | Reads::time; }
   void run(PassContext& frame) override {
-    Image image{frame.image(gpu::Format::rgba32f, "image")};
+    Image image{frame.image("image")};
     const gpu::TextureDescription& d = image.texture->description();
     std::vector<float> values(static_cast<std::size_t>(d.width) * static_cast<std::size_t>(d.height) * 4,
                               1.0f);

@@ -533,7 +533,7 @@ TEST_CASE("the harness runs one pass on inputs made by a test") {
   const SceneSnapshot snapshot = snapshotOf(f.scene, 0.0);
   PassHarness harness(*f.device, f.techniques, "toy", "add", f.scene, snapshot);
   const auto constant = [&](float value) {
-    Image image{harness.context().image(gpu::Format::rgba32f, "constant")};
+    Image image{harness.context().image("constant")};
     image.texture->clear(glm::vec4(value));
     return image;
   };

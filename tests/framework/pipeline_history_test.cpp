@@ -294,7 +294,7 @@ TEST_CASE("the harness carries histories from run to run when it is told to") {
   if (!f) return;
   const SceneSnapshot snapshot = snapshotOf(f.scene, 0.0);
   PassHarness harness(*f.device, f.techniques, "toy", "progressive", f.scene, snapshot);
-  Image image{harness.context().image(gpu::Format::rgba32f, "constant")};
+  Image image{harness.context().image("constant")};
   image.texture->clear(glm::vec4(1.0f));
   harness.setInput<Image>("source", image);
   const auto mean = [&] {

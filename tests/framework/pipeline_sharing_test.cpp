@@ -27,7 +27,7 @@ class ShowScene : public Toy {
     const std::vector<float> positions = scene.positions().downloadValues<float>();
     const glm::vec4 vertex = toWorld * glm::vec4(positions[0], positions[1], positions[2], 1.0f);
     const float red = scene.materials().downloadValues<MaterialData>().at(0).diffuse.r;
-    radiance = Image{frame.image(gpu::Format::rgba32f, "image")};
+    radiance = Image{frame.image("image")};
     const auto x = static_cast<float>(vertex.x + frame.snapshot().origin.x);
     radiance.value().texture->clear(glm::vec4(x, red, 0.0f, 0.0f));
   }

@@ -62,7 +62,7 @@ class Toy : public Pass {
   void note() { ran_->push_back(kind_); }
   /// An image of one value.
   static Image paint(PassContext& frame, float value) {
-    Image image{frame.image(gpu::Format::rgba32f, "image")};
+    Image image{frame.image("image")};
     image.texture->clear(glm::vec4(value));
     return image;
   }
@@ -100,7 +100,6 @@ class Voxels : public Toy {
   Param<float> width{this, "width", 1.0f, {0.1f, 100.0f}, "m", "of the grid"};
   Param<bool> smooth{this, "smooth", false, "whether it is smoothed"};
   enum class Layout { dense, sparse };
-  friend constexpr auto words(Layout) { return std::array{"dense", "sparse"}; }
   Param<Layout> layout{this, "layout", Layout::dense, "of the memory"};
   Out<RadianceGrid> grid{this, "grid", "radiance"};
   Reads readsFrom() const override { return Reads::geometry; }

@@ -166,7 +166,7 @@ class EveryKind : public Pass {
     harmonics = made.harmonics;
     faces = made.faces;
     media = made.media;
-    if (image.wanted()) image = {frame.image(gpu::Format::rgba32f, "image")};
+    if (image.wanted()) image = {frame.image("image")};
   }
 };
 

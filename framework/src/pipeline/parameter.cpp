@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <cctype>
 #include <cmath>
 
 #include "lumivox/pipeline/pass.h"
@@ -111,6 +112,15 @@ WordParam::WordParam(Pass* pass, std::string name, std::size_t value, std::vecto
     : ParamBase(pass, std::move(name), Type::word, std::move(meaning)), value_(value), default_(value) {
   assert(value < words.size());
   choices_ = std::move(words);
+}
+std::string WordParam::wordOf(std::string_view name) {
+  std::string word;
+  for (const char letter : name.substr(0, name.find_last_not_of('_') + 1)) {
+    const bool capital = std::isupper(static_cast<unsigned char>(letter)) != 0;
+    if (capital) word += '_';
+    word += capital ? static_cast<char>(std::tolower(static_cast<unsigned char>(letter))) : letter;
+  }
+  return word;
 }
 std::string WordParam::set(double) {
   return fmt::format("must be one of {}", fmt::join(choices_, ", "));

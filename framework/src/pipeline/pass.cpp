@@ -128,7 +128,7 @@ void PassContext::dispatchIndirect(const shader::BoundProgram& program, const sh
   device().barrier();
 }
 
-gpu::TextureRef PassContext::image(gpu::Format format, const std::string& label) {
+gpu::TextureRef PassContext::image(const std::string& label, gpu::Format format) {
   gpu::TextureDescription description;
   description.format = format;
   description.width = snapshot().camera.width;
@@ -141,10 +141,24 @@ gpu::TextureRef PassContext::volume(const glm::ivec3& size, gpu::Format format, 
   return texture({gpu::TextureKind::d3, format, size.x, size.y, size.z, levels}, label);
 }
 
+gpu::TextureRef PassContext::emptyVolume(const glm::ivec3& size, gpu::Format format,
+                                         const std::string& label) {
+  gpu::TextureRef result = volume(size, format, label);
+  result->clear(glm::vec4(0.0f));
+  return result;
+}
+
 gpu::BufferRef PassContext::elements(const shader::StorageSlot& block, std::uint64_t count,
                                      const std::string& label) {
   assert(block.elementBytes > 0);
   return buffer(std::max<std::uint64_t>(count, 1) * block.elementBytes, label);
+}
+
+gpu::BufferRef PassContext::emptyElements(const shader::StorageSlot& block, std::uint64_t count,
+                                          const std::string& label) {
+  gpu::BufferRef result = elements(block, count, label);
+  result->clear();
+  return result;
 }
 
 const PassEntry* Technique::find(const std::string& pass) const {

@@ -35,11 +35,6 @@ SceneBinding::SceneBinding(PassContext& frame, const SceneDraw& draw)
   add(shader::UniformSlot<DrawBlock>{"Draw"}({draw.object, draw.material}));
 }
 
-void drawPart(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
-              const SceneDraw& draw) {
-  frame.shaders().drawIndexed(program, bindings, frame.scene().indices(), draw.firstIndex, draw.indexCount);
-}
-
 GBufferBinding::GBufferBinding(const GBuffer& gbuffer)
     : BindingSet{SampledSlot{"gPosition"}(gbuffer.position, Sampling::nearest),
                  SampledSlot{"gNormal"}(gbuffer.normal, Sampling::nearest),

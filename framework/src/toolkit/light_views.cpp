@@ -3,18 +3,6 @@
 #include <algorithm>
 
 namespace lumivox {
-namespace {
-
-/// At least one element, which stands in for none.
-template <class T>
-gpu::BufferRef uploaded(PassContext& frame, std::vector<T> values, const char* label) {
-  if (values.empty()) values.emplace_back();
-  gpu::BufferRef buffer = frame.buffer(values.size() * sizeof(T), label);
-  buffer->upload(std::as_bytes(std::span(values)));
-  return buffer;
-}
-
-}  // namespace
 
 gpu::TextureRef LightViews::layers(PassContext& frame, gpu::Format format, const std::string& label) const {
   return frame.texture({gpu::TextureKind::d2Array, format, side, side, std::max(layerCount(), 1), 1}, label);
@@ -26,8 +14,8 @@ LightViews placeLightViews(PassContext& frame, int areaSamples, int size, int ar
   result.set = sampleLights(frame.sceneDescription(), frame.snapshot(), areaSamples, result.side);
   std::vector<glm::mat4> matrices;
   for (const LightView& view : result.set.views) matrices.push_back(view.worldToClip);
-  result.lights = uploaded(frame, result.set.samples, "light samples");
-  result.views = uploaded(frame, std::move(matrices), "light views");
+  result.lights = frame.uploaded(result.set.samples, "light samples");
+  result.views = frame.uploaded(matrices, "light views");
   return result;
 }
 

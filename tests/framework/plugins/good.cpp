@@ -10,7 +10,7 @@ class Paint : public Pass {
   Param<float> value{this, "value", 1.0f, {0.0f, 10.0f}, "", "radiance"};
   Out<Image> radiance{this, "radiance", Contributes::direct};
   void run(PassContext& frame) override {
-    Image image{frame.image(gpu::Format::rgba32f, "image")};
+    Image image{frame.image("image")};
     image.texture->clear(glm::vec4(value));
     radiance = image;
   }

@@ -13,9 +13,6 @@ namespace {
 using namespace lumivox;
 
 enum class Deed { paint, abort, fault, spin, nan, refuse, exhaust, tire, rest };
-constexpr auto words(Deed) {
-  return std::array{"paint", "abort", "fault", "spin", "nan", "refuse", "exhaust", "tire", "rest"};
-}
 
 /// A white image, unless the deed is something else.
 class Paint : public Pass {
@@ -37,7 +34,7 @@ class Paint : public Pass {
     // Images and the frame to warm up are no trouble, timed frames are.
     static int painted = 0;
     if (deed == Deed::tire && ++painted > 4) throw Error("the pass is tired; expected fewer frames");
-    Image image{frame.image(gpu::Format::rgba32f, "image")};
+    Image image{frame.image("image")};
     image.texture->clear(glm::vec4(value));
     if (deed == Deed::nan) {
       std::vector<float> values = image.texture->downloadFloats();

@@ -52,9 +52,6 @@ namespace {
 using namespace lumivox;
 
 enum class Sign { positive, negative };
-constexpr auto words(Sign) {
-  return std::array{"positive", "negative"};
-}
 
 class Plant : public Pass {
  public:
@@ -75,7 +72,7 @@ class Look : public Pass {
   In<own_kind::Leaves> leaves{this, "leaves", "that are looked at"};
   Out<Image> radiance{this, "radiance", Contributes::direct};
   void run(PassContext& frame) override {
-    const Image image{frame.image(gpu::Format::rgba32f, "image")};
+    const Image image{frame.image("image")};
     image.texture->clear(glm::vec4(leaves->table->downloadFloats().front()));
     radiance = image;
   }

@@ -37,7 +37,7 @@ class ShowPass : public Pass {
   Out<Image> shown{this, "shown", "1 where the surface lies in one of the voxels, else 0"};
 
   void run(PassContext& frame) override {
-    const Image result{frame.image(gpu::Format::rgba32f, "surfaces in seen voxels")};
+    const Image result{frame.image("surfaces in seen voxels")};
     frame.dispatch(frame.program(code::show::kProgram),
                    {GBufferBinding(*gbuffer), code::show::seen(voxels->seen, gpu::Sampling::nearest),
                     code::show::shownImage(result.texture),

@@ -1,6 +1,7 @@
 // A pass, written by the author of a technique: a class whose members are its contract.
 #pragma once
 
+#include <algorithm>
 #include <any>
 #include <array>
 #include <cstdint>
@@ -8,7 +9,9 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -129,6 +132,8 @@ class Out : public OutBase {
     return *this;
   }
   const Port& value() const { return *value_; }
+  const Port* operator->() const { return &*value_; }
+  explicit operator bool() const { return hasValue(); }
   bool hasValue() const override { return value_.has_value(); }
   void reset() override { value_.reset(); }
   PortContents contents() const override {
@@ -295,6 +300,15 @@ class Param<bool> : public ParamBase {
   bool value_, default_;
 };
 
+/// What the compiler calls a value: "lobe" of lumivox::Gather::Lobe::lobe; empty for a number without a name.
+template <auto kValue>
+constexpr std::string_view valueName() {
+  constexpr std::string_view function = __PRETTY_FUNCTION__, before = "kValue = ";
+  const std::size_t first = function.find(before) + before.size();
+  const std::string_view value = function.substr(first, function.find_first_of(";]", first) - first);
+  return value.front() == '(' ? std::string_view() : value.substr(value.rfind(':') + 1);
+}
+
 class WordParam : public ParamBase {
  public:
   std::string valueText() const override { return choices_[value_]; }
@@ -305,23 +319,31 @@ class WordParam : public ParamBase {
  protected:
   WordParam(Pass* pass, std::string name, std::size_t value, std::vector<std::string> words,
             std::string meaning);
-  template <std::size_t kCount>
-  static std::vector<std::string> listed(const std::array<const char*, kCount>& words) {
-    return {words.begin(), words.end()};
+  /// The words of an enumeration from its value `kFirst` on.
+  template <class Word, std::size_t kFirst = 0>
+  static std::vector<std::string> wordsOf(std::vector<std::string> before = {}) {
+    constexpr std::string_view name = valueName<static_cast<Word>(kFirst)>();
+    if constexpr (name.empty()) {
+      return before;
+    } else {
+      before.push_back(wordOf(name));
+      return wordsOf<Word, kFirst + 1>(std::move(before));
+    }
   }
+  static std::string wordOf(std::string_view name);
   std::size_t value_, default_;
 };
 
-/// One word out of a few. The enumeration counts from 0, and beside it are the names of its values in texts:
-///   enum class Lobe { straight, cosine };
-///   constexpr auto words(Lobe) { return std::array{"straight", "cosine"}; }
+/// One word out of a few. The enumeration counts from 0, and texts call its values by their names in snake
+/// case, without an underscore at the end, which keeps a word apart from one of C++:
+///   enum class Precision { float_, asPublished };  // float, as_published
 template <class Word>
 class Param : public WordParam {
   static_assert(std::is_enum_v<Word>, "expected an enumeration, int, float or bool");
 
  public:
   Param(Pass* pass, std::string name, Word value, std::string meaning)
-      : WordParam(pass, std::move(name), static_cast<std::size_t>(value), listed(words(Word{})),
+      : WordParam(pass, std::move(name), static_cast<std::size_t>(value), wordsOf<Word>(),
                   std::move(meaning)) {}
   operator Word() const { return static_cast<Word>(value_); }
 };
@@ -422,12 +444,27 @@ class PassContext {
   void dispatchIndirect(const shader::BoundProgram& program, const shader::BindingSet& bindings,
                         const gpu::Buffer& arguments, std::uint64_t offsetBytes = 0);
 
-  gpu::TextureRef image(gpu::Format format, const std::string& label);  ///< image-sized d2 texture
+  /// A d2 texture of the image's size: in 32-bit floats positions and radiances of any scale fit.
+  gpu::TextureRef image(const std::string& label, gpu::Format format = gpu::Format::rgba32f);
   gpu::TextureRef volume(const glm::ivec3& size, gpu::Format format, const std::string& label,
                          int levels = 1);
+  /// The same with zeros.
+  gpu::TextureRef emptyVolume(const glm::ivec3& size, gpu::Format format, const std::string& label);
   /// Room for so many elements of a storage block that ends with an array of open length, and for one at
   /// least.
   gpu::BufferRef elements(const shader::StorageSlot& block, std::uint64_t count, const std::string& label);
+  /// The same with zeros.
+  gpu::BufferRef emptyElements(const shader::StorageSlot& block, std::uint64_t count,
+                               const std::string& label);
+  /// A buffer with these values: with one of zeros where there are none.
+  template <class Range>
+  gpu::BufferRef uploaded(const Range& values, const std::string& label) {
+    const auto bytes = std::as_bytes(std::span(values));
+    gpu::BufferRef result = buffer(std::max(bytes.size(), sizeof(*std::data(values))), label);
+    if (bytes.empty()) result->clear();
+    result->upload(bytes);
+    return result;
+  }
 
   /// An entry of kept() under one name.
   struct Kept {

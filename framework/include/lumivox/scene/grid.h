@@ -1,6 +1,8 @@
 // Where voxel grids lie.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <glm/glm.hpp>
 
 namespace lumivox {
@@ -11,6 +13,13 @@ struct GridPlacement {
   glm::vec3 low{0.0f};       ///< corner of voxel (0,0,0), metres relative to the snapshot's origin
   float voxelSize = 1.0f;    ///< m
   glm::ivec3 resolution{0};  ///< voxels per axis
+  /// Voxels along the longest side.
+  int longest() const { return std::max({resolution.x, resolution.y, resolution.z}); }
+  /// All voxels.
+  std::uint64_t voxelCount() const {
+    const glm::u64vec3 size(resolution);
+    return size.x * size.y * size.z;
+  }
   bool operator==(const GridPlacement&) const = default;
 };
 

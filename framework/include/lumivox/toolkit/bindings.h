@@ -27,11 +27,31 @@ class SceneBinding : public shader::BindingSet {
   /// Values of the shader's axes TEXTURES and MASKS: whether the draw's own material needs them, and always
   /// with --keep-everything.
   int textures = 0, masks = 0;
+  /// A generated Variant with those of the two that it has.
+  template <class Variant>
+  Variant in(Variant variant) const {
+    if constexpr (requires { variant.textures; }) variant.textures = textures;
+    variant.masks = masks;
+    return variant;
+  }
 };
 
-/// Draws one part of the scene, whose SceneBinding is among the bindings.
-void drawPart(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
-              const SceneDraw& draw);
+/// Draws one part of the scene, which is bound besides, by the variant with the axes TEXTURES and MASKS that
+/// its material needs.
+template <class Variant>
+void drawPart(PassContext& frame, const SceneDraw& draw, const Variant& variant,
+              const shader::BindingSet& bindings) {
+  const SceneBinding scene(frame, draw);
+  frame.shaders().drawIndexed(frame.program(scene.in(variant)), {scene, bindings}, frame.scene().indices(),
+                              draw.firstIndex, draw.indexCount);
+}
+
+/// The texture of an image that may be missing; null then.
+template <class ImagePort>
+const gpu::TextureRef& textureOf(const ImagePort& image) {
+  static const gpu::TextureRef none;
+  return image ? image->texture : none;
+}
 
 /// A g-buffer: gPosition, gNormal, gGeometricNormal, gDiffuse, gSpecular, gEmission.
 class GBufferBinding : public shader::BindingSet {

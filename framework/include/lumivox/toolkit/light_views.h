@@ -23,6 +23,27 @@ struct LightViews {
 /// but emissive triangles.
 LightViews placeLightViews(PassContext& frame, int areaSamples, int size, int areaSize);
 
+/// A pass that draws what the lights see, with the parameters of that.
+class LightViewPass : public Pass {
+ public:
+  Reads readsFrom() const override { return Reads::geometry | Reads::materials | Reads::lights; }
+  Needs needs() const override { return Needs::anyLight; }
+
+ protected:
+  LightViewPass(int size, ParamRange<int> sizes, int areaSize, ParamRange<int> areaSizes)
+      : size_(this, "size", size, sizes, "texels along a side of the view of a light without extent"),
+        areaSamples_(this, "area_samples", 16, within(1, 1024),
+                     "point samples that represent all emissive triangles together"),
+        areaSize_(this, "area_size", areaSize, areaSizes,
+                  "texels along a side of each cube face of an area sample") {}
+  LightViews placed(PassContext& frame) const {
+    return placeLightViews(frame, areaSamples_, size_, areaSize_);
+  }
+
+ private:
+  Param<int> size_, areaSamples_, areaSize_;
+};
+
 /// One view while it is drawn.
 struct LightViewDrawn {
   const LightView& view;

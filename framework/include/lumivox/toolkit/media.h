@@ -21,8 +21,9 @@ class MediaBinding : public shader::BindingSet {
  public:
   MediaBinding() = default;
   MediaBinding(PassContext& frame, const ScatteringGrid& media);
-  MediaBinding(PassContext& frame, const In<ScatteringGrid>& media)
-      : MediaBinding(media.present() ? MediaBinding(frame, *media) : MediaBinding()) {}
+  /// Nothing either where they are not read.
+  MediaBinding(PassContext& frame, const In<ScatteringGrid>& media, bool read = true)
+      : MediaBinding(read && media.present() ? MediaBinding(frame, *media) : MediaBinding()) {}
   /// The axis `MEDIUM none even varying` of the shader.
   enum Axis : int { none, even, varying };
   Axis axis = none;

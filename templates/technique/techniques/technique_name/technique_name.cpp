@@ -16,7 +16,7 @@ class GatherPass : public Pass {
                      "light reflected by the diffuse lobe, W/(sr m^2)"};
 
   void run(PassContext& frame) override {
-    const Image result{frame.image(gpu::Format::rgba32f, "diffusely reflected light")};
+    const Image result{frame.image("diffusely reflected light")};
     frame.dispatch(frame.program(code::gather::kProgram),
                    {GBufferBinding(*gbuffer), code::gather::diffuseImage(result.texture),
                     code::gather::parameters({.radiance = radiance})},

@@ -1,0 +1,7 @@
+// Textures of the material, as the axes TEXTURES and MASKS say.
+#if TEXTURES
+layout(binding = 0) uniform sampler2D diffuseTexture;
+#endif
+#if MASKS
+layout(binding = 1) uniform sampler2D maskTexture;
+#endif
