@@ -204,9 +204,10 @@ TEST_CASE("a model in a folder that is nowhere is an error of a check, and absen
       "scene \"x\" { camera main { eye 0 0 1  target 0 0 0 }\nmesh b { file \"no_such_model/b.obj\" } }");
   SceneLoadOptions options;
   options.assetPath = {directory.path() / "assets"};
-  CHECK_THAT(test::messageOf<DiagnosticsError>([&] { checkScene(file, options); }),
-             Contains("a.scene:2:15: model file 'no_such_model/b.obj' does not exist; expected it at one of") &&
-                 Contains((directory.path() / "assets/no_such_model/b.obj").string()));
+  CHECK_THAT(
+      test::messageOf<DiagnosticsError>([&] { checkScene(file, options); }),
+      Contains("a.scene:2:15: model file 'no_such_model/b.obj' does not exist; expected it at one of") &&
+          Contains((directory.path() / "assets/no_such_model/b.obj").string()));
   const std::string text = test::messageOf<AbsentError>([&] { loadScene(file, options); });
   CHECK_THAT(text, Contains("the model of mesh 'b' 'no_such_model/b.obj' was not found; searched"));
   CHECK_THAT(text, Contains((directory.path() / "assets/no_such_model/b.obj").string()));

@@ -8,6 +8,7 @@
 #include "command.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/base/findings.h"
 #include "lumivox/base/log.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/dsl/schema.h"
@@ -46,13 +47,26 @@ struct CheckedFile {
   bool good() const { return findings.size() == warnings() && message.empty(); }
 };
 
+/// What a model holds besides is no matter of a check, unless more messages are asked for.
+void checkLoading(const fs::path& file, const GlobalOptions& global) {
+  const LogLevel level = logLevel();
+  if (!global.verbose && level > LogLevel::warnings) setLogLevel(LogLevel::warnings);
+  try {
+    checkScene(file, global.sceneLoad());
+  } catch (...) {
+    setLogLevel(level);
+    throw;
+  }
+  setLogLevel(level);
+}
+
 CheckedFile checkFile(const fs::path& file, const GlobalOptions& global, TechniqueSet& techniques) {
   CheckedFile checked;
   const WarningCollector collector;
   try {
     switch (kindOfText(file)) {
       case TextKind::scene:
-        checkScene(file, global.sceneLoad());
+        checkLoading(file, global);
         break;
       case TextKind::pipeline:
         checkPipeline(Pipeline::load(file), techniques);
@@ -72,11 +86,14 @@ CheckedFile checkFile(const fs::path& file, const GlobalOptions& global, Techniq
   } catch (const Error& error) {
     checked.message = error.what();
   }
+  // Pipelines of a sweep may bring the same warning at every point.
+  std::vector<Diagnostic> findings = checked.findings;
   for (const Diagnostic& warning : collector.findings()) {
-    const bool known = std::any_of(checked.findings.begin(), checked.findings.end(),
+    const bool known = std::any_of(findings.begin(), findings.end(),
                                    [&](const Diagnostic& one) { return one.text() == warning.text(); });
-    if (!known) checked.findings.push_back(warning);
+    if (!known) findings.push_back(warning);
   }
+  checked.findings = DiagnosticsError(std::move(findings)).diagnostics();  // in the order of the text
   return checked;
 }
 

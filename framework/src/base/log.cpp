@@ -9,6 +9,8 @@
 #include <mutex>
 #include <set>
 
+#include "lumivox/base/findings.h"
+
 namespace lumivox {
 namespace {
 

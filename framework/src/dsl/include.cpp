@@ -95,7 +95,6 @@ class Splicer {
       root_.includedFiles.push_back(target);
       root_.includedSources[target.string()] = part.source;
       for (Diagnostic& finding : part.findings) root_.findings.push_back(std::move(finding));
-      root_.doubtfulFrom.merge(part.doubtfulFrom);
     }
     splice(part.items, target);
     std::move(part.items.begin(), part.items.end(), std::back_inserter(result));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "dsl/consequences.h"
 #include "dsl/lexer.h"
 
 namespace lumivox::dsl {
@@ -21,6 +22,8 @@ class Parser {
     document_.items = items(document_.commentsAtEnd, 0);
     if (!unclosed_.empty()) reportUnclosed();
   }
+
+  const Doubts& doubts() const { return doubts_; }
 
  private:
   const Token& now() const { return tokens_[position_]; }
@@ -47,7 +50,7 @@ class Parser {
   }
 
   void doubtFrom(int line) {
-    const auto [first, isNew] = document_.doubtfulFrom.emplace(document_.file.string(), line);
+    const auto [first, isNew] = doubts_.from.emplace(document_.file.string(), line);
     if (!isNew) first->second = std::min(first->second, line);
   }
 
@@ -326,7 +329,7 @@ class Parser {
     } else {
       doubtFrom(now().place.line);
       report(now(), "unexpected '}'", "no '}' here: no block is open");
-      document_.surplusBrace = now().place;
+      doubts_.surplusBrace = now().place;
     }
   }
 
@@ -448,6 +451,7 @@ class Parser {
   std::optional<OpenBlock> unclosedHere_;  ///< the first block that seems to lack its '}'
   std::optional<EarlyEnd> earlyEnd_;       ///< the first '}' that seems to end another block than its own
   bool surplusTold_ = false;
+  Doubts doubts_;
 };
 
 /// The place of the first byte that no text holds, if any.
@@ -551,18 +555,38 @@ Diagnostic Document::finding(const SourcePlace& place, int length, std::string w
   return result;
 }
 
+Doubts doubtsOf(const Document& document) {
+  Doubts doubts;
+  if (document.findings.empty()) return doubts;
+  const auto add = [&](const std::filesystem::path& file, const std::string& source) {
+    Document again;
+    again.file = file;
+    again.source = source;
+    if (source.size() > kMaximumTextBytes || firstControlCharacter(again)) return;
+    std::vector<Token> tokens = lex(again);
+    Parser parser(again, std::move(tokens));
+    parser.run();
+    doubts.from.insert(parser.doubts().from.begin(), parser.doubts().from.end());
+    if (!doubts.surplusBrace) doubts.surplusBrace = parser.doubts().surplusBrace;
+  };
+  add(document.file, document.source);
+  for (const auto& [file, source] : document.includedSources) add(file, source);
+  return doubts;
+}
+
 void dropConsequences(const Document& document, std::vector<Diagnostic>& findings) {
   const auto isAt = [](const Diagnostic& one, const Diagnostic& other) {
     return one.place.line == other.place.line && one.place.file == other.place.file;
   };
+  const Doubts doubts = doubtsOf(document);
   const auto follows = [&](const Diagnostic& finding) {
     const auto& own = document.findings;
     if (std::any_of(own.begin(), own.end(), [&](const Diagnostic& other) {
           return other.place.text() == finding.place.text() && other.what == finding.what;
         }))
       return false;
-    const auto doubtful = document.doubtfulFrom.find(finding.place.file);
-    return (doubtful != document.doubtfulFrom.end() && finding.place.line >= doubtful->second) ||
+    const auto doubtful = doubts.from.find(finding.place.file);
+    return (doubtful != doubts.from.end() && finding.place.line >= doubtful->second) ||
            std::any_of(own.begin(), own.end(), [&](const Diagnostic& other) { return isAt(finding, other); });
   };
   findings.erase(std::remove_if(findings.begin(), findings.end(), follows), findings.end());
@@ -571,12 +595,11 @@ void dropConsequences(const Document& document, std::vector<Diagnostic>& finding
 void reportOutside(const Document& document, const Item& item, const std::string& block,
                    std::vector<Diagnostic>& findings) {
   // The end of the block that was never opened follows from it.
-  if (document.surplusBrace)
-    findings.erase(std::remove_if(findings.begin(), findings.end(),
-                                  [&](const Diagnostic& finding) {
-                                    return finding.place.text() == document.surplusBrace->text();
-                                  }),
-                   findings.end());
+  if (const auto surplus = doubtsOf(document).surplusBrace)
+    findings.erase(
+        std::remove_if(findings.begin(), findings.end(),
+                       [&](const Diagnostic& finding) { return finding.place.text() == surplus->text(); }),
+        findings.end());
   const std::string& word = item.block ? item.block->word : item.property->word;
   findings.push_back(document.finding(item.block ? item.block->place : item.property->place,
                                       static_cast<int>(word.size()),

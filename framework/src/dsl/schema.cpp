@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "dsl/consequences.h"
 #include "dsl/wording.h"
 
 namespace lumivox::dsl {
@@ -96,8 +97,8 @@ class BlockChecker {
         if (findings_.size() > before) i += consequencesOf(*item.property, i + 1);
       }
     }
-    // Properties after the end of a truncated text are not missing.
-    if (block_.closed && document_.doubtfulFrom.empty()) checkMissing();
+    // Nothing is called missing in a text of which a part was not read.
+    if (block_.closed && document_.findings.empty()) checkMissing();
   }
 
  private:
@@ -157,14 +158,19 @@ class BlockChecker {
     return found == properties_.end() ? nullptr : *found;
   }
 
-  /// A lone unknown word behind a number without a unit, where one belongs: `fov 70 degrees`.
+  /// An unknown word behind a number without a unit, where one belongs: `fov 70 degrees`.
   bool takesWordAsUnit(const Property& property, const Item& next) {
     const PropertySpecification* specification = specificationOf(property);
     if (specification == nullptr || specification->dimension == kNoDimension || property.values.empty() ||
-        !next.property || !next.property->values.empty() || specificationOf(*next.property) != nullptr)
+        !next.property || specificationOf(*next.property) != nullptr)
       return false;
     const Value& last = property.values.back();
     const Property& word = *next.property;
+    // Values of the word are a property that it took along: `fov 70 degrees resolution 24 16`.
+    if (!word.values.empty()) {
+      if (!word.values.front().isPlainWord()) return false;
+      firstPlaces_.emplace(word.values.front().text, word.values.front().place);
+    }
     if (last.kind != ValueKind::number || last.unit || last.place.line != word.place.line) return false;
     std::vector<std::string> units;
     for (const Unit& unit : knownUnits())

@@ -194,7 +194,8 @@ std::string Measurer::waitingText(const std::vector<WantedPoint>& pending) const
   for (const WantedPoint& point : pending)
     if (const std::optional<RunClaim> claim = store_.claimedByOther(key(point)))
       return fmt::format("waiting for {} point{}, the first of which process {} measures{}", pending.size(),
-                         pending.size() == 1 ? "" : "s", claim->process, claim->command.empty() ? "" : ": " + claim->command);
+                         pending.size() == 1 ? "" : "s", claim->process,
+                         claim->command.empty() ? "" : ": " + claim->command);
   return fmt::format("waiting for {} point{} that other processes measure", pending.size(),
                      pending.size() == 1 ? "" : "s");
 }

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "dsl/consequences.h"
 #include "pipeline/read_sweep.h"
 #include "pipeline/text_values.h"
 

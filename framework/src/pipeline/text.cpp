@@ -5,7 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "lumivox/base/log.h"
+#include "dsl/consequences.h"
+#include "lumivox/base/findings.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "pipeline/read_sweep.h"
 #include "pipeline/text_values.h"

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "dsl/consequences.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
 #include "lumivox/results/reproduction.h"

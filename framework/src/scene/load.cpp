@@ -9,7 +9,9 @@
 #include <set>
 #include <tuple>
 
+#include "dsl/consequences.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/findings.h"
 #include "lumivox/base/log.h"
 #include "lumivox/scene/scene.h"
 #include "lumivox/scene/text.h"

@@ -7,9 +7,6 @@
 #include <functional>
 #include <string>
 #include <string_view>
-#include <vector>
-
-#include "lumivox/base/error.h"
 
 namespace lumivox {
 
@@ -32,25 +29,6 @@ template <class... Args>
 void logDetails(fmt::format_string<Args...> format, Args&&... args) {
   logMessage(LogLevel::details, fmt::format(format, std::forward<Args>(args)...));
 }
-
-/// A warning that has a place. One that was told before in this process is not told again.
-void logFinding(const Diagnostic& finding);
-
-/// Takes the warnings of this thread while it lives, in place of the log: those with a place as they are,
-/// those of logWarning() without one. The innermost one takes them.
-class WarningCollector {
- public:
-  WarningCollector();
-  ~WarningCollector();
-  WarningCollector(const WarningCollector&) = delete;
-  WarningCollector& operator=(const WarningCollector&) = delete;
-  const std::vector<Diagnostic>& findings() const { return findings_; }
-  void add(Diagnostic finding) { findings_.push_back(std::move(finding)); }
-
- private:
-  std::vector<Diagnostic> findings_;
-  WarningCollector* outer_;
-};
 
 /// Warnings logged so far in this process; `--strict` refuses to go on when there are any.
 std::uint64_t warningCount();

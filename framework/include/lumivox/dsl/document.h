@@ -96,9 +96,6 @@ struct Document {
   std::vector<std::string> commentsAtEnd;
   std::vector<Diagnostic> findings;  ///< syntax errors; the rest of the document is still usable
   std::vector<std::filesystem::path> includedFiles;  ///< each once, in the order of reading
-  /// By file name: the line from which blocks may not be what they seem, after a missing brace.
-  std::map<std::string, int> doubtfulFrom;
-  std::optional<SourcePlace> surplusBrace;  ///< of a '}' that closes nothing
   std::map<std::string, std::string>
       includedSources;  ///< their texts, by the file name that places in them carry
 
@@ -123,15 +120,6 @@ Document parse(std::string source, std::filesystem::path file);
 /// Splices included files in (a path is relative to the including file); a missing file and a cycle are
 /// findings.
 void resolveIncludes(Document& document);
-
-/// Drops findings that follow from others, so that one mistake makes one finding: those on the line of a
-/// syntax error, and those in lines that a missing brace makes doubtful. The document's own stay.
-void dropConsequences(const Document& document, std::vector<Diagnostic>& findings);
-
-/// One finding for all that stands at the top of a text and belongs into a block that the text lacks: at
-/// `item`, the first of it.
-void reportOutside(const Document& document, const Item& item, const std::string& block,
-                   std::vector<Diagnostic>& findings);
 
 /// Reads, parses and resolves includes. Throws Error when the file itself cannot be read.
 Document parseFile(const std::filesystem::path& file);

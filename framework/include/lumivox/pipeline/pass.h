@@ -75,6 +75,21 @@ constexpr bool reads(Reads set, Reads one) {
   return (set & one) != Reads::nothing;
 }
 
+/// The levels of a grid with mips that an output fills, or that an input reads.
+enum class Levels { unspecified, finest, all };
+
+/// An input's expectation of the output behind it, beyond its kind. Another output is a warning: the light
+/// would be wrong.
+struct Expects {
+  std::optional<Contributes> component;  ///< of the image, which the output holds; `nothing`: none of them
+  Levels levels = Levels::unspecified;   ///< all: each must be filled
+
+  Expects() = default;
+  Expects(Contributes held)
+      : component(held) {}                    // NOLINT: a member of a pass says `Contributes::direct` alone
+  Expects(Levels filled) : levels(filled) {}  // NOLINT: or `Levels::all`
+};
+
 /// Members of a pass register themselves with it, in the order of declaration.
 class PortBase {
  public:

@@ -261,9 +261,8 @@ struct SceneLoadOptions {
 /// path (the message lists where it was sought).
 Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
-/// Loads the scene like loadScene(), but goes on behind every finding; DiagnosticsError with all of them,
-/// those of models and images at the line that names the file. An absent model is a finding too. Warnings are
-/// logged with their places.
+/// Loads like loadScene(), but goes on behind each finding; DiagnosticsError with all of them, each at its
+/// line. An absent model is a finding too. Warnings are logged with their places (base/findings.h).
 void checkScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
 }  // namespace lumivox
