@@ -54,24 +54,28 @@ enum class Purpose { rendering, checking };
 /// Files that should stand beside the text and do not; for a check, those that stand nowhere.
 void findMissingFiles(const dsl::Document& document, const SceneDescription& description,
                       const AssetSearch& assets, Purpose purpose, std::vector<Diagnostic>& findings) {
-  const auto require = [&](const PlacedText& place, const std::string& name, const char* what) {
-    if ((purpose == Purpose::rendering && !assets.isLocal(name)) || assets.find(name)) return;
+  const auto isMissing = [&](const std::string& name) {
+    return (purpose == Purpose::checking || assets.isLocal(name)) && !assets.find(name);
+  };
+  const auto require = [&](const PlacedText& place, const std::string& name, const char* what,
+                           const std::vector<std::string>& formats) {
+    if (!isMissing(name) || !hasFormat(name, formats)) return;
     findings.push_back(document.finding(place.place, place.length,
                                         fmt::format("{} file '{}' does not exist", what, name),
                                         "it at one of " + assets.soughtAt(name), assets.nearestLocal(name)));
   };
   for (const MeshText& mesh : description.meshes) {
     const std::vector<std::string> names = fileNames(mesh);
-    const auto missing =
-        std::find_if(names.begin(), names.end(), [&](const std::string& name) { return !assets.find(name); });
-    if (missing != names.end()) require(mesh.file, *missing, "model");
+    const auto last = purpose == Purpose::checking ? names.end() : names.begin() + 1;
+    const auto missing = std::find_if(names.begin(), last, isMissing);
+    if (missing != last) require(mesh.file, *missing, "model", kModelFormats);
   }
   for (const MaterialText& material : description.materials) {
-    if (material.texture) require(*material.texture, material.texture->text, "image");
-    if (material.mask) require(*material.mask, material.mask->text, "image");
+    if (material.texture) require(*material.texture, material.texture->text, "image", kImageFormats);
+    if (material.mask) require(*material.mask, material.mask->text, "image", kImageFormats);
   }
   for (const MediumText& medium : description.media) {
-    if (medium.file) require(*medium.file, medium.file->text, "volume");
+    if (medium.file) require(*medium.file, medium.file->text, "volume", kVolumeFormats);
   }
 }
 
