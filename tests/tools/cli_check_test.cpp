@@ -180,6 +180,8 @@ TEST_CASE("one mistake in a sweep or a published table gives one finding, at its
               {"list {", "lists {", 1, "did you mean list"},
               {"[16 32]", "[16 32 64]", 5, "'cones' has 2 values, but 'resolution' has 3"},
               {"[16 32]", "[16, 32]", 4, "unexpected ','"},
+              {"[16 32]", "[16 32", 4, "the list is not closed"},
+              {"[4 6]", "[4 6] }", 5, "or one '}' less"},
               {"resolution [", "resolutoin [", 4, "did you mean resolution"},
               {"cornell.scene", "cornel.scene", 2, "there is no file"}});
   checkSlips("reproduction \"t\" {\n  title \"a\"\n  paper \"b\"\n  scene \"" + cornell +
@@ -189,6 +191,8 @@ TEST_CASE("one mistake in a sweep or a published table gives one finding, at its
              {{"published 3", "publishd 3", 7, "did you mean published"},
               {"title \"a\"", "title \"a", 2, "the string is not closed"},
               {"row \"one\"", "rwo \"one\"", 6, "did you mean row"},
+              {"row \"one\" {", "row \"one\"", 6, "'row \"one\"' has no '{'"},
+              {"published 3", "published 3 ms", 7, "expected a number without unit"},
               {"reproduction \"t\" {", "", 2, "'title' stands outside of a block 'reproduction'"},
               {"set { resolution 32 }", "set { resolutoin 32 }", 8, "did you mean resolution"},
               {"set { resolution 32 }", "set { resolution 32000 }", 8, "does not fit the parameter"},

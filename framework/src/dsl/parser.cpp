@@ -75,6 +75,7 @@ class Parser {
 
   std::vector<Item> items(std::vector<std::string>& commentsAtEnd, int depth) {
     std::vector<Item> result;
+    int column = 0;  // of the first item that starts a line
     while (!is(TokenKind::end)) {
       if (document_.findings.size() >= kMaximumFindings) {
         position_ = tokens_.size() - 1;
@@ -86,6 +87,10 @@ class Parser {
         reportStray();
       } else {
         noteOutdented();
+        if (now().startsLine) {
+          if (column == 0) column = now().place.column;
+          if (now().place.column > column && !result.empty()) noteIndented(result.back());
+        }
         result.push_back(item(depth));
       }
     }
@@ -251,6 +256,13 @@ class Parser {
         return result;
       }
       if (is(TokenKind::listOpen)) {
+        // `resolution [16 32` and `cones [4 6]` in the next line
+        if (!result.items.empty() && tokens_[position_ - 1].startsLine && isPlain(tokens_[position_ - 1])) {
+          report(opening, "the list is not closed", "']' before the next property");
+          result.items.pop_back();
+          --position_;
+          return result;
+        }
         report(take(), "a list in a list", "numbers or words");
         continue;
       }
@@ -307,6 +319,16 @@ class Parser {
       unclosedHere_ = open_.back();
   }
 
+  /// Items further in than the first one of their block: perhaps the property before them was meant as a
+  /// block.
+  void noteIndented(const Item& before) {
+    if (missingOpen_ || !before.property) return;
+    Block meant;
+    meant.word = before.property->word;
+    meant.header = before.property->values;
+    missingOpen_ = OpenBlock{meant.title(), before.property->place, static_cast<int>(meant.word.size())};
+  }
+
   /// A '}' that ends a block of several lines behind something else on its line: perhaps it was meant for
   /// another block. A '}' further out than its block: perhaps that block lacks its own.
   void noteEarlyEnd(const Block& block) {
@@ -320,7 +342,14 @@ class Parser {
   /// A '}' without a block, told once: where one ended too early, if that is to be seen.
   void reportSurplus() {
     if (std::exchange(surplusTold_, true)) return;
-    if (earlyEnd_) {
+    if (missingOpen_ && (!earlyEnd_ || missingOpen_->place.line <= earlyEnd_->brace.place.line)) {
+      doubtFrom(missingOpen_->place.line);
+      document_.findings.push_back(
+          document_.finding(missingOpen_->place, missingOpen_->length,
+                            fmt::format("'{}' has no '{{', and a '}}' too many follows in line {}",
+                                        missingOpen_->title, now().place.line),
+                            "'{' on the line of its block's word"));
+    } else if (earlyEnd_) {
       doubtFrom(earlyEnd_->brace.place.line);
       report(earlyEnd_->brace,
              fmt::format("this '}}' ends block '{}' of line {}, and another '}}' follows in line {}",
@@ -449,6 +478,7 @@ class Parser {
   std::size_t position_ = 0;
   std::vector<OpenBlock> open_, unclosed_;
   std::optional<OpenBlock> unclosedHere_;  ///< the first block that seems to lack its '}'
+  std::optional<OpenBlock> missingOpen_;   ///< the first statement that seems to lack its '{'
   std::optional<EarlyEnd> earlyEnd_;       ///< the first '}' that seems to end another block than its own
   bool surplusTold_ = false;
   Doubts doubts_;

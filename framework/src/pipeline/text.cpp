@@ -261,6 +261,9 @@ class TextReader : TextFindings {
   }
 
   void warnOfUnused() {
+    // A misspelt use has a finding of its own.
+    for (const std::string& used : usedParameters_)
+      if (findParameter(pipeline_, used) == nullptr) return;
     for (std::size_t i = 0; i < pipeline_.parameters.size(); ++i) {
       const std::string& name = pipeline_.parameters[i].name;
       if (usedParameters_.contains(name)) continue;
