@@ -263,7 +263,7 @@ TEST_CASE("angles must carry their unit, lengths and times need not") {
 
 TEST_CASE("a misspelt unit behind a blank is taken for a unit, not for a property") {
   CHECK_THAT(camera("eye 1 2 3 cmm"),
-             Contains("unknown unit or property 'cmm'") && Contains("did you mean 'cm'?"));
+             Contains("unknown unit 'cmm'") && Contains("did you mean 'cm'?"));
 }
 
 TEST_CASE("values out of range are named with the range in the unit of readers") {

@@ -175,7 +175,7 @@ TEST_CASE("sequences and frame numbers in file names belong together") {
 }
 
 TEST_CASE("a mesh name with a slash is refused") {
-  CHECK_THAT(sceneWith("mesh a/b { file \"m.obj\" }"), Contains("the mesh name 'a/b' holds a '/'"));
+  CHECK_THAT(sceneWith("mesh a/b { file \"m.obj\" }"), Contains("the mesh name 'a/b' contains a '/'"));
 }
 
 TEST_CASE("a parameter in a scene is refused: only pipelines have them") {
