@@ -159,8 +159,8 @@ std::string rangeText(const ParamBase& parameter) {
   if (parameter.type() == ParamBase::Type::integer)
     return fmt::format("an integer in {}..{}", parameter.low(), parameter.high());
   // As floats, which is how they were given: 0.05 and not 0.05000000074505806.
-  return fmt::format("a number in {}..{}{}", static_cast<float>(parameter.low()),
-                     static_cast<float>(parameter.high()),
+  const auto given = [](double end) { return std::stod(fmt::format("{}", static_cast<float>(end))); };
+  return fmt::format("a number in {}..{}{}", given(parameter.low()), given(parameter.high()),
                      parameter.unit().empty() ? "" : " " + parameter.unit());
 }
 
