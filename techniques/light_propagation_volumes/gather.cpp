@@ -5,6 +5,9 @@
 #include "nested_grids.h"
 
 namespace lumivox::light_propagation_volumes {
+
+using namespace shaders::light_propagation_volumes;
+
 namespace {
 
 constexpr float kBlendCells = 4.0f;  // width of the seam between two grids, Listing 4.36

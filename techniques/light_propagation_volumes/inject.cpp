@@ -10,6 +10,9 @@
 #include "nested_grids.h"
 
 namespace lumivox::light_propagation_volumes {
+
+using namespace shaders::light_propagation_volumes;
+
 namespace {
 
 constexpr int kLargestVoxelGrid = 96;  // cells along a side whose voxels fit into 128 MiB, which every driver

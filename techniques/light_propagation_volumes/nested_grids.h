@@ -12,8 +12,6 @@
 
 namespace lumivox::light_propagation_volumes {
 
-using namespace shaders::light_propagation_volumes;
-
 inline constexpr int kBrick = 4;  // cells along a side of a brick, see propagate.comp
 
 /// The grids, finest first. Without an extent the coarsest holds the scene, and the finer ones lie around the

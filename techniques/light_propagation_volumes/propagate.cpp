@@ -4,6 +4,9 @@
 #include "nested_grids.h"
 
 namespace lumivox::light_propagation_volumes {
+
+using namespace shaders::light_propagation_volumes;
+
 namespace {
 
 /// Mean projected area of a cube of side 1, a quarter of its surface (Cauchy): light of the same radiance L

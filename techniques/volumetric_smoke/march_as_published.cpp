@@ -5,6 +5,9 @@
 #include "volumetric_smoke.h"
 
 namespace lumivox::volumetric_smoke {
+
+using namespace shaders::volumetric_smoke;
+
 namespace {
 
 class MarchAsPublishedPass : public Pass {

@@ -10,6 +10,9 @@
 #include "lumivox/toolkit/grid_placement.h"
 
 namespace lumivox::volumetric_smoke {
+
+using namespace shaders::volumetric_smoke;
+
 namespace {
 
 constexpr double kUnitsPerParticle = 16777216.0;  // kUnits in insert.comp

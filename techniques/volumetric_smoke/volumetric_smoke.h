@@ -8,8 +8,6 @@
 
 namespace lumivox::volumetric_smoke {
 
-using namespace shaders::volumetric_smoke;
-
 // Of both marches.
 enum class Resolution { full, half };
 

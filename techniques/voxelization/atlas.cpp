@@ -8,6 +8,9 @@
 #include "lumivox/base/log.h"
 
 namespace lumivox::voxelization {
+
+using namespace shaders::voxelization;
+
 namespace {
 
 /// The atlas on the device, as a part of a pass: the texels that lie on the surface. They are made at the

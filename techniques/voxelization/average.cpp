@@ -5,6 +5,9 @@
 #include "bit_voxelizer.h"
 
 namespace lumivox::voxelization {
+
+using namespace shaders::voxelization;
+
 namespace {
 
 class AveragePass : public Pass {

@@ -4,6 +4,8 @@
 
 namespace lumivox::voxelization {
 
+using namespace shaders::voxelization;
+
 namespace {
 
 glm::ivec3 wordCount(const GridPlacement& grid) {

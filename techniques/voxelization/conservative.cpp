@@ -7,6 +7,9 @@
 #include "voxelizer.h"
 
 namespace lumivox::voxelization {
+
+using namespace shaders::voxelization;
+
 namespace {
 
 /// Triangles of one draw, for one work group: first index, number of triangles, object, material.

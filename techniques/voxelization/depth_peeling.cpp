@@ -7,6 +7,9 @@
 #include "voxelizer.h"
 
 namespace lumivox::voxelization {
+
+using namespace shaders::voxelization;
+
 namespace {
 
 class DepthPeelingPass : public Voxelizer {

@@ -8,6 +8,9 @@
 #include "voxelizer.h"
 
 namespace lumivox::voxelization {
+
+using namespace shaders::voxelization;
+
 namespace {
 
 class MsaaOpacityPass : public Voxelizer {

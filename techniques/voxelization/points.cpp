@@ -9,6 +9,9 @@
 #include "voxelizer.h"
 
 namespace lumivox::voxelization {
+
+using namespace shaders::voxelization;
+
 namespace {
 
 class PointsPass : public Voxelizer {

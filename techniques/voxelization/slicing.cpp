@@ -5,6 +5,9 @@
 #include "voxelizer.h"
 
 namespace lumivox::voxelization {
+
+using namespace shaders::voxelization;
+
 namespace {
 
 class SlicingPass : public Voxelizer {

@@ -9,6 +9,9 @@
 #include "lumivox/scene/topology.h"
 
 namespace lumivox::voxelization {
+
+using namespace shaders::voxelization;
+
 namespace {
 
 /// The closed surfaces of an object.

@@ -2,6 +2,9 @@
 #include "bit_voxelizer.h"
 
 namespace lumivox::voxelization {
+
+using namespace shaders::voxelization;
+
 namespace {
 
 class ViewPass : public Pass {

@@ -9,6 +9,8 @@
 
 namespace lumivox::voxelization {
 
+using namespace shaders::voxelization;
+
 namespace {
 
 constexpr std::uint64_t kWantedOffset = 4 * sizeof(std::uint32_t);  // in the words of countBuffer()

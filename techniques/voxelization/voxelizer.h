@@ -14,8 +14,6 @@
 
 namespace lumivox::voxelization {
 
-using namespace shaders::voxelization;
-
 inline constexpr int kWorkGroupSize = 64;  // of the passes that read a list of fragments
 
 /// Where the grid lies: around the whole scene, or around the camera, moving with it by whole voxels.

@@ -324,19 +324,46 @@ TEST_CASE("a PNG holds the exposed, clipped sRGB values, and NaN is magenta") {
   const float infinity = std::numeric_limits<float>::infinity();
   image.values() = {0.0f, 0.09f, 0.5f, 7.0f, -2.0f, infinity, 0.25f, std::nanf(""), 0.25f,
                     1,    1,     1,    0,    0,     0,        0.09f, 0.09f,         0.09f};
-  writePng(directory.path() / "p.png", image, 2.0f);
+  writePng(directory.path() / "p.png", image, {1.0, Tone::srgb});
   const ByteImage bytes = readByteImage(directory.path() / "p.png");
   REQUIRE((bytes.width == 3 && bytes.height == 2 && bytes.channels == 3));
-  // 0.09 at exposure 2 is 0.18: 255 * 0.46135613 = 117.6 -> 118.
+  // 0.09 at 1 EV is 0.18: 255 * 0.46135613 = 117.6 -> 118.
   REQUIRE(bytes.values == std::vector<unsigned char>{0, 118, 255, 255, 0, 255, 255, 0, 255, 255, 255, 255, 0,
                                                      0, 0, 118, 118, 118});
-  REQUIRE(encodePng(image, 2.0f) == readFile(directory.path() / "p.png"));
+  REQUIRE(encodePng(image, {1.0, Tone::srgb}) == readFile(directory.path() / "p.png"));
 
   ImageBuffer grey(1, 1, 1, 0.18f);
   writePng(directory.path() / "g.png", grey);
   REQUIRE(readByteImage(directory.path() / "g.png").values == std::vector<unsigned char>{118, 118, 118});
   REQUIRE_THROWS_AS(encodePng(ImageBuffer(1, 1, 4)), Error);
   REQUIRE_THROWS_AS(encodePng(ImageBuffer()), Error);
+}
+
+TEST_CASE("a tone curve decides what becomes of exposed radiance, and knows its name") {
+  const float infinity = std::numeric_limits<float>::infinity();
+  ImageBuffer image(6, 1, 1);
+  image.values() = {0.0f, -1.0f, 0.09f, 0.25f, 3.0f, infinity};
+  const auto grey = [&](Tone tone, double exposure) {
+    std::vector<int> values;
+    const std::vector<unsigned char> bytes = displayBytes(image, {exposure, tone});
+    for (std::size_t i = 0; i < bytes.size(); i += 3) values.push_back(bytes[i]);
+    return values;
+  };
+  // 255 x the values; 255 x the sRGB codes of 0.18 and 0.5.
+  CHECK(grey(Tone::linear, 1.0) == std::vector<int>{0, 0, 46, 128, 255, 255});
+  CHECK(grey(Tone::srgb, 1.0) == std::vector<int>{0, 0, 118, 188, 255, 255});
+  // Narkowicz 2016 at x = 0.6 v: x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14), then the sRGB curve.
+  const auto expected = [](double v) {
+    const double x = 0.6 * v;
+    const double shown = x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
+    return static_cast<int>(std::lround(255.0f * linearToSrgb(static_cast<float>(shown))));
+  };
+  const std::vector<int> filmic = grey(Tone::filmic, 1.0);
+  CHECK(filmic == std::vector<int>{0, 0, expected(0.18), expected(0.5), expected(6.0), 255});
+  CHECK(filmic[4] < 255);  // a light of six times white keeps its shape
+  for (const Tone tone : {Tone::linear, Tone::srgb, Tone::filmic}) CHECK(toneNamed(name(tone)) == tone);
+  CHECK_THROWS_AS(toneNamed("sRGB"), Error);
+  CHECK(std::isnan(toneMapped(std::nanf(""), Tone::filmic)));
 }
 
 TEST_CASE(

@@ -8,6 +8,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/random.h"
+#include "lumivox/measure/exposure.h"
 #include "lumivox/measure/metrics.h"
 #include "support/support.h"
 
@@ -317,19 +318,25 @@ TEST_CASE("flicker is what changes without the reference's changing") {
   CHECK_THROWS_AS(flicker(frame0, frame1, reference0, ImageBuffer(9, 8, 3)), Error);
 }
 
-TEST_CASE("the display exposure brings the 99th percentile of luminance to 0.8") {
-  ImageBuffer ramp(101, 1, 1);  // 0 to 100: the 99th percentile is 99
-  for (int x = 0; x <= 100; ++x) ramp.at(x, 0, 0) = static_cast<float>(x);
-  CHECK(displayExposure(ramp) == Approx(0.8 / 99.0));
-  ramp.at(100, 0, 0) = 1e6f;  // one brilliant pixel changes nothing
-  CHECK(displayExposure(ramp) == Approx(0.8 / 99.0));
-  ramp.at(100, 0, 0) = kNan;  // 0 to 99: the place 0.99 * 99 = 98.01
-  CHECK(displayExposure(ramp) == Approx(0.8 / 98.01));
-  CHECK(displayExposure(ImageBuffer(4, 4, 3)) == 1.0f);
-  CHECK(displayExposure(ImageBuffer(4, 4, 3, kNan)) == 1.0f);
-  ImageBuffer spark(100, 100, 3);
-  spark.at(5, 5, 1) = 2.0f;
-  CHECK(displayExposure(spark) == Approx(0.8 / (2.0 * 0.7152)));
+TEST_CASE("SSIM and LDR-FLIP are taken at the exposure that is given, and say which") {
+  ImageBuffer reference = random(24, 24, 3, 81, 0.1f, 0.9f), image = reference;
+  for (float& value : image.values()) value *= 1.1f;
+  const ImageError given = compare(image, reference, {}, -2.0), own = compare(image, reference);
+  CHECK(given.exposure == -2.0);
+  CHECK(own.exposure == displayExposure(reference));
+  // The same as of images that are four times as dark, at exposure 0; other numbers know nothing of it.
+  const auto darker = [](ImageBuffer bright) {
+    for (float& value : bright.values()) value *= 0.25f;
+    return bright;
+  };
+  const ImageError dark = compare(darker(image), darker(reference), {}, 0.0);
+  CHECK(given.ssim == Approx(dark.ssim).epsilon(1e-9));
+  CHECK(given.flipLdr == Approx(dark.flipLdr).epsilon(1e-6));
+  CHECK(given.flipLdr != own.flipLdr);
+  CHECK(given.rmse.value == own.rmse.value);
+  CHECK(given.flip == own.flip);
+  // So dark that the display shows nothing at all.
+  CHECK(compare(image, reference, {}, -60.0).flipLdr == Approx(0.0).margin(1e-9));
 }
 
 TEST_CASE("luminance has the weights of Rec. 709, and white has luminance one") {

@@ -7,6 +7,7 @@
 #include "lumivox/analysis/judge.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/page/contact_sheet.h"
 #include "lumivox/page/reproduction_page.h"
 #include "support/support.h"
 
@@ -94,7 +95,7 @@ TEST_CASE("a sheet shows all panels under one exposure, side by side, each with 
                    panel("half of the size", 100, 50, 1.0f), ShownPanel{}};
   result.panels[3].name = "absent";
   result.panels[3].whyNot = "directional voxels are not implemented";
-  result.exposure = 0.25;
+  result.exposure = -2.0;
   const ImageBuffer sheet = contactSheet(result);
   // Two columns of 200 pixels with margins of 6; a line of title, then panels of 100 and a line of 16 with
   // two margins each.
@@ -253,7 +254,7 @@ TEST_CASE("kept results that no longer fit their text are told apart") {
   CHECK_THAT(stale([](auto& t) { t.rows.pop_back(); }), Contains("5 rows"));
   CHECK_THAT(stale([](auto& t) { t.rows[0].absent = "gone"; }), Contains("'a'") && Contains("absent"));
   CHECK_THAT(stale([](auto& t) { t.rows[1].substitute = "another"; }), Contains("substitute"));
-  CHECK_THAT(stale([](auto& t) { t.differences = {"nothing"}; }), Contains("other words"));
+  CHECK_THAT(stale([](auto& t) { t.differences = {"nothing"}; }), Contains("differences are not those of the text"));
   CHECK_THAT(stale([](auto& t) { t.panels.emplace_back(); }), Contains("panels"));
   CHECK_THAT(stale([](auto& t) { t.curves.emplace_back(); }), Contains("curves"));
   CHECK_THAT(staleReproductions({}, {text})[0], Contains("table-1: nothing is recorded"));

@@ -52,6 +52,16 @@ std::string warnings(const std::string& inputs) {
   return log.text();
 }
 
+/// Words as C++ has to write them, and as texts are to have them.
+class Words : public Toy {
+ public:
+  using Toy::Toy;
+  enum class Precision { float_, asPublished, half };
+  Param<Precision> precision{this, "precision", Precision::asPublished, "of the sums"};
+  Out<Image> image{this, "image", Contributes::direct};
+  void run(PassContext& frame) override { image = paint(frame, 1.0f); }
+};
+
 /// Findings of a pipeline with this body, on the toys.
 std::string findings(const std::string& body, const std::string& after = {}) {
   TestTechniques techniques;
@@ -77,6 +87,17 @@ const char* const kGood =
 
 TEST_CASE("a pipeline whose ports and parameters fit is accepted") {
   accept(kGood);
+}
+
+TEST_CASE("the words of a parameter are its enumerators in snake case, without an underscore at the end") {
+  std::vector<std::string> ran;
+  Words words(ran, "words");
+  CHECK(words.precision.choices() == std::vector<std::string>{"float", "as_published", "half"});
+  CHECK(words.precision.defaultText() == "as_published");
+  CHECK(words.precision.set("float").empty());
+  CHECK(words.precision == Words::Precision::float_);
+  CHECK(words.precision.set("asPublished") != "");
+  CHECK(words.precision == Words::Precision::float_);
 }
 
 TEST_CASE("a pass's name alone means its only output of the wanted kind") {

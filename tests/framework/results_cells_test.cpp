@@ -34,7 +34,7 @@ TEST_CASE("a cell of the stress battery comes back as it was stored") {
   numberless.id = 0;
   CHECK(stressCellJson(numberless) == stressCellJson(cell));
   CHECK(stressCellJson(stressCellFrom(stressCellJson(cell))) == stressCellJson(cell));
-  CHECK(messageOf<Error>([] { stressCellFrom("{\"case\": 1}"); }).find("no cell") != std::string::npos);
+  CHECK(messageOf<Error>([] { stressCellFrom("{\"case\": 1}"); }).find("is not a cell") != std::string::npos);
 }
 
 TEST_CASE("a newer cell takes the place of the older, and cells are chosen and removed by what they are") {

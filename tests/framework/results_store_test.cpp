@@ -55,6 +55,7 @@ TEST_CASE("a stored run comes back with every number, NaN and 64-bit seeds inclu
   CHECK(back.point.passBytes == run.point.passBytes);
   CHECK(back.point.passWork == run.point.passWork);
   CHECK(back.identity.kept == run.identity.kept);
+  CHECK(back.identity.display == run.identity.display);
   CHECK(back.point.peakBytes == run.point.peakBytes);
   CHECK(std::isnan(back.point.frameworkShare));
   REQUIRE(back.point.errors.size() == 1);
@@ -96,6 +97,8 @@ TEST_CASE("a key changes with each thing that a result depends on and with nothi
   changed([](RunIdentity& i) { i.referenceSamples += 1; });
   changed([](RunIdentity& i) { i.flickerPairs = 0; });
   changed([](RunIdentity& i) { i.flickerPairs += 1; });
+  changed([](RunIdentity& i) { i.display = "exposure -1"; });
+  changed([](RunIdentity& i) { i.display.clear(); });
   changed([](RunIdentity& i) { i.kept.pop_back(); });
   changed([](RunIdentity& i) { i.kept.clear(); });
   changed([](RunIdentity& i) { i.device += "1"; });

@@ -19,6 +19,7 @@ inline ComponentError errorOf(double rmse) {
   error.error.meanRatio = {0.9, kNan};
   error.error.flip = 0.125;
   error.error.flipUncertainty = 0.001;
+  error.error.exposure = -1.25;
   error.error.nonFiniteImage = 7;
   error.seeds = 2;
   error.deterministic = true;
@@ -44,6 +45,7 @@ inline StoredRun runNumber(int number) {
   run.identity.seed = 0xffffffffffffffffull;
   run.identity.flickerPairs = 4;
   run.identity.kept = {"light.radiance", "voxels.fragments"};
+  run.identity.display = "exposure -1.5, tone filmic";
   run.identity.device = "a device, 'quoted'";
   run.identity.host = "a host";
   run.created = "2026-01-31 12:00:00 UTC";

@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <sstream>
 
+#include "base/child.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/results/stress_cells.h"
 #include "lumivox/stress/stress.h"
 #include "stress/cards.h"
-#include "stress/child.h"
 #include "stress/pass_parameters.h"
 #include "stress/protocol.h"
 #include "support/techniques.h"

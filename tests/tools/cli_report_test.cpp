@@ -1,7 +1,10 @@
 // The report on a tiny scene: one page that needs nothing else, and the same numbers in CSV and JSON.
+#include <fmt/format.h>
+
 #include <map>
 #include <sstream>
 
+#include "lumivox/base/image.h"
 #include "support/drawn_page.h"
 #include "support/page_check.h"
 #include "tools/cli_support.h"
@@ -114,6 +117,48 @@ TEST_CASE(
 
   // The page holds the same records.
   CHECK(pageRecords(page) == json);
+}
+
+TEST_CASE("a report shows and judges all images of a scene at one exposure, and says which everywhere") {
+  const Workplace place;
+  const auto made = [&](const std::string& options) {
+    const CommandResult result = makeReport(place, "--no-sweep --seeds 1 " + options);
+    INFO(result.errors);
+    REQUIRE(result.exitCode == 0);
+    const auto scene = nlohmann::json::parse(place.read("out/page.json")).at("scenes").at(0);
+    const double exposure = scene.at("reference").at("exposure_ev");
+    CHECK(
+        contains(result.output, fmt::format("room: images, SSIM and LDR-FLIP at {:+.2f} EV, tone {}",
+                                            exposure, scene.at("reference").at("tone").get<std::string>())));
+    for (const auto& layer : scene.at("reference").at("layers")) CHECK(layer.at("exposure_ev") == exposure);
+    for (const auto& error : scene.at("points").at(0).at("errors"))
+      CHECK(error.at("exposure_ev") == exposure);
+    for (const auto& record : parseCsv(place.read("out/page.csv")))
+      CHECK(std::stod(record.at("exposure_ev")) == exposure);
+    return scene;
+  };
+  const auto images = [&] {
+    return pageRecords(place.read("out/page.html"), "images").at("scenes").at(0).dump();
+  };
+  const auto automatic = made("");
+  const double exposure = automatic.at("reference").at("exposure_ev");
+  CHECK(automatic.at("reference").at("exposure_from") == "log-average of the full reference");
+  const std::string usual = images();
+  // What `reference` says of the same image.
+  REQUIRE(runCommand("lumivox reference '" + place.scene() + "' -q --spp 16 -o '" + place.file("t.exr") + "'")
+              .exitCode == 0);
+  CHECK(std::stod(readExrAttributes(place.path() / "t.exr").at("lumivox.exposure_ev")) == exposure);
+
+  const auto given = made("--exposure -1.5 --tone filmic");
+  CHECK(given.at("reference").at("exposure_ev") == -1.5);
+  CHECK(given.at("reference").at("exposure_from") == "--exposure");
+  CHECK(images() != usual);
+  const auto& before = automatic.at("points").at(0).at("errors").at(0);
+  const auto& after = given.at("points").at(0).at("errors").at(0);
+  CHECK(before.at("rmse") == after.at("rmse"));
+  CHECK(before.at("flip_hdr") == after.at("flip_hdr"));
+  CHECK(before.at("ssim") != after.at("ssim"));
+  CHECK(contains(given.at("points").at(0).at("command"), "--exposure -1.5 --tone filmic"));
 }
 
 TEST_CASE("the command of a point repeats it with the same error") {

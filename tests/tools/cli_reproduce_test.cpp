@@ -79,7 +79,7 @@ TEST_CASE("check tells everything that is wrong in a published figure, each at i
         "wrong_figure.reproduction:10:31: row 'd' cannot be divided by 'a'",
         "wrong_figure.reproduction:12:10: pipeline \"Volumetric smoke\" has no parameter 'resolutions'",
         "did you mean 'resolution'", "wrong_figure.reproduction:17:10: the parameter 'pixels' is a word",
-        "wrong_figure.reproduction:22:5: this point measures something else",
+        "wrong_figure.reproduction:22:5: this point measures something other than its curve",
         "wrong_figure.reproduction:24:22: this is not an output of a pass",
         "wrong_figure.reproduction:26:11: pipeline \"Volumetric smoke\" has no parameter 'stepz'",
         "wrong_figure.reproduction:28:37: there is no file"}) {
@@ -357,7 +357,7 @@ TEST_CASE(
   directory.write("techniques/one/README.md", flattering);
   const auto flattered = inProject("--cards --check");
   CHECK(flattered.exitCode == 1);
-  CHECK(contains(flattered.errors, "techniques/one/README.md:1: this is not what was measured"));
+  CHECK(contains(flattered.errors, "techniques/one/README.md:1: this differs from the measurement"));
   CHECK(readFile(directory.path() / "techniques/one/README.md") == flattering);
   REQUIRE(inProject("--cards").exitCode == 0);
   CHECK(readFile(directory.path() / "techniques/one/README.md") == honest);

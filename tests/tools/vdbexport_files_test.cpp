@@ -8,12 +8,14 @@
 #include <regex>
 
 #include "lumivox/base/error.h"
+#include "lumivox/base/image.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 #include "tools/cli_support.h"
 #include "tools/vdbexport_support.h"
 #include "vdbexport/difference.h"
 #include "vdbexport/export.h"
+#include "vdbexport/preview.h"
 #include "vdbexport/vdb_file.h"
 
 using namespace lumivox;
@@ -410,4 +412,54 @@ TEST_CASE("the commands of the guide work, and OpenVDB's own printer reads what 
     ++ran;
   }
   CHECK(ran >= 5);
+}
+
+TEST_CASE("a preview shows the largest value along each axis, of single voxels and of tiles") {
+  auto grid = gridWithVoxels<openvdb::Vec3SGrid>(0.1, openvdb::Vec3d(0.0));
+  grid->tree().setValue({-2, 5, 7}, openvdb::Vec3f(1, -4, 0));
+  grid->tree().setValue({-2, 5, 8}, openvdb::Vec3f(3, 2, 0));
+  grid->tree().setValue({1, 6, 7}, openvdb::Vec3f(0, 0, 9));
+  const std::vector<ImageBuffer> views = vdb::projections(*grid);
+  REQUIRE(views.size() == 3);
+  // 4 x 2 x 2 voxels. Along z, x to the right and y up: both voxels of the column, component by component.
+  REQUIRE((views[2].width() == 4 && views[2].height() == 2));
+  CHECK(views[2].at(0, 1, 0) == 3.0f);
+  CHECK(views[2].at(0, 1, 1) == 4.0f);
+  CHECK(views[2].at(3, 0, 2) == 9.0f);
+  CHECK(views[2].at(1, 1, 0) == 0.0f);
+  // Along x, z to the left; along y, z downwards.
+  CHECK(views[0].at(1, 1, 1) == 4.0f);
+  CHECK(views[0].at(0, 1, 0) == 3.0f);
+  CHECK(views[0].at(1, 0, 2) == 9.0f);
+  CHECK(views[1].at(0, 0, 1) == 4.0f);
+  CHECK(views[1].at(0, 1, 0) == 3.0f);
+  CHECK(views[1].at(3, 0, 2) == 9.0f);
+
+  auto tiles = gridWithVoxels<openvdb::BoolGrid>(0.1, openvdb::Vec3d(0.0));
+  tiles->fill(openvdb::CoordBBox({0, 0, 0}, {15, 7, 7}), true);
+  tiles->pruneGrid();
+  for (const ImageBuffer& view : vdb::projections(*tiles))
+    for (const float value : view.values()) CHECK(value == 1.0f);
+  CHECK_THROWS_AS(vdb::projections(*gridWithVoxels<openvdb::DoubleGrid>(1.0, openvdb::Vec3d(0.0))), Error);
+}
+
+TEST_CASE("vdbexport writes a preview beside the grids, with the exposure that images have") {
+  const Workplace place;
+  const std::string command = place.scene() + " " + committedPipeline("voxel_cone_tracing") +
+                              " -q --set resolution=16 --grid grid.mips -o " + place.file("g.vdb") +
+                              " --preview " + place.file("p.png");
+  const auto preview = [&](const std::string& options) {
+    const CommandResult result = vdbexport(command + options);
+    INFO(result.errors);
+    REQUIRE(result.exitCode == 0);
+    return readByteImage(place.path() / "p.png");
+  };
+  const ByteImage automatic = preview(""), dark = preview(" --exposure -20");
+  // Two grids, radiance and opacity, each along three axes.
+  CHECK(automatic.width == 6 * 166 + 6);
+  CHECK(dark.values != automatic.values);
+  CHECK(preview(" --frame 0..1").height > 3 * automatic.height / 2);
+  checkRefused(vdbexport(command + " --exposure dark"), "expected auto or a number of EV");
+  checkRefused(vdbexport(command + " --tone sepia"), "linear");
+  checkRefused(vdbexport(command.substr(0, command.size() - 3) + "jpg"), "expected a name that ends in .png");
 }

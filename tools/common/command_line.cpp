@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 
 #include "lumivox/base/error.h"
@@ -101,6 +102,36 @@ RenderOptions RunOptions::renderOptions(const Pipeline& pipeline) const {
   return options;
 }
 
+void DisplayOptions::addExposureTo(CLI::App& app) {
+  app.add_option(
+      "--exposure", exposure,
+      "of images that are displayed, in EV (radiance is multiplied by 2^EV), or auto: the log-average "
+      "luminance of what does not emit becomes 0.18 (default: auto)");
+}
+
+void DisplayOptions::addTo(CLI::App& app) {
+  addExposureTo(app);
+  addToneTo(app);
+}
+
+void DisplayOptions::addToneTo(CLI::App& app) {
+  app.add_option("--tone", tone,
+                 "tone curve of images that are displayed: linear, srgb or filmic (default: srgb)")
+      ->check(CLI::IsMember({"linear", "srgb", "filmic"}));
+}
+
+std::optional<double> DisplayOptions::given() const {
+  if (exposure == "auto") return std::nullopt;
+  char* end = nullptr;
+  const double number = std::strtod(exposure.c_str(), &end);
+  std::string unit = end;
+  unit.erase(0, unit.find_first_not_of(' '));
+  if (end == exposure.c_str() || (!unit.empty() && unit != "EV") || !(std::abs(number) <= kLargestExposure))
+    throw Error(fmt::format("--exposure '{}': expected auto or a number of EV from {} to {}, as -1.5",
+                            exposure, -kLargestExposure, kLargestExposure));
+  return number;
+}
+
 std::string asTyped(const std::string& program, int count, char** arguments) {
   std::string line;
   for (int i = 0; i < count; ++i) {
@@ -177,6 +208,11 @@ std::pair<int, int> parseResolution(const std::string& text) {
     throw Error(fmt::format(
         "--resolution '{}': expected WIDTHxHEIGHT in pixels, each in 1..{}, such as 640x360", text, kMost));
   return {width, height};
+}
+
+void requirePng(const std::string& option, const std::filesystem::path& file) {
+  if (file.extension() != ".png")
+    throw Error(fmt::format("{} '{}': expected a name that ends in .png", option, file.string()));
 }
 
 std::pair<int, int> parseFrames(const std::string& option, const std::string& text) {

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "lumivox/base/display.h"
 #include "lumivox/gpu/device.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/plugin/loader.h"
@@ -55,6 +56,20 @@ struct RunOptions {
   RenderOptions renderOptions(const Pipeline& pipeline) const;
 };
 
+/// How images are displayed, in every command that makes one or takes a measure that depends on it.
+struct DisplayOptions {
+  std::string exposure = "auto", tone = "srgb";
+
+  void addTo(CLI::App& app);
+  void addExposureTo(CLI::App& app);  ///< alone: of commands that only measure
+  void addToneTo(CLI::App& app);
+  std::optional<double> given() const;  ///< EV; nothing for auto. Error otherwise
+  Tone toneCurve() const { return toneNamed(tone); }
+};
+
+/// Of an EXR file: EV at which its scene is displayed.
+inline constexpr const char* kExposureAttribute = "lumivox.exposure_ev";
+
 /// This command line as a shell would read it, with the program's plain name in front.
 std::string asTyped(const std::string& program, int count, char** arguments);
 
@@ -73,6 +88,9 @@ CLI::Option* addRepeatable(CLI::App& app, const std::string& names,
 
 /// "640x360"; Error otherwise.
 std::pair<int, int> parseResolution(const std::string& text);
+
+/// Refuses (Error that names the option) a name that does not end in .png.
+void requirePng(const std::string& option, const std::filesystem::path& file);
 
 /// Frames of an animation: "3..9" or "3"; both ends belong to it. `option` is named in the Error otherwise.
 std::pair<int, int> parseFrames(const std::string& option, const std::string& text);

@@ -2,11 +2,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <span>
 
 #include "command.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
 #include "lumivox/base/image.h"
+#include "lumivox/base/log.h"
+#include "lumivox/measure/exposure.h"
 #include "lumivox/measure/metrics.h"
+#include "lumivox/page/contact_sheet.h"
 
 namespace lumivox::command {
 namespace {
@@ -14,6 +19,8 @@ namespace {
 struct CompareCommand {
   std::filesystem::path image, reference;
   std::vector<std::string> layers;
+  std::filesystem::path sheet;
+  DisplayOptions display;
   bool json = false;
   double rmseAtMost = -1.0;
 };
@@ -94,9 +101,44 @@ Json toJson(const LayerPair& pair, const ImageError& error) {
           {"ssim", error.ssim},
           {"flip_hdr", error.flip},
           {"flip_ldr", error.flipLdr},
+          {"exposure_ev", error.exposure},
           {"reference_noise", error.noiseFloor},
           {"non_finite_image", error.nonFiniteImage},
           {"non_finite_reference", error.nonFiniteReference}};
+}
+
+/// The exposure of all layers, and where it comes from.
+struct Shown {
+  double exposure = 0.0;
+  std::string from;
+};
+
+Shown exposureOf(const CompareCommand& command, const LayeredImage& reference,
+                 const std::vector<LayerPair>& pairs) {
+  if (const auto given = command.display.given()) return {*given, "--exposure"};
+  const std::string file = command.reference.string();
+  if (const auto kept = reference.attributes.find(kExposureAttribute); kept != reference.attributes.end()) {
+    DisplayOptions told;
+    told.exposure = kept->second;
+    try {
+      if (const auto exposure = told.given()) return {*exposure, "the header of " + file};
+    } catch (const Error&) {
+      logWarning("{}: its header gives the exposure as '{}', which is no number of EV; it is measured", file,
+                 kept->second);
+    }
+  }
+  // Which pixels emit is not known here. One exposure for all layers, from the whole light where it is there.
+  for (const std::string& layer : {std::string("full"), std::string(), pairs.front().second}) {
+    const auto found =
+        reference.layers.find(layer == kMainLayer && reference.layers.count(layer) == 0 ? "" : layer);
+    if (found == reference.layers.end()) continue;
+    if (const int channels = found->second.channels(); channels != 1 && channels != 3 && channels != 4)
+      continue;
+    return {displayExposure(found->second),
+            fmt::format("all pixels of the layer '{}' of {}, which does not tell what emits", shown(layer),
+                        file)};
+  }
+  return {0.0, "no layer of radiance is there"};
 }
 
 std::string text(const Measured& measured) {
@@ -105,14 +147,33 @@ std::string text(const Measured& measured) {
                                     : fmt::format("{:.4g}", measured.value);
 }
 
+constexpr int kPanelsOfLayer = 3;
+void addPanels(Sheet& sheet, const LayerPair& pair, const ImageBuffer& image, const ImageBuffer& reference,
+               const ImageBuffer& flipMap, const Display& display) {
+  sheet.panels.push_back({shown(pair.first), withoutAlpha(image), display});
+  sheet.panels.push_back({"reference: " + shown(pair.second), withoutAlpha(reference), display});
+  sheet.panels.push_back({"FLIP (HDR), 0 to 1", falseColour(flipMap), {}});
+}
+
 int compareFiles(const CompareCommand& command) {
+  if (!command.sheet.empty()) {
+    requirePng("--sheet", command.sheet);
+    requireWritable(command.sheet);
+  }
   const LayeredImage image = readExr(command.image), reference = readExr(command.reference);
+  const std::vector<LayerPair> pairs = pairsOf(command, image, reference);
+  const Shown display = exposureOf(command, reference, pairs);
+  Sheet sheet{fmt::format("{} against {} ({}, {})", command.image.filename().string(),
+                          command.reference.filename().string(), exposureText(display.exposure),
+                          command.display.tone),
+              {},
+              kPanelsOfLayer};
   Json list = Json::array();
   std::vector<std::vector<std::string>> rows{{"Layer", "RMSE", "Relative MSE", "Mean ratio",
                                               "Mean difference", "95 %", "SSIM", "FLIP", "FLIP LDR",
                                               "Reference's noise", "NaN or Inf"}};
-  bool good = true;
-  for (const LayerPair& pair : pairsOf(command, image, reference)) {
+  bool good = true, asTheyAre = false;
+  for (const LayerPair& pair : pairs) {
     const ImageBuffer& own = layerIn(image, command.image, pair.first);
     const ImageBuffer& other = layerIn(reference, command.reference, pair.second);
     const bool alpha = own.channels() + other.channels() == 7;  // RGBA with RGB
@@ -124,7 +185,14 @@ int compareFiles(const CompareCommand& command) {
           shown(pair.second), command.reference.string(), right.width(), right.height(), right.channels()));
     const auto variance = reference.layers.find((pair.second == kMainLayer ? "" : pair.second) + kVariance);
     const bool known = variance != reference.layers.end() && variance->second.sameShape(right);
-    const ImageError error = compare(left, right, known ? variance->second : ImageBuffer{});
+    // Occlusion, a fraction, is shown as it is.
+    const bool asItIs = right.channels() == 1 && !command.display.given();
+    asTheyAre = asTheyAre || asItIs;
+    const Display layerDisplay = asItIs ? Display{} : Display{display.exposure, command.display.toneCurve()};
+    SeedsError compared = compareSeeds(std::span(&left, 1), right, known ? variance->second : ImageBuffer{},
+                                       layerDisplay.exposure);
+    const ImageError& error = compared.mean;
+    if (!command.sheet.empty()) addPanels(sheet, pair, left, right, compared.flipMap, layerDisplay);
     if (command.rmseAtMost >= 0.0 && !(error.rmse.value <= command.rmseAtMost)) good = false;
     list.push_back(toJson(pair, error));
     rows.push_back(
@@ -136,11 +204,17 @@ int compareFiles(const CompareCommand& command) {
          fmt::format("{}", error.nonFiniteImage) +
              (error.nonFiniteReference > 0 ? fmt::format(", reference {}", error.nonFiniteReference) : "")});
   }
+  if (!command.sheet.empty()) writePng(command.sheet, contactSheet(sheet));
   if (command.json)
-    printJson(
-        {{"image", command.image.string()}, {"reference", command.reference.string()}, {"layers", list}});
+    printJson({{"image", command.image.string()},
+               {"reference", command.reference.string()},
+               {"exposure_ev", display.exposure},
+               {"exposure_from", display.from},
+               {"layers", list}});
   else
-    print(textTable(rows));
+    print(textTable(rows) + fmt::format("SSIM and FLIP LDR are taken at {} ({}){}\n",
+                                        exposureText(display.exposure), display.from,
+                                        asTheyAre ? "; layers of one channel as they are" : ""));
   return good ? kGood : kNotGood;
 }
 
@@ -161,6 +235,9 @@ void addCompareCommand(Commands& commands) {
       "(default: all that both have)");
   command->add_option("--rmse-at-most", options->rmseAtMost, "exit code 1 when an RMSE is larger")
       ->check(CLI::NonNegativeNumber);
+  options->display.addTo(*command);
+  command->add_option("--sheet", options->sheet,
+                      "a .png with image, reference and FLIP map of every layer side by side");
   command->add_flag("--json", options->json, "print JSON");
   commands.onChosen(command, [=] { return compareFiles(*options); });
 }

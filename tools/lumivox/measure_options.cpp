@@ -17,6 +17,7 @@ void MeasureOptions::addTo(CLI::App& app, const std::string& store, const std::s
   app.add_option("--pipeline", options.pipelines,
                  "pipelines' texts (default: every committed one that suits the scene)");
   run.addTo(app);
+  display.addExposureTo(app);
   app.add_option("--spp", options.referenceSamples,
                  "the reference's samples per pixel (default: by the size of the image)")
       ->check(CLI::Range(1, 1 << 24));
@@ -44,6 +45,8 @@ ReportOptions MeasureOptions::asked(const GlobalOptions& global) const {
   asked.time = run.time;
   asked.seed = run.seed;
   std::tie(asked.width, asked.height) = run.size();
+  asked.exposure = display.given();
+  asked.tone = display.toneCurve();
   asked.openSweeps = !noSweep;
   asked.commandLine = global.commandLine;
   asked.repeatArguments = repeatArguments(global);

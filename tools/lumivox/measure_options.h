@@ -9,9 +9,11 @@ namespace lumivox::command {
 struct MeasureOptions {
   ReportOptions options;
   RunOptions run;
+  DisplayOptions display;
   bool noSweep = false;
 
-  /// `store`: the meaning of --store here; `scenes`: that of the positional texts.
+  /// A command that makes images adds --tone. `store`: the meaning of --store here; `scenes`: that of the
+  /// positional texts.
   void addTo(CLI::App& app, const std::string& store, const std::string& scenes = "the scenes' texts");
   /// Everything that was asked for, in the words of the framework.
   ReportOptions asked(const GlobalOptions& global) const;

@@ -7,7 +7,6 @@
 #include "lumivox/base/image.h"
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/report.h"
-#include "lumivox/measure/metrics.h"
 #include "lumivox/reference/path_tracer.h"
 
 namespace lumivox::command {
@@ -17,6 +16,7 @@ struct ReferenceCommand {
   std::filesystem::path scene, output;
   std::string resolution;
   ReferenceOptions options;
+  DisplayOptions display;
   bool noCache = false;
 };
 
@@ -26,6 +26,7 @@ int reference(ReferenceCommand command, const GlobalOptions& global) {
     throw Error(fmt::format("{}: unknown kind of image; expected a name that ends in .exr or .png",
                             command.output.string()));
   requireWritable(command.output);
+  const std::optional<double> given = command.display.given();
   if (!command.resolution.empty())
     std::tie(command.options.width, command.options.height) = parseResolution(command.resolution);
   command.options.useCache = !command.noCache;
@@ -35,16 +36,24 @@ int reference(ReferenceCommand command, const GlobalOptions& global) {
   LayeredImage reference = command.options.useCache ? cachedReference(scene, command.options)
                                                     : renderReference(scene, command.options);
   const ImageBuffer full = reference.layers.at("full");
+  const ReferenceOptions& options = command.options;
+  ExposureMeter meter;
+  if (!given)
+    meterImage(meter, scene, snapshotOf(scene, options.time, options.camera, options.width, options.height),
+               full);
+  const double exposure = given.value_or(meter.exposure());
   if (extension == ".png") {
-    writePng(command.output, full, displayExposure(full));
+    writePng(command.output, full, {exposure, command.display.toneCurve()});
   } else {
     reference.layers[""] = full;  // what a viewer of images shows first
     reference.attributes["lumivox.command"] = global.commandLine;
     reference.attributes["lumivox.version"] = LUMIVOX_VERSION;
+    // For whoever has the image without its scene, and cannot tell what emits.
+    reference.attributes[kExposureAttribute] = fmt::format("{:.2f}", exposure);
     writeExr(command.output, reference);
   }
-  logInformation("{}: {} x {}, {} samples per pixel", command.output.string(), full.width(), full.height(),
-                 command.options.samplesPerPixel);
+  logInformation("{}: {} x {}, {} samples per pixel, {}", command.output.string(), full.width(),
+                 full.height(), options.samplesPerPixel, exposureText(exposure));
   return kGood;
 }
 
@@ -77,6 +86,7 @@ void addReferenceCommand(Commands& commands) {
       ->add_option("--occlusion-distance", options.occlusionDistance,
                    "metres, of ambient occlusion (default: a tenth of the diagonal of the scene's bounds)")
       ->check(CLI::NonNegativeNumber);
+  all->display.addTo(*command);
   command->add_option("--threads", options.threads, "default: all")->check(CLI::Range(0, 4096));
   command->add_flag("--no-cache", all->noCache, "neither read nor write the cache of references");
   const GlobalOptions& global = commands.global;

@@ -1,7 +1,10 @@
 // render: images alone.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <set>
 
 #include "command.h"
 #include "lumivox/base/background_writer.h"
@@ -9,8 +12,9 @@
 #include "lumivox/base/file.h"
 #include "lumivox/base/image.h"
 #include "lumivox/base/log.h"
+#include "lumivox/base/video.h"
 #include "lumivox/experiment/report.h"
-#include "lumivox/measure/metrics.h"
+#include "lumivox/page/contact_sheet.h"
 
 namespace lumivox::command {
 namespace {
@@ -18,12 +22,19 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RenderCommand {
-  fs::path scene, pipeline, output;
+  fs::path scene, pipeline, output, sheet, video;
   RunOptions run;
+  DisplayOptions display;
   std::string frames, onlyOutput;
   double framesPerSecond = 24.0;
   int accumulate = 0;  ///< frames an image; 0: each is made alone
   bool keepEverything = false, health = false, checkReads = false;
+
+  bool isAnimation() const { return !frames.empty(); }
+  double timeOf(int frame) const { return run.time + (isAnimation() ? frame / framesPerSecond : 0.0); }
+  fs::path fileOf(int frame) const { return isAnimation() ? numberedName(output, frame) : output; }
+  /// Whether anything is made that somebody looks at.
+  bool displays() const { return output.extension() == ".png" || !sheet.empty() || !video.empty(); }
 };
 
 /// The frame that is shown at one time, after the frames that it accumulates. Findings are those of all of
@@ -56,34 +67,184 @@ ImageBuffer mainImage(const RenderCommand& command, const FrameResult& frame) {
   return found == frame.outputs.end() ? ImageBuffer{} : found->second;
 }
 
-void writeFrame(const RenderCommand& command, const fs::path& file, FrameResult frame,
-                const std::map<std::string, std::string>& attributes) {
+ImageBuffer requireImage(const RenderCommand& command, const FrameResult& frame) {
   ImageBuffer main = mainImage(command, frame);
-  if (file.extension() == ".png") {
-    if (main.empty()) throw Error("the pipeline has no output that is a radiance; name one with --output");
-    writePng(file, main, main.channels() == 1 ? 1.0f : displayExposure(main));
-    return;
+  if (main.empty()) throw Error("the pipeline has no output that is a radiance; name one with --output");
+  return main;
+}
+
+std::uint64_t bytesOf(const FrameResult& frame) {
+  std::uint64_t bytes = 0;
+  for (const auto& [name, image] : frame.outputs) bytes += image.values().size() * sizeof(float);
+  return bytes;
+}
+
+/// Some of the frames, spread over the sequence, both ends among them.
+std::set<int> spread(int first, int last, int most) {
+  std::set<int> frames;
+  for (int i = 0; i < most; ++i)
+    frames.insert(first + static_cast<int>(std::lround(static_cast<double>(last - first) * i / (most - 1))));
+  return frames;
+}
+
+/// What exposes an animation before its first image is written.
+class Metering {
+ public:
+  static constexpr int kFrames = 5;
+  /// Frames that are rendered ahead.
+  static std::set<int> framesOf(int first, int last) {
+    return first == last ? std::set<int>{} : spread(first, last, kFrames);
   }
-  LayeredImage layered;
-  layered.attributes = attributes;
-  if (command.onlyOutput.empty())
-    for (auto& [name, image] : frame.outputs)
-      if (!image.empty()) layered.layers[name] = std::move(image);
-  if (!main.empty()) layered.layers[""] = std::move(main);
-  writeExr(file, layered);
+
+  void add(const RenderCommand& command, const Scene& scene, int frame, const FrameResult& result) {
+    const auto [width, height] = command.run.size();
+    meterImage(meter_, scene, snapshotOf(scene, command.timeOf(frame), command.run.camera, width, height),
+               mainImage(command, result));
+  }
+  double exposure() const { return meter_.exposure(); }
+
+  /// Kept for when its turn comes, where that costs little memory.
+  void keep(int frame, FrameResult result) {
+    constexpr std::uint64_t kMost = std::uint64_t{256} << 20;
+    keptBytes_ += bytesOf(result);
+    if (keptBytes_ <= kMost) kept_.emplace(frame, std::move(result));
+  }
+  std::optional<FrameResult> take(int frame) {
+    const auto found = kept_.find(frame);
+    if (found == kept_.end()) return std::nullopt;
+    std::optional<FrameResult> result(std::move(found->second));
+    kept_.erase(found);
+    return result;
+  }
+
+ private:
+  ExposureMeter meter_;
+  std::map<int, FrameResult> kept_;
+  std::uint64_t keptBytes_ = 0;
+};
+
+/// The files of a run: the image or the images, the sheet and the video.
+class Files {
+ public:
+  Files(const RenderCommand& command, int first, int last)
+      : command_(command), display_{0.0, command.display.toneCurve()} {
+    if (!command.video.empty()) video_.emplace(command.video, command.framesPerSecond);
+    constexpr int kMostPanels = 400;
+    if (command.isAnimation() && !command.sheet.empty())
+      onSheet_ = spread(first, last, std::max(2, std::min(kMostPanels, last - first + 1)));
+    sheet_.title =
+        fmt::format("{}, {}", command.scene.filename().string(), command.pipeline.filename().string());
+  }
+
+  void expose(double exposure) { display_.exposure = exposure; }
+  const Display& display() const { return display_; }
+
+  void add(int frame, FrameResult result, const std::map<std::string, std::string>& attributes) {
+    if (!command_.sheet.empty()) addToSheet(frame, result);
+    if (video_) {
+      const ImageBuffer image = requireImage(command_, result);
+      video_->add(image, displayOf(image));
+    }
+    if (!command_.output.empty()) write(command_.fileOf(frame), std::move(result), attributes);
+  }
+
+  void finish() {
+    if (!command_.sheet.empty()) {
+      sheet_.title += fmt::format(" ({}, {})", exposureText(display_.exposure), name(display_.tone));
+      writePng(command_.sheet, contactSheet(sheet_));
+      logInformation("{}: {} panels", command_.sheet.string(), sheet_.panels.size());
+    }
+    if (video_) {
+      video_->finish();
+      logInformation("{}: written by ffmpeg", command_.video.string());
+    }
+  }
+
+ private:
+  /// Occlusion and the like, fractions, are shown as they are, unless somebody says how.
+  Display displayOf(const ImageBuffer& image) const {
+    return image.channels() == 1 && !command_.display.given() ? Display{} : display_;
+  }
+
+  void addToSheet(int frame, const FrameResult& result) {
+    const auto add = [&](const std::string& name, const ImageBuffer& image, int width) {
+      sheet_.panels.push_back({name, thumbnail(image, displayOf(image), width), {}});
+    };
+    if (command_.isAnimation()) {
+      if (onSheet_.count(frame) != 0)
+        add(fmt::format("frame {}, {:.3f} s", frame, command_.timeOf(frame)), requireImage(command_, result),
+            sheetPanelWidth(static_cast<int>(onSheet_.size())));
+      return;
+    }
+    const int width = sheetPanelWidth(static_cast<int>(result.outputs.size()) + 1);
+    const ImageBuffer whole = compositeImage(result);
+    const bool isOutput = std::any_of(result.outputs.begin(), result.outputs.end(), [&](const auto& output) {
+      return output.second.values() == whole.values();
+    });
+    if (command_.onlyOutput.empty() && !whole.empty() && !isOutput) add("whole image", whole, width);
+    for (const auto& [name, image] : result.outputs) {
+      const bool shown = image.channels() == 1 || image.channels() == 3;
+      if (shown && !image.empty()) add(name, image, width);
+    }
+    if (sheet_.panels.empty()) throw Error("--sheet: the pipeline makes no image");
+  }
+
+  void write(const fs::path& file, FrameResult frame, const std::map<std::string, std::string>& attributes) {
+    if (file.extension() == ".png") {
+      const ImageBuffer image = requireImage(command_, frame);
+      writePng(file, image, displayOf(image));
+      return;
+    }
+    ImageBuffer main = mainImage(command_, frame);
+    LayeredImage layered;
+    layered.attributes = attributes;
+    if (command_.onlyOutput.empty())
+      for (auto& [name, image] : frame.outputs)
+        if (!image.empty()) layered.layers[name] = std::move(image);
+    if (!main.empty()) layered.layers[""] = std::move(main);
+    writeExr(file, layered);
+  }
+
+  const RenderCommand& command_;
+  Display display_;
+  Sheet sheet_;
+  std::set<int> onSheet_;  ///< frames of an animation
+  std::optional<VideoWriter> video_;
+};
+
+/// What can be wrong in the options, before any work.
+void checkFiles(const RenderCommand& command, int first, int last) {
+  if (command.output.empty() && command.sheet.empty() && command.video.empty())
+    throw Error("nothing to write; expected --out, --sheet or --video");
+  const std::string extension = command.output.extension().string();
+  if (!command.output.empty() && extension != ".exr" && extension != ".png")
+    throw Error(fmt::format("{}: unknown kind of image; expected a name that ends in .exr or .png",
+                            command.output.string()));
+  if (!command.sheet.empty()) requirePng("--sheet", command.sheet);
+  if (!command.video.empty()) {
+    if (command.video.extension() != ".mp4")
+      throw Error(fmt::format("--video '{}': expected a name that ends in .mp4", command.video.string()));
+    if (!command.isAnimation())
+      throw Error("--video: expected --frames FIRST..LAST too, the frames of the video");
+    try {
+      ffmpegProgram();
+    } catch (const AbsentError& absent) {
+      throw AbsentError(fmt::format("--video: {}", absent.what()));
+    }
+  }
+  if (!(command.framesPerSecond > 0.0) || !std::isfinite(command.framesPerSecond))
+    throw Error("--fps: expected a number above 0");
+  if (!command.output.empty())
+    for (const int frame : {first, last}) requireWritable(command.fileOf(frame));
+  for (const fs::path& file : {command.sheet, command.video})
+    if (!file.empty()) requireWritable(file);
 }
 
 int render(const RenderCommand& command, const GlobalOptions& global) {
-  const std::string extension = command.output.extension().string();
-  if (extension != ".exr" && extension != ".png")
-    throw Error(fmt::format("{}: unknown kind of image; expected a name that ends in .exr or .png",
-                            command.output.string()));
-  if (!(command.framesPerSecond > 0.0) || !std::isfinite(command.framesPerSecond))
-    throw Error("--fps: expected a number above 0");
-  const bool animation = !command.frames.empty();
-  const auto [first, last] = animation ? parseFrames("--frames", command.frames) : std::pair(0, 0);
-  for (const int frame : {first, last})
-    requireWritable(animation ? numberedName(command.output, frame) : command.output);
+  const auto [first, last] =
+      command.isAnimation() ? parseFrames("--frames", command.frames) : std::pair(0, 0);
+  const std::optional<double> given = command.display.given();
+  checkFiles(command, first, last);
 
   const Pipeline pipeline = Pipeline::load(command.pipeline);
   RenderOptions options = command.run.renderOptions(pipeline);
@@ -109,27 +270,52 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
   PipelineExecutor executor(*device, techniques, scene, pipeline, options);
 
   std::size_t findings = 0;
+  Files files(command, first, last);
   BackgroundWriter writer;
-  Progress progress("rendering", static_cast<std::uint64_t>(last - first + 1) *
-                                     static_cast<std::uint64_t>(std::max(command.accumulate, 1)));
+  const bool meters = command.displays() && !given;
+  const std::set<int> ahead = meters ? Metering::framesOf(first, last) : std::set<int>{};
+  Progress progress("rendering",
+                    ahead.size() + static_cast<std::uint64_t>(last - first + 1) *
+                                       static_cast<std::uint64_t>(std::max(command.accumulate, 1)));
+  Metering metering;
+  for (const int frame : ahead) {
+    FrameResult result = executor.render(command.timeOf(frame), frame);
+    progress.advance();
+    metering.add(command, scene, frame, result);
+    // One that follows others is made anew when its turn comes.
+    if (command.accumulate == 0) metering.keep(frame, std::move(result));
+  }
+  executor.invalidate();
+  executor.emptyHistories();
+  files.expose(given.value_or(metering.exposure()));
   for (int frame = first; frame <= last; ++frame) {
-    const double time = command.run.time + (animation ? frame / command.framesPerSecond : 0.0);
-    FrameResult result = renderShown(command, executor, time, frame, progress);
+    std::optional<FrameResult> kept = metering.take(frame);
+    if (kept) progress.advance();
+    FrameResult result =
+        kept ? std::move(*kept) : renderShown(command, executor, command.timeOf(frame), frame, progress);
     for (const auto* found : {&result.healthFindings, &result.readsFindings}) {
       for (const std::string& finding : *found)
-        std::cerr << (animation ? fmt::format("frame {}: ", frame) : std::string()) << finding << "\n";
+        std::cerr << (command.isAnimation() ? fmt::format("frame {}: ", frame) : std::string()) << finding
+                  << "\n";
       findings += found->size();
     }
     for (const std::string& note : result.notes) logInformation("{}", note);
-    const fs::path file = animation ? numberedName(command.output, frame) : command.output;
-    auto attributes = provenance(global, scene, pipeline, options, *device, time);
-    if (animation) attributes["lumivox.frame"] = fmt::format("{}", frame);
+    if (meters && ahead.empty()) {
+      metering.add(command, scene, frame, result);
+      files.expose(metering.exposure());
+    }
+    auto attributes = provenance(global, scene, pipeline, options, *device, command.timeOf(frame));
+    if (command.isAnimation()) attributes["lumivox.frame"] = fmt::format("{}", frame);
     if (command.accumulate > 0) attributes["lumivox.accumulate"] = fmt::format("{}", command.accumulate);
-    logInformation("{}: {:.1f} ms", file.string(), result.frameMs);
-    writer.submit([&command, file, made = std::move(result), attributes = std::move(attributes)]() mutable {
-      writeFrame(command, file, std::move(made), attributes);
+    logInformation("{}: {:.1f} ms{}",
+                   command.output.empty() ? fmt::format("frame {}", frame) : command.fileOf(frame).string(),
+                   result.frameMs,
+                   command.displays() ? ", " + exposureText(files.display().exposure) : std::string());
+    writer.submit([&files, frame, made = std::move(result), attributes = std::move(attributes)]() mutable {
+      files.add(frame, std::move(made), attributes);
     });
   }
+  writer.submit([&files] { files.finish(); });
   writer.finish();
   return findings == 0 ? kGood : kNotGood;
 }
@@ -141,12 +327,15 @@ void addRenderCommand(Commands& commands) {
   auto options = std::make_shared<RenderCommand>();
   command->add_option("SCENE", options->scene, "the scene's text")->required();
   command->add_option("PIPELINE", options->pipeline, "the pipeline's text")->required();
-  command
-      ->add_option("-o,--out", options->output,
-                   "the image: .exr (every output as a layer, the whole image as the main layer) or .png "
-                   "(the whole image)")
-      ->required();
+  command->add_option("-o,--out", options->output,
+                      "the image: .exr (every output as a layer, the whole image as the main layer) or .png "
+                      "(the whole image)");
+  command->add_option(
+      "--sheet", options->sheet,
+      "a .png with the whole image and every output side by side, or with --frames the frames");
+  command->add_option("--video", options->video, "a .mp4 of the frames; needs ffmpeg");
   options->run.addTo(*command);
+  options->display.addTo(*command);
   command->add_option("--frames", options->frames,
                       "FIRST..LAST: numbered images, out_0007.exr or a run of # in the name");
   command->add_option("--fps", options->framesPerSecond, "frames per second of --frames (default 24)");

@@ -83,6 +83,10 @@ void printSummary(const ReportSummary& summary) {
         formatMilliseconds(pruning.unprunedMs.median), formatPercent(pruning.savedShareNext()),
         formatMilliseconds(pruning.nextUnprunedMs.median - pruning.nextPrunedMs.median),
         formatMilliseconds(pruning.nextUnprunedMs.median), pruning.sameImage ? "yes" : "NO");
+  for (const auto& [scene, display] : summary.displays)
+    text += fmt::format("{}: images, SSIM and LDR-FLIP at {}, tone {}\n",
+                        std::filesystem::path(scene).stem().string(), exposureText(display.exposure),
+                        name(display.tone));
   if (summary.takenUp > 0)
     text += fmt::format("{} of {} points were taken up from an interrupted report\n", summary.takenUp,
                         summary.points.size());
@@ -124,6 +128,7 @@ void addReportCommand(Commands& commands) {
   command->add_option("-o,--out", all->measure.options.output,
                       "the page; .csv and .json go beside it (default out/report/index.html)");
   all->measure.addTo(*command, "a results store that the measured points are added to (default: none)");
+  all->measure.display.addToneTo(*command);
   command
       ->add_option(
           "--budget", all->measure.options.budgetSeconds,

@@ -13,6 +13,7 @@
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/experiment/reproduce.h"
+#include "lumivox/page/contact_sheet.h"
 #include "lumivox/page/reproduction_page.h"
 #include "measure_options.h"
 #include "results_text.h"

@@ -11,6 +11,7 @@
 #include "lumivox/experiment/report.h"
 #include "vdbexport/difference.h"
 #include "vdbexport/export.h"
+#include "vdbexport/preview.h"
 #include "vdbexport/vdb_file.h"
 
 namespace lumivox::vdb {
@@ -35,6 +36,8 @@ void Options::addTo(CLI::App& app) {
   app.add_flag("--all", all, "every output that can be exported")->excludes(grid);
   command::addRepeatable(app, "--level", levels,
                          "a level of the grids, 0 the finest, or 'all' (default: 0); may be repeated");
+  app.add_option("--preview", preview, "a .png of the exported grids, seen along the three axes");
+  display.addTo(app);
   app.add_flag("--half", half, "store floats with 16 bits");
   auto* listing = app.add_flag("--list", list, "list what can be exported, or what a .vdb file contains");
   app.add_flag("--diff", diff, "compare two .vdb files grid by grid, voxel by voxel")->excludes(listing);
@@ -139,19 +142,27 @@ int exportGrids(const Options& options, const GlobalOptions& global) {
   };
   const std::vector<int> levels = levelsOf(options);
   requireWritable(fileOf(first));
+  options.display.given();  // refused before the work
+  if (!options.preview.empty()) {
+    command::requirePng("--preview", options.preview);
+    requireWritable(options.preview);
+  }
 
   openvdb::initialize();
   Session session(options, global, levels);
+  Preview preview;
   for (int frame = first; frame <= last; ++frame) {
     const double time = options.run.time + frame / options.framesPerSecond;
     const auto grids = convert(session, global, time, frame);
     const fs::path file = fileOf(frame);
     refuseEmpty(grids, sequence, file);
     writeVdb(file, grids);
+    if (!options.preview.empty()) preview.add(grids, sequence ? fmt::format("frame {}", frame) : "");
     std::vector<std::string> names;
     for (const auto& grid : grids) names.push_back(grid->getName());
     logInformation("{}: {} ({})", file.string(), fmt::join(names, ", "), formatBytes(fs::file_size(file)));
   }
+  if (!options.preview.empty()) preview.write(options.preview, options.display);
   return command::kGood;
 }
 

@@ -11,8 +11,9 @@ namespace lumivox::vdb {
 
 struct Options {
   std::vector<std::filesystem::path> inputs;  ///< SCENE PIPELINE, or .vdb files
-  std::filesystem::path output;
+  std::filesystem::path output, preview;
   command::RunOptions run;
+  command::DisplayOptions display;
   std::string frames;
   double framesPerSecond = 24.0;
   std::vector<std::string> grids, levels;

@@ -192,6 +192,7 @@ std::vector<std::string> errorMetrics() {
   static const std::set<std::string> others{"ssim",         // 1 for the reference
                                             "mean_ratio",   // the same
                                             "bias",         // signed
+                                            "exposure_ev",  // at which others were taken
                                             "noise_floor",  // of the reference alone
                                             "non_finite_image",
                                             "non_finite_reference"};

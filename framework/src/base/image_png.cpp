@@ -62,23 +62,6 @@ class ByteEncoder {
   std::array<unsigned char, (kOne >> kSkippedBits) + 1> first_{};  ///< byte of the first value of a run
 };
 
-/// Rows of bytes, NaN in magenta.
-std::vector<unsigned char> bytesOf(const ImageBuffer& linear, float exposure) {
-  static const ByteEncoder encoder;
-  const auto sourceChannels = static_cast<std::size_t>(linear.channels());
-  std::vector<unsigned char> bytes(linear.pixelCount() * kChannels);
-  for (std::size_t pixel = 0; pixel < linear.pixelCount(); ++pixel) {
-    const float* source = linear.values().data() + pixel * sourceChannels;
-    unsigned char* target = bytes.data() + pixel * kChannels;
-    bool isNan = false;
-    for (std::size_t c = 0; c < sourceChannels; ++c) isNan = isNan || std::isnan(source[c] * exposure);
-    for (std::size_t c = 0; c < kChannels; ++c) {
-      target[c] = isNan ? (c == 1 ? 0 : 255) : encoder(source[sourceChannels == 1 ? 0 : c] * exposure);
-    }
-  }
-  return bytes;
-}
-
 /// The predictors of Sec. 9 that are tried; 3, the mean of left and above, hardly ever wins beside them.
 constexpr std::array<unsigned char, 4> kFilters{0, 1, 2, 4};
 
@@ -166,14 +149,32 @@ void appendChunk(std::string& png, const char* type, const std::string& data) {
 
 }  // namespace
 
-std::string encodePng(const ImageBuffer& linear, float exposure) {
+std::vector<unsigned char> displayBytes(const ImageBuffer& linear, const Display& display) {
   if (linear.empty() || (linear.channels() != 1 && linear.channels() != 3)) {
     throw Error(
-        fmt::format("an image with {} channels cannot become a PNG; expected 1 or 3", linear.channels()));
+        fmt::format("an image with {} channels cannot be displayed; expected 1 or 3", linear.channels()));
   }
+  static const ByteEncoder encoder;
+  const float factor = display.factor();
+  const auto sourceChannels = static_cast<std::size_t>(linear.channels());
+  std::vector<unsigned char> bytes(linear.pixelCount() * kChannels);
+  for (std::size_t pixel = 0; pixel < linear.pixelCount(); ++pixel) {
+    const float* source = linear.values().data() + pixel * sourceChannels;
+    unsigned char* target = bytes.data() + pixel * kChannels;
+    bool isNan = false;
+    for (std::size_t c = 0; c < sourceChannels; ++c) isNan = isNan || std::isnan(source[c]);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      target[c] = isNan ? (c == 1 ? 0 : 255)
+                        : encoder(toneMapped(source[sourceChannels == 1 ? 0 : c] * factor, display.tone));
+    }
+  }
+  return bytes;
+}
+
+std::string encodePng(const ImageBuffer& linear, const Display& display) {
   const std::size_t rowBytes = static_cast<std::size_t>(linear.width()) * kChannels;
   requireMemory(4 * linear.pixelCount() * kChannels, "encoding a PNG");
-  const std::string data = zlibStream(filtered(bytesOf(linear, exposure), rowBytes));
+  const std::string data = zlibStream(filtered(displayBytes(linear, display), rowBytes));
   constexpr std::size_t kLongestChunk = 0x7fffffff;  // Sec. 5.3
   if (data.size() > kLongestChunk) {
     throw Error(fmt::format("a PNG of {} x {} pixels could not be encoded: it has over 2 GiB", linear.width(),
@@ -190,10 +191,10 @@ std::string encodePng(const ImageBuffer& linear, float exposure) {
   return png;
 }
 
-void writePng(const std::filesystem::path& path, const ImageBuffer& linear, float exposure) {
+void writePng(const std::filesystem::path& path, const ImageBuffer& linear, const Display& display) {
   std::string bytes;
   try {
-    bytes = encodePng(linear, exposure);
+    bytes = encodePng(linear, display);
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path.string(), error.what()));
   }

@@ -126,6 +126,19 @@ ReferenceOptions referenceOptionsOf(const ReportOptions& options, int width, int
   return reference;
 }
 
+namespace {
+
+/// Nothing for what is usual.
+std::string displayText(const ReportOptions& options) {
+  std::string text;
+  if (options.exposure) text = fmt::format("exposure {}", *options.exposure);
+  if (options.tone != Tone::srgb)
+    text += (text.empty() ? "tone " : ", tone ") + std::string(name(options.tone));
+  return text;
+}
+
+}  // namespace
+
 StoredRun storedRunOf(gpu::Device& device, TechniqueSource& techniques, const Scene& scene,
                       const LoadedPipeline& loaded, const PlannedPoint& point, const ReportOptions& options,
                       int width, int height, int referenceSamples, const std::string& sceneShown) {
@@ -148,6 +161,7 @@ StoredRun storedRunOf(gpu::Device& device, TechniqueSource& techniques, const Sc
   identity.subpixels = options.subpixels;
   identity.referenceSamples = referenceSamples;
   identity.flickerPairs = flickers(scene, options) ? options.flickerPairs : 0;
+  identity.display = displayText(options);
   const DeviceIdentity where = identityOf(device);
   identity.device = where.device;
   identity.driver = where.driver;

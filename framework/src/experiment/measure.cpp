@@ -87,7 +87,7 @@ ComponentError errorAgainst(const Judged& judged, SceneReference& references, co
   // Seeds that are the same bits are one image.
   SeedsError error =
       compareSeeds(std::span(judged.seeds).first(record.deterministic ? 1 : judged.seeds.size()),
-                   reference.mean, reference.variance);
+                   reference.mean, reference.variance, references.display(layer).exposure);
   record.error = error.mean;
   flipMap = std::move(error.flipMap);
   record.parts = errorParts(judged.seeds, reference.mean, reference.variance, record.deterministic);
@@ -220,14 +220,13 @@ void measureErrors(const MeasureContext& context, const Pipeline& pipeline, Poin
       break;
   }
 
-  for (const auto& [output, count] : bounces) context.reference.require(context.scene, count);
+  for (const auto& [output, count] : bounces) context.reference.require(count);
   for (const Judged& one : judged) {
     const auto [biasLayer, missLayer] = referenceLayers(one.component, bounces.at(one.output));
     OutputImages images;
     images.output = one.output;
     images.component = name(one.component);
-    const float exposure = context.reference.exposure(missLayer);
-    images.image = encodePng(one.seeds.front(), exposure);
+    images.image = encodePng(one.seeds.front(), context.reference.display(missLayer, context.options.tone));
     for (const bool bias : {true, false}) {
       const std::string& layer = bias ? biasLayer : missLayer;
       const ReferenceLayer* reference = context.reference.layer(layer);
@@ -268,7 +267,7 @@ Measured flickerAgainst(const MeasureContext& context, const std::vector<ImageBu
                         const std::string& reference) {
   std::vector<ImageBuffer> means, variances;
   for (int frame = 0; frame <= context.options.flickerPairs; ++frame) {
-    const ReferenceLayer& layer = *context.reference.later(context.scene, frame).layer(reference);
+    const ReferenceLayer& layer = *context.reference.later(frame).layer(reference);
     means.push_back(layer.mean);
     variances.push_back(layer.variance);
   }

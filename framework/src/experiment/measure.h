@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -18,23 +19,30 @@ namespace lumivox::experiment {
 /// The reference of a scene with the layers that outputs are judged by, added up once.
 class SceneReference {
  public:
-  SceneReference(const Scene& scene, const ReferenceOptions& options);
+  /// `given`: an exposure in place of its own, EV. The scene must outlive it.
+  SceneReference(const Scene& scene, const ReferenceOptions& options,
+                 std::optional<double> given = std::nullopt);
   const LayeredImage& layers() const { return layers_; }
   /// Sees to it that the layers of so many bounces are there; what layer() gave before is no more valid.
-  void require(const Scene& scene, int bounces);
+  void require(int bounces);
   /// Null when the reference has no such layer.
   const ReferenceLayer* layer(const std::string& name);
   /// The reference `frame` frames of an animation later, for flicker: with a quarter of the samples, which
   /// are others in every frame, so that its noise is independent. Frame 0 is this one.
-  SceneReference& later(const Scene& scene, int frame);
+  SceneReference& later(int frame);
   /// The error of an image of nothing against it: black, or 1 for ambient occlusion.
   const ImageError& errorOfNothing(const std::string& name);
-  /// At which every image judged against this component's full reference is shown.
-  float exposure(const std::string& name);
+  /// EV at which the images of the scene are shown and judged: that of its full transport.
+  double exposure();
+  /// How images that are judged against this layer are shown: at that exposure, but for occlusion, a
+  /// fraction, which is shown as it is.
+  Display display(const std::string& layer, Tone tone = Tone::srgb);
   double seconds() const { return seconds_; }
 
  private:
+  const Scene* scene_;
   ReferenceOptions options_;
+  std::optional<double> exposure_;  ///< once it is known
   std::map<int, std::unique_ptr<SceneReference>> later_;
   LayeredImage layers_;
   std::map<std::string, std::optional<ReferenceLayer>> cache_;
@@ -110,6 +118,7 @@ class TimedPoint {
 };
 
 /// The reference layers that were used, for the page.
-std::vector<ReferenceRecord> referenceRecords(SceneReference& reference, const std::set<std::string>& used);
+std::vector<ReferenceRecord> referenceRecords(SceneReference& reference, const std::set<std::string>& used,
+                                              Tone tone);
 
 }  // namespace lumivox::experiment

@@ -256,7 +256,7 @@ void Measurer::makeReference(const std::vector<WantedPoint>& points) {
   }
   ReferenceOptions options = referenceOptions_;
   options.bounceLayers.assign(layers.begin(), layers.end());
-  reference_.emplace(scene_, options);
+  reference_.emplace(scene_, options, options_.exposure);
 }
 
 double Measurer::secondsOf(const WantedPoint& point) const {

@@ -262,6 +262,8 @@ std::string repeatingCommand(const ReportOptions& options, const std::string& sc
     command += fmt::format(" --flicker-frames {}", options.flickerPairs);
   if (!options.camera.empty()) command += " --camera " + shellQuoted(options.camera);
   if (options.time != 0.0) command += fmt::format(" --time {}", options.time);
+  if (options.exposure) command += fmt::format(" --exposure {}", *options.exposure);
+  if (options.tone != Tone::srgb) command += fmt::format(" --tone {}", name(options.tone));
   for (const std::string& argument : options.repeatArguments) command += " " + shellQuoted(argument);
   return command;
 }

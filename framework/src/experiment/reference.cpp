@@ -7,6 +7,7 @@
 
 #include "experiment/measure.h"
 #include "lumivox/base/error.h"
+#include "lumivox/reference/emission.h"
 
 namespace lumivox {
 namespace {
@@ -61,24 +62,33 @@ std::optional<ReferenceLayer> referenceLayer(const LayeredImage& reference, cons
   return sum;
 }
 
+void meterImage(ExposureMeter& meter, const Scene& scene, const SceneSnapshot& snapshot,
+                const ImageBuffer& image) {
+  if (image.empty()) return;
+  const bool seen = image.width() == snapshot.camera.width && image.height() == snapshot.camera.height;
+  meter.add(image, seen ? emittingPixels(scene, snapshot) : std::vector<unsigned char>{});
+}
+
 }  // namespace lumivox
 
 namespace lumivox::experiment {
 
-SceneReference::SceneReference(const Scene& scene, const ReferenceOptions& options) : options_(options) {
+SceneReference::SceneReference(const Scene& scene, const ReferenceOptions& options,
+                               std::optional<double> given)
+    : scene_(&scene), options_(options), exposure_(given) {
   const auto start = std::chrono::steady_clock::now();
   layers_ = cachedReference(scene, options);
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void SceneReference::require(const Scene& scene, int bounces) {
+void SceneReference::require(int bounces) {
   std::vector<int>& layers = options_.bounceLayers;
   if (bounces <= 1 || std::find(layers.begin(), layers.end(), bounces) != layers.end()) return;
   layers.insert(std::upper_bound(layers.begin(), layers.end(), bounces), bounces);
-  *this = SceneReference(scene, options_);
+  *this = SceneReference(*scene_, options_, exposure_);
 }
 
-SceneReference& SceneReference::later(const Scene& scene, int frame) {
+SceneReference& SceneReference::later(int frame) {
   if (frame == 0) return *this;
   std::unique_ptr<SceneReference>& reference = later_[frame];
   if (!reference) {
@@ -88,7 +98,7 @@ SceneReference& SceneReference::later(const Scene& scene, int frame) {
     options.seed += static_cast<std::uint64_t>(frame);
     options.samplesPerPixel =
         std::min(options.samplesPerPixel, std::max(kFewest, options.samplesPerPixel / kFewerSamples));
-    reference = std::make_unique<SceneReference>(scene, options);
+    reference = std::make_unique<SceneReference>(*scene_, options);
   }
   return *reference;
 }
@@ -107,38 +117,41 @@ const ImageError& SceneReference::errorOfNothing(const std::string& name) {
                                       ? Contributes::ambientOcclusion
                                       : Contributes::final;
     const ImageBuffer nothing = neutralImage(reference.mean.width(), reference.mean.height(), component);
-    found = nothing_.emplace(name, compare(nothing, reference.mean, reference.variance)).first;
+    found =
+        nothing_.emplace(name, compare(nothing, reference.mean, reference.variance, display(name).exposure))
+            .first;
   }
   return found->second;
 }
 
-float SceneReference::exposure(const std::string& name) {
-  const ReferenceLayer* reference = layer(name);
-  if (reference == nullptr) return 1.0f;
-  return reference->mean.channels() == 1 ? 1.0f
-                                         : displayExposure(reference->mean);  // occlusion is shown as it is
+double SceneReference::exposure() {
+  if (!exposure_) {
+    ExposureMeter meter;
+    meterImage(meter, *scene_,
+               snapshotOf(*scene_, options_.time, options_.camera, options_.width, options_.height),
+               layers_.layers.at("full"));
+    exposure_ = meter.exposure();
+  }
+  return *exposure_;
 }
 
-std::vector<ReferenceRecord> referenceRecords(SceneReference& reference, const std::set<std::string>& used) {
+Display SceneReference::display(const std::string& name, Tone tone) {
+  const ReferenceLayer* const reference = layer(name);
+  if (reference != nullptr && reference->mean.channels() == 1) return {};
+  return {exposure(), tone};
+}
+
+std::vector<ReferenceRecord> referenceRecords(SceneReference& reference, const std::set<std::string>& used,
+                                              Tone tone) {
   std::vector<ReferenceRecord> records;
-  // A layer of some bounces is shown at the exposure of the full one, so that all images of a component
-  // compare.
-  const auto exposureLayer = [](const std::string& name) -> std::string {
-    if (name == "one_bounce_diffuse") return "indirect_diffuse";
-    if (name == "one_bounce_glossy") return "indirect_glossy";
-    if (name.rfind("bounces_", 0) == 0)
-      return name.ends_with("_diffuse")  ? "indirect_diffuse"
-             : name.ends_with("_glossy") ? "indirect_glossy"
-                                         : "full";
-    return name == "one_bounce" ? "full" : name;
-  };
   for (const std::string& name : used) {
     const ReferenceLayer* layer = reference.layer(name);
     if (layer == nullptr) continue;
     ReferenceRecord record;
     record.layer = name;
-    record.exposure = reference.exposure(exposureLayer(name));
-    record.image = encodePng(layer->mean, static_cast<float>(record.exposure));
+    const Display display = reference.display(name, tone);
+    record.exposure = display.exposure;
+    record.image = encodePng(layer->mean, display);
     double sum = 0.0, variance = 0.0;
     for (const float value : layer->mean.values()) {
       sum += value;

@@ -190,7 +190,9 @@ class SceneReport {
     std::set<std::string> used;
     for (const PointRecord& point : record.points)
       for (const ComponentError& error : point.point.errors) used.insert(error.reference);
-    record.references = referenceRecords(measurer_.reference(), used);
+    record.display = {measurer_.reference().exposure(), options_.tone};
+    record.exposureGiven = options_.exposure.has_value();
+    record.references = referenceRecords(measurer_.reference(), used, options_.tone);
     record.floor = measurer_.floor(controls);
     return record;
   }
@@ -387,6 +389,7 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
       summary.points.push_back(std::move(point.point));
     }
     for (PruningRecord& pruning : scene.pruning) summary.pruning.push_back(std::move(pruning));
+    if (!scene.references.empty()) summary.displays.emplace_back(scene.file, scene.display);
     for (const LeftOutPoint& point : scene.leftOutPoints)
       summary.leftOutPoints.push_back(
           fmt::format("{}, {}: {}", scene.file, point.pipeline, pointText(point.parameters)));

@@ -87,7 +87,7 @@ class Reproduction {
     if (store_ != nullptr) store();
     setUps_.clear();  // their memory, which images may need
     for (const PublishedPanel& panel : result_.published.panels) result_.panels.push_back(show(panel));
-    expose();
+    result_.exposure = meter_.exposure();
     return std::move(result_);
   }
 
@@ -382,6 +382,9 @@ class Reproduction {
       logWarning("{}: {}: {}", result_.published.id, panel.name, error.what());
     }
     if (!shown.image.empty()) {
+      // A pass may make images that are none of the camera, of another size.
+      const auto [width, height] = sizeOf(panel, *scene);
+      meterImage(meter_, *scene, snapshotOf(*scene, panel.time, panel.camera, width, height), shown.image);
       const ImageBuffer bright = luminance(shown.image);
       const Health health = scanHealth(bright.values().data(), bright.values().size(), 1);
       shown.meanLuminance =
@@ -447,21 +450,12 @@ class Reproduction {
     return layer->mean;
   }
 
-  /// One exposure for all panels: the brightest of them keeps its lights.
-  void expose() {
-    result_.exposure = 1.0;
-    double smallest = std::numeric_limits<double>::infinity();
-    for (const ShownPanel& panel : result_.panels)
-      if (!panel.image.empty() && panel.meanLuminance > 0.0)
-        smallest = std::min(smallest, static_cast<double>(displayExposure(panel.image)));
-    if (std::isfinite(smallest)) result_.exposure = smallest;
-  }
-
   gpu::Device& device_;
   TechniqueSet& techniques_;
   const ReproduceOptions& options_;
   const std::function<Scene(const fs::path&)>& loadScene_;
   ReproducedResult result_;
+  ExposureMeter meter_;
   std::map<std::pair<fs::path, int>, std::unique_ptr<Scene>> scenes_;  // by file and subdivisions
   std::map<fs::path, std::string> whyAbsent_;
   ResultsStore* store_;

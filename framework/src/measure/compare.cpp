@@ -25,6 +25,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/random.h"
+#include "lumivox/measure/exposure.h"
 #include "lumivox/measure/metrics.h"
 #include "measure/pixels.h"
 #include "measure/quantile.h"
@@ -267,11 +268,13 @@ std::vector<const ImageBuffer*> pointersTo(const std::vector<ImageBuffer>& image
 }  // namespace
 
 SeedsError compareSeeds(std::span<const ImageBuffer> seeds, const ImageBuffer& reference,
-                        const ImageBuffer& referenceVariance) {
+                        const ImageBuffer& referenceVariance, std::optional<double> givenExposure) {
   const std::vector<ComparablePair> pairs = comparable(seeds, reference);
   const ImageBuffer& expected = pairs.front().reference;
   const ImageBuffer deviations = deviationsOf(referenceVariance, reference, pairs.front());
-  const float exposure = displayExposure(reference);
+  Display display;
+  display.exposure = givenExposure.value_or(displayExposure(reference));
+  const float exposure = display.factor();
   const bool noisy = !deviations.empty();
   const ImageBuffer other = noisy ? withNoiseDoubled(expected, deviations) : ImageBuffer();
   const ImageBuffer shownOther = scaled(other, exposure);
@@ -293,6 +296,7 @@ SeedsError compareSeeds(std::span<const ImageBuffer> seeds, const ImageBuffer& r
     ImageError& one = each.emplace_back();
     one.nonFiniteImage = pairs[i].nonFiniteImage;
     one.nonFiniteReference = pairs[i].nonFiniteReference;
+    one.exposure = display.exposure;
     compareValues(pairs[i], deviations, one);
     const Perceived measured =
         perceivedDifference(pairs[i], expected, exposure, {hdr.ofImages[i], ldr.ofImages[i]});
@@ -308,8 +312,8 @@ SeedsError compareSeeds(std::span<const ImageBuffer> seeds, const ImageBuffer& r
 }
 
 ImageError compare(const ImageBuffer& image, const ImageBuffer& reference,
-                   const ImageBuffer& referenceVariance) {
-  return compareSeeds(std::span(&image, 1), reference, referenceVariance).mean;
+                   const ImageBuffer& referenceVariance, std::optional<double> exposure) {
+  return compareSeeds(std::span(&image, 1), reference, referenceVariance, exposure).mean;
 }
 
 double flicker(const ImageBuffer& frame0, const ImageBuffer& frame1, const ImageBuffer& reference0,
@@ -330,22 +334,6 @@ double flicker(const ImageBuffer& frame0, const ImageBuffer& frame1, const Image
     }
   });
   return std::sqrt(total[sumSquares] / total[values]);
-}
-
-float displayExposure(const ImageBuffer& reference) {
-  radianceChannels(reference, "a reference whose exposure is wanted");
-  constexpr double kQuantile = 0.99, kShownAs = 0.8;
-  std::vector<double> luminances;
-  for (std::size_t pixel = 0; pixel < reference.pixelCount(); ++pixel) {
-    const double value = luminanceAt(reference, pixel);
-    if (std::isfinite(value)) luminances.push_back(value);
-  }
-  if (luminances.empty()) return 1.0f;
-  double bright = quantileOf(luminances, kQuantile);
-  // A few bright pixels on black: they are what there is to see.
-  if (bright <= 0.0) bright = *std::max_element(luminances.begin(), luminances.end());
-  if (bright <= 0.0) return 1.0f;
-  return static_cast<float>(std::min(kShownAs / bright, double{std::numeric_limits<float>::max()}));
 }
 
 }  // namespace lumivox

@@ -261,30 +261,6 @@ void requireViewing(double pixelsPerDegree) {
   }
 }
 
-// ---- HDR-FLIP
-
-/// The rational tone curve (k0 x^2 + k1 x + k2) / (k3 x^2 + k4 x + k5) of the 2021 paper, with its
-/// coefficients for ACES: Narkowicz's fit (2.51, 0.03, 2.43, 0.59, 0.14) with the film exposure 0.6 taken in.
-struct ToneCurve {
-  static constexpr double kFilm = 0.6;
-  static constexpr double k0 = kFilm * kFilm * 2.51, k1 = kFilm * 0.03, k2 = 0.0;
-  static constexpr double k3 = kFilm * kFilm * 2.43, k4 = kFilm * 0.59, k5 = 0.14;
-
-  static double apply(double radiance) {
-    if (radiance <= 0.0) return 0.0;
-    // Divided by x^2, so that the brightest finite radiance does not overflow.
-    const double inverse = 1.0 / radiance;
-    const double value = (k0 + (k1 + k2 * inverse) * inverse) / (k3 + (k4 + k5 * inverse) * inverse);
-    return std::isnan(value) ? 0.0 : std::clamp(value, 0.0, 1.0);
-  }
-  /// The radiance that the curve maps to `value`: the positive root of a quadratic.
-  static double inverse(double value) {
-    const double c0 = (k1 - k4 * value) / (k0 - k3 * value);
-    const double c1 = (k2 - k5 * value) / (k0 - k3 * value);
-    return -0.5 * c0 + std::sqrt(0.25 * c0 * c0 - c1);
-  }
-};
-
 }  // namespace
 
 ImageBuffer withBadPixelsMarked(ImageBuffer map, const std::vector<unsigned char>& counts) {
@@ -311,8 +287,8 @@ std::vector<double> flipExposures(const ImageBuffer& reference) {
     luminances.erase(std::remove(luminances.begin(), luminances.end(), 0.0), luminances.end());
     median = quantileOf(luminances, 0.5);
   }
-  const double start = std::log2(ToneCurve::inverse(kTarget) / largest);
-  const double stop = std::log2(ToneCurve::inverse(kTarget) / median);
+  const double start = std::log2(FilmicCurve::inverse(kTarget) / largest);
+  const double stop = std::log2(FilmicCurve::inverse(kTarget) / median);
   const std::size_t count = std::max(kFewest, static_cast<std::size_t>(std::ceil(stop - start)));
   std::vector<double> stops(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -337,7 +313,7 @@ FlipMaps flipHdrMaps(std::span<const ImageBuffer* const> images, const ImageBuff
     if (i > 0 && stops[i] == stops[i - 1]) continue;
     const double exposure = std::exp2(stops[i]);
     raiseMaps(maps, images, reference, other, filters,
-              [&](float value) { return ToneCurve::apply(exposure * value); });
+              [&](float value) { return FilmicCurve::apply(exposure * value); });
   }
   return maps;
 }

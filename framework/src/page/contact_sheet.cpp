@@ -1,4 +1,5 @@
-// The panels of a figure on one sheet, under one exposure, each with its name.
+#include "lumivox/page/contact_sheet.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <sstream>
 
 #include "lumivox/base/error.h"
-#include "lumivox/page/reproduction_page.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wall"
@@ -74,41 +74,72 @@ void write(ImageBuffer& sheet, int left, int top, std::string text) {
 }
 
 /// Enlarged or reduced to the nearest texel, so that what is coarse looks coarse.
-void draw(ImageBuffer& sheet, int left, int top, int width, int height, const ImageBuffer& image,
-          double exposure) {
+void draw(ImageBuffer& sheet, int left, int top, int width, int height, const SheetPanel& panel) {
+  const ImageBuffer& image = panel.image;
+  const float factor = panel.display.factor();
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const int sourceX = x * image.width() / width, sourceY = y * image.height() / height;
       for (int c = 0; c < sheet.channels(); ++c)
-        sheet.at(left + x, top + y, c) =
-            static_cast<float>(exposure * image.at(sourceX, sourceY, image.channels() == 1 ? 0 : c));
+        sheet.at(left + x, top + y, c) = toneMapped(
+            factor * image.at(sourceX, sourceY, image.channels() == 1 ? 0 : c), panel.display.tone);
     }
+}
+
+int columnsOf(int panels, int wanted) {
+  return std::min(panels,
+                  wanted > 0 ? wanted : static_cast<int>(std::ceil(std::sqrt(static_cast<double>(panels)))));
 }
 
 }  // namespace
 
-ImageBuffer contactSheet(const ReproducedResult& result) {
-  const int count = static_cast<int>(result.panels.size());
-  if (count == 0) throw Error(fmt::format("{}: there are no panels for a sheet", result.published.id));
-  int width = kLeast, height = 0;
-  for (const ShownPanel& panel : result.panels) {
-    width = std::max(width, panel.image.width());
+int sheetPanelWidth(int panels) {
+  constexpr int kScreen = 1920;
+  const int columns = columnsOf(panels, 0);
+  return std::max(kLeast, (kScreen - kMargin) / columns - kMargin);
+}
+
+ImageBuffer thumbnail(const ImageBuffer& image, const Display& display, int mostWidth) {
+  const int width = std::min(image.width(), mostWidth);
+  const int height =
+      std::max(1, static_cast<int>(std::lround(static_cast<double>(image.height()) * width / image.width())));
+  ImageBuffer result(width, height, image.channels());
+  const float factor = display.factor();
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      // Whole pixels; each belongs to one of the result where that is smaller.
+      const int left = x * image.width() / width, right = (x + 1) * image.width() / width;
+      const int top = y * image.height() / height, bottom = (y + 1) * image.height() / height;
+      for (int c = 0; c < image.channels(); ++c) {
+        float sum = 0.0f;
+        for (int sourceY = top; sourceY < bottom; ++sourceY)
+          for (int sourceX = left; sourceX < right; ++sourceX)
+            sum += toneMapped(factor * image.at(sourceX, sourceY, c), display.tone);
+        result.at(x, y, c) = sum / static_cast<float>((right - left) * (bottom - top));
+      }
+    }
+  return result;
+}
+
+ImageBuffer contactSheet(const Sheet& wanted) {
+  const int count = static_cast<int>(wanted.panels.size());
+  if (count == 0) throw Error(fmt::format("{}: there are no panels for a sheet", wanted.title));
+  int widest = 0, height = 0;
+  for (const SheetPanel& panel : wanted.panels) {
+    widest = std::max(widest, panel.image.width());
     height = std::max(height, panel.image.height());
   }
-  if (height == 0) height = width * 3 / 4;  // nothing but reasons
-  const int columns =
-      std::min(count, result.published.columns > 0
-                          ? result.published.columns
-                          : static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count)))));
+  const int width = std::max(kLeast, widest);
+  if (widest > 0) height = height * width / widest;  // small images are enlarged
+  if (height == 0) height = width * 3 / 4;           // nothing but reasons
+  const int columns = columnsOf(count, wanted.columns);
   const int rows = (count + columns - 1) / columns;
   std::size_t nameLines = 1;
-  for (const ShownPanel& panel : result.panels)
+  for (const SheetPanel& panel : wanted.panels)
     nameLines = std::max(nameLines, lines(panel.name, width).size());
   const int nameHeight = static_cast<int>(nameLines) * kLine;
   const int sheetWidth = columns * (width + kMargin) + kMargin;
-  const std::vector<std::string> title = lines(
-      fmt::format("{}: {} (exposure {:.3g})", result.published.id, result.published.title, result.exposure),
-      sheetWidth - 2 * kMargin);
+  const std::vector<std::string> title = lines(wanted.title, sheetWidth - 2 * kMargin);
   const int titleHeight = static_cast<int>(title.size()) * kLine + kMargin;
 
   constexpr int kChannels = 3;
@@ -116,7 +147,7 @@ ImageBuffer contactSheet(const ReproducedResult& result) {
   for (std::size_t i = 0; i < title.size(); ++i)
     write(sheet, kMargin, kMargin + static_cast<int>(i) * kLine, title[i]);
   for (int i = 0; i < count; ++i) {
-    const ShownPanel& panel = result.panels[static_cast<std::size_t>(i)];
+    const SheetPanel& panel = wanted.panels[static_cast<std::size_t>(i)];
     const int left = kMargin + i % columns * (width + kMargin),
               top = titleHeight + kMargin + i / columns * (height + nameHeight + 2 * kMargin);
     std::vector<std::string> name = lines(panel.name, width);
@@ -127,7 +158,7 @@ ImageBuffer contactSheet(const ReproducedResult& result) {
       const double factor = std::min(static_cast<double>(width) / panel.image.width(),
                                      static_cast<double>(height) / panel.image.height());
       draw(sheet, left, top, static_cast<int>(std::lround(factor * panel.image.width())),
-           static_cast<int>(std::lround(factor * panel.image.height())), panel.image, result.exposure);
+           static_cast<int>(std::lround(factor * panel.image.height())), panel);
       continue;
     }
     fill(sheet, left, top, width, height, kEmpty);
@@ -136,6 +167,18 @@ ImageBuffer contactSheet(const ReproducedResult& result) {
       write(sheet, left + kMargin, top + kMargin + static_cast<int>(line) * kLine, why[line]);
   }
   return sheet;
+}
+
+ImageBuffer contactSheet(const ReproducedResult& result) {
+  Sheet sheet;
+  sheet.title =
+      fmt::format("{}: {} ({})", result.published.id, result.published.title, exposureText(result.exposure));
+  sheet.columns = result.published.columns;
+  for (const ShownPanel& panel : result.panels)
+    sheet.panels.push_back({panel.name, panel.image,
+                            panel.image.channels() == 1 ? Display{} : Display{result.exposure, Tone::srgb},
+                            panel.whyNot});
+  return contactSheet(sheet);
 }
 
 }  // namespace lumivox

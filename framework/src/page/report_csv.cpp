@@ -69,6 +69,7 @@ CsvRow csvRow(const SceneRecord& scene, const PointRecord& record, const Compone
   row.add("ssim", Measured{e.ssim, e.ssimUncertainty});
   row.add("flip_hdr", Measured{e.flip, e.flipUncertainty});
   row.add("flip_ldr", Measured{e.flipLdr, e.flipLdrUncertainty});
+  row.add("exposure_ev", e.exposure);
   row.add("non_finite_image", error.error.nonFiniteImage);
   row.add("non_finite_reference", error.error.nonFiniteReference);
   row.add("rmse_of_nothing", error.errorOfNothing.rmse.value);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lumivox/analysis/judge.h"
+#include "lumivox/page/contact_sheet.h"
 #include "lumivox/results/text.h"
 #include "page/document.h"
 #include "page/markup.h"
@@ -153,7 +154,8 @@ std::string reproductionsAsMarkdown(const std::vector<ReproducedResult>& results
       text += "\n";
     }
     for (const ShownPanel& panel : result.panels) text += "- Panel " + panelText(panel) + "\n";
-    if (!result.panels.empty()) text += fmt::format("- Exposure of all panels: {:.3g}\n", result.exposure);
+    if (!result.panels.empty())
+      text += fmt::format("- Exposure of all panels: {}\n", exposureText(result.exposure));
     for (const std::string& note : reproductionNotes(result)) text += "- " + note + "\n";
   }
   return text;

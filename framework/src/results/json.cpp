@@ -85,6 +85,7 @@ Json toJson(const ComponentError& record) {
           {"flip_hdr_uncertainty", numberJson(error.flipUncertainty)},
           {"flip_ldr", numberJson(error.flipLdr)},
           {"flip_ldr_uncertainty", numberJson(error.flipLdrUncertainty)},
+          {"exposure_ev", numberJson(error.exposure)},
           {"non_finite_image", error.nonFiniteImage},
           {"non_finite_reference", error.nonFiniteReference},
           {"rmse_of_nothing", numberJson(record.errorOfNothing.rmse.value)},
@@ -240,16 +241,20 @@ Json toJson(const SceneRecord& scene) {
   Json json = {{"file", scene.file},     {"name", scene.name},          {"hash", scene.hash},
                {"camera", scene.camera}, {"time_s", scene.time},        {"width", scene.width},
                {"height", scene.height}, {"triangles", scene.triangles}};
-  json["reference"] = {{"samples_per_pixel", scene.referenceSamples},
-                       {"seconds", numberJson(scene.referenceSeconds)},
-                       {"attributes", scene.referenceAttributes}};
+  json["reference"] = {
+      {"samples_per_pixel", scene.referenceSamples},
+      {"seconds", numberJson(scene.referenceSeconds)},
+      {"attributes", scene.referenceAttributes},
+      {"exposure_ev", numberJson(scene.display.exposure)},
+      {"exposure_from", scene.exposureGiven ? "--exposure" : "log-average of the full reference"},
+      {"tone", name(scene.display.tone)}};
   Json layers = Json::array();
   for (const ReferenceRecord& reference : scene.references)
     layers.push_back({{"layer", reference.layer},
                       {"noise", numberJson(reference.noise)},
                       {"mean", numberJson(reference.mean)},
                       {"largest", numberJson(reference.largest)},
-                      {"display_exposure", numberJson(reference.exposure)}});
+                      {"exposure_ev", numberJson(reference.exposure)}});
   json["reference"]["layers"] = std::move(layers);
   json["left_out_points"] = Json::array();
   for (const LeftOutPoint& point : scene.leftOutPoints)

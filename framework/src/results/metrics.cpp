@@ -39,6 +39,7 @@ std::vector<NamedMetric> metricsOf(const ComponentError& error) {
   for (NamedMetric& metric : metrics)
     metric.measured.enoughRepeats = error.enoughSeeds() && (error.deterministic || error.everyMetricPerSeed ||
                                                             metric.name == std::string("rmse"));
+  metrics.push_back({"exposure_ev", {error.error.exposure, 0.0}, error.errorOfNothing.exposure});
   metrics.push_back({"noise_floor", {error.error.noiseFloor, 0.0}, error.errorOfNothing.noiseFloor});
   metrics.push_back({"non_finite_image", {static_cast<double>(error.error.nonFiniteImage), 0.0}, 0.0});
   metrics.push_back(
@@ -67,6 +68,9 @@ bool setMetric(ComponentError& error, const NamedMetric& metric) {
     error.parts.noise = metric.measured;
   } else if (metric.name == "flicker") {
     error.flicker = metric.measured;
+  } else if (metric.name == "exposure_ev") {
+    error.error.exposure = metric.measured.value;
+    error.errorOfNothing.exposure = metric.ofNothing;
   } else if (metric.name == "noise_floor") {
     error.parts.referenceNoise = metric.measured.value;
     error.error.noiseFloor = metric.measured.value;

@@ -144,7 +144,7 @@ Json resultJson(const ReproducedResult& result) {
           {"rows", std::move(rows)},
           {"curves", std::move(curves)},
           {"panels", std::move(panels)},
-          {"exposure", result.exposure},
+          {"exposure_ev", result.exposure},
           {"set_ups", result.setUps},
           {"differences", result.published.differences},
           {"command", result.command}};
@@ -166,7 +166,7 @@ ReproducedResult readResult(const Json& json) {
   result.date = json.at("date");
   result.scale = json.at("scale");
   result.repeats = json.at("repeats");
-  result.exposure = json.at("exposure");
+  result.exposure = json.at("exposure_ev");
   result.setUps = json.at("set_ups").get<std::vector<std::string>>();
   result.command = json.at("command");
   for (const Json& row : json.at("rows")) result.rows.push_back(readRow(row));

@@ -34,6 +34,7 @@ std::string RunIdentity::key() const {
   hasher.add(camera).add(time).add(width).add(height).add(seed).add(seeds).add(repeats).add(subpixels);
   if (flickerPairs > 0) hasher.add("flicker").add(flickerPairs);
   for (const std::string& output : kept) hasher.add("kept").add(output);
+  if (!display.empty()) hasher.add("display").add(display);
   hasher.add(referenceSamples).add(device).add(driver).add(shaderInput).add(host);
   return hasher.finish().text();
 }

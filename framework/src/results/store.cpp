@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 #include <tuple>
 
 #include "lumivox/base/error.h"
@@ -166,6 +167,7 @@ void ResultsStore::State::insertNames(std::int64_t id, const StoredRun& run) {
     provenance.run(id, "flicker", fmt::format("{} pairs", run.identity.flickerPairs), "");
   if (!run.point.whyNotCounted.empty()) provenance.run(id, "not_counted", run.point.whyNotCounted, "");
   for (const std::string& output : run.identity.kept) provenance.run(id, "kept", output, "");
+  if (!run.identity.display.empty()) provenance.run(id, "display", run.identity.display, "");
   for (const auto& [name, hash] : run.identity.techniques) provenance.run(id, "technique", name, hash);
   Statement health(database, "INSERT INTO health VALUES (?,?,?)");
   int position = 0;
@@ -219,13 +221,22 @@ void ResultsStore::State::insertErrors(std::int64_t id, const ReportPoint& point
 /// Inside a transaction.
 bool ResultsStore::State::add(const StoredRun& run, const std::vector<StoredImage>& images, bool complete) {
   if (complete) Statement(database, "DELETE FROM claims WHERE key = ?").run(run.identity.key());
-  Statement(database, "DELETE FROM runs WHERE key = ? AND NOT complete").run(run.identity.key());
+  // A run keeps its number when its times are there.
+  std::optional<std::int64_t> number;
+  if (Statement untimed(database, "SELECT id FROM runs WHERE key = ? AND NOT complete");
+      untimed.bind(run.identity.key()).step())
+    number = untimed.integer(0);
+  if (number) Statement(database, "DELETE FROM runs WHERE id = ?").run(*number);
   // A failure may have had causes that are gone; it gives way to a result.
   if (run.point.failure.empty() && complete)
     Statement(database, "DELETE FROM runs WHERE key = ? AND failure <> ''").run(run.identity.key());
   Statement there(database, "SELECT 1 FROM runs WHERE key = ?");
   if (there.bind(run.identity.key()).step()) return false;
-  const std::int64_t id = insertRun(run, complete);
+  std::int64_t id = insertRun(run, complete);
+  if (number) {
+    Statement(database, "UPDATE runs SET id = ? WHERE id = ?").run(*number, id);
+    id = *number;
+  }
   insertNames(id, run);
   insertTimes(id, run.point);
   insertWork(id, run.point);
@@ -307,6 +318,7 @@ void ResultsStore::State::readNames(StoredRun& run) const {
     if (kind == "flicker") run.identity.flickerPairs = std::atoi(provenance.text(1).c_str());
     if (kind == "not_counted") run.point.whyNotCounted = provenance.text(1);
     if (kind == "kept") run.identity.kept.push_back(provenance.text(1));
+    if (kind == "display") run.identity.display = provenance.text(1);
     if (kind == "scene") run.identity.sceneHash = hash;
     if (kind == "pipeline") run.identity.pipelineHash = hash;
     if (kind == "framework") run.identity.framework = hash;

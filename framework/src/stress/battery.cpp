@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 
+#include "base/child.h"
 #include "experiment/choice.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -16,7 +17,6 @@
 #include "lumivox/page/stress_page.h"
 #include "lumivox/results/store.h"
 #include "lumivox/results/stress_cells.h"
-#include "stress/child.h"
 #include "stress/protocol.h"
 #include "stress/run_cell.h"
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "base/child.h"
 #include "lumivox/base/error.h"
-#include "stress/child.h"
 
 namespace lumivox::stress {
 

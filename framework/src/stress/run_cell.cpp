@@ -10,6 +10,7 @@
 #include "experiment/plan.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/measure/exposure.h"
 #include "stress/cards.h"
 
 namespace lumivox::stress {
@@ -109,7 +110,7 @@ StressCell runCell(Ground& ground, const CellRequest& request,
   const ImageBuffer& image = bench.shown();
   if (!request.image.empty() && !image.empty()) {
     createParentDirectories(request.image);
-    writePng(request.image, image, image.channels() == 1 ? 1.0f : displayExposure(image));
+    writePng(request.image, image, {displayExposure(image), Tone::srgb});
     cell.image = (request.image.parent_path().filename() / request.image.filename()).string();
   }
   return cell;

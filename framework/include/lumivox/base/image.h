@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "lumivox/base/display.h"
+
 namespace lumivox {
 
 /// A float image. Pixels are stored row by row from the top, the channels of a pixel side by side.
@@ -60,11 +62,13 @@ std::map<std::string, std::string> readExrAttributes(const std::filesystem::path
 /// Writes 32-bit float ZIP-compressed scanlines, atomically.
 void writeExr(const std::filesystem::path& path, const LayeredImage& image);
 
-/// Writes a three- or one-channel linear image as an 8-bit sRGB PNG, atomically. `exposure` multiplies;
-/// values clip at 1; NaN is magenta.
-void writePng(const std::filesystem::path& path, const ImageBuffer& linear, float exposure = 1.0f);
+/// Writes a three- or one-channel linear image as an 8-bit PNG, atomically, exposed and tone-mapped. Values
+/// clip at 1; NaN is magenta.
+void writePng(const std::filesystem::path& path, const ImageBuffer& linear, const Display& display = {});
 /// The bytes of that PNG, for embedding into pages.
-std::string encodePng(const ImageBuffer& linear, float exposure = 1.0f);
+std::string encodePng(const ImageBuffer& linear, const Display& display = {});
+/// Its pixels before they are packed: red, green and blue of each, row by row from the top.
+std::vector<unsigned char> displayBytes(const ImageBuffer& linear, const Display& display = {});
 
 /// An 8-bit image as stored (no transfer function applied).
 struct ByteImage {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lumivox/gpu/device.h"
+#include "lumivox/measure/exposure.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/plugin/loader.h"
 #include "lumivox/reference/path_tracer.h"
@@ -24,9 +25,11 @@ struct ReportOptions {
   int referenceSamples = 0;   ///< per pixel; 0: referenceSamplesFor(width, height)
   int width = 0, height = 0;  ///< 0: the camera's, reduced to at most 160 on a software rasteriser
   std::string camera;
-  double time = 0.0;       ///< s
-  std::uint64_t seed = 1;  ///< the first one
-  int subpixels = 16;      ///< images that are judged are means over this many positions in the pixel
+  double time = 0.0;               ///< s
+  std::uint64_t seed = 1;          ///< the first one
+  std::optional<double> exposure;  ///< EV; otherwise that of the full reference (measure/exposure.h)
+  Tone tone = Tone::srgb;          ///< of images; measures know nothing of it
+  int subpixels = 16;              ///< images that are judged are means over this many positions in the pixel
   int repeats = 5, seeds = kLeastRepeats;
   /// Pairs of frames 1/24 s apart whose flicker is measured where the scene moves; 0: none.
   int flickerPairs = 4;
@@ -51,6 +54,7 @@ struct ReportSummary {
   std::vector<ReportPoint> points;
   std::size_t takenUp = 0;  ///< of them, those that an interrupted run had measured already
   std::vector<PruningRecord> pruning;
+  std::vector<std::pair<std::string, Display>> displays;  ///< of the images of each scene
   std::vector<std::string> unsuited;  ///< "scene, pipeline: why" for those left out by themselves
   std::vector<std::string>
       leftOutPoints;  ///< "scene, pipeline: cones=6" for which there was no time, or what leaving out saves
@@ -80,6 +84,11 @@ std::optional<ReferenceLayer> referenceLayer(const LayeredImage& reference, cons
 /// is one, else the sum of the radiance components (direct, indirect_diffuse, indirect_glossy, scattered).
 /// Empty when there is none of them.
 ImageBuffer compositeImage(const FrameResult& frame);
+
+/// Adds an image of the scene to an exposure, without the pixels that emit (reference/emission.h). Of an
+/// image of another size than the snapshot's camera every pixel counts; an empty one is passed over.
+void meterImage(ExposureMeter& meter, const Scene& scene, const SceneSnapshot& snapshot,
+                const ImageBuffer& image);
 
 /// Renders pruned and unpruned alternately, `repeats` times each after one warm-up. With 0 only the warm-up
 /// is rendered, for the images, the bytes and the variants; nothing is timed.

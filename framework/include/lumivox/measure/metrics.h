@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,12 +36,14 @@ struct ImageError {
   Measured bias;         ///< mean signed difference
   /// 95th percentile of the absolute difference of luminance.
   double percentile95 = 0.0;
-  /// Mean structural similarity (Wang et al. 2004) of luminance as displayed at the reference's exposure.
+  /// Mean structural similarity (Wang et al. 2004) of luminance as displayed at `exposure`.
   double ssim = 1.0;
   /// Mean HDR-FLIP (Andersson et al. 2021).
   double flip = 0.0;
-  /// Mean LDR-FLIP (Andersson et al. 2020) of the images at the reference's exposure, clipped.
+  /// Mean LDR-FLIP (Andersson et al. 2020) of the images at `exposure`, clipped.
   double flipLdr = 0.0;
+  /// EV at which SSIM and LDR-FLIP were taken, the only two that depend on one; NaN where nobody has kept it.
+  double exposure = std::numeric_limits<double>::quiet_NaN();
   /// How far doubling the reference's noise moves these four; 0 when the noise is not known.
   double percentile95Uncertainty = 0.0, ssimUncertainty = 0.0, flipUncertainty = 0.0,
          flipLdrUncertainty = 0.0;
@@ -50,10 +53,11 @@ struct ImageError {
 };
 
 /// `referenceVariance` (variance of each reference value, as of its mean) may be empty: then all
-/// uncertainties are 0. Those of the first four numbers are propagated from it to first order. Error when the
+/// uncertainties are 0. Those of the first four numbers are propagated from it to first order. `exposure`,
+/// EV: that of display (measure/exposure.h); otherwise the one of the reference's own pixels. Error when the
 /// shapes differ, the channels are not 1, 3 or 4, or a variance is negative or not finite.
 ImageError compare(const ImageBuffer& image, const ImageBuffer& reference,
-                   const ImageBuffer& referenceVariance = {});
+                   const ImageBuffer& referenceVariance = {}, std::optional<double> exposure = std::nullopt);
 
 /// The same image made with different random numbers, against one reference. A pixel that is not finite in
 /// one of them counts in none.
@@ -65,7 +69,8 @@ struct SeedsError {
 };
 /// Errors as compare(), and for no image at all.
 SeedsError compareSeeds(std::span<const ImageBuffer> seeds, const ImageBuffer& reference,
-                        const ImageBuffer& referenceVariance = {});
+                        const ImageBuffer& referenceVariance = {},
+                        std::optional<double> exposure = std::nullopt);
 
 /// FLIP maps, one channel in [0,1], NaN where a pixel is left out. Radiance below 0 counts as 0; flipLdr
 /// clips at 1. 67 pixels per degree unless said otherwise (the papers' default viewing condition).
@@ -104,10 +109,6 @@ double flicker(const ImageBuffer& frame0, const ImageBuffer& frame1, const Image
 /// be empty. NaN for fewer than two frames; Error when there are not as many references as frames.
 Measured flicker(const std::vector<ImageBuffer>& frames, const std::vector<ImageBuffer>& references,
                  const std::vector<ImageBuffer>& variances = {});
-
-/// The exposure at which the reference's 99th percentile of luminance (its largest, when that is 0) becomes
-/// 0.8: used for display and LDR metrics; 1 for a black image.
-float displayExposure(const ImageBuffer& reference);
 
 /// A one-channel map in [0,1] in the report's ramp, black over violet and orange to pale yellow, whose
 /// lightness grows in proportion to the value; linear RGB for writePng. NaN stays NaN.

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "lumivox/base/image.h"
 #include "lumivox/results/reproduction.h"
 
 namespace lumivox {
@@ -28,9 +27,6 @@ std::string reproductionRule();
 /// Devices, the reduction, what was measured and how it differs, for whoever reads the numbers.
 std::vector<std::string> reproductionNotes(const ReproducedResult& result);
 
-/// All panels under one exposure, each with its name, those that are absent with the reason, as display
-/// values in [0,1] for encodePng. Error without panels.
-ImageBuffer contactSheet(const ReproducedResult& result);
 /// The points of all curves: curve, x and its name, median, quartiles, unit, repeats, why not (RFC 4180).
 std::string curvesAsCsv(const ReproducedResult& result);
 /// The curves side by side on logarithmic axes, with quartiles, and a line of slope 1 to compare with.

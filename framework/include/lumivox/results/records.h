@@ -113,7 +113,8 @@ struct PeakRate {
 
 /// The metrics of one error by name, with the same of a black image: what the store's table `metrics`
 /// holds. Names: rmse, relative_mse, mean_ratio, bias, percentile95, ssim, flip, flip_ldr,
-/// rms_bias, rms_noise, flicker, noise_floor, non_finite_image, non_finite_reference.
+/// rms_bias, rms_noise, flicker, exposure_ev (at which SSIM and LDR-FLIP were taken), noise_floor,
+/// non_finite_image, non_finite_reference.
 struct NamedMetric {
   std::string name;
   Measured measured;

@@ -37,7 +37,7 @@ struct PointRecord {
 struct ReferenceRecord {
   std::string layer;
   std::string image;      ///< PNG
-  double exposure = 1.0;  ///< common to every image of this component
+  double exposure = 0.0;  ///< EV; that of the scene, but for occlusion, which is shown as it is
   double noise = 0.0;     ///< sqrt of the mean variance of a pixel value
   double mean = 0.0, largest = 0.0;
 };
@@ -59,6 +59,8 @@ struct SceneRecord {
   std::size_t triangles = 0;
   int referenceSamples = 0;
   double referenceSeconds = 0.0;  ///< to make or to read from the cache
+  Display display;                ///< of all its images but those of occlusion
+  bool exposureGiven = false;     ///< by --exposure; false: from the full reference
   std::map<std::string, std::string> referenceAttributes;
   std::vector<ReferenceRecord> references;
   std::vector<PointRecord> points;

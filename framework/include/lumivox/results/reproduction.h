@@ -166,7 +166,7 @@ struct ReproducedResult {
   std::vector<MeasuredCurve> curves;
   std::vector<JudgedCurve> judgedCurves;
   std::vector<ShownPanel> panels;
-  double exposure = 1.0;  ///< one for all panels
+  double exposure = 0.0;  ///< EV, one for all panels
   double scale = 1.0;
   std::vector<std::string> setUps;  ///< "scenes/a.scene, a.pipeline: resolution=64, 256 x 192 pixels"
   gpu::DeviceInfo device;

@@ -23,8 +23,10 @@ struct RunIdentity {
   int width = 0, height = 0;
   std::uint64_t seed = 1;
   int seeds = 1, repeats = 1, subpixels = 1, referenceSamples = 0;
-  int flickerPairs = 0;                           ///< 0 where the scene does not move
-  std::vector<std::string> kept;                  ///< sorted outputs "pass.port" that no image needs
+  int flickerPairs = 0;           ///< 0 where the scene does not move
+  std::vector<std::string> kept;  ///< sorted outputs "pass.port" that no image needs
+  /// How its images are displayed, where that is not as usual: "exposure -2, tone filmic".
+  std::string display;
   std::string device, driver, shaderInput, host;  ///< host: processor and system
 
   std::string key() const;  ///< 32 hexadecimal digits

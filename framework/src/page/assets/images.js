@@ -1,7 +1,7 @@
 "use strict";
 // Images, reference and FLIP maps, and a frame with a slider between any two of them.
 const imageSection = (function () {
-  const { images, h, caption, folded, number, shortName, parametersText, componentTitle, pngAddress, whenShown } = lumivox;
+  const { images, h, caption, folded, exposureText, shortName, parametersText, componentTitle, pngAddress, whenShown } = lumivox;
 
   /** Two images in one frame, the slider between them. `choices`: { title, address }. */
   function wipe(scene, component, choices, left, right) {
@@ -38,7 +38,7 @@ const imageSection = (function () {
   /** All images of one component of a scene; null without any. */
   function component(scene, own, name) {
     const references = [], shown = [], maps = [], strips = [], more = [];
-    let first = 0, exposure = 1;
+    let first = 0;
     const referenceFigure = layer => {
       const reference = own.references.find(one => one.layer === layer);
       if (!reference) return null;
@@ -51,9 +51,6 @@ const imageSection = (function () {
       for (const output of outputs) {
         if (output.component !== name || (name === "final" && output.output !== "whole_image")) continue;
         const title = shortName(point.pipeline) + ", " + parametersText(point.parameters);
-        const last = output.against.length ? output.against[output.against.length - 1].reference : null;
-        const layer = scene.reference.layers.find(one => one.layer === last);
-        if (layer) exposure = layer.display_exposure;
         if (point.default) first = shown.length;
         shown.push({ title, address: pngAddress(output.png) });
         const strip = h("div", { class: "strip" },
@@ -69,7 +66,7 @@ const imageSection = (function () {
     });
     if (shown.length === 0) return null;
     const choices = [...references, ...shown, ...maps];
-    return [h("h4", null, componentTitle(name) + " ", h("span", { class: "soft" }, "(exposure " + number(exposure) + ")")),
+    return [h("h4", null, componentTitle(name)),
             wipe(scene, name, choices, references.length + first, references.length > 0 ? references.length - 1 : shown.length - 1), strips,
             more.length > 0 && folded("Other points of the sweeps", more)];
   }
@@ -81,8 +78,8 @@ const imageSection = (function () {
     const black = order.filter(isBlack);
     return [
       h("h3", null, "Images, reference and FLIP maps"),
-      caption("All images of one component are shown at one exposure, which puts the 99th percentile of its full reference at 0.8 before "
-        + "the sRGB curve. A FLIP map is dark where a viewer sees no difference and bright where the difference is plain. NaN pixels are "
+      caption(`All images of the scene are shown at ${exposureText(scene)}, with the tone curve “${scene.reference.tone}”; occlusion, a `
+        + "fraction, is shown as it is. A FLIP map is dark where a viewer sees no difference and bright where the difference is plain. NaN pixels are "
         + "magenta. Images are means over positions in the pixel, as the reference is. The slider moves the border between any two of them."),
       order.filter(name => !isBlack(name)).map(name => component(scene, own, name)),
       black.length > 0 && caption("Not shown, since it is exactly that of the reference: " + black.map(componentTitle).join(", ") + ".")];

@@ -52,6 +52,9 @@ const lumivox = (function () {
   }
   const milliseconds = value => !isNumber(value) ? "-" : Math.abs(value) >= 99.95 ? value.toFixed(0) : significant(value, 3);
   const percent = share => isNumber(share) ? (100 * share).toFixed(1) + " %" : "-";
+  /** At which a scene's images are shown: "exposure -1.25 EV (log-average of the full reference)". */
+  const exposureText = scene => scene.reference.exposure_ev === null ? "an unknown exposure"
+    : `exposure ${scene.reference.exposure_ev.toFixed(2)} EV (${scene.reference.exposure_from})`;
   function bytes(count) {
     if (!isNumber(count)) return "-";
     const units = ["B", "KiB", "MiB", "GiB", "TiB"];
@@ -112,7 +115,7 @@ const lumivox = (function () {
     }
   }
 
-  return { data, images, h, caption, list, folded, table, isNumber, significant, number, oneDigit, milliseconds, percent, bytes, thousands,
+  return { data, images, h, caption, list, folded, table, isNumber, significant, number, oneDigit, milliseconds, percent, bytes, exposureText, thousands,
            measured, quartiles, plain, shortName, words, parametersText, outputName, componentTitle, palette, style, chart, whenShown,
            pngAddress, show };
 })();

@@ -1,7 +1,7 @@
 "use strict";
 // The page of a report: its sections from beginning to end.
 (function () {
-  const { data, h, caption, list, folded, table, number, milliseconds, percent, bytes, thousands, measured, quartiles, shortName,
+  const { data, h, caption, list, folded, table, number, milliseconds, percent, bytes, exposureText, thousands, measured, quartiles, shortName,
           words, parametersText, outputName, palette, chart, show } = lumivox;
   const sceneTitle = scene => scene.name || scene.file;
   const timesOf = time => time && time.repeats > 0;
@@ -88,10 +88,10 @@
         h("code", null, scene.hash), "."),
       folded("The reference's own noise",
         table(columns("Reference layer", ["Noise (RMS)", "number"], ["Mean", "number"], ["Noise / mean", "number"], ["Largest", "number"],
-                      ["Shown at exposure", "number"]),
+                      ["Exposure (EV)", "number"]),
               layers.map(layer => [layer.layer, number(layer.noise), number(layer.mean),
                                    layer.mean > 0 ? percent(layer.noise / layer.mean) : "-", number(layer.largest),
-                                   number(layer.display_exposure)])),
+                                   layer.exposure_ev.toFixed(2)])),
         h("dl", null, Object.entries(attributes).map(([name, value]) => [h("dt", null, name), h("dd", null, value)])))];
   }
 
@@ -111,7 +111,7 @@
       h("h3", null, "Error numbers"),
       caption("RMSE, mean difference and percentile in W/(sr m²). “Of left out” is the RMSE divided by that of a black image: below 1 the "
         + "component is better than none. Mean ratio is the image's energy over the reference's. Pixels that are NaN or infinite are counted "
-        + "and left out of the numbers. Numbers after ± are one standard uncertainty. Bold rows are the default parameters."),
+        + "and left out of the numbers. SSIM and FLIP LDR are taken at " + exposureText(scene) + ". Numbers after ± are one standard uncertainty. Bold rows are the default parameters."),
       table(columns("Pipeline", "Parameters", "Output", "Reference", "Says", ["RMSE", "number"], ["of left out", "number"], ["Mean ratio", "number"],
                     ["Mean difference", "number"], ["Relative MSE", "number"], ["95th percentile", "number"], ["SSIM", "number"],
                     ["FLIP HDR", "number"], ["FLIP LDR", "number"], ["Reference's noise", "number"], ["Image's noise", "number"],

@@ -1,13 +1,15 @@
-// A process of its own that answers requests line by line.
+// A process of its own that is fed through its standard input and answers line by line.
 #pragma once
 
 #include <sys/types.h>
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-namespace lumivox::stress {
+namespace lumivox {
 
 class Child {
  public:
@@ -20,6 +22,10 @@ class Child {
 
   /// A child that is gone does not answer; that is found out by receive().
   void send(const std::string& line);
+  /// Bytes for its standard input; waits while it does not read them. False when it reads no more.
+  bool write(std::span<const std::byte> bytes);
+  /// The end of its standard input.
+  void closeInput();
 
   enum class State { answered, ended, silent };
   struct Answer {
@@ -30,6 +36,8 @@ class Child {
   Answer receive(double seconds);
   /// After `ended`: "killed by signal 6 (Aborted)", "ended with exit code 3".
   std::string ending();
+  /// After `ended`: by itself, with exit code 0.
+  bool succeeded();
   /// The last lines that it wrote to standard error.
   std::string lastWords() const;
   /// Standard error from here on.
@@ -37,6 +45,8 @@ class Child {
 
  private:
   void read(int file, std::string& into, bool& open);
+  void readMessages();
+  void waitForEnd();
   pid_t process_ = -1;
   int requests_ = -1, answers_ = -1, messages_ = -1;
   bool answersOpen_ = true, messagesOpen_ = true;
@@ -44,4 +54,4 @@ class Child {
   std::optional<int> status_;
 };
 
-}  // namespace lumivox::stress
+}  // namespace lumivox

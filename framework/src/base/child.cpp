@@ -1,4 +1,4 @@
-#include "stress/child.h"
+#include "base/child.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -18,7 +18,7 @@
 
 extern char** environ;
 
-namespace lumivox::stress {
+namespace lumivox {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -90,12 +90,26 @@ Child::~Child() {
 
 void Child::send(const std::string& line) {
   const std::string text = line + "\n";
-  for (std::size_t sent = 0; sent < text.size();) {
-    const ssize_t count = ::send(requests_, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return;
-    sent += static_cast<std::size_t>(count);
+  write(std::as_bytes(std::span(text.data(), text.size())));
+}
+
+bool Child::write(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    // Meanwhile it must not have to wait for somebody who reads what it says.
+    pollfd files[] = {{requests_, POLLOUT, 0}, {messagesOpen_ ? messages_ : -1, POLLIN, 0}};
+    poll(files, 2, -1);
+    if (files[1].revents != 0) readMessages();
+    if (files[0].revents == 0) continue;
+    const ssize_t count = ::send(requests_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (count <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
   }
+  return true;
+}
+
+void Child::closeInput() {
+  shutdown(requests_, SHUT_WR);
 }
 
 void Child::read(int file, std::string& into, bool& open) {
@@ -105,6 +119,11 @@ void Child::read(int file, std::string& into, bool& open) {
     into.append(buffer, static_cast<std::size_t>(count));
   else if (count == 0 || errno != EINTR)
     open = false;
+}
+
+void Child::readMessages() {
+  read(messages_, errors_, messagesOpen_);
+  if (errors_.size() > 2 * kWordsKept) errors_.erase(0, errors_.size() - kWordsKept);
 }
 
 Child::Answer Child::receive(double seconds) {
@@ -117,30 +136,36 @@ Child::Answer Child::receive(double seconds) {
     }
     if (!answersOpen_) {
       // Its last messages may contain the reason.
-      while (messagesOpen_) read(messages_, errors_, messagesOpen_);
+      while (messagesOpen_) readMessages();
       return {State::ended, {}};
     }
     const double left = std::chrono::duration<double>(end - Clock::now()).count();
     if (left <= 0.0) return {State::silent, {}};
     pollfd files[] = {{answers_, POLLIN, 0}, {messagesOpen_ ? messages_ : -1, POLLIN, 0}};
     poll(files, 2, static_cast<int>(std::ceil(std::min(left, 3600.0) * 1000.0)));
-    if (files[1].revents != 0) read(messages_, errors_, messagesOpen_);
-    if (errors_.size() > 2 * kWordsKept) errors_.erase(0, errors_.size() - kWordsKept);
+    if (files[1].revents != 0) readMessages();
     if (files[0].revents != 0) read(answers_, pending_, answersOpen_);
   }
 }
 
-std::string Child::ending() {
-  if (!status_) {
-    // Its own children end with it, while its number is still its own.
-    siginfo_t information{};
-    while (waitid(P_PID, static_cast<id_t>(process_), &information, WEXITED | WNOWAIT) != 0 &&
-           errno == EINTR) {
-    }
-    kill(-process_, SIGKILL);
-    int status = 0;
-    if (waitpid(process_, &status, 0) == process_) status_ = status;
+void Child::waitForEnd() {
+  if (status_) return;
+  // Its own children end with it, while its number is still its own.
+  siginfo_t information{};
+  while (waitid(P_PID, static_cast<id_t>(process_), &information, WEXITED | WNOWAIT) != 0 && errno == EINTR) {
   }
+  kill(-process_, SIGKILL);
+  int status = 0;
+  if (waitpid(process_, &status, 0) == process_) status_ = status;
+}
+
+bool Child::succeeded() {
+  waitForEnd();
+  return status_ && WIFEXITED(*status_) && WEXITSTATUS(*status_) == 0;
+}
+
+std::string Child::ending() {
+  waitForEnd();
   if (!status_) return "ended";
   if (WIFSIGNALED(*status_))
     return fmt::format("killed by signal {} ({})", WTERMSIG(*status_), strsignal(WTERMSIG(*status_)));
@@ -153,4 +178,4 @@ std::string Child::lastWords() const {
   return words;
 }
 
-}  // namespace lumivox::stress
+}  // namespace lumivox

@@ -1,0 +1,34 @@
+// The exposure that an image is displayed with: that which shows its log-average luminance as middle grey
+// (Reinhard et al. 2002).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lumivox/base/image.h"
+
+namespace lumivox {
+
+/// What the log-average luminance becomes: the key of a scene that is neither dark nor light.
+inline constexpr double kKey = 0.18;
+
+/// One exposure for as many images as are shown together: the frames of a sequence, the panels of a sheet.
+/// Lamps that are seen do not count, so that they may fill any part of an image; neither do pixels that are
+/// black, NaN or infinite. Images of one channel (occlusion, say) are fractions and shown as they are.
+class ExposureMeter {
+ public:
+  /// `emitting`: for each pixel whether it shows something that shines by itself; empty: that is not known,
+  /// and every pixel counts. Error when it has another size than the image.
+  void add(const ImageBuffer& image, std::span<const unsigned char> emitting = {});
+  /// EV, in steps of 0.01, so that the number that is told repeats the image. Where everything that is not
+  /// black emits, that counts; 0 where everything is black.
+  double exposure() const;
+
+ private:
+  std::vector<float> lit_, shining_;  ///< luminances above 0
+};
+
+/// That of one image.
+double displayExposure(const ImageBuffer& image, std::span<const unsigned char> emitting = {});
+
+}  // namespace lumivox

@@ -1,0 +1,53 @@
+#include "lumivox/measure/exposure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lumivox/base/error.h"
+#include "measure/pixels.h"
+#include "measure/quantile.h"
+
+namespace lumivox {
+
+void ExposureMeter::add(const ImageBuffer& image, std::span<const unsigned char> emitting) {
+  radianceChannels(image, "an image whose exposure is wanted");
+  if (!emitting.empty() && emitting.size() != image.pixelCount())
+    throw Error(fmt::format("it is known of {} pixels whether they emit; expected {}", emitting.size(),
+                            image.pixelCount()));
+  if (image.channels() == 1) return;
+  for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel) {
+    const auto luminance = static_cast<float>(luminanceAt(image, pixel));
+    if (!std::isfinite(luminance) || luminance <= 0.0f) continue;
+    (!emitting.empty() && emitting[pixel] != 0 ? shining_ : lit_).push_back(luminance);
+  }
+}
+
+double ExposureMeter::exposure() const {
+  std::vector<float> luminances = lit_.empty() ? shining_ : lit_;
+  if (luminances.empty()) return 0.0;
+  // Reinhard et al. add a small constant before the logarithm, so that black does not rule. Here what is so
+  // much darker than the bright ones does not count at all: radiance has any unit, and an image that is lit
+  // in a few places has its exposure from those. A quantile, because fireflies reach any height.
+  constexpr double kBright = 0.95, kBlack = 1e-3;
+  const double black = kBlack * quantileOf(luminances, kBright);
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const float luminance : luminances) {
+    if (double{luminance} < black) continue;
+    sum += std::log2(double{luminance});
+    ++count;
+  }
+  constexpr double kSteps = 100.0;  // per EV
+  const double exposure = std::round(kSteps * (std::log2(kKey) - sum / static_cast<double>(count))) / kSteps;
+  return std::clamp(exposure, -kLargestExposure, kLargestExposure) + 0.0;  // no minus zero
+}
+
+double displayExposure(const ImageBuffer& image, std::span<const unsigned char> emitting) {
+  ExposureMeter meter;
+  meter.add(image, emitting);
+  return meter.exposure();
+}
+
+}  // namespace lumivox
