@@ -168,7 +168,7 @@ TEST_CASE("results are listed, exported, merged and removed from the command lin
   CHECK(compared["compared"] == 1);
   CHECK(compared["only_before"].size() == 1);
   for (const Json& change : compared["changes"]) CHECK(change["significant"] == false);
-  CHECK(runCommand("lumivox compare-runs 1 2 --all" + store).output.find("1 points compared") !=
+  CHECK(runCommand("lumivox compare-runs 1 2 --all" + store).output.find("1 point compared") !=
         std::string::npos);
 }
 

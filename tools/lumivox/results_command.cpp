@@ -354,8 +354,8 @@ int compareRuns(const ResultsCommand& command, const std::string& before, const 
   closePoint(point);
   const auto significant = std::count_if(comparison.changes.begin(), comparison.changes.end(),
                                          [](const RunChange& change) { return change.significant; });
-  text += fmt::format("{} points compared, {} of {} quantities changed significantly\n", comparison.compared,
-                      significant, comparison.changes.size());
+  text += fmt::format("{} point{} compared, {} of {} quantities changed significantly\n", comparison.compared,
+                      comparison.compared == 1 ? "" : "s", significant, comparison.changes.size());
   const auto undecided = std::count_if(comparison.changes.begin(), comparison.changes.end(),
                                        [](const RunChange& change) { return change.undecided; });
   if (undecided > 0)

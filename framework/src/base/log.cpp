@@ -7,6 +7,9 @@
 #include <cmath>
 #include <cstdio>
 #include <mutex>
+#include <set>
+
+#include "lumivox/base/findings.h"
 
 namespace lumivox {
 namespace {
@@ -16,10 +19,22 @@ std::atomic<std::uint64_t> warnings{0};
 std::mutex outputMutex;
 std::string* captured = nullptr;
 bool barOnScreen = false;
+thread_local WarningCollector* collector = nullptr;
 
 void clearBar() {
   if (barOnScreen) std::fputs("\r\x1b[K", stderr);
   barOnScreen = false;
+}
+
+/// Writes a line as it is; whoever calls holds `outputMutex`.
+void writeLine(LogLevel level, const std::string& line) {
+  if (captured != nullptr) {
+    *captured += line;
+    return;
+  }
+  if (level > currentLevel.load()) return;
+  clearBar();
+  std::fputs(line.c_str(), stderr);
 }
 
 std::string formatSeconds(double seconds) {
@@ -40,16 +55,35 @@ std::uint64_t warningCount() {
 }
 
 void logMessage(LogLevel level, std::string_view text) {
-  if (level == LogLevel::warnings) ++warnings;
-  const std::lock_guard lock(outputMutex);
-  const std::string line = fmt::format("{}{}\n", level == LogLevel::warnings ? "warning: " : "", text);
-  if (captured != nullptr) {
-    *captured += line;
-    return;
+  if (level == LogLevel::warnings) {
+    ++warnings;
+    if (collector != nullptr) {
+      Diagnostic finding;
+      finding.severity = Diagnostic::Severity::warning;
+      finding.what = text;
+      return collector->add(std::move(finding));
+    }
   }
-  if (level > currentLevel.load()) return;
-  clearBar();
-  std::fputs(line.c_str(), stderr);
+  const std::lock_guard lock(outputMutex);
+  writeLine(level, fmt::format("{}{}\n", level == LogLevel::warnings ? "warning: " : "", text));
+}
+
+void logFinding(const Diagnostic& finding) {
+  ++warnings;
+  if (collector != nullptr) return collector->add(finding);
+  static std::set<std::string> told;
+  const std::lock_guard lock(outputMutex);
+  const std::string text = finding.text();
+  if (captured == nullptr && !told.insert(text).second) return;
+  writeLine(LogLevel::warnings, text + "\n");
+}
+
+WarningCollector::WarningCollector() : outer_(collector) {
+  collector = this;
+}
+
+WarningCollector::~WarningCollector() {
+  collector = outer_;
 }
 
 LogCapture::LogCapture() {
