@@ -105,7 +105,8 @@
     return [
       caption("RMSE, mean difference and percentile in W/(sr m²). “Of left out” is the RMSE divided by that of a black image: below 1 the "
         + "component is better than none. Mean ratio is the image's energy over the reference's. Pixels that are NaN or infinite are counted "
-        + "and left out of the numbers. Numbers after ± are one standard uncertainty. Bold rows are the default parameters."),
+        + "and left out of the numbers. SSIM and FLIP LDR are taken at " + exposureText(scene) + ". Numbers after ± are one standard "
+        + "uncertainty. Bold rows are the default parameters."),
       table(columns("Pipeline", "Parameters", "Output", "Reference", "Says", ["FLIP", "number"], ["RMSE", "number"], ["of left out", "number"],
                     ["Relative MSE", "number"], ["95th percentile", "number"], ["Mean ratio", "number"], ["Mean difference", "number", "hidden"],
                     ["SSIM", "number", "hidden"], ["FLIP LDR", "number", "hidden"], ["Reference's noise", "number", "hidden"],
