@@ -124,12 +124,28 @@ class ShadePass : public Pass {
 };
 
 class ComposePass : public Pass {
-  In<Image> direct{this, "direct", "direct light"};
-  In<Image> diffuse{this, "diffuse", Presence::optional, "indirect light reflected by the diffuse lobe"};
-  In<Image> glossy{this, "glossy", Presence::optional, "indirect light reflected by the Phong lobe"};
-  In<Image> transmittance{this, "transmittance", Presence::optional,
-                          "what media leave of the light of surfaces on its way to the camera"};
-  In<Image> scattered{this, "scattered", Presence::optional, "light that media scatter to the camera"};
+  In<Image> direct{this, "direct", "direct light", Contributes::direct};
+  In<Image> diffuse{this,
+                    "diffuse",
+                    Presence::optional,
+                    "indirect light reflected by the diffuse lobe",
+                    Needs::nothing,
+                    Contributes::indirectDiffuse};
+  In<Image> glossy{this,
+                   "glossy",
+                   Presence::optional,
+                   "indirect light reflected by the Phong lobe",
+                   Needs::nothing,
+                   Contributes::indirectGlossy};
+  In<Image> transmittance{this,
+                          "transmittance",
+                          Presence::optional,
+                          "what media leave of the light of surfaces on its way to the camera",
+                          Needs::nothing,
+                          Contributes::nothing};
+  In<Image> scattered{
+      this,           "scattered",           Presence::optional, "light that media scatter to the camera",
+      Needs::nothing, Contributes::scattered};
   Out<Image> radiance{this, "radiance", Contributes::final, Needs::nothing,
                       "sum of the components, W/(sr m^2)"};
 

@@ -113,8 +113,12 @@ class ReflectPass : public Pass {
   Param<bool> asPublished{
       this, "as_published", false,
       "Listing 4.34: albedo times the mean of all light in the finest cells, half a voxel off along z, fading out with the distance to the eye; in place of what crosses the face before a surface, and of fade"};
-  Out<RadianceGrid> radiance{this, "radiance", Contributes::nothing, Needs::glossyMaterial,
-                             "light that leaves the surfaces, and their opacity; the finest level only"};
+  Out<RadianceGrid> radiance{this,
+                             "radiance",
+                             Contributes::nothing,
+                             Needs::glossyMaterial,
+                             "light that leaves the surfaces, and their opacity; the finest level only",
+                             Levels::finest};
 
   Reads readsFrom() const override { return asPublished ? Reads::camera : Reads::nothing; }
 
@@ -168,7 +172,7 @@ class TracePass : public Pass {
   enum class Fade { falls, grows, none };
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
-  In<RadianceGrid> grid{this, "grid", "the reflection grid with its mips"};
+  In<RadianceGrid> grid{this, "grid", "the reflection grid with its mips", Levels::all};
   Param<float> reach{
       this, "reach", 0.0f, within(0.0f, 1e9f), "m", "of a cone; 0: the longest side of the grid"};
   Param<Fade> fade{

@@ -249,8 +249,8 @@ class MarchPass : public Pass {
 class UpsamplePass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "where the pixels' rays end"};
   In<ScatteringGrid> media{this, "media", "what they go through"};
-  In<Image> scatteredSamples{this, "scattered", "of the march"};
-  In<Image> transmittanceSamples{this, "transmittance", "of the march"};
+  In<Image> scatteredSamples{this, "scattered", "of the march", Contributes::scattered};
+  In<Image> transmittanceSamples{this, "transmittance", "of the march", Contributes::nothing};
   Param<float> similarity{
       this, "similarity", 0.05f, within(1e-4f, 10.0f),
       "difference of the ends of two rays, as a share of their length, from which on they "

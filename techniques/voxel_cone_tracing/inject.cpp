@@ -44,7 +44,8 @@ class InjectPass : public Pass {
   Param<bool> twoSided{this, "two_sided", true,
                        "light on the back of a triangle counts; off, as published: only on the front"};
   Param<Precision> precision{this, "precision", Precision::float_, "of the grid: 16 or 8 bytes a voxel"};
-  Out<RadianceGrid> radiance{this, "radiance", "reflected radiance and opacity; the finest level only"};
+  Out<RadianceGrid> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
+                             Levels::finest};
 
   Reads readsFrom() const override { return Reads::lights | Reads::materials; }
 

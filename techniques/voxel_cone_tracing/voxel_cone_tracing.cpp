@@ -23,7 +23,7 @@ class FilterPass : public Pass {
   Param<Opacity> opacity{
       this, "opacity", Opacity::facing,
       "how children make a parent: seen through along the axis that they face; their plain mean; or that mean as published, in one read by the texture's filter, which misses children where sizes are odd"};
-  Out<RadianceGrid> mips{this, "mips", "the same grid with one level per halving"};
+  Out<RadianceGrid> mips{this, "mips", "the same grid with one level per halving", Levels::all};
 
   void run(PassContext& frame) override {
     const gpu::TextureDescription& texture = radiance->radiance->description();
@@ -62,7 +62,7 @@ class GatherPass : public Pass {
   enum class Distribution { cosine, published };
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
-  In<RadianceGrid> grid{this, "grid", "pre-filtered radiance, one mip per halving"};
+  In<RadianceGrid> grid{this, "grid", "pre-filtered radiance, one mip per halving", Levels::all};
   In<ScatteringGrid> media{this, "media", Presence::optional,
                            "media that dim what the cones see; light that they scatter is left out"};
   Param<int> cones{this, "cones", 6, within(1, 256), "diffuse cones per pixel"};

@@ -1,9 +1,11 @@
 // Pipelines set against each other: fronts, who beats whom, equal time, equal error, and which stored runs
 // may be compared at all.
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "lumivox/analysis/comparison.h"
+#include "lumivox/analysis/same_pipelines.h"
 #include "lumivox/base/error.h"
 #include "support/support.h"
 
@@ -187,4 +189,87 @@ TEST_CASE(
   CHECK(here.title == "room, camera main, 64x64, on a device");
   for (const StoredRun* run : here.runs)
     if (run->point.pipeline == a.pipeline) CHECK(run->point.frameMs.median == 9.0);
+}
+
+namespace {
+
+/// A point that judges its indirect light too, against its own bounces and full transport, and direct light.
+ReportPoint layeredPoint(const std::string& pipeline, double samples, double timeMs, double flip) {
+  ReportPoint point = pointOf(pipeline, samples, timeMs, flip);
+  point.passOrder = {"gbuffer", "gather"};
+  const auto add = [&](const char* component, bool bias, const char* reference, double value) {
+    ComponentError error;
+    error.output = error.component = component;
+    error.bias = bias;
+    error.reference = reference;
+    error.seeds = 3;
+    error.error.flip = value;
+    error.error.rmse = {value, 0.01 * value};
+    point.errors.push_back(error);
+  };
+  add("direct", true, "direct", 0.125);
+  add("indirect_diffuse", true, "one_bounce_diffuse", flip);
+  add("indirect_diffuse", false, "indirect_diffuse", 2.0 * flip);
+  return point;
+}
+
+std::vector<const ReportPoint*> pointersTo(const std::vector<ReportPoint>& points) {
+  std::vector<const ReportPoint*> pointers;
+  for (const ReportPoint& point : points) pointers.push_back(&point);
+  return pointers;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "indirect light against its own bounces leads, and what is equal for all pipelines is told apart from it") {
+  const std::vector<ReportPoint> points{layeredPoint("a", 1, 1.0, 0.2), layeredPoint("b", 1, 2.0, 0.1)};
+  const auto comparisons = compareComponents(pointersTo(points), {"rmse", kDefaultMetric}, {});
+  const auto led = ledComparison(comparisons);
+  REQUIRE(led);
+  CHECK(comparisons[*led].component == "indirect_diffuse");
+  CHECK(comparisons[*led].bias);
+  CHECK(comparisons[*led].metric == kDefaultMetric);
+  for (const PipelineComparison& one : comparisons) CHECK(one.equalForAll == (one.component == "direct"));
+  CHECK(comparableComponents().front() == "indirect_diffuse");
+  CHECK(comparableComponents().back() == "final");
+}
+
+TEST_CASE("the whole image against full transport leads where no indirect light tells pipelines apart") {
+  const std::vector<ReportPoint> direct{pointOf("a", 1, 1.0, 0.2), pointOf("b", 1, 2.0, 0.1)};
+  const auto whole = compareComponents(pointersTo(direct), {kDefaultMetric}, {});
+  REQUIRE(ledComparison(whole));
+  CHECK(whole[*ledComparison(whole)].component == "final");
+  CHECK_FALSE(whole[*ledComparison(whole)].bias);
+  // One pipeline alone has nothing to be told apart from.
+  const std::vector<ReportPoint> one{layeredPoint("a", 1, 1.0, 0.2)};
+  const auto alone = compareComponents(pointersTo(one), {kDefaultMetric}, {});
+  CHECK(alone[*ledComparison(alone)].component == "final");
+  CHECK_FALSE(ledComparison({}));
+}
+
+TEST_CASE("a pipeline that comes to the same passes as another one is left out of comparisons and named") {
+  std::vector<ReportPoint> points{layeredPoint("smoke", 1, 1.1, 0.2), layeredPoint("cones", 1, 1.0, 0.2),
+                                  layeredPoint("cones", 4, 4.0, 0.1), layeredPoint("smoke", 2, 1.2, 0.2)};
+  for (const std::size_t smoke : {0u, 3u}) {
+    points[smoke].parameters["steps"].number = 8.0 * static_cast<double>(smoke);
+    points[smoke].passOrder = {"gather", "gbuffer"};  // passes that need nothing of each other
+  }
+  const auto same = samePipelines(pointersTo(points));
+  REQUIRE(same.size() == 1);
+  CHECK(same.at("pipelines/smoke.pipeline") == "pipelines/cones.pipeline");
+  const PipelineComparison comparison = comparePipelines(pointersTo(points), "final", false, "flip", {});
+  CHECK(comparison.pipelines.size() == 1);
+  CHECK(comparison.points.size() == 2);
+  CHECK(comparison.same == same);
+  CHECK(toJson(comparison).at("same").at("pipelines/smoke.pipeline") == "pipelines/cones.pipeline");
+
+  const auto differs = [&](const std::function<void(ReportPoint&)>& change) {
+    std::vector<ReportPoint> others = points;
+    change(others[3]);
+    return samePipelines(pointersTo(others)).empty();
+  };
+  CHECK(differs([](ReportPoint& point) { point.passOrder.emplace_back("smoke"); }));
+  CHECK(differs([](ReportPoint& point) { point.passWork["gather"]["samples"] = 12.0; }));
+  CHECK(differs([](ReportPoint& point) { point.errors[1].error.flip += 1e-12; }));
 }

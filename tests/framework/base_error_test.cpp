@@ -58,6 +58,8 @@ TEST_CASE("the nearest word is found for a slip of the pen and for nothing else"
   CHECK(nearestWord("tagret", words) == "target");           // two letters swapped count as one slip
   CHECK(nearestWord("radiace", words) == "radiance");        // nearer than irradiance
   CHECK(nearestWord("colour", words).empty());
+  CHECK(nearestWord("degrees", {"m", "s", "deg", "rad"}) == "deg");  // one is the beginning of the other
+  CHECK(nearestWord("f", {"m", "s"}).empty());                       // nothing in common
   CHECK(nearestWord("xyz", words).empty());
   CHECK(nearestWord("", words).empty());
   CHECK(nearestWord("fov", {}).empty());

@@ -1,6 +1,8 @@
 // Counter-based random numbers.
+#include <algorithm>
 #include <cmath>
 
+#include "lumivox/base/low_discrepancy.h"
 #include "lumivox/base/random.h"
 #include "support/support.h"
 
@@ -52,4 +54,34 @@ TEST_CASE("uniform numbers fill [0, 1) evenly") {
   for (const int count : bins)
     chiSquared += std::pow(count - kCount / double{kBins}, 2) / (kCount / double{kBins});
   CHECK(chiSquared < 43.8);
+}
+
+TEST_CASE(
+    "lattice points cover as much behind an upright or level edge as the square does, whatever their number") {
+  for (const int count : {1, 2, 4, 5, 16, 36, 64, 100}) {
+    INFO(count);
+    const auto points = latticePoints(count);
+    REQUIRE(points.size() == static_cast<std::size_t>(count));
+    for (const std::size_t axis : {std::size_t{0}, std::size_t{1}})
+      for (int step = 0; step <= 1000; ++step) {
+        const double edge = step / 1000.0;
+        const auto behind = std::count_if(points.begin(), points.end(),
+                                          [&](const auto& point) { return point[axis] < edge; });
+        CHECK(std::abs(static_cast<double>(behind) / count - edge) <= 0.5 / count + 1e-9);
+      }
+  }
+  const auto centre = latticePoints(1).front();
+  CHECK(centre[0] == 0.5);
+  CHECK(centre[1] == 0.5);
+}
+
+TEST_CASE("lattice points keep their distance, so that slanting edges are covered too") {
+  const auto points = latticePoints(16);
+  double nearest = 1.0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const double x = std::abs(points[i][0] - points[j][0]), y = std::abs(points[i][1] - points[j][1]);
+      nearest = std::min(nearest, std::hypot(std::min(x, 1.0 - x), std::min(y, 1.0 - y)));
+    }
+  CHECK(nearest > 0.19);  // along a diagonal it would be 0.088; a regular grid has 0.25
 }

@@ -1,5 +1,7 @@
 // Techniques that go on from frame to frame, or model several bounces: what they are judged by, and what
 // their time is.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "experiment/choice.h"
@@ -29,6 +31,23 @@ class Progressive : public Toy {
   }
 };
 
+/// The pixel of an upright or level edge: 1 where the camera's axis has passed it.
+class Edge : public Toy {
+ public:
+  using Toy::Toy;
+  Param<float> at{this, "at", 0.5f, {0.0f, 1.0f}, "", "of the pixel lies before the edge"};
+  Param<bool> level{this, "level", false, "whether it is level"};
+  Out<Image> radiance{this, "radiance", Contributes::direct};
+  Reads readsFrom() const override { return Reads::camera; }
+  void run(PassContext& frame) override {
+    // The camera of the furnace looks along -z, and its pixels are squares.
+    const CameraView& camera = frame.snapshot().camera;
+    const float pixel = 2.0f * camera.tanHalfFov / static_cast<float>(camera.height);
+    const float shift = (level ? camera.forward.y : camera.forward.x) / -camera.forward.z / pixel + 0.5f;
+    radiance = paint(frame, shift < at ? 1.0f : 0.0f);
+  }
+};
+
 /// The light of two bounces in a furnace of albedo a and emission 1, where a is direct light: a² + a³.
 class TwoBounces : public Toy {
  public:
@@ -50,6 +69,7 @@ class Toys : public TestTechniques {
   Toys() {
     add<Progressive>("toys", "progressive");
     add<TwoBounces>("toys", "two_bounces");
+    add<Edge>("toys", "edge");
     add<Paint>("toys", "paint");
   }
 };
@@ -89,6 +109,28 @@ TEST_CASE(
     REQUIRE_FALSE(point.errors.empty());
     CHECK(point.errors.front().error.rmse.value == Approx(0.5 / frames).epsilon(1e-3));
   }
+}
+
+TEST_CASE("a judged image covers upright and level edges within half of one of its positions in the pixel") {
+  Toys toys;
+  const Scene scene = furnace(0.0f);
+  for (const char* level : {"no", "yes"})
+    for (const float at : {0.06f, 0.21f, 0.48f, 0.5f, 0.73f, 0.97f}) {
+      const Pipeline pipeline = Pipeline::parse(
+          fmt::format(
+              "pipeline \"Edge\" {{\n  pass a toys.edge {{ at {}  level {} }}\n  output direct a.radiance\n}}\n",
+              at, level),
+          "edge.pipeline");
+      RenderOptions options;
+      options.width = 12;
+      options.height = 8;
+      options.interactive = true;
+      PipelineExecutor executor(device(), toys, scene, pipeline, options);
+      const FrameResult frame =
+          experiment::renderFiltered(executor, snapshotOf(scene, 0.0, {}, 12, 8), 16, 0, 1);
+      INFO(level << " " << at);
+      CHECK(std::abs(frame.outputs.at("direct").at(0, 0, 0) - at) <= 0.5f / 16.0f + 1e-3f);
+    }
 }
 
 TEST_CASE("the time of a point of several frames is that of all of them, from nothing in each repeat") {

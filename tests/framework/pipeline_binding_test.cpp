@@ -1,4 +1,5 @@
 // Binding a pipeline to its techniques: every mistake has a message of its own, and all are reported at once.
+#include "lumivox/base/log.h"
 #include "pipeline_toys.h"
 
 using namespace lumivox;
@@ -16,6 +17,40 @@ class Echo : public Toy {
   Out<Image> sum{this, "sum", Contributes::direct};
   void run(PassContext& frame) override { sum = paint(frame, 1.0f); }
 };
+
+/// Two grids of which one has only its finest level, and a reader of all levels and of one component.
+class Grids : public Toy {
+ public:
+  using Toy::Toy;
+  Out<RadianceGrid> finest{this, "finest", "one level", Levels::finest};
+  Out<RadianceGrid> whole{this, "whole", "all levels", Levels::all};
+  Out<RadianceGrid> other{this, "other", "who knows"};
+  Out<Image> direct{this, "direct", Contributes::direct};
+  Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse};
+  Out<Image> share{this, "share", "no light"};
+  void run(PassContext&) override {}
+};
+class Reader : public Toy {
+ public:
+  using Toy::Toy;
+  In<RadianceGrid> grid{this, "grid", "all levels", Levels::all};
+  In<Image> diffuse{this,    "diffuse",      Presence::optional,
+                    "light", Needs::nothing, Contributes::indirectDiffuse};
+  In<Image> share{this, "share", Presence::optional, "no light", Needs::nothing, Contributes::nothing};
+  Out<Image> image{this, "image", Contributes::final};
+  void run(PassContext&) override {}
+};
+
+/// Warnings of a pipeline whose reader has these inputs.
+std::string warnings(const std::string& inputs) {
+  TestTechniques techniques;
+  techniques.add<Grids>("toy", "grids");
+  techniques.add<Reader>("toy", "read");
+  const LogCapture log;
+  checkPipeline(pipelineOf("pass g toy.grids { }\npass r toy.read { " + inputs + " }\noutput o r.image"),
+                techniques);
+  return log.text();
+}
 
 /// Words as C++ has to write them, and as texts are to have them.
 class Words : public Toy {
@@ -125,6 +160,31 @@ TEST_CASE("an optional input may stay unconnected") {
   accept("pass a toy.paint { }\npass s toy.add { first a }\noutput o s.sum");
 }
 
+TEST_CASE("a connection that fits by its kind but gives wrong light is a warning with the output that fits") {
+  CHECK(warnings("grid g.whole  diffuse g.diffuse  share g.share").empty());
+  CHECK(warnings("grid g.other").empty());  // Nothing is known of its levels.
+  CHECK_THAT(
+      warnings("grid g.finest"),
+      Contains(
+          "test.pipeline:3:24: warning: output 'g.finest' fills only the finest level, but input 'grid' of "
+          "pass 'r' reads all") &&
+          Contains("did you mean 'g.whole'?") && !Contains("warning: test.pipeline"));
+  CHECK_THAT(
+      warnings("grid g.whole  diffuse g.direct"),
+      Contains("output 'g.direct' holds direct, but input 'diffuse' of pass 'r' takes indirect_diffuse") &&
+          Contains("did you mean 'g.diffuse'?"));
+  CHECK_THAT(warnings("grid g.whole  diffuse g.share"),
+             Contains("'g.share' holds no component of the image"));
+  CHECK_THAT(warnings("grid g.whole  share g.diffuse"),
+             Contains("'g.diffuse' holds indirect_diffuse") && Contains("takes no component of the image"));
+}
+
+TEST_CASE("a pass that is not there is told once, whoever reads it") {
+  const std::string text =
+      findings("pass a toy.add { first x.radiance }\npass b toy.add { first x.radiance }\noutput o a.sum");
+  CHECK_THAT(text, Contains("test.pipeline:2:24: unknown pass 'x'") && !Contains("test.pipeline:3"));
+}
+
 TEST_CASE("a connection to an unknown pass is refused with the nearest") {
   CHECK_THAT(
       findings("pass paint toy.paint { }\npass s toy.add { first piant.radiance }\noutput o s.sum"),
@@ -187,7 +247,7 @@ TEST_CASE("a parameter in a unit of another dimension is refused") {
   CHECK_THAT(findings("pass v toy.voxels { width 3 s }\noutput o v.grid"),
              Contains("expected a number that measures length, not time"));
   CHECK_THAT(findings("pass v toy.voxels { resolution 3 m }\noutput o v.grid"),
-             Contains("measures no unit, not length"));
+             Contains("expected a number without a unit"));
 }
 
 TEST_CASE("an unknown parameter of the pipeline is refused with the nearest") {

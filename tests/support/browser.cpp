@@ -161,6 +161,11 @@ void Browser::resize(int width, int height) {
        {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", false}});
 }
 
+void Browser::emulate(const std::string& media, const std::string& scheme) {
+  const Json preferred = {{"name", "prefers-color-scheme"}, {"value", scheme}};
+  call("Emulation.setEmulatedMedia", {{"media", media}, {"features", Json::array({preferred})}});
+}
+
 void Browser::open(const std::filesystem::path& page, int width, int height) {
   page_ = "file://" + std::filesystem::absolute(page).string();
   resize(width, height);

@@ -26,6 +26,8 @@ class Browser {
   /// seen of the page before.
   void open(const std::filesystem::path& page, int width, int height);
   void resize(int width, int height);
+  /// As on a screen or in print ("screen", "print"), of a reader who prefers "light" or "dark".
+  void emulate(const std::string& media, const std::string& scheme);
   /// The value of a JavaScript expression; a promise is awaited. std::runtime_error with its message when it
   /// throws.
   nlohmann::json evaluate(const std::string& expression);

@@ -1,6 +1,7 @@
 #include "support/page_check.h"
 
 #include <algorithm>
+#include <limits>
 #include <regex>
 
 #include "lumivox/base/file.h"
@@ -8,8 +9,21 @@
 namespace lumivox::test {
 namespace {
 
-constexpr int kDesk[] = {1280, 900};
-constexpr int kPhone[] = {390, 844};  // CSS pixels of a common one
+// CSS pixels: the desk's first screen is what a reader sees first; a phone of a common size; A4 between
+// margins of 1 cm.
+constexpr int kDesk[] = {1400, 900}, kTablet[] = {800, 900}, kPhone[] = {390, 844}, kPaper[] = {718, 1000};
+
+/// Of the page as it opens.
+constexpr const char* kFirstScreen = R"js(
+(async () => {
+  await new Promise(done => requestAnimationFrame(() => setTimeout(done, 50)));
+  const ends = selector => {
+    const first = [...document.querySelectorAll(selector)].find(one => one.getBoundingClientRect().height > 0);
+    return first ? first.getBoundingClientRect().bottom + scrollY : null;
+  };
+  return { height: document.documentElement.scrollHeight, chart: ends(".chart"), image: ends("img") };
+})()
+)js";
 
 /// Runs in the page and gives back what it found.
 constexpr const char* kProbe = R"js(
@@ -90,6 +104,40 @@ constexpr const char* kProbe = R"js(
     found.controls.push({ name: name(control), slider, changed });
   }
 
+  for (const box of document.querySelectorAll("input[type=checkbox]")) {
+    const table = box.closest(".table"), before = table.innerText;
+    box.click();
+    if (table.innerText === before) wrong(box, "it changes nothing");
+    box.click();
+    if (table.innerText !== before) wrong(box, "twice is not as before");
+  }
+  for (const table of document.querySelectorAll("table")) {
+    const buttons = [...table.querySelectorAll("th button")].filter(one => one.offsetWidth > 0);
+    const order = () => [...table.tBodies[0].rows].map(row => row.textContent).join("\n");
+    if (buttons.length === 0 || new Set(order().split("\n")).size < 2) continue;
+    const orders = new Set([order()]);
+    for (const button of buttons.slice(0, 3)) for (let press = 0; press < 2; ++press) {
+      button.click();
+      orders.add(order());
+      if (!/^(a|de)scending$/.test(button.closest("th").getAttribute("aria-sort"))) wrong(button, "its head does not say how it sorts");
+    }
+    if (orders.size < 2) wrong(table, "its heads do not sort");
+  }
+  for (const canvas of canvases) {
+    if (!isShown(canvas) || !(window.Chart && Chart.getChart(canvas)) || !canvas.hasAttribute("tabindex")) continue;
+    const told = canvas.closest(".chart").nextElementSibling;
+    canvas.focus();
+    canvas.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowRight", bubbles: true, cancelable: true }));
+    const first = told && told.textContent;
+    canvas.dispatchEvent(new KeyboardEvent("keydown", { key: "Escape", bubbles: true, cancelable: true }));
+    if (document.activeElement !== canvas || !first || told.textContent !== "") wrong(canvas, "arrow keys do not tell its points");
+  }
+  for (const one of document.querySelectorAll("canvas, input, select, button")) {
+    const label = one.labels && one.labels.length ? one.labels[0].textContent : "";
+    if (!(one.getAttribute("aria-label") || label.trim() || (one.tagName === "BUTTON" && one.textContent.trim())))
+      wrong(one, "it has no name for a screen reader");
+  }
+
   for (const table of document.querySelectorAll("table")) {
     ++found.tables;
     const rows = table.tBodies.length ? [...table.tBodies].reduce((sum, body) => sum + body.rows.length, 0) : 0;
@@ -137,6 +185,71 @@ constexpr const char* kOverflow = R"js(
 })()
 )js";
 
+/// Texts and images that lie upon each other, and texts that are cut.
+constexpr const char* kLayout = R"js(
+(() => {
+  scrollTo(0, 0);
+  const problems = [], boxes = [];
+  const words = text => text.trim().replace(/\s+/g, " ").slice(0, 40);
+  const isSeen = element => element.checkVisibility({ visibilityProperty: true, opacityProperty: true });
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+    const parent = node.parentElement;
+    if (!node.data.trim() || /^(SCRIPT|STYLE|OPTION|NOSCRIPT)$/.test(parent.tagName) || !isSeen(parent)) continue;
+    const range = document.createRange();
+    range.selectNodeContents(node);
+    for (const box of range.getClientRects()) if (box.width > 1 && box.height > 1) boxes.push({ box, node, what: words(node.data) });
+  }
+  for (const element of document.querySelectorAll("img, canvas, select, input")) {
+    const box = element.getBoundingClientRect();
+    if (box.width > 1 && isSeen(element)) boxes.push({ box, node: element, what: element.tagName.toLowerCase() + " " + (element.alt || element.type || "") });
+  }
+  boxes.sort((a, b) => a.box.top - b.box.top);
+  for (let i = 0; i < boxes.length && problems.length < 8; ++i)
+    for (let j = i + 1; j < boxes.length && boxes[j].box.top < boxes[i].box.bottom; ++j) {
+      const a = boxes[i], b = boxes[j];
+      if (a.node === b.node || a.node.contains(b.node) || b.node.contains(a.node)) continue;
+      const across = Math.min(a.box.right, b.box.right) - Math.max(a.box.left, b.box.left);
+      const down = Math.min(a.box.bottom, b.box.bottom) - Math.max(a.box.top, b.box.top);
+      // Lines of a text stand closer than their letters are high.
+      if (across > 2 && down > 0.4 * Math.min(a.box.height, b.box.height)) problems.push("“" + a.what + "” and “" + b.what + "” lie upon each other");
+    }
+  for (const element of document.body.querySelectorAll("*")) {
+    const style = getComputedStyle(element);
+    if (style.overflowX !== "visible" && style.overflowX !== "auto" && element.scrollWidth > element.clientWidth + 1 && element.clientWidth > 0)
+      problems.push("“" + words(element.textContent) + "” is cut");
+    if (element.tagName === "TABLE" && element.classList.contains("data") && element.getBoundingClientRect().right > document.documentElement.clientWidth)
+      problems.push("a table of " + Math.round(element.getBoundingClientRect().width) + " pixels reaches out of the window");
+  }
+  return problems.slice(0, 8);
+})()
+)js";
+
+/// Texts that hardly differ from what is behind them (WCAG 2: 4.5 to 1 for small letters).
+constexpr const char* kContrast = R"js(
+(() => {
+  const numbers = colour => (colour.match(/[\d.]+/g) || []).map(Number);
+  const light = colour => numbers(colour).slice(0, 3).map(one => one / 255).map(one => one <= 0.04045 ? one / 12.92 : Math.pow((one + 0.055) / 1.055, 2.4))
+    .reduce((sum, one, index) => sum + one * [0.2126, 0.7152, 0.0722][index], 0);
+  const behind = element => {
+    for (let place = element; place; place = place.parentElement) {
+      const colour = getComputedStyle(place).backgroundColor, alpha = numbers(colour)[3];
+      if (alpha === undefined || alpha === 1) return colour;
+    }
+    return matchMedia("(prefers-color-scheme: dark)").matches && /dark/.test(getComputedStyle(document.documentElement).colorScheme) ? "rgb(18, 18, 18)" : "rgb(255, 255, 255)";
+  };
+  const problems = new Set(), walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  for (let node = walker.nextNode(); node && problems.size < 5; node = walker.nextNode()) {
+    const parent = node.parentElement;
+    if (!node.data.trim() || /^(SCRIPT|STYLE|OPTION|NOSCRIPT|SELECT|SPAN)$/.test(parent.tagName) && !parent.className || !parent.checkVisibility()) continue;
+    const [low, high] = [light(getComputedStyle(parent).color), light(behind(parent))].sort((a, b) => a - b);
+    const contrast = (high + 0.05) / (low + 0.05);
+    if (contrast < 4.5) problems.add("“" + node.data.trim().slice(0, 40) + "” has a contrast of " + contrast.toFixed(1));
+  }
+  return [...problems];
+})()
+)js";
+
 }  // namespace
 
 bool PageFindings::hasProblem(const std::string& part) const {
@@ -160,13 +273,31 @@ std::string externalLoad(const std::string& html) {
 
 PageFindings checkPage(Browser& browser, const std::filesystem::path& page) {
   PageFindings findings;
-  const auto checkWidth = [&](const int(&size)[2], const char* where) {
+  const auto checkWidth = [&](const int(&size)[2], const std::string& where) {
     browser.resize(size[0], size[1]);
     const std::string overflow = browser.evaluate(kOverflow).get<std::string>();
-    if (!overflow.empty())
-      findings.problems.push_back(std::string("too wide for ") + where + ": " + overflow);
+    if (!overflow.empty()) findings.problems.push_back("too wide for " + where + ": " + overflow);
+    for (const auto& problem : browser.evaluate(kLayout))
+      findings.problems.push_back("on " + where + ": " + problem.get<std::string>());
   };
+  const auto checkContrast = [&](const char* scheme) {
+    browser.emulate("screen", scheme);
+    for (const auto& problem : browser.evaluate(kContrast))
+      findings.problems.push_back(std::string("on a ") + scheme + " page: " + problem.get<std::string>());
+  };
+  browser.emulate("screen", "light");
   browser.open(page, kDesk[0], kDesk[1]);
+  for (const int(&size)[2] : {kTablet, kDesk}) {
+    browser.resize(size[0], size[1]);
+    const nlohmann::json first = browser.evaluate(kFirstScreen);
+    const auto later = [&](double& end, const char* what) {
+      end = std::max(end, first.at(what).is_null() ? std::numeric_limits<double>::infinity()
+                                                   : first.at(what).get<double>());
+    };
+    later(findings.firstChartEnds, "chart");
+    later(findings.firstImageEnds, "image");
+    findings.height = first.at("height");
+  }
   const nlohmann::json found = browser.evaluate(kProbe);
   findings.canvases = found.at("canvases");
   findings.charts = found.at("charts");
@@ -183,7 +314,13 @@ PageFindings checkPage(Browser& browser, const std::filesystem::path& page) {
       findings.problems.push_back("a link leads to a file that is not there: " + name);
   }
   checkWidth(kDesk, "a desk");
+  checkContrast("light");
+  checkContrast("dark");
+  checkWidth(kTablet, "a tablet");
   checkWidth(kPhone, "a phone");
+  browser.emulate("print", "dark");
+  checkWidth(kPaper, "paper");
+  browser.emulate("screen", "light");
   for (const std::string& error : browser.errors()) findings.problems.push_back("script: " + error);
   for (const std::string& request : browser.requests())
     if (request.rfind("file:", 0) != 0)

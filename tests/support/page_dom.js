@@ -25,7 +25,10 @@ class Element {
     if (name === "value") this.value = value;
     if (name === "width" || name === "height") this[name] = Number(value);
     if (name === "selected" && this.parent) this.parent.value = this.value;
+    if (name === "checked") this.checked = true;
   }
+  getAttribute(name) { return name in this.attributes ? this.attributes[name] : null; }
+  get parentElement() { return this.parent || null; }
   append(...children) {
     for (const child of children) {
       const node = typeof child === "string" ? new Text(child) : child;
@@ -33,20 +36,27 @@ class Element {
       node.parent = this;
       this.children.push(node);
     }
-    if (this.tagName === "SELECT" && this.value === undefined && this.children.length > 0)
+    // The first choice is the chosen one, or the one that says so.
+    if (this.tagName === "SELECT" && this.children.length > 0)
       this.value = (this.children.find(one => "selected" in one.attributes) || this.children[0]).attributes.value;
   }
   replaceChildren(...children) {
     this.children = [];
     this.append(...children);
   }
+  async click() { for (const listener of this.listeners.click || []) await listener({ target: this }); }
   addEventListener(kind, listener) { (this.listeners[kind] = this.listeners[kind] || []).push(listener); }
   async set(value) {
-    this.value = value;
+    if (this.attributes.type === "checkbox") this.checked = value;
+    else this.value = value;
     for (const kind of ["input", "change"]) for (const listener of this.listeners[kind] || []) await listener({ target: this });
   }
   get textContent() { return this.children.map(child => child.textContent).join(""); }
   set textContent(text) { this.children = [new Text(text)]; }
+  /** Without what is hidden. */
+  get shownText() {
+    return this.hidden ? "" : this.children.map(child => child instanceof Element ? child.shownText : child.textContent).join("");
+  }
   getContext() {
     const calls = this.calls;
     return new Proxy({}, { get: (state, name) => name in state ? state[name] : (...given) => { calls.push([name, ...given]); },
@@ -76,7 +86,7 @@ async function main(file) {
   }
   const body = new Element("body"), charts = [];
   const documents = {
-    body, createElement: tag => new Element(tag),
+    body, createElement: tag => new Element(tag), createElementNS: (space, tag) => new Element(tag),
     getElementById: id => id in blocks ? { textContent: blocks[id] } : body.all(element => element.attributes.id === id)[0] || null };
   class Image {
     async decode() {
@@ -92,7 +102,8 @@ async function main(file) {
     destroy() { charts.splice(charts.indexOf(this), 1); }
   }
   Chart.defaults = { plugins: { legend: { labels: { generateLabels: () => [] } } } };
-  const sandbox = vm.createContext({ document: documents, location: { hash: "" }, Image: Image, Chart, console });
+  const window = { addEventListener() {}, matchMedia: () => ({ matches: false, addEventListener() {} }) };
+  const sandbox = vm.createContext({ document: documents, window, location: { hash: "" }, Image: Image, Chart, console });
   const settle = () => new Promise(done => setTimeout(done, 5));
   process.on("unhandledRejection", error => problems.push("script: " + (error && error.message || error)));
   for (const script of scripts) {
@@ -112,11 +123,12 @@ async function main(file) {
     return { ...canvas.attributes, points: numbers.length, labels: configuration.data.datasets.map(set => set.label) };
   });
   // Every control changes what is shown.
-  const seen = () => JSON.stringify([body.textContent, charts.map(one => [one.configuration.data, one.configuration.options.scales]),
+  const seen = () => JSON.stringify([body.shownText, charts.map(one => [one.configuration.data, one.configuration.options.scales]),
                                      body.tag("canvas").map(canvas => canvas.calls.slice(-8))]);
   const controls = [];
   for (const control of body.tag("select", "input")) {
-    const at = control.value, values = control.tagName === "INPUT" ? [control.attributes.min, control.attributes.max]
+    const box = control.attributes.type === "checkbox", at = box ? control.checked : control.value;
+    const values = box ? [!at] : control.tagName === "INPUT" ? [control.attributes.min, control.attributes.max]
       : control.tag("option").map(option => option.attributes.value).filter(value => value !== at);
     // Drawings are told apart by the images that are drawn.
     body.tag("canvas").forEach(canvas => { canvas.calls.length = 0; });
@@ -132,6 +144,20 @@ async function main(file) {
     await settle();
     if (changed === 0 && values.length > 0) problems.push(`${control.tagName} changes nothing`);
     controls.push({ kind: control.tagName.toLowerCase(), values: values.length, changed });
+  }
+
+  // Sorting changes the order of rows, and once more brings it back to the other end.
+  for (const table of body.tag("table")) {
+    const order = () => table.tag("tbody")[0].children.map(row => row.textContent).join("\n");
+    const buttons = table.tag("button");
+    if (buttons.length === 0) continue;
+    const before = table.tag("tbody")[0].children.slice(), orders = new Set();
+    for (const button of buttons) for (let press = 0; press < 2; ++press) {
+      await button.click();
+      orders.add(order());
+    }
+    if (orders.size === 1 && new Set(before.map(row => row.textContent)).size > 1) problems.push("sorting changes nothing: " + order().slice(0, 60));
+    table.tag("tbody")[0].replaceChildren(...before);
   }
 
   const tables = body.tag("table").map(table => {

@@ -1,6 +1,7 @@
 // The report on a tiny scene: one page that needs nothing else, and the same numbers in CSV and JSON.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <sstream>
 
@@ -159,6 +160,35 @@ TEST_CASE("a report shows and judges all images of a scene at one exposure, and 
   CHECK(before.at("flip_hdr") == after.at("flip_hdr"));
   CHECK(before.at("ssim") != after.at("ssim"));
   CHECK(contains(given.at("points").at(0).at("command"), "--exposure -1.5 --tone filmic"));
+}
+
+TEST_CASE("a report and the store that it adds to give the same CSV, with a column for each parameter") {
+  const Workplace place;
+  const CommandResult printed = makeReport(place, "--csv --store '" + place.file("results.sqlite") + "'");
+  INFO(printed.errors);
+  REQUIRE(printed.exitCode == 0);
+  const std::string report = place.read("out/page.csv");
+  CHECK(printed.output == report);
+  const CommandResult exported =
+      runCommand("lumivox results export --store '" + place.file("results.sqlite") + "'");
+  REQUIRE(exported.exitCode == 0);
+  CHECK(report.substr(0, report.find('\n')) == exported.output.substr(0, exported.output.find('\n')));
+  auto rows = parseCsv(report), stored = parseCsv(exported.output);
+  REQUIRE(rows.size() == stored.size());
+  const auto byCommand = [](const auto& a, const auto& b) {
+    return a.at("command") + a.at("output") + a.at("against") <
+           b.at("command") + b.at("output") + b.at("against");
+  };
+  std::sort(rows.begin(), rows.end(), byCommand);
+  std::sort(stored.begin(), stored.end(), byCommand);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (const auto& [column, value] : rows[i]) {
+      INFO(column);
+      if (column != "run") CHECK(value == stored[i].at(column));
+    }
+  CHECK(rows.front().at("parameter_samples") == "1");
+  CHECK(rows.back().at("parameter_samples") == "4");
+  CHECK(rows.front().at("run").empty());
 }
 
 TEST_CASE("the command of a point repeats it with the same error") {

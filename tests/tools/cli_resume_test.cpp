@@ -117,7 +117,7 @@ TEST_CASE(
   if (!canDrawPages()) return;
   const Json page = drawnPage(place.file("page.html"));
   CHECK(page.at("problems").empty());
-  CHECK(contains(page.at("text"), "Measured within a budget of 0.5 s, default points first: for 3 points"));
+  CHECK(contains(page.at("text"), "no time for 3 points of sweeps in 0.5 s"));
   CHECK(contains(page.at("text"), "slow: value 4"));
 }
 

@@ -33,9 +33,10 @@ struct Sweep {
             .string();
     store = (directory.path() / "results.sqlite").string();
   }
-  CommandResult run(const std::string& more = {}) const {
+  CommandResult run(const std::string& more = {}, const std::string& format = "--json") const {
     return runCommand("lumivox -q sweep " + kScene + " --pipeline " + pipeline + " --store " + store +
-                      " --resolution 16x16 --spp 4 --subpixels 1 --repeats 2 --seeds 1 --json " + more);
+                      " --resolution 16x16 --spp 4 --subpixels 1 --repeats 2 --seeds 1 " + format + " " +
+                      more);
   }
 };
 
@@ -141,8 +142,14 @@ TEST_CASE("results are listed, exported, merged and removed from the command lin
   REQUIRE(head != std::string::npos);
   // Fields that hold commas are quoted; these have none but the device and the host.
   CHECK(columns(csv.substr(0, head)) > 50);
+  CHECK(csv.substr(0, head).find(",parameter_area_samples") != std::string::npos);
   CHECK(csv.find("area_samples=2") != std::string::npos);
   CHECK(csv.find("area_samples=1") == std::string::npos);
+  // A sweep prints what it measured, or finds, under the same header.
+  const std::string swept = sweep.run("", "--csv").output;
+  CHECK(swept.substr(0, swept.find("\r\n")) == csv.substr(0, head));
+  const std::string nothing = runCommand("lumivox results export --scene arcade" + store).output;
+  CHECK(nothing == csv.substr(0, csv.find(",parameter_")) + "\r\n");
   const auto file = sweep.directory.path() / "results.json";
   CHECK(runCommand("lumivox results export --format json -o " + file.string() + store).exitCode == 0);
   CHECK(Json::parse(readFile(file)).size() == 2);
@@ -161,7 +168,7 @@ TEST_CASE("results are listed, exported, merged and removed from the command lin
   CHECK(compared["compared"] == 1);
   CHECK(compared["only_before"].size() == 1);
   for (const Json& change : compared["changes"]) CHECK(change["significant"] == false);
-  CHECK(runCommand("lumivox compare-runs 1 2 --all" + store).output.find("1 points compared") !=
+  CHECK(runCommand("lumivox compare-runs 1 2 --all" + store).output.find("1 point compared") !=
         std::string::npos);
 }
 

@@ -200,9 +200,10 @@ TEST_CASE("an interrupted animation says which images are kept and how it goes o
   std::smatch said;
   const std::string errors = place.read("errors.txt");
   INFO(errors.substr(errors.size() - std::min<std::size_t>(errors.size(), 600)));
-  REQUIRE(std::regex_search(errors, said,
-                            std::regex("interrupted: images up to .*frame_0*([0-9]+)\\.exr are kept; to go on: --frames "
-                                       "([0-9]+)\\.\\.99999 in lumivox render ")));
+  REQUIRE(std::regex_search(
+      errors, said,
+      std::regex("interrupted: images up to .*frame_0*([0-9]+)\\.exr are kept; to go on: --frames "
+                 "([0-9]+)\\.\\.99999 in lumivox render ")));
   CHECK(std::stoi(said[1]) + 1 == std::stoi(said[2]));
   // The last one that it names is there and whole.
   const int last = std::stoi(said[1]);

@@ -57,6 +57,18 @@ TEST_CASE("a search without a tight limit ends at a point that none of its neigh
   }
 }
 
+TEST_CASE("a search judges by FLIP unless another metric is asked for, and gives its points as CSV") {
+  const Tuning tuning;
+  const CommandResult table = tuning.run("--budget 1000s");
+  INFO(table.errors);
+  REQUIRE(table.exitCode == 0);
+  CHECK(table.output.find("flip") != std::string::npos);
+  const std::string csv = tuning.run("--budget 1000s --csv").output;
+  CHECK(csv.rfind("run,created,scene,pipeline,", 0) == 0);
+  CHECK(csv.substr(0, csv.find("\r\n")).find(",parameter_samples") != std::string::npos);
+  CHECK(tuning.run("--budget 1000s --csv --json").exitCode == 2);
+}
+
 TEST_CASE("the front of a search is the front that the results store shows of the same points") {
   const Tuning tuning;
   const CommandResult result = tuning.run("--budget 1000s --output direct --metric rmse --json");

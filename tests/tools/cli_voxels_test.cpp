@@ -174,7 +174,10 @@ TEST_CASE("the page, the CSV and the JSON hold the same records, and the page ne
   CHECK(json["records"].size() == 2);
   const std::string csv = place.read("out/voxels.csv"), page = place.read("out/index.html");
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 3);
-  CHECK(std::count(csv.begin(), csv.end(), ',') == 3 * 20);
+  // What runs have too is called as in theirs.
+  const std::string head = csv.substr(0, csv.find("\r\n"));
+  CHECK(contains(head, "scene,pipeline,default,device,driver,frame_ms,frame_ms_lower_quartile,"));
+  CHECK(contains(head, ",parameter_resolution"));
   CHECK(pageRecords(page).at("voxels") == json["records"]);
   CHECK(pageRecords(page).at("scaling") == json["scaling"]);
   CHECK(!contains(page, "src=\"http"));

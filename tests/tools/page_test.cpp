@@ -20,9 +20,9 @@ bool lacksBrowser() {
 /// A page of which the check has nothing to say: a drawing, a slider that moves it, a table, a link.
 constexpr const char* kGoodPage = R"html(<!doctype html>
 <html><head><meta name="viewport" content="width=device-width"><title>A page</title></head>
-<body><h1 id="top">A page</h1><canvas width="64" height="64"></canvas>
-<input type="range" min="0" max="64" value="32">
-<select><option>blue</option><option>red</option></select>
+<body><h1 id="top">A page</h1><canvas width="64" height="64" aria-label="a drawing"></canvas>
+<input type="range" min="0" max="64" value="32" aria-label="how far">
+<label>Colour <select><option>blue</option><option>red</option></select></label>
 <table><tbody><tr><td>1</td></tr></tbody></table><a href="#top">up</a>
 <script>
 const canvas = document.querySelector("canvas"), slider = document.querySelector("input"), choice = document.querySelector("select");
@@ -79,7 +79,7 @@ TEST_CASE("the check finds nothing wrong with a good page and something wrong wi
                  "elsewhere: http"},
            Break{"<h1", "<img src=\"https://example.org/a.png\"><h1", "load from elsewhere"},
            Break{"<h1", "<img src=\"nowhere.png\"><h1", "does not show"},
-           Break{"\"input\", draw", "\"other\", draw", "input: it changes nothing"},
+           Break{"\"input\", draw", "\"other\", draw", "how far: it changes nothing"},
            Break{"\"change\", draw", "\"other\", draw", "select: it changes nothing"},
            Break{"<tr><td>1</td></tr>", "", "it has no rows"},
            Break{"<td>1</td>", "<td>undefined</td>", "it says undefined"},
@@ -87,6 +87,12 @@ TEST_CASE("the check finds nothing wrong with a good page and something wrong wi
            Break{"#top", "images/none.png", "not there: images/none.png"},
            Break{"<h1", "<div style=\"width:900px\">wide</div><h1", "too wide for a phone"},
            Break{"<h1", "<div style=\"width:1900px\">wide</div><h1", "too wide for a desk"},
+           Break{"<h1", "<div style=\"width:850px\">wide</div><h1", "too wide for a tablet"},
+           Break{"<h1", "<div style=\"position:absolute;top:30px\">above</div><h1", "lie upon each other"},
+           Break{"<h1", "<p style=\"width:60px;overflow:hidden;white-space:nowrap\">a long text</p><h1",
+                 "is cut"},
+           Break{"<h1", "<p style=\"color:#bbb\">pale</p><h1", "on a light page: “pale” has a contrast of"},
+           Break{"<label>", "<span>", "no name for a screen reader"},
        }) {
     const PageFindings broken = checkBroken(browser, place, one.from, one.to);
     INFO(one.to << "\n" << broken.text());
@@ -112,10 +118,13 @@ TEST_CASE(
   INFO(page.text());
   CHECK(page.problems.empty());
 
-  // Per scene: a plot per component, times, bytes; a frame with two images per component. And the
-  // voxelizers.
-  CHECK(page.charts >= 12);
+  // Per scene a plot of error against time; a frame with two images per component. And the voxelizers.
+  CHECK(page.charts == 4);
   CHECK(page.canvases > page.charts);
+  // The first screen holds a plot and a row of images; what else there is is folded.
+  CHECK(page.firstChartEnds < 900.0);
+  CHECK(page.firstImageEnds < 900.0);
+  CHECK(page.height < 3200.0);
   CHECK(page.tables > 10);
   CHECK(page.rows > 50);
   const auto sliders = std::count_if(page.controls.begin(), page.controls.end(),
@@ -131,10 +140,23 @@ TEST_CASE(
   std::string broken = place.read("page.html");
   for (std::size_t at = broken.find("new Chart(canvas"); at != std::string::npos;
        at = broken.find("new Chart(canvas", at + 1))
-    broken.replace(at, 9, "void    (");
+    broken.replace(at, 9, "String");
   const PageFindings blank = checkPage(browser, place.write("blank.html", broken));
   CHECK(blank.charts == 0);
   CHECK(blank.hasProblem("it is blank"));
+
+  // A brief page passes the same check.
+  const CommandResult brief = runCommand(
+      "lumivox report '" + place.scene() + "' --pipeline '" + committedPipeline("voxel_cone_tracing") +
+      "' -q --brief --no-sweep --set resolution=8 --resolution 24x24 --spp 16 --subpixels 1 --repeats 2 -o '" +
+      place.file("brief.html") + "'");
+  INFO(brief.errors);
+  REQUIRE(brief.exitCode == 0);
+  const PageFindings small = checkPage(browser, place.file("brief.html"));
+  INFO(small.text());
+  CHECK(small.problems.empty());
+  CHECK(small.height < 1600.0);
+  CHECK(small.images < page.images);
 }
 
 TEST_CASE("the page of the voxelizers draws all plots and needs no network") {

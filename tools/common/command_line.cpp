@@ -117,7 +117,8 @@ void GlobalOptions::addTo(CLI::App& app) {
   addRepeatable(
       app, "--assets", assets,
       "a folder to search for models; then $LUMIVOX_ASSETS, then ../shared/models beside the project; "
-      "may be repeated");
+      "may be repeated")
+      ->check(CLI::ExistingDirectory);
   addRepeatable(app, "--techniques", techniques,
                 "a folder to search for technique libraries; may be repeated");
   app.add_option("--device", device, "auto, software, surfaceless, or the number of an EGL device");

@@ -82,6 +82,11 @@ std::string basisText(const PipelineComparison& comparison) {
       fmt::format("times count as different beyond {:.1f} %{}\n", 100.0 * comparison.timeShare,
                   comparison.controls == 0 ? ", no point was timed twice here"
                                            : fmt::format(" ({} points timed twice)", comparison.controls));
+  for (const auto& [pipeline, as] : comparison.same)
+    text +=
+        fmt::format("{} comes to the same passes as {} in this scene\n", shortName(pipeline), shortName(as));
+  if (comparison.equalForAll)
+    text += "all pipelines have a point with the same error, to the bit: this light tells nothing apart\n";
   if (comparison.undecided > 0)
     text += fmt::format(
         "{} of {} points have fewer than {} timed frames or seeds: whether they are better is undecided\n",

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <functional>
 
+#include "lumivox/analysis/comparison.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "lumivox/results/text.h"
@@ -115,12 +116,29 @@ const ComponentError* errorOf(const ReportPoint& point, const std::string& outpu
   return only;
 }
 
-std::string rmseText(const ComponentError* error) {
+std::string errorText(const ComponentError* error) {
   if (error == nullptr) return "";
-  const Measured rmse = error->error.rmse;
-  const double ratio = error->ratioToNothing();
-  return fmt::format("{:.3g} ± {:.1g}", rmse.value, rmse.uncertainty) +
-         (ratio == ratio ? fmt::format(" ({:.2f})", ratio) : std::string());
+  const Measured number = errorNumber(*error, kDefaultMetric);
+  return fmt::format("{:.3g} ± {:.1g}", number.value, number.uncertainty);
 }
+
+std::string errorHeading(const std::string& output) {
+  return output == kWholeImage ? "FLIP, all light" : "FLIP, " + output;
+}
+
+std::vector<std::string> judgedOutputs(const std::vector<const ReportPoint*>& points) {
+  std::vector<std::string> outputs;
+  for (const std::string& component : comparableComponents())
+    for (const ReportPoint* point : points)
+      for (const ComponentError& error : point->errors)
+        if (error.component == component &&
+            std::find(outputs.begin(), outputs.end(), error.output) == outputs.end())
+          outputs.push_back(error.output);
+  return outputs;
+}
+
+const char* const kErrorNote =
+    "FLIP: 0 where a viewer sees no difference to the reference, 1 at most; ± one standard uncertainty. All "
+    "light: against full transport; outputs: against the technique's own model.\n";
 
 }  // namespace lumivox::command

@@ -33,8 +33,15 @@ double positiveNumberOf(const std::string& option, const std::string& text);
 std::string quartilesText(const TimingStatistics& time);  ///< "1.2 [1.1, 1.4]"; "-" when nothing was timed
 /// "cones=6 resolution=64"
 std::string parametersText(const std::map<std::string, std::string>& parameters);
-/// "0.0123 ± 0.0004 (0.31)": RMSE, and in brackets its ratio to leaving the component out. Empty for null.
-std::string rmseText(const ComponentError* error);
+/// "0.0123 ± 0.0004", in kDefaultMetric. Empty for null.
+std::string errorText(const ComponentError* error);
+/// Over a column of them: "FLIP, all light" for the whole image, which is judged against full transport, else
+/// "FLIP, OUTPUT", against the technique's own model.
+std::string errorHeading(const std::string& output);
+/// The outputs that any of the points was judged in, those of indirect light first, the whole image last.
+std::vector<std::string> judgedOutputs(const std::vector<const ReportPoint*>& points);
+/// The line below such a table: what the number is.
+extern const char* const kErrorNote;
 /// The error of an output by name: against the reference that is wanted, or the only one. Null when there is
 /// none.
 const ComponentError* errorOf(const ReportPoint& point, const std::string& output, bool bias);

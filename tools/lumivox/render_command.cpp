@@ -216,10 +216,13 @@ class Files {
 /// What an interruption would say when the frame is written. The exposure that was found goes with the rest.
 std::string keptText(const RenderCommand& command, int frame, int last, const Display& display,
                      const GlobalOptions& global) {
-  if (command.output.empty()) return "interrupted: nothing of a sheet or video is kept; from the start: " + global.commandLine;
+  if (command.output.empty())
+    return "interrupted: nothing of a sheet or video is kept; from the start: " + global.commandLine;
   return fmt::format("interrupted: images up to {} are kept; to go on: --frames {}..{}{} in {}",
                      command.fileOf(frame).string(), frame + 1, last,
-                     command.displays() && !command.display.given() ? fmt::format(" --exposure {:.2f}", display.exposure) : "",
+                     command.displays() && !command.display.given()
+                         ? fmt::format(" --exposure {:.2f}", display.exposure)
+                         : "",
                      global.commandLine);
 }
 
@@ -310,7 +313,8 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
         kept ? std::move(*kept) : renderShown(command, executor, command.timeOf(frame), frame, progress);
     for (const auto* list : {&result.healthFindings, &result.readsFindings}) {
       for (const std::string& finding : *list) {
-        logMessage(LogLevel::quiet, (command.isAnimation() ? fmt::format("frame {}: ", frame) : std::string()) + finding);
+        logMessage(LogLevel::quiet,
+                   (command.isAnimation() ? fmt::format("frame {}: ", frame) : std::string()) + finding);
         found.push_back({{"frame", frame}, {"finding", finding}});
       }
       findings += list->size();
@@ -331,10 +335,11 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
                       {"frame", frame},
                       {"time", command.timeOf(frame)},
                       {"frame_ms", result.frameMs}});
-    writer.submit([&, frame, end = last, made = std::move(result), attributes = std::move(attributes)]() mutable {
-      files.add(frame, std::move(made), attributes);
-      if (frame < end) interruption.say(keptText(command, frame, end, files.display(), global));
-    });
+    writer.submit(
+        [&, frame, end = last, made = std::move(result), attributes = std::move(attributes)]() mutable {
+          files.add(frame, std::move(made), attributes);
+          if (frame < end) interruption.say(keptText(command, frame, end, files.display(), global));
+        });
   }
   writer.submit([&files] { files.finish(); });
   writer.finish();

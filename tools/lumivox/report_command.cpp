@@ -37,20 +37,16 @@ std::string leftOutText(const std::vector<std::string>& leftOut) {
 struct ReportCommand {
   MeasureOptions measure;
   std::vector<std::string> equalTimes, equalErrors;
-  bool json = false;
+  bool json = false, csv = false, brief = false;
 };
 
 void printSummary(const ReportSummary& summary) {
-  // One column of errors per output that any pipeline has; the whole image first.
-  std::vector<std::string> outputs{kWholeImage};
-  for (const ReportPoint& point : summary.points)
-    for (const ComponentError& error : point.errors)
-      if (std::find(outputs.begin(), outputs.end(), error.output) == outputs.end())
-        outputs.push_back(error.output);
+  std::vector<const ReportPoint*> points;
+  for (const ReportPoint& point : summary.points) points.push_back(&point);
+  const std::vector<std::string> outputs = judgedOutputs(points);
 
   std::vector<std::vector<std::string>> rows{{"Scene", "Pipeline", "Parameters", "Frame ms"}};
-  for (const std::string& output : outputs)
-    rows[0].push_back(output == kWholeImage ? "misses in all" : output + " bias");
+  for (const std::string& output : outputs) rows[0].push_back(errorHeading(output));
   rows[0].push_back("Memory");
   rows[0].push_back("Health");
   for (const ReportPoint& point : summary.points) {
@@ -60,18 +56,14 @@ void printSummary(const ReportSummary& summary) {
                                  std::filesystem::path(point.pipeline).stem().string(),
                                  parametersText(parameters), quartilesText(point.frameMs)};
     for (const std::string& output : outputs)
-      row.push_back(rmseText(errorOf(point, output, output != kWholeImage)));
+      row.push_back(errorText(errorOf(point, output, output != kWholeImage)));
     row.push_back(formatBytes(point.peakBytes));
     row.push_back(!point.failure.empty()         ? painted(Paint::bad, "failed")
                   : point.healthFindings.empty() ? painted(Paint::good, "good")
                                                  : fmt::format("{} findings", point.healthFindings.size()));
     rows.push_back(std::move(row));
   }
-  std::string table = groupedTable(rows, 2), text;
-  text +=
-      "RMSE in W/(sr m²) ± its uncertainty; in brackets divided by the RMSE of leaving that light out. Bias: "
-      "against the technique's "
-      "own model; misses: against full transport.\n";
+  std::string table = groupedTable(rows, 2), text = kErrorNote;
   for (const PruningRecord& pruning : summary.pruning)
     text += fmt::format(
         "{}, {}: leaving out what the scene does not need saves {} of a first frame ({} of {} ms) and "
@@ -107,9 +99,13 @@ int report(const ReportCommand& command, const GlobalOptions& global) {
   const auto device = global.openDevice();
   const ReportSummary summary = makeReport(
       *device, techniques, options, [&](const std::filesystem::path& file) { return global.loadScene(file); },
-      [&](const ReportRecord& record) { writeReport(files, record); });
+      [&](const ReportRecord& record) {
+        writeReport(files, record, command.brief ? ReportDetail::brief : ReportDetail::whole);
+      });
   if (command.json) {
     print(readFile(files.json));
+  } else if (command.csv) {
+    print(readFile(files.csv));
   } else {
     printSummary(summary);
     print(files.page.string() + "\n");
@@ -143,7 +139,12 @@ void addReportCommand(Commands& commands) {
       "a budget of the table of equal time, such as 16ms; may be repeated (default: round numbers)");
   addRepeatable(*command, "--equal-error", all->equalErrors,
                 "an error of the table of equal error; may be repeated (default: round numbers)");
-  command->add_flag("--json", all->json, "print the JSON in place of the table");
+  command->add_flag(
+      "--brief", all->brief,
+      "a page of one screen per scene, with the images of the default points alone; CSV and JSON "
+      "hold everything");
+  auto* json = command->add_flag("--json", all->json, "print the JSON in place of the table");
+  command->add_flag("--csv", all->csv, "print the CSV in place of the table")->excludes(json);
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] { return report(*all, global); });
 }

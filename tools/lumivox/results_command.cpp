@@ -13,6 +13,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/experiment/report.h"
+#include "lumivox/results/csv.h"
 #include "lumivox/results/stress_cells.h"
 #include "measure_options.h"
 #include "results_text.h"
@@ -29,7 +30,7 @@ struct ResultsCommand {
   std::string format = "csv";
   std::vector<std::filesystem::path> others;
   bool all = false, dryRun = false, json = false;
-  std::string component = kWholeImage, metric = "rmse", against = "misses";
+  std::string component, metric = kDefaultMetric, against;  ///< empty: what is shown first
   std::vector<std::string> budgets, errors;
 
   std::filesystem::path file() const { return store.empty() ? ResultsStore::defaultFile() : store; }
@@ -137,13 +138,32 @@ std::string componentNamed(const std::string& asked) {
                           nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
 }
 
+/// What was asked for; else what a reader is shown first, and after it the whole image.
+std::vector<PipelineComparison> askedComparisons(const ResultsCommand& command,
+                                                 const std::vector<const ReportPoint*>& points,
+                                                 const ComparisonLimits& limits) {
+  const std::string whole = name(Contributes::final);
+  // A component is judged against the techniques' own model, the whole image against full transport.
+  const auto compared = [&](const std::string& component) {
+    const bool bias = command.against.empty() ? component != whole : command.against == "bias";
+    return comparePipelines(points, component, bias, command.metric, limits);
+  };
+  if (!command.component.empty()) return {compared(componentNamed(command.component))};
+  const std::vector<PipelineComparison> all = compareComponents(points, {command.metric}, limits);
+  const std::optional<std::size_t> led = ledComparison(all);
+  std::vector<PipelineComparison> asked;
+  if (led && all[*led].component != whole) asked.push_back(compared(all[*led].component));
+  asked.push_back(compared(whole));
+  return asked;
+}
+
 int comparePipelinesOf(const ResultsCommand& command, ComparisonTable table) {
   requireErrorMetric(command.metric);
   ComparisonLimits limits;
   for (const std::string& text : command.budgets)
     limits.budgetsMs.push_back(1000.0 * secondsOf("--budget", text));
   for (const std::string& text : command.errors) limits.errors.push_back(positiveNumberOf("--error", text));
-  const std::string component = componentNamed(command.component);
+  if (!command.component.empty()) componentNamed(command.component);
   const ResultsStore store(command.file(), ResultsStore::Mode::read);
   const std::vector<StoredRun> runs = store.runs(command.asked());
   std::string text;
@@ -152,19 +172,21 @@ int comparePipelinesOf(const ResultsCommand& command, ComparisonTable table) {
     std::vector<const ReportPoint*> points;
     for (const StoredRun* run : group.runs) points.push_back(&run->point);
     if (!group.runs.empty()) limits.floor = timeFloorOf(store.controls(group.runs.front()->identity));
-    const PipelineComparison comparison =
-        comparePipelines(points, component, command.against == "bias", command.metric, limits);
-    text +=
-        group.title + "\n" +
-        (comparison.points.empty() ? fmt::format("no run has a {} of {}\n", command.metric, command.component)
-                                   : comparisonText(comparison, table)) +
-        (group.passedOver == 0 ? ""
-                               : fmt::format("{} older or failed runs passed over\n", group.passedOver)) +
-        "\n";
-    Json json = toJson(comparison);
-    json["runs"] = group.title;
-    json["passed_over"] = group.passedOver;
-    list.push_back(std::move(json));
+    text += group.title + "\n";
+    for (const PipelineComparison& comparison : askedComparisons(command, points, limits)) {
+      text += comparison.points.empty()
+                  ? fmt::format(
+                        "no run has a {} of {}\n", command.metric,
+                        comparison.component == name(Contributes::final) ? kWholeImage : comparison.component)
+                  : comparisonText(comparison, table);
+      Json json = toJson(comparison);
+      json["runs"] = group.title;
+      json["passed_over"] = group.passedOver;
+      list.push_back(std::move(json));
+    }
+    text += (group.passedOver == 0 ? ""
+                                   : fmt::format("{} older or failed runs passed over\n", group.passedOver)) +
+            "\n";
   }
   if (command.json)
     printJson(list);
@@ -333,8 +355,8 @@ int compareRuns(const ResultsCommand& command, const std::string& before, const 
   closePoint(point);
   const auto significant = std::count_if(comparison.changes.begin(), comparison.changes.end(),
                                          [](const RunChange& change) { return change.significant; });
-  text += fmt::format("{} points compared, {} of {} quantities changed significantly\n", comparison.compared,
-                      significant, comparison.changes.size());
+  text += fmt::format("{} point{} compared, {} of {} quantities changed significantly\n", comparison.compared,
+                      comparison.compared == 1 ? "" : "s", significant, comparison.changes.size());
   const auto undecided = std::count_if(comparison.changes.begin(), comparison.changes.end(),
                                        [](const RunChange& change) { return change.undecided; });
   if (undecided > 0)
@@ -378,11 +400,16 @@ void addResultsCommands(Commands& commands) {
     auto* subcommand =
         add(name, meaning, [table](const ResultsCommand& asked) { return comparePipelinesOf(asked, table); });
     command->addFilterTo(*subcommand);
-    subcommand->add_option("--component", command->component,
-                           "whole_image (default), direct, indirect_diffuse, ...");
+    subcommand->add_option(
+        "--component", command->component,
+        "indirect_diffuse, direct, ..., whole_image (default: the indirect component that most "
+        "pipelines have, then whole_image)");
     subcommand->add_option("--metric", command->metric,
-                           "rmse (default), relative_mse, percentile95, flip, ...");
-    subcommand->add_option("--against", command->against, "misses (full transport) or bias (the own model)")
+                           "flip (default), rmse, relative_mse, percentile95, ...");
+    subcommand
+        ->add_option("--against", command->against,
+                     "misses (full transport; default for whole_image) or bias (the own model; default "
+                     "for components)")
         ->check(CLI::IsMember({"misses", "bias"}));
     subcommand->add_flag("--json", command->json, "print everything as JSON in place of the table");
     return subcommand;

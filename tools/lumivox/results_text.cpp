@@ -12,18 +12,6 @@
 namespace lumivox::command {
 namespace {
 
-std::string quoted(const std::string& field) {
-  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
-  std::string result = "\"";
-  for (const char c : field) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + "\"";
-}
-
-/// A number that reads back as the same bits; nothing for NaN.
-std::string exact(double value) {
-  return std::isnan(value) ? std::string() : fmt::format("{}", value);
-}
-
 /// "1..2", or "3" alone.
 std::string seedsText(const RunIdentity& identity) {
   return identity.seeds <= 1 ? fmt::format("{}", identity.seed)
@@ -86,15 +74,12 @@ Json jsonNumber(double value) {
 }
 
 std::string runsTable(const std::vector<StoredRun>& runs) {
-  std::vector<std::string> outputs{kWholeImage};
-  for (const StoredRun& run : runs)
-    for (const ComponentError& error : run.point.errors)
-      if (std::find(outputs.begin(), outputs.end(), error.output) == outputs.end())
-        outputs.push_back(error.output);
+  std::vector<const ReportPoint*> points;
+  for (const StoredRun& run : runs) points.push_back(&run.point);
+  const std::vector<std::string> outputs = judgedOutputs(points);
   std::vector<std::vector<std::string>> rows{
       {"Scene", "Run", "Pipeline", "Parameters", "Seeds", "Size", "Frame ms", "Memory"}};
-  for (const std::string& output : outputs)
-    rows[0].push_back(output == kWholeImage ? "misses in all" : output + " bias");
+  for (const std::string& output : outputs) rows[0].push_back(errorHeading(output));
   rows[0].push_back("State");
   for (const StoredRun& run : runs) {
     const ReportPoint& point = run.point;
@@ -107,45 +92,13 @@ std::string runsTable(const std::vector<StoredRun>& runs) {
                                  quartilesText(point.frameMs),
                                  formatBytes(point.peakBytes)};
     for (const std::string& output : outputs)
-      row.push_back(rmseText(errorOf(point, output, output != kWholeImage)));
+      row.push_back(errorText(errorOf(point, output, output != kWholeImage)));
     row.push_back(!point.failure.empty()         ? painted(Paint::bad, "failed: ") + point.failure
                   : point.healthFindings.empty() ? painted(Paint::good, "good")
                                                  : fmt::format("{} findings", point.healthFindings.size()));
     rows.push_back(std::move(row));
   }
-  return groupedTable(rows, 3);
-}
-
-std::string runsCsv(const std::vector<StoredRun>& runs) {
-  std::string text =
-      "run,created,scene,pipeline,sweep,parameters,camera,time,width,height,seed,device,driver,host,"
-      "frame_ms,frame_ms_lower,frame_ms_upper,next_frame_ms,peak_bytes,failure,output,component,reference,against";
-  const std::vector<NamedMetric> names = metricsOf(ComponentError{});
-  for (const NamedMetric& metric : names)
-    text += fmt::format(",{0},{0}_uncertainty,{0}_of_nothing", metric.name);
-  text += "\r\n";
-  for (const StoredRun& run : runs) {
-    const ReportPoint& point = run.point;
-    const RunIdentity& identity = run.identity;
-    const std::string head = fmt::format(
-        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", run.id, run.created,
-        quoted(point.scene), quoted(point.pipeline), quoted(point.sweep),
-        quoted(parametersText(identity.parameters)), quoted(identity.camera), exact(identity.time),
-        identity.width, identity.height, identity.seed, quoted(identity.device), quoted(identity.driver),
-        quoted(identity.host), exact(point.frameMs.median), exact(point.frameMs.lowerQuartile),
-        exact(point.frameMs.upperQuartile), exact(point.nextFrameMs.median), point.peakBytes,
-        quoted(point.failure));
-    if (point.errors.empty()) text += head + ",,,," + std::string(3 * names.size(), ',') + "\r\n";
-    for (const ComponentError& error : point.errors) {
-      text += fmt::format("{},{},{},{},{}", head, quoted(error.output), error.component, error.reference,
-                          error.bias ? "bias" : "misses");
-      for (const NamedMetric& metric : metricsOf(error))
-        text += fmt::format(",{},{},{}", exact(metric.measured.value), exact(metric.measured.uncertainty),
-                            exact(metric.ofNothing));
-      text += "\r\n";
-    }
-  }
-  return text;
+  return groupedTable(rows, 3) + remarks(kErrorNote);
 }
 
 Json runsJson(const std::vector<StoredRun>& runs) {

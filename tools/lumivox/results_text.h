@@ -1,4 +1,4 @@
-// Stored results as tables, CSV and JSON.
+// Stored results as tables and JSON.
 #pragma once
 
 #include <string>
@@ -14,8 +14,6 @@ Json jsonNumber(double value);
 
 /// One row per run; errors of the outputs beside the frame time.
 std::string runsTable(const std::vector<StoredRun>& runs);
-/// One row per run and error (RFC 4180); a run without errors has one row.
-std::string runsCsv(const std::vector<StoredRun>& runs);
 Json runsJson(const std::vector<StoredRun>& runs);
 
 }  // namespace lumivox::command

@@ -7,6 +7,7 @@
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/sweep.h"
+#include "lumivox/results/csv.h"
 #include "measure_options.h"
 #include "results_text.h"
 
@@ -15,7 +16,7 @@ namespace {
 
 struct SweepCommand {
   MeasureOptions measure;
-  bool plan = false, retryFailed = false, json = false;
+  bool plan = false, retryFailed = false, json = false, csv = false;
 };
 
 int sweep(const SweepCommand& command, const GlobalOptions& global) {
@@ -46,6 +47,8 @@ int sweep(const SweepCommand& command, const GlobalOptions& global) {
                {"unsuited", summary.unsuited},
                {"notes", summary.notes},
                {"runs", runsJson(summary.runs)}});
+  } else if (command.csv) {
+    print(runsCsv(summary.runs));
   } else {
     std::string text = summary.runs.empty() ? std::string() : runsTable(summary.runs);
     std::string below;
@@ -77,7 +80,8 @@ void addSweepCommand(Commands& commands) {
                      "the scenes' texts, and texts of sweeps that name scenes and pipelines themselves");
   command->add_flag("--plan", all->plan, "only list the missing points");
   command->add_flag("--retry-failed", all->retryFailed, "measure points that failed before once more");
-  command->add_flag("--json", all->json, "print JSON in place of the table");
+  auto* json = command->add_flag("--json", all->json, "print JSON in place of the table");
+  command->add_flag("--csv", all->csv, "print the runs as CSV in place of the table")->excludes(json);
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] { return sweep(*all, global); });
 }

@@ -9,6 +9,7 @@
 #include "highlighting.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/base/findings.h"
 #include "lumivox/base/log.h"
 #include "lumivox/dsl/document.h"
 #include "lumivox/dsl/schema.h"
@@ -35,19 +36,38 @@ Json findingAsJson(const Diagnostic& finding) {
           {"suggestion", finding.suggestion}};
 }
 
-/// Errors in one file: findings with their places, or one message for an error without a place.
+/// Findings in one file with their places, or one message for an error without a place.
 struct CheckedFile {
   std::vector<Diagnostic> findings;
   std::string message;
-  bool good() const { return findings.empty() && message.empty(); }
+  std::size_t warnings() const {
+    return static_cast<std::size_t>(std::count_if(
+        findings.begin(), findings.end(),
+        [](const Diagnostic& finding) { return finding.severity == Diagnostic::Severity::warning; }));
+  }
+  bool good() const { return findings.size() == warnings() && message.empty(); }
 };
+
+/// What a model holds besides is no matter of a check, unless more messages are asked for.
+void checkLoading(const fs::path& file, const GlobalOptions& global) {
+  const LogLevel level = logLevel();
+  if (!global.verbose && level > LogLevel::warnings) setLogLevel(LogLevel::warnings);
+  try {
+    checkScene(file, global.sceneLoad());
+  } catch (...) {
+    setLogLevel(level);
+    throw;
+  }
+  setLogLevel(level);
+}
 
 CheckedFile checkFile(const fs::path& file, const GlobalOptions& global, TechniqueSet& techniques) {
   CheckedFile checked;
+  const WarningCollector collector;
   try {
     switch (kindOfText(file)) {
       case TextKind::scene:
-        checkScene(file, global.sceneLoad());
+        checkLoading(file, global);
         break;
       case TextKind::pipeline:
         checkPipeline(Pipeline::load(file), techniques);
@@ -67,7 +87,19 @@ CheckedFile checkFile(const fs::path& file, const GlobalOptions& global, Techniq
   } catch (const Error& error) {
     checked.message = error.what();
   }
+  // Pipelines of a sweep may bring the same warning at every point.
+  std::vector<Diagnostic> findings = checked.findings;
+  for (const Diagnostic& warning : collector.findings()) {
+    const bool known = std::any_of(findings.begin(), findings.end(),
+                                   [&](const Diagnostic& one) { return one.text() == warning.text(); });
+    if (!known) findings.push_back(warning);
+  }
+  checked.findings = DiagnosticsError(std::move(findings)).diagnostics();  // in the order of the text
   return checked;
+}
+
+std::string warningsText(std::size_t count) {
+  return count == 0 ? "" : fmt::format(", with {} warning{}", count, count == 1 ? "" : "s");
 }
 
 int check(const std::vector<fs::path>& files, bool json, const GlobalOptions& global) {
@@ -87,7 +119,8 @@ int check(const std::vector<fs::path>& files, bool json, const GlobalOptions& gl
     }
     for (const Diagnostic& finding : checked.findings) std::cerr << finding.text() << "\n";
     if (!checked.message.empty()) std::cerr << "lumivox: " << checked.message << "\n";
-    if (checked.good() && !global.quiet) print(file.string() + ": good\n");
+    if (checked.good() && !global.quiet)
+      print(file.string() + ": good" + warningsText(checked.warnings()) + "\n");
   }
   if (json) printJson(list);
   return bad == 0 ? kGood : kBadInput;
@@ -130,15 +163,22 @@ int formatFiles(const std::vector<fs::path>& files, bool onlyCheck, bool json, b
 std::string rangeText(const ParamBase& parameter) {
   if (!parameter.choices().empty()) return fmt::format("one of {}", fmt::join(parameter.choices(), ", "));
   if (parameter.type() == ParamBase::Type::flag) return "on or off";
-  const std::string unit = parameter.unit().empty() ? "" : " " + parameter.unit();
-  return fmt::format("{} in {}..{}{}",
-                     parameter.type() == ParamBase::Type::integer ? "an integer" : "a number",
-                     parameter.low(), parameter.high(), unit);
+  if (parameter.type() == ParamBase::Type::integer)
+    return fmt::format("an integer in {}..{}", parameter.low(), parameter.high());
+  // As floats, which is how they were given: 0.05 and not 0.05000000074505806.
+  const auto given = [](double end) { return std::stod(fmt::format("{}", static_cast<float>(end))); };
+  return fmt::format("a number in {}..{}{}", given(parameter.low()), given(parameter.high()),
+                     parameter.unit().empty() ? "" : " " + parameter.unit());
 }
 
 std::string inputText(const InBase& input) {
   const std::string need = unmetNeed(input.needs(), SceneTraits{});
-  return fmt::format("{}{}{}", input.kind().name,
+  const Expects& expects = input.expects();
+  const std::string takes = expects.component && *expects.component != Contributes::nothing
+                                ? fmt::format(", {}", name(*expects.component))
+                            : expects.levels == Levels::all ? ", all levels"
+                                                            : "";
+  return fmt::format("{}{}{}{}", input.kind().name, takes,
                      input.presence() == Presence::optional  ? ", may be left out"
                      : input.presence() == Presence::history ? ", of the frame before, may be left out"
                                                              : "",
@@ -146,9 +186,12 @@ std::string inputText(const InBase& input) {
 }
 
 std::string outputText(const OutBase& output) {
-  return output.contributes() == Contributes::nothing
-             ? output.kind().name
-             : fmt::format("{}, {}", output.kind().name, name(output.contributes()));
+  const char* levels = output.levels() == Levels::finest ? ", the finest level"
+                       : output.levels() == Levels::all  ? ", all levels"
+                                                         : "";
+  return output.kind().name + levels +
+         (output.contributes() == Contributes::nothing ? ""
+                                                       : fmt::format(", {}", name(output.contributes())));
 }
 
 std::string meaningAfter(const std::string& meaning) {

@@ -4,6 +4,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/experiment/tune.h"
+#include "lumivox/results/csv.h"
 #include "lumivox/results/text.h"
 #include "measure_options.h"
 
@@ -14,7 +15,7 @@ struct TuneCommand {
   MeasureOptions measure;
   TuneOptions tune;
   double error = 0.0, budgetSeconds = 0.0;
-  bool hasError = false, json = false;
+  bool hasError = false, json = false, csv = false;
   std::filesystem::path output;
 };
 
@@ -75,6 +76,10 @@ int tuneScene(const TuneCommand& command, const GlobalOptions& global) {
   if (result.winner && !command.output.empty()) writeFileAtomically(command.output, result.pipelineText);
   if (command.json) {
     printJson(resultJson(result));
+  } else if (command.csv) {
+    std::vector<StoredRun> runs;
+    for (const TunedPoint& point : result.seen) runs.push_back(point.run);
+    print(runsCsv(runs));
   } else {
     print(resultText(result, options) +
           (result.winner && !command.output.empty() ? command.output.string() + "\n" : std::string()));
@@ -101,7 +106,7 @@ void addTuneCommand(Commands& commands) {
       "error limit, in the unit of the metric");
   budget->excludes(error);
   command->add_option("--metric", all->tune.metric,
-                      "rmse (default), relative_mse, percentile95, flip, flip_ldr, ...");
+                      "flip (default), rmse, relative_mse, percentile95, flip_ldr, ...");
   command->add_option("--output", all->tune.output,
                       "the pipelines' output that is judged (default: the whole image)");
   command->add_flag("--bias", all->tune.bias,
@@ -109,7 +114,9 @@ void addTuneCommand(Commands& commands) {
   command->add_option("--evaluations", all->tune.evaluations, "most points to measure (default 60)")
       ->check(CLI::Range(1, 100000));
   command->add_option("-o,--out", all->output, "writes the best pipeline's text, its parameters as defaults");
-  command->add_flag("--json", all->json, "print JSON in place of the table");
+  auto* json = command->add_flag("--json", all->json, "print JSON in place of the table");
+  command->add_flag("--csv", all->csv, "print all points that were seen as CSV in place of the table")
+      ->excludes(json);
   const GlobalOptions& global = commands.global;
   commands.onChosen(command, [=, &global] { return tuneScene(*all, global); });
 }

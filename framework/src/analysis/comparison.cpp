@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "lumivox/analysis/same_pipelines.h"
 #include "lumivox/base/error.h"
 #include "lumivox/results/json.h"
 #include "lumivox/results/text.h"
@@ -134,6 +135,26 @@ std::string contentKey(const StoredRun& run) {
   return key;
 }
 
+bool isEqualForAll(const PipelineComparison& comparison) {
+  if (comparison.pipelines.size() < 2) return false;
+  std::vector<std::set<double>> errors(comparison.pipelines.size());
+  for (const ComparedPoint& point : comparison.points)
+    errors[point.pipeline].insert(point.tradeOff.error.value);
+  return std::any_of(errors[0].begin(), errors[0].end(), [&](double error) {
+    return std::all_of(errors.begin(), errors.end(),
+                       [&](const std::set<double>& own) { return own.count(error) != 0; });
+  });
+}
+
+/// The better it tells pipelines apart, the more.
+int tellingOf(const PipelineComparison& comparison) {
+  if (comparison.front.empty()) return -1;
+  if (comparison.component == name(Contributes::final)) return comparison.bias ? 1 : 2;
+  const auto pipelines = static_cast<int>(comparison.pipelines.size());
+  if (comparison.equalForAll || pipelines < 2 || comparison.component == name(Contributes::direct)) return 0;
+  return 2 * pipelines + (comparison.bias ? 1 : 0);
+}
+
 Json cellsJson(const std::vector<double>& limits, const char* limitName, const char* valueName,
                const std::vector<ComparedCell>& cells) {
   Json list = Json::array();
@@ -182,8 +203,8 @@ bool PipelineComparison::hasFront(std::size_t pipeline) const {
 std::vector<std::string> comparableComponents() {
   std::vector<std::string> names;
   for (const Contributes component :
-       {Contributes::direct, Contributes::indirectDiffuse, Contributes::indirectGlossy,
-        Contributes::scattered, Contributes::ambientOcclusion, Contributes::final})
+       {Contributes::indirectDiffuse, Contributes::indirectGlossy, Contributes::scattered,
+        Contributes::ambientOcclusion, Contributes::direct, Contributes::final})
     names.emplace_back(name(component));
   return names;
 }
@@ -246,11 +267,14 @@ PipelineComparison comparePipelines(const std::vector<const ReportPoint*>& point
   comparison.component = component;
   comparison.bias = bias;
   comparison.metric = metric;
+  comparison.same = samePipelines(points);
   std::set<std::string> references;  // each technique is judged by its own model
   for (std::size_t source = 0; source < points.size(); ++source) {
     const ReportPoint& point = *points[source];
     const ComponentError* error = componentErrorOf(point, component, bias);
-    if (error == nullptr || !point.failure.empty() || point.frameMs.repeats == 0) continue;
+    if (error == nullptr || !point.failure.empty() || point.frameMs.repeats == 0 ||
+        comparison.same.count(point.pipeline) != 0)
+      continue;
     const Measured number = errorNumber(*error, metric);
     if (!std::isfinite(number.value)) continue;
     references.insert(error->reference);
@@ -284,6 +308,7 @@ PipelineComparison comparePipelines(const std::vector<const ReportPoint*>& point
   comparison.errors = limitsOr(limits.errors, rangeOf(tradeOffs, &TradeOff::error));
   fillTables(comparison, tradeOffs);
   fillRanges(comparison);
+  comparison.equalForAll = isEqualForAll(comparison);
   return comparison;
 }
 
@@ -304,6 +329,18 @@ std::vector<PipelineComparison> compareComponents(const std::vector<const Report
         result.push_back(std::move(comparison));
       }
   return result;
+}
+
+std::optional<std::size_t> ledComparison(const std::vector<PipelineComparison>& comparisons) {
+  if (comparisons.empty()) return std::nullopt;
+  const bool hasDefault = std::any_of(comparisons.begin(), comparisons.end(),
+                                      [](const auto& one) { return one.metric == kDefaultMetric; });
+  const std::string metric = hasDefault ? kDefaultMetric : comparisons.front().metric;
+  std::optional<std::size_t> led;
+  for (std::size_t i = 0; i < comparisons.size(); ++i)
+    if (comparisons[i].metric == metric && (!led || tellingOf(comparisons[i]) > tellingOf(comparisons[*led])))
+      led = i;
+  return led;
 }
 
 std::vector<ComparableRuns> comparableRuns(const std::vector<StoredRun>& runs) {
@@ -344,7 +381,8 @@ nlohmann::ordered_json toJson(const PipelineComparison& comparison) {
   Json json = {{"component", comparison.component},        {"against", comparison.bias ? "bias" : "misses"},
                {"reference", comparison.reference},        {"metric", comparison.metric},
                {"least_time_share", comparison.timeShare}, {"controls", comparison.controls},
-               {"undecided", comparison.undecided},        {"front", comparison.front}};
+               {"undecided", comparison.undecided},        {"front", comparison.front},
+               {"equal_for_all", comparison.equalForAll},  {"same", comparison.same}};
   json["points"] = Json::array();
   for (const ComparedPoint& point : comparison.points) json["points"].push_back(pointJson(comparison, point));
   json["pipelines"] = Json::array();

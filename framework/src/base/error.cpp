@@ -81,12 +81,21 @@ std::string nearestWord(const std::string& word, const std::vector<std::string>&
   for (const std::string& candidate : candidates) {
     if (candidate == word || candidate.size() > 64) continue;
     const std::size_t d = distance(word, candidate);
-    if (d < bestDistance) {
+    if (d < bestDistance && d < std::min(word.size(), candidate.size())) {
       bestDistance = d;
       best = candidate;
     }
   }
-  return best;
+  if (!best.empty()) return best;
+  // The beginning of one is the other: "degrees" for "deg".
+  constexpr std::size_t kLeastBeginning = 3;
+  const auto isBeginning = [&](const std::string& candidate) {
+    const std::size_t common = std::min(word.size(), candidate.size());
+    return candidate != word && common >= kLeastBeginning &&
+           word.compare(0, common, candidate, 0, common) == 0;
+  };
+  if (std::count_if(candidates.begin(), candidates.end(), isBeginning) != 1) return {};
+  return *std::find_if(candidates.begin(), candidates.end(), isBeginning);
 }
 
 }  // namespace lumivox

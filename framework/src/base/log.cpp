@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "lumivox/base/findings.h"
 #include "lumivox/base/terminal.h"
 
 namespace lumivox {
@@ -24,8 +25,9 @@ std::string* captured = nullptr;
 /// What the terminal shows below the messages; empty: nothing.
 std::string statusLine;
 bool statusOnScreen = false;
-/// Warnings by their text, in the order in which they came first.
+/// Warnings as they are written, in the order in which they came first.
 std::vector<std::pair<std::string, std::uint64_t>> told;
+thread_local WarningCollector* collector = nullptr;
 
 void clearStatus() {
   if (statusOnScreen) std::fputs("\r\x1b[K", stderr);
@@ -51,12 +53,20 @@ bool isNews(std::string_view warning) {
   return true;
 }
 
-void writeLine(LogLevel level, std::string_view text) {
+void writeLine(std::string_view line) {
   clearStatus();
-  const std::string head =
-      level == LogLevel::warnings ? painted(Paint::warning, "warning: ", takesColour(STDERR_FILENO)) : "";
-  std::fputs(fmt::format("{}{}\n", head, text).c_str(), stderr);
+  std::fputs(fmt::format("{}\n", line).c_str(), stderr);
   drawStatus();
+}
+
+/// Writes a warning that is told for the first time; `head` is before its text.
+void tell(const std::string& head, const std::string& text) {
+  const std::lock_guard lock(outputMutex);
+  if (captured != nullptr) {
+    *captured += head + text + "\n";
+  } else if (LogLevel::warnings <= currentLevel.load() && isNews(head + text)) {
+    writeLine(painted(Paint::warning, head, takesColour(STDERR_FILENO) && !head.empty()) + text);
+  }
 }
 
 }  // namespace
@@ -72,20 +82,32 @@ std::uint64_t warningCount() {
 }
 
 void logMessage(LogLevel level, std::string_view text) {
-  if (level == LogLevel::warnings) ++warnings;
-  const std::lock_guard lock(outputMutex);
-  if (captured != nullptr) {
-    *captured += fmt::format("{}{}\n", level == LogLevel::warnings ? "warning: " : "", text);
-    return;
+  if (level == LogLevel::warnings) {
+    ++warnings;
+    if (collector == nullptr) return tell("warning: ", std::string(text));
+    Diagnostic finding;
+    finding.severity = Diagnostic::Severity::warning;
+    finding.what = text;
+    return collector->add(std::move(finding));
   }
-  if (level > currentLevel.load() || (level == LogLevel::warnings && !isNews(text))) return;
-  writeLine(level, text);
+  const std::lock_guard lock(outputMutex);
+  if (captured != nullptr)
+    *captured += fmt::format("{}\n", text);
+  else if (level <= currentLevel.load())
+    writeLine(text);
+}
+
+void logFinding(const Diagnostic& finding) {
+  ++warnings;
+  if (collector != nullptr) return collector->add(finding);
+  tell("", finding.text());
 }
 
 void logRepeatedWarnings() {
   const std::lock_guard lock(outputMutex);
+  // The lines that show the place were shown the first time.
   for (const auto& [text, times] : told)
-    if (times > 1) writeLine(LogLevel::warnings, fmt::format("{} ({} times)", text, times));
+    if (times > 1) writeLine(fmt::format("{} ({} times)", text.substr(0, text.find('\n')), times));
   told.clear();
 }
 
@@ -93,6 +115,14 @@ void clearProgressLine() {
   const std::lock_guard lock(outputMutex);
   clearStatus();
   std::fflush(stderr);
+}
+
+WarningCollector::WarningCollector() : outer_(collector) {
+  collector = this;
+}
+
+WarningCollector::~WarningCollector() {
+  collector = outer_;
 }
 
 LogCapture::LogCapture() {
@@ -156,7 +186,7 @@ struct Progress::State {
       statusLine = line(secondsLeft, doing);
       drawStatus();
     } else {
-      writeLine(LogLevel::information, text(secondsLeft));
+      writeLine(text(secondsLeft));
     }
     told = true;
   }

@@ -195,6 +195,7 @@ class Lexer {
 
   void readText() {
     begin(TokenKind::text);
+    openingQuote_ = position_;
     advance();
     while (!atEnd() && peek() != '"' && peek() != '\n') {
       if (peek() == '\\' && (peek(1) == '"' || peek(1) == '\\')) advance();
@@ -204,11 +205,27 @@ class Lexer {
     if (peek() == '"' && !atEnd()) {
       advance();
     } else {
-      while (!pending_.text.empty() && pending_.text.back() == '\r') pending_.text.pop_back();
       report(pending_.place, column_ - pending_.place.column, "the string is not closed",
              "'\"' before the end of the line");
+      endBeforeBrace();
     }
     finish();
+  }
+
+  /// A string that is not closed ends before the first brace behind a blank: the braces of the text stay what
+  /// they are.
+  void endBeforeBrace() {
+    std::size_t brace = openingQuote_ + 1;
+    while (brace < position_ && !((source_[brace] == '{' || source_[brace] == '}') &&
+                                  (source_[brace - 1] == ' ' || brace == openingQuote_ + 1)))
+      ++brace;
+    if (brace < position_) {
+      while (position_ > brace)
+        if (!isContinuation(source_[--position_])) --column_;
+      pending_.text = source_.substr(openingQuote_ + 1, brace - openingQuote_ - 1);
+    }
+    while (!pending_.text.empty() && (pending_.text.back() == '\r' || pending_.text.back() == ' '))
+      pending_.text.pop_back();
   }
 
   void readDigits() {
@@ -272,6 +289,17 @@ class Lexer {
              "a number such as 12, -0.3 or 1e-3");
     } else if (const Unit* unit = findUnit(rest)) {
       pending_.unit = *unit;
+    } else if (rest.front() == 'x' && rest.size() > 1 && isDigit(rest[1])) {
+      report(pending_.place, column_ - pending_.place.column,
+             fmt::format("'{}{}' is one word", pending_.text, shortened(rest)),
+             fmt::format("two numbers with a blank between, as in {} {}", pending_.text,
+                         shortened(rest.substr(1))));
+    } else if (blockFollows()) {
+      report(pending_.place, column_ - pending_.place.column,
+             fmt::format("'{}{}' is no name", pending_.text, shortened(rest)),
+             "a name that begins with a letter");
+      pending_.kind = TokenKind::word;
+      pending_.text += rest;
     } else {
       report(place, length, fmt::format("unknown unit '{}'", shortened(rest)),
              "one of " + fmt::format("{}", fmt::join(unitNameList(), ", ")),
@@ -279,9 +307,44 @@ class Lexer {
     }
   }
 
+  /// Whether a '{' stands behind the blanks that follow.
+  bool blockFollows() const {
+    std::size_t at = position_;
+    while (at < source_.size() && source_[at] == ' ') ++at;
+    return at < source_.size() && source_[at] == '{';
+  }
+
+  /// A comment or a string as other languages write it.
+  bool readForeign() {
+    const SourcePlace place = here();
+    if (peek() == '/' && (peek(1) == '/' || peek(1) == '*')) {
+      report(place, 2, fmt::format("unexpected '/{}'", peek(1)), "'#' before a comment");
+      const std::size_t end =
+          peek(1) == '*' ? source_.find("*/", position_ + 2) : source_.find('\n', position_);
+      const std::size_t stop = end == std::string::npos ? source_.size() : end + (peek(1) == '*' ? 2 : 0);
+      while (position_ < stop) peek() == '\n' ? newLine() : advance();
+      return true;
+    }
+    const std::size_t lineEnd = std::min(source_.find('\n', position_), source_.size());
+    const std::size_t quote = source_.find('\'', position_ + 1);
+    if (peek() != '\'' || quote >= lineEnd) return false;
+    begin(TokenKind::text);
+    advance();
+    while (position_ < quote) {
+      pending_.text += peek();
+      advance();
+    }
+    advance();
+    report(place, column_ - place.column, "a string in single quotes", fmt::format("\"{}\"", pending_.text));
+    finish();
+    return true;
+  }
+
   void readStray() {
+    if (readForeign()) return;
     const SourcePlace place = here();
     const char c = peek();
+    const bool afterDigit = position_ > 0 && isDigit(source_[position_ - 1]);
     startsLine_ = false;
     lineEnds_ = 0;
     std::string character(1, c);
@@ -290,7 +353,13 @@ class Lexer {
       character += peek();
       advance();
     }
-    if (c == '=' || c == ';' || c == ',' || c == ':') {
+    if (strayLine_ == line_) return;
+    strayLine_ = line_;
+    if (c == ',' && afterDigit && isDigit(peek())) {
+      report(place, 1, "unexpected ','", "'.' in a decimal number, or blanks between values");
+    } else if (c == '(' || c == ')') {
+      report(place, 1, fmt::format("unexpected '{}'", c), "values separated by blanks, without parentheses");
+    } else if (c == '=' || c == ';' || c == ',' || c == ':') {
       report(place, 1, fmt::format("unexpected '{}'", c), "words and values separated by blanks");
     } else if (c == '+' || c == '-') {
       report(place, 1, fmt::format("'{}' without a number", c), "digits right after the sign");
@@ -309,9 +378,10 @@ class Lexer {
   const std::string& source_;
   std::vector<Token> tokens_;
   Token pending_;
-  std::size_t position_ = 0;
+  std::size_t position_ = 0, openingQuote_ = 0;
   int line_ = 1, column_ = 1;
-  int lineEnds_ = 0;  // since the last token or comment
+  int strayLine_ = 0;  ///< of the last stray character: a line has one finding of them
+  int lineEnds_ = 0;   // since the last token or comment
   bool startsLine_ = true;
 };
 

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "dsl/consequences.h"
 #include "dsl/lexer.h"
 
 namespace lumivox::dsl {
@@ -11,12 +13,17 @@ namespace {
 /// a brace.
 class Parser {
  public:
-  Parser(Document& document, std::vector<Token> tokens) : document_(document), tokens_(std::move(tokens)) {}
+  Parser(Document& document, std::vector<Token> tokens)
+      : document_(document),
+        tokens_(std::move(tokens)),
+        ofLexer_(static_cast<std::ptrdiff_t>(document.findings.size())) {}
 
   void run() {
     document_.items = items(document_.commentsAtEnd, 0);
     if (!unclosed_.empty()) reportUnclosed();
   }
+
+  const Doubts& doubts() const { return doubts_; }
 
  private:
   const Token& now() const { return tokens_[position_]; }
@@ -31,9 +38,20 @@ class Parser {
   }
 
   void report(const Token& token, std::string what, std::string expected) {
-    if (document_.findings.size() >= kMaximumFindings) return;
+    if (document_.findings.size() >= kMaximumFindings || onLineOfLexer(token)) return;
     document_.findings.push_back(
         document_.finding(token.place, token.length, std::move(what), std::move(expected)));
+  }
+
+  /// Whether the lexer has a finding on the line of the token: the parser's would follow from it.
+  bool onLineOfLexer(const Token& token) const {
+    return std::any_of(document_.findings.begin(), document_.findings.begin() + ofLexer_,
+                       [&](const Diagnostic& finding) { return finding.place.line == token.place.line; });
+  }
+
+  void doubtFrom(int line) {
+    const auto [first, isNew] = doubts_.from.emplace(document_.file.string(), line);
+    if (!isNew) first->second = std::min(first->second, line);
   }
 
   static bool isPlain(const Token& token) {
@@ -57,16 +75,22 @@ class Parser {
 
   std::vector<Item> items(std::vector<std::string>& commentsAtEnd, int depth) {
     std::vector<Item> result;
+    int column = 0;  // of the first item that starts a line
     while (!is(TokenKind::end)) {
       if (document_.findings.size() >= kMaximumFindings) {
         position_ = tokens_.size() - 1;
       } else if (is(TokenKind::close)) {
         if (depth > 0) break;
-        report(now(), "unexpected '}'", "no '}' here: no block is open");
+        reportSurplus();
         take();
       } else if (!isPlain(now())) {
         reportStray();
       } else {
+        noteOutdented();
+        if (now().startsLine) {
+          if (column == 0) column = now().place.column;
+          if (now().place.column > column && !result.empty()) noteIndented(result.back());
+        }
         result.push_back(item(depth));
       }
     }
@@ -232,6 +256,13 @@ class Parser {
         return result;
       }
       if (is(TokenKind::listOpen)) {
+        // `resolution [16 32` and `cones [4 6]` in the next line
+        if (!result.items.empty() && tokens_[position_ - 1].startsLine && isPlain(tokens_[position_ - 1])) {
+          report(opening, "the list is not closed", "']' before the next property");
+          result.items.pop_back();
+          --position_;
+          return result;
+        }
         report(take(), "a list in a list", "numbers or words");
         continue;
       }
@@ -268,14 +299,67 @@ class Parser {
       skipBlock();
       return result;
     }
+    open_.push_back({result.title(), result.place, static_cast<int>(result.word.size())});
     result.items = items(result.commentsAtEnd, depth + 1);
+    open_.pop_back();
     if (is(TokenKind::close)) {
+      noteEarlyEnd(result);
       take();
     } else {
       result.closed = false;
       unclosed_.push_back({result.title(), result.place, static_cast<int>(result.word.size())});
     }
     return result;
+  }
+
+  /// An item that stands no further in than the block around it: perhaps that block lacks its '}'.
+  void noteOutdented() {
+    if (!unclosedHere_ && !open_.empty() && now().startsLine && now().place.line > open_.back().place.line &&
+        now().place.column <= open_.back().place.column)
+      unclosedHere_ = open_.back();
+  }
+
+  /// Items further in than the first one of their block: perhaps the property before them was meant as a
+  /// block.
+  void noteIndented(const Item& before) {
+    if (missingOpen_ || !before.property) return;
+    Block meant;
+    meant.word = before.property->word;
+    meant.header = before.property->values;
+    missingOpen_ = OpenBlock{meant.title(), before.property->place, static_cast<int>(meant.word.size())};
+  }
+
+  /// A '}' that ends a block of several lines behind something else on its line: perhaps it was meant for
+  /// another block. A '}' further out than its block: perhaps that block lacks its own.
+  void noteEarlyEnd(const Block& block) {
+    if (!earlyEnd_ && !now().startsLine && now().place.line > block.place.line)
+      earlyEnd_ = EarlyEnd{block.title(), block.place.line, now()};
+    if (!unclosedHere_ && now().startsLine && now().place.line > block.place.line &&
+        now().place.column < block.place.column)
+      unclosedHere_ = OpenBlock{block.title(), block.place, static_cast<int>(block.word.size())};
+  }
+
+  /// A '}' without a block, told once: where one ended too early, if that is to be seen.
+  void reportSurplus() {
+    if (std::exchange(surplusTold_, true)) return;
+    if (missingOpen_ && (!earlyEnd_ || missingOpen_->place.line <= earlyEnd_->brace.place.line)) {
+      doubtFrom(missingOpen_->place.line);
+      document_.findings.push_back(
+          document_.finding(missingOpen_->place, missingOpen_->length,
+                            fmt::format("'{}' has no '{{', and a '}}' too many follows in line {}",
+                                        missingOpen_->title, now().place.line),
+                            "'{' on the line of its block's word"));
+    } else if (earlyEnd_) {
+      doubtFrom(earlyEnd_->brace.place.line);
+      report(earlyEnd_->brace,
+             fmt::format("this '}}' ends block '{}' of line {}, and another '}}' follows in line {}",
+                         earlyEnd_->title, earlyEnd_->line, now().place.line),
+             "a '{' before it, or one '}' less");
+    } else {
+      doubtFrom(now().place.line);
+      report(now(), "unexpected '}'", "no '}' here: no block is open");
+      doubts_.surplusBrace = now().place;
+    }
   }
 
   /// From behind '{' to behind its '}'.
@@ -314,7 +398,12 @@ class Parser {
                "a plain word: the name of a property or block");
         break;
       default:
-        report(token, "unexpected value", "the name of a property or block before it");
+        if (!open_.empty() && position_ > 0 && tokens_[position_ - 1].kind == TokenKind::open) {
+          report(token, fmt::format("unexpected value in the braces of '{}'", open_.back().title),
+                 "words with their values; the value of a property has no braces");
+        } else {
+          report(token, "unexpected value", "the name of a property or block before it");
+        }
         break;
     }
     take();
@@ -363,11 +452,14 @@ class Parser {
     // The innermost open block stands first.
     std::vector<std::string> titles;
     for (auto block = unclosed_.rbegin(); block != unclosed_.rend(); ++block) titles.push_back(block->title);
+    const OpenBlock& place = unclosedHere_ ? *unclosedHere_ : unclosed_.front();
+    doubtFrom(place.place.line);
     document_.findings.push_back(document_.finding(
-        unclosed_.front().place, unclosed_.front().length,
+        place.place, place.length,
         unclosed_.size() == 1 ? fmt::format("the file ends inside block '{}'", titles.front())
                               : fmt::format("the file ends inside blocks '{}'", fmt::join(titles, "', '")),
-        "'}' for every '{'"));
+        unclosedHere_ ? fmt::format("'}}' for every '{{'; by its indentation, '{}' lacks one", place.title)
+                      : "'}' for every '{'"));
   }
 
   struct OpenBlock {
@@ -375,10 +467,21 @@ class Parser {
     SourcePlace place;
     int length;
   };
+  struct EarlyEnd {
+    std::string title;
+    int line;
+    Token brace;
+  };
   Document& document_;
   std::vector<Token> tokens_;
+  std::ptrdiff_t ofLexer_;  ///< findings
   std::size_t position_ = 0;
-  std::vector<OpenBlock> unclosed_;
+  std::vector<OpenBlock> open_, unclosed_;
+  std::optional<OpenBlock> unclosedHere_;  ///< the first block that seems to lack its '}'
+  std::optional<OpenBlock> missingOpen_;   ///< the first statement that seems to lack its '{'
+  std::optional<EarlyEnd> earlyEnd_;       ///< the first '}' that seems to end another block than its own
+  bool surplusTold_ = false;
+  Doubts doubts_;
 };
 
 /// The place of the first byte that no text holds, if any.
@@ -480,6 +583,58 @@ Diagnostic Document::finding(const SourcePlace& place, int length, std::string w
         std::clamp(static_cast<int>(result.sourceLine.size()) + 1 - place.column, 1, result.length);
   }
   return result;
+}
+
+Doubts doubtsOf(const Document& document) {
+  Doubts doubts;
+  if (document.findings.empty()) return doubts;
+  const auto add = [&](const std::filesystem::path& file, const std::string& source) {
+    Document again;
+    again.file = file;
+    again.source = source;
+    if (source.size() > kMaximumTextBytes || firstControlCharacter(again)) return;
+    std::vector<Token> tokens = lex(again);
+    Parser parser(again, std::move(tokens));
+    parser.run();
+    doubts.from.insert(parser.doubts().from.begin(), parser.doubts().from.end());
+    if (!doubts.surplusBrace) doubts.surplusBrace = parser.doubts().surplusBrace;
+  };
+  add(document.file, document.source);
+  for (const auto& [file, source] : document.includedSources) add(file, source);
+  return doubts;
+}
+
+void dropConsequences(const Document& document, std::vector<Diagnostic>& findings) {
+  const auto isAt = [](const Diagnostic& one, const Diagnostic& other) {
+    return one.place.line == other.place.line && one.place.file == other.place.file;
+  };
+  const Doubts doubts = doubtsOf(document);
+  const auto follows = [&](const Diagnostic& finding) {
+    const auto& own = document.findings;
+    if (std::any_of(own.begin(), own.end(), [&](const Diagnostic& other) {
+          return other.place.text() == finding.place.text() && other.what == finding.what;
+        }))
+      return false;
+    const auto doubtful = doubts.from.find(finding.place.file);
+    return (doubtful != doubts.from.end() && finding.place.line >= doubtful->second) ||
+           std::any_of(own.begin(), own.end(), [&](const Diagnostic& other) { return isAt(finding, other); });
+  };
+  findings.erase(std::remove_if(findings.begin(), findings.end(), follows), findings.end());
+}
+
+void reportOutside(const Document& document, const Item& item, const std::string& block,
+                   std::vector<Diagnostic>& findings) {
+  // The end of the block that was never opened follows from it.
+  if (const auto surplus = doubtsOf(document).surplusBrace)
+    findings.erase(
+        std::remove_if(findings.begin(), findings.end(),
+                       [&](const Diagnostic& finding) { return finding.place.text() == surplus->text(); }),
+        findings.end());
+  const std::string& word = item.block ? item.block->word : item.property->word;
+  findings.push_back(document.finding(item.block ? item.block->place : item.property->place,
+                                      static_cast<int>(word.size()),
+                                      fmt::format("'{}' stands outside of a block '{}'", word, block),
+                                      fmt::format("{} ... {{ before it", block)));
 }
 
 Document parse(std::string source, std::filesystem::path file) {

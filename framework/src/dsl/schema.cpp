@@ -7,7 +7,9 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <utility>
 
+#include "dsl/consequences.h"
 #include "dsl/wording.h"
 
 namespace lumivox::dsl {
@@ -80,16 +82,23 @@ class BlockChecker {
     checkHeader();
     const Header header = headerOf(block_, specification_);
     properties_ = propertiesOf(specification_, header.kind != nullptr ? header.kind->text : std::string());
-    for (const Item& item : block_.items) {
-      const bool cutOff = !block_.closed && &item == &block_.items.back();
-      if (item.property) {
-        if (!cutOff) checkItem(*item.property);
-      } else {
+    for (std::size_t i = 0; i < block_.items.size(); ++i) {
+      const Item& item = block_.items[i];
+      const bool cutOff = !block_.closed && i + 1 == block_.items.size();
+      if (item.block) {
         checkItem(*item.block);
+      } else if (!cutOff) {
+        const std::size_t before = findings_.size();
+        if (i + 1 < block_.items.size() && takesWordAsUnit(*item.property, block_.items[i + 1])) {
+          ++i;
+          continue;
+        }
+        checkItem(*item.property);
+        if (findings_.size() > before) i += consequencesOf(*item.property, i + 1);
       }
     }
-    // Properties after the end of a truncated text are not missing.
-    if (block_.closed) checkMissing();
+    // Nothing is called missing in a text of which a part was not read.
+    if (block_.closed && document_.findings.empty()) checkMissing();
   }
 
  private:
@@ -114,9 +123,17 @@ class BlockChecker {
       const Value& extra = block_.header[allowed];
       report(extra.place, extra.length,
              fmt::format("unexpected '{}' in the header of block '{}'", extra.text, block_.word),
-             allowed == 0 ? "'{' right after the word"
-                          : fmt::format("'{{' behind {} value{}", allowed, allowed == 1 ? "" : "s"));
+             allowed == 0   ? "'{' right after the word"
+             : allowed == 1 ? fmt::format("'{{' behind one name; \"{} {}\" in double quotes is one",
+                                          block_.header[0].text, extra.text)
+                            : fmt::format("'{{' behind {} values", allowed));
     }
+  }
+
+  /// `light point main` for `light main point`
+  bool namesSwapped(const Header& header) const {
+    const auto& kinds = specification_.kinds;
+    return header.name != nullptr && std::find(kinds.begin(), kinds.end(), header.name->text) != kinds.end();
   }
 
   void checkKind(const Header& header) {
@@ -129,8 +146,52 @@ class BlockChecker {
     if (!specification_.anyKind && std::find(kinds.begin(), kinds.end(), header.kind->text) == kinds.end()) {
       report(header.kind->place, header.kind->length,
              fmt::format("unknown kind '{}' of block '{}'", header.kind->text, block_.word), oneOf(kinds),
-             nearestWord(header.kind->text, kinds));
+             namesSwapped(header) ? fmt::format("{} {} {}", block_.word, header.kind->text, header.name->text)
+                                  : nearestWord(header.kind->text, kinds));
     }
+  }
+
+  const PropertySpecification* specificationOf(const Property& property) const {
+    const auto found =
+        std::find_if(properties_.begin(), properties_.end(),
+                     [&](const PropertySpecification* one) { return one->word == property.word; });
+    return found == properties_.end() ? nullptr : *found;
+  }
+
+  /// An unknown word behind a number without a unit, where one belongs: `fov 70 degrees`.
+  bool takesWordAsUnit(const Property& property, const Item& next) {
+    const PropertySpecification* specification = specificationOf(property);
+    if (specification == nullptr || specification->dimension == kNoDimension || property.values.empty() ||
+        !next.property || specificationOf(*next.property) != nullptr)
+      return false;
+    const Value& last = property.values.back();
+    const Property& word = *next.property;
+    // Values of the word are a property that it took along: `fov 70 degrees resolution 24 16`.
+    if (!word.values.empty()) {
+      if (!word.values.front().isPlainWord()) return false;
+      firstPlaces_.emplace(word.values.front().text, word.values.front().place);
+    }
+    if (last.kind != ValueKind::number || last.unit || last.place.line != word.place.line) return false;
+    std::vector<std::string> units;
+    for (const Unit& unit : knownUnits())
+      if (unit.dimension == specification->dimension) units.push_back(unit.name);
+    firstPlaces_.emplace(property.word, property.place);
+    report(word.place, static_cast<int>(word.word.size()), fmt::format("unknown unit '{}'", word.word),
+           quantity(specification->dimension), nearestWord(word.word, units));
+    return true;
+  }
+
+  /// Unknown properties behind a wrong one on its line come from the same slip: `resolution 24 x 16`.
+  std::size_t consequencesOf(const Property& property, std::size_t next) const {
+    if (specificationOf(property) == nullptr) return 0;
+    std::size_t count = 0;
+    for (; next < block_.items.size() && block_.items[next].property; ++next, ++count) {
+      const Property& other = *block_.items[next].property;
+      if (other.place.line != property.place.line || specificationOf(other) != nullptr ||
+          !nearestWord(other.word, wordsOf(properties_, specification_.blocks)).empty())
+        break;
+    }
+    return count;
   }
 
   void checkItem(const Property& property) {
@@ -150,6 +211,7 @@ class BlockChecker {
   void reportUnknown(const Property& property) {
     if (specification_.open) return;
     const int length = static_cast<int>(property.word.size());
+    strangers_.push_back(property.word);
     if (byWord(specification_.blocks, property.word) != nullptr) {
       return report(property.place, length, fmt::format("'{}' is a block", property.word),
                     fmt::format("{} ... {{ ... }}", property.word));
@@ -192,9 +254,18 @@ class BlockChecker {
           std::any_of(properties_.begin(), properties_.end(),
                       [&](const PropertySpecification* one) { return one->word == inner.word; });
       if (isProperty) {
+        firstPlaces_.emplace(inner.word, inner.place);
+        // `file "room.obj" use { ... }` on one line
+        if (inner.header.size() > 1 && byWord(specification_.blocks, inner.header.back().text) != nullptr) {
+          const Value& word = inner.header.back();
+          return report(
+              word.place, word.length, fmt::format("a line break is missing before '{}'", word.text),
+              fmt::format("block '{}' on a line of its own, behind property '{}'", word.text, inner.word));
+        }
         return report(inner.place, length, fmt::format("'{}' is a property, not a block", inner.word),
                       fmt::format("{} and its values; a block after them starts a new line", inner.word));
       }
+      strangers_.push_back(inner.word);
       std::vector<std::string> known;
       for (const BlockSpecification& one : specification_.blocks) known.push_back(one.word);
       return report(inner.place, length,
@@ -219,9 +290,26 @@ class BlockChecker {
                        first->second.text()));
   }
 
+  /// Whether an unknown word stands in for a missing one, which its own finding names: each for one.
+  bool standsIn() {
+    if (strangers_.empty()) return false;
+    strangers_.pop_back();
+    return true;
+  }
+
+  /// Whether the kind decides which properties there are and is not known.
+  bool kindIsUnknown() const {
+    if (specification_.kindProperties.empty()) return false;
+    const Header header = headerOf(block_, specification_);
+    const auto& kinds = specification_.kinds;
+    return header.kind == nullptr || std::find(kinds.begin(), kinds.end(), header.kind->text) == kinds.end();
+  }
+
   void checkMissing() {
+    if (kindIsUnknown()) return;
     for (const PropertySpecification* property : properties_) {
       if (!property->required || firstPlaces_.count(property->word) > 0) continue;
+      if (standsIn()) continue;
       report(block_.place, wordLength(),
              fmt::format("block '{}' lacks the property '{}'", block_.title(), property->word),
              fmt::format("{} with {}", property->word, expectation(*property)));
@@ -231,7 +319,7 @@ class BlockChecker {
       const bool present = std::any_of(block_.items.begin(), block_.items.end(), [&](const Item& item) {
         return item.block && item.block->word == inner.word;
       });
-      if (present) continue;
+      if (present || standsIn()) continue;
       report(block_.place, wordLength(),
              fmt::format("block '{}' lacks a block '{}'", block_.title(), inner.word),
              fmt::format("{} ... {{ ... }}: {}", inner.word, inner.meaning));
@@ -244,6 +332,7 @@ class BlockChecker {
   Findings& findings_;
   std::vector<const PropertySpecification*> properties_;
   std::map<std::string, SourcePlace> firstPlaces_;  // of properties by word, of blocks by word and name
+  std::vector<std::string> strangers_;              // unknown words
 };
 
 }  // namespace
@@ -253,18 +342,43 @@ void check(const Document& document, const Block& block, const BlockSpecificatio
   BlockChecker(document, block, specification, findings).run();
 }
 
+namespace {
+
+/// The block that an item at the top of a text belongs into, when the text has none of that kind.
+const BlockSpecification* missingAround(const Document& document, const std::string& word,
+                                        const std::vector<BlockSpecification>& allowed) {
+  for (const BlockSpecification& one : allowed) {
+    const bool isInside = byWord(one.blocks, word) != nullptr || byWord(one.properties, word) != nullptr;
+    const bool present = std::any_of(document.items.begin(), document.items.end(), [&](const Item& item) {
+      return item.block ? item.block->word == one.word : item.property->word == one.word;
+    });
+    if (isInside && !present) return &one;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
 void check(const Document& document, const std::vector<BlockSpecification>& allowed, Findings& findings) {
   std::vector<std::string> known;
   for (const BlockSpecification& one : allowed) known.push_back(one.word);
   std::map<std::string, SourcePlace> firstPlaces;
   std::set<std::string> present;
-  bool whole = true;  // a text that was cut off lacks nothing
+  bool whole = true;     // a text that was cut off lacks nothing
+  bool outside = false;  // something stands outside that belongs inside of a missing block
+  std::set<std::string> misspelt;
   for (const Item& item : document.items) {
     const std::string& word = item.block ? item.block->word : item.property->word;
     const SourcePlace& place = item.block ? item.block->place : item.property->place;
     const int length = static_cast<int>(word.size());
     const BlockSpecification* specification = byWord(allowed, word);
     if (specification == nullptr) {
+      const BlockSpecification* around = missingAround(document, word, allowed);
+      if (around != nullptr) {
+        if (!std::exchange(outside, true)) reportOutside(document, item, around->word, findings);
+        continue;
+      }
+      misspelt.insert(nearestWord(word, known));
       findings.push_back(document.finding(
           place, length, fmt::format("unknown {} '{}'", item.block ? "block" : "property", word),
           oneOf(known), nearestWord(word, known)));
@@ -288,9 +402,9 @@ void check(const Document& document, const std::vector<BlockSpecification>& allo
     }
     check(document, *item.block, *specification, findings);
   }
-  if (!document.findings.empty() && document.items.empty()) return;
+  if (outside || (!document.findings.empty() && document.items.empty())) return;
   for (const BlockSpecification& one : allowed) {
-    if (!one.required || present.count(one.word) > 0 || !whole) continue;
+    if (!one.required || present.count(one.word) > 0 || misspelt.count(one.word) > 0 || !whole) continue;
     findings.push_back(document.finding({document.file.string(), 0, 0}, 1,
                                         fmt::format("the text lacks a block '{}'", one.word),
                                         fmt::format("{} ... {{ ... }}: {}", one.word, one.meaning)));

@@ -135,12 +135,13 @@ FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& cent
   // the image but for second order.
   const int count = std::max(1, positions);
   const float pixel = 2.0f * centre.camera.tanHalfFov / static_cast<float>(centre.camera.height);
-  // Unlike a regular grid, the sequence has as many different rows and columns as positions, which matters
-  // where edges run along the rows. A single position is the centre.
+  // Unlike a regular grid, the lattice has as many different rows and columns as positions, which matters
+  // where edges run along the rows.
+  const std::vector<std::array<double, 2>> positionsInPixel = latticePoints(count);
   FrameResult sum;
   for (int position = 0; position < count; ++position) {
     SceneSnapshot shifted = centre;
-    const auto [u, v] = r2Point(position);
+    const auto [u, v] = positionsInPixel[static_cast<std::size_t>(position)];
     const glm::vec2 offset(u - 0.5, v - 0.5);
     CameraView& camera = shifted.camera;
     camera.forward =

@@ -90,10 +90,10 @@ void Measurer::noteProgress() {
   const ResultsStore::Count count = store_.count();
   const std::string untimed =
       count.untimed == 0 ? std::string() : fmt::format(", and {} more but for their times", count.untimed);
-  const std::string kept =
-      count.runs + count.untimed == 0
-          ? std::string("interrupted before the first point was measured")
-          : fmt::format("interrupted: {} keeps {} points{}", store_.file().string(), count.runs, untimed);
+  const std::string kept = count.runs + count.untimed == 0
+                               ? std::string("interrupted before the first point was measured")
+                               : fmt::format("interrupted: {} keeps {} point{}{}", store_.file().string(),
+                                             count.runs, count.runs == 1 ? "" : "s", untimed);
   note_.say(options_.commandLine.empty() ? kept : kept + "; to go on: " + options_.commandLine);
 }
 
@@ -194,9 +194,11 @@ std::vector<StoredRun> Measurer::measure(const std::vector<WantedPoint>& points,
 std::string Measurer::waitingText(const std::vector<WantedPoint>& pending) const {
   for (const WantedPoint& point : pending)
     if (const std::optional<RunClaim> claim = store_.claimedByOther(key(point)))
-      return fmt::format("waiting for {} points, the first of which process {} measures{}", pending.size(),
-                         claim->process, claim->command.empty() ? "" : ": " + claim->command);
-  return fmt::format("waiting for {} points that other processes measure", pending.size());
+      return fmt::format("waiting for {} point{}, the first of which process {} measures{}", pending.size(),
+                         pending.size() == 1 ? "" : "s", claim->process,
+                         claim->command.empty() ? "" : ": " + claim->command);
+  return fmt::format("waiting for {} point{} that other processes measure", pending.size(),
+                     pending.size() == 1 ? "" : "s");
 }
 
 void Measurer::control(const std::vector<WantedPoint>& points, std::size_t most) {

@@ -256,12 +256,15 @@ class SceneReport {
     PointRecord record;
     record.isDefault = point.wanted.point.isDefault;
     record.point = opened.point;
+    record.identity = opened.identity;
     if (point.state == State::withoutReference) {
       fail(record.point, "the scene's reference could not be made: " + whyNoReference_);
       return record;
     }
     // Names and command are those of this report, whoever measured the point.
-    record.point = checkpoint_.find(opened.identity.key()).value().point;
+    StoredRun kept = checkpoint_.find(opened.identity.key()).value();
+    record.created = kept.created;
+    record.point = std::move(kept.point);
     nameAs(record.point, opened.point);
     for (const auto& [pass, work] : record.point.passWork)
       record.point.passBounds[pass] = lowerBounds(work, peakRates);

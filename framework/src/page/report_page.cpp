@@ -2,14 +2,15 @@
 #include <algorithm>
 
 #include "lumivox/analysis/comparison.h"
+#include "lumivox/analysis/same_pipelines.h"
 #include "lumivox/analysis/slopes.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/page/page.h"
+#include "lumivox/results/csv.h"
 #include "lumivox/results/json.h"
 #include "page/document.h"
 #include "page/markup.h"
-#include "page/report_files.h"
 #include "page/voxel_json.h"
 #include "page_assets.h"
 
@@ -19,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The metrics that the page compares pipelines by.
-constexpr const char* kMetrics[] = {"rmse", "relative_mse", "percentile95", "flip"};
+constexpr const char* kMetrics[] = {kDefaultMetric, "rmse", "relative_mse", "percentile95"};
 
 /// The share of a time saved by leaving out, where it exceeds the spread of the repeats.
 Json savingJson(const TimingStatistics& pruned, const TimingStatistics& unpruned) {
@@ -46,16 +47,19 @@ Json sceneJson(const ReportRecord& record, const SceneRecord& scene) {
     json["pruning"].push_back(std::move(one));
   }
   json["components"] = componentsOf(points);
+  json["same_passes"] = samePipelines(points);
   json["comparisons"] = Json::array();
-  for (const PipelineComparison& comparison :
-       compareComponents(points, {std::begin(kMetrics), std::end(kMetrics)},
-                         {record.equalTimesMs, record.equalErrors, scene.floor}))
-    json["comparisons"].push_back(toJson(comparison));
+  const std::vector<PipelineComparison> comparisons =
+      compareComponents(points, {std::begin(kMetrics), std::end(kMetrics)},
+                        {record.equalTimesMs, record.equalErrors, scene.floor});
+  for (const PipelineComparison& comparison : comparisons) json["comparisons"].push_back(toJson(comparison));
+  const std::optional<std::size_t> led = ledComparison(comparisons);
+  json["led_comparison"] = led ? Json(*led) : Json(nullptr);
   return json;
 }
 
 /// In the order of the scenes, points and outputs.
-Json imagesJson(const ReportRecord& record) {
+Json imagesJson(const ReportRecord& record, bool defaultPointsAlone) {
   Json scenes = Json::array();
   for (const SceneRecord& scene : record.scenes) {
     Json references = Json::array(), points = Json::array();
@@ -64,6 +68,7 @@ Json imagesJson(const ReportRecord& record) {
     for (const PointRecord& point : scene.points) {
       Json outputs = Json::array();
       for (const OutputImages& output : point.images) {
+        if (defaultPointsAlone && !point.isDefault) continue;
         Json against = Json::array();
         for (const OutputImages::Against& map : output.against)
           against.push_back(
@@ -77,11 +82,11 @@ Json imagesJson(const ReportRecord& record) {
     }
     scenes.push_back({{"references", std::move(references)}, {"points", std::move(points)}});
   }
-  return {{"scenes", std::move(scenes)}};
+  return {{"brief", defaultPointsAlone}, {"scenes", std::move(scenes)}};
 }
 
-}  // namespace
-
+/// The records, and what follows from them: comparisons of pipelines, slopes, growth. Everything but the
+/// images.
 Json reportJson(const ReportRecord& record) {
   Json json = {{"report", "lumivox"}, {"format", 1}, {"date", record.date}, {"command", record.commandLine}};
   json["device"] = {{"vendor", record.device.vendor},
@@ -120,6 +125,7 @@ Json reportJson(const ReportRecord& record) {
   return json;
 }
 
+}  // namespace
 }  // namespace lumivox::page
 
 namespace lumivox {
@@ -137,15 +143,16 @@ ReportFiles reportFiles(const std::filesystem::path& output) {
   return files;
 }
 
-void writeReport(const ReportFiles& files, const ReportRecord& record) {
+void writeReport(const ReportFiles& files, const ReportRecord& record, ReportDetail detail) {
+  const bool brief = detail == ReportDetail::brief;
   page::Document document{"Lumivox report",
                           page::reportJson(record),
-                          page::imagesJson(record),
+                          page::imagesJson(record, brief),
                           true,
                           {page::assets::kComparisonJs, page::assets::kImagesJs, page::assets::kVoxelsJs,
                            page::assets::kStressJs, page::assets::kReportJs}};
   writeFileAtomically(files.json, textOf(document.data, 1) + "\n");
-  writeFileAtomically(files.csv, page::reportCsv(record));
+  writeFileAtomically(files.csv, runsCsv(runsOf(record)));
   writeFileAtomically(files.page, page::html(document));
 }
 

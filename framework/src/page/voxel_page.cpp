@@ -1,13 +1,13 @@
 // The records of voxelizers as a page, JSON and CSV.
 #include "lumivox/page/voxel_page.h"
 
-#include <fmt/format.h>
+#include <limits>
 
 #include "lumivox/analysis/scaling.h"
 #include "lumivox/base/file.h"
+#include "lumivox/results/csv.h"
 #include "lumivox/results/json.h"
 #include "page/document.h"
-#include "page/markup.h"
 #include "page/voxel_json.h"
 #include "page_assets.h"
 
@@ -28,25 +28,40 @@ Json scalingJson(const std::vector<VoxelizerRecord>& records) {
 
 namespace {
 
-std::string recordsCsv(const std::vector<VoxelizerRecord>& records) {
-  std::string csv =
-      "scene,pipeline,output,label,resolution,triangles,subdivisions,median_ms,lower_quartile_ms,"
-      "upper_quartile_ms,fragments,occupied,reference,undecided,recall,precision,axis_holes,oblique_holes,bytes,"
-      "allocated_bytes,why_not\n";
-  const auto quoted = [](const std::string& text) { return "\"" + replaced(text, "\"", "\"\"") + "\""; };
+/// What it shares with runs is called as in theirs: results/csv.h.
+std::string recordsCsv(const std::vector<VoxelizerRecord>& records, const gpu::DeviceInfo& device) {
+  CsvTable table;
   for (const VoxelizerRecord& record : records) {
-    csv += fmt::format("{},{},{},{},{},{},{},", quoted(record.scene), quoted(record.pipeline),
-                       quoted(record.output), quoted(record.label()), record.resolution, record.triangles,
-                       record.subdivisions);
-    csv += record.whyNot.empty()
-               ? fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},\n", record.frameMs.median,
-                             record.frameMs.lowerQuartile, record.frameMs.upperQuartile, record.fragments,
-                             record.occupied, record.reference, record.undecided, record.error.recall(),
-                             record.error.precision(), record.holes.axisShare(), record.holes.obliqueShare(),
-                             record.bytes, record.allocatedBytes)
-               : std::string(13, ',') + quoted(record.whyNot) + "\n";
+    table.beginRow();
+    table.add("scene", record.scene);
+    table.add("pipeline", record.pipeline);
+    table.add("default", record.isDefault);
+    table.add("device", device.renderer);
+    table.add("driver", device.version);
+    table.add("frame_ms", record.frameMs);
+    table.add("repeats", static_cast<std::uint64_t>(record.frameMs.repeats));
+    table.add("failure", record.whyNot);
+    table.add("output", record.output);
+    table.add("label", record.label());
+    table.add("resolution", record.resolution);
+    table.add("triangles", std::uint64_t{record.triangles});
+    table.add("subdivisions", record.subdivisions);
+    const auto number = [&](const char* column, double value) {
+      table.add(column, record.whyNot.empty() ? value : std::numeric_limits<double>::quiet_NaN());
+    };
+    number("fragments", static_cast<double>(record.fragments));
+    number("occupied", static_cast<double>(record.occupied));
+    number("reference", static_cast<double>(record.reference));
+    number("undecided", static_cast<double>(record.undecided));
+    number("recall", record.error.recall());
+    number("precision", record.error.precision());
+    number("axis_holes", record.holes.axisShare());
+    number("oblique_holes", record.holes.obliqueShare());
+    number("bytes", static_cast<double>(record.bytes));
+    number("allocated_bytes", static_cast<double>(record.allocatedBytes));
+    for (const auto& [name, value] : record.parameters) table.addParameter(name, value.text());
   }
-  return csv;
+  return table.text();
 }
 
 }  // namespace
@@ -82,7 +97,7 @@ void writeVoxelizers(const VoxelizerFiles& files, const std::vector<VoxelizerRec
   document.scripts = {page::assets::kVoxelsJs, page::assets::kVoxelsPageJs};
   const std::string html = page::html(document);
   writeFileAtomically(files.json, voxelizersJson(records, device, commandLine));
-  writeFileAtomically(files.csv, page::recordsCsv(records));
+  writeFileAtomically(files.csv, page::recordsCsv(records, device));
   writeFileAtomically(files.page, html);
 }
 

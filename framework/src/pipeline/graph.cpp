@@ -188,12 +188,67 @@ class Binder {
       return;
     }
     if (input >= 0) {
-      bound.sources[static_cast<std::size_t>(input)] =
-          connect(property.values[0], bound.object->inputs()[static_cast<std::size_t>(input)]->kind(),
-                  fmt::format("input '{}' of pass '{}'", property.word, bound.name));
+      const InBase& reader = *bound.object->inputs()[static_cast<std::size_t>(input)];
+      const OutputIndex source = connect(property.values[0], reader.kind(),
+                                         fmt::format("input '{}' of pass '{}'", property.word, bound.name));
+      bound.sources[static_cast<std::size_t>(input)] = source;
+      if (source.valid()) warnOfWrongLight(property.values[0], source, reader, bound.name);
     } else {
       setParameter(*bound.object->parameters()[static_cast<std::size_t>(parameter)], property.values[0]);
     }
+  }
+
+  void warn(const dsl::Value& value, std::string what, std::string expected, std::string suggestion) {
+    report(value, std::move(what), std::move(expected), std::move(suggestion));
+    findings_.back().severity = Diagnostic::Severity::warning;
+  }
+
+  /// Outputs of the right kind that hold something else than the input expects.
+  void warnOfWrongLight(const dsl::Value& value, OutputIndex source, const InBase& input,
+                        const std::string& pass) {
+    const OutBase& output = graph_.output(source);
+    const Expects& expects = input.expects();
+    if (expects.levels == Levels::all && output.levels() == Levels::finest)
+      warn(
+          value,
+          fmt::format(
+              "output '{}' fills only the finest level, but input '{}' of pass '{}' reads all: its light is wrong",
+              graph_.outputText(source), input.name(), pass),
+          "an output that fills all levels", only(source, [&](const OutBase& one) {
+            return one.kind().isSameType(input.kind()) && one.levels() == Levels::all;
+          }));
+    if (!expects.component || output.contributes() == *expects.component) return;
+    warn(value,
+         fmt::format("output '{}' holds {}, but input '{}' of pass '{}' takes {}: its light is wrong",
+                     graph_.outputText(source), componentText(output.contributes()), input.name(), pass,
+                     componentText(*expects.component)),
+         "an output that holds " + componentText(*expects.component), only(source, [&](const OutBase& one) {
+           return one.kind().isSameType(input.kind()) && one.contributes() == *expects.component;
+         }));
+  }
+
+  static std::string componentText(Contributes component) {
+    return component == Contributes::nothing ? "no component of the image" : name(component);
+  }
+
+  /// The only output in the pipeline that fits, or the only one of the same pass; empty when there is none or
+  /// a choice.
+  template <class Fits>
+  std::string only(OutputIndex near, const Fits& fits) const {
+    for (const bool samePass : {true, false}) {
+      std::string found;
+      int count = 0;
+      for (std::size_t i = 0; i < graph_.passes.size(); ++i) {
+        if (!graph_.passes[i].object || (samePass && static_cast<int>(i) != near.pass)) continue;
+        for (const OutBase* output : graph_.passes[i].object->outputs()) {
+          if (!fits(*output)) continue;
+          found = graph_.passes[i].name + "." + output->name();
+          ++count;
+        }
+      }
+      if (count == 1) return found;
+    }
+    return {};
   }
 
   // ---- connections ---------------------------------------------------------------------------------------
@@ -218,8 +273,10 @@ class Binder {
       if (source < 0 && graph_.passes[i].name == passName) source = static_cast<int>(i);
     }
     if (source < 0) {
-      report(place, length, fmt::format("unknown pass '{}'", passName), oneOf(names, "a pass"),
-             nearestWord(passName, names));
+      // Every reader of a pass that is not there follows from one mistake.
+      if (unknownReported_.insert(passName).second)
+        report(place, length, fmt::format("unknown pass '{}'", passName), oneOf(names, "a pass"),
+               nearestWord(passName, names));
       return {};
     }
     const Pass* pass = graph_.passes[static_cast<std::size_t>(source)].object.get();
@@ -343,7 +400,9 @@ class Binder {
     const bool isNumber =
         parameter.type() == ParamBase::Type::integer || parameter.type() == ParamBase::Type::number;
     if (isNumber && value.dimension != dsl::Dimension{} && value.dimension != wanted) {
-      return fmt::format("must be a number that measures {}, not {}", wanted.text(), value.dimension.text());
+      return wanted == dsl::kNoDimension ? std::string("must be a number without a unit")
+                                         : fmt::format("must be a number that measures {}, not {}",
+                                                       wanted.text(), value.dimension.text());
     }
     return parameter.set(value.number);
   }
@@ -429,7 +488,7 @@ class Binder {
   const ParameterValues& values_;
   BoundGraph graph_;
   std::vector<Diagnostic> findings_;
-  std::set<std::string> missingReported_;
+  std::set<std::string> missingReported_, unknownReported_;
 };
 
 }  // namespace

@@ -70,14 +70,20 @@ PortBase::PortBase(std::string name, const PortKind& kind, std::string meaning)
     : name_(std::move(name)), meaning_(std::move(meaning)), kind_(&kind) {}
 
 OutBase::OutBase(Pass* pass, std::string name, const PortKind& kind, Contributes contributes, Needs needs,
-                 std::string meaning)
-    : PortBase(std::move(name), kind, std::move(meaning)), contributes_(contributes), needs_(needs) {
+                 std::string meaning, Levels levels)
+    : PortBase(std::move(name), kind, std::move(meaning)),
+      contributes_(contributes),
+      needs_(needs),
+      levels_(levels) {
   pass->outputs_.push_back(this);
 }
 
 InBase::InBase(Pass* pass, std::string name, const PortKind& kind, Presence presence, std::string meaning,
-               Needs needs)
-    : PortBase(std::move(name), kind, std::move(meaning)), presence_(presence), needs_(needs) {
+               Needs needs, Expects expects)
+    : PortBase(std::move(name), kind, std::move(meaning)),
+      presence_(presence),
+      needs_(needs),
+      expects_(expects) {
   pass->inputs_.push_back(this);
 }
 

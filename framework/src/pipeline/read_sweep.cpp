@@ -153,10 +153,17 @@ class SweepReader : TextFindings {
   }
 
   void requireFiles(const dsl::Block& block) {
-    for (const char* word : {kSweptScenes, kSweptPipelines})
-      if (std::find(words_.begin(), words_.end(), word) == words_.end())
-        report(block.place, block.word, fmt::format("the sweep lacks its {}", word),
-               fmt::format("{} [\"...\"], beside the parameters", word));
+    for (const char* word : {kSweptScenes, kSweptPipelines}) {
+      if (std::find(words_.begin(), words_.end(), word) != words_.end()) continue;
+      // A misspelt word passed for a parameter.
+      const std::string nearest = nearestWord(word, words_);
+      const auto axis = std::find_if(sweep_.axes.begin(), sweep_.axes.end(),
+                                     [&](const SweepAxis& one) { return one.parameter == nearest; });
+      report(axis == sweep_.axes.end() ? block.place : axis->place,
+             axis == sweep_.axes.end() ? block.word : nearest, fmt::format("the sweep lacks its {}", word),
+             fmt::format("{} [\"...\"], beside the parameters", word),
+             axis == sweep_.axes.end() ? std::string() : word);
+    }
   }
 
   void readAxis(const dsl::Property& property) {

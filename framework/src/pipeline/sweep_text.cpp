@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
+#include "dsl/consequences.h"
 #include "pipeline/read_sweep.h"
 #include "pipeline/text_values.h"
 
@@ -18,7 +20,13 @@ SweepText sweepOf(dsl::Document parsed) {
   text.file = document->file;
   text.document = document;
   std::vector<Diagnostic> findings = document->findings;
+  bool outside = false;
   for (const dsl::Item& item : document->items) {
+    if (item.property && item.property->word != "sweep" && !item.property->values.empty() &&
+        item.property->values[0].kind == dsl::ValueKind::list) {
+      if (!std::exchange(outside, true)) dsl::reportOutside(*document, item, "sweep", findings);
+      continue;
+    }
     if (!item.block || item.block->word != "sweep") {
       const std::string& word = item.block ? item.block->word : item.property->word;
       findings.push_back(document->finding(
@@ -37,6 +45,7 @@ SweepText sweepOf(dsl::Document parsed) {
   if (text.sweeps.empty() && findings.empty())
     findings.push_back(document->finding({document->file.string(), 0, 0}, 1, "the text has no sweep block",
                                          "sweep NAME { scenes [...] pipelines [...] }"));
+  dsl::dropConsequences(*document, findings);
   throwOrLog(std::move(findings));
   return text;
 }

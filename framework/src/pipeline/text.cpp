@@ -5,7 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "lumivox/base/log.h"
+#include "dsl/consequences.h"
+#include "lumivox/base/findings.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "pipeline/read_sweep.h"
 #include "pipeline/text_values.h"
@@ -64,7 +65,16 @@ class TextReader : TextFindings {
 
   void read() {
     const dsl::Block* main = nullptr;
+    const bool hasMain =
+        std::any_of(document_.items.begin(), document_.items.end(), [](const dsl::Item& item) {
+          return item.block ? item.block->word == "pipeline" : item.property->word == "pipeline";
+        });
     for (const dsl::Item& item : document_.items) {
+      const std::string& word = item.block ? item.block->word : item.property->word;
+      if (!hasMain && (word == "pass" || word == "param" || word == "output")) {
+        dsl::reportOutside(document_, item, "pipeline", findings_);
+        return;
+      }
       if (item.property) {
         report(item.property->place, item.property->word,
                fmt::format("unknown statement '{}'", item.property->word),
@@ -86,9 +96,10 @@ class TextReader : TextFindings {
                                             "the text has no pipeline block", "pipeline \"Name\" { ... }"));
     }
     for (const dsl::Item& item : document_.items) {
-      if (item.block && item.block->word == "sweep") readSweep(*item.block);
+      if (item.block && item.block->word == "sweep" && main != nullptr) readSweep(*item.block);
     }
-    warnOfUnused();
+    // A pass that was refused may be the one that uses a parameter.
+    if (findings_.empty()) warnOfUnused();
   }
 
  private:
@@ -113,9 +124,11 @@ class TextReader : TextFindings {
       } else if (item.property->word == "output") {
         readOutput(*item.property);
       } else {
+        const std::string nearest = nearestWord(item.property->word, {"param", "pass", "output"});
+        if (nearest == "param") noteRefused(*item.property);
         report(item.property->place, item.property->word,
                fmt::format("unknown property '{}' in a pipeline", item.property->word),
-               "param, pass or output", nearestWord(item.property->word, {"param", "pass", "output"}));
+               "param, pass or output", nearest);
       }
     }
     if (pipeline_.passes.empty() && findings_.empty())
@@ -149,6 +162,12 @@ class TextReader : TextFindings {
     }
   }
 
+  /// A parameter whose declaration was refused is known all the same.
+  void noteRefused(const dsl::Property& property) {
+    if (!property.values.empty() && property.values[0].isPlainWord())
+      refusedParameters_.insert(property.values[0].text);
+  }
+
   void readParameter(const dsl::Property& property) {
     static const char* const kForm = "param NAME DEFAULT in LOW..HIGH, or in [a b c]";
     const auto& values = property.values;
@@ -156,6 +175,7 @@ class TextReader : TextFindings {
                         (isNumberRange(values[3]) || values[3].kind == dsl::ValueKind::list);
     const auto value = values.size() >= 2 ? parameterValue(values[1]) : std::nullopt;
     if (values.empty() || !values[0].isPlainWord() || !value || (values.size() != 2 && !ranged)) {
+      noteRefused(property);
       report(property.place, property.word, "malformed param", kForm);
       return;
     }
@@ -168,8 +188,12 @@ class TextReader : TextFindings {
       for (const dsl::Value& end : values[3].items) {
         const dsl::Dimension dimension = end.unit ? end.unit->dimension : dsl::Dimension{};
         if (dimension != value->dimension) {
-          report(end.place, end.length, fmt::format("the range's unit measures {}", dimension.text()),
-                 fmt::format("{}, as the default", value->dimension.text()));
+          const auto text = [](const dsl::Dimension& one) {
+            return one == dsl::kNoDimension ? std::string("no unit") : "a unit of " + one.text();
+          };
+          report(values[3].place, values[3].length, fmt::format("the range has {}", text(dimension)),
+                 fmt::format("{}, as the default", text(value->dimension)));
+          break;
         }
       }
     } else if (ranged) {
@@ -230,12 +254,16 @@ class TextReader : TextFindings {
     pipeline_.sweeps.push_back(fittedSweep(read, pipeline_, document_, findings_, unknown));
     const std::vector<std::string> names = parameterNames(pipeline_);
     for (const SweepAxis* axis : unknown)
-      report(axis->place, axis->parameter, fmt::format("unknown parameter '{}'", axis->parameter),
-             oneOf(names, "a parameter, but this pipeline declares none"),
-             nearestWord(axis->parameter, names));
+      if (!refusedParameters_.contains(axis->parameter))
+        report(axis->place, axis->parameter, fmt::format("unknown parameter '{}'", axis->parameter),
+               oneOf(names, "a parameter, but this pipeline declares none"),
+               nearestWord(axis->parameter, names));
   }
 
   void warnOfUnused() {
+    // A misspelt use has a finding of its own.
+    for (const std::string& used : usedParameters_)
+      if (findParameter(pipeline_, used) == nullptr) return;
     for (std::size_t i = 0; i < pipeline_.parameters.size(); ++i) {
       const std::string& name = pipeline_.parameters[i].name;
       if (usedParameters_.contains(name)) continue;
@@ -247,7 +275,7 @@ class TextReader : TextFindings {
 
   Pipeline& pipeline_;
   std::vector<SourcePlace> parameterPlaces_;
-  std::set<std::string> usedParameters_;
+  std::set<std::string> usedParameters_, refusedParameters_;
 };
 
 Pipeline pipelineOf(dsl::Document parsed) {
@@ -262,6 +290,7 @@ Pipeline pipelineOf(dsl::Document parsed) {
   pipeline.hash = hasher.finish();
   std::vector<Diagnostic> findings = document->findings;
   TextReader(pipeline, *document, findings).read();
+  dsl::dropConsequences(*document, findings);
   throwOrLog(std::move(findings));
   return pipeline;
 }
@@ -342,7 +371,7 @@ void throwOrLog(std::vector<Diagnostic> findings) {
     return finding.severity == Diagnostic::Severity::error;
   });
   if (anyError) throw DiagnosticsError(std::move(findings));
-  for (const Diagnostic& finding : findings) logWarning("{}", finding.text());
+  for (const Diagnostic& finding : findings) logFinding(finding);
 }
 
 // ---- public --------------------------------------------------------------------------------------------
@@ -363,7 +392,9 @@ std::string PipelineParameter::misfit(const ParameterValue& candidate) const {
   if (!candidate.word.empty()) return {};
   // A number without unit is taken in base units, so only a different unit is wrong.
   if (candidate.dimension != dsl::Dimension{} && candidate.dimension != value.dimension) {
-    return fmt::format("must be a number that measures {}", value.dimension.text());
+    return value.dimension == dsl::kNoDimension
+               ? std::string("must be a number without a unit")
+               : fmt::format("must be a number that measures {}", value.dimension.text());
   }
   const bool inside =
       std::isfinite(candidate.number) && (!low || (candidate.number >= *low && candidate.number <= *high));

@@ -71,4 +71,18 @@ std::vector<const ReportPoint*> pointsOf(const SceneRecord& scene) {
   return points;
 }
 
+std::vector<StoredRun> runsOf(const ReportRecord& report) {
+  std::vector<StoredRun> runs;
+  for (const SceneRecord& scene : report.scenes)
+    for (const PointRecord& record : scene.points) {
+      StoredRun run;
+      run.identity = record.identity;
+      run.created = record.created;
+      run.isDefault = record.isDefault;
+      run.point = record.point;
+      runs.push_back(std::move(run));
+    }
+  return runs;
+}
+
 }  // namespace lumivox

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "dsl/consequences.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
 #include "lumivox/results/reproduction.h"
@@ -487,6 +488,7 @@ PublishedResult PublishedResult::load(const fs::path& file) {
   result.document = std::make_shared<const dsl::Document>(dsl::parseFile(file));
   std::vector<Diagnostic> findings = result.document->findings;
   ResultReader(result, *result.document, findings).read();
+  dsl::dropConsequences(*result.document, findings);
   throwOrLog(std::move(findings));
   return result;
 }

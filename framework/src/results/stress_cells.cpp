@@ -10,8 +10,8 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/hash.h"
+#include "lumivox/results/csv.h"
 #include "lumivox/results/json.h"
-#include "results/csv.h"
 
 namespace lumivox {
 namespace {
@@ -122,7 +122,7 @@ std::string stressCellsCsv(const std::vector<StressCell>& cells) {
   for (const StressCell& cell : cells) {
     text += fmt::format("{},{},{},{},{}", name(cell.outcome), exact(cell.value.value),
                         exact(cell.value.uncertainty), exact(cell.limit), exact(cell.seconds));
-    visitTexts(cell, [&](const char*, const std::string& field) { text += "," + results::csvField(field); });
+    visitTexts(cell, [&](const char*, const std::string& field) { text += "," + csvField(field); });
     text += "\r\n";
   }
   return text;

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "results/csv.h"
-
 namespace lumivox {
 
 std::string formatMilliseconds(double milliseconds) {
@@ -48,14 +46,3 @@ std::string shortName(const std::string& pipelineFile) {
 }
 
 }  // namespace lumivox
-
-namespace lumivox::results {
-
-std::string csvField(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-}  // namespace lumivox::results

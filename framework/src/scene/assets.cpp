@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "lumivox/base/error.h"
+#include "lumivox/base/installation.h"
 
 namespace lumivox {
 namespace {
@@ -23,14 +24,18 @@ bool isDirectory(const fs::path& path) {
   return fs::is_directory(path.empty() ? fs::path(".") : path, error);
 }
 
-/// The directory that holds `scenes/`, above the scene text.
+constexpr const char* kModelsBesideProject = "../shared/models";
+
+/// The folder above the text that holds `scenes/`; else the nearest one with models beside it.
 std::optional<fs::path> projectOf(const fs::path& sceneFile) {
   std::error_code error;
+  std::optional<fs::path> withModels;
   for (fs::path directory = fs::absolute(sceneFile, error).parent_path(); directory.has_relative_path();
        directory = directory.parent_path()) {
     if (directory.filename() == "scenes") return directory.parent_path();
+    if (!withModels && isDirectory(directory / kModelsBesideProject)) withModels = directory;
   }
-  return std::nullopt;
+  return withModels;
 }
 
 }  // namespace
@@ -49,9 +54,8 @@ AssetSearch::AssetSearch(const fs::path& sceneFile, const SceneLoadOptions& opti
       if (!directory.empty()) add(directory);
     }
   }
-  if (const auto project = projectOf(sceneFile)) add(*project / "../shared/models");
-  std::error_code error;
-  add(fs::current_path(error) / "../shared/models");
+  if (const auto project = projectOf(sceneFile)) add(*project / kModelsBesideProject);
+  if (const auto scenes = programData("scenes")) add(scenes->parent_path() / kModelsBesideProject);
 }
 
 std::optional<fs::path> AssetSearch::find(const std::string& name) const {

@@ -12,7 +12,7 @@ namespace lumivox {
 
 /// Seeks files named in a scene text: beside the text, then in SceneLoadOptions::assetPath, then in each
 /// directory of $LUMIVOX_ASSETS (separated by colons), then in ../shared/models beside the project that holds
-/// the text and beside the current directory.
+/// the text and beside the one that the program comes from.
 class AssetSearch {
  public:
   AssetSearch(const std::filesystem::path& sceneFile, const SceneLoadOptions& options);

@@ -89,9 +89,12 @@ class Reader {
   void collectNames(const Block& scene) {
     for (const dsl::Item& item : scene.items) {
       if (!item.block) continue;
-      if (item.block->word != "material" && item.block->word != "mesh") continue;
-      const std::string name = checked(*item.block).name();
-      if (!name.empty()) (item.block->word == "material" ? materialNames_ : meshNames_).push_back(name);
+      // A misspelt block is a finding of its own: its name is known all the same.
+      std::string word = item.block->word;
+      if (!known(grammar_, *item.block)) word = nearestWord(word, {"material", "mesh"});
+      if (word != "material" && word != "mesh") continue;
+      const std::string name = CheckedBlock(*item.block, specificationOf(grammar_, word)).name();
+      if (!name.empty()) (word == "material" ? materialNames_ : meshNames_).push_back(name);
     }
   }
 
@@ -213,6 +216,8 @@ class Reader {
     text.material.exponent = static_cast<float>(block.number("exponent", 1.0));
     text.texture = placed(block, "texture");
     text.mask = placed(block, "mask");
+    for (const auto& image : {text.texture, text.mask})
+      if (image) requireFormat(*image, "image", kImageFormats);
     const glm::vec3 albedo = text.material.diffuse + text.material.specular;
     if (std::max({albedo.x, albedo.y, albedo.z}) > 1.0f + 1e-6f) {
       report(block.block().place, static_cast<int>(block.block().word.size()),
@@ -235,6 +240,14 @@ class Reader {
            nearestWord(name, meshNames_));
   }
 
+  /// A file of another format is refused by its name, before anything is read.
+  void requireFormat(const PlacedText& file, const char* what, const std::vector<std::string>& formats) {
+    if (hasFormat(file.text, formats)) return;
+    report(file.place, file.length,
+           fmt::format("{} file '{}' has a format that cannot be read", what, file.text),
+           fmt::format("one of {}", fmt::join(formats, ", ")));
+  }
+
   Selection selection(const CheckedBlock& block) {
     if (!block.has("part") && !block.has("mtl")) {
       report(block.block().place, static_cast<int>(block.block().word.size()),
@@ -252,6 +265,7 @@ class Reader {
              "a name without '/', which separates mesh and object");
     }
     if (auto file = placed(block, "file")) mesh.file = *file;
+    requireFormat(mesh.file, "model", kModelFormats);
     if (const auto material = placed(block, "material")) mesh.material = material->text;
     const BlockSpecification& grammar = specificationOf(grammar_, "mesh");
     for (const Block* inner : block.blocks("use")) {
@@ -339,6 +353,7 @@ class Reader {
     medium.particles = static_cast<int>(block.number("particles", 0));
     text.file = placed(block, "file");
     text.grid = placed(block, "grid");
+    if (text.file) requireFormat(*text.file, "volume", kVolumeFormats);
     if (text.file && medium.particles > 0) {
       report(*block.find("file"), "a medium both of particles and of a file",
              "one of the two; the other can be a medium of its own");
@@ -432,6 +447,16 @@ SceneDescription describeScene(const dsl::Document& document, std::vector<Diagno
     if (item.block && item.block->word == "scene") return Reader(document, findings).run(*item.block);
   }
   return {};
+}
+
+bool hasFormat(const std::string& name, const std::vector<std::string>& formats) {
+  std::string lower = name;
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return std::any_of(formats.begin(), formats.end(), [&](const std::string& ending) {
+    return lower.size() > ending.size() &&
+           lower.compare(lower.size() - ending.size(), ending.size(), ending) == 0;
+  });
 }
 
 bool matches(const std::string& pattern, const std::string& name) {

@@ -80,6 +80,12 @@ struct SceneDescription {
 /// whole only when there are none.
 SceneDescription describeScene(const dsl::Document& document, std::vector<Diagnostic>& findings);
 
+/// The ends of names of files that can be read.
+inline const std::vector<std::string> kModelFormats{".obj", ".obj.gz"};
+inline const std::vector<std::string> kImageFormats{".png", ".jpg", ".jpeg", ".tga"};
+inline const std::vector<std::string> kVolumeFormats{".vdb"};
+bool hasFormat(const std::string& name, const std::vector<std::string>& formats);
+
 /// Whether `name` matches a pattern, in which * stands for any letters and ? for one.
 bool matches(const std::string& pattern, const std::string& name);
 /// The mesh in "mesh" or "mesh/object".

@@ -9,7 +9,9 @@
 #include <set>
 #include <tuple>
 
+#include "dsl/consequences.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/findings.h"
 #include "lumivox/base/log.h"
 #include "lumivox/scene/scene.h"
 #include "lumivox/scene/text.h"
@@ -46,30 +48,46 @@ std::vector<std::string> fileNames(const MeshText& mesh) {
   return names;
 }
 
-/// Files that should stand beside the text and do not.
+/// A scene is read to be rendered, and the first bad file ends it; or to find all that is wrong.
+enum class Purpose { rendering, checking };
+
+/// Files that should stand beside the text and do not; for a check, those that stand nowhere.
 void findMissingFiles(const dsl::Document& document, const SceneDescription& description,
-                      const AssetSearch& assets, std::vector<Diagnostic>& findings) {
-  const auto require = [&](const PlacedText& place, const std::string& name, const char* what) {
-    if (!assets.isLocal(name) || assets.find(name)) return;
+                      const AssetSearch& assets, Purpose purpose, std::vector<Diagnostic>& findings) {
+  const auto isMissing = [&](const std::string& name) {
+    return (purpose == Purpose::checking || assets.isLocal(name)) && !assets.find(name);
+  };
+  const auto require = [&](const PlacedText& place, const std::string& name, const char* what,
+                           const std::vector<std::string>& formats) {
+    if (!isMissing(name) || !hasFormat(name, formats)) return;
     findings.push_back(document.finding(place.place, place.length,
                                         fmt::format("{} file '{}' does not exist", what, name),
                                         "it at one of " + assets.soughtAt(name), assets.nearestLocal(name)));
   };
-  for (const MeshText& mesh : description.meshes) require(mesh.file, fileNames(mesh).front(), "model");
+  for (const MeshText& mesh : description.meshes) {
+    const std::vector<std::string> names = fileNames(mesh);
+    const auto last = purpose == Purpose::checking ? names.end() : names.begin() + 1;
+    const auto missing = std::find_if(names.begin(), last, isMissing);
+    if (missing != last) require(mesh.file, *missing, "model", kModelFormats);
+  }
   for (const MaterialText& material : description.materials) {
-    if (material.texture) require(*material.texture, material.texture->text, "image");
-    if (material.mask) require(*material.mask, material.mask->text, "image");
+    if (material.texture) require(*material.texture, material.texture->text, "image", kImageFormats);
+    if (material.mask) require(*material.mask, material.mask->text, "image", kImageFormats);
   }
   for (const MediumText& medium : description.media) {
-    if (medium.file) require(*medium.file, medium.file->text, "volume");
+    if (medium.file) require(*medium.file, medium.file->text, "volume", kVolumeFormats);
   }
 }
 
 class Loader {
  public:
   Loader(const dsl::Document& document, const SceneDescription& description, const AssetSearch& assets,
-         const SceneLoadOptions& options)
-      : document_(document), description_(description), assets_(assets), options_(options) {
+         const SceneLoadOptions& options, Purpose purpose)
+      : document_(document),
+        description_(description),
+        assets_(assets),
+        options_(options),
+        purpose_(purpose) {
     for (const MaterialText& material : description.materials)
       textMaterials_.emplace(material.material.name, &material);
   }
@@ -83,17 +101,21 @@ class Loader {
     scene_.cameras = description_.cameras;
     scene_.lights = description_.lights;
     scene_.environment = description_.environment;
-    for (const MediumText& medium : description_.media) addMedium(medium);
-    for (const MeshText& mesh : description_.meshes) addMesh(mesh);
+    for (const MediumText& medium : description_.media) attempt(medium.file, [&] { addMedium(medium); });
+    for (const MeshText& mesh : description_.meshes)
+      if (!attempt(mesh.file, [&] { addMesh(mesh); })) unread_.insert(mesh.name);
     for (const AreaLightText& light : description_.areaLights) shine(light);
     finishMaterials();
-    checkMediaBounds();
+    if (unread_.empty()) checkMediaBounds();
     for (const AnimationText& animation : description_.animations) animate(animation);
-    for (Object& object : scene_.objects) object.sweptBounds = sweptBoundsOf(scene_, object);
     throwIfAny(std::move(findings_));
+    for (Object& object : scene_.objects) object.sweptBounds = sweptBoundsOf(scene_, object);
     scene_.hash = hasher_.finish();
     return std::move(scene_);
   }
+
+  /// Warnings of a check; valid after run(), also where that threw.
+  const std::vector<Diagnostic>& warnings() const { return warnings_; }
 
  private:
   /// A material in use: of the text or of a model's MTL file; emission may come from an area light.
@@ -119,6 +141,40 @@ class Loader {
                                                                       known.size() > kShown ? ", ..." : ""),
                                           nearestWord(place.text, known)));
   }
+
+  /// Reads a file that the text names there. For a check an error becomes a finding at that place, and so do
+  /// warnings; false: there was an error.
+  template <class Work>
+  bool attempt(const std::optional<PlacedText>& file, const Work& work) {
+    if (purpose_ == Purpose::rendering) {
+      work();
+      return true;
+    }
+    const auto here = [&](std::string what) {
+      return document_.finding(file ? file->place : SourcePlace{document_.file.string(), 0, 0},
+                               file ? file->length : 1, std::move(what));
+    };
+    const WarningCollector collector;
+    bool good = true;
+    try {
+      work();
+    } catch (const DiagnosticsError& error) {
+      findings_.insert(findings_.end(), error.diagnostics().begin(), error.diagnostics().end());
+      good = false;
+    } catch (const AbsentError&) {  // findMissingFiles() has told
+      good = false;
+    } catch (const Error& error) {
+      findings_.push_back(here(error.what()));
+      good = false;
+    }
+    for (Diagnostic warning : collector.findings()) {
+      if (warning.place.file.empty()) warning = here(std::move(warning.what));
+      warning.severity = Diagnostic::Severity::warning;
+      warnings_.push_back(std::move(warning));
+    }
+    return good;
+  }
+  bool attempt(const PlacedText& file, const auto& work) { return attempt(std::optional(file), work); }
 
   fs::path found(const std::string& name, const std::string& what) const {
     if (const auto path = assets_.find(name)) return *path;
@@ -295,6 +351,7 @@ class Loader {
     std::vector<Object*> result;
     std::vector<std::string> known;
     const std::string mesh = meshOf(path.text);
+    if (unread_.contains(mesh)) return result;
     const bool whole = mesh == path.text;
     for (Object& object : scene_.objects) {
       if (meshOf(object.name) != mesh) continue;
@@ -322,10 +379,17 @@ class Loader {
     for (Object& object : scene_.objects) {
       for (Part& part : object.parts) {
         const auto [entry, isNew] = numbers.emplace(part.material, static_cast<int>(scene_.materials.size()));
-        if (isNew) scene_.materials.push_back(materialOf(uses_[static_cast<std::size_t>(part.material)]));
+        if (isNew) addMaterial(uses_[static_cast<std::size_t>(part.material)]);
         part.material = entry->second;
       }
     }
+  }
+
+  void addMaterial(const Use& use) {
+    std::optional<PlacedText> place;
+    if (use.text != nullptr) place = use.text->texture ? use.text->texture : use.text->mask;
+    if (!attempt(place, [&] { scene_.materials.push_back(materialOf(use)); }))
+      scene_.materials.emplace_back();
   }
 
   Material materialOf(const Use& use) {
@@ -345,13 +409,32 @@ class Loader {
     } else {
       const ModelMaterial& model = *use.model;
       if (!model.diffuseFile.empty())
-        material.diffuseTexture = texture(model.directory / model.diffuseFile, model.diffuseFile, false);
+        material.diffuseTexture =
+            texture(mapFile(model, "map_Kd", model.diffuseFile), model.diffuseFile, false);
       if (!model.maskFile.empty()) {
         material.maskTexture =
-            texture(model.directory / model.maskFile, model.maskFile, true, model.dissolve);
+            texture(mapFile(model, "map_d", model.maskFile), model.maskFile, true, model.dissolve);
       }
     }
     return material;
+  }
+
+  /// The image that an MTL file names; DiagnosticsError with the line there when it is none that can be read.
+  static fs::path mapFile(const ModelMaterial& model, const char* statement, const std::string& name) {
+    const fs::path file = model.mtlFile.parent_path() / name;
+    std::error_code error;
+    const bool readable = hasFormat(name, kImageFormats);
+    if (readable && fs::exists(file, error)) return file;
+    Diagnostic finding;
+    finding.place = {model.mtlFile.string(), lineOfMap(model, statement), 0};
+    finding.what = readable
+                       ? fmt::format("the image '{}' of material '{}' ({}) does not exist", name,
+                                     model.values.name, statement)
+                       : fmt::format("the image '{}' of material '{}' ({}) has a format that cannot be read",
+                                     name, model.values.name, statement);
+    finding.expected = readable ? fmt::format("it at {}", file.lexically_normal().string())
+                                : fmt::format("one of {}", fmt::join(kImageFormats, ", "));
+    throw DiagnosticsError({finding});
   }
 
   /// Each image is read once for each use of it.
@@ -409,6 +492,7 @@ class Loader {
   const SceneDescription& description_;
   const AssetSearch& assets_;
   const SceneLoadOptions& options_;
+  Purpose purpose_;
   Scene scene_;
   Hasher hasher_;
   std::vector<std::unique_ptr<Model>> models_;  // uses_ points into them
@@ -416,7 +500,8 @@ class Loader {
   std::map<Use::Key, int> useNumbers_;                        // into uses_
   std::map<std::string, const MaterialText*> textMaterials_;  // the first of each name
   std::map<std::tuple<fs::path, bool, float>, int> textures_;
-  std::vector<Diagnostic> findings_;
+  std::set<std::string> unread_;  // meshes whose files were refused
+  std::vector<Diagnostic> findings_, warnings_;
 };
 
 }  // namespace
@@ -424,24 +509,42 @@ class Loader {
 namespace {
 
 /// Everything that can be found without a model; DiagnosticsError with all of it.
-SceneDescription describedScene(const dsl::Document& document, const AssetSearch& assets) {
+SceneDescription describedScene(const dsl::Document& document, const AssetSearch& assets, Purpose purpose,
+                                std::vector<Diagnostic>& missing) {
   std::vector<Diagnostic> findings = document.findings;
   SceneDescription description = describeScene(document, findings);
-  findMissingFiles(document, description, assets, findings);
-  throwIfAny(std::move(findings));
+  const bool whole = findings.empty();
+  findMissingFiles(document, description, assets, purpose, missing);
+  if (!whole || purpose == Purpose::rendering) {
+    findings.insert(findings.end(), missing.begin(), missing.end());
+    dsl::dropConsequences(document, findings);
+    throwIfAny(std::move(findings));
+  }
   return description;
 }
 
 Scene loadDocument(const dsl::Document& document, const SceneLoadOptions& options) {
   const AssetSearch assets(document.file, options);
-  const SceneDescription description = describedScene(document, assets);
-  return Loader(document, description, assets, options).run();
+  std::vector<Diagnostic> missing;
+  const SceneDescription description = describedScene(document, assets, Purpose::rendering, missing);
+  return Loader(document, description, assets, options, Purpose::rendering).run();
 }
 
 }  // namespace
 
 void checkScene(const fs::path& file, const SceneLoadOptions& options) {
-  describedScene(dsl::parseFile(file), AssetSearch(file, options));
+  const dsl::Document document = dsl::parseFile(file);
+  const AssetSearch assets(file, options);
+  std::vector<Diagnostic> findings;
+  const SceneDescription description = describedScene(document, assets, Purpose::checking, findings);
+  Loader loader(document, description, assets, options, Purpose::checking);
+  try {
+    loader.run();
+  } catch (const DiagnosticsError& error) {
+    findings.insert(findings.end(), error.diagnostics().begin(), error.diagnostics().end());
+  }
+  for (const Diagnostic& warning : loader.warnings()) logFinding(warning);
+  throwIfAny(std::move(findings));
 }
 
 Scene loadScene(const fs::path& file, const SceneLoadOptions& options) {

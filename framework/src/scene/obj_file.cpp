@@ -73,7 +73,8 @@ class MaterialTable {
   }
 
   void addUnknown(const std::string& name, const std::vector<std::string>& files) {
-    if (options_.needsMaterials) {
+    // Where a material file is missing, that has been told.
+    if (options_.needsMaterials && !fileMissing_) {
       complain(fmt::format("{}: material '{}' is in none of its material files ({}); grey {} is used instead",
                            objFile_.string(), name,
                            files.empty() ? "it names none" : fmt::format("{}", fmt::join(files, ", ")),
@@ -94,7 +95,10 @@ class MaterialTable {
       if (fs::exists(file, error)) {
         readFile(file);
       } else if (options_.needsMaterials) {
-        complain(fmt::format("{}: material file '{}' does not exist", objFile_.string(), file.string()));
+        fileMissing_ = true;
+        complain(
+            fmt::format("{}: material file '{}' does not exist; grey {} is used instead of its materials",
+                        objFile_.string(), file.string(), kUnknownAlbedo));
       }
     }
   }
@@ -134,7 +138,7 @@ class MaterialTable {
     result.dissolve = source.dissolve;
     result.diffuseFile = portable(source.diffuse_texname);
     result.maskFile = portable(source.alpha_texname);
-    result.directory = file.parent_path();
+    result.mtlFile = file;
     noteUnsupported(source);
     const glm::vec3 albedo = values.diffuse + values.specular;
     if (options_.needsMaterials && std::max({albedo.x, albedo.y, albedo.z}) > 1.0f + 1e-6f) {
@@ -166,6 +170,7 @@ class MaterialTable {
   std::map<std::string, int> numbers_;
   std::set<fs::path> files_;
   std::set<std::string> unsupported_;
+  bool fileMissing_ = false;
   std::uint32_t fallback_ = 0;
 };
 
@@ -264,6 +269,23 @@ void triangulate(const ObjScan& scan, const std::vector<std::uint32_t>& tableOfN
 }
 
 }  // namespace
+
+int lineOfMap(const ModelMaterial& material, const std::string& statement) {
+  std::istringstream text(readFile(material.mtlFile));
+  bool inside = false;
+  int number = 0;
+  for (std::string line; std::getline(text, line);) {
+    ++number;
+    std::istringstream words(line);
+    std::string word, rest;
+    words >> word;
+    std::getline(words >> std::ws, rest);
+    if (!rest.empty() && rest.back() == '\r') rest.pop_back();
+    if (word == "newmtl") inside = portable(rest) == material.values.name;
+    if (inside && word == statement) return number;
+  }
+  return 0;
+}
 
 ObjFile readObjFile(const fs::path& path, const ModelOptions& options, Hasher& hasher) {
   // Measured on the well-known models: five times the text at its peak with the file's normals, fifteen where

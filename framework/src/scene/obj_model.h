@@ -17,8 +17,12 @@ struct ModelMaterial {
   Material values;                    ///< without textures
   std::string diffuseFile, maskFile;  ///< as written; empty for none
   float dissolve = 1.0f;              ///< coverage of the whole surface; below a half it is a hole
-  std::filesystem::path directory;    ///< of the MTL file: images are relative to it
+  std::filesystem::path mtlFile;      ///< images are relative to its folder
 };
+
+/// The line of an MTL file in which the material names its image by `statement` ("map_Kd"); 0 when it does
+/// not.
+int lineOfMap(const ModelMaterial& material, const std::string& statement);
 
 struct ModelObject {
   std::string name;  ///< of the object or group; empty when the file names none

@@ -2,6 +2,7 @@
 // each reaches in equal time and what each needs for equal error.
 #pragma once
 
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -11,6 +12,10 @@
 #include "lumivox/results/runs.h"
 
 namespace lumivox {
+
+/// The metric that pipelines are compared by unless another is asked for. FLIP ends at 1 in every pixel, so
+/// that no handful of bright pixels decides, and needs no choice of exposure (docs/metrics.md).
+inline constexpr const char* kDefaultMetric = "flip";
 
 /// One point of a sweep, timed and judged.
 struct ComparedPoint {
@@ -59,6 +64,11 @@ struct PipelineComparison {
   int controls = 0;                          ///< that say so; 0: it is kSignificantTimeShare
   /// Points whose time or error has too few repeats or seeds for any claim: they are neither beaten nor beat.
   std::size_t undecided = 0;
+  /// Pipelines that are not among these, and the one that each comes to the same passes as: samePipelines().
+  std::map<std::string, std::string> same;
+  /// Every pipeline, of two at least, has a point with one and the same error, to the bit: the component
+  /// tells nothing apart. Direct light that all pipelines make with the same passes, for instance.
+  bool equalForAll = false;
 
   /// Whether some of its points are on the Pareto front: no other pipeline beats it at their budgets.
   bool hasFront(std::size_t pipeline) const;
@@ -70,8 +80,8 @@ struct ComparisonLimits {
   TimeFloor floor = {};  ///< of the device that the points were timed on
 };
 
-/// Names of the components that pipelines can be compared in, in the order of an image's making; the last is
-/// "final", the whole image.
+/// Names of the components that pipelines can be compared in: first those that tell techniques apart, the
+/// indirect ones; the last is "final", the whole image.
 std::vector<std::string> comparableComponents();
 /// Of these, those that some point has an error for.
 std::vector<std::string> componentsOf(const std::vector<const ReportPoint*>& points);
@@ -86,7 +96,8 @@ void requireErrorMetric(const std::string& metric);
 /// The metric of that name: mean over seeds with the reference's noise and the spread over seeds; NaN: none.
 Measured errorNumber(const ComponentError& error, const std::string& metric);
 
-/// Compares the points that were timed and judged in this component; without any of them `points` is empty.
+/// Compares the points that were timed and judged in this component; without any of them `points` is empty. A
+/// pipeline that comes to the same passes as another one is left out, and named in `same`.
 PipelineComparison comparePipelines(const std::vector<const ReportPoint*>& points,
                                     const std::string& component, bool bias, const std::string& metric,
                                     const ComparisonLimits& limits);
@@ -95,6 +106,11 @@ PipelineComparison comparePipelines(const std::vector<const ReportPoint*>& point
 std::vector<PipelineComparison> compareComponents(const std::vector<const ReportPoint*>& points,
                                                   const std::vector<std::string>& metrics,
                                                   const ComparisonLimits& limits);
+
+/// The comparison that a reader is shown first, an index: the indirect component that most pipelines have and
+/// that differs between them, against the techniques' own model; where there is none, the whole image, or
+/// what there is. Of the metric kDefaultMetric, or of the first one's. Empty: there is nothing to compare.
+std::optional<std::size_t> ledComparison(const std::vector<PipelineComparison>& comparisons);
 
 /// Stored runs that can be set against each other: one scene with its content, camera, time, size of the
 /// image and positions in the pixel, one device, driver, way of shaders and host, the same outputs kept.

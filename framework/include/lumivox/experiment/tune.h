@@ -8,20 +8,20 @@
 #include <string>
 #include <vector>
 
-#include "lumivox/analysis/interpolation.h"
+#include "lumivox/analysis/comparison.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/results/store.h"
 
 namespace lumivox {
 
 struct TuneOptions {
-  ReportOptions measure;             ///< one scene; `output` is not used; `progress`: of the evaluations
-  std::optional<double> budgetMs;    ///< of a frame in which every kept pass runs
-  std::optional<double> errorLimit;  ///< exactly one of the two
-  std::string metric = "rmse";       ///< one of errorMetrics(), as errorNumber() reads it
-  std::string output = kWholeImage;  ///< of the pipelines; those without it are left out
-  bool bias = false;                 ///< against the technique's own model, not the full reference
-  int evaluations = 60;              ///< most points to look at, stored ones included
+  ReportOptions measure;                ///< one scene; `output` is not used; `progress`: of the evaluations
+  std::optional<double> budgetMs;       ///< of a frame in which every kept pass runs
+  std::optional<double> errorLimit;     ///< exactly one of the two
+  std::string metric = kDefaultMetric;  ///< one of errorMetrics(), as errorNumber() reads it
+  std::string output = kWholeImage;     ///< of the pipelines; those without it are left out
+  bool bias = false;                    ///< against the technique's own model, not the full reference
+  int evaluations = 60;                 ///< most points to look at, stored ones included
 };
 
 /// One point that the search looked at.

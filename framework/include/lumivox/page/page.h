@@ -15,7 +15,14 @@ struct ReportFiles {
 /// absent.
 ReportFiles reportFiles(const std::filesystem::path& output);
 
+enum class ReportDetail {
+  whole,
+  brief  ///< of each scene the first screen alone, with the images of the default points; CSV and JSON are
+         ///< whole
+};
+
 /// Every number of the page is in the JSON, but for those that a reader derives from others.
-void writeReport(const ReportFiles& files, const ReportRecord& record);
+void writeReport(const ReportFiles& files, const ReportRecord& record,
+                 ReportDetail detail = ReportDetail::whole);
 
 }  // namespace lumivox

@@ -75,6 +75,21 @@ constexpr bool reads(Reads set, Reads one) {
   return (set & one) != Reads::nothing;
 }
 
+/// The levels of a grid with mips that an output fills, or that an input reads.
+enum class Levels { unspecified, finest, all };
+
+/// An input's expectation of the output behind it, beyond its kind. Another output is a warning: the light
+/// would be wrong.
+struct Expects {
+  std::optional<Contributes> component;  ///< of the image, which the output holds; `nothing`: none of them
+  Levels levels = Levels::unspecified;   ///< all: each must be filled
+
+  Expects() = default;
+  Expects(Contributes held)
+      : component(held) {}                    // NOLINT: a member of a pass says `Contributes::direct` alone
+  Expects(Levels filled) : levels(filled) {}  // NOLINT: or `Levels::all`
+};
+
 /// Members of a pass register themselves with it, in the order of declaration.
 class PortBase {
  public:
@@ -94,8 +109,9 @@ class PortBase {
 class OutBase : public PortBase {
  public:
   OutBase(Pass* pass, std::string name, const PortKind& kind, Contributes contributes, Needs needs,
-          std::string meaning);
+          std::string meaning, Levels levels);
   Contributes contributes() const { return contributes_; }
+  Levels levels() const { return levels_; }
   Needs needs() const { return needs_; }
   /// Whether anything wants this output in this run: false when it was pruned. A pass asks before it computes
   /// the output.
@@ -112,6 +128,7 @@ class OutBase : public PortBase {
   friend class PassHarness;
   Contributes contributes_;
   Needs needs_;
+  Levels levels_;
   bool wanted_ = true;
 };
 
@@ -121,10 +138,10 @@ template <class Port>
 class Out : public OutBase {
  public:
   Out(Pass* pass, std::string name, Contributes contributes = Contributes::nothing,
-      Needs needs = Needs::nothing, std::string meaning = {})
-      : OutBase(pass, std::move(name), portKind<Port>(), contributes, needs, std::move(meaning)) {}
-  Out(Pass* pass, std::string name, std::string meaning)
-      : Out(pass, std::move(name), Contributes::nothing, Needs::nothing, std::move(meaning)) {}
+      Needs needs = Needs::nothing, std::string meaning = {}, Levels levels = Levels::unspecified)
+      : OutBase(pass, std::move(name), portKind<Port>(), contributes, needs, std::move(meaning), levels) {}
+  Out(Pass* pass, std::string name, std::string meaning, Levels levels = Levels::unspecified)
+      : Out(pass, std::move(name), Contributes::nothing, Needs::nothing, std::move(meaning), levels) {}
   Out& operator=(Port value) {
     value_ = std::move(value);
     return *this;
@@ -152,8 +169,9 @@ enum class Presence { required, optional, history };
 class InBase : public PortBase {
  public:
   InBase(Pass* pass, std::string name, const PortKind& kind, Presence presence, std::string meaning,
-         Needs needs);
+         Needs needs, Expects expects);
   Presence presence() const { return presence_; }
+  const Expects& expects() const { return expects_; }
   /// Contents that the scene must have for this input to be read. Without them nothing is made for its sake.
   Needs needs() const { return needs_; }
   /// False when nothing is connected or what is connected was pruned away: the pass then uses the variant
@@ -175,17 +193,19 @@ class InBase : public PortBase {
  private:
   Presence presence_;
   Needs needs_;
+  Expects expects_;
 };
 
 template <class Port>
 class In : public InBase {
  public:
-  In(Pass* pass, std::string name, std::string meaning = {})
+  In(Pass* pass, std::string name, std::string meaning = {}, Expects expects = {})
       : InBase(pass, std::move(name), portKind<Port>(), Presence::required, std::move(meaning),
-               Needs::nothing) {}
+               Needs::nothing, expects) {}
   /// `needs` is for inputs that are not required: what the scene must have for the input to be read.
-  In(Pass* pass, std::string name, Presence presence, std::string meaning = {}, Needs needs = Needs::nothing)
-      : InBase(pass, std::move(name), portKind<Port>(), presence, std::move(meaning), needs) {}
+  In(Pass* pass, std::string name, Presence presence, std::string meaning = {}, Needs needs = Needs::nothing,
+     Expects expects = {})
+      : InBase(pass, std::move(name), portKind<Port>(), presence, std::move(meaning), needs, expects) {}
   const Port& operator*() const {
     return presence() == Presence::history ? *held_ : static_cast<const Out<Port>*>(source_)->value();
   }

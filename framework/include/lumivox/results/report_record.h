@@ -30,6 +30,8 @@ struct OutputImages {
 
 struct PointRecord {
   ReportPoint point;
+  RunIdentity identity;
+  std::string created;     ///< empty: it was not measured
   bool isDefault = false;  ///< every parameter as the text has it (with --set)
   std::vector<OutputImages> images;
 };
@@ -92,5 +94,7 @@ struct ReportRecord {
 };
 
 std::vector<const ReportPoint*> pointsOf(const SceneRecord& scene);
+/// The points of all scenes as runs that are in no store.
+std::vector<StoredRun> runsOf(const ReportRecord& report);
 
 }  // namespace lumivox

@@ -261,8 +261,8 @@ struct SceneLoadOptions {
 /// path (the message lists where it was sought).
 Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
-/// The findings of a text without loading any model: what `lumivox check` prints. Missing files are findings
-/// too, unless the model is sought on the asset path only.
+/// Loads like loadScene(), but goes on behind each finding; DiagnosticsError with all of them, each at its
+/// line. An absent model is a finding too. Warnings are logged with their places (base/findings.h).
 void checkScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
 }  // namespace lumivox

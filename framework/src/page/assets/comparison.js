@@ -1,11 +1,13 @@
 "use strict";
-// Error against time: the charts of all pipelines at all their points, and the tables of fronts, equal time and equal error.
-const comparisonSection = (function () {
-  const { data, h, caption, list, table, isNumber, milliseconds, number, measured, quartiles, plain, shortName, words, parametersText,
-          componentTitle, style, chart } = lumivox;
-  const metrics = { rmse: "RMSE", relative_mse: "relative MSE", percentile95: "95th percentile", flip: "FLIP" };
-  const axes = { rmse: "RMSE, W/(sr m²)", relative_mse: "relative MSE", percentile95: "95th percentile of the error, W/(sr m²)", flip: "mean FLIP" };
-  const against = { misses: "full transport: what a viewer misses", bias: "the technique's own model: its bias" };
+// Pipelines against each other in one scene: what is compared is chosen once, and the plot of error against time, the table of the
+// default points and the tables of fronts, equal time and equal error follow.
+const comparisonOf = (function () {
+  const { data, h, caption, list, table, chooser, sortedBy, isNumber, milliseconds, number, measured, quartiles, plain, soft, shortName,
+          pipelineName, words, parametersText, componentTitle, percent, bytes, listed, style, theme, swatch, chart } = lumivox;
+  const metrics = { flip: "FLIP", rmse: "RMSE", relative_mse: "relative MSE", percentile95: "95th percentile" };
+  const units = { flip: "", rmse: "W/(sr m²)", relative_mse: "", percentile95: "W/(sr m²)" };
+  const members = { flip: "flip_hdr", rmse: "rmse", relative_mse: "relative_mse", percentile95: "percentile_95" };
+  const against = { bias: "its own bounces", misses: "full transport" };
 
   // ---- charts
 
@@ -41,73 +43,64 @@ const comparisonSection = (function () {
     }
   };
 
-  // Levels that mean something: the error of leaving the component out.
-  const levels = {
-    id: "levels",
-    afterDatasetsDraw(drawn) {
-      const { ctx, scales: { y }, chartArea } = drawn;
-      ctx.save();
-      ctx.setLineDash([6, 4]);
-      ctx.strokeStyle = ctx.fillStyle = "#5b6676";
-      ctx.font = "11px sans-serif";
-      for (const level of drawn.options.levels || []) {
-        const at = y.getPixelForValue(level.value);
-        if (at < chartArea.top || at > chartArea.bottom) continue;
-        ctx.beginPath(); ctx.moveTo(chartArea.left, at); ctx.lineTo(chartArea.right, at); ctx.stroke();
-        ctx.fillText(level.text, chartArea.left + 6, at - 4);
-      }
-      ctx.restore();
-    }
-  };
-
   function drawnPoint(comparison, index) {
     const point = comparison.points[index], time = point.frame_ms;
     const by = point.beaten_by === null ? null : comparison.points[point.beaten_by];
     return { x: time.median, y: point.error.value, low: time.lower_quartile, high: time.upper_quartile,
              uncertainty: point.error.uncertainty || 0, front: by === null,
-             text: parametersText(point.parameters) + ": " + number(time.median) + " ms, " + plain(point.error)
+             text: parametersText(point.parameters) + ": " + milliseconds(time.median) + " ms, " + plain(point.error)
                + (by === null ? "; on the Pareto front" : "; beaten by " + shortName(by.file) + " (" + parametersText(by.parameters) + ")") };
   }
 
-  function configuration(scene, comparison) {
+  function configuration(comparison) {
+    const { paper, band } = theme();
     const datasets = comparison.pipelines.map((pipeline, index) => {
       const own = comparison.points.map((point, at) => at).filter(at => comparison.points[at].pipeline === index
         && comparison.points[at].error.value > 0);
       const points = pipeline.front.concat(own.filter(at => !pipeline.front.includes(at))).map(at => drawnPoint(comparison, at));
       const { colour, shape } = style(pipeline.file);
-      return { label: shortName(pipeline.file), data: points, bars: true, showLine: true, borderWidth: 1.5, pointRadius: 5,
+      return { label: shortName(pipeline.file), data: points, bars: true, showLine: true, borderWidth: 1.5, pointRadius: 5, pointHoverRadius: 8,
                borderColor: colour, backgroundColor: colour, pointStyle: shape,
-               pointBackgroundColor: points.map(point => point.front ? colour : "#ffffff"),
+               pointBackgroundColor: points.map(point => point.front ? colour : paper),
                segment: { borderColor: segment => segment.p1DataIndex < pipeline.front.length ? undefined : "transparent" } };
     });
     const all = datasets.flatMap(set => set.data);
     const times = all.flatMap(point => [point.low, point.high]).filter(value => value > 0);
-    const levelOf = comparison.metric !== "rmse" ? [] : scene.points.flatMap(point => point.errors)
-      .filter(error => error.component === comparison.component && error.reference === comparison.reference && error.rmse_of_nothing > 0)
-      .slice(0, 1).map(error => ({ value: error.rmse_of_nothing, text: "left out" }));
-    const errors = all.map(point => point.y).concat(levelOf.map(level => level.value));
-    const range = { left: Math.min(...times) / 1.3, right: Math.max(...times) * 1.3 };
+    const errors = all.flatMap(point => [point.y, point.y + point.uncertainty, point.y - point.uncertainty]).filter(value => value > 0);
+    // A tenth of the span on both sides. What spans little is shown as it is, else ticks would be missing.
+    const fitted = values => {
+      const low = Math.min(...values), high = Math.max(...values);
+      if (high < 3 * low) {
+        const space = Math.max(0.1 * (high - low), 0.01 * high);
+        return { type: "linear", min: Math.max(0, low - space), max: high + space };
+      }
+      const space = Math.pow(high / low, 0.1);
+      return { type: "logarithmic", min: low / space, max: high * space };
+    };
+    const x = fitted(times), y = fitted(errors);
     const steps = comparison.front.map(at => ({ x: comparison.points[at].frame_ms.median, y: comparison.points[at].error.value }));
-    datasets.push({ label: "least error within a time", data: steps.concat([{ x: range.right, y: steps[steps.length - 1].y }]),
-                    showLine: true, stepped: "before", pointRadius: 0, pointHitRadius: 0, borderWidth: 5, borderColor: "#0000001c",
-                    backgroundColor: "#0000001c", pointStyle: "line" });
-    // The legend shows a pipeline's colour, whether its first point is hollow or not.
-    const generateLabels = drawn => Chart.defaults.plugins.legend.labels.generateLabels(drawn)
-      .map(label => ({ ...label, fillStyle: drawn.data.datasets[label.datasetIndex].backgroundColor }));
+    datasets.push({ label: "least error within a time", data: steps.concat([{ x: x.max, y: steps[steps.length - 1].y }]),
+                    showLine: true, stepped: "before", pointRadius: 0, pointHitRadius: 0, borderWidth: 5, borderColor: band,
+                    backgroundColor: band, pointStyle: "line" });
+    const unit = units[comparison.metric];
     return {
-      type: "scatter", data: { datasets }, plugins: [errorBars, levels],
+      type: "scatter", data: { datasets }, plugins: [errorBars],
       options: {
-        animation: false, maintainAspectRatio: false, levels: levelOf,
+        animation: false, maintainAspectRatio: false,
         scales: {
-          x: { type: "logarithmic", title: { display: true, text: "frame time, ms" }, min: range.left, max: range.right,
-               ticks: { maxRotation: 0, autoSkipPadding: 12 } },
-          y: { type: "logarithmic", title: { display: true, text: axes[comparison.metric] },
-               min: Math.min(...errors) / 1.5, max: Math.max(...errors) * 1.5 } },
+          x: { title: { display: true, text: "frame time, ms" }, ...x, ticks: { maxRotation: 0, autoSkipPadding: 16, callback: tickOf(x) } },
+          y: { title: { display: true, text: metrics[comparison.metric] + (unit && ", " + unit) }, ...y,
+               ticks: { autoSkipPadding: 10, callback: tickOf(y) } } },
         plugins: {
-          legend: { position: "bottom", labels: { boxWidth: 14, font: { size: 11 }, usePointStyle: true, generateLabels } },
+          legend: { display: false },
           tooltip: { filter: item => item.raw.text !== undefined,
                      callbacks: { label: item => item.dataset.label + ", " + item.raw.text } } } } };
   }
+  // Of an axis that begins and ends anywhere the ends have no numbers of their own.
+  const tickOf = axis => value => {
+    const nice = axis.type === "linear" ? value !== axis.min && value !== axis.max : [1, 2, 5].includes(Number(value.toExponential().split("e")[0]));
+    return nice ? number(value) : null;
+  };
 
   // ---- tables
 
@@ -117,18 +110,18 @@ const comparisonSection = (function () {
     return parametersText(Object.fromEntries(Object.entries(point.parameters)
       .filter(([name, value]) => others.some(other => other.parameters[name] !== value))));
   }
-  const pointName = (comparison, point) =>
-    [shortName(point.file), " ", h("span", { class: "soft" }, "(" + differingParameters(comparison, point) + ")")];
+  const columns = (...titles) => titles.map(title => typeof title === "string" ? { title } : { title: title[0], kind: title[1] });
+  const named = file => [swatch(file), pipelineName(file)];
 
   /** From which budget on which pipeline has the least error. */
   function rangeTable(comparison) {
-    return table([{ title: "Budget, ms", kind: "number" }, { title: "Least error", kind: "number" }, { title: "Pipeline" },
-                  { title: "Parameters" }, { title: "Not told apart from it", kind: "wide" }],
+    return table(columns("Budget, ms", ["Least error", "number"], "Pipeline", "Parameters", ["Not told apart from it", "wide"]),
       comparison.ranges.map(range => {
         const [best, ...others] = range.best.map(at => comparison.points[at]);
-        return [range.to_ms === null ? "from " + milliseconds(range.from_ms) + " on" : milliseconds(range.from_ms) + " – " + milliseconds(range.to_ms),
-                measured(best.error), h("b", null, shortName(best.file)), differingParameters(comparison, best),
-                others.map(other => shortName(other.file)).join(", ")];
+        return [sortedBy(range.from_ms, range.to_ms === null ? "from " + milliseconds(range.from_ms) + " on"
+                                                             : milliseconds(range.from_ms) + " – " + milliseconds(range.to_ms)),
+                sortedBy(best.error.value, measured(best.error)), named(best.file), differingParameters(comparison, best),
+                others.map((other, index) => [index > 0 && ", ", pipelineName(other.file)])];
       }));
   }
 
@@ -144,42 +137,94 @@ const comparisonSection = (function () {
     }))];
   }
 
-  function reachedText(cell, value, notReached, text) {
-    if (cell.reach === "not_measured") return "-";
-    if (cell.reach === "not_reached") return h("span", { class: "soft" }, notReached);
+  function reachedCell(cell, value, notReached, text) {
+    if (cell.reach === "not_measured") return sortedBy(null, "-");
+    if (cell.reach === "not_reached") return sortedBy(null, soft(notReached));
     const shown = [cell.reach === "at_most" ? "≤ " : null, measured({ value: cell[value], uncertainty: cell.uncertainty }, text)];
-    return cell.best ? h("b", null, shown) : shown;
+    return sortedBy(cell[value], cell.best ? h("b", null, shown) : shown);
   }
 
   function equalTable(comparison, cells, limit, value, title, notReached, text) {
     const limits = comparison.pipelines[0][cells].map(cell => cell[limit]);
-    return table([{ title: "Pipeline" }, ...limits.map(one => ({ title: title(one), kind: "number" }))],
-      comparison.pipelines.map(pipeline => [shortName(pipeline.file), ...pipeline[cells].map(cell => reachedText(cell, value, notReached, text))]));
+    return table(columns("Pipeline", ...limits.map(one => [title(one), "number"])),
+      comparison.pipelines.map(pipeline => [named(pipeline.file), ...pipeline[cells].map(cell => reachedCell(cell, value, notReached, text))]));
   }
 
-  function pointTable(comparison) {
-    return table([{ title: "Pipeline" }, { title: "Parameters" }, { title: "Frame, ms", kind: "number" }, { title: "Error", kind: "number" },
-                  { title: "Front" }],
-      comparison.points.map(point => ({ kind: point.beaten_by === null ? "default" : "", cells: [
-        shortName(point.file), differingParameters(comparison, point), quartiles(point.frame_ms), measured(point.error),
-        point.beaten_by === null ? h("span", { class: "good" }, "on the Pareto front")
-                                 : ["beaten by ", pointName(comparison, comparison.points[point.beaten_by])]] })));
+  function pointTable(scene, comparison) {
+    return table(columns("Pipeline", "Parameters", ["Frame, ms", "number"], ["Error", "number"], ["Front", "wide"]),
+      comparison.points.map(point => {
+        const by = point.beaten_by === null ? null : comparison.points[point.beaten_by];
+        return { pipeline: point.file, isDefault: scene.points[point.source].default, kind: scene.points[point.source].default ? "default" : "",
+                 cells: [named(point.file), differingParameters(comparison, point), sortedBy(point.frame_ms.median, quartiles(point.frame_ms)),
+                         sortedBy(point.error.value, measured(point.error)),
+                         by === null ? h("span", { class: "good" }, "on the Pareto front")
+                                     : ["beaten by ", pipelineName(by.file), " ", soft("(" + differingParameters(comparison, by) + ")")]] };
+      }));
   }
 
-  function tables(comparison) {
+  function tables(scene, comparison) {
     const four = value => lumivox.significant(value, 4);
     const equalTime = comparison.pipelines[0].equal_time.length > 0, equalError = comparison.pipelines[0].equal_error.length > 0;
-    return [caption(metrics[comparison.metric] + " against the reference's layer ", h("code", null, comparison.reference), "."),
-            h("h5", null, "Least error within a budget"), rangeTable(comparison), beatenList(comparison),
-            equalTime && [h("h5", null, "Equal time: the error that each reaches"),
-                          equalTable(comparison, "equal_time", "ms", "error", limit => four(limit) + " ms", "slower", number)],
-            equalError ? [h("h5", null, "Equal error: the time that each needs, ms"),
-                          equalTable(comparison, "equal_error", "error", "ms", four, "not reached", milliseconds)]
+    return [caption("Chosen above: ", h("b", null, titleOf(comparison)), ", ", metrics[comparison.metric], ", the reference's layer ",
+                    h("code", null, comparison.reference), "."),
+            h("h4", null, "Least error within a budget"), rangeTable(comparison), beatenList(comparison),
+            equalTime && [h("h4", null, "Equal time: the error that each reaches"),
+                          equalTable(comparison, "equal_time", "ms", "error", limit => four(limit) + " ms", "slower")],
+            h("h4", null, "Equal error: the time that each needs, ms"),
+            equalError ? equalTable(comparison, "equal_error", "error", "ms", four, "not reached", milliseconds)
                        : h("p", null, "All errors are the same within 0.5 %: there is nothing to interpolate between."),
-            h("h5", null, "All points, by time"), pointTable(comparison)];
+            h("h4", null, "All points, by time"), pointTable(scene, comparison)];
   }
 
-  // ---- the section
+  /** The error of a component at a point: against the reference that is wanted, or the only one. */
+  function errorOf(point, component, kind) {
+    const own = point.errors.filter(error => error.component === component && (component !== "final" || error.output === "whole_image"));
+    return own.find(error => error.kind === kind) || own[0];
+  }
+  function errorNumber(error, metric) {
+    if (!error) return { value: null, uncertainty: null };
+    const one = error[members[metric]];
+    return one !== null && typeof one === "object" ? one : { value: one, uncertainty: error[members[metric] + "_uncertainty"] };
+  }
+  const isWhole = comparison => comparison.component === "final" && comparison.against === "misses";
+
+  /** One row for each pipeline, at its default parameters; those that come to the same passes share one. */
+  function defaultsTable(scene, comparison) {
+    const { metric } = comparison, sameAs = file => Object.entries(scene.same_passes).filter(([, as]) => as === file).map(([one]) => one);
+    const points = scene.points.filter(point => point.default && !(point.pipeline in scene.same_passes));
+    const standing = point => {
+      const own = comparison.points.filter(one => one.file === point.pipeline);
+      if (point.failure) return h("span", { class: "bad" }, "failed");
+      if (own.length === 0) return soft("has none of it");
+      if (own.some(one => one.beaten_by === null)) return h("span", { class: "good" }, "on it");
+      const others = own.map(one => comparison.points[one.beaten_by].file).filter(file => file !== point.pipeline);
+      const by = [...new Set(others.map(shortName))];
+      return h("span", { title: "by " + listed(by) }, "beaten");
+    };
+    const rows = points.map(point => {
+      const error = errorNumber(errorOf(point, comparison.component, comparison.against === "bias" ? "bias" : "miss"), metric);
+      const whole = errorNumber(errorOf(point, "final", "miss"), metric);
+      const pruning = scene.pruning.find(one => one.pipeline === point.pipeline), saves = pruning && pruning.first_frame_saves;
+      const same = sameAs(point.pipeline);
+      return { value: error.value, cells: [
+        [named(point.pipeline), same.length > 0 && [" ", soft("and " + listed(same.map(shortName)) + ": the same passes here")]],
+        sortedBy(point.failure ? null : point.frame_ms.median, point.failure ? "-" : milliseconds(point.frame_ms.median)),
+        sortedBy(error.value, measured(error)), ...(isWhole(comparison) ? [] : [sortedBy(whole.value, measured(whole))]),
+        sortedBy(point.failure ? null : point.peak_bytes, point.failure ? "-" : bytes(point.peak_bytes)),
+        sortedBy(saves && saves.told === "saved" ? saves.ms / saves.of_ms : null,
+                 !saves ? "-" : saves.told === "saved" ? percent(saves.ms / saves.of_ms) : words(saves.told)), standing(point)] };
+    });
+    const last = value => isNumber(value) ? value : Infinity;
+    rows.sort((a, b) => last(a.value) === last(b.value) ? 0 : last(a.value) - last(b.value));
+    return table(columns("Pipeline", ["Frame, ms", "number"], [metrics[metric] + ", " + lightOf(comparison), "number"],
+                         ...(isWhole(comparison) ? [] : [[metrics[metric] + ", whole image", "number"]]),
+                         ["Memory", "number"], ["Leaving out saves", "number"], "Front"), rows);
+  }
+
+  // ---- what is shown first
+
+  const lightOf = comparison => componentTitle(comparison.component).toLowerCase();
+  const titleOf = comparison => lightOf(comparison) + " against " + against[comparison.against];
 
   /** What the claims of a scene's fronts rest on. */
   function basis(scene) {
@@ -195,63 +240,73 @@ const comparisonSection = (function () {
     return text;
   }
 
-  function chooser(label, kind, choices, changed) {
-    const select = h("select", { "data-choose": kind }, Object.entries(choices).map(([value, title]) => h("option", { value }, title)));
-    select.addEventListener("change", () => changed(select.value));
-    return h("label", null, label + ": ", select, " ");
+  /** A sentence on the components that all pipelines make alike; null: there are none. */
+  function equalSentence(scene) {
+    const equal = scene.comparisons.filter(one => one.equal_for_all && one.metric === "flip" && one.component !== "final");
+    const components = [...new Set(equal.map(one => one.component))];
+    if (components.length === 0) return null;
+    return components.map(component => {
+      const one = equal.find(other => other.component === component);
+      const error = one.points.find(point => scene.points[point.source].default).error;
+      return componentTitle(component) + " light is the same in all pipelines (FLIP " + plain(error) + "): it tells nothing apart. ";
+    }).join("");
   }
 
+  /** The points for which there was no time; null: none. */
+  const leftOut = scene => scene.left_out_points.length === 0 ? null : lumivox.folded(
+    `For ${scene.left_out_points.length} points of the sweeps there was no time within the budget of ${data.budget_s} s`,
+    list(scene.left_out_points.map(point => shortName(point.pipeline) + ": " + parametersText(point.parameters))));
+
+  /** Of a scene: { plot, defaults, follow, chosen, sections }; null plot: there is nothing to compare. `follow` is told whenever
+   *  something else is chosen. */
   return function (scene) {
     const comparisons = scene.comparisons.filter(one => one.front.length > 0);
-    const components = scene.components;
-    const chosen = { metric: "rmse", against: "misses" };
-    // A component with one reference has one comparison, whatever it is to be judged against.
-    const shownOf = component => {
-      const fitting = comparisons.filter(one => one.component === component && one.metric === chosen.metric);
-      return fitting.find(one => one.against === chosen.against) || fitting[0];
-    };
+    const led = scene.led_comparison === null ? null : scene.comparisons[scene.led_comparison];
     const followers = [];
-    const choose = kind => value => { chosen[kind] = value; followers.forEach(follow => follow()); };
-
-    const figures = [], nothing = [];
-    for (const component of components) {
-      if (!shownOf(component)) {
-        nothing.push(componentTitle(component));
-        continue;
-      }
-      const drawn = chart(() => configuration(scene, shownOf(component)), { "data-chart": "error", "data-component": component });
-      followers.push(drawn.redraw);
-      figures.push(h("figure", null, h("h4", null, componentTitle(component)), drawn.frame));
-    }
-    // The whole image is what a reader looks for first.
-    const details = [...components].reverse().filter(shownOf).map(component => {
-      const place = h("div", null, tables(shownOf(component)));
-      followers.push(() => place.replaceChildren(...[h("div", null, tables(shownOf(component)))]));
-      return h("details", { open: component === "final" },
-               h("summary", null, componentTitle(component) + ": fronts, equal time, equal error"), place);
-    });
-    return [
-      h("h3", null, "Error against run time"),
-      caption("All pipelines at all points of their sweeps. Bars: quartiles of the frame time; one standard uncertainty of the error, "
-        + "of the reference's noise and the spread over seeds together. Filled points are on the Pareto front of all: no other point is as good in "
-        + "both time and error and better in one by more than three standard uncertainties, so points within their uncertainties are "
-        + "both on it. The grey steps bound all points by their values alone. Coloured lines join the points of one pipeline that none "
-        + "of its own beats: the tables interpolate along them. The dashed grey line is the error of leaving the component out. Down and "
-        + "to the left is better." + basis(scene)),
-      scene.left_out_points.length > 0 && lumivox.folded(
-        `For ${scene.left_out_points.length} points of the sweeps there was no time within the budget of ${data.budget_s} s`,
-        list(scene.left_out_points.map(point => shortName(point.pipeline) + ": " + parametersText(point.parameters)))),
-      h("p", null, comparisons.length > 0 && chooser("Measure", "metric", metrics, choose("metric")),
-        comparisons.some(one => one.against === "bias") && chooser("Against", "against", against, choose("against")),
-        h("span", { class: "caption" }, "A few very bright pixels, such as the edges of an area light, can rule the RMSE; the 95th percentile "
-          + "and FLIP are less moved by them.")),
-      h("div", { class: "charts" }, figures),
-      nothing.length > 0 && caption("Nothing to draw: " + nothing.join(", ")
-        + " has no error, since neither the reference nor any image has such light."),
-      caption("In the tables below: the logarithm of the error is linear in that of the time between two measured points of one "
-        + "pipeline; nothing is extrapolated. ≤: the slowest (fastest) point measured has that much within the budget (the error) "
-        + "already. ±: one standard uncertainty, from those of both points through the interpolation. Bold: the least, and what cannot "
-        + "be told apart from it."),
-      details];
+    const nothing = scene.components.filter(component => !comparisons.some(one => one.component === component));
+    if (!led || led.front.length === 0)
+      return { plot: h("p", null, "No pipeline has an error to compare by."), defaults: null, equal: null, sections: leftOut(scene),
+               chosen: () => null, follow: () => {} };
+    const keyOf = one => one.component + "/" + one.against;
+    let key = keyOf(led), metric = led.metric;
+    const chosen = () => comparisons.find(one => keyOf(one) === key && one.metric === metric) || led;
+    const changed = () => followers.forEach(follow => follow());
+    const follow = work => followers.push(work);
+    // The techniques' own model first, but of the whole image.
+    const order = one => scene.components.indexOf(one.component) * 2 + ((one.against === "bias") === (one.component === "final") ? 1 : 0);
+    const kinds = Object.fromEntries(comparisons.filter(one => one.metric === metric).sort((a, b) => order(a) - order(b))
+      .map(one => [keyOf(one), componentTitle(one.component) + " against " + against[one.against]]));
+    const choices = h("p", { class: "choices" },
+      chooser("Light", "light", kinds, key, value => { key = value; changed(); }),
+      chooser("Measure", "metric", metrics, metric, value => { metric = value; changed(); }));
+    const drawn = chart(() => configuration(chosen()), { "data-chart": "error" }, "Error against frame time of all pipelines at all their points");
+    follow(drawn.redraw);
+    const following = make => {
+      const place = h("div", null, make());
+      follow(() => place.replaceChildren(h("div", null, make())));
+      return place;
+    };
+    const legend = following(() => h("ul", { class: "legend" }, chosen().pipelines.map(one => h("li", null, swatch(one.file), shortName(one.file)))));
+    return {
+      plot: h("figure", { class: "plot" }, choices, drawn.frame, legend,
+        h("figcaption", null, "Down and to the left is better. Filled: on the Pareto front. Grey: least error within a time. Bars: quartiles of "
+          + "the time, uncertainty of the error.")),
+      defaults: following(() => defaultsTable(scene, chosen())), chosen, follow, equal: equalSentence(scene),
+      sections: [
+        caption("All pipelines at all points of their sweeps. Bars: quartiles of the frame time; one standard uncertainty of the error, "
+          + "of the reference's noise and the spread over seeds together. Filled points are on the Pareto front of all: no other point is as good in "
+          + "both time and error and better in one by more than three standard uncertainties, so points within their uncertainties are "
+          + "both on it. The grey steps bound all points by their values alone. Coloured lines join the points of one pipeline that none "
+          + "of its own beats: the tables interpolate along them." + basis(scene)),
+        Object.keys(scene.same_passes).length > 0 && list(Object.entries(scene.same_passes).map(([file, as]) =>
+          shortName(file) + " comes to the same passes as " + shortName(as) + " in this scene, and is not compared apart.")),
+        leftOut(scene),
+        nothing.length > 0 && caption("Nothing to compare: " + nothing.map(componentTitle).join(", ")
+          + " has no error, since neither the reference nor any image has such light."),
+        caption("In the tables below the logarithm of the error is linear in that of the time between two measured points of one "
+          + "pipeline; nothing is extrapolated. ≤: the slowest (fastest) point measured has that much within the budget (the error) "
+          + "already. ±: one standard uncertainty, from those of both points through the interpolation. Bold: the least, and what cannot "
+          + "be told apart from it."),
+        following(() => tables(scene, chosen()))] };
   };
 })();

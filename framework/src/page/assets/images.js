@@ -1,7 +1,11 @@
 "use strict";
 // Images, reference and FLIP maps, and a frame with a slider between any two of them.
-const imageSection = (function () {
-  const { images, h, caption, folded, exposureText, shortName, parametersText, componentTitle, pngAddress, whenShown } = lumivox;
+const imagesOf = (function () {
+  const { images, h, caption, folded, exposureText, shortName, pipelineName, parametersText, componentTitle, pngAddress, whenShown } = lumivox;
+  const ownOf = index => (images.scenes || [])[index] || { references: [], points: [] };
+  const figure = (address, alt, kind, text) => h("figure", null, h("img", { class: kind, alt, src: address }), h("figcaption", null, text));
+  /** Of the whole image only the composite counts, which every pipeline has. */
+  const isOf = (output, component) => output.component === component && (component !== "final" || output.output === "whole_image");
 
   /** Two images in one frame, the slider between them. `choices`: { title, address }. */
   function wipe(scene, component, choices, left, right) {
@@ -32,7 +36,26 @@ const imageSection = (function () {
     selects.forEach(one => one.addEventListener("change", load));
     whenShown(load);
     return h("div", { class: "wipe", "data-wipe": component },
-             h("p", null, h("label", null, "Left: ", selects[0]), " ", h("label", null, "Right: ", selects[1])), canvas, slider);
+             h("p", { class: "choices" }, h("label", null, "Left ", selects[0]), h("label", null, "Right ", selects[1])), canvas, slider);
+  }
+
+  /** The reference and the images of the default points in the light that is compared, in one row. */
+  function row(scene, index, comparison) {
+    const own = ownOf(index), figures = [];
+    let layer = null;
+    own.points.forEach((outputs, at) => {
+      const point = scene.points[at], output = outputs.find(one => isOf(one, comparison.component));
+      if (!point.default || !output || point.pipeline in scene.same_passes) return;
+      const map = output.against[comparison.against === "bias" ? 0 : output.against.length - 1];
+      if (map) layer = map.reference;
+      figures.push(figure(pngAddress(output.png), shortName(point.pipeline), null,
+                          [pipelineName(point.pipeline), map && h("span", { class: "soft" }, " FLIP " + map.flip.toFixed(3))]));
+    });
+    if (figures.length === 0) return null;
+    const reference = own.references.find(one => one.layer === layer);
+    const first = reference && figure(pngAddress(reference.png), "reference: " + layer, "reference",
+                                      ["reference ", h("span", { class: "soft" }, layer)]);
+    return h("div", { class: "row", role: "group", "aria-label": "images of " + componentTitle(comparison.component) }, first, figures);
   }
 
   /** All images of one component of a scene; null without any. */
@@ -42,46 +65,44 @@ const imageSection = (function () {
     const referenceFigure = layer => {
       const reference = own.references.find(one => one.layer === layer);
       if (!reference) return null;
-      if (!references.some(one => one.title === "reference: " + layer)) references.push({ title: "reference: " + layer, address: pngAddress(reference.png) });
-      return h("figure", null, h("img", { class: "reference", alt: "reference: " + layer, src: pngAddress(reference.png) }),
-               h("figcaption", null, "reference: " + layer));
+      if (!references.some(one => one.title === "reference: " + layer))
+        references.push({ title: "reference: " + layer, address: pngAddress(reference.png) });
+      return figure(pngAddress(reference.png), "reference: " + layer, "reference", "reference: " + layer);
     };
     own.points.forEach((outputs, index) => {
       const point = scene.points[index];
       for (const output of outputs) {
-        if (output.component !== name || (name === "final" && output.output !== "whole_image")) continue;
+        if (!isOf(output, name) || point.pipeline in scene.same_passes) continue;
         const title = shortName(point.pipeline) + ", " + parametersText(point.parameters);
         if (point.default) first = shown.length;
         shown.push({ title, address: pngAddress(output.png) });
-        const strip = h("div", { class: "strip" },
-          h("figure", null, h("img", { alt: title, src: pngAddress(output.png) }), h("figcaption", null, title)),
+        (point.default ? strips : more).push(h("div", { class: "strip" },
+          figure(pngAddress(output.png), title, null, title),
           output.against.map(map => {
             maps.push({ title: "FLIP: " + title + " against " + map.reference, address: pngAddress(map.png) });
-            return [referenceFigure(map.reference),
-                    h("figure", null, h("img", { alt: "FLIP map against " + map.reference, src: pngAddress(map.png) }),
-                      h("figcaption", null, "FLIP against " + map.reference + ": mean " + map.flip.toFixed(3)))];
-          }));
-        (point.default ? strips : more).push(strip);
+            return [referenceFigure(map.reference), figure(pngAddress(map.png), "FLIP map against " + map.reference, null,
+                                                           "FLIP against " + map.reference + ": mean " + map.flip.toFixed(3))];
+          })));
       }
     });
     if (shown.length === 0) return null;
     const choices = [...references, ...shown, ...maps];
-    return [h("h4", null, componentTitle(name)),
-            wipe(scene, name, choices, references.length + first, references.length > 0 ? references.length - 1 : shown.length - 1), strips,
-            more.length > 0 && folded("Other points of the sweeps", more)];
+    return folded(componentTitle(name),
+      wipe(scene, name, choices, references.length + first, references.length > 0 ? references.length - 1 : shown.length - 1), strips,
+      more.length > 0 && folded("Other points of the sweeps", more));
   }
 
-  return function (scene, index) {
-    const own = (images.scenes || [])[index] || { references: [], points: [] };
-    const isBlack = name => scene.comparisons.some(one => one.component === name && one.metric === "rmse" && one.front.length === 0);
-    const order = scene.components.filter(name => name === "final").concat(scene.components.filter(name => name !== "final"));
-    const black = order.filter(isBlack);
+  function all(scene, index) {
+    const own = ownOf(index);
+    const isBlack = name => scene.comparisons.some(one => one.component === name && one.front.length === 0);
+    const black = scene.components.filter(isBlack);
     return [
-      h("h3", null, "Images, reference and FLIP maps"),
       caption(`All images of the scene are shown at ${exposureText(scene)}, with the tone curve “${scene.reference.tone}”; occlusion, a `
         + "fraction, is shown as it is. A FLIP map is dark where a viewer sees no difference and bright where the difference is plain. NaN pixels are "
         + "magenta. Images are means over positions in the pixel, as the reference is. The slider moves the border between any two of them."),
-      order.filter(name => !isBlack(name)).map(name => component(scene, own, name)),
+      scene.components.filter(name => !isBlack(name)).map(name => component(scene, own, name)),
       black.length > 0 && caption("Not shown, since it is exactly that of the reference: " + black.map(componentTitle).join(", ") + ".")];
-  };
+  }
+
+  return { row, all };
 })();

@@ -2,7 +2,7 @@
 // Where each technique breaks: the matrix of pipelines and cases, the cells that are not stable, and those that are. `images`: the
 // folder beside the page that holds the cells' images; empty: no links.
 const stressSection = (function () {
-  const { h, caption, table, isNumber, number, measured, shortName, words } = lumivox;
+  const { h, caption, table, isNumber, number, measured, shortName, pipelineName, words } = lumivox;
   // In the order of concern.
   const outcomes = {
     broken: "NaN, infinite or negative where it must not be, a crash or a hang",
@@ -25,7 +25,9 @@ const stressSection = (function () {
     const cases = axis(cells, "family", "case"), techniques = axis(cells, "technique", "pipeline");
     const pipelines = techniques.flatMap(one => one.names);
     const at = (name, pipeline) => cells.findLastIndex(cell => cell.case === name && cell.pipeline === pipeline);
-    const text = cell => cell.outcome === "not_applicable" ? "" : hasNumber(cell) ? number(cell.value) + unit(cell) : words(cell.outcome);
+    // Long units are in the title, so that a dozen columns fit.
+    const brief = cell => cell.unit.length > 3 ? "" : unit(cell);
+    const text = cell => cell.outcome === "not_applicable" ? "" : hasNumber(cell) ? number(cell.value) + brief(cell) : words(cell.outcome);
     const place = (name, pipeline) => {
       const index = at(name, pipeline), cell = cells[index];
       if (!cell) return h("td", null);
@@ -33,7 +35,7 @@ const stressSection = (function () {
       return h("td", { class: "cell " + cell.outcome, title: shortName(pipeline) + ", " + name + ": " + value + (cell.measure ? "; " + cell.measure : "") },
                text(cell) && h("a", { href: "#cell-" + index }, text(cell)));
     };
-    return h("div", { class: "scroll" }, h("table", { class: "stress" },
+    return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "pipelines and cases" }, h("table", { class: "stress" },
       // Names of the columns stand upright, so that a dozen and more fit.
       h("thead", null,
         h("tr", null, h("th", null), techniques.map(one => h("th", { class: "group", colspan: one.names.length }, words(one.group)))),
@@ -62,15 +64,14 @@ const stressSection = (function () {
       cells.map((cell, index) => cell.outcome === outcome ? concern(cell, index, images) : null).filter(Boolean));
     const stable = cells.map((cell, index) => ({ cell, index })).filter(({ cell }) => cell.outcome === "stable");
     return [
-      h("h2", { id: "stress" }, "Where each technique breaks"),
       caption("Every pipeline on every extreme case. A cell holds what its case measures; its colour is the outcome. Each leads to its "
         + "image and to the command that repeats it."),
       legend(cells), matrix(cells), h("h3", null, "Cells that are not stable"), concerns.length > 0 ? concerns : h("p", null, "There are none."),
       h("h3", null, "Stable cells"),
       table([{ title: "Pipeline" }, { title: "Case" }, { title: "Measured", kind: "wide" }, { title: "Detail", kind: "wide" },
-             { title: "Image" }, { title: "Command" }],
-        stable.map(({ cell, index }) => [
-          [h("span", { id: "cell-" + index }), shortName(cell.pipeline)], words(cell.case), measureText(cell), cell.detail,
-          images && cell.image ? h("a", { href: cell.image }, "image") : "", h("code", null, cell.command)]))];
+             { title: "Image" }, { title: "Command", kind: "wide" }],
+        stable.map(({ cell, index }) => ({ pipeline: cell.pipeline, cells: [
+          [h("span", { id: "cell-" + index }), pipelineName(cell.pipeline)], words(cell.case), measureText(cell), cell.detail,
+          images && cell.image ? h("a", { href: cell.image }, "image") : "", h("code", null, cell.command)] })))];
   };
 })();

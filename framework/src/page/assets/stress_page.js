@@ -9,5 +9,5 @@
     h("header", null, h("h1", null, "Lumivox stress battery"),
       h("p", { class: "soft" }, data.cells.length + " cells on " + devices.join("; ") + ", " + period,
         data.command && [", by ", h("code", null, data.command)], ". The same numbers are in index.json beside this page.")),
-    h("main", null, stressSection(data.cells, "images")));
+    h("main", null, h("h2", { id: "stress" }, "Where each technique breaks"), stressSection(data.cells, "images")));
 })();

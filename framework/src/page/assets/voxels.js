@@ -1,7 +1,7 @@
 "use strict";
 // How voxelizers do: charts, the table of all records, and how times grow beside what papers say. `scaling`: exponents of each.
 const voxelSection = (function () {
-  const { h, caption, list, table, number, percent, bytes, quartiles, shortName, style, chart } = lumivox;
+  const { h, caption, list, table, sortedBy, number, percent, bytes, quartiles, shortName, style, chart } = lumivox;
 
   // Published times between the first and the last row of a table, of which only the growth is shown.
   // Mavridis & Papaioannou 2011, Table 1: 64^3 voxels, from the scene with the fewest triangles whose time is lowest (arena) to the one
@@ -62,17 +62,18 @@ const voxelSection = (function () {
   }
 
   function results(records) {
+    const less = ["Triangles", "Fragments", "Bytes per fragment", "Bytes per voxel"];
     const titles = [["Scene"], ["Voxelizer", "wide"], ...["Resolution", "Triangles", "Time, ms", "Occupied", "Recall", "Precision",
       "Holes, axis rays", "Holes, oblique rays", "Fragments", "Output", "Bytes per fragment", "Bytes per voxel", "All memory"]
-      .map(title => [title, "number"])];
+      .map(title => [title, "number", less.includes(title)])];
     const missing = records.filter(record => record.why_not);
     return [
-      table(titles.map(([title, kind]) => ({ title, kind })), records.filter(record => !record.why_not).map(record => ({
-        kind: record.is_default ? "default" : "", cells: [
-          shortName(record.scene), record.label, record.resolution, record.triangles, quartiles(record.frame_ms), record.occupied,
+      table(titles.map(([title, kind, hidden]) => ({ title, kind, hidden })), records.filter(record => !record.why_not).map(record => ({
+        kind: record.is_default ? "default" : "", pipeline: record.pipeline, isDefault: record.is_default, cells: [
+          shortName(record.scene), record.label, record.resolution, record.triangles, sortedBy(record.frame_ms.median, quartiles(record.frame_ms)), record.occupied,
           record.recall.toFixed(4), record.precision.toFixed(4), percent(record.holes.axis_share), percent(record.holes.oblique_share),
-          record.fragments || "-", bytes(record.bytes), record.fragments ? number(record.bytes_per_fragment) : "-",
-          number(record.bytes_per_voxel), bytes(record.allocated_bytes)] }))),
+          record.fragments || "-", sortedBy(record.bytes, bytes(record.bytes)), record.fragments ? number(record.bytes_per_fragment) : "-",
+          number(record.bytes_per_voxel), sortedBy(record.allocated_bytes, bytes(record.allocated_bytes))] }))),
       missing.length > 0 && [h("p", null, "Not measured:"), list(missing.map(record =>
         record.label + ", resolution " + record.resolution + ", " + record.triangles + " triangles: " + record.why_not))]];
   }
@@ -100,10 +101,9 @@ const voxelSection = (function () {
     const figure = (scene, kind, title) => {
       const own = records.filter(record => !record.why_not && record.scene === scene);
       return h("figure", null, h("h4", null, title),
-               chart(() => configuration(own, kind), { "data-voxels": kind, "data-scene": scene }, { tall: true }).frame);
+               chart(() => configuration(own, kind), { "data-voxels": kind, "data-scene": scene }, title + ": " + axes[kind].other + " against " + axes[kind].title).frame);
     };
     return [
-      h("h2", { id: "voxels" }, "Voxels"),
       caption("Every voxelizer against the exact test of triangles and boxes. Recall: share of the touched voxels that are occupied. Precision: "
         + "share of the occupied voxels that are touched. Holes: share of the crossings of straight rays with the surface at which the ray "
         + "meets no occupied voxel within a voxel and a half. Time: a frame in which everything that the output needs is made anew, median "
