@@ -55,6 +55,13 @@ inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+/// Remarks as they were before they were broken to fit the terminal.
+inline std::string unwrapped(std::string text) {
+  for (std::size_t at = text.find("\n  "); at != std::string::npos; at = text.find("\n  ", at))
+    text.replace(at, 3, " ");
+  return text;
+}
+
 /// Bad input: exit code 2, nothing on stdout, and a message that names what it is about.
 inline void checkRefused(const CommandResult& result, const std::string& named) {
   INFO("stdout: " << result.output << "\nstderr: " << result.errors);

@@ -218,8 +218,8 @@ TEST_CASE("a pipeline without voxels and one without a resolution are passed ove
                                                   "' --pipelines '" + place.file("fixed.pipeline") + "'");
   INFO(result.errors);
   CHECK(result.exitCode == 0);
-  CHECK(contains(result.output, "other, resolution 16: it makes no voxels"));
-  CHECK(contains(result.output, "fixed, resolution 16: it has no parameter 'resolution'"));
+  CHECK(contains(unwrapped(result.output), "other, resolution 16: it makes no voxels"));
+  CHECK(contains(unwrapped(result.output), "fixed, resolution 16: it has no parameter 'resolution'"));
   const CommandResult none = runCommand("lumivox -q voxels '" + place.scene() +
                                         "' --repeats 1 --pipelines '" + place.file("fixed.pipeline") + "'");
   CHECK(none.exitCode == 1);
@@ -230,7 +230,7 @@ TEST_CASE("a pipeline without voxels and one without a resolution are passed ove
   const CommandResult beyond =
       measure(place, "--resolution 64 --pipelines '" + place.file("small.pipeline") + "'");
   CHECK(beyond.exitCode == 0);
-  CHECK(contains(beyond.output, "the value must be a number in 1..32"));
+  CHECK(contains(unwrapped(beyond.output), "the value must be a number in 1..32"));
 }
 
 TEST_CASE("bad input of the voxels command is refused before any work, and names what it is about") {

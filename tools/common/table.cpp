@@ -147,6 +147,7 @@ std::string textTable(const std::vector<std::vector<std::string>>& rows, std::si
   keys = std::min(keys, all.size());
   const std::vector<std::size_t> head(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(keys));
   narrow(all, head, std::max(room / 2, leastOf(all, head)));
+  for (const std::size_t c : head) all[c].least = all[c].width;
   std::string text;
   for (std::size_t c = keys; c < all.size();) {
     std::vector<std::size_t> some = head;
