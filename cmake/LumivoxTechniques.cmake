@@ -43,6 +43,10 @@ function(lumivox_add_technique name)
   if(NOT sources)
     message(FATAL_ERROR "lumivox_add_technique(${name}): there is no source ${folder}/*.cpp")
   endif()
+  if(NOT EXISTS ${folder}/README.md)
+    message(FATAL_ERROR "lumivox_add_technique(${name}): the paper card ${folder}/README.md is missing; expected the paper, "
+      "what is implemented, deviations, claims and limits; 'lumivox new technique' writes one to start from")
+  endif()
   add_library(technique_${name} MODULE ${sources})
   set_target_properties(technique_${name} PROPERTIES
     OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${built} INSTALL_RPATH $ORIGIN/.. CXX_EXTENSIONS OFF)

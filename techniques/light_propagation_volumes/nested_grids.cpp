@@ -80,7 +80,8 @@ shader::BindingSet sampled(const Channels& channels, gpu::Sampling sampling,
 }
 
 gpu::ResourceBinding cellsBinding(const GridPlacement& grid) {
-  return shader::UniformSlot<Cells>{"Cells"}({grid.low, grid.voxelSize, grid.resolution});
+  return shader::UniformSlot<shaders::light_propagation_volumes::Cells>{"Cells"}(
+      {grid.low, grid.voxelSize, grid.resolution});
 }
 
 shader::BindingSet sampled(const ShGrid::Level& level, gpu::Sampling sampling) {

@@ -14,11 +14,12 @@ enum class Resolution { full, half };
 /// Block View of range.glsl.
 inline gpu::ResourceBinding viewOf(const CameraView& camera, int pixelsPerSample) {
   const glm::vec3 corner = camera.direction(0.0f, 0.0f);
-  return shader::UniformSlot<View>{"View"}({.eyeWorld = camera.eye,
-                                            .pixelsPerSample = pixelsPerSample,
-                                            .cornerDirection = corner,
-                                            .perColumn = camera.direction(1.0f, 0.0f) - corner,
-                                            .perRow = camera.direction(0.0f, 1.0f) - corner});
+  return shader::UniformSlot<shaders::volumetric_smoke::View>{"View"}(
+      {.eyeWorld = camera.eye,
+       .pixelsPerSample = pixelsPerSample,
+       .cornerDirection = corner,
+       .perColumn = camera.direction(1.0f, 0.0f) - corner,
+       .perRow = camera.direction(0.0f, 1.0f) - corner});
 }
 
 /// Samples of a march along either side of the image, with one for 2 x 2 pixels or for each.

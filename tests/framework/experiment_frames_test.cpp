@@ -114,7 +114,7 @@ TEST_CASE(
 TEST_CASE("a judged image covers upright and level edges within half of one of its positions in the pixel") {
   Toys toys;
   const Scene scene = furnace(0.0f);
-  for (const char* level : {"no", "yes"})
+  for (const char* level : {"off", "on"})
     for (const float at : {0.06f, 0.21f, 0.48f, 0.5f, 0.73f, 0.97f}) {
       const Pipeline pipeline = Pipeline::parse(
           fmt::format(

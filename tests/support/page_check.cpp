@@ -287,7 +287,7 @@ PageFindings checkPage(Browser& browser, const std::filesystem::path& page) {
   };
   browser.emulate("screen", "light");
   browser.open(page, kDesk[0], kDesk[1]);
-  for (const int(&size)[2] : {kTablet, kDesk}) {
+  for (const int* size : {kTablet, kDesk}) {
     browser.resize(size[0], size[1]);
     const nlohmann::json first = browser.evaluate(kFirstScreen);
     const auto later = [&](double& end, const char* what) {

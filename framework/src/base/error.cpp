@@ -81,7 +81,7 @@ std::string nearestWord(const std::string& word, const std::vector<std::string>&
   for (const std::string& candidate : candidates) {
     if (candidate == word || candidate.size() > 64) continue;
     const std::size_t d = distance(word, candidate);
-    if (d < bestDistance && d < std::min(word.size(), candidate.size())) {
+    if (d < bestDistance && d < std::max(word.size(), candidate.size())) {
       bestDistance = d;
       best = candidate;
     }

@@ -211,7 +211,7 @@ class BlockChecker {
   void reportUnknown(const Property& property) {
     if (specification_.open) return;
     const int length = static_cast<int>(property.word.size());
-    strangers_.push_back(property.word);
+    strangers_.push_back({property.word, &property});
     if (byWord(specification_.blocks, property.word) != nullptr) {
       return report(property.place, length, fmt::format("'{}' is a block", property.word),
                     fmt::format("{} ... {{ ... }}", property.word));
@@ -265,7 +265,7 @@ class BlockChecker {
         return report(inner.place, length, fmt::format("'{}' is a property, not a block", inner.word),
                       fmt::format("{} and its values; a block after them starts a new line", inner.word));
       }
-      strangers_.push_back(inner.word);
+      strangers_.push_back({inner.word, nullptr});
       std::vector<std::string> known;
       for (const BlockSpecification& one : specification_.blocks) known.push_back(one.word);
       return report(inner.place, length,
@@ -290,10 +290,20 @@ class BlockChecker {
                        first->second.text()));
   }
 
-  /// Whether an unknown word stands in for a missing one, which its own finding names: each for one.
-  bool standsIn() {
-    if (strangers_.empty()) return false;
-    strangers_.pop_back();
+  /// Whether an unknown word stands in for a missing one, which its own finding names: each for one. Its
+  /// values would do for the missing property, or the words are much alike.
+  bool standsIn(const std::string& missing, const PropertySpecification* specification) {
+    const auto stands = [&](const Stranger& stranger) {
+      if (nearestWord(stranger.word, {missing}) == missing) return true;
+      if ((stranger.property != nullptr) != (specification != nullptr)) return false;
+      if (specification == nullptr) return true;
+      Findings misfits;
+      checkProperty(document_, *stranger.property, *specification, misfits);
+      return misfits.empty();
+    };
+    const auto found = std::find_if(strangers_.begin(), strangers_.end(), stands);
+    if (found == strangers_.end()) return false;
+    strangers_.erase(found);
     return true;
   }
 
@@ -309,7 +319,7 @@ class BlockChecker {
     if (kindIsUnknown()) return;
     for (const PropertySpecification* property : properties_) {
       if (!property->required || firstPlaces_.count(property->word) > 0) continue;
-      if (standsIn()) continue;
+      if (standsIn(property->word, property)) continue;
       report(block_.place, wordLength(),
              fmt::format("block '{}' lacks the property '{}'", block_.title(), property->word),
              fmt::format("{} with {}", property->word, expectation(*property)));
@@ -319,7 +329,7 @@ class BlockChecker {
       const bool present = std::any_of(block_.items.begin(), block_.items.end(), [&](const Item& item) {
         return item.block && item.block->word == inner.word;
       });
-      if (present || standsIn()) continue;
+      if (present || standsIn(inner.word, nullptr)) continue;
       report(block_.place, wordLength(),
              fmt::format("block '{}' lacks a block '{}'", block_.title(), inner.word),
              fmt::format("{} ... {{ ... }}: {}", inner.word, inner.meaning));
@@ -332,7 +342,11 @@ class BlockChecker {
   Findings& findings_;
   std::vector<const PropertySpecification*> properties_;
   std::map<std::string, SourcePlace> firstPlaces_;  // of properties by word, of blocks by word and name
-  std::vector<std::string> strangers_;              // unknown words
+  struct Stranger {
+    std::string word;
+    const Property* property;  // null: a block
+  };
+  std::vector<Stranger> strangers_;  // what no table knows
 };
 
 }  // namespace
