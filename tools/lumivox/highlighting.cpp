@@ -62,32 +62,32 @@ HighlightedWords highlightedWords() {
 }
 
 std::string textMateGrammar(const HighlightedWords& words) {
-  using Json = nlohmann::ordered_json;
+  using Grammar = nlohmann::ordered_json;
   const auto rule = [](const std::string& name, const std::string& match) {
-    return Json{{"name", name + ".lumivox"}, {"match", match}};
+    return Grammar{{"name", name + ".lumivox"}, {"match", match}};
   };
   // Words are whole ones, of letters, digits and underscores.
   const auto whole = [](const std::vector<std::string>& some) {
     return fmt::format(R"((?<![\w./$])(?:{})(?![\w./]))", alternatives(some));
   };
-  Json strings{{"name", "string.quoted.double.lumivox"},
+  Grammar strings{{"name", "string.quoted.double.lumivox"},
                {"begin", "\""},
                {"end", "\"|$"},
-               {"patterns", Json::array({rule("constant.character.escape", R"(\\.)")})}};
-  Json number =
+               {"patterns", Grammar::array({rule("constant.character.escape", R"(\\.)")})}};
+  Grammar number =
       rule("constant.numeric", fmt::format(R"({}(\s*(?:{})(?![\w/]))?)", kNumber, alternatives(words.units)));
   number["captures"] = {{"1", {{"name", "keyword.other.unit.lumivox"}}}};
-  Json block =
+  Grammar block =
       rule("meta.block",
            fmt::format(R"(^\s*({})(?![\w./])(?:\s+("[^"]*"|[\w./]+))?(?:\s+({})(?![\w./]))?(?=[^{{}}#]*\{{))",
                        alternatives(words.blocks), alternatives(words.kinds)));
   block["captures"] = {{"1", {{"name", "keyword.control.lumivox"}}},
                        {"2", {{"name", "entity.name.lumivox"}}},
                        {"3", {{"name", "storage.type.lumivox"}}}};
-  const Json grammar{{"name", "Lumivox"},
+  const Grammar grammar{{"name", "Lumivox"},
                      {"scopeName", "source.lumivox"},
                      {"fileTypes", {"scene", "pipeline", "sweep", "reproduction"}},
-                     {"patterns", Json::array({rule("comment.line.number-sign", "#.*$"), block, strings,
+                     {"patterns", Grammar::array({rule("comment.line.number-sign", "#.*$"), block, strings,
                                                rule("variable.parameter", R"(\$\w+)"), number,
                                                rule("keyword.control", whole(words.blocks)),
                                                rule("support.type.property-name", whole(words.properties)),
