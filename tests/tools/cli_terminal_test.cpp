@@ -55,7 +55,7 @@ TEST_CASE("progress in a terminal is one line that fits its width, whatever that
                       columns);
     INFO(shown.written);
     REQUIRE(shown.exitCode == 0);
-    CHECK(countOf(shown.written, "reference of Little room") > 2);
+    CHECK(countOf(shown.written, "reference of ") > 2);
     // Lines of progress begin with a carriage return and are never ended by a line feed.
     std::size_t lines = 0;
     for (std::size_t at = shown.written.find("\r\x1b[K"); at != std::string::npos;
@@ -259,7 +259,7 @@ TEST_CASE("times have units as in the texts, and a budget without one is refused
   const Place place;
   const std::string room = place.quoted("room.scene");
   checkRefused(runCommand("lumivox report " + room + " --budget 30"),
-               "--budget '30': expected a time above 0 with its unit (m");
+               "--budget '30': expected a time above 0 with its unit (s, ms or min)");
   checkRefused(runCommand("lumivox report " + room + " --budget 0s"), "above 0");
   checkRefused(runCommand("lumivox tune " + room + " --budget 16"), "--budget '16'");
   checkRefused(runCommand("lumivox stress --time-limit 3"), "--time-limit '3'");
@@ -289,7 +289,6 @@ TEST_CASE("a seed is a whole number from 0 in every command") {
       checkRefused(runCommand("lumivox " + command + " --seed " + seed),
                    std::string("--seed '") + seed + "': expected a whole number from 0");
     }
-  checkRefused(runCommand("vdbexport " + room + " --list --seed -1"), "--seed '-1'");
 }
 
 TEST_CASE("render, reference, describe and fmt answer in JSON") {

@@ -302,6 +302,7 @@ TEST_CASE("bad input of vdbexport is refused with what was expected, and nothing
   const std::string inputs = place.scene() + " " + committedPipeline("voxel_cone_tracing");
   const std::string out = " -o " + place.file("out.vdb");
   checkRefused(vdbexport(inputs + out + " --grid grid.mip"), "did you mean 'grid.mips'");
+  checkRefused(vdbexport(inputs + " --list --seed -1"), "--seed '-1'");
   checkRefused(vdbexport(inputs + out + " --grid direct.radiance"),
                "is of kind Image; expected one of the kinds");
   checkRefused(vdbexport(inputs + out + " --grid grid.mips --level 42"),

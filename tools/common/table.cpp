@@ -83,15 +83,21 @@ void narrow(std::vector<Column>& columns, const std::vector<std::size_t>& chosen
 }
 
 /// The lines of a cell in a column of this width.
-std::vector<std::string> linesOf(const std::string& text, std::size_t width, bool breaks) {
-  if (!breaks || shownWidth(text) <= width) return {text};
+std::vector<std::string> linesOf(const std::string& text, std::size_t width) {
+  if (shownWidth(text) <= width) return {text};
   // An indented cell stays indented.
   const std::size_t indent = std::min(text.find_first_not_of(' '), text.size());
   const std::string broken = std::string(indent, ' ') + wrapped(text, width - std::min(width, indent), 1);
   std::vector<std::string> lines;
   for (std::size_t begin = 0; begin <= broken.size();) {
     const std::size_t end = std::min(broken.find('\n', begin), broken.size());
-    lines.push_back((begin == 0 ? "" : std::string(indent, ' ')) + broken.substr(begin, end - begin));
+    std::string line = (begin == 0 ? "" : std::string(indent, ' ')) + broken.substr(begin, end - begin);
+    // A word that is wider than the column is cut, behind a slash where it has one.
+    for (; shownWidth(line) > width && line.size() > width; line.erase(0, lines.back().size())) {
+      const std::size_t slash = line.rfind('/', width - 1);
+      lines.push_back(line.substr(0, slash == std::string::npos || slash == 0 ? width : slash + 1));
+    }
+    lines.push_back(std::move(line));
     begin = end + 1;
   }
   return lines;
@@ -104,7 +110,7 @@ std::string block(const Rows& rows, const std::vector<Column>& columns,
     std::vector<std::vector<std::string>> cells;
     std::size_t height = 1;
     for (const std::size_t c : chosen) {
-      cells.push_back(c < rows[r].size() ? linesOf(rows[r][c], columns[c].width, columns[c].words)
+      cells.push_back(c < rows[r].size() ? linesOf(rows[r][c], columns[c].width)
                                          : std::vector<std::string>{""});
       height = std::max(height, cells.back().size());
     }
@@ -159,6 +165,10 @@ std::string textTable(const std::vector<std::vector<std::string>>& rows, std::si
       return leastOf(all, more) <= room;
     }());
     std::vector<Column> own = all;
+    if (const std::size_t least = leastOf(own, some); least > room) {
+      Column& last = own[some.back()];
+      last.least -= std::min(last.least - 1, least - room);
+    }
     narrow(own, some, room);
     text += (text.empty() ? "" : "\n") + block(rows, own, some);
   }

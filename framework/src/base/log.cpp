@@ -147,11 +147,14 @@ struct Progress::State {
   double elapsed() const { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
   /// "rendering: 12 of 48 images, about 5 s left".
-  std::string text(double secondsLeft) const {
+  std::string text(double secondsLeft) const { return text(what, secondsLeft); }
+
+  /// Under another name for the work, such as a shorter one.
+  std::string text(const std::string& label, double secondsLeft) const {
     const double share = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0.0;
-    std::string line = unit.empty() ? fmt::format("{}: {:.0f} %", what, share * 100)
-                       : total == 0 ? fmt::format("{}: {} {}", what, done.load(), unit)
-                                    : fmt::format("{}: {} of {} {}", what, done.load(), total, unit);
+    std::string line = unit.empty() ? fmt::format("{}: {:.0f} %", label, share * 100)
+                       : total == 0 ? fmt::format("{}: {} {}", label, done.load(), unit)
+                                    : fmt::format("{}: {} of {} {}", label, done.load(), total, unit);
     if (!std::isfinite(secondsLeft)) secondsLeft = share > 0.0 ? elapsed() * (1.0 - share) / share : -1.0;
     if (secondsLeft >= 0.0 && done < total) line += ", about " + durationText(secondsLeft) + " left";
     return line;
@@ -161,6 +164,10 @@ struct Progress::State {
   std::string line(double secondsLeft, const std::string& doing) const {
     std::string line = text(secondsLeft);
     const auto columns = static_cast<std::size_t>(terminalColumns(STDERR_FILENO) - 1);
+    // How much is left says more than the end of a long name.
+    if (const std::size_t wide = shownWidth(line), named = shownWidth(what);
+        wide > columns && named > wide - columns)
+      line = text(cutTo(what, named - (wide - columns)), secondsLeft);
     constexpr std::size_t kLeastBar = 8, kMostBar = 30, kFrame = 3;  // "[", "] "
     const std::size_t used = shownWidth(line);
     if (total > 0 && used + kLeastBar + kFrame <= columns) {
