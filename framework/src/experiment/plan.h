@@ -25,8 +25,8 @@ std::vector<PlannedPoint> plannedPoints(const Pipeline& pipeline, const Paramete
 /// The points of these sweeps alone.
 std::vector<PlannedPoint> pointsOfSweeps(const Pipeline& pipeline, const ParameterValues& settings,
                                          const std::vector<Sweep>& sweeps, bool progressive);
-/// "pipeline "X" does not accumulate and is measured without the axis 'frames'", where a sweep has that axis; else
-/// empty.
+/// "pipeline "X" does not accumulate and is measured without the axis 'frames'", where a sweep has that axis;
+/// else empty.
 std::string withoutFrames(const Pipeline& pipeline, const std::vector<Sweep>& sweeps, bool progressive);
 
 /// Of the assignments "name=value", those whose parameter the pipeline has.
