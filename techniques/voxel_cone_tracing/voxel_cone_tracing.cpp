@@ -2,10 +2,9 @@
 // voxel cone tracing"; thesis Gomes 2015, Sec. 4.2.1. Pre-filtering and final gathering; injection is in
 // inject.cpp.
 #include "lumivox/base/error.h"
-#include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/media.h"
-#include "voxel_cone_tracing_shaders.h"
+#include "march.h"
 
 namespace lumivox::voxel_cone_tracing {
 
@@ -62,7 +61,7 @@ class GatherPass : public Pass {
   enum class Distribution { cosine, published };
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
-  In<RadianceGrid> grid{this, "grid", "pre-filtered radiance, one mip per halving", Levels::all};
+  StoreInput store{this};
   In<ScatteringGrid> media{this, "media", Presence::optional,
                            "media that dim what the cones see; light that they scatter is left out"};
   Param<int> cones{this, "cones", 6, within(1, 256), "diffuse cones per pixel"};
@@ -76,21 +75,7 @@ class GatherPass : public Pass {
   Param<bool> asPublished{
       this, "as_published", false,
       "Listings 4.12 and 4.13 to the letter: the five cones with the weights 1 and 0.707, not normalised, from two voxels on by samples of two voxels and more; 'cones', 'distribution', 'step', 'offset', 'start', 'clearance' and 'footprint' have no say"};
-  Param<float> step{this, "step", 0.5f, within(0.05f, 2.0f), "step along a cone as a share of its diameter"};
-  Param<float> offset{this, "offset", 1.0f, within(0.0f, 8.0f),
-                      "start of a cone along the normal, in voxels"};
-  Param<float> start{this, "start", 1.0f, within(0.0f, 8.0f), "start of a cone along its axis, in voxels"};
-  Param<float> clearance{
-      this, "clearance", 0.5f, within(0.0f, 1e3f),
-      "largest voxels that are read as a share of their height over the surface; as published: no limit, 1000"};
-  Param<float> footprint{
-      this, "footprint", 0.5f, within(0.25f, 1.0f),
-      "voxels that are read as a share of the diameter of the cone; as published: 1, which reads twice as wide as the cone"};
-  Param<float> reach{
-      this, "reach", 0.0f, within(0.0f, 1e9f), "m", "length of a cone; 0: to the end of the grid"};
-  Param<float> jitter{
-      this, "jitter", 0.0f, within(0.0f, 1.0f),
-      "most by which a cone's first step is shorter, as a share of it, by chance for each pixel and cone: noise in place of bands"};
+  ConeMarch march{this};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
                      "indirect light reflected by the diffuse lobe"};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::glossyMaterial,
@@ -99,7 +84,7 @@ class GatherPass : public Pass {
   Reads readsFrom() const override { return Reads::camera | Reads::environment; }
 
   void run(PassContext& frame) override {
-    const RadianceGrid& input = *grid;
+    const StoreBinding input = store.binding();
     if (input.holdsMedia && media.present())
       throw Error(
           "voxel_cone_tracing.gather: the voxels of 'grid' already contain the media, and 'media' would dim what the cones see once more; expected 'media' to be left out, or 'store_media off' in voxel_cone_tracing.inject");
@@ -108,36 +93,16 @@ class GatherPass : public Pass {
                                   .glossy = glossy.wanted() && gbuffer->specular != nullptr,
                                   .environment = frame.traits().environment,
                                   .medium = bound.axis};
-    const gather::Constants constants{
-        .coneCount = cones,
-        .publishedCones = distribution == Distribution::published,
-        .asPublished = asPublished,
-        .opacityOfFinestVoxel = input.opacity == RadianceGrid::Opacity::ofFinestVoxel};
-    const glm::vec3 extent = glm::vec3(input.grid.resolution) * input.grid.voxelSize;
+    const gather::Constants constants{.coneCount = cones,
+                                      .publishedCones = distribution == Distribution::published,
+                                      .asPublished = asPublished};
     if (variant.diffuse) diffuse = Image{frame.image("indirect diffuse radiance")};
     if (variant.glossy) glossy = Image{frame.image("indirect glossy radiance")};
-    frame.dispatch(
-        frame.program(variant, constants),
-        {gather::parameters({.gridLow = input.grid.low,
-                             .voxelSize = input.grid.voxelSize,
-                             .gridExtent = extent,
-                             .stepShare = step,
-                             .eyeWorld = frame.snapshot().camera.eye,
-                             .maxDistance = reach > 0.0f ? reach + 0.0f : 2.0f * glm::length(extent),
-                             .environment = frame.sceneDescription().environment,
-                             .offset = offset,
-                             .startShare = start,
-                             .coarsest = static_cast<float>(input.radiance->description().levels - 1),
-                             .clearance = clearance,
-                             .unit = input.unit,
-                             .footprint = footprint,
-                             .coneRatio = coneRatio,
-                             .jitter = jitter,
-                             .seed = seedWords(frame)}),
-         GBufferBinding(*gbuffer), bound,
-         gather::radianceGrid(input.radiance, gpu::Sampling::linearMipsBorder),
-         gather::diffuseImage(textureOf(diffuse)), gather::glossyImage(textureOf(glossy))},
-        pixels(frame));
+    frame.dispatch(frame.program(variant, constants),
+                   {gather::parameters({.eyeWorld = frame.snapshot().camera.eye, .coneRatio = coneRatio}),
+                    GBufferBinding(*gbuffer), bound, input, march.binding(frame, input),
+                    gather::diffuseImage(textureOf(diffuse)), gather::glossyImage(textureOf(glossy))},
+                   pixels(frame));
   }
 };
 

@@ -1,0 +1,57 @@
+#include "march.h"
+
+#include "lumivox/toolkit/bindings.h"
+
+namespace lumivox::voxel_cone_tracing {
+
+namespace gather = shaders::voxel_cone_tracing::gather;
+
+StoreInput::StoreInput(Pass* pass)
+    : grid_(pass, "grid", "pre-filtered radiance, one mip per halving", Levels::all) {}
+
+StoreBinding StoreInput::binding() const {
+  const RadianceGrid& grid = *grid_;
+  const glm::vec3 extent = glm::vec3(grid.grid.resolution) * grid.grid.voxelSize;
+  StoreBinding result;
+  result.length = 2.0f * glm::length(extent);
+  result.holdsMedia = grid.holdsMedia;
+  result.add(shader::UniformSlot<gather::Store>{"Store"}(
+      {.storeLow = grid.grid.low,
+       .storeVoxel = grid.grid.voxelSize,
+       .storeExtent = extent,
+       .storeCoarsest = static_cast<float>(grid.radiance->description().levels - 1),
+       .storeUnit = grid.unit,
+       .storeOpacityOfFinestVoxel = grid.opacity == RadianceGrid::Opacity::ofFinestVoxel}));
+  result.add(shader::SampledSlot{"radianceGrid"}(grid.radiance, gpu::Sampling::linearMipsBorder));
+  return result;
+}
+
+ConeMarch::ConeMarch(Pass* pass)
+    : step_(pass, "step", 0.5f, within(0.05f, 2.0f), "step along a cone as a share of its diameter"),
+      offset_(pass, "offset", 1.0f, within(0.0f, 8.0f), "start of a cone along the normal, in voxels"),
+      start_(pass, "start", 1.0f, within(0.0f, 8.0f), "start of a cone along its axis, in voxels"),
+      clearance_(
+          pass, "clearance", 0.5f, within(0.0f, 1e3f),
+          "largest voxels that are read as a share of their height over the surface; as published: no limit, 1000"),
+      footprint_(
+          pass, "footprint", 0.5f, within(0.25f, 1.0f),
+          "voxels that are read as a share of the diameter of the cone; as published: 1, which reads twice as wide as the cone"),
+      reach_(pass, "reach", 0.0f, within(0.0f, 1e9f), "m", "length of a cone; 0: to the end of the grid"),
+      jitter_(
+          pass, "jitter", 0.0f, within(0.0f, 1.0f),
+          "most by which a cone's first step is shorter, as a share of it, by chance for each pixel and cone: noise in place of bands") {
+}
+
+shader::BindingSet ConeMarch::binding(const PassContext& frame, const StoreBinding& store) const {
+  return {shader::UniformSlot<gather::March>{"March"}({.environment = frame.sceneDescription().environment,
+                                                       .maxDistance = reach_ > 0.0f ? reach_ : store.length,
+                                                       .stepShare = step_,
+                                                       .offset = offset_,
+                                                       .startShare = start_,
+                                                       .clearance = clearance_,
+                                                       .footprint = footprint_,
+                                                       .jitter = jitter_,
+                                                       .seed = seedWords(frame)})};
+}
+
+}  // namespace lumivox::voxel_cone_tracing

@@ -1,0 +1,38 @@
+// Cones through a store of light and opacity, as every pass that traces cones takes them: which store, and
+// how they step through it. GLSL side: shaders/voxel_cone_tracing/march.glsl and store.glsl.
+#pragma once
+
+#include "lumivox/plugin/technique.h"
+#include "voxel_cone_tracing_shaders.h"
+
+namespace lumivox::voxel_cone_tracing {
+
+/// The bindings of a store, and what a pass must know of it. Named by name, so that every program that
+/// includes store.glsl takes them.
+struct StoreBinding : shader::BindingSet {
+  float length = 0;         ///< no cone need be longer, m
+  bool holdsMedia = false;  ///< participating media are in the voxels
+};
+
+/// The store that a pass reads: members of the pass.
+class StoreInput {
+ public:
+  explicit StoreInput(Pass* pass);
+  StoreBinding binding() const;
+
+ private:
+  In<RadianceGrid> grid_;
+};
+
+/// Steps along cones: members of a pass.
+class ConeMarch {
+ public:
+  explicit ConeMarch(Pass* pass);
+  /// The block March for cones through this store.
+  shader::BindingSet binding(const PassContext& frame, const StoreBinding& store) const;
+
+ private:
+  Param<float> step_, offset_, start_, clearance_, footprint_, reach_, jitter_;
+};
+
+}  // namespace lumivox::voxel_cone_tracing
