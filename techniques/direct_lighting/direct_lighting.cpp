@@ -24,8 +24,11 @@ glm::mat4 worldToClip(const SceneSnapshot& snapshot) {
   const float near = far * 1e-4f;
   const float aspect = static_cast<float>(camera.width) / static_cast<float>(camera.height);
   const float fov = 2.0f * std::atan(camera.tanHalfFov);
-  return glm::perspectiveRH_ZO(fov, aspect, near, far) *
-         glm::lookAtRH(camera.eye, camera.eye + camera.forward, camera.up);
+  glm::mat4 projection = glm::perspectiveRH_ZO(fov, aspect, near, far);
+  // The image moves against the rays; clip space is 2 wide, and w is minus the depth's coordinate.
+  projection[2][0] += 2.0f * camera.shift.x / static_cast<float>(camera.width);
+  projection[2][1] -= 2.0f * camera.shift.y / static_cast<float>(camera.height);
+  return projection * glm::lookAtRH(camera.eye, camera.eye + camera.forward, camera.up);
 }
 
 class GBufferPass : public Pass {

@@ -31,7 +31,7 @@ class Progressive : public Toy {
   }
 };
 
-/// The pixel of an upright or level edge: 1 where the camera's axis has passed it.
+/// The pixel of an upright or level edge: 1 where its ray passes before it.
 class Edge : public Toy {
  public:
   using Toy::Toy;
@@ -40,11 +40,8 @@ class Edge : public Toy {
   Out<Image> radiance{this, "radiance", Contributes::direct};
   Reads readsFrom() const override { return Reads::camera; }
   void run(PassContext& frame) override {
-    // The camera of the furnace looks along -z, and its pixels are squares.
-    const CameraView& camera = frame.snapshot().camera;
-    const float pixel = 2.0f * camera.tanHalfFov / static_cast<float>(camera.height);
-    const float shift = (level ? camera.forward.y : camera.forward.x) / -camera.forward.z / pixel + 0.5f;
-    radiance = paint(frame, shift < at ? 1.0f : 0.0f);
+    const glm::vec2 shift = frame.snapshot().camera.shift;
+    radiance = paint(frame, (level ? shift.y : shift.x) + 0.5f < at ? 1.0f : 0.0f);
   }
 };
 

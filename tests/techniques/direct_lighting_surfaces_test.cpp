@@ -148,3 +148,33 @@ TEST_CASE("the camera looks through the holes of alpha masks") {
     CHECK_THAT(image.at(kSide - 3, y, 0), WithinRel(1.0f / glm::pi<float>() * 3.0f, 2e-3f));
   }
 }
+
+TEST_CASE(
+    "an image whose plane is shifted by parts of a pixel is made of pixels of an image with more of them") {
+  // A wide angle: a camera that turned in place of it would shift the corners twice as far.
+  constexpr int kFiner = 4;
+  SceneBuilder builder;
+  builder.box({-1, -1, -1}, {1, 1, 1}, builder.lambert(0.7f), true);
+  builder.light(LightKind::point, {5, 5, 5}, {0.3, 0.2, -0.1});
+  builder.look({0.1, 0.2, 0.9}, {-0.2, 0.1, -1}, {0, 1, 0}, glm::half_pi<double>(), kSide, kSide / 2);
+  const Pipeline direct = pipeline("direct_lighting");
+  const auto rendered = [&](int pixelsPerPixel, const glm::vec2& shift) {
+    RenderOptions options;
+    options.width = pixelsPerPixel * kSide;
+    options.height = pixelsPerPixel * kSide / 2;
+    PipelineExecutor executor(device(), techniques(), builder.scene, direct, options);
+    SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0, {}, options.width, options.height);
+    snapshot.camera.shift = shift;
+    return executor.render(snapshot, 0).outputs.at("direct");
+  };
+  const ImageBuffer finer = rendered(kFiner, glm::vec2(0.0f));
+  for (const glm::ivec2 part : {glm::ivec2(0, 0), glm::ivec2(3, 1), glm::ivec2(1, 2)}) {
+    CAPTURE(part.x, part.y);
+    const ImageBuffer shifted = rendered(1, (glm::vec2(part) + 0.5f) / static_cast<float>(kFiner) - 0.5f);
+    for (int y = 0; y < kSide / 2; ++y)
+      for (int x = 0; x < kSide; ++x)
+        for (int c = 0; c < 3; ++c)
+          CHECK_THAT(shifted.at(x, y, c),
+                     WithinRel(finer.at(kFiner * x + part.x, kFiner * y + part.y, c), 1e-3f));
+  }
+}

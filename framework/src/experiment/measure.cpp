@@ -131,10 +131,9 @@ std::string whyFailed(const std::function<void()>& work) {
 FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& centre, int positions,
                            int frameIndex, int frames) {
   // The reference is filtered over the pixel, so that with one sample at its centre the silhouettes of bright
-  // area lights would outweigh every other error. The camera turns by the fraction of a pixel, which shifts
-  // the image but for second order.
+  // area lights would outweigh every other error. The image plane is shifted by the fraction of a pixel: a
+  // camera that turns by it would shift pixels away from the centre of the image further.
   const int count = std::max(1, positions);
-  const float pixel = 2.0f * centre.camera.tanHalfFov / static_cast<float>(centre.camera.height);
   // Unlike a regular grid, the lattice has as many different rows and columns as positions, which matters
   // where edges run along the rows.
   const std::vector<std::array<double, 2>> positionsInPixel = latticePoints(count);
@@ -142,10 +141,7 @@ FrameResult renderFiltered(PipelineExecutor& executor, const SceneSnapshot& cent
   for (int position = 0; position < count; ++position) {
     SceneSnapshot shifted = centre;
     const auto [u, v] = positionsInPixel[static_cast<std::size_t>(position)];
-    const glm::vec2 offset(u - 0.5, v - 0.5);
-    CameraView& camera = shifted.camera;
-    camera.forward =
-        glm::normalize(camera.forward + pixel * (offset.x * camera.right + offset.y * camera.up));
+    shifted.camera.shift = glm::vec2(u - 0.5, v - 0.5);
     if (frames > 1) {
       executor.invalidate();
       executor.emptyHistories();

@@ -324,8 +324,8 @@ SceneTraits SceneTraits::everything() {
 
 glm::vec3 CameraView::direction(float x, float y) const {
   const auto w = static_cast<float>(width), h = static_cast<float>(height);
-  const float horizontal = (2.0f * x / w - 1.0f) * tanHalfFov * w / h;
-  const float vertical = (1.0f - 2.0f * y / h) * tanHalfFov;
+  const float horizontal = (2.0f * (x + shift.x) / w - 1.0f) * tanHalfFov * w / h;
+  const float vertical = (1.0f - 2.0f * (y + shift.y) / h) * tanHalfFov;
   return forward + horizontal * right + vertical * up;
 }
 

@@ -189,6 +189,10 @@ struct CameraView {
   glm::vec3 eye{0.0f}, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
   float tanHalfFov = 0.5f;  ///< of the vertical angle
   int width = 0, height = 0;
+  /// Where rays pass the image plane, right and down from where they would, in pixels: samples of a pixel
+  /// beside its centre. Renderers that take directions from direction() heed it; rasterisers move what they
+  /// draw the other way.
+  glm::vec2 shift{0.0f};
   bool operator==(const CameraView&) const = default;
 
   /// Direction (not normalised, forward component 1) through a point of the image; (0,0) is the upper left

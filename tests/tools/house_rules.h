@@ -1,0 +1,56 @@
+// The rules of the house over sources as texts, so that bad examples can be given to them as well: each
+// returns its violations, "file:line: what".
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace lumivox::test::house {
+
+struct SourceFile {
+  std::string path;  ///< relative to the project, with forward slashes
+  std::string text;
+};
+using Sources = std::vector<SourceFile>;
+using Violations = std::vector<std::string>;
+
+bool startsWith(const std::string& text, const std::string& start);
+bool endsWith(const std::string& text, const std::string& end);
+
+/// Blanks comments, and string literals too when asked; keeps lines, so that line numbers stay right.
+enum class Strings { keep, blank };
+std::string withoutComments(const std::string& text, Strings strings);
+int lineOf(const std::string& text, std::size_t position);
+
+struct Include {
+  int line;
+  std::string path;
+};
+std::vector<Include> includesOf(const std::string& text);
+
+/// The order in which parts may include each other, and the same of the build's list of parts.
+Violations brokenIncludeOrder(const Sources& sources);
+Violations brokenBuildOrder(const std::string& listFile);
+
+/// What may be used in its homes alone.
+struct Confined {
+  const char* what;
+  const char* pattern;
+  std::vector<std::string> homes;  ///< path prefixes
+};
+extern const Confined kOpenGl, kEmbree, kOpenVdb, kSqlite;
+Violations escaped(const Sources& sources, const Confined& rule);
+Violations markup(const Sources& sources);
+Violations boundAnalysis(const Sources& sources);
+
+Violations namedTechniques(const Sources& sources, const std::vector<std::string>& techniques);
+Violations dependentTechniques(const Sources& sources, const std::vector<std::string>& techniques);
+/// One name everywhere: `files` are all of the project, `pipelines` those that are committed.
+Violations brokenNames(const std::set<std::string>& files, const std::vector<std::string>& techniques,
+                       const Sources& pipelines);
+Violations unfinished(const Sources& sources);
+Violations namespacesUsedInHeaders(const Sources& sources);
+
+}  // namespace lumivox::test::house
