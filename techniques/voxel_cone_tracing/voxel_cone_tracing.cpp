@@ -9,6 +9,7 @@
 namespace lumivox::voxel_cone_tracing {
 
 void addInject(TechniqueRegistry& registry);
+void addOctree(TechniqueRegistry& registry);
 
 namespace {
 
@@ -114,6 +115,7 @@ LUMIVOX_TECHNIQUE(registry) {
   registry.describe("Voxel cone tracing on a dense isotropic grid",
                     "Crassin et al. 2011; thesis Gomes 2015, Sec. 4.2.1");
   addInject(registry);
+  addOctree(registry);
   registry.add<FilterPass>("filter", "Pre-filtered coarser levels (Crassin et al. 2011, Sec. 5)");
   registry.add<GatherPass>("gather", "Final gathering with cones (Crassin et al. 2011, Sec. 7)");
 }

@@ -1,0 +1,86 @@
+// Sparse voxel octrees of fragments that are made by hand, and what is in them.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <glm/gtc/packing.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "../../techniques/voxel_cone_tracing/radiance_octree.h"
+#include "support/cones.h"
+#include "support/voxel_fragments.h"
+
+namespace lumivox::test::octree {
+
+using voxel_cone_tracing::OctreeBrickList;
+using voxel_cone_tracing::RadianceOctree;
+using voxel_cone_tracing::VoxelOctree;
+
+inline constexpr std::uint32_t kNone = ~0u;
+
+struct NodeData {
+  std::uint32_t children, brick;
+  std::array<std::uint32_t, 3> neighbours;
+};
+
+inline FragmentData fragmentAt(const glm::ivec3& cell, const glm::vec3& albedo = glm::vec3(0.5f),
+                               float coverage = 1.0f) {
+  FragmentData result{};
+  result.voxel = static_cast<std::uint32_t>(cell.x | cell.y << 10 | cell.z << 20);
+  result.offset = 512u | 512u << 10 | 512u << 20;
+  result.albedoRg = glm::packHalf2x16(glm::vec2(albedo));
+  result.albedoBCoverage = glm::packHalf2x16(glm::vec2(albedo.z, coverage));
+  return result;
+}
+
+/// A list over a grid of [-1,1]^3, or of that along its longest side.
+inline VoxelFragments listOf(const std::vector<FragmentData>& fragments, const glm::ivec3& size) {
+  VoxelFragments list;
+  const int longest = std::max({size.x, size.y, size.z});
+  list.grid = {glm::vec3(-1.0f), 2.0f / static_cast<float>(longest), size};
+  list.capacity = std::max<std::size_t>(fragments.size(), 1);
+  list.fragments = std::make_shared<gpu::Buffer>(device(), list.capacity * sizeof(FragmentData), "list");
+  if (!fragments.empty()) list.fragments->uploadValues(std::span<const FragmentData>(fragments));
+  const auto count = static_cast<std::uint32_t>(fragments.size());
+  const std::uint32_t groups = std::max((count + 63u) / 64u, 1u), rows = (groups + 65534u) / 65535u;
+  const std::array<std::uint32_t, 4> words{count, std::min(groups, 65535u), rows, 1};
+  list.count = std::make_shared<gpu::Buffer>(device(), sizeof(words), "count");
+  list.count->uploadValues(std::span<const std::uint32_t>(words));
+  return list;
+}
+
+inline VoxelOctree treeOf(const VoxelFragments& list, const char* voxels = "at_corners") {
+  const Scene scene = cones::emptyScene();
+  PassHarness harness(device(), techniques(), "voxel_cone_tracing", "octree", scene, snapshotOf(scene, 0.0));
+  harness.setParameter("voxels", std::string(voxels));
+  harness.setInput("fragments", list);
+  harness.run();
+  return harness.output<VoxelOctree>("tree");
+}
+
+/// Bricks wanted and tiles wanted.
+inline std::array<std::uint32_t, 2> wantedOf(const VoxelOctree& tree) {
+  const auto words = tree.levels->downloadValues<std::uint32_t>();
+  return {words.at(0), words.at(1)};
+}
+
+/// The node that is found from the root at a place of a level; kNone: none.
+inline std::uint32_t nodeAt(const std::vector<NodeData>& nodes, const VoxelOctree& tree, int level,
+                            const glm::ivec3& place) {
+  std::uint32_t node = 0;
+  for (int below = tree.depth - level - 1; below >= 0; --below) {
+    if (nodes.at(node).children == kNone) return kNone;
+    node = nodes.at(node).children + static_cast<std::uint32_t>((place.x >> below & 1) |
+                                                                (place.y >> below & 1) << 1 |
+                                                                (place.z >> below & 1) << 2);
+  }
+  return nodes.at(node).brick == kNone ? kNone : node;
+}
+
+inline Cell cellOf(const glm::ivec3& place) {
+  return {place.x, place.y, place.z};
+}
+
+}  // namespace lumivox::test::octree
