@@ -7,6 +7,7 @@
 #define LUMIVOX_OCTREE
 
 const uint kNone = 0xffffffffu;
+const uint kTagged = 0xfffffffeu;  // in place of children: they are to be made
 
 struct OctreeNode {
   uint children;  // the first of them; kNone: it has none
@@ -31,7 +32,7 @@ uint nodeAt(ivec3 place, int depth) {
   uint node = 0u;
   for (int below = depth - 1; below >= 0; --below) {
     uint tile = octreeNodes[node].children;
-    if (tile == kNone) return kNone;
+    if (tile >= kTagged) return kNone;
     ivec3 side = place >> below & 1;
     node = tile + uint(side.x | side.y << 1 | side.z << 2);
   }

@@ -1,12 +1,11 @@
 #version 450
 // Tags the nodes of all depths that hold something: thesis 004, Sec. 4.2.2, Listing 4.19.
-// Deviates: a bit a node in place of a mark in the node itself, so that no node must be there yet and all depths are done at once; and with
-// voxels at corners all nodes whose bricks show something. Voxel i of the finest level adds to the voxels floor(i / 2^l) and ceil(i / 2^l) of
-// level l; a voxel j is in the bricks of the nodes ceil(j / 2) - 1 and floor(j / 2), which are one for odd j. As published, only the nodes
-// that fragments lie in.
+// Deviates: a bit a node in place of a mark in the node itself, so that no node must be there yet and all depths are done at once
+// (octree_tag.comp does as published).
 layout(local_size_x = 64) in;
 #include "common/fragments.glsl"
 #include "octree_tags.glsl"
+#include "octree_extent.glsl"
 
 layout(std140, binding = 0) uniform Marks {
   int depth;       // of the leaves
@@ -25,12 +24,8 @@ void main() {
   if (index >= fragmentCount) return;
   ivec3 voxel = unpackVoxel(fragments[index].voxel);
   for (int nodeDepth = depth; nodeDepth >= 0; --nodeDepth) {
-    int level = depth - nodeDepth;
-    ivec3 first = voxel >> level + 1, last = first;
-    if (atCorners != 0) {
-      first = max((voxel >> level) - 1 >> 1, 0);
-      last = min(voxel + (1 << level) - 1 >> level + 1, (1 << nodeDepth) - 1);
-    }
+    ivec3 first, last;
+    nodesWith(voxel, depth - nodeDepth, 1 << nodeDepth, atCorners != 0, first, last);
     for (int z = first.z; z <= last.z; ++z)
       for (int y = first.y; y <= last.y; ++y)
         for (int x = first.x; x <= last.x; ++x) tag(ivec3(x, y, z), nodeDepth);

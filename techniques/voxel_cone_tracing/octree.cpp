@@ -3,6 +3,9 @@
 #include "octree.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
 
 #include "lumivox/toolkit/bindings.h"
 
@@ -42,6 +45,9 @@ class OctreePass : public Pass {
   Param<Voxels> voxels{
       this, "voxels", Voxels::atCorners,
       "where voxels lie: at the corners between the halves of leaves, with all nodes that show something of one (Crassin et al. 2011); in the eighths of leaves, as published in the thesis, with the nodes that fragments lie in"};
+  Param<bool> asPublished{
+      this, "as_published", false,
+      "the nodes of one depth after another: every fragment searches its own from the root and tags it, and atomic counters give places (Listings 4.17 to 4.22); off: all depths at once, the same tree in an order of its own"};
   Out<VoxelOctree> tree{this, "tree", "nodes, and places for their bricks"};
 
   /// The most that any frame wanted, which is what later ones get.
@@ -59,7 +65,13 @@ class OctreePass : public Pass {
     result.nodes->clear(~0u);
     result.bricks = frame.buffer(result.brickRoom * VoxelOctree::kBrickBytes, "octree bricks");
     result.levels = frame.buffer(VoxelOctree::levelsBytes(result.depth), "octree levels");
-    write(frame, result);
+    if (asPublished) {
+      subdivide(frame, result);
+    } else {
+      write(frame, result);
+    }
+    forEachBrick(frame, frame.program(octree_neighbours::kProgram), {OctreeBinding(result)}, result,
+                 result.depth + 1, 1);
     judge(frame, result.levels, 0, bricks_);
     judge(frame, result.levels, 1, tiles_);
     tree = result;
@@ -89,14 +101,40 @@ class OctreePass : public Pass {
                         octree_rank::chunkCounts(counts), octree_rank::ranks(ranks)},
                        chunks);
     const std::uint32_t brickRoom = bricks_, tileRoom = tiles_;
-    frame.dispatch(frame.program(octree_arguments::kProgram),
+    frame.dispatch(frame.program(octree_arguments::Variant{}),
                    {octree_arguments::room({brickRoom, tileRoom}), octree_arguments::ranks(ranks), bound},
                    {result.depth + 2, 1, 1});
     frame.dispatchList(frame.program(octree_nodes::kProgram),
                        {octree_nodes::nodeRoom({brickRoom, tileRoom, static_cast<std::uint32_t>(words)}),
                         octree_nodes::tags(tags), octree_nodes::ranks(ranks), bound},
                        words);
-    forEachBrick(frame, frame.program(octree_neighbours::kProgram), {bound}, result, result.depth + 1, 1);
+  }
+
+  /// Depth after depth. Where a depth has too little room the next ones find no nodes: each time that the
+  /// frame is rendered anew one more depth is counted.
+  void subdivide(PassContext& frame, const VoxelOctree& result) {
+    std::vector<std::uint32_t> words(VoxelOctree::levelsBytes(result.depth) / sizeof(std::uint32_t));
+    words[1] = 1;  // the root's tile
+    result.levels->uploadValues(std::span<const std::uint32_t>(words));
+    const std::uint32_t brickRoom = bricks_, tileRoom = tiles_;
+    const gpu::BufferRef range = frame.uploaded(std::array<std::uint32_t, 5>{}, "octree nodes of a depth");
+    constexpr std::uint64_t kGroups = 2 * sizeof(std::uint32_t);  // in `range`
+    const OctreeBinding bound(result);
+    for (int depth = 0; depth <= result.depth; ++depth) {
+      forEachFragment(
+          frame, frame.program(octree_tag::kProgram),
+          {octree_tag::tag({.depth = depth, .atCorners = result.voxels == Voxels::atCorners}), bound},
+          *fragments);
+      frame.dispatch(frame.program(octree_range::kProgram),
+                     {octree_range::range({depth, tileRoom}), octree_range::nodeRange(range), bound},
+                     {1, 1, 1});
+      frame.dispatchIndirect(frame.program(octree_subdivide::kProgram),
+                             {octree_subdivide::subdivision({depth, brickRoom, tileRoom}),
+                              octree_subdivide::nodeRange(range), bound},
+                             *range, kGroups);
+    }
+    frame.dispatch(frame.program(octree_arguments::Variant{.published = 1}),
+                   {octree_arguments::room({brickRoom, tileRoom}), bound}, {result.depth + 2, 1, 1});
   }
 
   static constexpr std::uint64_t kChunk = 64;  // words that a thread counts

@@ -51,10 +51,12 @@ inline VoxelFragments listOf(const std::vector<FragmentData>& fragments, const g
   return list;
 }
 
-inline VoxelOctree treeOf(const VoxelFragments& list, const char* voxels = "at_corners") {
+inline VoxelOctree treeOf(const VoxelFragments& list, const char* voxels = "at_corners",
+                          bool asPublished = false) {
   const Scene scene = cones::emptyScene();
   PassHarness harness(device(), techniques(), "voxel_cone_tracing", "octree", scene, snapshotOf(scene, 0.0));
   harness.setParameter("voxels", std::string(voxels));
+  harness.setParameter("as_published", std::string(asPublished ? "on" : "off"));
   harness.setInput("fragments", list);
   harness.run();
   return harness.output<VoxelOctree>("tree");

@@ -101,35 +101,37 @@ TEST_CASE("with voxels in leaves, as published, there are the nodes that fragmen
 TEST_CASE("every node is found from the root and knows its brick and its neighbours; others are not found") {
   const glm::ivec3 size(40, 24, 33);
   for (const char* voxels : {"at_corners", "in_leaves"}) {
-    const VoxelOctree tree = treeOf(listOf(shell(size), size), voxels);
-    std::vector<NodeData> nodes = tree.nodes->downloadValues<NodeData>();
-    CHECK(nodes.size() == 8u * wantedOf(tree)[1]);
-    for (int level = 0; level <= tree.depth; ++level) {
-      std::map<Cell, std::uint32_t> expected;
-      for (const auto& brick : OctreeBrickList::of(tree, level).bricks)
-        expected[cellOf(brick.place)] = brick.index;
-      const int along = 1 << (tree.depth - level);
-      std::size_t found = 0, wrong = 0;
-      for (int z = 0; z < along; ++z)
-        for (int y = 0; y < along; ++y)
-          for (int x = 0; x < along; ++x) {
-            const std::uint32_t node = nodeAt(nodes, tree, level, {x, y, z});
-            const auto known = expected.find({x, y, z});
-            wrong += (node == kNone) != (known == expected.end()) ? 1u : 0u;
-            if (node == kNone || known == expected.end()) continue;
-            ++found;
-            wrong += nodes[node].brick != known->second ? 1u : 0u;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-              glm::ivec3 next(x, y, z);
-              ++next[static_cast<int>(axis)];
-              const std::uint32_t neighbour =
-                  next[static_cast<int>(axis)] < along ? nodeAt(nodes, tree, level, next) : kNone;
-              wrong += nodes[node].neighbours[axis] != neighbour ? 1u : 0u;
+    for (const bool asPublished : {false, true}) {
+      const VoxelOctree tree = treeOf(listOf(shell(size), size), voxels, asPublished);
+      std::vector<NodeData> nodes = tree.nodes->downloadValues<NodeData>();
+      CHECK(nodes.size() == 8u * wantedOf(tree)[1]);
+      for (int level = 0; level <= tree.depth; ++level) {
+        std::map<Cell, std::uint32_t> expected;
+        for (const auto& brick : OctreeBrickList::of(tree, level).bricks)
+          expected[cellOf(brick.place)] = brick.index;
+        const int along = 1 << (tree.depth - level);
+        std::size_t found = 0, wrong = 0;
+        for (int z = 0; z < along; ++z)
+          for (int y = 0; y < along; ++y)
+            for (int x = 0; x < along; ++x) {
+              const std::uint32_t node = nodeAt(nodes, tree, level, {x, y, z});
+              const auto known = expected.find({x, y, z});
+              wrong += (node == kNone) != (known == expected.end()) ? 1u : 0u;
+              if (node == kNone || known == expected.end()) continue;
+              ++found;
+              wrong += nodes[node].brick != known->second ? 1u : 0u;
+              for (std::size_t axis = 0; axis < 3; ++axis) {
+                glm::ivec3 next(x, y, z);
+                ++next[static_cast<int>(axis)];
+                const std::uint32_t neighbour =
+                    next[static_cast<int>(axis)] < along ? nodeAt(nodes, tree, level, next) : kNone;
+                wrong += nodes[node].neighbours[axis] != neighbour ? 1u : 0u;
+              }
             }
-          }
-      CAPTURE(voxels, level);
-      CHECK(found == expected.size());
-      CHECK(wrong == 0);
+        CAPTURE(voxels, asPublished, level);
+        CHECK(found == expected.size());
+        CHECK(wrong == 0);
+      }
     }
   }
 }
@@ -168,4 +170,20 @@ TEST_CASE("a tree that outgrows its room is made again with all of it, and a sma
   const VoxelOctree again = made(few);
   CHECK(again.brickRoom == large);
   CHECK(wantedOf(again)[0] == small);
+}
+
+TEST_CASE("built level by level, as published, the tree has the same nodes") {
+  for (const char* voxels : {"at_corners", "in_leaves"})
+    for (const glm::ivec3& size : {glm::ivec3(2), {11, 7, 5}, {64, 64, 64}}) {
+      const VoxelFragments list = listOf(shell(size), size);
+      const VoxelOctree ours = treeOf(list, voxels), published = treeOf(list, voxels, true);
+      CAPTURE(voxels, size.x);
+      CHECK(wantedOf(published)[0] == wantedOf(ours)[0]);
+      // It subdivides nodes at corners too of which nothing finer shows.
+      CHECK(wantedOf(published)[1] >= wantedOf(ours)[1]);
+      if (std::string(voxels) == "in_leaves") CHECK(wantedOf(published)[1] == wantedOf(ours)[1]);
+      CHECK(published.brickRoom == ours.brickRoom);
+      for (int level = 0; level <= ours.depth; ++level)
+        CHECK(nodesOf(published, level) == nodesOf(ours, level));
+    }
 }
