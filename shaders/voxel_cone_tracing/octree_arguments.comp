@@ -27,6 +27,7 @@ void main() {
   octreeLevels[depth].firstBrick = first;
 #endif
   octreeLevels[depth].bricks = bricks;
+  if (depth == octreeDepth) wantedLeaves = end - first;
   for (int kind = 0; kind < kThreads.length(); ++kind) {
     uvec2 groups = rowsOfGroups((bricks * kThreads[kind] + kOctreeGroup - 1u) / kOctreeGroup);
     octreeLevels[depth].groups[3 * kind] = groups.x;

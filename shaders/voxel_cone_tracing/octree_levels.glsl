@@ -21,6 +21,7 @@ struct OctreeLevel {
 
 layout(std430, binding = 10) OCTREE_ACCESS buffer OctreeLevels {
   uint wantedBricks, wantedTiles;  // all that the fragments ask for, whether there is room or not
+  uint wantedLeaves;               // bricks of the finest level
   OctreeLevel octreeLevels[];      // by depth; and one behind for all depths together
 };
 layout(std430, binding = 11) OCTREE_ACCESS buffer OctreeBricks { OctreeBrick octreeBricks[]; };  // by depth

@@ -51,7 +51,7 @@ class OctreePass : public Pass {
   Out<VoxelOctree> tree{this, "tree", "nodes, and places for their bricks"};
 
   /// The most that any frame wanted, which is what later ones get.
-  std::uint32_t bricks_ = 0, tiles_ = 0;
+  std::uint32_t bricks_ = 0, tiles_ = 0, leaves_ = 0;
 
   void run(PassContext& frame) override {
     VoxelOctree result;
@@ -60,6 +60,7 @@ class OctreePass : public Pass {
     const int longest = result.grid.longest();
     while ((2 << result.depth) < longest) ++result.depth;
     result.brickRoom = std::max(bricks_, 1u);
+    result.leafRoom = std::max(leaves_, 1u);
     const std::uint64_t tiles = std::max(tiles_, 1u);
     result.nodes = frame.buffer(tiles * VoxelOctree::kTileBytes, "octree nodes");
     result.nodes->clear(~0u);
@@ -74,6 +75,7 @@ class OctreePass : public Pass {
                  result.depth + 1, 1);
     judge(frame, result.levels, 0, bricks_);
     judge(frame, result.levels, 1, tiles_);
+    judge(frame, result.levels, 2, leaves_);
     tree = result;
   }
 

@@ -28,9 +28,10 @@ struct VoxelOctree {
   int depth = 0;          ///< of the leaves
   Voxels voxels = Voxels::atCorners;
   std::uint64_t brickRoom = 0;  ///< bricks that there is room for
+  std::uint64_t leafRoom = 0;   ///< of them those of the finest level
 
   /// Words of `levels` before those of a depth, of one depth, and before the dispatches of a depth.
-  static constexpr std::uint64_t kLevelsBegin = 2, kLevelWords = 20, kLevelGroups = 2;
+  static constexpr std::uint64_t kLevelsBegin = 3, kLevelWords = 20, kLevelGroups = 2;
   /// Numbers of threads a brick for which there are dispatches.
   static constexpr std::array<int, 6> kThreads{1, 6, 8, 9, 12, 27};
   static constexpr std::uint64_t kNodeBytes = 20, kTileBytes = 8 * kNodeBytes, kBrickBytes = 8;

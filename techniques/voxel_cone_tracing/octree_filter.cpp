@@ -1,0 +1,113 @@
+// The bricks of a sparse voxel octree: the pool, what neighbours share, and pre-filtering. Crassin et al.
+// 2011, Sec. 4 to 6; thesis Gomes 2015, Sec. 3.1.2, 3.1.3 and 4.2.2.
+#include <array>
+
+#include "lumivox/base/error.h"
+#include "octree.h"
+
+namespace lumivox::voxel_cone_tracing {
+
+using namespace shaders::voxel_cone_tracing;
+
+void makePool(PassContext& frame, RadianceOctree& result, gpu::Format format) {
+  constexpr int kSide = 3;
+  const std::uint64_t bricks = result.tree.brickRoom;
+  // About a cube: less than a layer of it stays empty.
+  while ((std::uint64_t{1} << (3 * (result.poolShift + 1))) <= bricks) ++result.poolShift;
+  const int row = 1 << result.poolShift;
+  const std::uint64_t layer = static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(row);
+  result.radiance =
+      frame.volume({kSide * row, kSide * row, kSide * static_cast<int>((bricks + layer - 1) / layer)}, format,
+                   "octree bricks of radiance");
+}
+
+void transferBorders(PassContext& frame, const RadianceOctree& octree, int depth, Transfer way) {
+  const auto along = [&](int axis, Transfer how) {
+    forEachBrick(
+        frame,
+        frame.program(octree_transfer::Variant{}, octree_transfer::Constants{.way = static_cast<int>(how)}),
+        {octree_transfer::transfer({depth, axis}),
+         octree_transfer::pool(octree.radiance, gpu::Sampling::nearest),
+         octree_transfer::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift)},
+        octree.tree, depth, 9);
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    along(axis, way);
+    if (way == Transfer::add) along(axis, Transfer::copy);
+  }
+}
+
+namespace {
+
+class OctreeFilterPass : public Pass {
+  // In the order of octree_filter.comp.
+  enum class Opacity { facing, average };
+  enum class Borders { gathered, added, averaged };
+
+  In<RadianceOctree> radiance{this, "radiance", "the finest level"};
+  Param<Opacity> opacity{
+      this, "opacity", Opacity::facing,
+      "how finer voxels make a coarse one: seen through along the axis that they face; or, as published, their mean by the weights 1, 2, 1 along each axis"};
+  Param<Borders> borders{
+      this, "borders", Borders::gathered,
+      "how bricks come by voxels that depend on their neighbours' children: all are read there; parts of the mean are added to the right and copied to the left (Crassin et al. 2011); parts are means, and averaged (as published in the thesis)"};
+  Out<RadianceOctree> mips{this, "mips", "the same octree with values at all depths", Levels::all};
+
+  std::string checkParameters() const override {
+    return opacity == Opacity::facing && borders != Borders::gathered
+               ? "'borders' has parts of a mean completed, and 'opacity facing' is no mean; expected 'borders gathered' or 'opacity average'"
+               : "";
+  }
+
+  void run(PassContext& frame) override {
+    RadianceOctree result = *radiance;
+    if (borders == Borders::gathered && result.tree.voxels == VoxelOctree::Voxels::inLeaves)
+      throw Error(
+          "voxel_cone_tracing.octree_filter: 'borders gathered' reads every voxel from the one brick whose own it is, and with 'voxels in_leaves' there need not be one; expected 'opacity average' with 'borders added' or 'averaged'");
+    for (int depth = result.tree.depth - 1; depth >= 0; --depth) {
+      if (borders == Borders::gathered) {
+        gather(frame, result, depth);
+      } else {
+        addParts(frame, result, depth);
+      }
+    }
+    result.filledLevels = result.tree.depth + 1;
+    result.opacity = opacity == Opacity::facing ? RadianceOctree::Opacity::ofVoxel
+                                                : RadianceOctree::Opacity::ofFinestVoxel;
+    mips = result;
+  }
+
+  void gather(PassContext& frame, const RadianceOctree& octree, int depth) {
+    forEachBrick(
+        frame,
+        frame.program(octree_filter::Variant{},
+                      octree_filter::Constants{.rule = static_cast<int>(static_cast<Opacity>(opacity))}),
+        {octree_filter::coarse({depth}), octree_filter::pool(octree.radiance, gpu::Sampling::nearest),
+         octree_filter::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift)},
+        octree.tree, depth, 8);
+    transferBorders(frame, octree, depth, Transfer::copy);
+  }
+
+  /// Centres, faces, edges and corners, one after another.
+  void addParts(PassContext& frame, const RadianceOctree& octree, int depth) {
+    constexpr std::array<int, 4> kPartThreads{1, 6, 12, 8};
+    const bool means = borders == Borders::averaged;
+    for (int part = 0; part < 4; ++part)
+      forEachBrick(
+          frame, frame.program(octree_filter_part::Variant{}, octree_filter_part::Constants{.part = part}),
+          {octree_filter_part::parts({.depth = depth, .means = means}),
+           octree_filter_part::pool(octree.radiance, gpu::Sampling::nearest),
+           octree_filter_part::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift)},
+          octree.tree, depth, kPartThreads[static_cast<std::size_t>(part)]);
+    transferBorders(frame, octree, depth, means ? Transfer::average : Transfer::add);
+  }
+};
+
+}  // namespace
+
+void addOctreeFilter(TechniqueRegistry& registry) {
+  registry.add<OctreeFilterPass>("octree_filter",
+                                 "Pre-filtered bricks above the leaves (Crassin et al. 2011, Sec. 5)");
+}
+
+}  // namespace lumivox::voxel_cone_tracing
