@@ -8,8 +8,8 @@ layout(local_size_x = 64) in;
 #include "octree_extent.glsl"
 
 layout(std140, binding = 0) uniform Marks {
-  int depth;       // of the leaves
-  int atCorners;   // 1: voxels lie at the corners of nodes; 0: they are the eighths of leaves
+  int depth;   // of the leaves
+  int voxels;  // where they lie
 };
 layout(std430, binding = 2) buffer Tags { uint tags[]; };
 
@@ -25,7 +25,7 @@ void main() {
   ivec3 voxel = unpackVoxel(fragments[index].voxel);
   for (int nodeDepth = depth; nodeDepth >= 0; --nodeDepth) {
     ivec3 first, last;
-    nodesWith(voxel, depth - nodeDepth, 1 << nodeDepth, atCorners != 0, first, last);
+    nodesWith(voxel, depth - nodeDepth, 1 << nodeDepth, voxels, first, last);
     for (int z = first.z; z <= last.z; ++z)
       for (int y = first.y; y <= last.y; ++y)
         for (int x = first.x; x <= last.x; ++x) tag(ivec3(x, y, z), nodeDepth);

@@ -1,7 +1,7 @@
 #version 450
 // Integer sums to the bricks of the leaves: radiance pre-multiplied by opacity, and opacity; resolve.comp says how.
 //
-// Voxels at corners: each brick gets the eight voxels that are its own; those that it shares with the neighbour above are copied from there
+// As in a grid and at corners: each brick gets the eight voxels that are its own; those that it shares with the neighbour above are copied from there
 // (octree_transfer.comp). Voxels in leaves: each vertex is the mean of the voxels of its own leaf around it (thesis 004, Sec. 4.2.2, Fig. 69:
 // averages are stored in the corners of the brick, Listing 4.23, and spread through it), and of what the neighbours find once they are
 // averaged.
@@ -13,7 +13,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Leaves {
   float unit;       // W/(sr m^2) that the value 1 of the pool stands for
   int coverageSum;  // 1: the coverages of a voxel add up, to 1 at most; 0: their mean
-  int atCorners;    // where voxels lie
+  int inLeaves;     // 1: of voxels
 };
 layout(std430, binding = 4) readonly buffer Sums { VoxelSums sums[]; };
 layout(binding = 0) uniform writeonly image3D radianceImage;  // of whatever float format the pool has
@@ -34,7 +34,7 @@ void main() {
   ivec3 vertex = ivec3(lane % 3u, lane / 3u % 3u, lane / 9u);
   uint first = 8u * (brick - octreeLevels[octreeDepth].firstBrick);
   vec4 value = vec4(0.0);
-  if (atCorners != 0) {
+  if (inLeaves == 0) {
     if (all(lessThan(vertex, ivec3(2)))) value = surfacesIn(sums[first + uint(vertex.x | vertex.y << 1 | vertex.z << 2)]);
   } else {
     ivec3 low = max(vertex - 1, 0), high = min(vertex, 1), count = high - low + 1;

@@ -8,15 +8,15 @@ layout(local_size_x = 64) in;
 #include "octree_extent.glsl"
 
 layout(std140, binding = 0) uniform Tag {
-  int depth;      // that is tagged
-  int atCorners;  // 1: voxels lie at the corners of nodes; 0: they are the eighths of leaves
+  int depth;   // that is tagged
+  int voxels;  // where they lie
 };
 
 void main() {
   uint index = listIndex();
   if (index >= fragmentCount) return;
   ivec3 voxel = unpackVoxel(fragments[index].voxel), first, last;
-  nodesWith(voxel, octreeDepth - depth, 1 << depth, atCorners != 0, first, last);
+  nodesWith(voxel, octreeDepth - depth, 1 << depth, voxels, first, last);
   for (int z = first.z; z <= last.z; ++z)
     for (int y = first.y; y <= last.y; ++y)
       for (int x = first.x; x <= last.x; ++x) {

@@ -84,10 +84,11 @@ class Injection {
     sums.inOctree = true;
     sums.voxels = frame.emptyElements(add::sums, 8 * tree.leafRoom, "sums of voxels");
     average(frame, sums, brightest);
-    const bool atCorners = tree.voxels == VoxelOctree::Voxels::atCorners;
     forEachBrick(
         frame, frame.program(octree_resolve::kProgram),
-        {octree_resolve::leaves({.unit = result.unit, .coverageSum = addsUp(), .atCorners = atCorners}),
+        {octree_resolve::leaves({.unit = result.unit,
+                                 .coverageSum = addsUp(),
+                                 .inLeaves = tree.voxels == VoxelOctree::Voxels::inLeaves}),
          octree_resolve::sums(sums.voxels), octree_resolve::radianceImage(result.radiance), sums.places},
         tree, tree.depth, 27);
   }
@@ -289,8 +290,8 @@ class OctreeInjectPass : public Pass {
     result.tree = *tree;
     makePool(frame, result, injection.isHalf() ? gpu::Format::rgba16f : gpu::Format::rgba32f);
     injection.fill(frame, result);
-    const bool atCorners = tree->voxels == VoxelOctree::Voxels::atCorners;
-    transferBorders(frame, result, tree->depth, atCorners ? Transfer::copy : Transfer::average);
+    const bool inLeaves = tree->voxels == VoxelOctree::Voxels::inLeaves;
+    transferBorders(frame, result, tree->depth, inLeaves ? Transfer::average : Transfer::copy);
     radiance = result;
   }
 };

@@ -96,7 +96,9 @@ StoreBinding StoreInput::inOctree() const {
        .storeUnit = octree.unit,
        .storeOpacityOfFinestVoxel = octree.opacity == RadianceOctree::Opacity::ofFinestVoxel}));
   result.add(shader::UniformSlot<gather::OctreeStore>{"OctreeStore"}(
-      {.poolSize = glm::vec3(pool.width, pool.height, pool.depth), .firstVertex = tree.firstVertex()}));
+      {.poolSize = glm::vec3(pool.width, pool.height, pool.depth),
+       .firstVoxel = tree.firstVoxel(),
+       .firstVoxelGrows = tree.voxels == VoxelOctree::Voxels::asGrid ? 1.0f : 0.0f}));
   result.add(shader::SampledSlot{"brickPool"}(octree.radiance, gpu::Sampling::linear));
   result.add(OctreeBinding(tree, octree.poolShift));
   return result;

@@ -43,8 +43,8 @@ class OctreePass : public Pass {
 
   In<VoxelFragments> fragments{this, "fragments", "surface samples"};
   Param<Voxels> voxels{
-      this, "voxels", Voxels::atCorners,
-      "where voxels lie: at the corners between the halves of leaves, with all nodes that show something of one (Crassin et al. 2011); in the eighths of leaves, as published in the thesis, with the nodes that fragments lie in"};
+      this, "voxels", Voxels::asGrid,
+      "where voxels lie: at all levels as in a dense grid; at the corners of nodes (Crassin et al. 2011); in the eighths of leaves, with only the nodes that fragments lie in (as published in the thesis)"};
   Param<bool> asPublished{
       this, "as_published", false,
       "the nodes of one depth after another: every fragment searches its own from the root and tags it, and atomic counters give places (Listings 4.17 to 4.22); off: all depths at once, the same tree in an order of its own"};
@@ -86,11 +86,10 @@ class OctreePass : public Pass {
                          counts = frame.elements(octree_count::chunkCounts, chunks, "counts of octree nodes"),
                          ranks = frame.elements(octree_rank::ranks, words, "ranks of octree nodes");
     const OctreeBinding bound(result);
-    forEachFragment(
-        frame, frame.program(octree_mark::kProgram),
-        {octree_mark::marks({.depth = result.depth, .atCorners = result.voxels == Voxels::atCorners}),
-         octree_mark::tags(tags)},
-        *fragments);
+    forEachFragment(frame, frame.program(octree_mark::kProgram),
+                    {octree_mark::marks({.depth = result.depth, .voxels = static_cast<int>(result.voxels)}),
+                     octree_mark::tags(tags)},
+                    *fragments);
     frame.dispatchList(
         frame.program(octree_count::kProgram),
         {octree_count::words({wordCount}), octree_count::tags(tags), octree_count::chunkCounts(counts)},
@@ -123,10 +122,9 @@ class OctreePass : public Pass {
     constexpr std::uint64_t kGroups = 2 * sizeof(std::uint32_t);  // in `range`
     const OctreeBinding bound(result);
     for (int depth = 0; depth <= result.depth; ++depth) {
-      forEachFragment(
-          frame, frame.program(octree_tag::kProgram),
-          {octree_tag::tag({.depth = depth, .atCorners = result.voxels == Voxels::atCorners}), bound},
-          *fragments);
+      forEachFragment(frame, frame.program(octree_tag::kProgram),
+                      {octree_tag::tag({.depth = depth, .voxels = static_cast<int>(result.voxels)}), bound},
+                      *fragments);
       frame.dispatch(frame.program(octree_range::kProgram),
                      {octree_range::range({depth, tileRoom}), octree_range::nodeRange(range), bound},
                      {1, 1, 1});

@@ -42,31 +42,26 @@ namespace {
 class OctreeFilterPass : public Pass {
   // In the order of octree_filter.comp.
   enum class Opacity { facing, average };
-  enum class Borders { gathered, added, averaged };
+  enum class Borders { added, averaged };
 
   In<RadianceOctree> radiance{this, "radiance", "the finest level"};
   Param<Opacity> opacity{
       this, "opacity", Opacity::facing,
-      "how finer voxels make a coarse one: seen through along the axis that they face; or, as published, their mean by the weights 1, 2, 1 along each axis"};
+      "how finer voxels make a coarse one: seen through along the axis that they face; or their mean, which with voxels at corners or in leaves has the weights 1, 2, 1 along each axis, as published"};
   Param<Borders> borders{
-      this, "borders", Borders::gathered,
-      "how bricks come by voxels that depend on their neighbours' children: all are read there; parts of the mean are added to the right and copied to the left (Crassin et al. 2011); parts are means, and averaged (as published in the thesis)"};
+      this, "borders", Borders::added,
+      "with voxels at corners or in leaves, how bricks complete those of which their neighbours know a part: parts are added to the right and copied to the left (Crassin et al. 2011); parts are means, and averaged (as published in the thesis)"};
   Out<RadianceOctree> mips{this, "mips", "the same octree with values at all depths", Levels::all};
-
-  std::string checkParameters() const override {
-    return opacity == Opacity::facing && borders != Borders::gathered
-               ? "'borders' has parts of a mean completed, and 'opacity facing' is no mean; expected 'borders gathered' or 'opacity average'"
-               : "";
-  }
 
   void run(PassContext& frame) override {
     RadianceOctree result = *radiance;
-    if (borders == Borders::gathered && result.tree.voxels == VoxelOctree::Voxels::inLeaves)
+    const bool asGrid = result.tree.voxels == VoxelOctree::Voxels::asGrid;
+    if (!asGrid && opacity == Opacity::facing)
       throw Error(
-          "voxel_cone_tracing.octree_filter: 'borders gathered' reads every voxel from the one brick whose own it is, and with 'voxels in_leaves' there need not be one; expected 'opacity average' with 'borders added' or 'averaged'");
+          "voxel_cone_tracing.octree_filter: 'opacity facing' takes eight whole voxels for a coarse one, and with voxels at corners or in leaves it covers halves of others; expected 'opacity average', or 'voxels as_grid' in voxel_cone_tracing.octree");
     for (int depth = result.tree.depth - 1; depth >= 0; --depth) {
-      if (borders == Borders::gathered) {
-        gather(frame, result, depth);
+      if (asGrid) {
+        halve(frame, result, depth);
       } else {
         addParts(frame, result, depth);
       }
@@ -77,7 +72,7 @@ class OctreeFilterPass : public Pass {
     mips = result;
   }
 
-  void gather(PassContext& frame, const RadianceOctree& octree, int depth) {
+  void halve(PassContext& frame, const RadianceOctree& octree, int depth) {
     forEachBrick(
         frame,
         frame.program(octree_filter::Variant{},

@@ -14,19 +14,19 @@ namespace lumivox::voxel_cone_tracing {
 
 /// A sparse voxel octree (Crassin et al. 2011, Sec. 4; thesis Gomes 2015, Sec. 3.1.1 and 4.2.2). Depth 0 is
 /// the root; level l of a grid with mips is depth `depth - l`. Node n of a level has a brick of the voxels 2n
-/// to 2n + 2 of that level along each axis, the last of which it shares with its neighbour.
+/// to 2n + 2 of that level along each axis, the last of which is its neighbour's own.
 struct VoxelOctree {
-  /// Where the voxels of the finest level lie: one voxel to each corner between halves of the leaves, so that
-  /// a brick holds voxels as a grid does (Crassin et al. 2011); or a voxel to each eighth of a leaf, which
-  /// the vertices of its brick are means of (thesis).
-  enum class Voxels { atCorners, inLeaves };
+  /// Where voxels lie. As in a grid with mips, coarse voxel j around the finer ones 2j and 2j + 1. Or at the
+  /// corners of nodes: coarse voxel j where finer voxel 2j is (Crassin et al. 2011). Or one to each eighth of
+  /// a leaf, and at the corners of nodes means of those around (thesis).
+  enum class Voxels { asGrid, atCorners, inLeaves };
 
   GridPlacement grid;     ///< of the finest voxels
   gpu::BufferRef nodes;   ///< OctreeNode
   gpu::BufferRef bricks;  ///< OctreeBrick, by depth
   gpu::BufferRef levels;  ///< OctreeLevels
   int depth = 0;          ///< of the leaves
-  Voxels voxels = Voxels::atCorners;
+  Voxels voxels = Voxels::asGrid;
   std::uint64_t brickRoom = 0;  ///< bricks that there is room for
   std::uint64_t leafRoom = 0;   ///< of them those of the finest level
 
@@ -38,8 +38,9 @@ struct VoxelOctree {
   static constexpr std::uint64_t levelsBytes(int depth) {
     return (kLevelsBegin + kLevelWords * (static_cast<std::uint64_t>(depth) + 2)) * sizeof(std::uint32_t);
   }
-  /// The position of vertex 0 of a brick, in voxels from the corner of the grid.
-  float firstVertex() const { return voxels == Voxels::atCorners ? 0.5f : 0.0f; }
+  /// The middle of voxel 0 of the finest level, in voxels from the corner of the grid; with `asGrid` it is so
+  /// in voxels of every level.
+  float firstVoxel() const { return voxels == Voxels::inLeaves ? 0.0f : 0.5f; }
 };
 
 /// A level's bricks, read back.
@@ -134,12 +135,12 @@ struct PortTraits<voxel_cone_tracing::RadianceOctree> {
     PortTraits<voxel_cone_tracing::VoxelOctree>::contents(port.tree, contents);
     contents.texture("radiance", port.radiance);
     for (int level = 0; level < port.filledLevels; ++level) {
-      // Voxel j of a level lies around vertex j, 2^l j finest voxels above the first one.
       const double size = static_cast<double>(port.tree.grid.voxelSize) * (1 << level);
-      const VoxelBox box{glm::dvec3(port.tree.grid.low) +
-                             static_cast<double>(port.tree.grid.voxelSize * port.tree.firstVertex()) -
-                             0.5 * size,
-                         glm::dvec3(size), glm::ivec3((2 << (port.tree.depth - level)) + 1)};
+      const bool asGrid = port.tree.voxels == voxel_cone_tracing::VoxelOctree::Voxels::asGrid;
+      const double middle =
+          asGrid ? 0.5 * size : port.tree.firstVoxel() * static_cast<double>(port.tree.grid.voxelSize);
+      const VoxelBox box{glm::dvec3(port.tree.grid.low) + middle - 0.5 * size, glm::dvec3(size),
+                         glm::ivec3((2 << (port.tree.depth - level)) + 1)};
       const std::uint64_t bytes = port.radiance->sizeBytes();
       contents.field("radiance", box, VoxelsRead{3, bytes, [port, level] { return port.voxels(level, 0); }},
                      level);

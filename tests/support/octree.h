@@ -51,7 +51,7 @@ inline VoxelFragments listOf(const std::vector<FragmentData>& fragments, const g
   return list;
 }
 
-inline VoxelOctree treeOf(const VoxelFragments& list, const char* voxels = "at_corners",
+inline VoxelOctree treeOf(const VoxelFragments& list, const char* voxels = "as_grid",
                           bool asPublished = false) {
   const Scene scene = cones::emptyScene();
   PassHarness harness(device(), techniques(), "voxel_cone_tracing", "octree", scene, snapshotOf(scene, 0.0));

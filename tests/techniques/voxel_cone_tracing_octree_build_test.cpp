@@ -10,18 +10,20 @@ using namespace lumivox::test::octree;
 
 namespace {
 
-/// Voxels of every level that are not empty where every voxel adds to those of the next level within one
-/// voxel of twice their number.
-std::vector<std::set<Cell>> filledVoxels(const std::set<Cell>& finest, int levels) {
+/// Voxels of every level that are not empty: as in a grid every voxel adds to that of half its number, at
+/// corners to those of the next level within one voxel of twice their number.
+std::vector<std::set<Cell>> filledVoxels(const std::set<Cell>& finest, int levels, bool atCorners) {
   std::vector<std::set<Cell>> result{finest};
   while (static_cast<int>(result.size()) < levels) {
     std::set<Cell> coarse;
-    for (const Cell& cell : result.back())
-      for (int step = 0; step < 27; ++step) {
+    for (const Cell& cell : result.back()) {
+      if (!atCorners) coarse.insert({cell[0] / 2, cell[1] / 2, cell[2] / 2});
+      for (int step = 0; step < 27 && atCorners; ++step) {
         const Cell shifted{cell[0] + step % 3 - 1, cell[1] + step / 3 % 3 - 1, cell[2] + step / 9 - 1};
         if (std::all_of(shifted.begin(), shifted.end(), [](int i) { return i % 2 == 0; }))
           coarse.insert({shifted[0] / 2, shifted[1] / 2, shifted[2] / 2});
       }
+    }
     result.push_back(coarse);
   }
   return result;
@@ -66,23 +68,26 @@ std::vector<FragmentData> shell(const glm::ivec3& size) {
 }  // namespace
 
 TEST_CASE("every level has the nodes whose bricks show something, and no others") {
-  for (const glm::ivec3& size : {glm::ivec3(2), {8, 8, 8}, {11, 7, 5}, {64, 64, 64}, {65, 20, 33}}) {
-    const std::vector<FragmentData> fragments = shell(size);
-    const VoxelOctree tree = treeOf(listOf(fragments, size));
-    CAPTURE(size.x, size.y, size.z, tree.depth);
-    const int longest = std::max({size.x, size.y, size.z});
-    REQUIRE((2 << tree.depth) >= longest);
-    if (tree.depth > 0) REQUIRE((1 << tree.depth) < longest);
-    const auto voxels = filledVoxels(cellsOf(fragments), tree.depth + 1);
-    std::size_t bricks = 0;
-    for (int level = 0; level <= tree.depth; ++level) {
-      const std::set<Cell> nodes = nodesOf(tree, level);
-      CAPTURE(level);
-      CHECK(nodes == nodesWith(voxels[static_cast<std::size_t>(level)], 1 << (tree.depth - level)));
-      bricks += nodes.size();
+  for (const bool atCorners : {false, true})
+    for (const glm::ivec3& size : {glm::ivec3(2), {8, 8, 8}, {11, 7, 5}, {64, 64, 64}, {65, 20, 33}}) {
+      const std::vector<FragmentData> fragments = shell(size);
+      const VoxelOctree tree = treeOf(listOf(fragments, size), atCorners ? "at_corners" : "as_grid");
+      CAPTURE(atCorners, size.x, size.y, size.z, tree.depth);
+      const int longest = std::max({size.x, size.y, size.z});
+      REQUIRE((2 << tree.depth) >= longest);
+      if (tree.depth > 0) REQUIRE((1 << tree.depth) < longest);
+      const auto voxels = filledVoxels(cellsOf(fragments), tree.depth + 1, atCorners);
+      std::size_t bricks = 0;
+      for (int level = 0; level <= tree.depth; ++level) {
+        const std::set<Cell> nodes = nodesOf(tree, level);
+        CAPTURE(level);
+        CHECK(nodes == nodesWith(voxels[static_cast<std::size_t>(level)], 1 << (tree.depth - level)));
+        bricks += nodes.size();
+      }
+      // Not one more than there are.
+      CHECK(tree.brickRoom == std::max<std::size_t>(bricks, 1));
+      CHECK(tree.leafRoom == std::max<std::size_t>(nodesOf(tree, 0).size(), 1));
     }
-    CHECK(tree.brickRoom == std::max<std::size_t>(bricks, 1));  // not one more than there are
-  }
 }
 
 TEST_CASE("with voxels in leaves, as published, there are the nodes that fragments lie in") {
@@ -100,7 +105,7 @@ TEST_CASE("with voxels in leaves, as published, there are the nodes that fragmen
 
 TEST_CASE("every node is found from the root and knows its brick and its neighbours; others are not found") {
   const glm::ivec3 size(40, 24, 33);
-  for (const char* voxels : {"at_corners", "in_leaves"}) {
+  for (const char* voxels : {"as_grid", "at_corners", "in_leaves"}) {
     for (const bool asPublished : {false, true}) {
       const VoxelOctree tree = treeOf(listOf(shell(size), size), voxels, asPublished);
       std::vector<NodeData> nodes = tree.nodes->downloadValues<NodeData>();
@@ -173,7 +178,7 @@ TEST_CASE("a tree that outgrows its room is made again with all of it, and a sma
 }
 
 TEST_CASE("built level by level, as published, the tree has the same nodes") {
-  for (const char* voxels : {"at_corners", "in_leaves"})
+  for (const char* voxels : {"as_grid", "at_corners", "in_leaves"})
     for (const glm::ivec3& size : {glm::ivec3(2), {11, 7, 5}, {64, 64, 64}}) {
       const VoxelFragments list = listOf(shell(size), size);
       const VoxelOctree ours = treeOf(list, voxels), published = treeOf(list, voxels, true);
