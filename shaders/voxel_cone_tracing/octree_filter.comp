@@ -17,14 +17,18 @@ layout(binding = 0) uniform writeonly image3D poolImage;  // the same
 
 void main() {
   uint brick, lane;
-  if (!itemOf(depth, 8u, brick, lane)) return;
-  uint tile = octreeNodes[octreeBricks[brick].node].children, finer = tile == kNone ? kNone : octreeNodes[tile + lane].brick;
-  vec4 value = vec4(0.0);
-  if (finer != kNone) {
-    vec4 child[8];
-    for (int i = 0; i < 8; ++i) child[i] = texelFetch(pool, texelOf(finer) + ivec3(i & 1, i >> 1 & 1, i >> 2), 0);
-    if (rule == kFacing) value = seenThrough(child);
-    for (int i = 0; i < 8 && rule == kAverage; ++i) value += child[i] / 8.0;
+  if (!itemOf(depth, 27u, brick, lane)) return;
+  ivec3 voxel = ivec3(lane % 3u, lane / 3u % 3u, lane / 9u);
+  vec4 value = vec4(0.0);  // of those that are copied, unless there is nothing to copy
+  uint tile = octreeNodes[octreeBricks[brick].node].children;
+  if (tile != kNone && all(lessThan(voxel, ivec3(2)))) {
+    uint finer = octreeNodes[tile + uint(voxel.x | voxel.y << 1 | voxel.z << 2)].brick;
+    if (finer != kNone) {
+      vec4 child[8];
+      for (int i = 0; i < 8; ++i) child[i] = texelFetch(pool, texelOf(finer) + ivec3(i & 1, i >> 1 & 1, i >> 2), 0);
+      if (rule == kFacing) value = seenThrough(child);
+      for (int i = 0; i < 8 && rule == kAverage; ++i) value += child[i] / 8.0;
+    }
   }
-  imageStore(poolImage, texelOf(brick) + ivec3(lane & 1u, lane >> 1 & 1u, lane >> 2), value);
+  imageStore(poolImage, texelOf(brick) + voxel, value);
 }

@@ -35,6 +35,7 @@ void main() {
   uint brick, lane;
   if (!itemOf(depth, kPartThreads[part], brick, lane)) return;
   uint tile = octreeNodes[octreeBricks[brick].node].children;
+  ivec3 place = unpackVoxel(octreeBricks[brick].place);
   ivec3 vertex = vertexOf(lane), low = max(2 * vertex - 1, 0), high = min(2 * vertex + 1, 4);
   vec4 sum = vec4(0.0);
   for (int i = 0; i < 8 && tile != kNone; ++i) {
@@ -43,7 +44,13 @@ void main() {
     ivec3 origin = 2 * ivec3(i & 1, i >> 1 & 1, i >> 2), from = max(low, origin), to = min(high, origin + 2);
     for (int z = from.z; z <= to.z; ++z)
       for (int y = from.y; y <= to.y; ++y)
-        for (int x = from.x; x <= to.x; ++x) sum += texelFetch(pool, texelOf(childBrick) + ivec3(x, y, z) - origin, 0);
+        for (int x = from.x; x <= to.x; ++x) {
+          vec4 value = texelFetch(pool, texelOf(childBrick) + ivec3(x, y, z) - origin, 0);
+          // On the border of the grid there is no other node to add the other half.
+          ivec3 fine = 4 * place + ivec3(x, y, z);
+          ivec3 outer = ivec3(equal(fine, ivec3(0))) + ivec3(equal(fine, ivec3(4 << depth)));
+          sum += means != 0 ? value : value * float(1 << outer.x + outer.y + outer.z);
+        }
   }
   // The weight of every one that is counted is a quarter along each axis: that of the outer two, and of the middle one in each of the two
   // nodes or children that hold it.

@@ -79,7 +79,7 @@ class OctreeFilterPass : public Pass {
                       octree_filter::Constants{.rule = static_cast<int>(static_cast<Opacity>(opacity))}),
         {octree_filter::coarse({depth}), octree_filter::pool(octree.radiance, gpu::Sampling::nearest),
          octree_filter::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift)},
-        octree.tree, depth, 8);
+        octree.tree, depth, 27);
     transferBorders(frame, octree, depth, Transfer::copy);
   }
 

@@ -88,10 +88,15 @@ struct GatherSettings {
   std::uint64_t seed = 1;
 };
 
+/// Which input of the cones a store is.
+inline const char* inputOf(const RadianceGrid&) {
+  return "grid";
+}
+
 /// Runs `gather` over a g-buffer; `read` gets the pass with its outputs.
-template <class Read>
-auto gatherWith(const Scene& scene, const RadianceGrid& grid, const GBuffer& gbuffer,
-                const GatherSettings& settings, const Read& read) {
+template <class Store, class Read>
+auto gatherWith(const Scene& scene, const Store& grid, const GBuffer& gbuffer, const GatherSettings& settings,
+                const Read& read) {
   PassHarness harness(device(), techniques(), "voxel_cone_tracing", "gather", scene, snapshotOf(scene, 0.0));
   harness.setParameter("cones", settings.cones);
   harness.setParameter("distribution", std::string(settings.distribution));
@@ -105,29 +110,31 @@ auto gatherWith(const Scene& scene, const RadianceGrid& grid, const GBuffer& gbu
   harness.setParameter("cone_ratio", settings.coneRatio);
   harness.setParameter("jitter", settings.jitter);
   harness.setInput("gbuffer", gbuffer);
-  harness.setInput("grid", grid);
+  harness.setInput(inputOf(grid), grid);
   harness.run(settings.seed);
   return read(harness);
 }
 
 /// Indirect diffuse radiance at one surface point of albedo 1, in every pixel.
-inline ImageBuffer gatherImage(const Scene& scene, const RadianceGrid& grid, const glm::vec3& position,
-                               const glm::vec3& normal, const GatherSettings& settings) {
+template <class Store>
+ImageBuffer gatherImage(const Scene& scene, const Store& grid, const glm::vec3& position,
+                        const glm::vec3& normal, const GatherSettings& settings) {
   return gatherWith(scene, grid, surfacePoint(position, normal, glm::vec3(1.0f)), settings,
                     [](PassHarness& harness) { return imageOf(*harness.output<Image>("diffuse").texture); });
 }
 inline glm::vec3 pixelOf(const ImageBuffer& image) {
   return {image.at(3, 3, 0), image.at(3, 3, 1), image.at(3, 3, 2)};
 }
-inline glm::vec3 gather(const Scene& scene, const RadianceGrid& grid, const glm::vec3& position,
-                        const glm::vec3& normal, const GatherSettings& settings) {
+template <class Store>
+glm::vec3 gather(const Scene& scene, const Store& grid, const glm::vec3& position, const glm::vec3& normal,
+                 const GatherSettings& settings) {
   return pixelOf(gatherImage(scene, grid, position, normal, settings));
 }
 
 /// Indirect glossy radiance at one surface point.
-inline glm::vec3 gatherGlossy(const Scene& scene, const RadianceGrid& grid, const glm::vec3& position,
-                              const glm::vec3& normal, const glm::vec4& specular,
-                              const GatherSettings& settings) {
+template <class Store>
+glm::vec3 gatherGlossy(const Scene& scene, const Store& grid, const glm::vec3& position,
+                       const glm::vec3& normal, const glm::vec4& specular, const GatherSettings& settings) {
   return gatherWith(
       scene, grid, surfacePoint(position, normal, glm::vec3(0.0f), specular), settings,
       [](PassHarness& harness) { return pixelOf(imageOf(*harness.output<Image>("glossy").texture)); });

@@ -12,6 +12,15 @@
 #include "support/cones.h"
 #include "support/voxel_fragments.h"
 
+namespace lumivox::voxel_cone_tracing {
+
+/// Which input of the cones it is, for test::cones::gather.
+inline const char* inputOf(const RadianceOctree&) {
+  return "octree";
+}
+
+}  // namespace lumivox::voxel_cone_tracing
+
 namespace lumivox::test::octree {
 
 using voxel_cone_tracing::OctreeBrickList;
@@ -83,6 +92,65 @@ inline std::uint32_t nodeAt(const std::vector<NodeData>& nodes, const VoxelOctre
 
 inline Cell cellOf(const glm::ivec3& place) {
   return {place.x, place.y, place.z};
+}
+
+/// Irradiance under which a fragment reflects its albedo, W/m^2.
+inline constexpr double kAmbient = kPi;
+
+/// The finest level of an octree whose fragments reflect their albedo.
+inline RadianceOctree leavesOf(const VoxelFragments& list, const char* voxels = "as_grid",
+                               const char* precision = "float") {
+  const Scene scene = cones::emptyScene();
+  PassHarness inject(device(), techniques(), "voxel_cone_tracing", "octree_inject", scene,
+                     snapshotOf(scene, 0.0));
+  inject.setParameter("ambient", kAmbient);
+  inject.setParameter("precision", std::string(precision));
+  inject.setInput("fragments", list);
+  inject.setInput("tree", treeOf(list, voxels));
+  inject.run();
+  return inject.output<RadianceOctree>("radiance");
+}
+
+inline RadianceOctree filteredOctree(const RadianceOctree& leaves, const char* opacity = "facing",
+                                     const char* borders = "added") {
+  const Scene scene = cones::emptyScene();
+  PassHarness filter(device(), techniques(), "voxel_cone_tracing", "octree_filter", scene,
+                     snapshotOf(scene, 0.0));
+  filter.setParameter("opacity", std::string(opacity));
+  filter.setParameter("borders", std::string(borders));
+  filter.setInput("radiance", leaves);
+  filter.run();
+  return filter.output<RadianceOctree>("mips");
+}
+
+/// All 27 voxels of every brick of a level: by the node's place, x first.
+inline std::map<Cell, std::array<glm::vec4, 27>> bricksOf(const RadianceOctree& octree, int level) {
+  const std::vector<float> texels = octree.radiance->downloadFloats(0);
+  const gpu::TextureDescription& pool = octree.radiance->description();
+  std::map<Cell, std::array<glm::vec4, 27>> result;
+  for (const auto& brick : OctreeBrickList::of(octree.tree, level).bricks) {
+    auto& values = result[cellOf(brick.place)];
+    for (int i = 0; i < 27; ++i) {
+      const glm::ivec3 at = octree.texelOf(brick.index) + glm::ivec3(i % 3, i / 3 % 3, i / 9);
+      const std::size_t texel = 4 * static_cast<std::size_t>((at.z * pool.height + at.y) * pool.width + at.x);
+      values[static_cast<std::size_t>(i)] = {texels[texel], texels[texel + 1], texels[texel + 2],
+                                             texels[texel + 3]};
+    }
+  }
+  return result;
+}
+
+/// Fragments of all voxels of a grid for which `fill` gives an opacity above 0, in w.
+inline std::vector<FragmentData> fragmentsWhere(const glm::ivec3& size,
+                                                const std::function<glm::vec4(const glm::ivec3&)>& fill) {
+  std::vector<FragmentData> result;
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x) {
+        const glm::vec4 value = fill({x, y, z});
+        if (value.w > 0.0f) result.push_back(fragmentAt({x, y, z}, glm::vec3(value), value.w));
+      }
+  return result;
 }
 
 }  // namespace lumivox::test::octree
