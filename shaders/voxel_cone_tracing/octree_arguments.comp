@@ -13,8 +13,8 @@ layout(std140, binding = 0) uniform Room { uint roomBricks, roomTiles; };
 #if PUBLISHED
 uint firstBrickOf(int depth) { return octreeLevels[depth].firstBrick; }
 #else
-layout(std430, binding = 5) readonly buffer Ranks { uvec2 ranks[]; };
-uint firstBrickOf(int depth) { return ranks[firstWord(depth)].x; }
+layout(std430, binding = 12) readonly buffer OctreeRanks { RankedTags octreeRanks[]; };
+uint firstBrickOf(int depth) { return octreeRanks[firstWord(depth)].nodesBefore; }
 #endif
 
 void main() {

@@ -11,20 +11,20 @@ layout(std140, binding = 0) uniform NodeRoom {
   uint roomBricks, roomTiles;
   uint words;
 };
-layout(std430, binding = 2) readonly buffer Tags { uint tags[]; };
-layout(std430, binding = 5) readonly buffer Ranks { uvec2 ranks[]; };
+layout(std430, binding = 5) readonly buffer TilesBefore { uint tilesBefore[]; };
+layout(std430, binding = 12) readonly buffer OctreeRanks { RankedTags octreeRanks[]; };
 
 // The first of the eight nodes behind byte `tile` of a depth.
 uint nodesOf(uint tile, int depth) {
-  uint word = firstWord(depth) + (tile >> 2), tiles = tilesIn(tags[word]), place = 8u * (tile & 3u);
+  uint word = firstWord(depth) + (tile >> 2), tiles = tilesIn(octreeRanks[word].tags), place = 8u * (tile & 3u);
   if ((tiles >> place & 1u) == 0u) return kNone;
-  return 8u * (ranks[word].y + uint(bitCount(below(tiles, place))));
+  return 8u * (tilesBefore[word] + uint(bitCount(below(tiles, place))));
 }
 
 void main() {
   uint word = listIndex();
   if (word >= words || wantedBricks > roomBricks || wantedTiles > roomTiles) return;
-  uint bits = tags[word];
+  uint bits = octreeRanks[word].tags;
   if (bits == 0u) return;
   int depth = 0;
   while (depth < octreeDepth && firstWord(depth + 1) <= word) ++depth;
@@ -34,7 +34,7 @@ void main() {
     for (uint child = 0u; child < 8u; ++child) {
       uint bit = 8u * byte + child;
       if ((bits >> bit & 1u) == 0u) continue;  // the pool was emptied
-      uint morton = 8u * tile + child, brick = ranks[word].x + uint(bitCount(below(bits, bit)));
+      uint morton = 8u * tile + child, brick = octreeRanks[word].nodesBefore + uint(bitCount(below(bits, bit)));
       octreeNodes[first + child].brick = brick;
       octreeNodes[first + child].children = depth < octreeDepth ? nodesOf(morton, depth + 1) : kNone;
       octreeBricks[brick] = OctreeBrick(first + child, packVoxel(placeOf(morton)));

@@ -7,8 +7,9 @@
 const uint kChunk = 64u;
 
 // The first word of a depth d, which has 8^d bits in a word at least:
-//   1 + 1 + sum over k from 2 to d - 1 of 2^(3k - 5) = 2 + (2^(3d - 5) - 2) / 7.
-uint firstWord(int depth) { return depth < 2 ? uint(depth) : 2u + ((1u << (3 * depth - 5)) - 2u) / 7u; }
+//   1 + 1 + sum over k from 2 to d - 1 of 2^(3k - 5) = 2 + 2 (8^(d - 2) - 1) / 7,
+// where (8^n - 1) / 7 has every third of 3n bits.
+uint firstWord(int depth) { return depth < 2 ? uint(depth) : 2u + 2u * (0x09249249u & ((1u << 3 * (depth - 2)) - 1u)); }
 
 uint spreadBits(uint x) {
   x = (x | x << 16) & 0x030000ffu;
@@ -33,5 +34,12 @@ uint tilesIn(uint word) {
   return (word | word >> 1) & 0x01010101u;
 }
 uint below(uint bits, uint place) { return bits & ((1u << place) - 1u); }
+
+
+// Tags beside the number of nodes before them, which is that of the first one's brick.
+struct RankedTags {
+  uint tags;
+  uint nodesBefore;
+};
 
 #endif

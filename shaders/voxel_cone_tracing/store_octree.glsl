@@ -1,6 +1,24 @@
-// A sparse voxel octree: Crassin et al. 2011, Sec. 4 and 7; thesis 004, Sec. 4.2.2, Listing 4.25. A sample descends from the root for each of
-// its two levels; where the tree ends there is nothing, and nothing is read.
+// A sparse voxel octree: Crassin et al. 2011, Sec. 4 and 7; thesis 004, Sec. 4.2.2, Listing 4.25. Where the tree ends there is nothing, and
+// nothing is read.
+//
+// LOOK_UP: the brick of a node is found from the root, for each of the two levels of a sample, as published; or (ranks) by counting the tags
+// before its own, in two reads whatever the depth and without a loop.
+#pragma lumivox axis LOOK_UP ranks descent
+#pragma lumivox require STORE == octree || LOOK_UP == ranks
 #include "octree.glsl"
+#if LOOK_UP == LOOK_UP_RANKS
+#include "octree_tags.glsl"
+layout(std430, binding = 12) readonly buffer OctreeRanks { RankedTags octreeRanks[]; };
+
+uint brickOfNode(ivec3 place, int depth) {
+  uint morton = mortonOf(place);
+  RankedTags word = octreeRanks[firstWord(depth) + (morton >> 5)];
+  uint bit = morton & 31u;
+  return (word.tags >> bit & 1u) == 0u ? kNone : word.nodesBefore + uint(bitCount(below(word.tags, bit)));
+}
+#else
+uint brickOfNode(ivec3 place, int depth) { return brickAt(place, depth); }
+#endif
 
 layout(std140, binding = 4) uniform OctreeStore {
   vec3 poolSize;         // texels
@@ -28,7 +46,7 @@ bool readLevel(vec3 at, int level, out vec4 value) {
   int depth = octreeDepth - level;
   vec3 inside = clamp(from, vec3(0.0), vec3(float(2 << depth)));
   ivec3 place = min(ivec3(inside) >> 1, ivec3((1 << depth) - 1));
-  uint brick = brickAt(place, depth);
+  uint brick = brickOfNode(place, depth);
   vec3 border = clamp(1.0 + from, vec3(0.0), vec3(1.0));
   value = border.x * border.y * border.z * inBrick(brick, inside, vec3(place));
   return brick != kNone;

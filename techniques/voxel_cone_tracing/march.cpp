@@ -19,6 +19,9 @@ StoreInput::StoreInput(Pass* pass)
       octree_(pass, "octree", Presence::optional,
               "in place of 'grid': pre-filtered radiance in a sparse voxel octree", Needs::nothing,
               Levels::all),
+      lookUp_(
+          pass, "look_up", LookUp::ranks,
+          "of 'octree': how the brick of a node is found: by counting the nodes before it; from the root, as published"),
       reading_(
           pass, "reading", Reading::layers,
           "of 'directions': each face by the layer of voxels across its axis, so that walls are closed; or filtered along all axes and averaged, as published") {
@@ -86,6 +89,8 @@ StoreBinding StoreInput::inOctree() const {
   const gpu::TextureDescription& pool = octree.radiance->description();
   StoreBinding result;
   result.axis = gather::Variant::storeOctree;
+  result.lookUp = tree.ranks != nullptr && lookUp_ == LookUp::ranks ? gather::Variant::lookUpRanks
+                                                                    : gather::Variant::lookUpDescent;
   result.length = 2.0f * glm::length(extent);
   result.voxel = tree.grid.voxelSize;
   result.add(shader::UniformSlot<gather::Store>{"Store"}(
@@ -101,6 +106,7 @@ StoreBinding StoreInput::inOctree() const {
        .firstVoxelGrows = tree.voxels == VoxelOctree::Voxels::asGrid ? 1.0f : 0.0f}));
   result.add(shader::SampledSlot{"brickPool"}(octree.radiance, gpu::Sampling::linear));
   result.add(OctreeBinding(tree, octree.poolShift));
+  result.add(shader::StorageSlot{"OctreeRanks"}(tree.ranks));
   return result;
 }
 

@@ -13,6 +13,7 @@ namespace lumivox::voxel_cone_tracing {
 /// includes store.glsl takes them.
 struct StoreBinding : shader::BindingSet {
   int axis = 0;             ///< value of the shader's axis STORE
+  int lookUp = 0;           ///< and of LOOK_UP
   float length = 0;         ///< no cone need be longer, m
   float voxel = 0;          ///< finest voxels, m
   bool holdsMedia = false;  ///< participating media are in the voxels
@@ -27,10 +28,12 @@ class StoreInput {
 
  private:
   enum class Reading { layers, interpolated };
+  enum class LookUp { ranks, descent };
 
   In<RadianceGrid> grid_;
   In<DirectionalRadianceGrid> directions_;
   In<RadianceOctree> octree_;
+  Param<LookUp> lookUp_;
   Param<Reading> reading_;
 
   StoreBinding dense() const;

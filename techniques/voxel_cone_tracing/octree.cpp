@@ -79,12 +79,13 @@ class OctreePass : public Pass {
     tree = result;
   }
 
-  void write(PassContext& frame, const VoxelOctree& result) {
+  void write(PassContext& frame, VoxelOctree& result) {
     const std::uint64_t words = firstWord(result.depth + 1), chunks = (words + kChunk - 1) / kChunk;
     const int wordCount = static_cast<int>(words);
     const gpu::BufferRef tags = frame.emptyElements(octree_mark::tags, words, "tags of octree nodes"),
                          counts = frame.elements(octree_count::chunkCounts, chunks, "counts of octree nodes"),
-                         ranks = frame.elements(octree_rank::ranks, words, "ranks of octree nodes");
+                         tiles = frame.elements(octree_rank::tilesBefore, words, "ranks of octree tiles");
+    result.ranks = frame.elements(octree_rank::octreeRanks, words, "ranks of octree nodes");
     const OctreeBinding bound(result);
     forEachFragment(frame, frame.program(octree_mark::kProgram),
                     {octree_mark::marks({.depth = result.depth, .voxels = static_cast<int>(result.voxels)}),
@@ -97,17 +98,19 @@ class OctreePass : public Pass {
     frame.dispatch(frame.program(octree_scan::kProgram),
                    {octree_scan::chunks({static_cast<int>(chunks)}), octree_scan::chunkCounts(counts), bound},
                    {1, 1, 1});
-    frame.dispatchList(frame.program(octree_rank::kProgram),
-                       {octree_rank::words({wordCount}), octree_rank::tags(tags),
-                        octree_rank::chunkCounts(counts), octree_rank::ranks(ranks)},
-                       chunks);
+    frame.dispatchList(
+        frame.program(octree_rank::kProgram),
+        {octree_rank::words({wordCount}), octree_rank::tags(tags), octree_rank::chunkCounts(counts),
+         octree_rank::tilesBefore(tiles), octree_rank::octreeRanks(result.ranks)},
+        chunks);
     const std::uint32_t brickRoom = bricks_, tileRoom = tiles_;
-    frame.dispatch(frame.program(octree_arguments::Variant{}),
-                   {octree_arguments::room({brickRoom, tileRoom}), octree_arguments::ranks(ranks), bound},
-                   {result.depth + 2, 1, 1});
+    frame.dispatch(
+        frame.program(octree_arguments::Variant{}),
+        {octree_arguments::room({brickRoom, tileRoom}), octree_arguments::octreeRanks(result.ranks), bound},
+        {result.depth + 2, 1, 1});
     frame.dispatchList(frame.program(octree_nodes::kProgram),
                        {octree_nodes::nodeRoom({brickRoom, tileRoom, static_cast<std::uint32_t>(words)}),
-                        octree_nodes::tags(tags), octree_nodes::ranks(ranks), bound},
+                        octree_nodes::tilesBefore(tiles), octree_nodes::octreeRanks(result.ranks), bound},
                        words);
   }
 

@@ -25,6 +25,7 @@ struct VoxelOctree {
   gpu::BufferRef nodes;   ///< OctreeNode
   gpu::BufferRef bricks;  ///< OctreeBrick, by depth
   gpu::BufferRef levels;  ///< OctreeLevels
+  gpu::BufferRef ranks;   ///< RankedTags; null: bricks are found from the root alone
   int depth = 0;          ///< of the leaves
   Voxels voxels = Voxels::asGrid;
   std::uint64_t brickRoom = 0;  ///< bricks that there is room for
@@ -106,16 +107,20 @@ namespace lumivox {
 template <>
 struct PortTraits<voxel_cone_tracing::VoxelOctree> {
   static PortKind kind() {
-    return {"VoxelOctree",
-            "the nodes of a sparse voxel octree",
-            {{"nodes", "buffer", "array of OctreeNode in shaders/voxel_cone_tracing/octree.glsl"},
-             {"bricks", "buffer", "array of OctreeBrick: the node of each brick and where it lies"},
-             {"levels", "buffer", "bricks and tiles wanted; for each depth its bricks and dispatches"}}};
+    return {
+        "VoxelOctree",
+        "the nodes of a sparse voxel octree",
+        {{"nodes", "buffer", "array of OctreeNode in shaders/voxel_cone_tracing/octree.glsl"},
+         {"bricks", "buffer", "array of OctreeBrick: the node of each brick and where it lies"},
+         {"levels", "buffer", "bricks, tiles and leaves wanted; for each depth its bricks and dispatches"},
+         {"ranks", "buffer",
+          "a bit for each node that could be, beside the number of those before; or null"}}};
   }
   static void contents(const voxel_cone_tracing::VoxelOctree& port, PortContents& contents) {
     contents.buffer("nodes", port.nodes);
     contents.buffer("bricks", port.bricks);
     contents.buffer("levels", port.levels);
+    contents.buffer("ranks", port.ranks);
   }
 };
 

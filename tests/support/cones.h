@@ -86,6 +86,7 @@ struct GatherSettings {
   double coneRatio = 1.1547005383792515;
   double jitter = 0;
   std::uint64_t seed = 1;
+  const char* lookUp = "ranks";
 };
 
 /// Which input of the cones a store is.
@@ -109,6 +110,7 @@ auto gatherWith(const Scene& scene, const Store& grid, const GBuffer& gbuffer, c
   harness.setParameter("as_published", std::string(settings.asPublished ? "on" : "off"));
   harness.setParameter("cone_ratio", settings.coneRatio);
   harness.setParameter("jitter", settings.jitter);
+  harness.setParameter("look_up", std::string(settings.lookUp));
   harness.setInput("gbuffer", gbuffer);
   harness.setInput(inputOf(grid), grid);
   harness.run(settings.seed);

@@ -150,6 +150,7 @@ TEST_CASE("the tree does not depend on the order of the fragments, to the bit") 
   CHECK(first.nodes->download() == second.nodes->download());
   CHECK(first.bricks->download() == second.bricks->download());
   CHECK(first.levels->download() == second.levels->download());
+  CHECK(first.ranks->download() == second.ranks->download());
 }
 
 TEST_CASE("a list without fragments gives a tree without bricks") {
