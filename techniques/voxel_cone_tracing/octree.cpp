@@ -52,6 +52,7 @@ class OctreePass : public Pass {
 
   /// The most that any frame wanted, which is what later ones get.
   std::uint32_t bricks_ = 0, tiles_ = 0, leaves_ = 0;
+  std::vector<std::uint32_t> bricksAbove_;  ///< those of lesser depths, by depth
 
   void run(PassContext& frame) override {
     VoxelOctree result;
@@ -60,6 +61,9 @@ class OctreePass : public Pass {
     const int longest = result.grid.longest();
     while ((2 << result.depth) < longest) ++result.depth;
     result.brickRoom = std::max(bricks_, 1u);
+    for (std::size_t depth = 1; depth < bricksAbove_.size(); ++depth)
+      result.bricksDownTo.push_back(bricksAbove_[depth]);
+    result.bricksDownTo.push_back(bricks_);
     result.leafRoom = std::max(leaves_, 1u);
     const std::uint64_t tiles = std::max(tiles_, 1u);
     result.nodes = frame.buffer(tiles * VoxelOctree::kTileBytes, "octree nodes");
@@ -76,6 +80,10 @@ class OctreePass : public Pass {
     judge(frame, result.levels, 0, bricks_);
     judge(frame, result.levels, 1, tiles_);
     judge(frame, result.levels, 2, leaves_);
+    bricksAbove_.resize(static_cast<std::size_t>(result.depth) + 1);
+    for (std::size_t depth = 1; depth < bricksAbove_.size(); ++depth)
+      judge(frame, result.levels, VoxelOctree::kLevelsBegin + VoxelOctree::kLevelWords * depth,
+            bricksAbove_[depth]);
     tree = result;
   }
 

@@ -1,24 +1,61 @@
 // The bricks of a sparse voxel octree: the pool, what neighbours share, and pre-filtering. Crassin et al.
 // 2011, Sec. 4 to 6; thesis Gomes 2015, Sec. 3.1.2, 3.1.3 and 4.2.2.
+#include <fmt/format.h>
+
 #include <array>
 
 #include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
 #include "octree.h"
 
 namespace lumivox::voxel_cone_tracing {
 
 using namespace shaders::voxel_cone_tracing;
 
-void makePool(PassContext& frame, RadianceOctree& result, gpu::Format format) {
-  constexpr int kSide = 3;
-  const std::uint64_t bricks = result.tree.brickRoom;
-  // About a cube: less than a layer of it stays empty.
-  while ((std::uint64_t{1} << (3 * (result.poolShift + 1))) <= bricks) ++result.poolShift;
-  const int row = 1 << result.poolShift;
+namespace {
+
+constexpr int kSide = 3;  // voxels along a brick
+
+/// Room for so many bricks, about a cube of them: less than a layer of it stays empty.
+gpu::TextureRef pool(PassContext& frame, std::uint64_t bricks, gpu::Format format, int& shift) {
+  shift = 0;
+  while ((std::uint64_t{1} << (3 * (shift + 1))) <= bricks) ++shift;
+  const int row = 1 << shift;
   const std::uint64_t layer = static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(row);
-  result.radiance =
-      frame.volume({kSide * row, kSide * row, kSide * static_cast<int>((bricks + layer - 1) / layer)}, format,
-                   "octree bricks of radiance");
+  return frame.volume({kSide * row, kSide * row, kSide * static_cast<int>((bricks + layer - 1) / layer)},
+                      format, "octree bricks of radiance");
+}
+
+bool fits(PassContext& frame, std::uint64_t bricks, gpu::Format format) {
+  try {
+    int shift = 0;
+    pool(frame, bricks, format, shift);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+void makePool(PassContext& frame, RadianceOctree& result, gpu::Format format) {
+  const VoxelOctree& tree = result.tree;
+  try {
+    result.radiance = pool(frame, tree.brickRoom, format, result.poolShift);
+  } catch (const Error& error) {
+    // The bricks of the lesser depths are about those of coarser trees. What fits is given back at once.
+    int longest = tree.grid.longest();
+    for (std::size_t depth = tree.bricksDownTo.size() - 1; depth-- > 0;) {
+      longest /= 2;
+      if (!fits(frame, tree.bricksDownTo[depth], format)) continue;
+      const std::uint64_t bytes = kSide * kSide * kSide * gpu::bytesPerTexel(format);
+      throw Error(fmt::format(
+          "an octree of {} voxels along its longest side has {} bricks of {}, {}; of sizes halved from it the largest that fits is {} ({})",
+          tree.grid.longest(), tree.brickRoom, formatBytes(bytes), formatBytes(tree.brickRoom * bytes),
+          longest, error.what()));
+    }
+    throw;
+  }
 }
 
 void transferBorders(PassContext& frame, const RadianceOctree& octree, int depth, Transfer way) {

@@ -30,6 +30,8 @@ struct VoxelOctree {
   Voxels voxels = Voxels::asGrid;
   std::uint64_t brickRoom = 0;  ///< bricks that there is room for
   std::uint64_t leafRoom = 0;   ///< of them those of the finest level
+  /// Bricks of the depths 0, 0 and 1, 0 to 2 ...: what trees of 2, 4, 8 ... voxels a side take.
+  std::vector<std::uint32_t> bricksDownTo;
 
   /// Words of `levels` before those of a depth, of one depth, and before the dispatches of a depth.
   static constexpr std::uint64_t kLevelsBegin = 3, kLevelWords = 20, kLevelGroups = 2;

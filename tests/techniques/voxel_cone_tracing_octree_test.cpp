@@ -283,6 +283,65 @@ TEST_CASE("a closed box whose thick walls all radiate L gives L back within 3 %"
   }
 }
 
+TEST_CASE("narrow cones all around a single lit voxel see its radiance times its solid angle within 10 %") {
+  // A mirror at the origin looks in turn into directions around the one to the voxel, through (a, b) of the
+  // plane at distance 1: each stands for the solid angle cos^3 da db. A face of s^2 at a distance d from the
+  // apex subtends s^2 / d^2; what trilinear reading shows of a voxel lies around its middle.
+  constexpr int kResolution = 64, kSide = 48;
+  constexpr double kVoxel = 2.0 / kResolution;
+  const glm::ivec3 cell(32 + 20, 32, 32);
+  const RadianceOctree octree =
+      filteredOctree(leavesOf(listOf({fragmentAt(cell, glm::vec3(1.0f))}, glm::ivec3(kResolution))));
+  SceneBuilder builder;
+  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, kSide, kSide);
+  const Scene& scene = builder.scene;
+  const glm::dvec3 middle = (glm::dvec3(cell) + 0.5) * kVoxel - 1.0, forward = glm::normalize(middle),
+                   up(0, 1, 0), right = glm::normalize(glm::cross(forward, up)),
+                   top = glm::cross(right, forward);
+  const double distance = middle.x, width = 10.0 * kVoxel;
+  for (const float exponent : {4000.0f, 800.0f}) {
+    GBuffer gbuffer = surfacePoint(glm::vec3(0.0f), {1, 0, 0}, glm::vec3(0.0f));
+    gpu::TextureDescription description = gbuffer.position->description();
+    description.width = description.height = kSide;
+    const auto image = [&](const auto& valueAt) {
+      std::vector<float> values;
+      for (int i = 0; i < kSide * kSide; ++i) {
+        const glm::vec4 value = valueAt(i);
+        values.insert(values.end(), {value.x, value.y, value.z, value.w});
+      }
+      auto texture = std::make_shared<gpu::Texture>(device(), description, "test g-buffer");
+      texture->uploadFloats(0, values);
+      return texture;
+    };
+    const auto planeAt = [&](int i) {
+      return (glm::dvec2(i % kSide, i / kSide) + 0.5) * (2.0 * width / kSide) - width;
+    };
+    const auto directionAt = [&](int i) {
+      return glm::normalize(forward + planeAt(i).x * right + planeAt(i).y * top);
+    };
+    const glm::dvec3 view(0, 0, -1);  // from the eye
+    const auto normalAt = [&](int i) { return glm::normalize(directionAt(i) - view); };
+    const auto constant = [](const glm::vec4& value) { return [value](int) { return value; }; };
+    gbuffer.position = image(constant({0, 0, 0, 1}));
+    gbuffer.normal = gbuffer.geometricNormal =
+        image([&](int i) { return glm::vec4(glm::vec3(normalAt(i)), 1.0f); });
+    gbuffer.diffuse = image(constant(glm::vec4(0.0f)));
+    gbuffer.specular = image(constant({1, 1, 1, exponent}));
+    const ImageBuffer seen =
+        gatherWith(scene, octree, gbuffer, {6, "cosine", 0, 0, 0, 0.25},
+                   [](PassHarness& harness) { return imageOf(*harness.output<Image>("glossy").texture); });
+    double sum = 0.0;
+    for (int i = 0; i < kSide * kSide; ++i) {
+      const double cosPlane = glm::dot(directionAt(i), forward),
+                   cosMirror = glm::dot(directionAt(i), normalAt(i)),
+                   solidAngle = std::pow(cosPlane, 3) * std::pow(2.0 * width / kSide, 2);
+      sum += seen.at(i % kSide, i / kSide, 0) / cosMirror * solidAngle;
+    }
+    CAPTURE(exponent);
+    CHECK(sum == Approx(kVoxel * kVoxel / (distance * distance)).epsilon(0.10));
+  }
+}
+
 TEST_CASE("as published, a sample between two levels is blended the other way round") {
   // One sample for each of the printed cones, of 2.8 voxels at a distance of 2: its level is log2 2.8
   // = 1.485. Opacities of voxels of the levels 1 and 2 of a uniform medium are 1 - (1-a)^2 and 1 - (1-a)^4;
@@ -336,4 +395,30 @@ TEST_CASE("rules that need the voxels elsewhere are refused with what would do")
   const RadianceOctree leaves = leavesOf(listOf({fragmentAt({3, 3, 3})}, glm::ivec3(8)), "at_corners");
   CHECK_THROWS_WITH(filteredOctree(leaves, "facing"),
                     Catch::Matchers::Contains("expected 'opacity average'"));
+}
+
+TEST_CASE("an octree that does not fit is refused with the bytes that it needs and the largest that fits") {
+  gpu::DeviceOptions options;
+  options.memoryBytes = 24 << 20;
+  gpu::Device small(options);
+  const Scene scene = cornell();
+  RenderOptions render;
+  render.width = render.height = 16;
+  const Pipeline text = pipeline("voxel_cone_tracing_octree");
+  render.parameters = text.settings({"resolution=128"});
+  PipelineExecutor executor(small, techniques(), scene, text, render);
+  CHECK_THROWS_WITH(executor.render(0.0), Catch::Matchers::Contains("an octree of 128 voxels") &&
+                                              Catch::Matchers::Contains("the largest that fits is 64"));
+}
+
+TEST_CASE(
+    "images are finite with the camera outside of the octree, inside geometry and far from the origin") {
+  for (const char* name : {"scenes/stress/far_away.scene", "scenes/stress/camera_inside.scene"}) {
+    if (!std::filesystem::exists(sourceDirectory() / name)) continue;
+    const Scene scene = loadScene(sourceDirectory() / name);
+    RenderOptions options;
+    options.width = options.height = 16;
+    const FrameResult frame = renderOnce(scene, pipeline("voxel_cone_tracing_octree"), options);
+    for (const float value : frame.outputs.at("final").values()) CHECK(std::isfinite(value));
+  }
 }
