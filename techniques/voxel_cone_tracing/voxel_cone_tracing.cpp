@@ -12,6 +12,7 @@ void addFilterDirectional(TechniqueRegistry& registry);
 void addGather(TechniqueRegistry& registry);
 void addOctree(TechniqueRegistry& registry);
 void addOctreeFilter(TechniqueRegistry& registry);
+void addOctreeSplat(TechniqueRegistry& registry);
 
 namespace {
 
@@ -75,5 +76,6 @@ LUMIVOX_TECHNIQUE(registry) {
   addFilterDirectional(registry);
   addOctree(registry);
   addOctreeFilter(registry);
+  addOctreeSplat(registry);
   addGather(registry);
 }
