@@ -10,6 +10,9 @@ namespace lumivox::voxel_cone_tracing {
 void addInject(TechniqueRegistry& registry);
 void addFilterDirectional(TechniqueRegistry& registry);
 void addGather(TechniqueRegistry& registry);
+void addOctree(TechniqueRegistry& registry);
+void addOctreeFilter(TechniqueRegistry& registry);
+void addOctreeSplat(TechniqueRegistry& registry);
 
 namespace {
 
@@ -71,5 +74,8 @@ LUMIVOX_TECHNIQUE(registry) {
   addInject(registry);
   registry.add<FilterPass>("filter", "Pre-filtered coarser levels (Crassin et al. 2011, Sec. 5)");
   addFilterDirectional(registry);
+  addOctree(registry);
+  addOctreeFilter(registry);
+  addOctreeSplat(registry);
   addGather(registry);
 }
