@@ -1,7 +1,7 @@
 // The guides: what they quote stands in files that are built or tested, their links lead somewhere, and their
 // commands exist.
 #include <algorithm>
-#include <fstream>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -9,35 +9,14 @@
 #include <vector>
 
 #include "lumivox/base/file.h"
-#include "support/support.h"
+#include "tools/cli_support.h"
+#include "tools/guide.h"
 
 namespace fs = std::filesystem;
 using namespace lumivox;
+using namespace lumivox::test;
 
 namespace {
-
-struct Quote {
-  std::string language, text;
-  int line = 0;
-};
-
-/// The fenced blocks of a Markdown text.
-std::vector<Quote> quotesOf(const std::string& markdown) {
-  std::vector<Quote> quotes;
-  std::istringstream stream(markdown);
-  bool inside = false;
-  int number = 0;
-  for (std::string line; std::getline(stream, line);) {
-    ++number;
-    if (line.rfind("```", 0) == 0) {
-      inside = !inside;
-      if (inside) quotes.push_back({line.substr(3), "", number});
-    } else if (inside) {
-      quotes.back().text += line + '\n';
-    }
-  }
-  return quotes;
-}
 
 /// Layout may differ: white space does not count, since a formatter may break a line wherever it likes.
 std::string withoutLayout(const std::string& text) {
@@ -54,26 +33,6 @@ std::vector<std::string> linksOf(const std::string& markdown) {
   for (std::sregex_iterator match(markdown.begin(), markdown.end(), pattern), end; match != end; ++match)
     if ((*match)[1].str().find("://") == std::string::npos) links.push_back((*match)[1]);
   return links;
-}
-
-/// `./run WORD ...` and `lumivox WORD ...` at the start of a line.
-std::set<std::string> commandsOf(const std::string& shell) {
-  std::set<std::string> commands;
-  std::istringstream stream(shell);
-  static const std::regex pattern("^(?:\\./run|lumivox) ([a-z]+)\\b.*");
-  for (std::string line; std::getline(stream, line);) {
-    std::smatch match;
-    if (std::regex_match(line, match, pattern)) commands.insert(match[1]);
-  }
-  return commands;
-}
-
-std::vector<fs::path> guides() {
-  std::vector<fs::path> files = {test::sourceDirectory() / "README.md"};
-  for (const auto& entry : fs::directory_iterator(test::sourceDirectory() / "docs"))
-    if (entry.path().extension() == ".md") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
 }
 
 /// A text without what stands from "<!-- reproduced" to "<!-- end -->".
@@ -134,12 +93,18 @@ std::string sourcesOf(const std::string& language) {
 }  // namespace
 
 TEST_CASE("the reader of guides sees quotes, links and commands") {
-  const auto quotes = quotesOf("a\n```cpp\nint  x;\n```\nb\n```sh\n./run render a\nls\n```\n");
+  const std::string text =
+      "a\n```cpp\nint  x;\n```\nb\n```sh\n./run render a  # why\nls\n```\nc `lumivox fmt --check A` `lumivox`\n";
+  const auto quotes = quotesOf(text);
   REQUIRE(quotes.size() == 2);
   CHECK(quotes[0].language == "cpp");
   CHECK(withoutLayout(quotes[0].text) == "intx;");
   CHECK(quotes[1].line == 6);
-  CHECK(commandsOf(quotes[1].text) == std::set<std::string>{"render"});
+  CHECK(commandLinesOf(text) == std::vector<std::string>{"./run render a", "ls"});
+  const std::vector<NamedCommand> named = namedCommandsOf(text);
+  REQUIRE(named.size() == 1);
+  CHECK(named[0].command == "fmt");
+  CHECK(named[0].options == std::vector<std::string>{"--check"});
   CHECK(linksOf("[a](b.md) [c](https://d.e) [f](g/h.md#i)") == std::vector<std::string>{"b.md", "g/h.md"});
 }
 
@@ -166,24 +131,41 @@ TEST_CASE("the links of the guides lead to files") {
     }
 }
 
-TEST_CASE("the commands that the guides show exist, and the files that they name are there") {
-  std::set<std::string> commands;
+TEST_CASE("the files that the commands of the guides name are there") {
   for (const fs::path& guide : guides())
-    for (const Quote& quote : quotesOf(readFile(guide))) {
-      if (quote.language != "sh") continue;
-      commands.merge(commandsOf(quote.text));
+    for (const std::string& command : commandLinesOf(readFile(guide))) {
       static const std::regex file("[\\w./]+\\.(scene|pipeline|sweep|reproduction)\\b");
-      for (std::sregex_iterator match(quote.text.begin(), quote.text.end(), file), end; match != end;
-           ++match) {
+      for (std::sregex_iterator match(command.begin(), command.end(), file), end; match != end; ++match) {
         INFO(guide << ": " << match->str());
-        CHECK(isThere(match->str()));
+        CHECK((match->str().rfind("out/", 0) == 0 || isThere(match->str())));
       }
     }
-  REQUIRE(commands.size() >= 5);
-  for (const std::string& command : commands) {
-    INFO(command);
-    CHECK(test::runCommand("lumivox " + command + " --help").exitCode == 0);
-  }
+}
+
+TEST_CASE("commands and options that sentences of guides and cards name exist") {
+  std::vector<fs::path> texts = guides();
+  for (const auto& entry : fs::directory_iterator(sourceDirectory() / "techniques"))
+    if (entry.is_directory()) texts.push_back(entry.path() / "README.md");
+  std::map<std::string, std::string> help;
+  std::size_t options = 0;
+  for (const fs::path& text : texts)
+    for (const NamedCommand& named : namedCommandsOf(readFile(text))) {
+      const std::string command = named.program + " " + named.command;
+      INFO(text << ": " << command);
+      if (help.count(command) == 0) {
+        const CommandResult result = runCommand("'" + (binaryDirectory() / "bin" / named.program).string() +
+                                                "' " + named.command + " --help");
+        CHECK(result.exitCode == 0);
+        help[command] = result.output;
+      }
+      for (const std::string& option : named.options) {
+        INFO(option);
+        CHECK(contains(help[command], option));
+        ++options;
+      }
+    }
+  CHECK(help.size() > 10);
+  CHECK(options > 10);
 }
 
 TEST_CASE("the guide to techniques shows every file of the one that `lumivox new technique` writes, whole") {
