@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lumivox/base/file.h"
+#include "lumivox/dsl/document.h"
 #include "tools/cli_support.h"
 #include "tools/guide.h"
 
@@ -65,6 +66,37 @@ bool isThere(std::string file) {
     ofTemplate.replace(at, example.size(), "technique_name");
   return fs::exists(test::sourceDirectory() / file) ||
          fs::exists(test::sourceDirectory() / "templates/technique" / ofTemplate);
+}
+
+/// The values of an enumeration of a header.
+std::vector<std::string> valuesOf(const std::string& header, const std::string& enumeration) {
+  std::smatch body;
+  std::vector<std::string> values;
+  if (!std::regex_search(header, body, std::regex("enum class " + enumeration + "[^{;]*\\{([^}]*)\\}")))
+    return values;
+  const std::string list = body[1];
+  static const std::regex value("(\\w+)( = [^,]*)?(,|\\s*$)");
+  for (std::sregex_iterator match(list.begin(), list.end(), value), end; match != end; ++match)
+    values.push_back((*match)[1]);
+  return values;
+}
+
+/// The words that the items of the first list behind a text are about: those before the colon.
+std::set<std::string> listedBehind(const std::string& markdown, const std::string& text) {
+  std::set<std::string> words;
+  std::istringstream lines(markdown.substr(std::min(markdown.find(text), markdown.size())));
+  bool isInside = false;
+  for (std::string line; std::getline(lines, line);) {
+    const bool isItem = line.rfind("- ", 0) == 0;
+    if (isInside && !isItem && line.rfind("  ", 0) != 0) break;
+    if (!isItem) continue;
+    isInside = true;
+    static const std::regex word("`(\\w+)`");
+    const std::string head = line.substr(0, line.find(':'));
+    for (std::sregex_iterator match(head.begin(), head.end(), word), end; match != end; ++match)
+      words.insert((*match)[1]);
+  }
+  return words;
 }
 
 /// Where quotes of a language may come from.
@@ -183,6 +215,34 @@ TEST_CASE("the guide to techniques shows every file of the one that `lumivox new
     ++shown;
   }
   CHECK(shown == 5);
+}
+
+TEST_CASE("the guide to techniques lists what an output contributes and needs, and the units of parameters") {
+  const std::string guide = readFile(sourceDirectory() / "docs/writing_a_technique.md");
+  const fs::path headers = sourceDirectory() / "framework/include/lumivox";
+  const std::vector<std::string> contributes =
+      valuesOf(readFile(headers / "pipeline/contributes.h"), "Contributes");
+  const std::vector<std::string> needs = valuesOf(readFile(headers / "pipeline/pass.h"), "Needs");
+  CHECK(contributes.size() == 7);
+  CHECK(needs.size() == 10);
+  CHECK(listedBehind(guide, "**An output says which component") ==
+        std::set<std::string>(contributes.begin(), contributes.end()));
+  CHECK(listedBehind(guide, "**And what the scene must have") ==
+        std::set<std::string>(needs.begin(), needs.end()));
+  // Base units: those in which a pass reads its parameters.
+  const std::size_t from = guide.find("**A `Param<float>` that has a unit says so**");
+  REQUIRE(from != std::string::npos);
+  const std::string units = guide.substr(from, guide.find("\n\n", from) - from);
+  static const std::regex unit("`\"([^\"]+)\"`");
+  std::size_t count = 0;
+  for (std::sregex_iterator match(units.begin(), units.end(), unit), end; match != end; ++match, ++count) {
+    INFO((*match)[1]);
+    const auto known = std::find_if(dsl::knownUnits().begin(), dsl::knownUnits().end(),
+                                    [&](const dsl::Unit& one) { return one.name == (*match)[1]; });
+    REQUIRE(known != dsl::knownUnits().end());
+    CHECK(known->toBase == 1.0);
+  }
+  CHECK(count == 5);
 }
 
 TEST_CASE("a paper card begins with an image of the technique and its three headline deviations") {

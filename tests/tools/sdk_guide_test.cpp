@@ -41,15 +41,16 @@ TEST_CASE("the guide to techniques leads from nothing to a technique that is mea
   REQUIRE(guide.says("They are what `lumivox describe ambient.gather` prints"));
   for (const char* word : {"gbuffer", "radiance", "diffuse"})
     CHECK(contains(guide.of("lumivox describe").output, word));
-  REQUIRE(guide.says("Git ignores what is built there and written to `out/`"));
-  const std::string others = guide.run("cd my_lab && git ls-files --others --exclude-standard").output;
-  CHECK(contains(others, "techniques/ambient/ambient.cpp"));
-  for (const char* folder : {"build/", "out/"})
-    CHECK_FALSE(contains("\n" + others, "\n" + std::string(folder)));
   REQUIRE(
       guide.says("`lumivox stress ambient --quick --pipeline scenes/pipelines/ambient.pipeline` runs it on"));
   const CommandResult stressed = guide.run(
       "cd my_lab && lumivox stress ambient --quick --case image_1x1 --techniques "
       "build/lib/techniques --pipeline scenes/pipelines/ambient.pipeline");
   CHECK(contains(stressed.output, "1 stable"));
+  REQUIRE(guide.says("Git ignores what is built there and written to `out/`"));
+  if (runCommand("command -v git").exitCode != 0) return skip("git is not installed");
+  const std::string others = guide.run("cd my_lab && git ls-files --others --exclude-standard").output;
+  CHECK(contains(others, "techniques/ambient/ambient.cpp"));
+  for (const char* folder : {"build/", "out/"})
+    CHECK_FALSE(contains("\n" + others, "\n" + std::string(folder)));
 }
