@@ -30,6 +30,20 @@ std::string lastLine(const std::string& text) {
   return lines.substr(lines.rfind('\n') + 1);
 }
 
+using ImageSize = std::pair<std::uint32_t, std::uint32_t>;
+
+/// From the header, which is the first chunk: big-endian width and height behind 16 bytes.
+ImageSize pngSize(const fs::path& file) {
+  const std::string bytes = readFileStart(file, 24);
+  REQUIRE(bytes.size() == 24);
+  const auto number = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
 std::size_t linesOf(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
@@ -126,6 +140,12 @@ TEST_CASE("the report's guide tells what a report writes") {
   for (const Json& point : report.at("scenes").at(0).at("points")) rows += point.at("errors").size();
   CHECK(rows > 0);
   CHECK(linesOf(readFile(guide.file("out/report/index.csv"))) == rows + 1);
+  if (guide.omitted() == 0) {
+    const ImageSize drawn = pngSize(guide.file("out/report.png"));
+    CHECK(drawn == pngSize(sourceDirectory() / "docs/images/report.png"));
+    CHECK(drawn == ImageSize{1400, 900});
+  }
+  CHECK(fs::file_size(sourceDirectory() / "docs/images/report.png") < 300 * 1024);
   REQUIRE(guide.says("The page needs nothing else: it opens without a network"));
   const std::string page = readFile(guide.file("out/report/index.html"), kLargestLibraryFile);
   CHECK_FALSE(
