@@ -19,24 +19,6 @@ using Json = nlohmann::json;
 
 namespace {
 
-/// A pipeline of the technique that does what none may do, one point for each value.
-class Place : public Workplace {
- public:
-  Place() {
-    write(
-        "slow.pipeline",
-        "pipeline \"Slow\" {\n  param value 1 in 0..10\n  pass paint hostile.paint { deed paint  value $value }\n\n"
-        "  output direct paint.radiance\n}\n\nsweep values { value [1 2 3 4] }\n");
-  }
-  std::string quoted(const std::string& name) const { return "'" + file(name) + "'"; }
-  /// The program with that technique.
-  static std::string program() {
-    return "lumivox --techniques '" + (binaryDirectory() / "tests/plugins/hostile").string() + "' ";
-  }
-  /// Options that measure as little as can be.
-  static std::string quick() { return " --resolution 8x8 --spp 4 --subpixels 1 --repeats 3 --seeds 2 "; }
-};
-
 std::size_t countOf(const std::string& text, const std::string& part) {
   std::size_t count = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
@@ -74,7 +56,7 @@ TEST_CASE("progress in a terminal is one line that fits its width, whatever that
 TEST_CASE(
     "measuring commands tell done, total and time left from the first point on, outside of a terminal too") {
   const Place place;
-  const std::string inputs = place.quoted("room.scene") + " --pipeline " + place.quoted("slow.pipeline");
+  const std::string inputs = place.quoted("room.scene") + " --pipeline " + place.quoted("fast.pipeline");
   const std::string store = " --store " + place.quoted("results.sqlite");
   for (const std::string& command : {"report " + inputs + place.quick() + "-o " + place.quoted("page.html"),
                                      "sweep " + inputs + place.quick() + store}) {
@@ -101,7 +83,7 @@ TEST_CASE(
 TEST_CASE("in a terminal a measuring command ends without its line of progress, and quiet ones show none") {
   const Place place;
   const std::string command = place.program() + "report " + place.quoted("room.scene") + " --pipeline " +
-                              place.quoted("slow.pipeline") + place.quick() + "-o " +
+                              place.quoted("fast.pipeline") + place.quick() + "-o " +
                               place.quoted("page.html");
   const TerminalResult shown = runInTerminal(command, 100);
   INFO(shown.written);
@@ -129,7 +111,7 @@ TEST_CASE("tables fit 80 and 100 columns by blocks, and lose nothing") {
   const Place place;
   const std::string store = place.quoted("results.sqlite"), image = place.quoted("image.exr");
   REQUIRE(runCommand(place.program() + "-q sweep " + place.quoted("room.scene") + " --pipeline " +
-                     place.quoted("slow.pipeline") + place.quick() + "--store " + store)
+                     place.quoted("fast.pipeline") + place.quick() + "--store " + store)
               .exitCode == 0);
   REQUIRE(
       runCommand("lumivox -q reference " + place.quoted("room.scene") + " --spp 2 -o " + image).exitCode ==
@@ -244,7 +226,7 @@ TEST_CASE("help is asked for before or behind a command, and ends with the optio
 
 TEST_CASE("an option never takes the scene for its own, and pipelines are told from scenes") {
   const Place place;
-  const std::string slow = place.quoted("slow.pipeline"), room = place.quoted("room.scene");
+  const std::string slow = place.quoted("fast.pipeline"), room = place.quoted("room.scene");
   for (const std::string& inputs : {"--pipeline " + slow + " " + room, room + " " + slow}) {
     const CommandResult result = runCommand(place.program() + "report " + inputs + place.quick() +
                                             "--no-sweep --json -o " + place.quoted("page.html"));

@@ -28,7 +28,8 @@ const stressSection = (function () {
     const at = (name, pipeline) => cells.findLastIndex(cell => cell.case === name && cell.pipeline === pipeline);
     // Long units are in the title, so that a dozen columns fit.
     const brief = cell => cell.unit.length > 3 ? "" : unit(cell);
-    const text = cell => cell.outcome === "not_applicable" ? "" : hasNumber(cell) ? number(cell.value) + brief(cell) : words(cell.outcome);
+    const short = value => isNumber(value) && value !== 0 && Math.abs(value) < 1e-3 ? value.toExponential(1) : number(value);
+    const text = cell => cell.outcome === "not_applicable" ? "" : hasNumber(cell) ? short(cell.value) + brief(cell) : words(cell.outcome);
     const place = (name, pipeline) => {
       const index = at(name, pipeline), cell = cells[index];
       if (!cell) return h("td", null);
