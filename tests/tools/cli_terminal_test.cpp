@@ -149,6 +149,36 @@ TEST_CASE("tables fit 80 and 100 columns by blocks, and lose nothing") {
     }
 }
 
+TEST_CASE("no word of a table is cut that fits the terminal, though lines behind the first are indented") {
+  const Place place;
+  const std::string store = place.quoted("results.sqlite");
+  // A name of a parameter as long as any, behind others, so that it begins a line of its own.
+  place.write(
+      "long.pipeline",
+      "pipeline \"Long\" {\n  param a 1 in 0..10\n  param smoke_resolution_of_it 6 in 0..10\n"
+      "  pass paint hostile.paint { deed paint  value $a }\n  pass other hostile.paint { deed paint  value "
+      "$smoke_resolution_of_it }\n\n  output direct paint.radiance\n}\n");
+  REQUIRE(runCommand(place.program() + "-q sweep " + place.quoted("room.scene") + " --pipeline " +
+                     place.quoted("long.pipeline") + place.quick() + "--store " + store)
+              .exitCode == 0);
+  for (const int columns : {70, 80, 100}) {
+    const CommandResult listed =
+        runCommand("COLUMNS=" + std::to_string(columns) + " " + (binaryDirectory() / "bin/lumivox").string() +
+                   " results list --store " + store);
+    INFO(listed.output);
+    CHECK(contains(listed.output, "smoke_resolution_of_it=6"));
+  }
+}
+
+TEST_CASE("an animation counts the frames that were asked for, whatever is rendered for their exposure") {
+  const Place place;
+  const CommandResult result = runCommand("lumivox render " + place.quoted("room.scene") + " '" +
+                                          committedPipeline("direct_lighting") +
+                                          "' --resolution 8x8 --frames 0..6 -o " + place.quoted("frame.png"));
+  INFO(result.errors);
+  CHECK(contains(result.errors, "rendering: 7 of 7 frames"));
+}
+
 TEST_CASE("explain begins with its summary and names what has the same reason together") {
   const Place place;
   const CommandResult result =
@@ -226,15 +256,15 @@ TEST_CASE("help is asked for before or behind a command, and ends with the optio
 
 TEST_CASE("an option never takes the scene for its own, and pipelines are told from scenes") {
   const Place place;
-  const std::string slow = place.quoted("fast.pipeline"), room = place.quoted("room.scene");
-  for (const std::string& inputs : {"--pipeline " + slow + " " + room, room + " " + slow}) {
+  const std::string fast = place.quoted("fast.pipeline"), room = place.quoted("room.scene");
+  for (const std::string& inputs : {"--pipeline " + fast + " " + room, room + " " + fast}) {
     const CommandResult result = runCommand(place.program() + "report " + inputs + place.quick() +
                                             "--no-sweep --json -o " + place.quoted("page.html"));
     INFO(inputs << "\n" << result.errors);
     REQUIRE(result.exitCode == 0);
     CHECK(Json::parse(result.output).at("scenes").at(0).at("points").size() == 1);
   }
-  checkRefused(runCommand("lumivox report " + slow), "expected a scene's text");
+  checkRefused(runCommand("lumivox report " + fast), "expected a scene's text");
 }
 
 TEST_CASE("times have units as in the texts, and a budget without one is refused") {
