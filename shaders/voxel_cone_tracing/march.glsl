@@ -57,7 +57,7 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta, ui
     wanted = max(wanted * share, min(wanted, voxelSize));
     float stride = min(min(stepShare * max(wanted / footprint, voxelSize), longestStep(wanted)), end - distance) * firstShare;
     StoreSample found = readStore(apex + direction * (distance + 0.5 * stride), direction, wanted, stride);
-    bool partly = found.opacity > 0.0 && found.opacity < kOpaque;
+    bool partly = found.opacity > 0.0 && (found.opacity < kOpaque || leastShare == 0.0);
     if (partly && wanted > voxelSize && share > leastShare) {
       share *= 0.5;
       continue;

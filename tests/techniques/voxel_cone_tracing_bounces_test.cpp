@@ -1,6 +1,5 @@
 // Further bounces by light that cones gather for every fragment.
 #include <cmath>
-#include <cstdio>
 
 #include "support/cones.h"
 
@@ -8,32 +7,49 @@ using namespace lumivox;
 using namespace lumivox::test;
 using namespace lumivox::test::cones;
 
-TEST_CASE("scratch bounces") {
-  for (const int resolution : {16, 32})
-    for (const float albedo : {0.5f, 0.9f}) {
-      SceneBuilder builder;
-      builder.box({-1, -1, -1}, {1, 1, 1}, builder.lambert(albedo), true);
-      for (const char* pass : {"inject", "inject_directional"}) {
-      InjectSettings settings;
-      settings.lights = false;
-      settings.ambient = kPi;
-      for (int bounces : {2, 64}) {
-      if (bounces==64 && resolution==64) bounces = 24;
-      settings.bounces = bounces;
-      double sum = 0, n = 0, lo = 1e9, hi = 0;
-      const auto add = [&](const gpu::TextureRef& t) {
-        const std::vector<float> texels = t->downloadFloats(0);
-        for (std::size_t i = 0; i < texels.size(); i += 4)
-          if (texels[i + 3] > 0.5f && texels[i] > 0.0f) { double v = texels[i]/texels[i+3]; sum += v; n += 1; lo = std::min(lo, v); hi = std::max(hi,v);}
-      };
-      if (std::string(pass) == "inject") add(injectedAs<RadianceGrid>(pass, builder.scene, resolution, settings).radiance);
-      else { const auto g = injectedAs<DirectionalRadianceGrid>(pass, builder.scene, resolution, settings); 
-        // inner faces only
-        for (int f = 0; f < 6; ++f) { const std::vector<float> texels = g.faces[f]->downloadFloats(0); const glm::ivec3 s = g.grid.resolution;
-          for (int z = 0; z < s.z; ++z) for (int y = 0; y < s.y; ++y) for (int x = 0; x < s.x; ++x) { const size_t i = 4*size_t((z*s.y+y)*s.x+x); if (texels[i+3] < 0.5f) continue; glm::ivec3 at(x,y,z); glm::vec3 p = g.grid.low + (glm::vec3(at)+0.5f)*g.grid.voxelSize; int axis = f/2; bool inner = (f%2==0) ? p[axis] < 0 : p[axis] > 0; if (!inner) continue; double v = texels[i]; sum += v; n+=1; lo=std::min(lo,v); hi=std::max(hi,v);} } }
-      double expected = 0; for (int k = 0; k < bounces; ++k) expected += std::pow(albedo, k + 1);
-      printf("scratch %s res %d albedo %.1f bounces %d: mean %.4f of %.4f = %.4f  (%.3f..%.3f) n %.0f\n", pass, resolution, albedo, bounces, sum / n, expected, sum / n / expected, lo/expected, hi/expected, n);
-      }
-      }
+namespace {
+
+/// What surfaces inside a closed box of this albedo see of it, on average over some places, when every
+/// surface reflects 1 W/(sr m^2) x albedo of light that is there from the beginning, after so many bounces.
+double seenInBox(float albedo, int resolution, int bounces) {
+  SceneBuilder builder;
+  builder.box({-1, -1, -1}, {1, 1, 1}, builder.lambert(albedo), true);
+  InjectSettings settings;
+  settings.lights = false;
+  settings.ambient = kPi;
+  settings.bounces = bounces;
+  const DirectionalRadianceGrid grid =
+      filteredDirections(injectedDirections(builder.scene, resolution, settings));
+  GatherSettings gathering{64, "cosine", 1, 0, 0, 0.5};
+  gathering.refinement = 0;
+  double sum = 0.0;
+  constexpr int kPlaces = 5;
+  for (int place = 0; place < kPlaces; ++place) {
+    const float along = -0.8f + 0.4f * static_cast<float>(place);
+    sum += gather(emptyScene(), grid, {along, -1.0f, 0.3f * along}, {0, 1, 0}, gathering).r / kPlaces;
+  }
+  return sum;
+}
+
+/// albedo + albedo^2 + ... of so many terms.
+double series(double albedo, int terms) {
+  return albedo * (1.0 - std::pow(albedo, terms)) / (1.0 - albedo);
+}
+
+}  // namespace
+
+TEST_CASE("in a closed box of albedo a the bounces add up to 1 + a + a^2 + ..., towards 1 / (1 - a)") {
+  for (const float albedo : {0.5f, 0.9f})
+    for (const int bounces : {1, 2, 4, 12}) {
+      const double seen = seenInBox(albedo, 32, bounces), expected = series(albedo, bounces);
+      INFO("albedo " << albedo << ", bounces " << bounces << ": " << seen << " of " << expected);
+      // A bounce loses up to 1 % in the edges of 32 voxels, half of it in those of 64.
+      CHECK(seen == Approx(expected).epsilon(bounces > 4 ? 0.06 : 0.03));
+      if (albedo == 0.5f && bounces == 12) CHECK(seen == Approx(albedo / (1.0 - albedo)).epsilon(0.05));
     }
+}
+
+// Minutes on a software rasteriser: named by hand, as the card says.
+TEST_CASE("in a closed box of albedo 0.9 at 64 voxels 48 bounces come within 5 % of 1 / (1 - a)", "[.]") {
+  CHECK(seenInBox(0.9f, 64, 48) == Approx(9.0).epsilon(0.05));
 }
