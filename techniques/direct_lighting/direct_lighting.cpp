@@ -117,10 +117,10 @@ class ShadePass : public Pass {
                                  .medium = bound.axis};
     radiance = Image{frame.image("direct radiance")};
     frame.dispatch(frame.program(variant),
-                   {shade::parameters({.eyeWorld = frame.snapshot().camera.eye,
-                                       .lightCount = lights.count,
-                                       .environment = frame.sceneDescription().environment,
-                                       .mediumSteps = mediumSteps}),
+                   {shade::directLight({.eyeWorld = frame.snapshot().camera.eye,
+                                        .lightCount = lights.count,
+                                        .environment = frame.sceneDescription().environment,
+                                        .mediumSteps = mediumSteps}),
                     GBufferBinding(*gbuffer), lights, bound, shade::radianceImage(radiance->texture)},
                    pixels(frame));
   }

@@ -9,6 +9,8 @@
 namespace lumivox::voxel_cone_tracing {
 
 void addInject(TechniqueRegistry& registry);
+void addSoftShadows(TechniqueRegistry& registry);
+void addLens(TechniqueRegistry& registry);
 
 namespace {
 
@@ -116,4 +118,6 @@ LUMIVOX_TECHNIQUE(registry) {
   addInject(registry);
   registry.add<FilterPass>("filter", "Pre-filtered coarser levels (Crassin et al. 2011, Sec. 5)");
   registry.add<GatherPass>("gather", "Final gathering with cones (Crassin et al. 2011, Sec. 7)");
+  addSoftShadows(registry);
+  addLens(registry);
 }
