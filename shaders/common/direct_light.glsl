@@ -1,12 +1,12 @@
 // Direct light of the visible surfaces: emission, and every light sample times its visibility through both lobes, from a g-buffer. The
-// includer has the axes LIGHTS, GLOSSY, EMISSION and MEDIUM; with LIGHTS it defines visibleShare, the visible share of a light sample in
-// [0,1]: posWorld is on the surface, whose geometricNormal faces the side that is lit; toLight has unit length.
+// includer has the axes LIGHTS, GLOSSY, EMISSION and MEDIUM; with LIGHTS it defines visibleShare, the visible share of sample i of the
+// lights, in [0,1]: posWorld is on the surface, whose geometricNormal faces the side that is lit; toLight has unit length.
 #ifndef LUMIVOX_DIRECT_LIGHT
 #define LUMIVOX_DIRECT_LIGHT
 #include "common/brdf.glsl"
 #if LIGHTS
 #include "common/lights.glsl"
-float visibleShare(LightSample light, vec3 posWorld, vec3 geometricNormal, vec3 toLight);
+float visibleShare(int i, LightSample light, vec3 posWorld, vec3 geometricNormal, vec3 toLight);
 #endif
 #if MEDIUM != MEDIUM_NONE
 #include "common/media.glsl"
@@ -47,7 +47,7 @@ vec3 reflectedLight(ivec2 pixel, vec3 posWorld) {
     vec3 irradiance = perpendicular * cosSurface;
     // A light that does not shine this way needs no visibility: it may be dear.
     if (all(lessThanEqual(irradiance, vec3(0.0)))) continue;
-    irradiance *= visibleShare(light, posWorld, geometricNormal, toLight);
+    irradiance *= visibleShare(i, light, posWorld, geometricNormal, toLight);
 #if MEDIUM != MEDIUM_NONE
     if (any(greaterThan(irradiance, vec3(0.0)))) irradiance *= transmittanceToLight(light, posWorld, mediumSteps);
 #endif

@@ -17,7 +17,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0, rgba32f) uniform writeonly image2D radianceImage;
 
 #if LIGHTS
-float visibleShare(LightSample light, vec3 posWorld, vec3 geometricNormal, vec3 toLight) {
+float visibleShare(int i, LightSample light, vec3 posWorld, vec3 geometricNormal, vec3 toLight) {
 #if SHADOWS
   return visibility(light, posWorld, geometricNormal, toLight);
 #else

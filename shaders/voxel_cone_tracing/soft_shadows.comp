@@ -29,43 +29,78 @@ layout(std140, binding = 2) uniform Shadows {
 layout(binding = 0, rgba32f) uniform writeonly image2D radianceImage;
 
 #if LIGHTS
-// The cone starts at the surface and ends at the light. Its diameter is the larger of two: that of the cone whose base is the light's disc,
-// and the impact of the eye's cone on the surface, which the thesis gives to all of it (`radius eye`).
-float visibleShare(LightSample light, vec3 posWorld, vec3 geometricNormal, vec3 toLight) {
-  float voxel = finestVoxel(posWorld);
-  vec3 apex = posWorld + geometricNormal * (offset * voxel), direction = toLight;
-  float reach = 1e30, lightRatio = 0.0, cosLight = 1.0;
-  if (light.kind != kLightDirectional) {
-    vec3 way = light.position - apex;
-    reach = length(way);
-    if (reach == 0.0) return 1.0;
-    direction = way / reach;
-    lightRatio = 2.0 * sqrt(light.patchRadiusSquared) / reach;
-  }
-  float lightVoxel = finestVoxel(light.kind == kLightDirectional ? apex : light.position);
-  float lightReach = 1e30;  // where the voxels of the light's own surface begin
+// C++ side: techniques/voxel_cone_tracing/light_discs.h.
+struct LightDisc {
+  vec4 centreRadius;  // m
+  vec4 normal;        // of an area light, shorter than 1 where it is curved; else 0
+};
+layout(std430, binding = 6) readonly buffer Discs { LightDisc discs[]; };
+layout(std430, binding = 7) readonly buffer DiscOfSample { uint discOfSample[]; };
+
+const float kFar = 1e30;  // m: of lights without a place
+
+// A cone and where it ends.
+struct ShadowCone {
+  vec3 direction;
+  float reach;       // m, to the light
+  float lightRatio;  // diameter of the light over the reach
+  // Height over an area light's plane, or over the sphere around a curved one, for each metre before its end; 0: there is nothing.
+  float rise;
+  float end;         // m, where that height is 0
+};
+
+ShadowCone coneTo(LightDisc disc, LightSample light, vec3 apex, vec3 geometricNormal, vec3 toLight) {
+  if (light.kind == kLightDirectional) return ShadowCone(toLight, kFar, 0.0, 0.0, kFar);
+  vec3 way = disc.centreRadius.xyz - apex;
+  // Of a light that stands half below the surface's plane the middle cannot be seen.
+  if (dot(way, geometricNormal) <= 0.0) way = light.position - apex;
+  float reach = length(way), radius = disc.centreRadius.w;
+  if (reach == 0.0) return ShadowCone(toLight, 0.0, 0.0, 0.0, 0.0);
+  ShadowCone cone = ShadowCone(way / reach, reach, 2.0 * radius / reach, 0.0, reach);
   if (light.kind == kLightArea) {
-    cosLight = dot(-direction, light.direction);
-    if (cosLight <= 0.0) return 0.0;  // the raised start may lie behind a light that the surface itself sees
-    lightReach = reach - offset * lightVoxel / cosLight;
+    const float kFlat = 0.9;
+    float flatness = length(disc.normal.xyz);
+    cone.rise = flatness > kFlat ? max(dot(-cone.direction, disc.normal.xyz) / flatness, 0.0) : 1.0;
+    if (flatness <= kFlat) cone.end = max(reach - radius, 0.0);
   }
-  float eyeDiameter = radiusOf == kLight ? 0.0 : pixelWidth * length(posWorld - eyeWorld);
-  if (radiusOf == kEye) lightRatio = 0.0;
-  float cosSurface = max(dot(geometricNormal, direction), 0.0);
-  vec2 inside = insideStore(apex, direction);
-  float distance = max(startShare * voxel, inside.x), end = min(min(reach, lightReach), inside.y);
+  return cone;
+}
+
+// The diameter of a cone is the larger of two: that of the cone whose base is the light's disc, and the impact of the eye's cone on the
+// surface, which the thesis gives to all of it (`radius eye`).
+float traceShadow(LightDisc disc, LightSample light, vec3 posWorld, vec3 geometricNormal, vec3 toLight) {
+  float voxel = finestVoxel(posWorld), eyeDiameter = radiusOf == kLight ? 0.0 : pixelWidth * length(posWorld - eyeWorld);
+  vec3 apex = posWorld + geometricNormal * (offset * voxel);
+  ShadowCone cone = coneTo(disc, light, apex, geometricNormal, toLight);
+  if (radiusOf == kEye) cone.lightRatio = 0.0;
+  float cosSurface = max(dot(geometricNormal, cone.direction), 0.0);
+  vec2 inside = insideStore(apex, cone.direction);
+  float distance = max(startShare * voxel, inside.x), end = min(cone.end, inside.y);
+  if (cone.rise > 0.0) end = min(end, cone.end - offset * finestVoxel(apex + cone.direction * cone.reach) / cone.rise);
   float through = 1.0;
   while (distance < end && through > 1.0 - kOpaque) {
-    float diameter = max(lightRatio * distance, eyeDiameter);
     float height = offset * voxel + cosSurface * distance;
-    if (light.kind == kLightArea) height = min(height, cosLight * (reach - distance));
-    float wanted = min(footprint * diameter, clearance * height);
+    if (cone.rise > 0.0) height = min(height, cone.rise * (cone.end - distance));
+    float wanted = min(footprint * max(cone.lightRatio * distance, eyeDiameter), clearance * height);
     float stride = min(stepShare * max(wanted / footprint, voxel), end - distance);
-    StoreSample found = readStore(apex + direction * (distance + 0.5 * stride), direction, wanted, stride);
+    StoreSample found = readStore(apex + cone.direction * (distance + 0.5 * stride), cone.direction, wanted, stride);
     if (found.value.a > 0.0) through *= asMedium != 0 ? 1.0 - found.opacity : throughSurfaces(found);
     distance += stride;
   }
   return through > 1.0 - kOpaque ? through : 0.0;
+}
+
+// The samples of a light follow each other, and have one cone.
+uint lastDisc = ~0u;
+float lastShare = 1.0;
+
+float visibleShare(int i, LightSample light, vec3 posWorld, vec3 geometricNormal, vec3 toLight) {
+  uint disc = discOfSample[i];
+  if (disc != lastDisc) {
+    lastDisc = disc;
+    lastShare = traceShadow(discs[disc], light, posWorld, geometricNormal, toLight);
+  }
+  return lastShare;
 }
 #endif
 

@@ -1,4 +1,8 @@
 // Soft shadows by cones to the lights: Crassin et al. 2011; thesis Gomes 2015, Sec. 2.4, Fig. 15.
+#include <cmath>
+#include <vector>
+
+#include "light_discs.h"
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/light_samples.h"
@@ -10,12 +14,22 @@ namespace {
 
 namespace shadows = shaders::voxel_cone_tracing::soft_shadows;
 
+/// Mirror of LightDisc in soft_shadows.comp (std430).
+struct DiscData {
+  glm::vec4 centreRadius, normal;
+};
+
 /// The lights alone: what a pass needs that finds out about their visibility by itself.
 class LightsPass : public Pass {
-  Param<int> areaSamples{
-      this, "area_samples", 16, within(1, 1024),
-      "point samples that represent all emissive triangles together; each stands for a disc"};
-  Out<ShadowMap> lights{this, "lights", "every light as point samples, which cast no shadow by themselves"};
+  enum class Cones { light, sample };
+
+  Param<int> areaSamples{this, "area_samples", 16, within(1, 1024),
+                         "point samples that represent all emissive triangles together"};
+  Param<Cones> cones{
+      this, "cones", Cones::light,
+      "what a cone is aimed at: the light as a whole, a disc of the spread of its power; or each of its samples, a disc of the area that it stands for: dearer, for lights that are far from round"};
+  Out<LightDiscs> lights{this, "lights",
+                         "every light as point samples, and the discs that cones are aimed at"};
 
   Reads readsFrom() const override { return Reads::geometry | Reads::materials | Reads::lights; }
   Needs needs() const override { return Needs::anyLight; }
@@ -24,8 +38,23 @@ class LightsPass : public Pass {
     constexpr int kNoShadow = 1;  // texels along a side of the views, which nothing draws
     LightSet set = sampleLights(frame.sceneDescription(), frame.snapshot(), areaSamples, kNoShadow);
     for (LightSampleData& sample : set.samples) sample.firstView = -1, sample.viewCount = 0;
-    lights = ShadowMap{frame.uploaded(set.samples, "light samples"), nullptr, nullptr,
-                       static_cast<int>(set.samples.size()), 0};
+    std::vector<DiscData> discs;
+    std::vector<std::uint32_t> discOfSample;
+    for (const LightDisc& disc : set.discs) {
+      if (cones == Cones::light)
+        discs.push_back({glm::vec4(disc.centre, disc.radius), glm::vec4(disc.normal, 0.0f)});
+      for (int i = 0; i < disc.sampleCount; ++i) {
+        const LightSampleData& sample = set.samples[static_cast<std::size_t>(disc.firstSample + i)];
+        const bool area = sample.kind == LightSampleKind::area;
+        if (cones == Cones::sample)
+          discs.push_back({glm::vec4(sample.position, std::sqrt(sample.patchRadiusSquared)),
+                           glm::vec4(area ? sample.direction : glm::vec3(0.0f), 0.0f)});
+        discOfSample.push_back(static_cast<std::uint32_t>(discs.size() - 1));
+      }
+    }
+    lights = LightDiscs{
+        frame.uploaded(set.samples, "light samples"), frame.uploaded(discs, "discs of lights"),
+        frame.uploaded(discOfSample, "discs of light samples"), static_cast<int>(set.samples.size())};
   }
 };
 
@@ -36,9 +65,7 @@ class SoftShadowsPass : public Pass {
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   StoreInput store{this};
-  In<ShadowMap> lights{
-      this, "lights", Presence::optional,
-      "lights; their shadow maps, where they have any, are not read; without it only emission is seen"};
+  In<LightDiscs> lights{this, "lights", Presence::optional, "lights; without it only emission is seen"};
   In<ScatteringGrid> media{this, "media", Presence::optional,
                            "media between lights and surfaces, which dim the light on its way"};
   Param<int> mediumSteps{this, "medium_steps", 32, within(1, 1024),
@@ -49,13 +76,14 @@ class SoftShadowsPass : public Pass {
   Param<Opacity> opacity{
       this, "opacity", Opacity::surfaces,
       "what voxels hold: surfaces, of which a closed one lets nothing through; or a medium, as the other cones see it: trilinear reading then lets exp(-2) = 0.14 of the light through a sheet"};
-  Param<float> step{this, "step", 0.25f, within(0.05f, 2.0f), "step along a cone as a share of its diameter"};
+  Param<float> step{this, "step", 0.125f, within(0.05f, 2.0f),
+                    "step along a cone as a share of its diameter"};
   Param<float> offset{this, "offset", 1.5f, within(0.0f, 8.0f),
                       "start of a cone along the normal, and its end before an area light, in voxels"};
   Param<float> start{this, "start", 0.5f, within(0.0f, 8.0f), "start of a cone along its axis, in voxels"};
   Param<float> clearance{
-      this, "clearance", 0.5f, within(0.0f, 1e3f),
-      "largest voxels that are read as a share of their height over the surface, and over that of an area light"};
+      this, "clearance", 1.0f / 3.0f, within(0.0f, 1e3f),
+      "largest voxels that are read as a share of their height over the surface, and over that of an area light: from a third on they reach it"};
   Param<float> footprint{this, "footprint", 0.5f, within(0.25f, 1.0f),
                          "voxels that are read as a share of the diameter of the cone"};
   Out<Image> radiance{this, "radiance", Contributes::direct, Needs::nothing,
@@ -68,7 +96,11 @@ class SoftShadowsPass : public Pass {
     if (input.holdsMedia && media.present())
       throw Error(
           "voxel_cone_tracing.soft_shadows: the voxels of 'grid' already contain the media, and 'media' would dim the light once more; expected 'media' to be left out, or 'store_media off' in voxel_cone_tracing.inject");
-    const LightBinding bound(lights);
+    const shader::BindingSet bound =
+        lights.present()
+            ? shader::BindingSet{shader::StorageSlot{"Lights"}(lights->lights), shadows::discs(lights->discs),
+                                 shadows::discOfSample(lights->discOfSample)}
+            : shader::BindingSet{};
     const MediaBinding boundMedia(frame, media, lights.present());
     const shadows::Variant variant{.lights = lights.present(),
                                    .glossy = gbuffer->specular != nullptr,
@@ -81,7 +113,7 @@ class SoftShadowsPass : public Pass {
     frame.dispatch(
         frame.program(variant, constants),
         {shadows::directLight({.eyeWorld = camera.eye,
-                               .lightCount = bound.count,
+                               .lightCount = lights.present() ? lights->lightCount : 0,
                                .environment = frame.sceneDescription().environment,
                                .mediumSteps = mediumSteps}),
          shadows::shadows({.stepShare = step,

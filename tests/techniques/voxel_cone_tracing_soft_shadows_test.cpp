@@ -1,0 +1,247 @@
+// Shadows by cones to the lights.
+//
+// A square lamp of width w at height H lights a floor past the edge of a sheet at height h, which covers x <
+// 0. The ray from the floor's point x to the lamp's point u is free where u > -x (H - h) / h: the visible
+// share of the lamp rises linearly from 0 to 1 over the penumbra's width P = w h / (H - h), and the variance
+// of its slope is P^2 / 12.
+//
+// A sheet of opacity a in one layer of voxels is read trilinearly as a (1 - |x|), x in voxels. Light that
+// crosses it upright finds 1 - a of it open. Taken for a medium it lets T(a) through, with
+//   ln T = 2 int_0^1 ln(1 - a x) dx = -2 ((1 - a) ln(1 - a) + a) / a.
+#include <cmath>
+
+#include "lumivox/base/error.h"
+#include "lumivox/toolkit/light_samples.h"
+#include "../../techniques/voxel_cone_tracing/light_discs.h"
+#include "support/cones.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+using Words = std::vector<std::pair<std::string, std::string>>;
+/// Cones without a gap at their start, by steps so fine that sums are integrals.
+using Numbers = std::vector<std::pair<std::string, double>>;
+const Numbers kExact{{"step", 0.05}, {"offset", 0.0}, {"start", 0.0}};
+
+LightDiscs lightsOf(const Scene& scene, int areaSamples = 16) {
+  PassHarness harness(device(), techniques(), "voxel_cone_tracing", "lights", scene, snapshotOf(scene, 0.0));
+  harness.setParameter("area_samples", areaSamples);
+  harness.run();
+  return harness.output<LightDiscs>("lights");
+}
+
+/// What a horizontal white surface point in a grid sends to the eye, by one of both passes.
+float radianceAt(const Scene& scene, const glm::vec3& place, const RadianceGrid* grid, const Words& words,
+                 const Numbers& numbers) {
+  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
+  PassHarness harness(device(), techniques(), grid == nullptr ? "direct_lighting" : "voxel_cone_tracing",
+                      grid == nullptr ? "shade" : "soft_shadows", scene, snapshot);
+  harness.setInput("gbuffer",
+                   cones::surfacePoint(place - glm::vec3(snapshot.origin), {0, 1, 0}, glm::vec3(1.0f)));
+  if (grid == nullptr) {
+    harness.setParameter("shadows", std::string("off"));
+    PassHarness maps(device(), techniques(), "direct_lighting", "shadow_map", scene, snapshot);
+    maps.run();
+    harness.setInput("shadow", maps.output<ShadowMap>("depth"));
+  } else {
+    harness.setParameter("radius", std::string("light"));  // none: the cones read the finest voxels
+    for (const auto& [name, word] : words) harness.setParameter(name, word);
+    for (const auto& [name, number] : numbers) harness.setParameter(name, number);
+    harness.setInput("lights", lightsOf(scene));
+    harness.setInput("grid", *grid);
+  }
+  harness.run();
+  return cones::pixelOf(imageOf(*harness.output<Image>("radiance").texture)).r;
+}
+
+/// Visible share of the light, or of all lights, of a scene without geometry at a point in a grid of
+/// [-1,1]^3.
+double visible(const Scene& scene, const RadianceGrid& grid, const Words& words = {},
+               const Numbers& numbers = kExact) {
+  const glm::vec3 place(0.03f, -0.9f, 0.02f);
+  const double all = radianceAt(scene, place, nullptr, {}, {});
+  REQUIRE(all > 0.0);
+  return radianceAt(scene, place, &grid, words, numbers) / all;
+}
+
+Scene litFrom(LightKind kind) {
+  SceneBuilder builder;
+  builder.scene = cones::emptyScene();
+  Light& light = builder.light(kind, glm::vec3(1.0f), {0.03, 0.9, 0.02}, {0, -1, 0});
+  light.innerAngle = 0.4f, light.outerAngle = 0.5f;
+  return builder.scene;
+}
+
+/// A sheet in one layer of voxels.
+RadianceGrid sheet(float opacity, int resolution = 32, int layer = 16) {
+  return cones::filtered(cones::makeGrid(
+      resolution, [=](int, int y, int) { return glm::vec4(0, 0, 0, y == layer ? opacity : 0.0f); }));
+}
+
+struct Edge {
+  double lamp = 0.3, height = 0.507, lampHeight = 1.01, place = 0.0;
+  double penumbra() const { return lamp * height / (lampHeight - height); }
+};
+
+/// Floor, half-plane and lamp; the camera looks down between floor and sheet, 1 m wide, or sees all of it.
+Scene edgeScene(const Edge& edge, int pixels) {
+  SceneBuilder builder;
+  const auto w = static_cast<float>(edge.lamp), h = static_cast<float>(edge.height),
+             top = static_cast<float>(edge.lampHeight);
+  builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.5f));
+  builder.quad({-1, h, -1}, {0, 0, 2}, {1.0f + static_cast<float>(edge.place), 0, 0}, builder.lambert(0.5f));
+  builder.quad({-0.5f * w, top, -0.5f * w}, {w, 0, 0}, {0, 0, w}, builder.lambert(0.0f, 10.0f));
+  builder.look({0, 0.45, 0}, {0, 0, 0}, {0, 0, 1}, 2.0 * std::atan(0.4 / 0.45), pixels, pixels);
+  return builder.scene;
+}
+
+/// Visible shares along x in the middle row, from x = -0.4 m to 0.4 m.
+std::vector<double> sharesAlong(const Scene& scene, const std::vector<std::string>& settings,
+                                const Words& words) {
+  const Pipeline text = pipeline("voxel_cone_tracing_soft_shadows");
+  std::string changed = text.document->source;
+  const std::string place = "lights lights.lights\n";
+  for (const auto& [name, word] : words)
+    changed.insert(changed.find(place) + place.size(), "    " + name + " " + word + "\n");
+  RenderOptions options;
+  const Pipeline own = Pipeline::parse(changed, text.file);
+  options.parameters = own.settings(settings);
+  const ImageBuffer shadowed = renderOnce(scene, own, options).outputs.at("direct");
+  const Pipeline plain = pipeline("direct_lighting");
+  std::string off = plain.document->source;
+  const std::string shade = "shadow shadow.depth\n";
+  off.insert(off.find(shade) + shade.size(), "    shadows off\n");
+  const ImageBuffer all = renderOnce(scene, Pipeline::parse(off, plain.file)).outputs.at("direct");
+  std::vector<double> shares;
+  const int row = all.height() / 2;
+  for (int i = 0; i < all.width(); ++i) {
+    // x runs to the left in the image: up is +z, and the camera looks down.
+    const int x = all.width() - 1 - i;
+    shares.push_back(shadowed.at(x, row, 0) / all.at(x, row, 0));
+  }
+  return shares;
+}
+
+/// sqrt(12 times the variance of the slope), m: the width of a linear ramp.
+double widthOf(const std::vector<double>& shares, double pixel) {
+  double sum = 0.0, first = 0.0, second = 0.0;
+  for (std::size_t i = 1; i < shares.size(); ++i) {
+    const double slope = shares[i] - shares[i - 1], x = static_cast<double>(i) * pixel;
+    sum += slope, first += slope * x, second += slope * x * x;
+  }
+  const double mean = first / sum;
+  return std::sqrt(12.0 * (second / sum - mean * mean));
+}
+
+}  // namespace
+
+TEST_CASE("xx") {
+  for (const char* setting : {"resolution=128", "resolution=64"})
+  for (double footprint : {0.5, 0.6,0.7})
+  for (Edge edge : {Edge{0.3, 0.507, 1.01}, Edge{0.2, 0.507, 1.01}, Edge{0.4, 0.507, 1.21}, Edge{0.2, 0.307, 1.21}})
+  for (const double place : {0.0, 0.025, 0.05, 0.075}) {
+    edge.place = place;
+    std::vector<double> shares = sharesAlong(edgeScene(edge, 64), {setting}, {{"footprint", std::to_string(footprint)}});
+    for (double& s : shares) s = std::max(0.0, s - 0.05) / 0.95;
+    const auto at = [&](double level) { for (std::size_t i = 1; i < shares.size(); ++i) if (shares[i-1] < level && shares[i] >= level) return (static_cast<double>(i) - 0.5 + (level - shares[i-1])/(shares[i]-shares[i-1])) * 0.8/64 - 0.4; return 0.0; };
+    const double shift = place * edge.lampHeight/(edge.lampHeight-edge.height);
+    std::printf("%s fp %.2f lamp %.1f %.2f place %.3f: moment %.2f q %.2f 10-90 %.2f centre %.3f\n", setting, footprint, edge.lamp, edge.height, place, widthOf(shares, 0.8/64)/edge.penumbra(), (at(.75)-at(.25))*2/edge.penumbra(), (at(.9)-at(.1))/.8/edge.penumbra(), at(.5)-shift);
+  }
+}
+
+TEST_CASE("of the published radius, that of the eye's cone, shadows are hard where the eye is near") {
+  const Edge edge;
+  const std::vector<double> shares =
+      sharesAlong(edgeScene(edge, 64), {"resolution=128"}, {{"radius", "eye"}});
+  // As wide as the trilinear kernel over the finest voxels, 1.6 cm, whose standard deviation is half a voxel.
+  CHECK(widthOf(shares, 0.8 / 64) < 0.2 * edge.penumbra());
+}
+
+TEST_CASE("in the shadow of a closed sheet it is dark, and where nothing is in the way no bit is missing") {
+  SceneBuilder builder;
+  builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.5f));
+  builder.quad({-0.5f, 0.5f, -0.5f}, {0, 0, 1}, {1, 0, 0}, builder.lambert(0.5f));
+  builder.quad({-0.1f, 1.0f, -0.1f}, {0.2f, 0, 0}, {0, 0, 0.2f}, builder.lambert(0.0f, 10.0f));
+  builder.look({0, 0.45, 0}, {0, 0, 0}, {0, 0, 1}, 1.2, 32, 32);
+  for (const double share : sharesAlong(builder.scene, {"resolution=64"}, {})) CHECK(share < 0.01);
+  // Without the sheet, from the side.
+  SceneBuilder open;
+  open.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, open.lambert(0.5f));
+  open.quad({-0.1f, 1.0f, -0.1f}, {0.2f, 0, 0}, {0, 0, 0.2f}, open.lambert(0.0f, 10.0f));
+  open.light(LightKind::point, glm::vec3(1.0f), {0.4, 0.7, 0.1});
+  open.light(LightKind::directional, glm::vec3(1.0f), {}, {-0.3, -0.6, 0.2});
+  open.look({0, 0.8, 1.2}, {0, 0, 0}, {0, 1, 0}, 0.8, 32, 32);
+  for (const double share : sharesAlong(open.scene, {"resolution=64"}, {})) CHECK(share == 1.0);
+}
+
+TEST_CASE(
+    "a sheet of opacity a lets 1 - a of the light through, and as a medium what the thesis's steps let through") {
+  for (const LightKind kind : {LightKind::directional, LightKind::point, LightKind::spot}) {
+    CAPTURE(static_cast<int>(kind));
+    const Scene scene = litFrom(kind);
+    for (const float opacity : {0.2f, 0.5f, 0.8f, 0.95f}) {
+      CAPTURE(opacity);
+      const double a = static_cast<double>(opacity);
+      CHECK(visible(scene, sheet(opacity)) == Approx(1.0 - a).epsilon(0.02).margin(0.004));
+      const double asMedium = std::exp(-2.0 * ((1.0 - a) * std::log(1.0 - a) + a) / a);
+      CHECK(visible(scene, sheet(opacity), {{"opacity", "medium"}}) == Approx(asMedium).epsilon(0.01));
+    }
+    CHECK(visible(scene, sheet(1.0f)) < 0.03);
+    CHECK(visible(scene, sheet(1.0f), {{"opacity", "medium"}}) == Approx(std::exp(-2.0)).epsilon(0.05));
+  }
+}
+
+TEST_CASE("an even medium in the voxels dims the light by its optical depth") {
+  // From the point at -0.9 to the light at 0.9: 1.8 m, of voxels of 2/32 m.
+  constexpr double kVoxels = 1.8 * 16.0;
+  const Scene scene = litFrom(LightKind::point);
+  for (const float opacity : {0.01f, 0.05f, 0.2f}) {
+    CAPTURE(opacity);
+    const double a = static_cast<double>(opacity);
+    const RadianceGrid grid = cones::filtered(cones::uniformGrid(32, glm::vec4(0, 0, 0, opacity)));
+    CHECK(visible(scene, grid, {{"opacity", "medium"}}) == Approx(std::pow(1.0 - a, kVoxels)).epsilon(0.01));
+    const double asSurfaces = std::exp(-0.5 * (a / (1.0 - a) - std::log(1.0 - a)) * kVoxels);
+    CHECK(visible(scene, grid) == Approx(asSurfaces).epsilon(0.01));
+  }
+}
+
+TEST_CASE("what lies behind a light casts no shadow") {
+  // The light is at 0.9, in voxel 30; the cone ends there.
+  CHECK(visible(litFrom(LightKind::point), sheet(1.0f, 64, 63)) == 1.0);
+  CHECK(visible(litFrom(LightKind::directional), sheet(1.0f, 64, 63)) < 0.05);
+}
+
+TEST_CASE("voxels that hold the media are refused beside the media themselves") {
+  const Scene scene = litFrom(LightKind::point);
+  RadianceGrid grid = cones::uniformGrid(8, glm::vec4(0.0f));
+  grid.holdsMedia = true;
+  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
+  PassHarness harness(device(), techniques(), "voxel_cone_tracing", "soft_shadows", scene, snapshot);
+  harness.setInput("gbuffer", cones::surfacePoint({0, 0, 0}, {0, 1, 0}, glm::vec3(1.0f)));
+  harness.setInput("grid", grid);
+  harness.setInput("lights", lightsOf(scene));
+  harness.setInput("media", ScatteringGrid{});
+  CHECK_THAT(messageOf<Error>([&] { harness.run(); }),
+             Contains("already contain the media") && Contains("store_media off"));
+}
+
+TEST_CASE("the lights of soft shadows are those of shadow maps, without views") {
+  const Scene scene = litRoom(16, 16);
+  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
+  PassHarness maps(device(), techniques(), "direct_lighting", "shadow_map", scene, snapshot);
+  maps.run();
+  const ShadowMap& with = maps.output<ShadowMap>("depth");
+  const LightDiscs without = lightsOf(scene);
+  REQUIRE(without.lightCount == with.lightCount);
+  const auto a = with.lights->downloadValues<LightSampleData>(),
+             b = without.lights->downloadValues<LightSampleData>();
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    CHECK(a[i].position == b[i].position);
+    CHECK(a[i].power == b[i].power);
+    CHECK(a[i].patchRadiusSquared == b[i].patchRadiusSquared);
+    CHECK(b[i].firstView == -1);
+  }
+}
