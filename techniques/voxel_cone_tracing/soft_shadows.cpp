@@ -21,13 +21,13 @@ struct DiscData {
 
 /// The lights alone: what a pass needs that finds out about their visibility by itself.
 class LightsPass : public Pass {
-  enum class Cones { light, sample };
+  enum class Cones { sample, light };
 
   Param<int> areaSamples{this, "area_samples", 16, within(1, 1024),
                          "point samples that represent all emissive triangles together"};
   Param<Cones> cones{
-      this, "cones", Cones::light,
-      "what a cone is aimed at: the light as a whole, a disc of the spread of its power; or each of its samples, a disc of the area that it stands for: dearer, for lights that are far from round"};
+      this, "cones", Cones::sample,
+      "what a cone is aimed at: each sample, a disc of the area that it stands for; or the light as a whole, a disc of the spread of its power: one cone a light, and penumbras that voxels shape"};
   Out<LightDiscs> lights{this, "lights",
                          "every light as point samples, and the discs that cones are aimed at"};
 
