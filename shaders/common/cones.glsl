@@ -23,10 +23,11 @@ vec3 tangentTo(vec3 normal) {
 
 // Cones of equal weight: a spiral over the unit disc, lifted onto the hemisphere (Malley's method), is distributed as the cosine. Each
 // stands for the solid angle pi / (n cos theta), and its half angle is that of a circular cone of this solid angle. cosTheta is the cosine
-// between axis and normal.
-vec3 cosineCone(int i, int count, vec3 tangent, vec3 bitangent, vec3 normal, out float cosTheta, out float tanHalfAngle) {
-  float radiusSquared = (float(i) + 0.5) / float(count);
-  float radius = sqrt(radiusSquared), angle = float(i) * kGoldenAngle;
+// between axis and normal. `place` is where in its stratum of the disc the axis lies: along the square of the radius, 0.5 its middle, and
+// around, a share of a turn.
+vec3 cosineCone(int i, int count, vec2 place, vec3 tangent, vec3 bitangent, vec3 normal, out float cosTheta, out float tanHalfAngle) {
+  float radiusSquared = (float(i) + place.x) / float(count);
+  float radius = sqrt(radiusSquared), angle = float(i) * kGoldenAngle + place.y * 2.0 * kPi;
   cosTheta = sqrt(1.0 - radiusSquared);
   tanHalfAngle = tanOfHalfAngle(max(1.0 - 0.5 / (float(count) * cosTheta), 0.5));
   return tangent * (radius * cos(angle)) + bitangent * (radius * sin(angle)) + normal * cosTheta;

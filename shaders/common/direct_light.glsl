@@ -23,11 +23,12 @@ layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
 layout(binding = 2) uniform sampler2D gGeometricNormal;
 layout(binding = 3) uniform sampler2D gDiffuse;
-#if EMISSION
-layout(binding = 5) uniform sampler2D gEmission;
-#endif
 #if GLOSSY
-layout(binding = 6) uniform sampler2D gSpecular;
+layout(binding = 5) uniform sampler2D gSpecular;
+#endif
+#if EMISSION
+// Read once and unfiltered: an image, since stores of voxels may need all other samplers.
+layout(binding = 1, rgba32f) uniform readonly image2D emissionImage;
 #endif
 
 #if LIGHTS
@@ -68,7 +69,7 @@ vec3 directLight(ivec2 pixel) {
   if (position.w == 0.0) return environment;
   vec3 radiance = vec3(0.0);
 #if EMISSION
-  radiance += texelFetch(gEmission, pixel, 0).rgb;
+  radiance += imageLoad(emissionImage, pixel).rgb;
 #endif
 #if LIGHTS
   radiance += reflectedLight(pixel, position.xyz);

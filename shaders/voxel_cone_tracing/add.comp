@@ -2,15 +2,66 @@
 // The average of what the fragments of a voxel reflect.
 // Deviates from thesis 004 Listing 4.9: its running average in 8 bits depends on the order of the writes and overflows past 255 fragments.
 // Here each fragment adds its share of a mean of integers, in units of the brightest fragment of its voxel (common/integer_mean.glsl).
+//
+// DIRECTIONS: an average for each face of the voxel, weighted by the cosine between its normal and that of the fragment, so that the two
+// sides of a wall stay apart. The back of a fragment counts for a face only where no other looks that way (kBackShare): of a wall with two
+// faces in one voxel the insides are dark. The fragment's opacity along an axis is its coverage by the share of that axis in its normal,
+// over the largest of the three shares: a sheet is closed along the axis that it faces, and open along itself.
+#pragma lumivox axis DIRECTIONS 0 1
 #include "bricks.glsl"
 #include "common/integer_mean.glsl"
 
 layout(local_size_x = 64) in;
 #include "common/fragments.glsl"
 
-layout(std140, binding = 0) uniform Size { ivec3 brickCount; };
-layout(std430, binding = 2) readonly buffer Radiances { float radiances[]; };  // three of each fragment, W/(sr m^2)
+layout(std140, binding = 0) uniform Averages {
+  ivec3 brickCount;
+  int coverageSum;  // DIRECTIONS; 1: the coverages of a voxel add up, to 1 at most; 0: the largest counts
+};
+layout(std430, binding = 2) readonly buffer Radiances { float radiances[]; };  // three of each fragment or of each side of one, W/(sr m^2)
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
+
+vec3 radianceAt(uint first) { return vec3(radiances[first], radiances[first + 1], radiances[first + 2]); }
+
+// Radiance in units of the brightest, and the weight of both in the average.
+vec4 partOf(vec3 radiance, float brightest, float weight) {
+  return vec4(brightest > 0.0 ? min(radiance / brightest, 1.0) : vec3(0.0), 1.0) * weight;
+}
+
+#if DIRECTIONS
+layout(std430, binding = 4) buffer DirectionalSums { VoxelDirections directions[]; };
+
+const float kBackShare = 1.0 / 256.0;
+
+void main() {
+  uint index = listIndex();
+  if (index >= fragmentCount) return;
+  VoxelFragment fragment = fragments[index];
+  ivec3 voxel = unpackVoxel(fragment.voxel);
+  uint place = sumsOf(bricks[brickOf(voxel, brickCount)], bitOf(voxel));
+  float coverage = clamp(unpackHalf2x16(fragment.albedoBCoverage).y, 0.0, 1.0);
+  float brightest = uintBitsToFloat(directions[place].brightest);
+  float part = 1.0 / float(max(directions[place].fragments, 1u));
+  vec3 normal = unpackNormal(fragment.normal), cosines = abs(normal);
+  float most = max(cosines.x, max(cosines.y, cosines.z));
+  for (int axis = 0; axis < 3; ++axis) {
+    float opacity = coverage * cosines[axis] / most;
+    if (coverageSum != 0) {
+      atomicAdd(directions[place].opacity[axis], shareOf(opacity * part));
+    } else {
+      atomicMax(directions[place].opacity[axis], floatBitsToUint(opacity));
+    }
+    for (int side = 0; side < 2; ++side) {
+      bool towardsHigher = (normal[axis] > 0.0) == (side == 0);
+      float weight = coverage * part * cosines[axis] * (side == 0 ? 1.0 : kBackShare);
+      uvec4 addend = shareOf(partOf(radianceAt(6 * index + 3 * uint(side)), brightest, weight));
+      int first = 4 * (2 * axis + (towardsHigher ? 0 : 1));
+      for (int channel = 0; channel < 4; ++channel)
+        if (addend[channel] != 0u) atomicAdd(directions[place].faces[first + channel], addend[channel]);
+    }
+  }
+}
+#else
 layout(std430, binding = 4) buffer Sums { VoxelSums sums[]; };
 
 void main() {
@@ -20,12 +71,11 @@ void main() {
   ivec3 voxel = unpackVoxel(fragment.voxel);
   uint place = sumsOf(bricks[brickOf(voxel, brickCount)], bitOf(voxel));
   float coverage = clamp(unpackHalf2x16(fragment.albedoBCoverage).y, 0.0, 1.0);
-  float unit = uintBitsToFloat(sums[place].brightest);
-  vec3 radiance = vec3(radiances[3 * index], radiances[3 * index + 1], radiances[3 * index + 2]);
-  vec3 part = unit > 0.0 ? min(radiance / unit, 1.0) : vec3(0.0);
-  uvec4 addend = shareOf(vec4(part, 1.0) * (coverage * (1.0 / float(max(sums[place].fragments, 1u)))));
+  float weight = coverage * (1.0 / float(max(sums[place].fragments, 1u)));
+  uvec4 addend = shareOf(partOf(radianceAt(3 * index), uintBitsToFloat(sums[place].brightest), weight));
   if (addend.r != 0u) atomicAdd(sums[place].red, addend.r);
   if (addend.g != 0u) atomicAdd(sums[place].green, addend.g);
   if (addend.b != 0u) atomicAdd(sums[place].blue, addend.b);
   atomicAdd(sums[place].coverage, addend.a);
 }
+#endif

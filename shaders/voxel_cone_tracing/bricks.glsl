@@ -12,6 +12,14 @@ struct VoxelSums {
   uint red, green, blue, coverage;  // shares of averages, in units of kFixedPoint
 };
 
+// The same for the six faces of a voxel, whose outward normals are +x, -x, +y, -y, +z and -z.
+struct VoxelDirections {
+  uint fragments;
+  uint brightest;   // as above, of both sides
+  uint opacity[3];  // along x, y and z: bits of the largest, or the sum of shares of a mean
+  uint faces[24];   // of each face red, green, blue and their weight: shares of averages
+};
+
 uint brickOf(ivec3 voxel, ivec3 brickCount) {
   ivec3 brick = voxel >> 2;
   return uint((brick.z * brickCount.y + brick.y) * brickCount.x + brick.x);

@@ -26,6 +26,7 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #endif
 
 #include "common/cones.glsl"
+#include "children.glsl"
 
 const int kFacing = 0, kAverage = 1, kTrilinear = 2;
 layout(constant_id = 0) const int rule = kFacing;
@@ -37,20 +38,6 @@ layout(std140, binding = 0) uniform Parameters {
 };
 layout(binding = 0) uniform sampler3D radianceGrid;
 layout(binding = 0) uniform writeonly image3D radianceImage;  // of whatever float format the grid has
-
-// Part of child `child` that lies in coarse voxel `cell` along one axis, in children. With an even number of children it is 1 for two of
-// them; with an odd number a coarse voxel is a little wider than two, and shares children with its neighbours.
-float share(int cell, int child, float childrenPerCell) {
-  float low = float(cell) * childrenPerCell, high = low + childrenPerCell;
-  return clamp(min(high, float(child + 1)) - max(low, float(child)), 0.0, 1.0);
-}
-
-// A child seen through `length` of its own width.
-vec4 slab(vec4 value, float length) {
-  if (length >= 1.0 || value.a <= 0.0) return length >= 1.0 ? value : vec4(0.0);
-  float opacity = 1.0 - pow(1.0 - value.a, length);
-  return vec4(value.rgb * (opacity / value.a), opacity);
-}
 
 // The usual case, two whole children along each axis, without loops: the mean over four columns, each seen from both its ends.
 vec4 pair(vec4 a, vec4 b) { return over(a, b) + over(b, a); }

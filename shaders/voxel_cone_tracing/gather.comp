@@ -11,10 +11,14 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const int coneCount = 6;
 layout(constant_id = 1) const int publishedCones = 0;
 layout(constant_id = 2) const int asPublished = 0;
+layout(constant_id = 3) const int glossyCones = 1;
 
 layout(std140, binding = 0) uniform Parameters {
   vec3 eyeWorld;
   float coneRatio;  // diameter of one of the five cones over its height
+  int every;        // one pixel of so many along each axis is gathered
+  int pattern;      // pixels in a square of this side have cones of their own
+  int reconstructs; // 1: what arrives is written, for reconstruct.comp; 0: what is reflected
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
@@ -29,6 +33,15 @@ layout(binding = 1, rgba32f) uniform writeonly image2D glossyImage;
 #endif
 
 #if DIFFUSE
+// Where in its stratum each cone of a pixel lies, along the square of the radius and around, both in turns: in the middle and at 0, or of
+// a sequence that fills the pattern's squares evenly (R2: Roberts 2018).
+vec2 placeInStratum() {
+  if (pattern == 1) return vec2(0.5, 0.0);
+  const vec2 kR2 = vec2(0.75487766624669276, 0.56984029099805327);
+  uvec2 place = gl_GlobalInvocationID.xy % uint(pattern);
+  return fract(0.5 + float(place.y * uint(pattern) + place.x) * kR2);
+}
+
 // Mean of the arriving radiance over the hemisphere, weighted by the cosine; the weights sum to 1, but not those as published.
 vec3 gatherDiffuse(vec3 apex, vec3 normal) {
   vec3 tangent = tangentTo(normal), bitangent = cross(normal, tangent);
@@ -55,46 +68,70 @@ vec3 gatherDiffuse(vec3 apex, vec3 normal) {
     return sum / (1.0 + 4.0 * kTilted);
   }
   vec3 sum = vec3(0.0);
+  vec2 place = placeInStratum();
   for (int i = 0; i < coneCount; ++i) {
     float cosTheta, tanHalfAngle;
-    vec3 direction = cosineCone(i, coneCount, tangent, bitangent, normal, cosTheta, tanHalfAngle);
+    vec3 direction = cosineCone(i, coneCount, place, tangent, bitangent, normal, cosTheta, tanHalfAngle);
     sum += traceCone(apex, direction, tanHalfAngle, cosTheta, uint(i));
   }
   return sum / float(coneCount);
 }
 #endif
 
+#if GLOSSY
+// Mean over the Phong lobe cos^n around the mirror direction of the arriving radiance times the cosine of the surface: what the integral of
+// the lobe and the cosine comes to, over the specular albedo. One cone is as wide as the lobe's solid angle; several have equal shares of
+// the lobe, each as wide as its share, and those below the horizon bring nothing.
+vec3 gatherGlossy(vec3 apex, vec3 normal, vec3 mirror, float exponent) {
+  const uint kGlossyCone = 0xffffu;
+  if (asPublished != 0 || glossyCones == 1) {
+    float tanHalfAngle = tanOfHalfAngle(cosHalfAngleOfLobe(exponent)), cosMirror = max(dot(mirror, normal), 0.0);
+    return cosMirror * (asPublished != 0 ? traceConeAsPublished(apex, mirror, 2.0 * tanHalfAngle, kGlossyCone)
+                                         : traceCone(apex, mirror, tanHalfAngle, cosMirror, kGlossyCone));
+  }
+  vec3 tangent = tangentTo(mirror), bitangent = cross(mirror, tangent), sum = vec3(0.0);
+  for (int i = 0; i < glossyCones; ++i) {
+    float share = (float(i) + 0.5) / float(glossyCones), angle = float(i) * kGoldenAngle;
+    float cosAxis = pow(1.0 - share, 1.0 / (exponent + 1.0)), sinAxis = sqrt(1.0 - cosAxis * cosAxis);
+    vec3 direction = mirror * cosAxis + (tangent * cos(angle) + bitangent * sin(angle)) * sinAxis;
+    float cosTheta = dot(direction, normal);
+    if (cosTheta <= 0.0) continue;
+    // The density of the lobe there, (n + 1) / (2 pi) cos^n, times the solid angle 2 pi (1 - cos(half angle)) is the share.
+    float cosHalfAngle = max(1.0 - 1.0 / (float(glossyCones) * (exponent + 1.0) * pow(cosAxis, exponent)), 0.5);
+    sum += cosTheta * traceCone(apex, direction, tanOfHalfAngle(cosHalfAngle), cosTheta, kGlossyCone + uint(i));
+  }
+  return sum / float(glossyCones);
+}
+#endif
+
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, textureSize(gPosition, 0)))) return;
+  ivec2 gathered = ivec2(gl_GlobalInvocationID.xy), size = textureSize(gPosition, 0);
+  if (any(greaterThanEqual(every * gathered, size))) return;
+  ivec2 pixel = min(every * gathered + every / 2, size - 1);
   vec4 position = texelFetch(gPosition, pixel, 0);
   vec3 diffuse = vec3(0.0), glossy = vec3(0.0);
+  bool mirrors = false;
   if (position.w > 0.0) {
     vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
     vec3 apex = position.xyz;
     if (asPublished == 0) apex += texelFetch(gGeometricNormal, pixel, 0).xyz * (offset * finestVoxel(apex));
 #if DIFFUSE
     vec3 albedo = texelFetch(gDiffuse, pixel, 0).rgb;
-    if (any(greaterThan(albedo, vec3(0.0)))) diffuse = albedo * gatherDiffuse(apex, normal);
+    if (reconstructs != 0 || any(greaterThan(albedo, vec3(0.0)))) diffuse = (reconstructs != 0 ? vec3(1.0) : albedo) * gatherDiffuse(apex, normal);
 #endif
 #if GLOSSY
     vec4 specular = texelFetch(gSpecular, pixel, 0);
-    if (any(greaterThan(specular.rgb, vec3(0.0)))) {
+    mirrors = any(greaterThan(specular.rgb, vec3(0.0)));
+    if (mirrors) {
       vec3 mirror = reflect(normalize(position.xyz - eyeWorld), normal);
-      // The integral of the lobe with the cosine of the surface is specular times the cosine of the mirror direction.
-      float tanHalfAngle = tanOfHalfAngle(cosHalfAngleOfLobe(specular.w));
-      const uint kGlossyCone = 0xffffu;
-      float cosMirror = max(dot(mirror, normal), 0.0);
-      vec3 arriving = asPublished != 0 ? traceConeAsPublished(apex, mirror, 2.0 * tanHalfAngle, kGlossyCone)
-                                       : traceCone(apex, mirror, tanHalfAngle, cosMirror, kGlossyCone);
-      glossy = specular.rgb * cosMirror * arriving;
+      glossy = (reconstructs != 0 ? vec3(1.0) : specular.rgb) * gatherGlossy(apex, normal, mirror, specular.w);
     }
 #endif
   }
 #if DIFFUSE
-  imageStore(diffuseImage, pixel, vec4(diffuse, 1.0));
+  imageStore(diffuseImage, gathered, vec4(diffuse, 1.0));
 #endif
 #if GLOSSY
-  imageStore(glossyImage, pixel, vec4(glossy, 1.0));
+  imageStore(glossyImage, gathered, vec4(glossy, reconstructs != 0 && !mirrors ? 0.0 : 1.0));  // 0: no sample
 #endif
 }

@@ -7,7 +7,7 @@
 #include "common/media.glsl"
 #endif
 
-// C++ side: MarchBinding in techniques/voxel_cone_tracing/march.h.
+// C++ side: ConeMarch in techniques/voxel_cone_tracing/march.h.
 layout(std140, binding = 2) uniform March {
   vec3 environment;   // radiance of a cone that meets nothing
   float maxDistance;  // m
@@ -51,7 +51,7 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta, ui
     float height = offset * voxelSize + cosTheta * distance;
     float wanted = min(footprint * 2.0 * tanHalfAngle * distance, clearance * height);
     // The last step ends where the grid does, so that walls there are read in full.
-    float stride = min(stepShare * max(wanted / footprint, voxelSize), end - distance) * firstShare;
+    float stride = min(stepShare * max(sizeForStep(wanted) / footprint, voxelSize), end - distance) * firstShare;
     firstShare = 1.0;
 #if MEDIUM != MEDIUM_NONE
     vec3 sampled = apex + direction * distance;

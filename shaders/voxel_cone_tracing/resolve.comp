@@ -5,6 +5,9 @@
 // With MEDIUM the voxels hold the participating media as well (thesis 004 Sec. 4.5: a regular grid has room for smoke in its empty voxels, so
 // that the cones that look for surfaces see it). A voxel of width w and extinction sigma_t has the opacity 1 - exp(-sigma_t w), and
 // shines with what it scatters of the arriving light, evenly to all sides: a voxel has one radiance for all directions.
+//
+// DIRECTIONS: the same for each of the six faces of a voxel.
+#pragma lumivox axis DIRECTIONS 0 1
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis MEDIUM none even varying
 #pragma lumivox require !LIGHTS || MEDIUM != none
@@ -38,6 +41,40 @@ layout(std140, binding = 0) uniform Parameters {
   float mostRadiance;  // W/(sr m^2): what no voxel of this size can send
 };
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
+#if DIRECTIONS
+layout(std430, binding = 4) readonly buffer DirectionalSums { VoxelDirections directions[]; };
+// Of whatever float format the grids have; by the outward normals of the faces.
+layout(binding = 0) uniform writeonly image3D positiveXImage;
+layout(binding = 1) uniform writeonly image3D negativeXImage;
+layout(binding = 2) uniform writeonly image3D positiveYImage;
+layout(binding = 3) uniform writeonly image3D negativeYImage;
+layout(binding = 4) uniform writeonly image3D positiveZImage;
+layout(binding = 5) uniform writeonly image3D negativeZImage;
+
+vec4 faceOf(uint place, int face) {
+  float opacity = coverageSum != 0 ? float(directions[place].opacity[face / 2]) / kFixedPoint * float(directions[place].fragments)
+                                   : uintBitsToFloat(directions[place].opacity[face / 2]);
+  opacity = min(opacity, 1.0);
+  uint weight = directions[place].faces[4 * face + 3];
+  if (weight == 0u) return vec4(vec3(0.0), opacity);
+  vec3 sum = vec3(directions[place].faces[4 * face], directions[place].faces[4 * face + 1], directions[place].faces[4 * face + 2]);
+  return vec4(sum / float(weight) * (opacity * uintBitsToFloat(directions[place].brightest) / unit), opacity);
+}
+
+void store(ivec3 voxel, bool occupied, uint place, vec4 media) {
+  vec4 faces[6];
+  for (int face = 0; face < 6; ++face) {
+    faces[face] = occupied ? faceOf(place, face) : vec4(0.0);
+    faces[face] += (1.0 - faces[face].a) * media;
+  }
+  imageStore(positiveXImage, voxel, faces[0]);
+  imageStore(negativeXImage, voxel, faces[1]);
+  imageStore(positiveYImage, voxel, faces[2]);
+  imageStore(negativeYImage, voxel, faces[3]);
+  imageStore(positiveZImage, voxel, faces[4]);
+  imageStore(negativeZImage, voxel, faces[5]);
+}
+#else
 layout(std430, binding = 4) readonly buffer Sums { VoxelSums sums[]; };
 layout(binding = 0) uniform writeonly image3D radianceImage;  // of whatever float format the grid has
 
@@ -52,6 +89,12 @@ vec4 surfacesIn(VoxelSums sum) {
   return vec4(value.rgb * scale, min(value.a, 1.0));
 }
 
+void store(ivec3 voxel, bool occupied, uint place, vec4 media) {
+  vec4 value = occupied ? surfacesIn(sums[place]) : vec4(0.0);
+  imageStore(radianceImage, voxel, value.a < 1.0 ? value + (1.0 - value.a) * media : value);
+}
+#endif
+
 #if MEDIUM == MEDIUM_NONE
 layout(std430, binding = 0) readonly buffer BrickList { uint brickList[]; };
 layout(std430, binding = 1) readonly buffer BrickCount { uint listed; };
@@ -61,7 +104,7 @@ void main() {
   if (item / 64u >= listed) return;
   ivec3 voxel = voxelOf(unpackVoxel(brickList[item / 64u]), item % 64u);
   Brick brick = bricks[brickOf(voxel, brickCount)];
-  if (isOccupied(brick, item % 64u)) imageStore(radianceImage, voxel, surfacesIn(sums[sumsOf(brick, item % 64u)]));
+  if (isOccupied(brick, item % 64u)) store(voxel, true, sumsOf(brick, item % 64u), vec4(0.0));
 }
 #else
 // The light that reaches a point from all sides, W/m^2.
@@ -120,9 +163,6 @@ void main() {
   if (any(greaterThanEqual(voxel, resolution))) return;
   Brick brick = bricks[brickOf(voxel, brickCount)];
   uint bit = bitOf(voxel);
-  vec4 value = isOccupied(brick, bit) ? surfacesIn(sums[sumsOf(brick, bit)]) : vec4(0.0);
-  // Media fill what surfaces leave.
-  if (value.a < 1.0) value += (1.0 - value.a) * mediaIn(voxel);
-  imageStore(radianceImage, voxel, value);
+  store(voxel, isOccupied(brick, bit), sumsOf(brick, bit), mediaIn(voxel));  // media fill what surfaces leave
 }
 #endif

@@ -7,9 +7,7 @@
 #pragma lumivox axis MEDIUM none even varying
 #pragma lumivox require MEDIUM == none || LIGHTS
 #include "common/direct_light.glsl"
-#if LIGHTS
 #include "surfaces.glsl"
-#endif
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

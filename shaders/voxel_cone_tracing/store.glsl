@@ -1,11 +1,13 @@
 // The store of light and opacity that cones read, whichever it is. Each kind of store has a file that says
 //   vec2 insideStore(vec3 origin, vec3 direction)   where a ray enters it and where it leaves it, m along the ray
 //   float finestVoxel(vec3 at)                      its finest voxels there, m
+//   float sizeForStep(float size)                   by voxels of which size steps go where those of `size` m are read
 //   StoreSample readStore(vec3 at, vec3 direction, float size, float stride)
 //                                                   what a step of `stride` m through voxels of `size` m around a point looks like
 //   vec4 readStoreAsPublished(vec3 at, vec3 direction, float size)
 //                                                   the values themselves, blended between levels as the thesis prints it
-// C++ side: techniques/voxel_cone_tracing/store.h.
+// C++ side: StoreInput in techniques/voxel_cone_tracing/march.h.
+#pragma lumivox axis STORE dense directional
 #ifndef LUMIVOX_STORE
 #define LUMIVOX_STORE
 #include "common/cones.glsl"
@@ -22,6 +24,9 @@ layout(std140, binding = 1) uniform Store {
   float storeCoarsest;          // coarsest level
   float storeUnit;              // W/(sr m^2) that the value 1 stands for
   int storeOpacityOfFinestVoxel;  // 1: what RadianceGrid::Opacity::ofFinestVoxel says
+  float storeFirstLevelOfFaces;   // directional: level of the grid that the faces begin with
+  int storeLayers;                // directional: 1: voxels are read by layers; 0: filtered along all axes
+  vec3 storeVoxels;               // of the finest level
 };
 
 // The opacity of a step from that of the voxels that were read, `size` m wide, as a blend of those of a level and a share of the next one.
@@ -31,6 +36,10 @@ float opacityOfStep(float opacity, float stride, float level, float blend) {
                                         : stepOpacityOf(throughVoxel(through, blend), stride / (exp2(level) * storeVoxel));
 }
 
+#if STORE == STORE_DENSE
 #include "store_dense.glsl"
+#elif STORE == STORE_DIRECTIONAL
+#include "store_directional.glsl"
+#endif
 
 #endif

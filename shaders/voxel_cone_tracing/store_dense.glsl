@@ -5,6 +5,8 @@ vec2 insideStore(vec3 origin, vec3 direction) { return insideVolume(storeLow, st
 
 float finestVoxel(vec3 at) { return storeVoxel; }
 
+float sizeForStep(float size) { return size; }
+
 StoreSample readStore(vec3 at, vec3 direction, float size, float stride) {
   vec3 texcoord = (at - storeLow) / storeExtent;
   float blend, level = levelOf(max(size / storeVoxel, 1.0), storeCoarsest, blend);

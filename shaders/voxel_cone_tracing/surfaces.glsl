@@ -11,6 +11,9 @@
 float throughSurfaces(StoreSample found) {
   const float kThin = 1e-3, kMost = 0.9999;  // below, the two depths agree to 10^-3; above, logarithms lose their digits
   float through = 1.0 - found.opacity, opacity = min(found.value.a, kMost);
+#if STORE == STORE_DIRECTIONAL
+  if (storeLayers != 0) return through;  // layers are not filtered across: a sheet lets 1 - a through
+#endif
   if (opacity < kThin || through <= 0.0) return through;
   float mediumDepth = -log(1.0 - opacity);
   return pow(through, 0.5 + 0.5 * opacity / ((1.0 - opacity) * mediumDepth));

@@ -121,7 +121,8 @@ class ShadePass : public Pass {
                                         .lightCount = lights.count,
                                         .environment = frame.sceneDescription().environment,
                                         .mediumSteps = mediumSteps}),
-                    GBufferBinding(*gbuffer), lights, bound, shade::radianceImage(radiance->texture)},
+                    GBufferBinding(*gbuffer), shade::emissionImage(gbuffer->emission), lights, bound,
+                    shade::radianceImage(radiance->texture)},
                    pixels(frame));
   }
 };

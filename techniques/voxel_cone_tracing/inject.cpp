@@ -1,7 +1,10 @@
 // Injection of direct light: Crassin et al. 2011, Sec. 6; thesis Gomes 2015, Sec. 4.2.1. The mean of what the
-// fragments of each occupied voxel reflect, independent of their order.
+// fragments of each occupied voxel reflect, to all sides alike or by the six faces, independent of their
+// order.
 #include <algorithm>
+#include <span>
 
+#include "directional_grid.h"
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/light_bounds.h"
@@ -25,77 +28,109 @@ glm::ivec3 evenlyHalved(const glm::ivec3& size) {
   return (size + (multiple - 1)) / multiple * multiple;
 }
 
-class InjectPass : public Pass {
+/// Injection into grids: members of a pass.
+class Injection {
+ public:
+  explicit Injection(Pass* pass)
+      : fragments_(pass, "fragments", "surface samples"),
+        shadow_(pass, "shadow", Presence::optional,
+                "lights and their visibility; without it the grid is dark but opaque"),
+        media_(pass, "media", Presence::optional,
+               "media between lights and surfaces, which dim the light on its way"),
+        mediumSteps_(pass, "medium_steps", 16, within(1, 1024),
+                     "most steps through a medium that varies, towards a light"),
+        storeMedia_(
+            pass, "store_media", false,
+            "the media lie in the voxels beside the surfaces and scatter light there, evenly to all sides, so that one set of cones sees both and 'gather' takes no media of its own (thesis Sec. 4.5)"),
+        ambient_(
+            pass, "ambient", 0.0f, within(0.0f, 1e9f),
+            "irradiance that all surfaces receive besides that of the lights, W/m^2: cones then see what no light reaches (thesis Fig. 66)"),
+        twoSided_(pass, "two_sided", true,
+                  "light on the back of a triangle counts; off, as published: only on the front"),
+        precision_(pass, "precision", Precision::float_, "of the grid: 16 or 8 bytes a voxel") {}
+
+  /// Room for a grid whose finest level is that of the fragments, evenly halved.
+  gpu::TextureRef room(PassContext& frame, const char* label, bool coarserLevels = true) const {
+    const glm::ivec3 size = placement().resolution;
+    return frame.volume(size, precision_ == Precision::half ? gpu::Format::rgba16f : gpu::Format::rgba32f,
+                        label, coarserLevels ? gpu::fullLevelCount(size.x, size.y, size.z) : 1);
+  }
+
+  /// Fills the finest levels, of one texture for all sides or of six for the faces, and what the port says
+  /// of them.
+  template <class Grid>
+  void fill(PassContext& frame, Grid& result, std::span<const gpu::TextureRef> textures) {
+    result.grid = placement();
+    result.holdsMedia = storeMedia_ && media_.present();
+    // A grid cannot say anything of what lies nearer than half a voxel.
+    const float brightest =
+        largestRadiance(frame.sceneDescription(), frame.snapshot(), 0.5f * result.grid.voxelSize) +
+        ambient_ / glm::pi<float>();
+    if (precision_ == Precision::half) result.unit = brightest / kLargestHalf;
+
+    const Sums sums = claimSums(frame, textures.size() > 1, result.occupied);
+    const gpu::BufferRef radiances =
+        frame.buffer(std::max<std::uint64_t>(fragments_->capacity, 1) * (sums.directional ? 6 : 3) *
+                         add::radiances.elementBytes,
+                     "reflected radiance per fragment");
+    light(frame, sums, radiances, brightest);
+    forEachFragment(frame, frame.program(add::Variant{sums.directional}),
+                    {add::averages({sums.brickCount, addsUp()}), add::radiances(radiances), sums.bindings()},
+                    *fragments_);
+    resolve(frame, sums, brightest, result.unit, result.holdsMedia, result.occupied, textures);
+    if (result.holdsMedia) result.occupied = {};
+  }
+
+ private:
   enum class Precision { float_, half };
 
-  In<VoxelFragments> fragments{this, "fragments", "surface samples"};
-  In<ShadowMap> shadow{this, "shadow", Presence::optional,
-                       "lights and their visibility; without it the grid is dark but opaque"};
-  In<ScatteringGrid> media{this, "media", Presence::optional,
-                           "media between lights and surfaces, which dim the light on its way"};
-  Param<int> mediumSteps{this, "medium_steps", 16, within(1, 1024),
-                         "most steps through a medium that varies, towards a light"};
-  Param<bool> storeMedia{
-      this, "store_media", false,
-      "the media lie in the voxels beside the surfaces and scatter light there, evenly to all sides, so that one set of cones sees both and 'gather' takes no media of its own (thesis Sec. 4.5)"};
-  Param<float> ambient{
-      this, "ambient", 0.0f, within(0.0f, 1e9f),
-      "irradiance that all surfaces receive besides that of the lights, W/m^2: cones then see what no light reaches (thesis Fig. 66)"};
-  Param<bool> twoSided{this, "two_sided", true,
-                       "light on the back of a triangle counts; off, as published: only on the front"};
-  Param<Precision> precision{this, "precision", Precision::float_, "of the grid: 16 or 8 bytes a voxel"};
-  Out<RadianceGrid> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
-                             Levels::finest};
-
-  Reads readsFrom() const override { return Reads::lights | Reads::materials; }
+  In<VoxelFragments> fragments_;
+  In<ShadowMap> shadow_;
+  In<ScatteringGrid> media_;
+  Param<int> mediumSteps_;
+  Param<bool> storeMedia_;
+  Param<float> ambient_;
+  Param<bool> twoSided_;
+  Param<Precision> precision_;
 
   /// Room for the sums of occupied voxels, and where they lie (bricks.glsl).
   struct Sums {
     glm::ivec3 brickCount{0};
+    bool directional = false;
     gpu::BufferRef bricks, voxels;
-    shader::BindingSet bindings() const { return {add::bricks(bricks), add::sums(voxels)}; }
+    shader::BindingSet bindings() const {
+      if (directional) return {add::bricks(bricks), add::directionalSums(voxels)};
+      return {add::bricks(bricks), add::sums(voxels)};
+    }
   };
 
-  void run(PassContext& frame) override {
-    RadianceGrid result;
-    result.grid = fragments->grid;
-    const glm::ivec3 size = result.grid.resolution = evenlyHalved(fragments->grid.resolution);
-    const bool half = precision == Precision::half;
-    result.radiance = frame.volume(size, half ? gpu::Format::rgba16f : gpu::Format::rgba32f, "radiance grid",
-                                   gpu::fullLevelCount(size.x, size.y, size.z));
-    result.filledLevels = 1;
-    // A grid cannot say anything of what lies nearer than half a voxel.
-    const float brightest =
-        largestRadiance(frame.sceneDescription(), frame.snapshot(), 0.5f * result.grid.voxelSize) +
-        ambient / glm::pi<float>();
-    if (half) result.unit = brightest / kLargestHalf;
-
-    const Sums sums = claimSums(frame, size, result.occupied);
-    const gpu::BufferRef radiances =
-        frame.buffer(std::max<std::uint64_t>(fragments->capacity, 1) * 3 * add::radiances.elementBytes,
-                     "reflected radiance per fragment");
-    light(frame, sums, radiances, brightest);
-    forEachFragment(frame, frame.program(add::kProgram),
-                    {add::size({sums.brickCount}), add::radiances(radiances), sums.bindings()}, *fragments);
-    resolve(frame, sums, brightest, result);
-    radiance = result;
+  GridPlacement placement() const {
+    GridPlacement grid = fragments_->grid;
+    grid.resolution = evenlyHalved(grid.resolution);
+    return grid;
   }
+  bool addsUp() const { return fragments_->coverage == VoxelFragments::Coverage::sum; }
 
   /// Finds the occupied bricks, and gives every occupied voxel its place among the sums. There are no more of
   /// them than fragments, so that nothing that happens on the device need be known here.
-  Sums claimSums(PassContext& frame, const glm::ivec3& size, OccupiedBricks& occupied) const {
+  Sums claimSums(PassContext& frame, bool directional, OccupiedBricks& occupied) const {
+    const glm::ivec3 size = placement().resolution;
     Sums sums;
+    sums.directional = directional;
     sums.brickCount = (size + (OccupiedBricks::kSide - 1)) / OccupiedBricks::kSide;
     const std::uint64_t bricks = GridPlacement{.resolution = sums.brickCount}.voxelCount(),
-                        voxels = GridPlacement{.resolution = size}.voxelCount(), most = fragments->capacity;
+                        voxels = std::min<std::uint64_t>(fragments_->capacity,
+                                                         GridPlacement{.resolution = size}.voxelCount());
     sums.bricks = frame.emptyElements(claim::bricks, bricks, "occupied voxels of bricks");
-    sums.voxels = frame.emptyElements(add::sums, std::min(most, voxels), "sums of voxels");
-    occupied.bricks = frame.elements(claim::brickList, std::min(most, bricks), "occupied bricks");
+    sums.voxels = directional ? frame.emptyElements(add::directionalSums, voxels, "sums of voxels' faces")
+                              : frame.emptyElements(add::sums, voxels, "sums of voxels");
+    occupied.bricks = frame.elements(claim::brickList, std::min<std::uint64_t>(fragments_->capacity, bricks),
+                                     "occupied bricks");
     occupied.count = frame.buffer(OccupiedBricks::argumentsBytes(3), "occupied brick count");
     const gpu::BufferRef totals = frame.uploaded(std::array<std::uint32_t, 2>{}, "claimed bricks and voxels");
     const auto brickCount = claim::size({sums.brickCount});
     forEachFragment(frame, frame.program(mark::kProgram), {brickCount, mark::bricks(sums.bricks)},
-                    *fragments);
+                    *fragments_);
     frame.dispatch(frame.program(claim::kProgram),
                    {brickCount, claim::bricks(sums.bricks), claim::brickList(occupied.bricks),
                     claim::brickTotals(totals)},
@@ -108,57 +143,97 @@ class InjectPass : public Pass {
   /// The radiance that each fragment reflects, and of each voxel the number and the brightest of its
   /// fragments.
   void light(PassContext& frame, const Sums& sums, const gpu::BufferRef& radiances, float mostRadiance) {
-    const LightBinding lights(shadow);
-    const MediaBinding bound(frame, media, shadow.present());
-    const inject::Variant variant{.lights = shadow.present(),
-                                  .shadows = shadow.present(),
-                                  .reflected = fragments->reflected != nullptr,
+    const LightBinding lights(shadow_);
+    const MediaBinding bound(frame, media_, shadow_.present());
+    const inject::Variant variant{.directions = sums.directional,
+                                  .lights = shadow_.present(),
+                                  .shadows = shadow_.present(),
+                                  .reflected = fragments_->reflected != nullptr,
                                   .medium = bound.axis};
     forEachFragment(frame, frame.program(variant),
-                    {inject::grid({.gridLow = fragments->grid.low,
-                                   .voxelSize = fragments->grid.voxelSize,
+                    {inject::grid({.gridLow = fragments_->grid.low,
+                                   .voxelSize = fragments_->grid.voxelSize,
                                    .lightCount = lights.count,
                                    .mostRadiance = mostRadiance,
-                                   .twoSided = twoSided,
-                                   .mediumSteps = mediumSteps,
+                                   .twoSided = twoSided_,
+                                   .mediumSteps = mediumSteps_,
                                    .brickCount = sums.brickCount,
-                                   .ambient = ambient}),
-                     inject::radiances(radiances), inject::reflected(fragments->reflected), sums.bindings(),
+                                   .ambient = ambient_}),
+                     inject::radiances(radiances), inject::reflected(fragments_->reflected), sums.bindings(),
                      lights, bound},
-                    *fragments);
+                    *fragments_);
   }
 
-  /// The finest level from the sums: of the occupied bricks alone, or of all voxels where media lie in them.
-  void resolve(PassContext& frame, const Sums& sums, float mostRadiance, RadianceGrid& result) {
-    result.holdsMedia = storeMedia && media.present();
-    const LightBinding lights(shadow);
-    const MediaBinding bound(frame, media, result.holdsMedia);
-    const auto& program = frame.program(
-        resolve::Variant{.lights = result.holdsMedia && shadow.present(), .medium = bound.axis});
-    const OccupiedBricks occupied = result.occupied;
-    const shader::BindingSet bindings{
-        resolve::parameters({.brickCount = sums.brickCount,
-                             .unit = result.unit,
-                             .resolution = result.grid.resolution,
-                             .coverageSum = fragments->coverage == VoxelFragments::Coverage::sum,
-                             .gridLow = result.grid.low,
-                             .voxelSize = result.grid.voxelSize,
-                             .lightCount = lights.count,
-                             .mediumSteps = mediumSteps,
-                             .mostRadiance = mostRadiance}),
-        resolve::brickList(occupied.bricks),
-        resolve::brickCount(occupied.count),
-        resolve::radianceImage(result.radiance),
-        sums.bindings(),
-        lights,
-        bound};
-    if (result.holdsMedia) {
-      result.occupied = {};
-      frame.dispatch(program, bindings, result.grid.resolution);
+  /// The finest levels from the sums: of the occupied bricks alone, or of all voxels where media lie in them.
+  void resolve(PassContext& frame, const Sums& sums, float mostRadiance, float unit, bool holdsMedia,
+               const OccupiedBricks& occupied, std::span<const gpu::TextureRef> textures) {
+    const LightBinding lights(shadow_);
+    const MediaBinding bound(frame, media_, holdsMedia);
+    const auto& program = frame.program(resolve::Variant{
+        .directions = sums.directional, .lights = holdsMedia && shadow_.present(), .medium = bound.axis});
+    const GridPlacement grid = placement();
+    shader::BindingSet bindings{resolve::parameters({.brickCount = sums.brickCount,
+                                                     .unit = unit,
+                                                     .resolution = grid.resolution,
+                                                     .coverageSum = addsUp(),
+                                                     .gridLow = grid.low,
+                                                     .voxelSize = grid.voxelSize,
+                                                     .lightCount = lights.count,
+                                                     .mediumSteps = mediumSteps_,
+                                                     .mostRadiance = mostRadiance}),
+                                resolve::brickList(occupied.bricks),
+                                resolve::brickCount(occupied.count),
+                                sums.bindings(),
+                                lights,
+                                bound};
+    if (sums.directional) {
+      bindings.add(
+          shader::BindingSet{resolve::positiveXImage(textures[0]), resolve::negativeXImage(textures[1]),
+                             resolve::positiveYImage(textures[2]), resolve::negativeYImage(textures[3]),
+                             resolve::positiveZImage(textures[4]), resolve::negativeZImage(textures[5])});
     } else {
-      result.radiance->clear(glm::vec4(0.0f), 0);
-      frame.dispatchIndirect(program, bindings, *occupied.count, OccupiedBricks::argumentsBytes(0));
+      bindings.add(resolve::radianceImage(textures[0]));
     }
+    if (holdsMedia) {
+      frame.dispatch(program, bindings, grid.resolution);
+      return;
+    }
+    for (const gpu::TextureRef& texture : textures) texture->clear(glm::vec4(0.0f), 0);
+    frame.dispatchIndirect(program, bindings, *occupied.count, OccupiedBricks::argumentsBytes(0));
+  }
+};
+
+class InjectPass : public Pass {
+  Injection injection{this};
+  Param<bool> mips{this, "mips", true,
+                   "room for the coarser levels that 'filter' fills; 'filter_directional' needs none"};
+  Out<RadianceGrid> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
+                             Levels::finest};
+
+  Reads readsFrom() const override { return Reads::lights | Reads::materials; }
+
+  void run(PassContext& frame) override {
+    RadianceGrid result;
+    result.radiance = injection.room(frame, "radiance grid", mips);
+    result.filledLevels = 1;
+    injection.fill(frame, result, {&result.radiance, 1});
+    radiance = result;
+  }
+};
+
+class InjectDirectionalPass : public Pass {
+  Injection injection{this};
+  Out<DirectionalRadianceGrid> radiance{
+      this, "radiance", "radiance that the faces of voxels reflect, and opacity; the finest level only",
+      Levels::finest};
+
+  Reads readsFrom() const override { return Reads::lights | Reads::materials; }
+
+  void run(PassContext& frame) override {
+    DirectionalRadianceGrid result;
+    for (gpu::TextureRef& face : result.faces) face = injection.room(frame, "radiance grid of one side");
+    injection.fill(frame, result, result.faces);
+    radiance = result;
   }
 };
 
@@ -166,6 +241,9 @@ class InjectPass : public Pass {
 
 void addInject(TechniqueRegistry& registry) {
   registry.add<InjectPass>("inject", "Direct light into the finest level (Crassin et al. 2011, Sec. 6)");
+  registry.add<InjectDirectionalPass>(
+      "inject_directional",
+      "Direct light into the finest level of six directional grids (thesis Gomes 2015, Sec. 4.2.1, Table 1)");
 }
 
 }  // namespace lumivox::voxel_cone_tracing

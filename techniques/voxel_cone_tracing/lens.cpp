@@ -41,22 +41,23 @@ class LensPass : public Pass {
     const auto columns = static_cast<float>(camera.width), rows = static_cast<float>(camera.height);
     const glm::vec3 corner = camera.direction(0.0f, 0.0f);
     radiance = Image{frame.image("radiance through the lens")};
-    frame.dispatch(
-        frame.program(code::Variant{.environment = frame.traits().environment, .medium = bound.axis},
-                      code::Constants{.widthRule = static_cast<int>(static_cast<Width>(width)),
-                                      .asMedium = opacity == Opacity::medium}),
-        {code::lens({.eyeWorld = camera.eye,
-                     .aperture = camera.aperture,
-                     .corner = corner,
-                     .focus = camera.focus,
-                     .perColumn = (camera.direction(columns, 0.0f) - corner) / columns,
-                     .pixelWidth = 2.0f * camera.tanHalfFov / rows,
-                     .perRow = (camera.direction(0.0f, rows) - corner) / rows,
-                     .stepShare = step,
-                     .environment = frame.sceneDescription().environment,
-                     .footprint = footprint}),
-         bound, input, code::radianceImage(radiance->texture)},
-        pixels(frame));
+    frame.dispatch(frame.program(code::Variant{.environment = frame.traits().environment,
+                                               .medium = bound.axis,
+                                               .store = input.axis},
+                                 code::Constants{.widthRule = static_cast<int>(static_cast<Width>(width)),
+                                                 .asMedium = opacity == Opacity::medium}),
+                   {code::lens({.eyeWorld = camera.eye,
+                                .aperture = camera.aperture,
+                                .corner = corner,
+                                .focus = camera.focus,
+                                .perColumn = (camera.direction(columns, 0.0f) - corner) / columns,
+                                .pixelWidth = 2.0f * camera.tanHalfFov / rows,
+                                .perRow = (camera.direction(0.0f, rows) - corner) / rows,
+                                .stepShare = step,
+                                .environment = frame.sceneDescription().environment,
+                                .footprint = footprint}),
+                    bound, input, code::radianceImage(radiance->texture)},
+                   pixels(frame));
   }
 };
 

@@ -1,5 +1,6 @@
 #include "march.h"
 
+#include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
 
 namespace lumivox::voxel_cone_tracing {
@@ -7,13 +8,31 @@ namespace lumivox::voxel_cone_tracing {
 namespace gather = shaders::voxel_cone_tracing::gather;
 
 StoreInput::StoreInput(Pass* pass)
-    : grid_(pass, "grid", "pre-filtered radiance, one mip per halving", Levels::all) {}
+    : grid_(pass, "grid", Presence::optional, "pre-filtered radiance, one mip per halving", Needs::nothing,
+            Levels::all),
+      directions_(pass, "directions", Presence::optional,
+                  "in place of 'grid': pre-filtered radiance of the six faces of voxels", Needs::nothing,
+                  Levels::all),
+      reading_(
+          pass, "reading", Reading::layers,
+          "of 'directions': each face by the layer of voxels across its axis, so that walls are closed; or filtered along all axes and averaged, as published") {
+}
 
 StoreBinding StoreInput::binding() const {
+  if (grid_.present() == directions_.present())
+    throw Error(
+        std::string("voxel_cone_tracing: ") + (grid_.present() ? "two stores" : "no store") +
+        " of light for the cones; expected one of the inputs 'grid' and 'directions' to be connected");
+  return grid_.present() ? dense() : directional();
+}
+
+StoreBinding StoreInput::dense() const {
   const RadianceGrid& grid = *grid_;
   const glm::vec3 extent = glm::vec3(grid.grid.resolution) * grid.grid.voxelSize;
   StoreBinding result;
+  result.axis = gather::Variant::storeDense;
   result.length = 2.0f * glm::length(extent);
+  result.voxel = grid.grid.voxelSize;
   result.holdsMedia = grid.holdsMedia;
   result.add(shader::UniformSlot<gather::Store>{"Store"}(
       {.storeLow = grid.grid.low,
@@ -23,6 +42,33 @@ StoreBinding StoreInput::binding() const {
        .storeUnit = grid.unit,
        .storeOpacityOfFinestVoxel = grid.opacity == RadianceGrid::Opacity::ofFinestVoxel}));
   result.add(shader::SampledSlot{"radianceGrid"}(grid.radiance, gpu::Sampling::linearMipsBorder));
+  return result;
+}
+
+StoreBinding StoreInput::directional() const {
+  const DirectionalRadianceGrid& grid = *directions_;
+  const glm::vec3 extent = glm::vec3(grid.grid.resolution) * grid.grid.voxelSize;
+  StoreBinding result;
+  result.axis = gather::Variant::storeDirectional;
+  result.length = 2.0f * glm::length(extent);
+  result.voxel = grid.grid.voxelSize;
+  result.holdsMedia = grid.holdsMedia;
+  result.add(shader::UniformSlot<gather::Store>{"Store"}(
+      {.storeLow = grid.grid.low,
+       .storeVoxel = grid.grid.voxelSize,
+       .storeExtent = extent,
+       .storeCoarsest = static_cast<float>(grid.filledLevels - 1),
+       .storeUnit = grid.unit,
+       .storeOpacityOfFinestVoxel = 0,
+       .storeFirstLevelOfFaces = static_cast<float>(grid.firstLevelOfFaces()),
+       .storeLayers = reading_ == Reading::layers,
+       .storeVoxels = glm::vec3(grid.grid.resolution)}));
+  const gpu::TextureRef& finest = grid.finest != nullptr ? grid.finest : grid.faces[0];
+  result.add(shader::SampledSlot{"finestGrid"}(finest, gpu::Sampling::linearMipsBorder));
+  constexpr std::array kFaces = {"positiveX", "negativeX", "positiveY",
+                                 "negativeY", "positiveZ", "negativeZ"};
+  for (std::size_t face = 0; face < kFaces.size(); ++face)
+    result.add(shader::SampledSlot{kFaces[face]}(grid.faces[face], gpu::Sampling::linearMipsBorder));
   return result;
 }
 

@@ -2,6 +2,7 @@
 // how they step through it. GLSL side: shaders/voxel_cone_tracing/march.glsl and store.glsl.
 #pragma once
 
+#include "directional_grid.h"
 #include "lumivox/plugin/technique.h"
 #include "voxel_cone_tracing_shaders.h"
 
@@ -10,18 +11,28 @@ namespace lumivox::voxel_cone_tracing {
 /// The bindings of a store, and what a pass must know of it. Named by name, so that every program that
 /// includes store.glsl takes them.
 struct StoreBinding : shader::BindingSet {
+  int axis = 0;             ///< value of the shader's axis STORE
   float length = 0;         ///< no cone need be longer, m
+  float voxel = 0;          ///< finest voxels, m
   bool holdsMedia = false;  ///< participating media are in the voxels
 };
 
-/// The store that a pass reads: members of the pass.
+/// The store that a pass reads, one of those that there are: members of the pass.
 class StoreInput {
  public:
   explicit StoreInput(Pass* pass);
+  /// Error where none of the inputs is connected, or more than one.
   StoreBinding binding() const;
 
  private:
+  enum class Reading { layers, interpolated };
+
   In<RadianceGrid> grid_;
+  In<DirectionalRadianceGrid> directions_;
+  Param<Reading> reading_;
+
+  StoreBinding dense() const;
+  StoreBinding directional() const;
 };
 
 /// Steps along cones: members of a pass.

@@ -105,7 +105,8 @@ class SoftShadowsPass : public Pass {
     const shadows::Variant variant{.lights = lights.present(),
                                    .glossy = gbuffer->specular != nullptr,
                                    .emission = frame.traits().emission,
-                                   .medium = boundMedia.axis};
+                                   .medium = boundMedia.axis,
+                                   .store = input.axis};
     const shadows::Constants constants{.radiusOf = static_cast<int>(static_cast<Radius>(radius)),
                                        .asMedium = opacity == Opacity::medium};
     const CameraView& camera = frame.snapshot().camera;
@@ -122,7 +123,8 @@ class SoftShadowsPass : public Pass {
                            .clearance = clearance,
                            .footprint = footprint,
                            .pixelWidth = 2.0f * camera.tanHalfFov / static_cast<float>(camera.height)}),
-         GBufferBinding(*gbuffer), bound, boundMedia, input, shadows::radianceImage(radiance->texture)},
+         GBufferBinding(*gbuffer), shadows::emissionImage(gbuffer->emission), bound, boundMedia, input,
+         shadows::radianceImage(radiance->texture)},
         pixels(frame));
   }
 };

@@ -1,14 +1,15 @@
 // Voxel cone tracing on a dense isotropic grid: Crassin et al. 2011, "Interactive indirect illumination using
-// voxel cone tracing"; thesis Gomes 2015, Sec. 4.2.1. Pre-filtering and final gathering; injection is in
-// inject.cpp.
+// voxel cone tracing"; thesis Gomes 2015, Sec. 4.2.1. Pre-filtering; injection is in
+// inject.cpp, final gathering in gather.cpp.
 #include "lumivox/base/error.h"
-#include "lumivox/toolkit/bindings.h"
-#include "lumivox/toolkit/media.h"
-#include "march.h"
+#include "lumivox/plugin/technique.h"
+#include "voxel_cone_tracing_shaders.h"
 
 namespace lumivox::voxel_cone_tracing {
 
 void addInject(TechniqueRegistry& registry);
+void addFilterDirectional(TechniqueRegistry& registry);
+void addGather(TechniqueRegistry& registry);
 void addSoftShadows(TechniqueRegistry& registry);
 void addLens(TechniqueRegistry& registry);
 
@@ -29,6 +30,9 @@ class FilterPass : public Pass {
   void run(PassContext& frame) override {
     const gpu::TextureDescription& texture = radiance->radiance->description();
     const glm::ivec3 finest(texture.width, texture.height, texture.depth);
+    if (texture.levels < gpu::fullLevelCount(finest.x, finest.y, finest.z))
+      throw Error(
+          "voxel_cone_tracing.filter: the grid 'radiance' has no room for coarser levels; expected 'mips on' in voxel_cone_tracing.inject");
     const OccupiedBricks& occupied = radiance->occupied;
     const filter::Constants constants{.rule = static_cast<int>(static_cast<Opacity>(opacity))};
     const auto sampling =
@@ -59,55 +63,6 @@ class FilterPass : public Pass {
   }
 };
 
-class GatherPass : public Pass {
-  enum class Distribution { cosine, published };
-
-  In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
-  StoreInput store{this};
-  In<ScatteringGrid> media{this, "media", Presence::optional,
-                           "media that dim what the cones see; light that they scatter is left out"};
-  Param<int> cones{this, "cones", 6, within(1, 256), "diffuse cones per pixel"};
-  Param<Distribution> distribution{
-      this, "distribution", Distribution::cosine,
-      "cones of equal weight distributed as the cosine, or one upright and four at 45 degrees"};
-  Param<float> coneRatio{this, "cone_ratio",
-                         1.15470053837925152902f,  // 2 tan 30 degrees
-                         within(0.01f, 8.0f),
-                         "diameter of one of those five over its height; no number is published"};
-  Param<bool> asPublished{
-      this, "as_published", false,
-      "Listings 4.12 and 4.13 to the letter: the five cones with the weights 1 and 0.707, not normalised, from two voxels on by samples of two voxels and more; 'cones', 'distribution', 'step', 'offset', 'start', 'clearance' and 'footprint' have no say"};
-  ConeMarch march{this};
-  Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
-                     "indirect light reflected by the diffuse lobe"};
-  Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::glossyMaterial,
-                    "indirect light reflected by the Phong lobe"};
-
-  Reads readsFrom() const override { return Reads::camera | Reads::environment; }
-
-  void run(PassContext& frame) override {
-    const StoreBinding input = store.binding();
-    if (input.holdsMedia && media.present())
-      throw Error(
-          "voxel_cone_tracing.gather: the voxels of 'grid' already contain the media, and 'media' would dim what the cones see once more; expected 'media' to be left out, or 'store_media off' in voxel_cone_tracing.inject");
-    const MediaBinding bound(frame, media);
-    const gather::Variant variant{.diffuse = diffuse.wanted(),
-                                  .glossy = glossy.wanted() && gbuffer->specular != nullptr,
-                                  .environment = frame.traits().environment,
-                                  .medium = bound.axis};
-    const gather::Constants constants{.coneCount = cones,
-                                      .publishedCones = distribution == Distribution::published,
-                                      .asPublished = asPublished};
-    if (variant.diffuse) diffuse = Image{frame.image("indirect diffuse radiance")};
-    if (variant.glossy) glossy = Image{frame.image("indirect glossy radiance")};
-    frame.dispatch(frame.program(variant, constants),
-                   {gather::parameters({.eyeWorld = frame.snapshot().camera.eye, .coneRatio = coneRatio}),
-                    GBufferBinding(*gbuffer), bound, input, march.binding(frame, input),
-                    gather::diffuseImage(textureOf(diffuse)), gather::glossyImage(textureOf(glossy))},
-                   pixels(frame));
-  }
-};
-
 }  // namespace
 }  // namespace lumivox::voxel_cone_tracing
 
@@ -117,7 +72,8 @@ LUMIVOX_TECHNIQUE(registry) {
                     "Crassin et al. 2011; thesis Gomes 2015, Sec. 4.2.1");
   addInject(registry);
   registry.add<FilterPass>("filter", "Pre-filtered coarser levels (Crassin et al. 2011, Sec. 5)");
-  registry.add<GatherPass>("gather", "Final gathering with cones (Crassin et al. 2011, Sec. 7)");
+  addFilterDirectional(registry);
+  addGather(registry);
   addSoftShadows(registry);
   addLens(registry);
 }

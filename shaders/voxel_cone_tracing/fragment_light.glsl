@@ -1,0 +1,84 @@
+// The light that arrives at a fragment, on the side of its normal and behind it: Crassin et al. 2011, Sec. 6; thesis 004 Sec. 4.2.1,
+// Listing 4.8. Included after the local size, which is along x alone.
+// C++ side: Injection in techniques/voxel_cone_tracing/injection.h.
+#pragma lumivox axis LIGHTS 0 1
+#pragma lumivox axis SHADOWS 0 1
+#pragma lumivox axis REFLECTED 0 1
+#pragma lumivox axis MEDIUM none even varying
+#pragma lumivox require !SHADOWS || LIGHTS
+#pragma lumivox require MEDIUM == none || LIGHTS
+#include "common/constants.glsl"
+#include "bricks.glsl"
+#if SHADOWS
+#define SHADOW_VIEWS
+#endif
+#if LIGHTS
+#include "common/lights.glsl"
+#endif
+#if MEDIUM != MEDIUM_NONE
+#include "common/media.glsl"
+#endif
+#include "common/fragments.glsl"
+
+layout(std140, binding = 0) uniform Grid {
+  vec3 gridLow;     // m
+  float voxelSize;  // m
+  int lightCount;
+  float mostRadiance;   // W/(sr m^2): what no voxel of this size can reflect, however near a light is
+  int twoSided;         // 1: light on the back side counts as well
+  int mediumSteps;      // most steps through a medium that varies, towards a light
+  ivec3 brickCount;
+  float ambient;        // irradiance of all surfaces besides that of the lights, W/m^2
+};
+layout(std430, binding = 2) writeonly buffer Radiances { float radiances[]; };  // W/(sr m^2): three of each fragment or of each side of one
+layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
+#if REFLECTED
+// Direct light that fragments are known to reflect: a word for each of the first of them.
+layout(std430, binding = 7) readonly buffer Reflected { uint reflected[]; };
+#endif
+
+// What a fragment is known to reflect of the light, W/(sr m^2); false where it has to be lit.
+bool isKnown(uint index, out vec3 radiance) {
+#if REFLECTED
+  uint known = index < uint(reflected.length()) ? reflected[index] : kNotKnown;
+  bool isIt = known != kNotKnown;
+  radiance = isIt ? unpackShared(known) : vec3(0.0);
+  return isIt;
+#else
+  radiance = vec3(0.0);
+  return false;
+#endif
+}
+
+// Irradiance of both sides by the lights, W/m^2.
+void arrivingAt(VoxelFragment fragment, out vec3 front, out vec3 back) {
+  front = vec3(0.0);
+  back = vec3(0.0);
+#if LIGHTS
+  vec3 posWorld = gridLow + (vec3(unpackVoxel(fragment.voxel)) + unpackOffset(fragment.offset)) * voxelSize;
+  vec3 normal = unpackNormal(fragment.normal);
+  for (int i = 0; i < lightCount; ++i) {
+    LightSample light = lights[i];
+    vec3 toLight;
+    vec3 perpendicular = arrivingIrradiance(light, posWorld, toLight);
+    float cosSurface = dot(normal, toLight);
+    bool behind = cosSurface < 0.0;
+    if (behind && twoSided == 0) continue;
+    cosSurface = abs(cosSurface);
+    if (!(cosSurface > 0.0)) continue;  // also where a light lies on the surface and has no direction
+    vec3 arriving = perpendicular * cosSurface;
+#if SHADOWS
+    arriving *= visibility(light, posWorld, behind ? -normal : normal, toLight);
+#endif
+#if MEDIUM != MEDIUM_NONE
+    if (any(greaterThan(arriving, vec3(0.0)))) arriving *= transmittanceToLight(light, posWorld, mediumSteps);
+#endif
+    if (behind) back += arriving;
+    else front += arriving;
+  }
+#endif
+}
+
+vec3 albedoOf(VoxelFragment fragment) {
+  return vec3(unpackHalf2x16(fragment.albedoRg), unpackHalf2x16(fragment.albedoBCoverage).x);
+}

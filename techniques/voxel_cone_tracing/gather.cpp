@@ -1,0 +1,106 @@
+// Final gathering with cones, through whichever store: Crassin et al. 2011, Sec. 7; thesis Gomes 2015,
+// Sec. 4.2.1, Listings 4.11 to 4.13.
+#include "lumivox/base/error.h"
+#include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/media.h"
+#include "march.h"
+
+namespace lumivox::voxel_cone_tracing {
+namespace {
+
+namespace gather = shaders::voxel_cone_tracing::gather;
+namespace reconstruct = shaders::voxel_cone_tracing::reconstruct;
+
+class GatherPass : public Pass {
+  enum class Distribution { cosine, published };
+  // In the order of their halvings.
+  enum class Resolution { full, half, quarter };
+
+  In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
+  StoreInput store{this};
+  In<ScatteringGrid> media{this, "media", Presence::optional,
+                           "media that dim what the cones see; light that they scatter is left out"};
+  Param<int> cones{this, "cones", 6, within(1, 256), "diffuse cones per pixel"};
+  Param<int> glossyCones{this, "glossy_cones", 1, within(1, 64),
+                         "cones per pixel that share the Phong lobe; 1, as published: one as wide as it"};
+  Param<Distribution> distribution{
+      this, "distribution", Distribution::cosine,
+      "cones of equal weight distributed as the cosine, or one upright and four at 45 degrees"};
+  Param<float> coneRatio{this, "cone_ratio",
+                         1.15470053837925152902f,  // 2 tan 30 degrees
+                         within(0.01f, 8.0f),
+                         "diameter of one of those five over its height; no number is published"};
+  Param<bool> asPublished{
+      this, "as_published", false,
+      "Listings 4.12 and 4.13 to the letter: the five cones with the weights 1 and 0.707, not normalised, from two voxels on by samples of two voxels and more; 'cones', 'distribution', 'step', 'offset', 'start', 'clearance', 'footprint', 'pattern' and 'resolution' have no say"};
+  Param<int> pattern{
+      this, "pattern", 1, within(1, 8),
+      "side of a square of pixels each of which sends its cones elsewhere; a joint bilateral filter as wide averages them, so that they count as that many times more"};
+  Param<Resolution> resolution{
+      this, "resolution", Resolution::full,
+      "of the pixels that send cones; those between are filled by a joint bilateral filter"};
+  Param<float> tolerance{
+      this, "tolerance", 1.0f, within(1e-3f, 1e3f),
+      "distance off a pixel's surface, in voxels, at which that filter gives another one the weight 1/e"};
+  ConeMarch march{this};
+  Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
+                     "indirect light reflected by the diffuse lobe"};
+  Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::glossyMaterial,
+                    "indirect light reflected by the Phong lobe"};
+
+  Reads readsFrom() const override { return Reads::camera | Reads::environment; }
+
+  void run(PassContext& frame) override {
+    const StoreBinding input = store.binding();
+    if (input.holdsMedia && media.present())
+      throw Error(
+          "voxel_cone_tracing.gather: the voxels of 'grid' already contain the media, and 'media' would dim what the cones see once more; expected 'media' to be left out, or 'store_media off' in voxel_cone_tracing.inject");
+    const MediaBinding bound(frame, media);
+    const gather::Variant variant{.diffuse = diffuse.wanted(),
+                                  .glossy = glossy.wanted() && gbuffer->specular != nullptr,
+                                  .environment = frame.traits().environment,
+                                  .medium = bound.axis,
+                                  .store = input.axis};
+    const gather::Constants constants{.coneCount = cones,
+                                      .publishedCones = distribution == Distribution::published,
+                                      .asPublished = asPublished,
+                                      .glossyCones = glossyCones};
+    const int every = asPublished ? 1 : 1 << static_cast<int>(static_cast<Resolution>(resolution)),
+              side = asPublished ? 1 : pattern;
+    const bool reconstructs = every > 1 || side > 1;
+    const glm::ivec3 gathered = (pixels(frame) + (every - 1)) / glm::ivec3(every, every, 1);
+    if (variant.diffuse) diffuse = Image{frame.image("indirect diffuse radiance")};
+    if (variant.glossy) glossy = Image{frame.image("indirect glossy radiance")};
+    gpu::TextureRef samples[2] = {textureOf(diffuse), textureOf(glossy)};
+    if (reconstructs)
+      for (gpu::TextureRef& image : samples)
+        if (image != nullptr)
+          image = frame.texture({.format = gpu::Format::rgba32f, .width = gathered.x, .height = gathered.y},
+                                "gathered radiance");
+    frame.dispatch(frame.program(variant, constants),
+                   {gather::parameters({.eyeWorld = frame.snapshot().camera.eye,
+                                        .coneRatio = coneRatio,
+                                        .every = every,
+                                        .pattern = side,
+                                        .reconstructs = reconstructs}),
+                    GBufferBinding(*gbuffer), bound, input, march.binding(frame, input),
+                    gather::diffuseImage(samples[0]), gather::glossyImage(samples[1])},
+                   gathered);
+    if (!reconstructs) return;
+    frame.dispatch(
+        frame.program(reconstruct::Variant{.diffuse = variant.diffuse, .glossy = variant.glossy}),
+        {reconstruct::parameters({.every = every, .pattern = side, .tolerance = tolerance * input.voxel}),
+         GBufferBinding(*gbuffer), reconstruct::gatheredDiffuse(samples[0], gpu::Sampling::nearest),
+         reconstruct::gatheredGlossy(samples[1], gpu::Sampling::nearest),
+         reconstruct::diffuseImage(textureOf(diffuse)), reconstruct::glossyImage(textureOf(glossy))},
+        pixels(frame));
+  }
+};
+
+}  // namespace
+
+void addGather(TechniqueRegistry& registry) {
+  registry.add<GatherPass>("gather", "Final gathering with cones (Crassin et al. 2011, Sec. 7)");
+}
+
+}  // namespace lumivox::voxel_cone_tracing
