@@ -45,28 +45,26 @@ float diameterAt(float depth) {
 vec3 radianceThrough(vec3 direction, float depthPerMetre) {
   float voxel = finestVoxel(eyeWorld);
   vec2 inside = insideStore(eyeWorld, direction);
-  float distance = max(inside.x, 0.0), end = inside.y, through = 1.0;
+  float distance = max(inside.x, 0.0), end = inside.y;
+  Covering covering = kOpen;
   vec3 radiance = vec3(0.0);
 #if MEDIUM != MEDIUM_NONE
   vec3 passed = exp(-opticalDepth(eyeWorld, direction, distance, kMediumSteps));
 #else
   const float passed = 1.0;
 #endif
-  while (distance < end && through > 1.0 - kOpaque) {
-    float wanted = footprint * diameterAt(depthPerMetre * distance);
-    float stride = min(stepShare * max(wanted / footprint, voxel), end - distance);
+  while (distance < end && covering.through > 1.0 - kOpaque) {
+    float wanted = max(footprint * diameterAt(depthPerMetre * distance), voxel);
+    float stride = min(stepShare * sizeForStep(wanted) / footprint, end - distance);
     vec3 middle = eyeWorld + direction * (distance + 0.5 * stride);
 #if MEDIUM != MEDIUM_NONE
     vec3 thickness = opticalDepth(eyeWorld + direction * distance, direction, stride, kMediumSteps);
     passed *= exp(-0.5 * thickness);
 #endif
     StoreSample found = readStore(middle, direction, wanted, stride);
-    if (found.value.a > 0.0) {
-      float left = asMedium != 0 ? 1.0 - found.opacity : throughSurfaces(found);
-      // Radiance over opacity is that of what is there.
-      radiance += passed * (through * (1.0 - left) / found.value.a * found.value.rgb);
-      through *= left;
-    }
+    float share = asMedium != 0 ? coverByMedium(covering, found) : cover(covering, found, sizeForStep(wanted), stride);
+    // Radiance over opacity is that of what is there.
+    if (share > 0.0) radiance += passed * (share / found.value.a * found.value.rgb);
 #if MEDIUM != MEDIUM_NONE
     passed *= exp(-0.5 * thickness);
 #endif
@@ -75,10 +73,10 @@ vec3 radianceThrough(vec3 direction, float depthPerMetre) {
   radiance *= storeUnit;
 #if ENVIRONMENT
 #if MEDIUM != MEDIUM_NONE
-  if (through > 1.0 - kOpaque) passed *= exp(-opticalDepth(eyeWorld + direction * distance, direction, kNoReach, kMediumSteps));
+  if (covering.through > 1.0 - kOpaque) passed *= exp(-opticalDepth(eyeWorld + direction * distance, direction, kNoReach, kMediumSteps));
 #endif
   // What is left of a cone that ended early is not the environment's.
-  if (through > 1.0 - kOpaque) radiance += passed * (through * environment);
+  if (covering.through > 1.0 - kOpaque) radiance += passed * (covering.through * environment);
 #endif
   return radiance;
 }

@@ -75,17 +75,20 @@ float traceShadow(LightDisc disc, LightSample light, vec3 posWorld, vec3 geometr
   vec2 inside = insideStore(apex, cone.direction);
   float distance = max(startShare * voxel, inside.x), end = min(cone.end, inside.y);
   if (cone.rise > 0.0) end = min(end, cone.end - offset * finestVoxel(apex + cone.direction * cone.reach) / cone.rise);
-  float through = 1.0;
-  while (distance < end && through > 1.0 - kOpaque) {
+  Covering covering = kOpen;
+  while (distance < end && covering.through > 1.0 - kOpaque) {
     float height = offset * voxel + cosSurface * distance;
     if (cone.rise > 0.0) height = min(height, cone.rise * (cone.end - distance));
-    float wanted = min(footprint * max(cone.lightRatio * distance, eyeDiameter), clearance * height);
-    float stride = min(stepShare * max(wanted / footprint, voxel), end - distance);
+    float wanted = max(min(footprint * max(cone.lightRatio * distance, eyeDiameter), clearance * height), voxel);
+    float stride = min(stepShare * sizeForStep(wanted) / footprint, end - distance);
     StoreSample found = readStore(apex + cone.direction * (distance + 0.5 * stride), cone.direction, wanted, stride);
-    if (found.value.a > 0.0) through *= asMedium != 0 ? 1.0 - found.opacity : throughSurfaces(found);
+    if (asMedium != 0)
+      coverByMedium(covering, found);
+    else
+      cover(covering, found, sizeForStep(wanted), stride);
     distance += stride;
   }
-  return through > 1.0 - kOpaque ? through : 0.0;
+  return covering.through > 1.0 - kOpaque ? covering.through : 0.0;
 }
 
 // The samples of a light follow each other, and have one cone.

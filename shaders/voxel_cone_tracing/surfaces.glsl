@@ -1,20 +1,49 @@
-// Steps along cones that ask whether surfaces are in the way, and not how thick a medium is.
+// Steps along cones that ask how much of their width surfaces cover, and not how thick a medium is.
 //
-// A sheet of opacity a that lies in one layer of voxels is read by the trilinear filter as opacities a (1 - |x|) within a voxel before and
-// behind it. Taken for a medium, whose transmittances 1 - a multiply from voxel to voxel, it lets exp(2 int_0^1 ln(1 - a x) dx) through: of
-// an opaque one exp(-2) = 0.135. Wanted is 1 - a. The optical depth h per voxel that gives this obeys
-//   2 int_0^1 h(a x) dx = -ln(1 - a), so that h(a) = (-ln(1 - a) + a / (1 - a)) / 2.
-// Thin media keep theirs: h = a + 3/4 a^2 + ... beside a + 1/2 a^2 + ....
+// A medium's transmittances multiply from voxel to voxel. Of surfaces that is wrong twice. A closed sheet in one layer of voxels is read by the
+// trilinear filter as opacities that rise to 1 and fall again within a voxel, of which exp(2 int_0^1 ln(1 - x) dx) = exp(-2) of the light is
+// left. And of a solid thing that covers half of the cone every layer hides the same half, not half of what is left. So the opacity of the
+// voxels counts as the covered share: within one thing the largest that was met, from thing to thing the product of what they leave open.
+// A thing ends where the opacity falls; what rises again from a quarter of it counts in full.
 #include "store.glsl"
 
-// Transmittance of a step through surfaces.
-float throughSurfaces(StoreSample found) {
-  const float kThin = 1e-3, kMost = 0.9999;  // below, the two depths agree to 10^-3; above, logarithms lose their digits
-  float through = 1.0 - found.opacity, opacity = min(found.value.a, kMost);
+struct Covering {
+  float through;  // share of the cone that is open still
+  float covered;  // share that the thing covers in which the cone is
+};
+const Covering kOpen = Covering(1.0, 0.0);
+
+// Takes a step of `stride` m through voxels of `size` m; the share of the whole cone that is covered by it.
+float cover(inout Covering cone, StoreSample found, float size, float stride) {
+  const float kOneThing = 4.0;  // how often the opacity must fall for what follows to be another thing
+  float opacity = found.value.a;
+  bool byLayers = false;
 #if STORE == STORE_DIRECTIONAL
-  if (storeLayers != 0) return through;  // layers are not filtered across: a sheet lets 1 - a through
+  byLayers = storeLayers != 0;
 #endif
-  if (opacity < kThin || through <= 0.0) return through;
-  float mediumDepth = -log(1.0 - opacity);
-  return pow(through, 0.5 + 0.5 * opacity / ((1.0 - opacity) * mediumDepth));
+  if (byLayers) {
+    // Layers are not filtered across, and their value is that of the step.
+    if (opacity > 0.0) opacity = 1.0 - pow(max(1.0 - opacity, 0.0), size / stride);
+  } else {
+    // What the filter makes of a closed sheet between two levels, (1-f) max(0, 1 - |x|) + f max(0, 1 - |x - 1/2| / 2), has its top at 0 or
+    // at 1/2. Steps miss it by a quarter of themselves in the mean, and by a half at most, which counts where little is open.
+    float f;
+    levelOf(size / storeVoxel, storeCoarsest, f);
+    opacity /= max(1.0 - 0.25 * f, 0.5 + 0.5 * f);
+    opacity /= max(1.0 - (0.25 + 0.25 * min(opacity, 1.0)) * stride / size, 0.5);
+  }
+  opacity = min(opacity, 1.0);
+  cone.covered = min(cone.covered, kOneThing * opacity);
+  if (opacity <= cone.covered) return 0.0;
+  float before = cone.through;
+  cone.through *= (1.0 - opacity) / (1.0 - cone.covered);
+  cone.covered = opacity;
+  return before - cone.through;
+}
+
+// The same of a medium, as the other cones see it.
+float coverByMedium(inout Covering cone, StoreSample found) {
+  float before = cone.through;
+  cone.through *= 1.0 - found.opacity;
+  return before - cone.through;
 }
