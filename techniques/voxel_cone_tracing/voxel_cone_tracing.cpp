@@ -12,6 +12,7 @@ void addFilterDirectional(TechniqueRegistry& registry);
 void addGather(TechniqueRegistry& registry);
 void addSoftShadows(TechniqueRegistry& registry);
 void addLens(TechniqueRegistry& registry);
+void addLook(TechniqueRegistry& registry);
 
 namespace {
 
@@ -76,4 +77,5 @@ LUMIVOX_TECHNIQUE(registry) {
   addGather(registry);
   addSoftShadows(registry);
   addLens(registry);
+  addLook(registry);
 }

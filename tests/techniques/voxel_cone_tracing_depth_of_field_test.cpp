@@ -174,58 +174,6 @@ double difference(const ImageBuffer& a, const ImageBuffer& b) {
 
 }  // namespace
 
-namespace {
-
-/// Cards that face the camera, at 1.2, 2.2, 3.2 and 4.2 m, before a wall at 5 m; in focus at 2.2 m.
-Scene cards() {
-  SceneBuilder builder;
-  const int white = builder.lambert(0.8f), dark = builder.lambert(0.1f);
-  builder.quad({-2, -1.5f, -3}, {4, 0, 0}, {0, 3, 0}, dark);
-  for (int i = 0; i < 4; ++i) {
-    const auto z = 0.8f - static_cast<float>(i), x = -0.45f + 0.3f * static_cast<float>(i);
-    builder.quad({x, -0.4f, z}, {0.2f, 0, 0}, {0, 0.7f, 0}, white);
-  }
-  builder.light(LightKind::directional, glm::vec3(3.0f), {}, {-0.2, -0.3, -1});
-  builder.scene.environment = glm::vec3(0.3f, 0.4f, 0.6f);
-  Camera& camera = builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, kSide, kSide);
-  camera.aperture = 0.25;
-  camera.focus = 2.2;
-  return builder.scene;
-}
-
-Scene withPinhole(Scene scene) {
-  scene.cameras.front().aperture = 0.0;
-  return scene;
-}
-
-ImageBuffer added(const ImageBuffer& a, const ImageBuffer& b, float share) {
-  ImageBuffer sum = a;
-  for (std::size_t i = 0; i < sum.values().size(); ++i) sum.values()[i] += share * b.values()[i];
-  return sum;
-}
-
-double difference(const ImageBuffer& a, const ImageBuffer& b) {
-  return compare(a, b).rmse.value;
-}
-
-}  // namespace
-
-namespace {
-Pipeline finely() {
-  Pipeline p = pipeline("voxel_cone_tracing_depth_of_field");
-  std::string t = p.document->source;
-  t.replace(t.find("resolution 128"), 14,
-            std::string("resolution ") + (getenv("RES") ? getenv("RES") : "128"));
-  if (getenv("DIR")) {
-    auto r = [&](std::string a, std::string b) { t.replace(t.find(a), a.size(), b); };
-    r("shadow shadow.depth", "shadow shadow.depth\n mips off");
-    r("voxel_cone_tracing.filter  { radiance light.radiance }",
-      "voxel_cone_tracing.filter_directional { finest light.radiance }");
-    r("{ grid grid.mips }", std::string("{ directions grid.mips\n") + getenv("DIR") + "\n }");
-  }
-  return Pipeline::parse(t, p.file);
-}
-}  // namespace
 TEST_CASE("one cone through the lens shows what many narrow ones through its points do") {
   const Scene scene = cards();
   const Pipeline text = pipeline("voxel_cone_tracing_depth_of_field");
