@@ -55,14 +55,14 @@ vec3 radianceThrough(vec3 direction, float depthPerMetre) {
 #endif
   while (distance < end && covering.through > 1.0 - kOpaque) {
     float wanted = max(footprint * diameterAt(depthPerMetre * distance), voxel);
-    float stride = min(stepShare * sizeForStep(wanted) / footprint, end - distance);
+    float stride = min(min(stepShare * wanted / footprint, longestStep(wanted)), end - distance);
     vec3 middle = eyeWorld + direction * (distance + 0.5 * stride);
 #if MEDIUM != MEDIUM_NONE
     vec3 thickness = opticalDepth(eyeWorld + direction * distance, direction, stride, kMediumSteps);
     passed *= exp(-0.5 * thickness);
 #endif
     StoreSample found = readStore(middle, direction, wanted, stride);
-    float share = asMedium != 0 ? coverByMedium(covering, found) : cover(covering, found, sizeForStep(wanted), stride);
+    float share = asMedium != 0 ? coverByMedium(covering, found) : cover(covering, found, wanted, stride);
     // Radiance over opacity is that of what is there.
     if (share > 0.0) radiance += passed * (share / found.value.a * found.value.rgb);
 #if MEDIUM != MEDIUM_NONE

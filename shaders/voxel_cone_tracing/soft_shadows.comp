@@ -80,12 +80,12 @@ float traceShadow(LightDisc disc, LightSample light, vec3 posWorld, vec3 geometr
     float height = offset * voxel + cosSurface * distance;
     if (cone.rise > 0.0) height = min(height, cone.rise * (cone.end - distance));
     float wanted = max(min(footprint * max(cone.lightRatio * distance, eyeDiameter), clearance * height), voxel);
-    float stride = min(stepShare * sizeForStep(wanted) / footprint, end - distance);
+    float stride = min(min(stepShare * wanted / footprint, longestStep(wanted)), end - distance);
     StoreSample found = readStore(apex + cone.direction * (distance + 0.5 * stride), cone.direction, wanted, stride);
     if (asMedium != 0)
       coverByMedium(covering, found);
     else
-      cover(covering, found, sizeForStep(wanted), stride);
+      cover(covering, found, wanted, stride);
     distance += stride;
   }
   return covering.through > 1.0 - kOpaque ? covering.through : 0.0;

@@ -22,8 +22,8 @@ float cover(inout Covering cone, StoreSample found, float size, float stride) {
   byLayers = storeLayers != 0;
 #endif
   if (byLayers) {
-    // Layers are not filtered across, and their value is that of the step.
-    if (opacity > 0.0) opacity = 1.0 - pow(max(1.0 - opacity, 0.0), size / stride);
+    // Layers are not filtered across, and their value is that of the step; no longer step lies in one.
+    if (opacity > 0.0) opacity = 1.0 - pow(max(1.0 - opacity, 0.0), longestStep(size) / stride);
   } else {
     // What the filter makes of a closed sheet between two levels, (1-f) max(0, 1 - |x|) + f max(0, 1 - |x - 1/2| / 2), has its top at 0 or
     // at 1/2. Steps miss it by a quarter of themselves in the mean, and by a half at most, which counts where little is open.
