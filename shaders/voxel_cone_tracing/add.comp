@@ -20,6 +20,7 @@ layout(std140, binding = 0) uniform Averages {
 };
 layout(std430, binding = 2) readonly buffer Radiances { float radiances[]; };  // three of each fragment or of each side of one, W/(sr m^2)
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
+#include "sums.glsl"
 
 vec3 radianceAt(uint first) { return vec3(radiances[first], radiances[first + 1], radiances[first + 2]); }
 
@@ -38,7 +39,7 @@ void main() {
   if (index >= fragmentCount) return;
   VoxelFragment fragment = fragments[index];
   ivec3 voxel = unpackVoxel(fragment.voxel);
-  uint place = sumsOf(bricks[brickOf(voxel, brickCount)], bitOf(voxel));
+  uint place = sumsAt(voxel);
   float coverage = clamp(unpackHalf2x16(fragment.albedoBCoverage).y, 0.0, 1.0);
   float brightest = uintBitsToFloat(directions[place].brightest);
   float part = 1.0 / float(max(directions[place].fragments, 1u));
@@ -69,7 +70,7 @@ void main() {
   if (index >= fragmentCount) return;
   VoxelFragment fragment = fragments[index];
   ivec3 voxel = unpackVoxel(fragment.voxel);
-  uint place = sumsOf(bricks[brickOf(voxel, brickCount)], bitOf(voxel));
+  uint place = sumsAt(voxel);
   float coverage = clamp(unpackHalf2x16(fragment.albedoBCoverage).y, 0.0, 1.0);
   float weight = coverage * (1.0 / float(max(sums[place].fragments, 1u)));
   uvec4 addend = shareOf(partOf(radianceAt(3 * index), uintBitsToFloat(sums[place].brightest), weight));

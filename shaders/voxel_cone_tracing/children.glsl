@@ -1,4 +1,6 @@
-// Children of a coarse voxel where a level may not be of half the size of the finer one.
+// A coarse voxel from its children. Radiance is pre-multiplied by opacity.
+#include "common/cones.glsl"
+
 // Part of child `child` that lies in coarse voxel `cell` along one axis, in children. With an even number of children it is 1 for two of
 // them; with an odd number a coarse voxel is a little wider than two, and shares children with its neighbours.
 float share(int cell, int child, float childrenPerCell) {
@@ -11,4 +13,28 @@ vec4 slab(vec4 value, float length) {
   if (length >= 1.0 || value.a <= 0.0) return length >= 1.0 ? value : vec4(0.0);
   float opacity = 1.0 - pow(1.0 - value.a, length);
   return vec4(value.rgb * (opacity / value.a), opacity);
+}
+
+// The usual case, two whole children along each axis, without loops: the mean over four columns, each seen from both its ends.
+vec4 pair(vec4 a, vec4 b) { return over(a, b) + over(b, a); }
+
+// One value from those of the three axes.
+vec4 facing(vec4 x, vec4 y, vec4 z) {
+  float largest = max(x.a, max(y.a, z.a));
+  if (largest <= 0.0) return vec4(0.0);
+  vec3 weight = vec3(x.a, y.a, z.a) / largest;
+  weight *= weight;
+  vec4 sum = weight.x * x + weight.y * y + weight.z * z;
+  return sum * (largest / sum.a);
+}
+
+// Of eight whole children, x first, the opacity of the axis that is most closed.
+vec4 seenThrough(vec4 child[8]) {
+  float most = 0.0;
+  for (int i = 0; i < 8; ++i) most = max(most, child[i].a);
+  if (most == 0.0) return vec4(0.0);
+  vec4 x = pair(child[0], child[1]) + pair(child[2], child[3]) + pair(child[4], child[5]) + pair(child[6], child[7]);
+  vec4 y = pair(child[0], child[2]) + pair(child[1], child[3]) + pair(child[4], child[6]) + pair(child[5], child[7]);
+  vec4 z = pair(child[0], child[4]) + pair(child[1], child[5]) + pair(child[2], child[6]) + pair(child[3], child[7]);
+  return facing(x, y, z) / 8.0;
 }

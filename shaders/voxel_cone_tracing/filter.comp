@@ -39,33 +39,6 @@ layout(std140, binding = 0) uniform Parameters {
 layout(binding = 0) uniform sampler3D radianceGrid;
 layout(binding = 0) uniform writeonly image3D radianceImage;  // of whatever float format the grid has
 
-// The usual case, two whole children along each axis, without loops: the mean over four columns, each seen from both its ends.
-vec4 pair(vec4 a, vec4 b) { return over(a, b) + over(b, a); }
-
-// One value from those of the three axes.
-vec4 facing(vec4 x, vec4 y, vec4 z) {
-  float largest = max(x.a, max(y.a, z.a));
-  if (largest <= 0.0) return vec4(0.0);
-  vec3 weight = vec3(x.a, y.a, z.a) / largest;
-  weight *= weight;
-  vec4 sum = weight.x * x + weight.y * y + weight.z * z;
-  return sum * (largest / sum.a);
-}
-
-vec4 eightChildren(ivec3 cell) {
-  vec4 child[8];
-  float most = 0.0;
-  for (int i = 0; i < 8; ++i) {
-    child[i] = texelFetch(radianceGrid, 2 * cell + ivec3(i & 1, i >> 1 & 1, i >> 2), fineLevel);
-    most = max(most, child[i].a);
-  }
-  if (most == 0.0) return vec4(0.0);
-  vec4 x = pair(child[0], child[1]) + pair(child[2], child[3]) + pair(child[4], child[5]) + pair(child[6], child[7]);
-  vec4 y = pair(child[0], child[2]) + pair(child[1], child[3]) + pair(child[4], child[6]) + pair(child[5], child[7]);
-  vec4 z = pair(child[0], child[4]) + pair(child[1], child[5]) + pair(child[2], child[6]) + pair(child[3], child[7]);
-  return facing(x, y, z) / 8.0;
-}
-
 // Mean over the columns along one axis, and over both ways along it.
 vec4 lookThrough(ivec3 cell, int axis, ivec3 first, ivec3 last, vec3 ratio) {
   int side = (axis + 1) % 3, up = (axis + 2) % 3;
@@ -106,7 +79,9 @@ void main() {
     return;
   }
   if (rule == kFacing && fine == 2 * coarse) {
-    imageStore(radianceImage, cell, eightChildren(cell));
+    vec4 child[8];
+    for (int i = 0; i < 8; ++i) child[i] = texelFetch(radianceGrid, 2 * cell + ivec3(i & 1, i >> 1 & 1, i >> 2), fineLevel);
+    imageStore(radianceImage, cell, seenThrough(child));
     return;
   }
   vec3 ratio = vec3(fine) / vec3(coarse);

@@ -7,6 +7,7 @@
 
 layout(local_size_x = 64) in;
 #include "fragment_light.glsl"
+#include "sums.glsl"
 
 #if DIRECTIONS
 layout(std430, binding = 4) buffer DirectionalSums { VoxelDirections directions[]; };
@@ -24,7 +25,7 @@ void main() {
   vec3 known, front = vec3(0.0), back = vec3(0.0);
   if (!isKnown(index, known)) arrivingAt(fragment, front, back);
   ivec3 voxel = unpackVoxel(fragment.voxel);
-  uint place = sumsOf(bricks[brickOf(voxel, brickCount)], bitOf(voxel));
+  uint place = sumsAt(voxel);
 #if DIRECTIONS
   // What is known does not tell the side.
   vec3 sides[2] = vec3[2](albedo / kPi * (ambient + front) + known, albedo / kPi * (ambient + back) + known);

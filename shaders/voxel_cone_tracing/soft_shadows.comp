@@ -47,11 +47,13 @@ struct ShadowCone {
   float end;         // m, where that height is 0
 };
 
-ShadowCone coneTo(LightDisc disc, LightSample light, vec3 apex, vec3 geometricNormal, vec3 toLight) {
+ShadowCone coneTo(LightDisc disc, LightSample light, vec3 posWorld, float height, vec3 geometricNormal, vec3 toLight) {
   if (light.kind == kLightDirectional) return ShadowCone(toLight, kFar, 0.0, 0.0, kFar);
-  vec3 way = disc.centreRadius.xyz - apex;
+  vec3 way = disc.centreRadius.xyz - posWorld;
   // Of a light that stands half below the surface's plane the middle cannot be seen.
-  if (dot(way, geometricNormal) <= 0.0) way = light.position - apex;
+  if (dot(way, geometricNormal) <= 0.0) way = light.position - posWorld;
+  // The cone begins at this height over the surface, and does not sink to a light that is nearer to it.
+  way -= min(height, max(dot(way, geometricNormal), 0.0)) * geometricNormal;
   float reach = length(way), radius = disc.centreRadius.w;
   if (reach == 0.0) return ShadowCone(toLight, 0.0, 0.0, 0.0, 0.0);
   ShadowCone cone = ShadowCone(way / reach, reach, 2.0 * radius / reach, 0.0, reach);
@@ -69,7 +71,7 @@ ShadowCone coneTo(LightDisc disc, LightSample light, vec3 apex, vec3 geometricNo
 float traceShadow(LightDisc disc, LightSample light, vec3 posWorld, vec3 geometricNormal, vec3 toLight) {
   float voxel = finestVoxel(posWorld), eyeDiameter = radiusOf == kLight ? 0.0 : pixelWidth * length(posWorld - eyeWorld);
   vec3 apex = posWorld + geometricNormal * (offset * voxel);
-  ShadowCone cone = coneTo(disc, light, apex, geometricNormal, toLight);
+  ShadowCone cone = coneTo(disc, light, posWorld, offset * voxel, geometricNormal, toLight);
   if (radiusOf == kEye) cone.lightRatio = 0.0;
   float cosSurface = max(dot(geometricNormal, cone.direction), 0.0);
   vec2 inside = insideStore(apex, cone.direction);

@@ -7,7 +7,7 @@
 //   vec4 readStoreAsPublished(vec3 at, vec3 direction, float size)
 //                                                   the values themselves, blended between levels as the thesis prints it
 // C++ side: StoreInput in techniques/voxel_cone_tracing/march.h.
-#pragma lumivox axis STORE dense directional
+#pragma lumivox axis STORE dense directional octree
 #ifndef LUMIVOX_STORE
 #define LUMIVOX_STORE
 #include "common/cones.glsl"
@@ -42,6 +42,8 @@ const float kNoLimit = 1e30;
 #include "store_dense.glsl"
 #elif STORE == STORE_DIRECTIONAL
 #include "store_directional.glsl"
+#elif STORE == STORE_OCTREE
+#include "store_octree.glsl"
 #endif
 
 #endif

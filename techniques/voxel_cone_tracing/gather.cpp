@@ -60,7 +60,8 @@ class GatherPass : public Pass {
                                   .glossy = glossy.wanted() && gbuffer->specular != nullptr,
                                   .environment = frame.traits().environment,
                                   .medium = bound.axis,
-                                  .store = input.axis};
+                                  .store = input.axis,
+                                  .lookUp = input.lookUp};
     const gather::Constants constants{.coneCount = cones,
                                       .publishedCones = distribution == Distribution::published,
                                       .asPublished = asPublished,

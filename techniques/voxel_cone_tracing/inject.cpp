@@ -5,10 +5,12 @@
 #include <span>
 
 #include "directional_grid.h"
+#include "lumivox/base/error.h"
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/light_bounds.h"
 #include "lumivox/toolkit/media.h"
+#include "octree.h"
 #include "voxel_cone_tracing_shaders.h"
 
 namespace lumivox::voxel_cone_tracing {
@@ -61,25 +63,37 @@ class Injection {
   template <class Grid>
   void fill(PassContext& frame, Grid& result, std::span<const gpu::TextureRef> textures) {
     result.grid = placement();
-    result.holdsMedia = storeMedia_ && media_.present();
-    // A grid cannot say anything of what lies nearer than half a voxel.
-    const float brightest =
-        largestRadiance(frame.sceneDescription(), frame.snapshot(), 0.5f * result.grid.voxelSize) +
-        ambient_ / glm::pi<float>();
-    if (precision_ == Precision::half) result.unit = brightest / kLargestHalf;
+    result.holdsMedia = storesMedia();
+    const float brightest = brightestOf(frame, result.unit);
 
     const Sums sums = claimSums(frame, textures.size() > 1, result.occupied);
-    const gpu::BufferRef radiances =
-        frame.buffer(std::max<std::uint64_t>(fragments_->capacity, 1) * (sums.directional ? 6 : 3) *
-                         add::radiances.elementBytes,
-                     "reflected radiance per fragment");
-    light(frame, sums, radiances, brightest);
-    forEachFragment(frame, frame.program(add::Variant{sums.directional}),
-                    {add::averages({sums.brickCount, addsUp()}), add::radiances(radiances), sums.bindings()},
-                    *fragments_);
+    average(frame, sums, brightest);
     resolve(frame, sums, brightest, result.unit, result.holdsMedia, result.occupied, textures);
     if (result.holdsMedia) result.occupied = {};
   }
+
+  /// Fills the bricks of the leaves of result.tree.
+  void fill(PassContext& frame, RadianceOctree& result) {
+    if (storesMedia())
+      throw Error(
+          "voxel_cone_tracing: 'store_media' fills voxels in which no surface lies, and an octree has none there; expected 'store_media off' or a dense grid");
+    const VoxelOctree& tree = result.tree;
+    const float brightest = brightestOf(frame, result.unit);
+    Sums sums;
+    sums.places = OctreeBinding(tree, result.poolShift);
+    sums.inOctree = true;
+    sums.voxels = frame.emptyElements(add::sums, 8 * tree.leafRoom, "sums of voxels");
+    average(frame, sums, brightest);
+    forEachBrick(
+        frame, frame.program(octree_resolve::kProgram),
+        {octree_resolve::leaves({.unit = result.unit,
+                                 .coverageSum = addsUp(),
+                                 .inLeaves = tree.voxels == VoxelOctree::Voxels::inLeaves}),
+         octree_resolve::sums(sums.voxels), octree_resolve::radianceImage(result.radiance), sums.places},
+        tree, tree.depth, 27);
+  }
+
+  bool isHalf() const { return precision_ == Precision::half; }
 
  private:
   enum class Precision { float_, half };
@@ -97,10 +111,13 @@ class Injection {
   struct Sums {
     glm::ivec3 brickCount{0};
     bool directional = false;
-    gpu::BufferRef bricks, voxels;
+    bool inOctree = false;
+    gpu::BufferRef bricks;      ///< of a dense grid
+    shader::BindingSet places;  ///< where the sums of a voxel are found; refers to what it binds
+    gpu::BufferRef voxels;
     shader::BindingSet bindings() const {
-      if (directional) return {add::bricks(bricks), add::directionalSums(voxels)};
-      return {add::bricks(bricks), add::sums(voxels)};
+      if (directional) return {places, add::directionalSums(voxels)};
+      return {places, add::sums(voxels)};
     }
   };
 
@@ -108,6 +125,16 @@ class Injection {
     GridPlacement grid = fragments_->grid;
     grid.resolution = evenlyHalved(grid.resolution);
     return grid;
+  }
+  bool storesMedia() const { return storeMedia_ && media_.present(); }
+  /// No voxel can reflect more; and of half floats the unit.
+  float brightestOf(PassContext& frame, float& unit) const {
+    // A grid cannot say anything of what lies nearer than half a voxel.
+    const float brightest =
+        largestRadiance(frame.sceneDescription(), frame.snapshot(), 0.5f * fragments_->grid.voxelSize) +
+        ambient_ / glm::pi<float>();
+    if (isHalf()) unit = brightest / kLargestHalf;
+    return brightest;
   }
   bool addsUp() const { return fragments_->coverage == VoxelFragments::Coverage::sum; }
 
@@ -122,6 +149,7 @@ class Injection {
                         voxels = std::min<std::uint64_t>(fragments_->capacity,
                                                          GridPlacement{.resolution = size}.voxelCount());
     sums.bricks = frame.emptyElements(claim::bricks, bricks, "occupied voxels of bricks");
+    sums.places = {add::bricks(sums.bricks)};
     sums.voxels = directional ? frame.emptyElements(add::directionalSums, voxels, "sums of voxels' faces")
                               : frame.emptyElements(add::sums, voxels, "sums of voxels");
     occupied.bricks = frame.elements(claim::brickList, std::min<std::uint64_t>(fragments_->capacity, bricks),
@@ -140,6 +168,19 @@ class Injection {
     return sums;
   }
 
+  /// The sums of occupied voxels.
+  void average(PassContext& frame, const Sums& sums, float brightest) {
+    const gpu::BufferRef radiances =
+        frame.buffer(std::max<std::uint64_t>(fragments_->capacity, 1) * (sums.directional ? 6 : 3) *
+                         add::radiances.elementBytes,
+                     "reflected radiance per fragment");
+    light(frame, sums, radiances, brightest);
+    forEachFragment(frame,
+                    frame.program(add::Variant{.directions = sums.directional, .places = sums.inOctree}),
+                    {add::averages({sums.brickCount, addsUp()}), add::radiances(radiances), sums.bindings()},
+                    *fragments_);
+  }
+
   /// The radiance that each fragment reflects, and of each voxel the number and the brightest of its
   /// fragments.
   void light(PassContext& frame, const Sums& sums, const gpu::BufferRef& radiances, float mostRadiance) {
@@ -149,7 +190,8 @@ class Injection {
                                   .lights = shadow_.present(),
                                   .shadows = shadow_.present(),
                                   .reflected = fragments_->reflected != nullptr,
-                                  .medium = bound.axis};
+                                  .medium = bound.axis,
+                                  .places = sums.inOctree};
     forEachFragment(frame, frame.program(variant),
                     {inject::grid({.gridLow = fragments_->grid.low,
                                    .voxelSize = fragments_->grid.voxelSize,
@@ -237,6 +279,25 @@ class InjectDirectionalPass : public Pass {
   }
 };
 
+class OctreeInjectPass : public Pass {
+  Injection injection{this};
+  In<VoxelOctree> tree{this, "tree", "the nodes that the fragments make"};
+  Out<RadianceOctree> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
+                               Levels::finest};
+
+  Reads readsFrom() const override { return Reads::lights | Reads::materials; }
+
+  void run(PassContext& frame) override {
+    RadianceOctree result;
+    result.tree = *tree;
+    makePool(frame, result, injection.isHalf() ? gpu::Format::rgba16f : gpu::Format::rgba32f);
+    injection.fill(frame, result);
+    const bool inLeaves = tree->voxels == VoxelOctree::Voxels::inLeaves;
+    transferBorders(frame, result, tree->depth, inLeaves ? Transfer::average : Transfer::copy);
+    radiance = result;
+  }
+};
+
 }  // namespace
 
 void addInject(TechniqueRegistry& registry) {
@@ -244,6 +305,8 @@ void addInject(TechniqueRegistry& registry) {
   registry.add<InjectDirectionalPass>(
       "inject_directional",
       "Direct light into the finest level of six directional grids (thesis Gomes 2015, Sec. 4.2.1, Table 1)");
+  registry.add<OctreeInjectPass>(
+      "octree_inject", "Direct light into the leaves of a sparse voxel octree (Crassin et al. 2011, Sec. 6)");
 }
 
 }  // namespace lumivox::voxel_cone_tracing

@@ -1,7 +1,10 @@
 #include "march.h"
 
+#include <fmt/format.h>
+
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
+#include "octree.h"
 
 namespace lumivox::voxel_cone_tracing {
 
@@ -13,17 +16,24 @@ StoreInput::StoreInput(Pass* pass)
       directions_(pass, "directions", Presence::optional,
                   "in place of 'grid': pre-filtered radiance of the six faces of voxels", Needs::nothing,
                   Levels::all),
+      octree_(pass, "octree", Presence::optional,
+              "in place of 'grid': pre-filtered radiance in a sparse voxel octree", Needs::nothing,
+              Levels::all),
+      lookUp_(
+          pass, "look_up", LookUp::ranks,
+          "of 'octree': how the brick of a node is found: by counting the nodes before it; from the root, as published"),
       reading_(
           pass, "reading", Reading::layers,
           "of 'directions': each face by the layer of voxels across its axis, so that walls are closed; or filtered along all axes and averaged, as published") {
 }
 
 StoreBinding StoreInput::binding() const {
-  if (grid_.present() == directions_.present())
-    throw Error(
-        std::string("voxel_cone_tracing: ") + (grid_.present() ? "two stores" : "no store") +
-        " of light for the cones; expected one of the inputs 'grid' and 'directions' to be connected");
-  return grid_.present() ? dense() : directional();
+  const int stores = grid_.present() + directions_.present() + octree_.present();
+  if (stores != 1)
+    throw Error(fmt::format(
+        "voxel_cone_tracing: {} of light for the cones; expected one of the inputs 'grid', 'directions' and 'octree' to be connected",
+        stores == 0 ? "no store" : "several stores"));
+  return grid_.present() ? dense() : directions_.present() ? directional() : inOctree();
 }
 
 StoreBinding StoreInput::dense() const {
@@ -69,6 +79,34 @@ StoreBinding StoreInput::directional() const {
                                  "negativeY", "positiveZ", "negativeZ"};
   for (std::size_t face = 0; face < kFaces.size(); ++face)
     result.add(shader::SampledSlot{kFaces[face]}(grid.faces[face], gpu::Sampling::linearMipsBorder));
+  return result;
+}
+
+StoreBinding StoreInput::inOctree() const {
+  const RadianceOctree& octree = *octree_;
+  const VoxelOctree& tree = octree.tree;
+  const glm::vec3 extent = glm::vec3(tree.grid.resolution) * tree.grid.voxelSize;
+  const gpu::TextureDescription& pool = octree.radiance->description();
+  StoreBinding result;
+  result.axis = gather::Variant::storeOctree;
+  result.lookUp = tree.ranks != nullptr && lookUp_ == LookUp::ranks ? gather::Variant::lookUpRanks
+                                                                    : gather::Variant::lookUpDescent;
+  result.length = 2.0f * glm::length(extent);
+  result.voxel = tree.grid.voxelSize;
+  result.add(shader::UniformSlot<gather::Store>{"Store"}(
+      {.storeLow = tree.grid.low,
+       .storeVoxel = tree.grid.voxelSize,
+       .storeExtent = extent,
+       .storeCoarsest = static_cast<float>(octree.filledLevels - 1),
+       .storeUnit = octree.unit,
+       .storeOpacityOfFinestVoxel = octree.opacity == RadianceOctree::Opacity::ofFinestVoxel}));
+  result.add(shader::UniformSlot<gather::OctreeStore>{"OctreeStore"}(
+      {.poolSize = glm::vec3(pool.width, pool.height, pool.depth),
+       .firstVoxel = tree.firstVoxel(),
+       .firstVoxelGrows = tree.voxels == VoxelOctree::Voxels::asGrid ? 1.0f : 0.0f}));
+  result.add(shader::SampledSlot{"brickPool"}(octree.radiance, gpu::Sampling::linear));
+  result.add(OctreeBinding(tree, octree.poolShift));
+  result.add(shader::StorageSlot{"OctreeRanks"}(tree.ranks));
   return result;
 }
 

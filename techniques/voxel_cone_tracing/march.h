@@ -4,6 +4,7 @@
 
 #include "directional_grid.h"
 #include "lumivox/plugin/technique.h"
+#include "radiance_octree.h"
 #include "voxel_cone_tracing_shaders.h"
 
 namespace lumivox::voxel_cone_tracing {
@@ -12,6 +13,7 @@ namespace lumivox::voxel_cone_tracing {
 /// includes store.glsl takes them.
 struct StoreBinding : shader::BindingSet {
   int axis = 0;             ///< value of the shader's axis STORE
+  int lookUp = 0;           ///< and of LOOK_UP
   float length = 0;         ///< no cone need be longer, m
   float voxel = 0;          ///< finest voxels, m
   bool holdsMedia = false;  ///< participating media are in the voxels
@@ -26,13 +28,17 @@ class StoreInput {
 
  private:
   enum class Reading { layers, interpolated };
+  enum class LookUp { ranks, descent };
 
   In<RadianceGrid> grid_;
   In<DirectionalRadianceGrid> directions_;
+  In<RadianceOctree> octree_;
+  Param<LookUp> lookUp_;
   Param<Reading> reading_;
 
   StoreBinding dense() const;
   StoreBinding directional() const;
+  StoreBinding inOctree() const;
 };
 
 /// Steps along cones: members of a pass.

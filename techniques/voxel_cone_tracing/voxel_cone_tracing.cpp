@@ -13,6 +13,9 @@ void addGather(TechniqueRegistry& registry);
 void addSoftShadows(TechniqueRegistry& registry);
 void addLens(TechniqueRegistry& registry);
 void addLook(TechniqueRegistry& registry);
+void addOctree(TechniqueRegistry& registry);
+void addOctreeFilter(TechniqueRegistry& registry);
+void addOctreeSplat(TechniqueRegistry& registry);
 
 namespace {
 
@@ -74,6 +77,9 @@ LUMIVOX_TECHNIQUE(registry) {
   addInject(registry);
   registry.add<FilterPass>("filter", "Pre-filtered coarser levels (Crassin et al. 2011, Sec. 5)");
   addFilterDirectional(registry);
+  addOctree(registry);
+  addOctreeFilter(registry);
+  addOctreeSplat(registry);
   addGather(registry);
   addSoftShadows(registry);
   addLens(registry);

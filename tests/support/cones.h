@@ -133,6 +133,7 @@ struct GatherSettings {
   double refinement = 1;
   int pattern = 1, glossyCones = 1;
   const char* resolution = "full";
+  const char* lookUp = "ranks";
 };
 
 /// Which input of the cones a store is.
@@ -164,6 +165,7 @@ auto gatherWith(const Scene& scene, const Store& grid, const GBuffer& gbuffer, c
   harness.setParameter("pattern", settings.pattern);
   harness.setParameter("glossy_cones", settings.glossyCones);
   harness.setParameter("resolution", std::string(settings.resolution));
+  harness.setParameter("look_up", std::string(settings.lookUp));
   harness.setInput("gbuffer", gbuffer);
   harness.setInput(inputOf(grid), grid);
   harness.run(settings.seed);

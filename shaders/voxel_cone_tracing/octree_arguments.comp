@@ -1,0 +1,37 @@
+#version 450
+// The bricks of each depth, and the dispatches over them, so that no count travels to the host. Where there is too little room the tree stays
+// empty; the host learns how much is wanted when the frame is done.
+//
+// PUBLISHED: the bricks of a depth are those that it took from the counter.
+#pragma lumivox axis PUBLISHED 0 1
+#define OCTREE_BUILD
+#include "octree_tags.glsl"
+layout(local_size_x = 16) in;
+#include "octree_levels.glsl"
+
+layout(std140, binding = 0) uniform Room { uint roomBricks, roomTiles; };
+#if PUBLISHED
+uint firstBrickOf(int depth) { return octreeLevels[depth].firstBrick; }
+#else
+layout(std430, binding = 12) readonly buffer OctreeRanks { RankedTags octreeRanks[]; };
+uint firstBrickOf(int depth) { return octreeRanks[firstWord(depth)].nodesBefore; }
+#endif
+
+void main() {
+  int depth = int(gl_GlobalInvocationID.x);  // one more: all of them
+  if (depth > octreeDepth + 1) return;
+  uint first = depth <= octreeDepth ? firstBrickOf(depth) : 0u;
+  uint end = depth < octreeDepth ? firstBrickOf(depth + 1) : wantedBricks;
+  uint bricks = wantedBricks <= roomBricks && wantedTiles <= roomTiles ? end - first : 0u;
+#if !PUBLISHED
+  octreeLevels[depth].firstBrick = first;
+#endif
+  octreeLevels[depth].bricks = bricks;
+  if (depth == octreeDepth) wantedLeaves = end - first;
+  for (int kind = 0; kind < kThreads.length(); ++kind) {
+    uvec2 groups = rowsOfGroups((bricks * kThreads[kind] + kOctreeGroup - 1u) / kOctreeGroup);
+    octreeLevels[depth].groups[3 * kind] = groups.x;
+    octreeLevels[depth].groups[3 * kind + 1] = groups.y;
+    octreeLevels[depth].groups[3 * kind + 2] = 1u;
+  }
+}

@@ -1,0 +1,43 @@
+#version 450
+// Pre-filtering of one level of an octree from the next finer one as filter.comp does it: the eight children of a coarse voxel are the voxels
+// that one child's brick owns. Each brick gets the eight voxels that are its own; the others are copied (octree_transfer.comp).
+//
+// Deviates from Crassin et al. 2011, Sec. 5 (octree_filter_part.comp): a wall one voxel thick that lies between two coarse voxels makes both
+// opaque there, and grows to three of them in trilinear reading.
+//
+// LIT: only the bricks that photons have changed (octree_lit.comp); the others are there already.
+#pragma lumivox axis LIT 0 1
+layout(local_size_x = 64) in;
+#include "children.glsl"
+#include "octree_levels.glsl"
+
+const int kFacing = 0, kAverage = 1;
+layout(constant_id = 0) const int rule = kFacing;
+
+layout(std140, binding = 0) uniform Coarse { int depth; };
+#if LIT
+layout(std430, binding = 4) readonly buffer Lit { uint lit[]; };  // by brick
+#endif
+layout(binding = 0) uniform sampler3D pool;
+layout(binding = 0) uniform writeonly image3D poolImage;  // the same
+
+void main() {
+  uint brick, lane;
+  if (!itemOf(depth, 27u, brick, lane)) return;
+#if LIT
+  if (lit[brick] == 0u) return;
+#endif
+  ivec3 voxel = ivec3(lane % 3u, lane / 3u % 3u, lane / 9u);
+  vec4 value = vec4(0.0);  // of those that are copied, unless there is nothing to copy
+  uint tile = octreeNodes[octreeBricks[brick].node].children;
+  if (tile != kNone && all(lessThan(voxel, ivec3(2)))) {
+    uint finer = octreeNodes[tile + uint(voxel.x | voxel.y << 1 | voxel.z << 2)].brick;
+    if (finer != kNone) {
+      vec4 child[8];
+      for (int i = 0; i < 8; ++i) child[i] = texelFetch(pool, texelOf(finer) + ivec3(i & 1, i >> 1 & 1, i >> 2), 0);
+      if (rule == kFacing) value = seenThrough(child);
+      for (int i = 0; i < 8 && rule == kAverage; ++i) value += child[i] / 8.0;
+    }
+  }
+  imageStore(poolImage, texelOf(brick) + voxel, value);
+}

@@ -1,0 +1,33 @@
+#version 450
+// Tags the nodes of all depths that hold something: thesis 004, Sec. 4.2.2, Listing 4.19.
+// Deviates: a bit a node in place of a mark in the node itself, so that no node must be there yet and all depths are done at once
+// (octree_tag.comp does as published).
+layout(local_size_x = 64) in;
+#include "common/fragments.glsl"
+#include "octree_tags.glsl"
+#include "octree_extent.glsl"
+
+layout(std140, binding = 0) uniform Marks {
+  int depth;   // of the leaves
+  int voxels;  // where they lie
+};
+layout(std430, binding = 2) buffer Tags { uint tags[]; };
+
+void tag(ivec3 place, int nodeDepth) {
+  uint morton = mortonOf(place), word = firstWord(nodeDepth) + (morton >> 5), bit = 1u << (morton & 31u);
+  // Tags are never taken away: one that is seen need not be set again, and one that is not seen yet does no harm.
+  if ((tags[word] & bit) == 0u) atomicOr(tags[word], bit);
+}
+
+void main() {
+  uint index = listIndex();
+  if (index >= fragmentCount) return;
+  ivec3 voxel = unpackVoxel(fragments[index].voxel);
+  for (int nodeDepth = depth; nodeDepth >= 0; --nodeDepth) {
+    ivec3 first, last;
+    nodesWith(voxel, depth - nodeDepth, 1 << nodeDepth, voxels, first, last);
+    for (int z = first.z; z <= last.z; ++z)
+      for (int y = first.y; y <= last.y; ++y)
+        for (int x = first.x; x <= last.x; ++x) tag(ivec3(x, y, z), nodeDepth);
+  }
+}

@@ -1,0 +1,47 @@
+#version 450
+// Integer sums to the bricks of the leaves: radiance pre-multiplied by opacity, and opacity; resolve.comp says how.
+//
+// As in a grid and at corners: each brick gets the eight voxels that are its own; those that it shares with the neighbour above are copied from there
+// (octree_transfer.comp). Voxels in leaves: each vertex is the mean of the voxels of its own leaf around it (thesis 004, Sec. 4.2.2, Fig. 69:
+// averages are stored in the corners of the brick, Listing 4.23, and spread through it), and of what the neighbours find once they are
+// averaged.
+layout(local_size_x = 64) in;
+#include "bricks.glsl"
+#include "common/integer_mean.glsl"
+#include "octree_levels.glsl"
+
+layout(std140, binding = 0) uniform Leaves {
+  float unit;       // W/(sr m^2) that the value 1 of the pool stands for
+  int coverageSum;  // 1: the coverages of a voxel add up, to 1 at most; 0: their mean
+  int inLeaves;     // 1: of voxels
+};
+layout(std430, binding = 4) readonly buffer Sums { VoxelSums sums[]; };
+layout(binding = 0) uniform writeonly image3D radianceImage;  // of whatever float format the pool has
+
+vec4 surfacesIn(VoxelSums sum) {
+  vec4 value = meanOf(uvec4(sum.red, sum.green, sum.blue, sum.coverage));
+  if (coverageSum != 0) {
+    // The sums hold means over the fragments; radiance keeps its share of the opacity.
+    float opacity = min(value.a * float(sum.fragments), 1.0);
+    value = vec4(value.a > 0.0 ? value.rgb * (opacity / value.a) : vec3(0.0), opacity);
+  }
+  return vec4(value.rgb * (uintBitsToFloat(sum.brightest) / unit), min(value.a, 1.0));
+}
+
+void main() {
+  uint brick, lane;
+  if (!itemOf(octreeDepth, 27u, brick, lane)) return;
+  ivec3 vertex = ivec3(lane % 3u, lane / 3u % 3u, lane / 9u);
+  uint first = 8u * (brick - octreeLevels[octreeDepth].firstBrick);
+  vec4 value = vec4(0.0);
+  if (inLeaves == 0) {
+    if (all(lessThan(vertex, ivec3(2)))) value = surfacesIn(sums[first + uint(vertex.x | vertex.y << 1 | vertex.z << 2)]);
+  } else {
+    ivec3 low = max(vertex - 1, 0), high = min(vertex, 1), count = high - low + 1;
+    for (int z = low.z; z <= high.z; ++z)
+      for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x) value += surfacesIn(sums[first + uint(x | y << 1 | z << 2)]);
+    value /= float(count.x * count.y * count.z);
+  }
+  imageStore(radianceImage, texelOf(brick) + vertex, value);
+}

@@ -1,0 +1,75 @@
+// A sparse voxel octree: Crassin et al. 2011, Sec. 4 and 7; thesis 004, Sec. 4.2.2, Listing 4.25. Where the tree ends there is nothing, and
+// nothing is read.
+//
+// LOOK_UP: the brick of a node is found from the root, for each of the two levels of a sample, as published; or (ranks) by counting the tags
+// before its own, in two reads whatever the depth and without a loop.
+#pragma lumivox axis LOOK_UP ranks descent
+#pragma lumivox require STORE == octree || LOOK_UP == ranks
+#include "octree.glsl"
+#if LOOK_UP == LOOK_UP_RANKS
+#include "octree_tags.glsl"
+layout(std430, binding = 12) readonly buffer OctreeRanks { RankedTags octreeRanks[]; };
+
+uint brickOfNode(ivec3 place, int depth) {
+  uint morton = mortonOf(place);
+  RankedTags word = octreeRanks[firstWord(depth) + (morton >> 5)];
+  uint bit = morton & 31u;
+  return (word.tags >> bit & 1u) == 0u ? kNone : word.nodesBefore + uint(bitCount(below(word.tags, bit)));
+}
+#else
+uint brickOfNode(ivec3 place, int depth) { return brickAt(place, depth); }
+#endif
+
+layout(std140, binding = 4) uniform OctreeStore {
+  vec3 poolSize;         // texels
+  float firstVoxel;      // the middle of voxel 0 of the finest level, voxels from storeLow
+  float firstVoxelGrows; // 1: by as many voxels of every level; 0: it is the same place
+};
+layout(binding = 4) uniform sampler3D brickPool;
+
+vec2 insideStore(vec3 origin, vec3 direction) { return insideVolume(storeLow, storeExtent, origin, direction); }
+
+float finestVoxel(vec3 at) { return storeVoxel; }
+
+float longestStep(float size) { return kNoLimit; }
+
+// In the brick of a node; `at` counts voxels of the node's level from the middle of the first one.
+vec4 inBrick(uint brick, vec3 at, vec3 place) {
+  if (brick == kNone) return vec4(0.0);
+  return textureLod(brickPool, (vec3(texelOf(brick)) + 0.5 + at - 2.0 * place) / poolSize, 0.0);
+}
+
+// Values of a level around a point, finest voxels from storeLow. False: the tree has no node of that level there. Below its voxel 0 lies one
+// with nothing in it.
+bool readLevel(vec3 at, int level, out vec4 value) {
+  vec3 from = at * exp2(float(-level)) - firstVoxel * (firstVoxelGrows != 0.0 ? 1.0 : exp2(float(-level)));
+  int depth = octreeDepth - level;
+  vec3 inside = clamp(from, vec3(0.0), vec3(float(2 << depth)));
+  ivec3 place = min(ivec3(inside) >> 1, ivec3((1 << depth) - 1));
+  uint brick = brickOfNode(place, depth);
+  vec3 border = clamp(1.0 + from, vec3(0.0), vec3(1.0));
+  value = border.x * border.y * border.z * inBrick(brick, inside, vec3(place));
+  return brick != kNone;
+}
+
+StoreSample readStore(vec3 at, vec3 direction, float size, float stride) {
+  float blend, level = levelOf(max(size / storeVoxel, 1.0), storeCoarsest, blend);
+  vec3 voxel = (at - storeLow) / storeVoxel;
+  vec4 finer, coarser = vec4(0.0);
+  readLevel(voxel, int(level), finer);
+  if (blend > 0.0) readLevel(voxel, int(level) + 1, coarser);
+  StoreSample result = StoreSample(mix(finer, coarser, blend), 0.0);
+  if (result.value.a > 0.0) result.opacity = opacityOfStep(result.value.a, stride, level, blend);
+  return result;
+}
+
+// Listing 4.25 counts levels from the root, so that their fraction is the share of the finer one, and gives it to the coarser; where the
+// finer one ends there is nothing.
+vec4 readStoreAsPublished(vec3 at, vec3 direction, float size) {
+  float coarseness = clamp(log2(size / storeVoxel), 0.0, storeCoarsest), counted = storeCoarsest + 1.0 - coarseness;
+  vec3 voxel = (at - storeLow) / storeVoxel;
+  vec4 finer, coarser = vec4(0.0);
+  if (!readLevel(voxel, int(floor(coarseness)), finer)) return vec4(0.0);
+  if (fract(counted) > 0.0) readLevel(voxel, int(floor(coarseness)) + 1, coarser);
+  return mix(finer, coarser, fract(counted));
+}

@@ -1,0 +1,15 @@
+// Where the sums of an occupied voxel lie: in the dense grid's bricks of 4 x 4 x 4 voxels (`bricks` and `brickCount` are declared before), or
+// eight for each leaf of an octree, those of the voxels that are its own. Included after the local size, which is along x alone.
+#pragma lumivox axis PLACES grid octree
+#if PLACES == PLACES_OCTREE
+#include "octree_levels.glsl"
+
+uint sumsAt(ivec3 voxel) {
+  uint brick = brickAt(voxel >> 1, octreeDepth);
+  if (brick == kNone) return 0u;  // the tree had too little room, and the frame is not shown
+  ivec3 own = voxel & 1;
+  return 8u * (brick - octreeLevels[octreeDepth].firstBrick) + uint(own.x | own.y << 1 | own.z << 2);
+}
+#else
+uint sumsAt(ivec3 voxel) { return sumsOf(bricks[brickOf(voxel, brickCount)], bitOf(voxel)); }
+#endif

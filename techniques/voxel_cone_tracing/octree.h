@@ -1,0 +1,31 @@
+// What passes over a sparse voxel octree share.
+#pragma once
+
+#include "lumivox/plugin/technique.h"
+#include "radiance_octree.h"
+#include "voxel_cone_tracing_shaders.h"
+
+namespace lumivox::voxel_cone_tracing {
+
+/// The nodes of an octree (shaders/voxel_cone_tracing/octree.glsl, octree_levels.glsl).
+class OctreeBinding : public shader::BindingSet {
+ public:
+  explicit OctreeBinding(const VoxelOctree& tree, int poolShift = 0);
+};
+
+/// `threads` invocations for each brick of a depth, and for those of all depths where it is that of the
+/// leaves and one more; a barrier follows.
+void forEachBrick(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
+                  const VoxelOctree& tree, int depth, int threads);
+
+/// Room for the bricks of result.tree.
+void makePool(PassContext& frame, RadianceOctree& result, gpu::Format format);
+
+/// In the order of octree_transfer.comp.
+enum class Transfer { add, copy, average };
+
+/// Completes the voxels that bricks of a depth share with their neighbours, along x, y and z: the parts that
+/// both have are added or averaged, or those of the higher one are copied to the lower one.
+void transferBorders(PassContext& frame, const RadianceOctree& octree, int depth, Transfer way);
+
+}  // namespace lumivox::voxel_cone_tracing

@@ -1,0 +1,145 @@
+// The bricks of a sparse voxel octree: the pool, what neighbours share, and pre-filtering. Crassin et al.
+// 2011, Sec. 4 to 6; thesis Gomes 2015, Sec. 3.1.2, 3.1.3 and 4.2.2.
+#include <fmt/format.h>
+
+#include <array>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "octree.h"
+
+namespace lumivox::voxel_cone_tracing {
+
+using namespace shaders::voxel_cone_tracing;
+
+namespace {
+
+constexpr int kSide = 3;  // voxels along a brick
+
+/// Room for so many bricks, about a cube of them: less than a layer of it stays empty.
+gpu::TextureRef pool(PassContext& frame, std::uint64_t bricks, gpu::Format format, int& shift) {
+  shift = 0;
+  while ((std::uint64_t{1} << (3 * (shift + 1))) <= bricks) ++shift;
+  const int row = 1 << shift;
+  const std::uint64_t layer = static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(row);
+  return frame.volume({kSide * row, kSide * row, kSide * static_cast<int>((bricks + layer - 1) / layer)},
+                      format, "octree bricks of radiance");
+}
+
+bool fits(PassContext& frame, std::uint64_t bricks, gpu::Format format) {
+  try {
+    int shift = 0;
+    pool(frame, bricks, format, shift);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+void makePool(PassContext& frame, RadianceOctree& result, gpu::Format format) {
+  const VoxelOctree& tree = result.tree;
+  try {
+    result.radiance = pool(frame, tree.brickRoom, format, result.poolShift);
+  } catch (const Error& error) {
+    // The bricks of the lesser depths are about those of coarser trees. What fits is given back at once.
+    int longest = tree.grid.longest();
+    for (std::size_t depth = tree.bricksDownTo.size() - 1; depth-- > 0;) {
+      longest /= 2;
+      if (!fits(frame, tree.bricksDownTo[depth], format)) continue;
+      const std::uint64_t bytes = kSide * kSide * kSide * gpu::bytesPerTexel(format);
+      throw Error(fmt::format(
+          "an octree of {} voxels along its longest side has {} bricks of {}, {}; of sizes halved from it the largest that fits is {} ({})",
+          tree.grid.longest(), tree.brickRoom, formatBytes(bytes), formatBytes(tree.brickRoom * bytes),
+          longest, error.what()));
+    }
+    throw;
+  }
+}
+
+void transferBorders(PassContext& frame, const RadianceOctree& octree, int depth, Transfer way) {
+  const auto along = [&](int axis, Transfer how) {
+    forEachBrick(
+        frame,
+        frame.program(octree_transfer::Variant{}, octree_transfer::Constants{.way = static_cast<int>(how)}),
+        {octree_transfer::transfer({depth, axis}),
+         octree_transfer::pool(octree.radiance, gpu::Sampling::nearest),
+         octree_transfer::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift)},
+        octree.tree, depth, 9);
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    along(axis, way);
+    if (way == Transfer::add) along(axis, Transfer::copy);
+  }
+}
+
+namespace {
+
+class OctreeFilterPass : public Pass {
+  // In the order of octree_filter.comp.
+  enum class Opacity { facing, average };
+  enum class Borders { added, averaged };
+
+  In<RadianceOctree> radiance{this, "radiance", "the finest level"};
+  Param<Opacity> opacity{
+      this, "opacity", Opacity::facing,
+      "how finer voxels make a coarse one: seen through along the axis that they face; or their mean, which with voxels at corners or in leaves has the weights 1, 2, 1 along each axis, as published"};
+  Param<Borders> borders{
+      this, "borders", Borders::added,
+      "with voxels at corners or in leaves, how bricks complete those of which their neighbours know a part: parts are added to the right and copied to the left (Crassin et al. 2011); parts are means, and averaged (as published in the thesis)"};
+  Out<RadianceOctree> mips{this, "mips", "the same octree with values at all depths", Levels::all};
+
+  void run(PassContext& frame) override {
+    RadianceOctree result = *radiance;
+    const bool asGrid = result.tree.voxels == VoxelOctree::Voxels::asGrid;
+    if (!asGrid && opacity == Opacity::facing)
+      throw Error(
+          "voxel_cone_tracing.octree_filter: 'opacity facing' takes eight whole voxels for a coarse one, and with voxels at corners or in leaves it covers halves of others; expected 'opacity average', or 'voxels as_grid' in voxel_cone_tracing.octree");
+    for (int depth = result.tree.depth - 1; depth >= 0; --depth) {
+      if (asGrid) {
+        halve(frame, result, depth);
+      } else {
+        addParts(frame, result, depth);
+      }
+    }
+    result.filledLevels = result.tree.depth + 1;
+    result.opacity = opacity == Opacity::facing ? RadianceOctree::Opacity::ofVoxel
+                                                : RadianceOctree::Opacity::ofFinestVoxel;
+    mips = result;
+  }
+
+  void halve(PassContext& frame, const RadianceOctree& octree, int depth) {
+    forEachBrick(
+        frame,
+        frame.program(octree_filter::Variant{},
+                      octree_filter::Constants{.rule = static_cast<int>(static_cast<Opacity>(opacity))}),
+        {octree_filter::coarse({depth}), octree_filter::pool(octree.radiance, gpu::Sampling::nearest),
+         octree_filter::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift)},
+        octree.tree, depth, 27);
+    transferBorders(frame, octree, depth, Transfer::copy);
+  }
+
+  /// Centres, faces, edges and corners, one after another.
+  void addParts(PassContext& frame, const RadianceOctree& octree, int depth) {
+    constexpr std::array<int, 4> kPartThreads{1, 6, 12, 8};
+    const bool means = borders == Borders::averaged;
+    for (int part = 0; part < 4; ++part)
+      forEachBrick(
+          frame, frame.program(octree_filter_part::Variant{}, octree_filter_part::Constants{.part = part}),
+          {octree_filter_part::parts({.depth = depth, .means = means}),
+           octree_filter_part::pool(octree.radiance, gpu::Sampling::nearest),
+           octree_filter_part::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift)},
+          octree.tree, depth, kPartThreads[static_cast<std::size_t>(part)]);
+    transferBorders(frame, octree, depth, means ? Transfer::average : Transfer::add);
+  }
+};
+
+}  // namespace
+
+void addOctreeFilter(TechniqueRegistry& registry) {
+  registry.add<OctreeFilterPass>("octree_filter",
+                                 "Pre-filtered bricks above the leaves (Crassin et al. 2011, Sec. 5)");
+}
+
+}  // namespace lumivox::voxel_cone_tracing

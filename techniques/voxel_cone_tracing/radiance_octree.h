@@ -1,0 +1,160 @@
+// Light in a sparse voxel octree: kinds of ports of this technique's own.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "lumivox/pipeline/port.h"
+
+namespace lumivox::voxel_cone_tracing {
+
+/// A sparse voxel octree (Crassin et al. 2011, Sec. 4; thesis Gomes 2015, Sec. 3.1.1 and 4.2.2). Depth 0 is
+/// the root; level l of a grid with mips is depth `depth - l`. Node n of a level has a brick of the voxels 2n
+/// to 2n + 2 of that level along each axis, the last of which is its neighbour's own.
+struct VoxelOctree {
+  /// Where voxels lie. As in a grid with mips, coarse voxel j around the finer ones 2j and 2j + 1. Or at the
+  /// corners of nodes: coarse voxel j where finer voxel 2j is (Crassin et al. 2011). Or one to each eighth of
+  /// a leaf, and at the corners of nodes means of those around (thesis).
+  enum class Voxels { asGrid, atCorners, inLeaves };
+
+  GridPlacement grid;     ///< of the finest voxels
+  gpu::BufferRef nodes;   ///< OctreeNode
+  gpu::BufferRef bricks;  ///< OctreeBrick, by depth
+  gpu::BufferRef levels;  ///< OctreeLevels
+  gpu::BufferRef ranks;   ///< RankedTags; null: bricks are found from the root alone
+  int depth = 0;          ///< of the leaves
+  Voxels voxels = Voxels::asGrid;
+  std::uint64_t brickRoom = 0;  ///< bricks that there is room for
+  std::uint64_t leafRoom = 0;   ///< of them those of the finest level
+  /// Bricks of the depths 0, 0 and 1, 0 to 2 ...: what trees of 2, 4, 8 ... voxels a side take.
+  std::vector<std::uint32_t> bricksDownTo;
+
+  /// Words of `levels` before those of a depth, of one depth, and before the dispatches of a depth.
+  static constexpr std::uint64_t kLevelsBegin = 3, kLevelWords = 20, kLevelGroups = 2;
+  /// Numbers of threads a brick for which there are dispatches.
+  static constexpr std::array<int, 6> kThreads{1, 6, 8, 9, 12, 27};
+  static constexpr std::uint64_t kNodeBytes = 20, kTileBytes = 8 * kNodeBytes, kBrickBytes = 8;
+  static constexpr std::uint64_t levelsBytes(int depth) {
+    return (kLevelsBegin + kLevelWords * (static_cast<std::uint64_t>(depth) + 2)) * sizeof(std::uint32_t);
+  }
+  /// The middle of voxel 0 of the finest level, in voxels from the corner of the grid; with `asGrid` it is so
+  /// in voxels of every level.
+  float firstVoxel() const { return voxels == Voxels::inLeaves ? 0.0f : 0.5f; }
+};
+
+/// A level's bricks, read back.
+struct OctreeBrickList {
+  struct Brick {
+    std::uint32_t index = 0;  ///< in the pool
+    glm::ivec3 place{0};      ///< of its node, in nodes of that level
+  };
+  std::vector<Brick> bricks;
+
+  static OctreeBrickList of(const VoxelOctree& tree, int level) {
+    const auto words = tree.levels->downloadValues<std::uint32_t>();
+    const auto at =
+        VoxelOctree::kLevelsBegin + VoxelOctree::kLevelWords * static_cast<std::uint64_t>(tree.depth - level);
+    const std::uint32_t first = words.at(at), count = words.at(at + 1);
+    const auto records = tree.bricks->downloadValues<std::array<std::uint32_t, 2>>();
+    OctreeBrickList result;
+    for (std::uint32_t i = first; i < first + count; ++i) {
+      const std::uint32_t place = records.at(i)[1];
+      result.bricks.push_back({i, {place & 1023u, place >> 10 & 1023u, place >> 20 & 1023u}});
+    }
+    return result;
+  }
+};
+
+/// Pre-filtered outgoing radiance in the bricks of an octree, pre-multiplied by opacity.
+struct RadianceOctree {
+  VoxelOctree tree;
+  gpu::TextureRef radiance;  ///< the pool: 3 x 3 x 3 texels a brick
+  int poolShift = 0;         ///< the pool has 2 to the power of this bricks along x and y
+  float unit = 1.0f;         ///< W/(sr m^2): keeps very bright and very dark light within half floats
+  int filledLevels = 1;      ///< finest first
+  /// What opacity means in coarser levels, as RadianceGrid says it.
+  enum class Opacity { ofVoxel, ofFinestVoxel } opacity = Opacity::ofVoxel;
+
+  glm::ivec3 texelOf(std::uint32_t brick) const {
+    const std::uint32_t row = (1u << poolShift) - 1u;
+    return 3 * glm::ivec3(brick & row, brick >> poolShift & row, brick >> (2 * poolShift));
+  }
+  /// The voxels of a level, each once: those that a brick shares with the neighbour above are that one's.
+  /// `component`: 3 gives the opacity, 0 the three channels of radiance.
+  std::vector<VoxelsRead::Voxel> voxels(int level, int component) const {
+    const std::vector<float> texels = radiance->downloadFloats(0);
+    const gpu::TextureDescription& pool = radiance->description();
+    std::vector<VoxelsRead::Voxel> result;
+    for (const OctreeBrickList::Brick& brick : OctreeBrickList::of(tree, level).bricks)
+      for (int corner = 0; corner < 8; ++corner) {
+        const glm::ivec3 local(corner & 1, corner >> 1 & 1, corner >> 2), at = texelOf(brick.index) + local;
+        const float* texel =
+            texels.data() + 4 * static_cast<std::size_t>((at.z * pool.height + at.y) * pool.width + at.x);
+        const glm::vec3 value =
+            component == 3 ? glm::vec3(texel[3]) : unit * glm::vec3(texel[0], texel[1], texel[2]);
+        if (texel[3] > 0.0f) result.push_back({2 * brick.place + local, value});
+      }
+    return result;
+  }
+};
+
+}  // namespace lumivox::voxel_cone_tracing
+
+namespace lumivox {
+
+template <>
+struct PortTraits<voxel_cone_tracing::VoxelOctree> {
+  static PortKind kind() {
+    return {
+        "VoxelOctree",
+        "the nodes of a sparse voxel octree",
+        {{"nodes", "buffer", "array of OctreeNode in shaders/voxel_cone_tracing/octree.glsl"},
+         {"bricks", "buffer", "array of OctreeBrick: the node of each brick and where it lies"},
+         {"levels", "buffer", "bricks, tiles and leaves wanted; for each depth its bricks and dispatches"},
+         {"ranks", "buffer",
+          "a bit for each node that could be, beside the number of those before; or null"}}};
+  }
+  static void contents(const voxel_cone_tracing::VoxelOctree& port, PortContents& contents) {
+    contents.buffer("nodes", port.nodes);
+    contents.buffer("bricks", port.bricks);
+    contents.buffer("levels", port.levels);
+    contents.buffer("ranks", port.ranks);
+  }
+};
+
+template <>
+struct PortTraits<voxel_cone_tracing::RadianceOctree> {
+  static PortKind kind() {
+    PortKind result = PortTraits<voxel_cone_tracing::VoxelOctree>::kind();
+    result.name = "RadianceOctree";
+    result.meaning = "outgoing radiance and opacity in the bricks of a sparse voxel octree";
+    result.resources.push_back({"radiance", "d3 rgba16f or rgba32f",
+                                "3 x 3 x 3 texels a brick: rgb radiance * opacity / unit, a opacity"});
+    result.fields = {{"radiance", "outgoing radiance, multiplied by the opacity", "W/(sr m^2)"},
+                     {"opacity", "opacity", "1", PortField::Role::fog}};
+    return result;
+  }
+  static void contents(const voxel_cone_tracing::RadianceOctree& port, PortContents& contents) {
+    PortTraits<voxel_cone_tracing::VoxelOctree>::contents(port.tree, contents);
+    contents.texture("radiance", port.radiance);
+    for (int level = 0; level < port.filledLevels; ++level) {
+      const double size = static_cast<double>(port.tree.grid.voxelSize) * (1 << level);
+      const bool asGrid = port.tree.voxels == voxel_cone_tracing::VoxelOctree::Voxels::asGrid;
+      const double middle =
+          asGrid ? 0.5 * size : port.tree.firstVoxel() * static_cast<double>(port.tree.grid.voxelSize);
+      const VoxelBox box{glm::dvec3(port.tree.grid.low) + middle - 0.5 * size, glm::dvec3(size),
+                         glm::ivec3((2 << (port.tree.depth - level)) + 1)};
+      const std::uint64_t bytes = port.radiance->sizeBytes();
+      contents.field("radiance", box, VoxelsRead{3, bytes, [port, level] { return port.voxels(level, 0); }},
+                     level);
+      contents.field("opacity", box, VoxelsRead{1, bytes, [port, level] { return port.voxels(level, 3); }},
+                     level);
+    }
+  }
+};
+
+}  // namespace lumivox

@@ -1,0 +1,156 @@
+// Sparse voxel octrees of fragments that are made by hand, and what is in them.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <glm/gtc/packing.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "../../techniques/voxel_cone_tracing/radiance_octree.h"
+#include "support/cones.h"
+#include "support/voxel_fragments.h"
+
+namespace lumivox::voxel_cone_tracing {
+
+/// Which input of the cones it is, for test::cones::gather.
+inline const char* inputOf(const RadianceOctree&) {
+  return "octree";
+}
+
+}  // namespace lumivox::voxel_cone_tracing
+
+namespace lumivox::test::octree {
+
+using voxel_cone_tracing::OctreeBrickList;
+using voxel_cone_tracing::RadianceOctree;
+using voxel_cone_tracing::VoxelOctree;
+
+inline constexpr std::uint32_t kNone = ~0u;
+
+struct NodeData {
+  std::uint32_t children, brick;
+  std::array<std::uint32_t, 3> neighbours;
+};
+
+inline FragmentData fragmentAt(const glm::ivec3& cell, const glm::vec3& albedo = glm::vec3(0.5f),
+                               float coverage = 1.0f) {
+  FragmentData result{};
+  result.voxel = static_cast<std::uint32_t>(cell.x | cell.y << 10 | cell.z << 20);
+  result.offset = 512u | 512u << 10 | 512u << 20;
+  result.albedoRg = glm::packHalf2x16(glm::vec2(albedo));
+  result.albedoBCoverage = glm::packHalf2x16(glm::vec2(albedo.z, coverage));
+  return result;
+}
+
+/// A list over a grid of [-1,1]^3, or of that along its longest side.
+inline VoxelFragments listOf(const std::vector<FragmentData>& fragments, const glm::ivec3& size) {
+  VoxelFragments list;
+  const int longest = std::max({size.x, size.y, size.z});
+  list.grid = {glm::vec3(-1.0f), 2.0f / static_cast<float>(longest), size};
+  list.capacity = std::max<std::size_t>(fragments.size(), 1);
+  list.fragments = std::make_shared<gpu::Buffer>(device(), list.capacity * sizeof(FragmentData), "list");
+  if (!fragments.empty()) list.fragments->uploadValues(std::span<const FragmentData>(fragments));
+  const auto count = static_cast<std::uint32_t>(fragments.size());
+  const std::uint32_t groups = std::max((count + 63u) / 64u, 1u), rows = (groups + 65534u) / 65535u;
+  const std::array<std::uint32_t, 4> words{count, std::min(groups, 65535u), rows, 1};
+  list.count = std::make_shared<gpu::Buffer>(device(), sizeof(words), "count");
+  list.count->uploadValues(std::span<const std::uint32_t>(words));
+  return list;
+}
+
+inline VoxelOctree treeOf(const VoxelFragments& list, const char* voxels = "as_grid",
+                          bool asPublished = false) {
+  const Scene scene = cones::emptyScene();
+  PassHarness harness(device(), techniques(), "voxel_cone_tracing", "octree", scene, snapshotOf(scene, 0.0));
+  harness.setParameter("voxels", std::string(voxels));
+  harness.setParameter("as_published", std::string(asPublished ? "on" : "off"));
+  harness.setInput("fragments", list);
+  harness.run();
+  return harness.output<VoxelOctree>("tree");
+}
+
+/// Bricks wanted and tiles wanted.
+inline std::array<std::uint32_t, 2> wantedOf(const VoxelOctree& tree) {
+  const auto words = tree.levels->downloadValues<std::uint32_t>();
+  return {words.at(0), words.at(1)};
+}
+
+/// The node that is found from the root at a place of a level; kNone: none.
+inline std::uint32_t nodeAt(const std::vector<NodeData>& nodes, const VoxelOctree& tree, int level,
+                            const glm::ivec3& place) {
+  std::uint32_t node = 0;
+  for (int below = tree.depth - level - 1; below >= 0; --below) {
+    if (nodes.at(node).children == kNone) return kNone;
+    node = nodes.at(node).children + static_cast<std::uint32_t>((place.x >> below & 1) |
+                                                                (place.y >> below & 1) << 1 |
+                                                                (place.z >> below & 1) << 2);
+  }
+  return nodes.at(node).brick == kNone ? kNone : node;
+}
+
+inline Cell cellOf(const glm::ivec3& place) {
+  return {place.x, place.y, place.z};
+}
+
+/// Irradiance under which a fragment reflects its albedo, W/m^2.
+inline constexpr double kAmbient = kPi;
+
+/// The finest level of an octree whose fragments reflect their albedo.
+inline RadianceOctree leavesOf(const VoxelFragments& list, const char* voxels = "as_grid",
+                               const char* precision = "float") {
+  const Scene scene = cones::emptyScene();
+  PassHarness inject(device(), techniques(), "voxel_cone_tracing", "octree_inject", scene,
+                     snapshotOf(scene, 0.0));
+  inject.setParameter("ambient", kAmbient);
+  inject.setParameter("precision", std::string(precision));
+  inject.setInput("fragments", list);
+  inject.setInput("tree", treeOf(list, voxels));
+  inject.run();
+  return inject.output<RadianceOctree>("radiance");
+}
+
+inline RadianceOctree filteredOctree(const RadianceOctree& leaves, const char* opacity = "facing",
+                                     const char* borders = "added") {
+  const Scene scene = cones::emptyScene();
+  PassHarness filter(device(), techniques(), "voxel_cone_tracing", "octree_filter", scene,
+                     snapshotOf(scene, 0.0));
+  filter.setParameter("opacity", std::string(opacity));
+  filter.setParameter("borders", std::string(borders));
+  filter.setInput("radiance", leaves);
+  filter.run();
+  return filter.output<RadianceOctree>("mips");
+}
+
+/// All 27 voxels of every brick of a level: by the node's place, x first.
+inline std::map<Cell, std::array<glm::vec4, 27>> bricksOf(const RadianceOctree& octree, int level) {
+  const std::vector<float> texels = octree.radiance->downloadFloats(0);
+  const gpu::TextureDescription& pool = octree.radiance->description();
+  std::map<Cell, std::array<glm::vec4, 27>> result;
+  for (const auto& brick : OctreeBrickList::of(octree.tree, level).bricks) {
+    auto& values = result[cellOf(brick.place)];
+    for (int i = 0; i < 27; ++i) {
+      const glm::ivec3 at = octree.texelOf(brick.index) + glm::ivec3(i % 3, i / 3 % 3, i / 9);
+      const std::size_t texel = 4 * static_cast<std::size_t>((at.z * pool.height + at.y) * pool.width + at.x);
+      values[static_cast<std::size_t>(i)] = {texels[texel], texels[texel + 1], texels[texel + 2],
+                                             texels[texel + 3]};
+    }
+  }
+  return result;
+}
+
+/// Fragments of all voxels of a grid for which `fill` gives an opacity above 0, in w.
+inline std::vector<FragmentData> fragmentsWhere(const glm::ivec3& size,
+                                                const std::function<glm::vec4(const glm::ivec3&)>& fill) {
+  std::vector<FragmentData> result;
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x) {
+        const glm::vec4 value = fill({x, y, z});
+        if (value.w > 0.0f) result.push_back(fragmentAt({x, y, z}, glm::vec3(value), value.w));
+      }
+  return result;
+}
+
+}  // namespace lumivox::test::octree

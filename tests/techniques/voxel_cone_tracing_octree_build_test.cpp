@@ -1,0 +1,195 @@
+// The nodes of the sparse voxel octree: which there are, how they hang together, and the room that they take.
+#include <algorithm>
+#include <random>
+
+#include "support/octree.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+using namespace lumivox::test::octree;
+
+namespace {
+
+/// Voxels of every level that are not empty: as in a grid every voxel adds to that of half its number, at
+/// corners to those of the next level within one voxel of twice their number.
+std::vector<std::set<Cell>> filledVoxels(const std::set<Cell>& finest, int levels, bool atCorners) {
+  std::vector<std::set<Cell>> result{finest};
+  while (static_cast<int>(result.size()) < levels) {
+    std::set<Cell> coarse;
+    for (const Cell& cell : result.back()) {
+      if (!atCorners) coarse.insert({cell[0] / 2, cell[1] / 2, cell[2] / 2});
+      for (int step = 0; step < 27 && atCorners; ++step) {
+        const Cell shifted{cell[0] + step % 3 - 1, cell[1] + step / 3 % 3 - 1, cell[2] + step / 9 - 1};
+        if (std::all_of(shifted.begin(), shifted.end(), [](int i) { return i % 2 == 0; }))
+          coarse.insert({shifted[0] / 2, shifted[1] / 2, shifted[2] / 2});
+      }
+    }
+    result.push_back(coarse);
+  }
+  return result;
+}
+
+/// The nodes whose bricks, of the voxels 2n to 2n + 2, hold one of these.
+std::set<Cell> nodesWith(const std::set<Cell>& voxels, int nodesAlong) {
+  std::set<Cell> result;
+  for (const Cell& voxel : voxels)
+    for (int side = 0; side < 8; ++side) {
+      Cell node{};
+      bool inside = true;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int lower = (side >> axis & 1) != 0 && voxel[axis] % 2 == 0 ? 1 : 0;
+        node[axis] = voxel[axis] / 2 - lower;
+        inside = inside && node[axis] >= 0 && node[axis] < nodesAlong;
+      }
+      if (inside) result.insert(node);
+    }
+  return result;
+}
+
+std::set<Cell> nodesOf(const VoxelOctree& tree, int level) {
+  std::set<Cell> result;
+  for (const auto& brick : OctreeBrickList::of(tree, level).bricks) result.insert(cellOf(brick.place));
+  return result;
+}
+
+/// Voxels of a sphere's surface, some of them several times.
+std::vector<FragmentData> shell(const glm::ivec3& size) {
+  std::vector<FragmentData> result;
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x) {
+        const float radius = glm::length(glm::vec3(x, y, z) - 0.4f * glm::vec3(size));
+        if (std::abs(radius - 0.35f * static_cast<float>(size.x)) > 0.6f) continue;
+        for (int copies = 0; copies <= (x + y) % 2; ++copies) result.push_back(fragmentAt({x, y, z}));
+      }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("every level has the nodes whose bricks show something, and no others") {
+  for (const bool atCorners : {false, true})
+    for (const glm::ivec3& size : {glm::ivec3(2), {8, 8, 8}, {11, 7, 5}, {64, 64, 64}, {65, 20, 33}}) {
+      const std::vector<FragmentData> fragments = shell(size);
+      const VoxelOctree tree = treeOf(listOf(fragments, size), atCorners ? "at_corners" : "as_grid");
+      CAPTURE(atCorners, size.x, size.y, size.z, tree.depth);
+      const int longest = std::max({size.x, size.y, size.z});
+      REQUIRE((2 << tree.depth) >= longest);
+      if (tree.depth > 0) REQUIRE((1 << tree.depth) < longest);
+      const auto voxels = filledVoxels(cellsOf(fragments), tree.depth + 1, atCorners);
+      std::size_t bricks = 0;
+      for (int level = 0; level <= tree.depth; ++level) {
+        const std::set<Cell> nodes = nodesOf(tree, level);
+        CAPTURE(level);
+        CHECK(nodes == nodesWith(voxels[static_cast<std::size_t>(level)], 1 << (tree.depth - level)));
+        bricks += nodes.size();
+      }
+      // Not one more than there are.
+      CHECK(tree.brickRoom == std::max<std::size_t>(bricks, 1));
+      CHECK(tree.leafRoom == std::max<std::size_t>(nodesOf(tree, 0).size(), 1));
+    }
+}
+
+TEST_CASE("with voxels in leaves, as published, there are the nodes that fragments lie in") {
+  const glm::ivec3 size(40, 24, 33);
+  const std::vector<FragmentData> fragments = shell(size);
+  const VoxelOctree tree = treeOf(listOf(fragments, size), "in_leaves");
+  for (int level = 0; level <= tree.depth; ++level) {
+    std::set<Cell> nodes;
+    for (const Cell& cell : cellsOf(fragments))
+      nodes.insert({cell[0] >> (level + 1), cell[1] >> (level + 1), cell[2] >> (level + 1)});
+    CAPTURE(level);
+    CHECK(nodesOf(tree, level) == nodes);
+  }
+}
+
+TEST_CASE("every node is found from the root and knows its brick and its neighbours; others are not found") {
+  const glm::ivec3 size(40, 24, 33);
+  for (const char* voxels : {"as_grid", "at_corners", "in_leaves"}) {
+    for (const bool asPublished : {false, true}) {
+      const VoxelOctree tree = treeOf(listOf(shell(size), size), voxels, asPublished);
+      std::vector<NodeData> nodes = tree.nodes->downloadValues<NodeData>();
+      CHECK(nodes.size() == 8u * wantedOf(tree)[1]);
+      for (int level = 0; level <= tree.depth; ++level) {
+        std::map<Cell, std::uint32_t> expected;
+        for (const auto& brick : OctreeBrickList::of(tree, level).bricks)
+          expected[cellOf(brick.place)] = brick.index;
+        const int along = 1 << (tree.depth - level);
+        std::size_t found = 0, wrong = 0;
+        for (int z = 0; z < along; ++z)
+          for (int y = 0; y < along; ++y)
+            for (int x = 0; x < along; ++x) {
+              const std::uint32_t node = nodeAt(nodes, tree, level, {x, y, z});
+              const auto known = expected.find({x, y, z});
+              wrong += (node == kNone) != (known == expected.end()) ? 1u : 0u;
+              if (node == kNone || known == expected.end()) continue;
+              ++found;
+              wrong += nodes[node].brick != known->second ? 1u : 0u;
+              for (std::size_t axis = 0; axis < 3; ++axis) {
+                glm::ivec3 next(x, y, z);
+                ++next[static_cast<int>(axis)];
+                const std::uint32_t neighbour =
+                    next[static_cast<int>(axis)] < along ? nodeAt(nodes, tree, level, next) : kNone;
+                wrong += nodes[node].neighbours[axis] != neighbour ? 1u : 0u;
+              }
+            }
+        CAPTURE(voxels, asPublished, level);
+        CHECK(found == expected.size());
+        CHECK(wrong == 0);
+      }
+    }
+  }
+}
+
+TEST_CASE("the tree does not depend on the order of the fragments, to the bit") {
+  const glm::ivec3 size(40);
+  std::vector<FragmentData> fragments = shell(size);
+  const VoxelOctree first = treeOf(listOf(fragments, size));
+  std::shuffle(fragments.begin(), fragments.end(), std::mt19937(5));
+  const VoxelOctree second = treeOf(listOf(fragments, size));
+  CHECK(first.nodes->download() == second.nodes->download());
+  CHECK(first.bricks->download() == second.bricks->download());
+  CHECK(first.levels->download() == second.levels->download());
+  CHECK(first.ranks->download() == second.ranks->download());
+}
+
+TEST_CASE("a list without fragments gives a tree without bricks") {
+  const VoxelOctree tree = treeOf(listOf({}, glm::ivec3(16)));
+  CHECK(wantedOf(tree) == std::array<std::uint32_t, 2>{0, 0});
+  for (int level = 0; level <= tree.depth; ++level) CHECK(nodesOf(tree, level).empty());
+}
+
+TEST_CASE("a tree that outgrows its room is made again with all of it, and a smaller one keeps the room") {
+  const glm::ivec3 size(32);
+  const Scene scene = cones::emptyScene();
+  PassHarness harness(device(), techniques(), "voxel_cone_tracing", "octree", scene, snapshotOf(scene, 0.0));
+  const auto made = [&](const std::vector<FragmentData>& fragments) {
+    harness.setInput("fragments", listOf(fragments, size));
+    harness.run();
+    const VoxelOctree tree = harness.output<VoxelOctree>("tree");
+    CHECK(nodesOf(tree, 0) == nodesWith(cellsOf(fragments), 16));
+    return tree;
+  };
+  const std::vector<FragmentData> few{fragmentAt({3, 5, 9})}, many = shell(size);
+  const std::uint64_t small = made(few).brickRoom, large = made(many).brickRoom;
+  CHECK(small < large);
+  const VoxelOctree again = made(few);
+  CHECK(again.brickRoom == large);
+  CHECK(wantedOf(again)[0] == small);
+}
+
+TEST_CASE("built level by level, as published, the tree has the same nodes") {
+  for (const char* voxels : {"as_grid", "at_corners", "in_leaves"})
+    for (const glm::ivec3& size : {glm::ivec3(2), {11, 7, 5}, {64, 64, 64}}) {
+      const VoxelFragments list = listOf(shell(size), size);
+      const VoxelOctree ours = treeOf(list, voxels), published = treeOf(list, voxels, true);
+      CAPTURE(voxels, size.x);
+      CHECK(wantedOf(published)[0] == wantedOf(ours)[0]);
+      // It subdivides nodes at corners too of which nothing finer shows.
+      CHECK(wantedOf(published)[1] >= wantedOf(ours)[1]);
+      if (std::string(voxels) == "in_leaves") CHECK(wantedOf(published)[1] == wantedOf(ours)[1]);
+      CHECK(published.brickRoom == ours.brickRoom);
+      for (int level = 0; level <= ours.depth; ++level)
+        CHECK(nodesOf(published, level) == nodesOf(ours, level));
+    }
+}

@@ -1,0 +1,431 @@
+// Light in a sparse voxel octree: its bricks, its levels, and the cones through it, in closed form and beside
+// the dense grid.
+#include <cmath>
+#include <random>
+
+#include "lumivox/measure/metrics.h"
+#include "support/octree.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+using namespace lumivox::test::cones;
+using namespace lumivox::test::octree;
+
+namespace {
+
+void checkNear(const glm::vec4& value, const glm::vec4& expected, double tolerance) {
+  for (int c = 0; c < 4; ++c) CHECK(value[c] == Approx(expected[c]).margin(tolerance));
+}
+
+/// The grid and the octree of a scene under its lights, filtered alike.
+std::pair<RadianceGrid, RadianceOctree> bothOf(const Scene& scene, int resolution, const char* precision,
+                                               const char* opacity) {
+  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
+  PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshot);
+  voxels.setParameter("resolution", resolution);
+  voxels.run();
+  const auto fragments = voxels.output<VoxelFragments>("fragments");
+  PassHarness shadow(device(), techniques(), "direct_lighting", "shadow_map", scene, snapshot);
+  shadow.run();
+  const auto light = shadow.output<ShadowMap>("depth");
+  PassHarness dense(device(), techniques(), "voxel_cone_tracing", "inject", scene, snapshot);
+  PassHarness sparse(device(), techniques(), "voxel_cone_tracing", "octree_inject", scene, snapshot);
+  for (PassHarness* inject : {&dense, &sparse}) {
+    inject->setParameter("precision", std::string(precision));
+    inject->setInput("fragments", fragments);
+    inject->setInput("shadow", light);
+  }
+  sparse.setInput("tree", treeOf(fragments));
+  dense.run();
+  sparse.run();
+  return {filtered(dense.output<RadianceGrid>("radiance"), opacity),
+          filteredOctree(sparse.output<RadianceOctree>("radiance"), opacity)};
+}
+
+Scene cornell() {
+  return loadScene(sourceDirectory() / "scenes/cornell.scene");
+}
+
+}  // namespace
+
+TEST_CASE(
+    "voxels of the octree are those of the dense grid, to the bit, at every level that is halved evenly") {
+  const Scene scene = cornell();
+  for (const char* precision : {"float", "half"})
+    for (const char* opacity : {"facing", "average"}) {
+      const auto [dense, sparse] = bothOf(scene, 32, precision, opacity);
+      CHECK(dense.unit == sparse.unit);
+      for (int level = 0; level <= sparse.tree.depth; ++level) {
+        const glm::ivec3 size = levelResolution(dense.grid.resolution, level);
+        const std::vector<float> texels = dense.radiance->downloadFloats(level);
+        std::map<Cell, glm::vec4> expected;
+        for (int i = 0; i < size.x * size.y * size.z; ++i) {
+          const float* texel = texels.data() + 4 * static_cast<std::size_t>(i);
+          if (texel[3] > 0.0f)
+            expected[{i % size.x, i / size.x % size.y, i / (size.x * size.y)}] = {texel[0], texel[1],
+                                                                                  texel[2], texel[3]};
+        }
+        std::map<Cell, glm::vec4> found;
+        for (const auto& [voxel, opacityThere] : sparse.voxels(level, 3))
+          found[cellOf(voxel)].w = opacityThere.x;
+        for (const auto& [voxel, light] : sparse.voxels(level, 0))
+          found[cellOf(voxel)] = glm::vec4(light / sparse.unit, found[cellOf(voxel)].w);
+        CAPTURE(precision, opacity, level, expected.size());
+        CHECK((found == expected));
+      }
+    }
+}
+
+TEST_CASE("what bricks share with their neighbours is the same in both, and nothing where there is none") {
+  const auto [dense, sparse] = bothOf(cornell(), 32, "float", "facing");
+  for (int level = 0; level < sparse.tree.depth; ++level) {
+    const auto bricks = bricksOf(sparse, level);
+    std::size_t wrong = 0, shared = 0;
+    for (const auto& [place, values] : bricks)
+      for (int i = 0; i < 27; ++i) {
+        const glm::ivec3 local(i % 3, i / 3 % 3, i / 9);
+        if (local.x < 2 && local.y < 2 && local.z < 2) continue;
+        const glm::ivec3 up = local / 2, there = local - 2 * up;
+        const auto owner = bricks.find({place[0] + up.x, place[1] + up.y, place[2] + up.z});
+        const glm::vec4 expected =
+            owner == bricks.end()
+                ? glm::vec4(0.0f)
+                : owner->second[static_cast<std::size_t>(there.x + 3 * there.y + 9 * there.z)];
+        wrong += values[static_cast<std::size_t>(i)] != expected ? 1u : 0u;
+        ++shared;
+      }
+    CAPTURE(level);
+    CHECK(shared > 0);
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("in leaves, the corners of bricks are means of the voxels around them as far as there are leaves") {
+  // Two leaves side by side along x, of 2 x 2 x 2 voxels each, all filled with values of their own. Inside,
+  // and between them, a vertex is the mean of the 8, 4 or 2 voxels around it; at the outside of those that
+  // there are, since an average is taken only with a neighbour that exists.
+  const auto value = [](const glm::ivec3& at) {
+    return 0.125f * static_cast<float>(1 + at.x % 4 + 2 * (at.y % 2)) / (1.0f + static_cast<float>(at.z % 2));
+  };
+  const glm::ivec3 low(4, 2, 6), size(4, 2, 2);
+  const auto fill = [&](const glm::ivec3& at) {
+    const glm::ivec3 in = at - low;
+    const bool inside =
+        in.x >= 0 && in.y >= 0 && in.z >= 0 && in.x < size.x && in.y < size.y && in.z < size.z;
+    return inside ? glm::vec4(glm::vec3(value(at)), 1.0f) : glm::vec4(0.0f);
+  };
+  const RadianceOctree octree =
+      leavesOf(listOf(fragmentsWhere(glm::ivec3(16), fill), glm::ivec3(16)), "in_leaves");
+  const auto bricks = bricksOf(octree, 0);
+  REQUIRE(bricks.size() == 2);
+  for (const auto& [place, values] : bricks)
+    for (int i = 0; i < 27; ++i) {
+      const glm::ivec3 vertex =
+          2 * glm::ivec3(place[0], place[1], place[2]) + glm::ivec3(i % 3, i / 3 % 3, i / 9);
+      double sum = 0, count = 0;
+      for (int corner = 0; corner < 8; ++corner) {
+        const glm::ivec3 at = vertex - glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+        if (fill(at).w == 0.0f) continue;
+        sum += value(at);
+        ++count;
+      }
+      CAPTURE(vertex.x, vertex.y, vertex.z);
+      CHECK(values[static_cast<std::size_t>(i)].x ==
+            Approx(sum / count).epsilon(1e-3));  // albedos are halves
+      CHECK(values[static_cast<std::size_t>(i)].w == Approx(1.0).epsilon(1e-5));
+    }
+}
+
+TEST_CASE("at corners, coarse voxels are means by the weights 1, 2, 1 along each axis") {
+  // Of random voxels in the middle of a grid; what a mean misses of them is 0. Parts that are added say so
+  // everywhere; parts that are averaged do where all neighbours are there, as in a filled block.
+  constexpr int kSize = 16;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  std::map<Cell, float> values;
+  for (const float share : {0.08f, 1.0f}) {
+    values.clear();
+    const auto fill = [&](const glm::ivec3& at) {
+      if (uniform(random) > share) return glm::vec4(0.0f);
+      const float value = 0.25f * std::round(1.0f + 3.0f * uniform(random));
+      values[cellOf(at)] = value;
+      return glm::vec4(glm::vec3(value), 1.0f);
+    };
+    const RadianceOctree leaves =
+        leavesOf(listOf(fragmentsWhere(glm::ivec3(kSize), fill), glm::ivec3(kSize)), "at_corners");
+    for (const char* borders : {"added", "averaged"}) {
+      const bool averaged = std::string(borders) == "averaged";
+      if (averaged && share < 1.0f) continue;
+      const RadianceOctree octree = filteredOctree(leaves, "average", borders);
+      std::map<Cell, float> level = values;
+      for (int l = 1; l <= 2; ++l) {
+        std::map<Cell, double> coarse;
+        for (const auto& [at, value] : level)
+          for (int step = 0; step < 27; ++step) {
+            const glm::ivec3 d(step % 3 - 1, step / 3 % 3 - 1, step / 9 - 1);
+            const glm::ivec3 to(at[0] + d.x, at[1] + d.y, at[2] + d.z);
+            if ((to.x & 1) != 0 || (to.y & 1) != 0 || (to.z & 1) != 0) continue;
+            coarse[cellOf(to / 2)] +=
+                value * (2 - std::abs(d.x)) * (2 - std::abs(d.y)) * (2 - std::abs(d.z)) / 64.0;
+          }
+        level.clear();
+        for (const auto& [at, value] : coarse) level[at] = static_cast<float>(value);
+        std::size_t compared = 0;
+        for (const auto& [place, brick] : bricksOf(octree, l))
+          for (int i = 0; i < 27; ++i) {
+            const glm::ivec3 at =
+                2 * glm::ivec3(place[0], place[1], place[2]) + glm::ivec3(i % 3, i / 3 % 3, i / 9);
+            // At the border of the grid there is no neighbour to average with.
+            if (averaged &&
+                (at.x % (kSize >> l) == 0 || at.y % (kSize >> l) == 0 || at.z % (kSize >> l) == 0 ||
+                 at.x + 1 >= kSize >> l || at.y + 1 >= kSize >> l || at.z + 1 >= kSize >> l))
+              continue;
+            const auto expected = level.find(cellOf(at));
+            CAPTURE(share, borders, l, at.x, at.y, at.z);
+            CHECK(brick[static_cast<std::size_t>(i)].x ==
+                  Approx(expected == level.end() ? 0.0 : expected->second).margin(2e-4));
+            ++compared;
+          }
+        CHECK(compared > 0);
+      }
+    }
+  }
+}
+
+TEST_CASE("parts that are averaged count twice along each axis along which a neighbour is missing") {
+  // One voxel in the first brick of all: coarse voxel 0 lies on the border of the grid, where there is no
+  // neighbour. Of a voxel at 1 a quarter along each axis belongs to it; as a mean of its own that is a half.
+  const VoxelFragments list = listOf({fragmentAt({1, 1, 1}, glm::vec3(1.0f))}, glm::ivec3(8));
+  for (const bool averaged : {false, true}) {
+    const RadianceOctree octree =
+        filteredOctree(leavesOf(list, "at_corners"), "average", averaged ? "averaged" : "added");
+    const double axis = averaged ? 0.5 : 0.25;
+    checkNear(bricksOf(octree, 1).at({0, 0, 0})[0], glm::vec4(axis * axis * axis), 1e-4);
+  }
+}
+
+TEST_CASE("a constant environment passes through an empty octree unchanged") {
+  const glm::vec3 environment(0.5f, 1.0f, 2.0f);
+  const RadianceOctree empty = filteredOctree(leavesOf(listOf({}, glm::ivec3(16))));
+  for (const int cones : {1, 6, 32}) {
+    const glm::vec3 radiance =
+        gather(emptyScene(environment), empty, glm::vec3(0.1f), glm::normalize(glm::vec3(1, 2, 3)), {cones});
+    for (int c = 0; c < 3; ++c) CHECK(radiance[c] == Approx(environment[c]).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("a uniform octree of opacity and radiance returns L (1 - (1-a)^(d / voxel)) wherever voxels lie") {
+  constexpr int kResolution = 64;
+  const double voxel = 2.0 / kResolution;
+  const glm::vec3 radiance(1.0f, 0.5f, 0.25f);
+  struct Way {
+    const char *voxels, *opacity, *borders;
+  };
+  for (const float opacity : {0.0625f, 0.25f}) {
+    const VoxelFragments list =
+        listOf(fragmentsWhere(glm::ivec3(kResolution),
+                              [&](const glm::ivec3&) { return glm::vec4(radiance, opacity); }),
+               glm::ivec3(kResolution));
+    for (const Way& way : {Way{"as_grid", "facing", "added"}, Way{"as_grid", "average", "added"},
+                           Way{"at_corners", "average", "added"}, Way{"in_leaves", "average", "averaged"}}) {
+      const RadianceOctree octree = filteredOctree(leavesOf(list, way.voxels), way.opacity, way.borders);
+      for (const int cones : {1, 6, 64})
+        for (const double distance : {0.1, 0.25, 0.5}) {
+          const double expected = 1.0 - std::pow(1.0 - opacity, distance / voxel);
+          const glm::vec3 gathered = gather(emptyScene(), octree, glm::vec3(0.0f), {0, 1, 0},
+                                            {cones, "cosine", 0, 0, distance, 0.25});
+          CAPTURE(way.voxels, way.opacity, opacity, cones, distance);
+          for (int c = 0; c < 3; ++c) CHECK(gathered[c] == Approx(radiance[c] * expected).epsilon(0.01));
+        }
+    }
+  }
+}
+
+TEST_CASE("cones see in the octree what they see in the dense grid, however its bricks are looked up") {
+  auto [dense, sparse] = bothOf(cornell(), 64, "float", "facing");
+  sparse.tree.grid.resolution = dense.grid.resolution;  // with the empty voxels that a grid adds at its end
+  for (const glm::vec3& place : {glm::vec3(0.1f, 0.1f, 0.1f), {0.0f, 0.45f, -0.1f}, {-0.15f, 0.4f, 0.05f}})
+    for (const double clearance : {0.0, 0.5})  // the finest level alone, and wide voxels
+      for (const char* lookUp : {"ranks", "descent"}) {
+        GatherSettings settings{16};
+        settings.clearance = clearance;
+        settings.lookUp = lookUp;
+        const glm::vec3 normal = glm::normalize(glm::vec3(1, -2, 0.5f));
+        const glm::vec3 a = gather(emptyScene(), dense, place, normal, settings),
+                        b = gather(emptyScene(), sparse, place, normal, settings);
+        CAPTURE(place.x, clearance, lookUp);
+        CHECK(glm::length(a) > 1e-3f);
+        for (int c = 0; c < 3; ++c) CHECK(b[c] == Approx(a[c]).epsilon(1e-3));
+      }
+}
+
+TEST_CASE("a closed box whose thick walls all radiate L gives L back within 3 %") {
+  // Walls as thick as the voxels that 64 cones read across it: of sheets trilinear reading lets exp(-2 / cos)
+  // through, as in the dense grid. Six wider ones lose a little more.
+  constexpr int kThick = 8;
+  for (const int resolution : {32, 64}) {
+    const auto wall = [&](const glm::ivec3& at) {
+      const glm::ivec3 inner = glm::min(at, resolution - 1 - at);
+      const int depth = std::min({inner.x, inner.y, inner.z});
+      return depth >= 1 && depth <= resolution / kThick ? glm::vec4(0.5f, 0.5f, 0.5f, 1.0f) : glm::vec4(0.0f);
+    };
+    const RadianceOctree octree = filteredOctree(
+        leavesOf(listOf(fragmentsWhere(glm::ivec3(resolution), wall), glm::ivec3(resolution))));
+    for (const int cones : {6, 64})
+      for (const float along : {-0.5f, 0.0f, 0.4f}) {
+        const glm::vec3 position(along, -1.0f + 2.0f / kThick + 2.5f / static_cast<float>(resolution),
+                                 0.5f * along);
+        const glm::vec3 radiance =
+            gather(emptyScene(), octree, position, {0, 1, 0}, {cones, "cosine", 1, 1, 0, 0.5});
+        CAPTURE(resolution, cones, along);
+        CHECK(radiance.x == Approx(0.5).epsilon(cones == 64 ? 0.03 : 0.05));
+      }
+  }
+}
+
+TEST_CASE("narrow cones all around a single lit voxel see its radiance times its solid angle within 10 %") {
+  // A mirror at the origin looks in turn into directions around the one to the voxel, through (a, b) of the
+  // plane at distance 1: each stands for the solid angle cos^3 da db. A face of s^2 at a distance d from the
+  // apex subtends s^2 / d^2; what trilinear reading shows of a voxel lies around its middle.
+  constexpr int kResolution = 64, kSide = 48;
+  constexpr double kVoxel = 2.0 / kResolution;
+  const glm::ivec3 cell(32 + 20, 32, 32);
+  const RadianceOctree octree =
+      filteredOctree(leavesOf(listOf({fragmentAt(cell, glm::vec3(1.0f))}, glm::ivec3(kResolution))));
+  SceneBuilder builder;
+  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, kSide, kSide);
+  const Scene& scene = builder.scene;
+  const glm::dvec3 middle = (glm::dvec3(cell) + 0.5) * kVoxel - 1.0, forward = glm::normalize(middle),
+                   up(0, 1, 0), right = glm::normalize(glm::cross(forward, up)),
+                   top = glm::cross(right, forward);
+  const double distance = middle.x, width = 10.0 * kVoxel;
+  for (const float exponent : {4000.0f, 800.0f}) {
+    GBuffer gbuffer = surfacePoint(glm::vec3(0.0f), {1, 0, 0}, glm::vec3(0.0f));
+    gpu::TextureDescription description = gbuffer.position->description();
+    description.width = description.height = kSide;
+    const auto image = [&](const auto& valueAt) {
+      std::vector<float> values;
+      for (int i = 0; i < kSide * kSide; ++i) {
+        const glm::vec4 value = valueAt(i);
+        values.insert(values.end(), {value.x, value.y, value.z, value.w});
+      }
+      auto texture = std::make_shared<gpu::Texture>(device(), description, "test g-buffer");
+      texture->uploadFloats(0, values);
+      return texture;
+    };
+    const auto planeAt = [&](int i) {
+      return (glm::dvec2(i % kSide, i / kSide) + 0.5) * (2.0 * width / kSide) - width;
+    };
+    const auto directionAt = [&](int i) {
+      return glm::normalize(forward + planeAt(i).x * right + planeAt(i).y * top);
+    };
+    const glm::dvec3 view(0, 0, -1);  // from the eye
+    const auto normalAt = [&](int i) { return glm::normalize(directionAt(i) - view); };
+    const auto constant = [](const glm::vec4& value) { return [value](int) { return value; }; };
+    gbuffer.position = image(constant({0, 0, 0, 1}));
+    gbuffer.normal = gbuffer.geometricNormal =
+        image([&](int i) { return glm::vec4(glm::vec3(normalAt(i)), 1.0f); });
+    gbuffer.diffuse = image(constant(glm::vec4(0.0f)));
+    gbuffer.specular = image(constant({1, 1, 1, exponent}));
+    const ImageBuffer seen =
+        gatherWith(scene, octree, gbuffer, {6, "cosine", 0, 0, 0, 0.25},
+                   [](PassHarness& harness) { return imageOf(*harness.output<Image>("glossy").texture); });
+    double sum = 0.0;
+    for (int i = 0; i < kSide * kSide; ++i) {
+      const double cosPlane = glm::dot(directionAt(i), forward),
+                   cosMirror = glm::dot(directionAt(i), normalAt(i)),
+                   solidAngle = std::pow(cosPlane, 3) * std::pow(2.0 * width / kSide, 2);
+      sum += seen.at(i % kSide, i / kSide, 0) / cosMirror * solidAngle;
+    }
+    CAPTURE(exponent);
+    CHECK(sum == Approx(kVoxel * kVoxel / (distance * distance)).epsilon(0.10));
+  }
+}
+
+TEST_CASE("as published, a sample between two levels is blended the other way round") {
+  // One sample for each of the printed cones, of 2.8 voxels at a distance of 2: its level is log2 2.8
+  // = 1.485. Opacities of voxels of the levels 1 and 2 of a uniform medium are 1 - (1-a)^2 and 1 - (1-a)^4;
+  // the printed blend gives 0.515 to the coarser, where 0.485 is right. The printed exponent is 1.4 / 2.8.
+  constexpr int kResolution = 64;
+  constexpr double kOpacity = 0.25, kDiameter = 2.8, kWeights = 1.0 + 4.0 * 0.707;
+  const VoxelFragments list =
+      listOf(fragmentsWhere(glm::ivec3(kResolution),
+                            [&](const glm::ivec3&) { return glm::vec4(1.0f, 1.0f, 1.0f, kOpacity); }),
+             glm::ivec3(kResolution));
+  const RadianceOctree octree = filteredOctree(leavesOf(list));
+  GatherSettings settings;
+  settings.asPublished = true;
+  settings.coneRatio = kDiameter / 2.0;
+  settings.reach = 2.5 * 2.0 / kResolution;
+  const double share = 1.0 - (std::log2(kDiameter) - 1.0);
+  const double fine = 1.0 - std::pow(1.0 - kOpacity, 2), coarse = 1.0 - std::pow(1.0 - kOpacity, 4),
+               value = (1.0 - share) * fine + share * coarse;
+  const double expected = kWeights * (1.0 - std::sqrt(1.0 - value)) * value;
+  CHECK(gather(emptyScene(), octree, glm::vec3(0.0f), {0, 1, 0}, settings).x ==
+        Approx(expected).epsilon(1e-3));
+}
+
+TEST_CASE("on the Cornell box the octree's image differs from the dense grid's by a FLIP under 0.03") {
+  RenderOptions options;
+  options.width = options.height = 64;
+  const Scene scene = cornell();
+  const FrameResult dense = renderOnce(scene, pipeline("voxel_cone_tracing"), options),
+                    sparse = renderOnce(scene, pipeline("voxel_cone_tracing_octree"), options);
+  for (const char* output : {"indirect_diffuse", "final"}) {
+    const ImageError error = compare(sparse.outputs.at(output), dense.outputs.at(output));
+    INFO(output << ": FLIP " << error.flip);
+    CHECK(error.flip < 0.03);
+    CHECK(error.meanRatio.value == Approx(1.0).epsilon(0.01));
+  }
+}
+
+TEST_CASE("a steady frame waits for no count of the octree") {
+  const Scene scene = cornell();
+  RenderOptions options;
+  options.width = options.height = 16;
+  PipelineExecutor executor(device(), techniques(), scene, pipeline("voxel_cone_tracing_octree"), options);
+  executor.render(0.0);
+  executor.invalidate();
+  const std::uint64_t before = device().transfers().stalls;
+  executor.render(0.0, 1, PipelineExecutor::Images::no);
+  CHECK(device().transfers().stalls == before);
+}
+
+TEST_CASE("rules that need the voxels elsewhere are refused with what would do") {
+  const RadianceOctree leaves = leavesOf(listOf({fragmentAt({3, 3, 3})}, glm::ivec3(8)), "at_corners");
+  CHECK_THROWS_WITH(filteredOctree(leaves, "facing"),
+                    Catch::Matchers::Contains("expected 'opacity average'"));
+}
+
+TEST_CASE("an octree that does not fit is refused with the bytes that it needs and the largest that fits") {
+  gpu::DeviceOptions options;
+  options.memoryBytes = 24 << 20;
+  gpu::Device small(options);
+  const Scene scene = cornell();
+  RenderOptions render;
+  render.width = render.height = 16;
+  const Pipeline text = pipeline("voxel_cone_tracing_octree");
+  render.parameters = text.settings({"resolution=128"});
+  PipelineExecutor executor(small, techniques(), scene, text, render);
+  CHECK_THROWS_WITH(executor.render(0.0), Catch::Matchers::Contains("an octree of 128 voxels") &&
+                                              Catch::Matchers::Contains("the largest that fits is 64"));
+}
+
+TEST_CASE("images are finite with the camera outside of the octree, inside geometry, far from the origin") {
+  RenderOptions options;
+  options.width = options.height = 16;
+  const auto check = [&](const Scene& scene, const char* what) {
+    const FrameResult frame = renderOnce(scene, pipeline("voxel_cone_tracing_octree"), options);
+    const ImageBuffer& image = frame.outputs.at("final");
+    INFO(what);
+    CHECK(std::all_of(image.values().begin(), image.values().end(),
+                      [](float value) { return std::isfinite(value) && value >= 0.0f; }));
+  };
+  check(loadScene(sourceDirectory() / "scenes/stress/far_away.scene"), "far away");
+  for (const glm::dvec3& eye : {glm::dvec3(40, 3, 50), glm::dvec3(0.5, 0.005, 0.5)}) {
+    SceneBuilder builder;
+    builder.scene = litRoom(16, 16);
+    builder.look(eye, {0.5, 0.5, 0.5}, {0, 1, 0}, 0.7, 16, 16);
+    check(builder.scene, eye.x > 1.0 ? "outside" : "in the floor's voxels");
+  }
+}
