@@ -75,8 +75,13 @@ vec4 march(vec3 direction, float depthPerMetre, vec2 inside) {
     float stride = min(stepShare * size * voxelSize, inside.y - distance);
     vec3 texcoord = (eyeWorld + direction * (distance + 0.5 * stride) - low) / extent;
     // The mean of opacities of the finest voxels' length stays one of that length.
-    vec4 value = filterRule == kNearest ? texelFetch(classified, clamp(ivec3(texcoord * vec3(textureSize(classified, int(level)))), ivec3(0), textureSize(classified, int(level)) - 1), int(level))
-                                        : textureLod(classified, texcoord, level + blend);
+    vec4 value;
+    if (filterRule == kNearest) {
+      ivec3 voxels = textureSize(classified, int(level));
+      value = texelFetch(classified, clamp(ivec3(texcoord * vec3(voxels)), ivec3(0), voxels - 1), int(level));
+    } else {
+      value = textureLod(classified, texcoord, level + blend);
+    }
     pass(seen, value, stride / voxelSize, 1.0);
     distance += stride;
   }

@@ -42,7 +42,7 @@ struct ShadowCone {
   vec3 direction;
   float reach;       // m, to the light
   float lightRatio;  // diameter of the light over the reach
-  // Height over an area light's plane, or over the sphere around a curved one, for each metre before its end; 0: there is nothing.
+  // Height over an area light's plane, over the sphere around a curved one, or over a point, for each metre before its end; 0: over nothing.
   float rise;
   float end;         // m, where that height is 0
 };
@@ -56,7 +56,8 @@ ShadowCone coneTo(LightDisc disc, LightSample light, vec3 posWorld, float height
   way -= min(height, max(dot(way, geometricNormal), 0.0)) * geometricNormal;
   float reach = length(way), radius = disc.centreRadius.w;
   if (reach == 0.0) return ShadowCone(toLight, 0.0, 0.0, 0.0, 0.0);
-  ShadowCone cone = ShadowCone(way / reach, reach, 2.0 * radius / reach, 0.0, reach);
+  // Voxels next to a light without extent tell nothing either: it may lie on a surface.
+  ShadowCone cone = ShadowCone(way / reach, reach, 2.0 * radius / reach, 1.0, reach);
   if (light.kind == kLightArea) {
     const float kFlat = 0.9;
     float flatness = length(disc.normal.xyz);
