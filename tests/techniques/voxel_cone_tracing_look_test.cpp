@@ -69,6 +69,28 @@ TEST_CASE("rays and cones through even voxels see their depth, and the backgroun
   }
 }
 
+TEST_CASE("cones read means of the voxels that a pixel is wide") {
+  // A pixel is 1/16 m wide, and voxels 1/64 m: 128 of them along the ray.
+  const float a = 0.006f;
+  const RadianceGrid grid = cones::uniformGrid(128, glm::vec4(glm::vec3(2.0f * a), a));
+  const ImageBuffer image =
+      lookAt(farView(), grid, {{"filter", "trilinear"}, {"cast", "cone"}, {"multiplied", "on"}});
+  const double left = std::pow(1.0 - static_cast<double>(a), 128.0);
+  CHECK(image.at(kSide / 2, kSide / 2, 0) == Approx(2.0 * (1.0 - left)).epsilon(0.01));
+}
+
+TEST_CASE("a slanted ray is in each cell by its length there") {
+  // One layer of opacity 1/2 across z, seen at 45 degrees: by a length of sqrt 2 voxels.
+  const RadianceGrid grid =
+      cones::makeGrid(16, [](int, int, int z) { return z == 7 ? glm::vec4(0.5f) : glm::vec4(0.0f); });
+  SceneBuilder builder;
+  constexpr double kDistance = 1000.0;
+  builder.look({kDistance, 0, kDistance}, {0, 0, 0}, {0, 1, 0}, 0.5 / kDistance, kSide, kSide);
+  const ImageBuffer image = lookAt(builder.scene, grid, {{"multiplied", "on"}});
+  for (const int x : {8, 16, 24})
+    CHECK(image.at(x, 16, 0) == Approx(1.0 - std::pow(0.5, std::sqrt(2.0))).epsilon(2e-3));
+}
+
 TEST_CASE("nearest voxels are seen as cells of one colour, trilinear ones blended") {
   // Two pixels a voxel. The voxel (5, 9) is opaque and red, and nothing else is there.
   const RadianceGrid grid = cones::makeGrid(16, [](int x, int y, int z) {
