@@ -117,11 +117,12 @@ class ShadePass : public Pass {
                                  .medium = bound.axis};
     radiance = Image{frame.image("direct radiance")};
     frame.dispatch(frame.program(variant),
-                   {shade::parameters({.eyeWorld = frame.snapshot().camera.eye,
-                                       .lightCount = lights.count,
-                                       .environment = frame.sceneDescription().environment,
-                                       .mediumSteps = mediumSteps}),
-                    GBufferBinding(*gbuffer), lights, bound, shade::radianceImage(radiance->texture)},
+                   {shade::directLight({.eyeWorld = frame.snapshot().camera.eye,
+                                        .lightCount = lights.count,
+                                        .environment = frame.sceneDescription().environment,
+                                        .mediumSteps = mediumSteps}),
+                    GBufferBinding(*gbuffer), shade::emissionImage(gbuffer->emission), lights, bound,
+                    shade::radianceImage(radiance->texture)},
                    pixels(frame));
   }
 };

@@ -11,6 +11,9 @@ namespace lumivox::voxel_cone_tracing {
 void addInject(TechniqueRegistry& registry);
 void addFilterDirectional(TechniqueRegistry& registry);
 void addGather(TechniqueRegistry& registry);
+void addSoftShadows(TechniqueRegistry& registry);
+void addLens(TechniqueRegistry& registry);
+void addLook(TechniqueRegistry& registry);
 void addOctree(TechniqueRegistry& registry);
 void addOctreeFilter(TechniqueRegistry& registry);
 void addOctreeSplat(TechniqueRegistry& registry);
@@ -78,4 +81,7 @@ LUMIVOX_TECHNIQUE(registry) {
   addOctreeFilter(registry);
   addOctreeSplat(registry);
   addGather(registry);
+  addSoftShadows(registry);
+  addLens(registry);
+  addLook(registry);
 }

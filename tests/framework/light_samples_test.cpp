@@ -164,3 +164,49 @@ TEST_CASE("ten thousand masked leaves that shine carry the light of their opaque
     power += sample.power.x;
   CHECK(power == Approx(0.5 * 5000 * 0.01).epsilon(0.02));
 }
+
+TEST_CASE("each light is a disc as a whole: a square lamp one of its own spread, at its middle") {
+  // Over a square of side s points lie s^2 / 6 from the middle in the mean of the squares, over a disc r^2
+  // / 2.
+  SceneBuilder builder;
+  builder.light(LightKind::point, glm::vec3(1.0f), {3, 4, 5});
+  builder.quad({1, 2, 0}, {0.6f, 0, 0}, {0, 0, 0.6f}, builder.lambert(0.0f, 4.0f));
+  builder.box({-1, 0, -1}, {-0.5f, 0.5f, -0.5f}, builder.lambert(0.0f, 1.0f), false);
+  const SceneSnapshot snapshot = snapshotOf(builder.scene, 0.0);
+  const LightSet set = sampleLights(builder.scene, snapshot, 16, 64);
+  const glm::vec3 origin(snapshot.origin);
+  REQUIRE(set.discs.size() == 1 + 1 + 6);
+  CHECK(glm::length(set.discs[0].centre + origin - glm::vec3(3, 4, 5)) < 1e-5f);
+  CHECK(set.discs[0].radius == 0.0f);
+  const LightDisc& square = set.discs[1];
+  CHECK(glm::length(square.centre + origin - glm::vec3(1.3f, 2, 0.3f)) < 1e-5f);
+  CHECK(square.radius == Approx(0.6 / std::sqrt(3.0)));
+  CHECK(glm::length(square.normal - glm::vec3(0, -1, 0)) < 1e-5f);
+  // Every sample belongs to one disc.
+  int next = 0;
+  for (const LightDisc& disc : set.discs) {
+    CHECK(disc.firstSample == next);
+    CHECK(disc.sampleCount >= 1);
+    next += disc.sampleCount;
+  }
+  CHECK(next == static_cast<int>(set.samples.size()));
+}
+
+TEST_CASE("the normal of a curved light's disc is short, and more lights than samples are a disc a sample") {
+  SceneBuilder builder;
+  const int lamp = builder.lambert(0.0f, 1.0f);
+  // Two sides of a roof at right angles: the mean of their normals is cos 45 degrees long.
+  Object& roof = builder.mesh({{0, 1, 0}, {1, 0, 0}, {0, 1, 1}, {0, 1, 0}, {0, 1, 1}, {-1, 0, 0}}, lamp);
+  REQUIRE(roof.parts.size() == 1);
+  const LightSet curved = sampleLights(builder.scene, snapshotOf(builder.scene, 0.0), 16, 64);
+  REQUIRE(curved.discs.size() == 1);
+  CHECK(glm::length(curved.discs[0].normal) == Approx(std::sqrt(0.5)));
+
+  const Scene many = rowOfAreaLights({1, 2, 3, 4, 5});
+  const LightSet few = sampleLights(many, snapshotOf(many, 0.0), 3, 64);
+  REQUIRE(few.discs.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(few.discs[i].centre == few.samples[i].position);
+    CHECK(few.discs[i].radius == Approx(std::sqrt(few.samples[i].patchRadiusSquared)));
+  }
+}

@@ -121,6 +121,35 @@ TEST_CASE("a camera that looks nowhere or along its up direction is refused") {
   CHECK_THAT(sceneWith("camera b { eye 0 1 0  target 0 0 1  up 0 0 0 }"), Contains("'up' has length zero"));
 }
 
+TEST_CASE("a thin lens is read with its units, and one that cannot be is refused") {
+  const test::TemporaryDirectory directory;
+  const Scene scene = loadScene(
+      directory.write("a.scene",
+                      "scene \"x\" {\n  camera main { eye 0 0 1  target 0 0 0  aperture 5 cm  focus 3 m }\n"
+                      "  camera plain { eye 0 0 1  target 0 0 0 }\n}\n"));
+  CHECK(scene.camera("main").aperture == Approx(0.05));
+  CHECK(scene.camera("main").focus == Approx(3.0));
+  CHECK(scene.camera("plain").aperture == 0.0);
+  const CameraView view = snapshotOf(scene, 0.0).camera;
+  CHECK(view.aperture == 0.05f);
+  CHECK(view.focus == 3.0f);
+
+  const auto lens = [](const std::string& words) {
+    return sceneWith("camera b { eye 0 0 1  target 0 0 0  " + words + " }");
+  };
+  CHECK(lens("aperture 0  focus 2 m").empty());
+  CHECK_THAT(lens("aperture 5 cm"), Contains("a.scene:4:") &&
+                                        Contains("'aperture' without a plane in focus") &&
+                                        Contains("focus 3 m"));
+  CHECK_THAT(lens("focus 3 m"), Contains("'focus' without an aperture") && Contains("aperture DIAMETER"));
+  CHECK_THAT(lens("aperture -1 cm  focus 3 m"), Contains("of property 'aperture' is out of range"));
+  CHECK_THAT(lens("aperture 5 cm  focus 0 m"), Contains("of property 'focus' is out of range"));
+  CHECK_THAT(lens("aperture 5 cm  focus -2 m"), Contains("of property 'focus' is out of range"));
+  CHECK_THAT(lens("aperture 5 deg  focus 3 m"), Contains("'aperture'") && Contains("deg"));
+  CHECK_THAT(lens("aperture wide  focus 3 m"), Contains("'aperture'"));
+  CHECK_THAT(lens("apperture 5 cm  focus 3 m"), Contains("did you mean 'aperture'?"));
+}
+
 TEST_CASE("camera keys must rise in time") {
   CHECK_THAT(sceneWith("camera b {\nkey { time 1 s  eye 0 0 1  target 0 0 0 }\nkey { time 1000 ms  eye 0 0 2 "
                        " target 0 0 0 }\n}"),

@@ -13,6 +13,15 @@ bool emits(const Scene& scene, const Object& object) {
   });
 }
 
+bool sameLens(const CameraView& a, const CameraView& b) {
+  return a.aperture == b.aperture && a.focus == b.focus;
+}
+
+bool sameButForLens(const CameraView& a, CameraView b) {
+  b.aperture = a.aperture, b.focus = a.focus;
+  return a == b;
+}
+
 }  // namespace
 
 Reads whatChanged(const Scene& scene, const SceneSnapshot& before, const SceneSnapshot& after) {
@@ -28,7 +37,8 @@ Reads whatChanged(const Scene& scene, const SceneSnapshot& before, const SceneSn
     if (emits(scene, scene.objects[i])) changed = changed | Reads::lights;
   }
   if (otherOrigin || before.lights != after.lights) changed = changed | Reads::lights;
-  if (otherOrigin || before.camera != after.camera) changed = changed | Reads::camera;
+  if (otherOrigin || !sameButForLens(before.camera, after.camera)) changed = changed | Reads::camera;
+  if (!sameLens(before.camera, after.camera)) changed = changed | Reads::lens;
   if (before.time != after.time) changed = changed | Reads::time;
   return changed;
 }

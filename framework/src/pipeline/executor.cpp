@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "lumivox/base/error.h"
+#include "lumivox/base/log.h"
 #include "pipeline/changes.h"
 #include "pipeline/executor_state.h"
 #include "pipeline/explain.h"
@@ -251,10 +252,21 @@ void PipelineExecutor::State::runPass(std::size_t index, Instrument instrument, 
   result.passes.push_back(std::move(record));
 }
 
+/// What a user expects of an aperture is a blur, and the reference shows it.
+void PipelineExecutor::State::warnOfLens(const SceneSnapshot& snapshot) const {
+  const bool makesImages =
+      std::find(request.wanted.begin(), request.wanted.end(), true) != request.wanted.end();
+  if (!(snapshot.camera.aperture > 0.0f) || !makesImages || seesThroughLens(graph, *plan)) return;
+  logWarning(
+      "pipeline \"{}\" leaves out {}: no pass of it sees through a lens, so its image is that of a pinhole",
+      pipeline.name, lensText(scene->camera(options.camera)));
+}
+
 FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameIndex, Images images,
                                            Timing timing, Clock::time_point start) {
   const gpu::Charging charging(device, account);
   planned();
+  warnOfLens(snapshot);
   const Reads changed = changesSince(snapshot, frameIndex);
   const bool otherSize =
       last && (last->camera.width != snapshot.camera.width || last->camera.height != snapshot.camera.height);
@@ -447,7 +459,8 @@ Explanation PipelineExecutor::explain() const {
                    s.context.shaders().usage(),
                    s.context.shaders().packs(),
                    s.context.reusedParts(),
-                   {}};
+                   {},
+                   s.scene->camera(s.options.camera)};
   s.readTimes(s.timers.takeAll());
   for (const auto& [index, record] : s.lastRun) {
     if (const auto ms = s.lastMs.find(record.name); ms != s.lastMs.end()) run.passMs[index] = ms->second;

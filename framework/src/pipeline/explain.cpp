@@ -19,6 +19,8 @@ const char* name(LeftOut::Level level) {
       return "resource";
     case LeftOut::Level::time:
       return "time";
+    case LeftOut::Level::camera:
+      return "camera";
   }
   return "";
 }
@@ -127,7 +129,19 @@ void explainTime(const ExplainedRun& run, Explanation& explanation) {
   }
 }
 
+constexpr const char* kWhyNoLens = "no pass sees through a lens: the image is that of a pinhole";
+
 }  // namespace
+
+bool seesThroughLens(const BoundGraph& graph, const PrunePlan& plan) {
+  return std::any_of(plan.order.begin(), plan.order.end(), [&](int index) {
+    return reads(graph.passes[static_cast<std::size_t>(index)].object->readsFrom(), Reads::lens);
+  });
+}
+
+std::string lensText(const Camera& camera) {
+  return fmt::format("the lens of camera '{}', {:.3g} m wide", camera.name, camera.aperture);
+}
 
 Explanation explainRun(const ExplainedRun& run) {
   Explanation explanation;
@@ -140,6 +154,8 @@ Explanation explainRun(const ExplainedRun& run) {
   explainVariants(run, explanation);
   explainResources(run, explanation);
   if (!run.keepEverything) explainTime(run, explanation);
+  if (run.camera.aperture > 0.0 && !seesThroughLens(run.graph, run.plan))
+    explanation.leftOut.push_back({LeftOut::Level::camera, lensText(run.camera), kWhyNoLens, {}});
   return explanation;
 }
 

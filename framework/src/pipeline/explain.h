@@ -20,10 +20,16 @@ struct ExplainedRun {
   const std::map<std::string, shader::ShaderPack>& packs;
   const std::set<FrameContext::Reused>& reusedParts;
   std::map<int, double> passMs;  ///< per pass that ran so far, its last device time
+  const Camera& camera;
   bool keepEverything = false;
   std::uint64_t poolBytes = 0, sharedBytes = 0;
 };
 
 Explanation explainRun(const ExplainedRun& run);
+
+/// Whether a pass that runs sees through the camera's lens (Reads::lens).
+bool seesThroughLens(const BoundGraph& graph, const PrunePlan& plan);
+/// "the lens of camera 'main', 0.05 m wide"
+std::string lensText(const Camera& camera);
 
 }  // namespace lumivox

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "pipeline/text_values.h"
@@ -145,7 +146,7 @@ class Binder {
       if (input->presence() == Presence::required && !given.contains(input->name())) {
         report(text, fmt::format("pass '{}' lacks its required input '{}'", text.name, input->name()),
                fmt::format("{} PASS.PORT, where the port is of kind {}", input->name(), input->kind().name),
-               offer(index, input->name(), input->kind()));
+               offer(index, *input));
       }
     }
     if (findings_.size() == findingsBefore) {
@@ -158,14 +159,14 @@ class Binder {
 
   /// The one output of this kind that another pass has, as the text that would connect it; empty when there
   /// is none or a choice.
-  std::string offer(int reader, const std::string& input, const PortKind& kind) const {
+  std::string offer(int reader, const InBase& input) const {
     std::string found;
     for (std::size_t i = 0; i < graph_.passes.size(); ++i) {
       if (static_cast<int>(i) == reader || !graph_.passes[i].object) continue;
       for (const OutBase* output : graph_.passes[i].object->outputs()) {
-        if (!output->kind().isSameType(kind)) continue;
+        if (!input.takes(output->kind())) continue;
         if (!found.empty()) return {};
-        found = fmt::format("{} {}.{}", input, graph_.passes[i].name, output->name());
+        found = fmt::format("{} {}.{}", input.name(), graph_.passes[i].name, output->name());
       }
     }
     return found;
@@ -189,7 +190,7 @@ class Binder {
     }
     if (input >= 0) {
       const InBase& reader = *bound.object->inputs()[static_cast<std::size_t>(input)];
-      const OutputIndex source = connect(property.values[0], reader.kind(),
+      const OutputIndex source = connect(property.values[0], readerOf(reader),
                                          fmt::format("input '{}' of pass '{}'", property.word, bound.name));
       bound.sources[static_cast<std::size_t>(input)] = source;
       if (source.valid()) warnOfWrongLight(property.values[0], source, reader, bound.name);
@@ -215,7 +216,7 @@ class Binder {
               "output '{}' fills only the finest level, but input '{}' of pass '{}' reads all: its light is wrong",
               graph_.outputText(source), input.name(), pass),
           "an output that fills all levels", only(source, [&](const OutBase& one) {
-            return one.kind().isSameType(input.kind()) && one.levels() == Levels::all;
+            return input.takes(one.kind()) && one.levels() == Levels::all;
           }));
     if (!expects.component || output.contributes() == *expects.component) return;
     warn(value,
@@ -223,7 +224,7 @@ class Binder {
                      graph_.outputText(source), componentText(output.contributes()), input.name(), pass,
                      componentText(*expects.component)),
          "an output that holds " + componentText(*expects.component), only(source, [&](const OutBase& one) {
-           return one.kind().isSameType(input.kind()) && one.contributes() == *expects.component;
+           return input.takes(one.kind()) && one.contributes() == *expects.component;
          }));
   }
 
@@ -253,19 +254,29 @@ class Binder {
 
   // ---- connections ---------------------------------------------------------------------------------------
 
-  /// The output that a value names, for a reader that wants this kind; invalid after a finding.
-  OutputIndex connect(const dsl::Value& value, const PortKind& kind, const std::string& reader) {
+  /// The kind that a reader asks for, and whether it takes another.
+  struct Reader {
+    const PortKind& kind;
+    std::function<bool(const PortKind&)> takes;
+  };
+  static Reader readerOf(const InBase& input) {
+    return {input.kind(), [&input](const PortKind& kind) { return input.takes(kind); }};
+  }
+
+  /// The output that a value names; invalid after a finding.
+  OutputIndex connect(const dsl::Value& value, const Reader& wanted, const std::string& reader) {
     const auto parts = splitDotted(value);
     if (!parts && !value.isPlainWord()) {
       report(value, fmt::format("{} is connected to no output", reader), "PASS.PORT");
       return {};
     }
     return connect(value.place, value.length, parts ? parts->first : value.text,
-                   parts ? parts->second : std::string(), kind, reader);
+                   parts ? parts->second : std::string(), wanted, reader);
   }
 
   OutputIndex connect(const SourcePlace& place, int length, const std::string& passName,
-                      const std::string& portName, const PortKind& kind, const std::string& reader) {
+                      const std::string& portName, const Reader& wanted, const std::string& reader) {
+    const PortKind& kind = wanted.kind;
     int source = -1;
     std::vector<std::string> names;
     for (std::size_t i = 0; i < graph_.passes.size(); ++i) {
@@ -291,7 +302,7 @@ class Binder {
     if (portName.empty()) {
       std::vector<int> fitting;
       for (std::size_t i = 0; i < outputs.size(); ++i) {
-        if (outputs[i]->kind().isSameType(kind)) fitting.push_back(static_cast<int>(i));
+        if (wanted.takes(outputs[i]->kind())) fitting.push_back(static_cast<int>(i));
       }
       if (fitting.size() > 1 || (fitting.empty() && outputs.size() != 1)) {
         report(place, length,
@@ -302,17 +313,17 @@ class Binder {
       port = fitting.empty() ? 0 : fitting.front();
     }
     const OutBase& output = *outputs[static_cast<std::size_t>(port)];
-    if (output.kind().name == kind.name && !output.kind().isSameType(kind)) {
+    if (output.kind().name == kind.name && !wanted.takes(output.kind())) {
       report(place, length,
              fmt::format("output '{}.{}' and {} both name their kind {}, but have different types", passName,
                          output.name(), reader, kind.name),
              "techniques that share the header of the kind");
       return {};
     }
-    if (!output.kind().isSameType(kind)) {
+    if (!wanted.takes(output.kind())) {
       std::vector<std::string> fitting;
       for (const OutBase* other : outputs) {
-        if (other->kind().isSameType(kind)) fitting.push_back(passName + "." + other->name());
+        if (wanted.takes(other->kind())) fitting.push_back(passName + "." + other->name());
       }
       report(place, length,
              fmt::format("output '{}.{}' is of kind {}, but {} takes {}", passName, output.name(),
@@ -323,11 +334,16 @@ class Binder {
     return {source, port};
   }
 
+  static Reader imageReader() {
+    const PortKind& image = portKind<Image>();
+    return {image, [&image](const PortKind& kind) { return kind.isSameType(image); }};
+  }
+
   void bindOutputs() {
     for (const Pipeline::Output& output : pipeline_.outputs) {
       const int length = static_cast<int>(output.pass.size() + 1 + output.port.size());
       graph_.outputs.push_back(
-          {output.name, connect(output.place, length, output.pass, output.port, portKind<Image>(),
+          {output.name, connect(output.place, length, output.pass, output.port, imageReader(),
                                 fmt::format("output '{}' of the pipeline", output.name))});
     }
     if (pipeline_.outputs.empty()) requireNoImage();

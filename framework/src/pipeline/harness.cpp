@@ -82,7 +82,7 @@ Pass& PassHarness::holder() {
 void PassHarness::connectInput(const std::string& name, std::unique_ptr<OutBase> source) {
   for (InBase* input : state_->pass->inputs()) {
     if (input->name() != name) continue;
-    if (!input->kind().isSameType(source->kind())) {
+    if (!input->takes(source->kind())) {
       throw Error(fmt::format("input '{}' takes {}, not {}", name, input->kind().name, source->kind().name));
     }
     input->connect(source.get());

@@ -88,8 +88,13 @@ InBase::InBase(Pass* pass, std::string name, const PortKind& kind, Presence pres
 }
 
 void InBase::connect(const OutBase* source) {
-  assert(source == nullptr || source->kind().isSameType(kind()));
+  assert(source == nullptr || takes(source->kind()));
   source_ = source;
+}
+
+const PortKind& InVoxels::anyVoxels() {
+  static const PortKind kind{"any voxels", "any kind of port with fields that are exported"};
+  return kind;
 }
 
 std::vector<gpu::TextureRef> OutBase::textures() const {

@@ -142,7 +142,8 @@ void markWanted(const BoundGraph& graph, const PruneRequest& request,
 Reads whatMayChange(const PruneRequest& request) {
   const Reads camera = Reads::camera | Reads::partOfCamera;
   const Reads histories = request.accumulate ? Reads::history : Reads::nothing;
-  if (request.interactive) return Reads::geometry | Reads::lights | camera | Reads::time | histories;
+  if (request.interactive)
+    return Reads::geometry | Reads::lights | camera | Reads::lens | Reads::time | histories;
   Reads result = Reads::time | histories;
   if (request.traits.movingGeometry) result = result | Reads::geometry;
   if (request.traits.movingGeometry && request.traits.areaLights > 0) result = result | Reads::lights;
@@ -226,6 +227,7 @@ std::string readsText(Reads set) {
   if (reads(set, Reads::materials)) words.push_back("materials");
   if (reads(set, Reads::lights)) words.push_back("lights");
   if (reads(set, Reads::camera)) words.push_back("camera");
+  if (reads(set, Reads::lens)) words.push_back("the camera's lens");
   if (reads(set, Reads::partOfCamera)) words.push_back("part of the camera");
   if (reads(set, Reads::environment)) words.push_back("environment");
   if (reads(set, Reads::media)) words.push_back("media");

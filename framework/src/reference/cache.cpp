@@ -65,6 +65,7 @@ void add(Hasher& hasher, const Camera& camera) {
   add(hasher, camera.target);
   add(hasher, camera.up);
   hasher.add(camera.fov).add(camera.width).add(camera.height).add(std::uint64_t{camera.keys.size()});
+  if (camera.aperture > 0.0) hasher.add("lens").add(camera.aperture).add(camera.focus);
   for (const CameraKey& key : camera.keys) {
     hasher.add(key.time);
     add(hasher, key.eye);

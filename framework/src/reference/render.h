@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <glm/gtc/constants.hpp>
 #include <map>
 #include <optional>
 #include <string>
@@ -227,8 +229,24 @@ class Tiles {
   int width_, height_, columns_, rows_;
 };
 
-/// Paths through the pixels of one tile: addPath(statistics, statistics of bounces, random, direction) each.
-/// The numbers of a path depend on seed, pixel and sample only.
+/// The start of a path.
+struct CameraRay {
+  glm::vec3 origin, direction;  ///< direction: unit length
+};
+
+/// The ray through a point of the image, given by the direction from the eye whose component along the view
+/// axis is 1. Through a lens: from a point of it, uniform by area, to where the plane in focus meets that
+/// direction. A pinhole takes no random numbers.
+inline CameraRay cameraRay(const CameraView& camera, const glm::vec3& direction, RandomStream& random) {
+  if (!(camera.aperture > 0.0f)) return {camera.eye, glm::normalize(direction)};
+  const float radius = 0.5f * camera.aperture * std::sqrt(random.uniform());
+  const float angle = 2.0f * glm::pi<float>() * random.uniform();
+  const glm::vec3 onLens = (radius * std::cos(angle)) * camera.right + (radius * std::sin(angle)) * camera.up;
+  return {camera.eye + onLens, glm::normalize(camera.focus * direction - onLens)};
+}
+
+/// Paths through the pixels of one tile: addPath(statistics, statistics of bounces, random, ray) each. The
+/// numbers of a path depend on seed, pixel and sample only.
 template <std::size_t Layers, class AddPath>
 void renderPixels(const ResolvedOptions& resolved, const Tiles& tiles, int tile, Film& film,
                   AddPath&& addPath) {
@@ -247,8 +265,8 @@ void renderPixels(const ResolvedOptions& resolved, const Tiles& tiles, int tile,
       RandomStream random(resolved.options.seed, stream, static_cast<std::uint32_t>(sample));
       const float column = static_cast<float>(x) + random.uniform(),
                   row = static_cast<float>(y) + random.uniform();
-      const glm::vec3 direction = glm::normalize(corner + column * perColumn + row * perRow);
-      addPath(pixel, ofBounces, random, direction);
+      addPath(pixel, ofBounces, random,
+              cameraRay(camera, corner + column * perColumn + row * perRow, random));
     }
     film.write(x, y, pixel);
     if (ofBounces.channels() > 0) film.write(x, y, ofBounces);
@@ -258,16 +276,15 @@ void renderPixels(const ResolvedOptions& resolved, const Tiles& tiles, int tile,
 template <class Rays>
 void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Tiles& tiles, int tile,
                 Rays& rays, Film& film) {
-  const glm::vec3& eye = resolved.snapshot.camera.eye;
   const Integrator& integrator = tracer.integrator;
   BounceSums sums(resolved.options.bounceLayers);
   BounceSums* const asked = sums.sums.empty() ? nullptr : &sums;
   if (tracer.media.empty()) {
     renderPixels<kSurfaceLayers.size()>(
         resolved, tiles, tile, film,
-        [&](auto& pixel, auto& ofBounces, RandomStream& random, const glm::vec3& direction) {
+        [&](auto& pixel, auto& ofBounces, RandomStream& random, const CameraRay& ray) {
           sums.clear();
-          const PathSample sample = integrator.trace(rays, random, eye, direction, asked);
+          const PathSample sample = integrator.trace(rays, random, ray.origin, ray.direction, asked);
           pixel.add(radiancesOf(sample), sample.unoccluded);
           pixel.addLate(sample.lateLight);
           if (asked) ofBounces.add(sums, sample.direct, glm::vec3(1.0f));
@@ -275,9 +292,10 @@ void renderTile(const Tracer& tracer, const ResolvedOptions& resolved, const Til
   } else {
     renderPixels<kMediaLayers.size()>(
         resolved, tiles, tile, film,
-        [&](auto& pixel, auto& ofBounces, RandomStream& random, const glm::vec3& direction) {
+        [&](auto& pixel, auto& ofBounces, RandomStream& random, const CameraRay& ray) {
           sums.clear();
-          const MediaPathSample sample = integrator.traceThroughMedia(rays, random, eye, direction, asked);
+          const MediaPathSample sample =
+              integrator.traceThroughMedia(rays, random, ray.origin, ray.direction, asked);
           pixel.add(radiancesOf(sample), sample.surfaces.unoccluded);
           pixel.addLate(sample.lateLight);
           if (asked)

@@ -174,6 +174,7 @@ class Reader {
     const std::vector<double> resolution = block.numbers("resolution", {256, 256});
     camera.width = static_cast<int>(resolution.at(0));
     camera.height = static_cast<int>(resolution.at(1));
+    readLens(block, camera);
     const BlockSpecification& keyGrammar = specificationOf(specificationOf(grammar_, "camera"), "key");
     for (const Block* keyBlock : block.blocks("key")) {
       const CheckedBlock key(*keyBlock, keyGrammar);
@@ -200,6 +201,17 @@ class Reader {
       camera.target = camera.keys.front().target;
     }
     result_.cameras.push_back(std::move(camera));
+  }
+
+  void readLens(const CheckedBlock& block, Camera& camera) {
+    camera.aperture = block.number("aperture", camera.aperture);
+    camera.focus = block.number("focus", camera.focus);
+    if (camera.aperture > 0.0 && !block.has("focus"))
+      report(*block.find("aperture"), "'aperture' without a plane in focus",
+             "focus DISTANCE, such as focus 3 m");
+    if (block.has("focus") && !block.has("aperture"))
+      report(*block.find("focus"), "'focus' without an aperture: a pinhole has everything in focus",
+             "aperture DIAMETER, such as aperture 5 cm");
   }
 
   void checkView(const Block& block, const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up) {

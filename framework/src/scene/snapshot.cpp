@@ -231,6 +231,8 @@ CameraView viewOf(const Camera& camera, double time, const glm::dvec3& origin, i
   view.right = glm::vec3(right);
   view.up = glm::vec3(glm::cross(right, forward));
   view.tanHalfFov = static_cast<float>(std::tan(0.5 * camera.fov));
+  view.aperture = static_cast<float>(camera.aperture);
+  view.focus = static_cast<float>(camera.focus);
   view.width = width > 0 ? width : camera.width;
   view.height = height > 0 ? height : camera.height;
   return view;

@@ -17,6 +17,7 @@ constexpr double kLargestImage = 16384;
 // Beyond it Phong lobes are narrower than single precision resolves: cos^n of one ulp below 1 is already
 // exp(-n 6e-8).
 constexpr double kLargestExponent = 1e6;
+constexpr double kLargestLens = 1e6, kNearestFocus = 1e-6, kFarthestFocus = 1e9;
 constexpr double kSmallestScale = 1e-9, kLargestScale = 1e9;
 // Sums over the particles of one voxel are 64-bit integers of a particle's 2^24 units; the limit is one of
 // time and memory.
@@ -71,19 +72,27 @@ BlockSpecification camera() {
             {Row("time", PropertyType::number, "when the camera is there", dsl::kTime).required(),
              Row("eye", PropertyType::vector3, "where it is", dsl::kLength).required(),
              Row("target", PropertyType::vector3, "where it looks", dsl::kLength).required()});
-  BlockSpecification result =
-      block("camera", HeaderUse::required,
-            "a pinhole camera with square pixels; the first one is used unless another is asked for",
-            {Row("eye", PropertyType::vector3, "position; required without keys", dsl::kLength),
-             Row("target", PropertyType::vector3,
-                 "the point in the middle of the image; required without keys", dsl::kLength),
-             Row("up", PropertyType::vector3, "the direction that is up in the image").byDefault("0 1 0"),
-             Row("fov", PropertyType::number, "full vertical angle of view", dsl::kAngle)
-                 .between(0.1 * kDegree, 179.0 * kDegree)
-                 .byDefault("40 deg"),
-             Row("resolution", PropertyType::resolution, "width and height of the image in pixels")
-                 .between(1, kLargestImage)
-                 .byDefault("256 256")});
+  BlockSpecification result = block(
+      "camera", HeaderUse::required,
+      "a camera with square pixels, a pinhole or a thin lens; the first one is used unless another is asked for",
+      {Row("eye", PropertyType::vector3, "position; required without keys", dsl::kLength),
+       Row("target", PropertyType::vector3, "the point in the middle of the image; required without keys",
+           dsl::kLength),
+       Row("up", PropertyType::vector3, "the direction that is up in the image").byDefault("0 1 0"),
+       Row("fov", PropertyType::number, "full vertical angle of view", dsl::kAngle)
+           .between(0.1 * kDegree, 179.0 * kDegree)
+           .byDefault("40 deg"),
+       Row("resolution", PropertyType::resolution, "width and height of the image in pixels")
+           .between(1, kLargestImage)
+           .byDefault("256 256"),
+       Row("aperture", PropertyType::number,
+           "diameter of the thin lens, which blurs what is not in focus; 0 is a pinhole", dsl::kLength)
+           .between(0, kLargestLens)
+           .byDefault("0"),
+       Row("focus", PropertyType::number,
+           "distance of the plane in focus along the view axis; required with an aperture above 0",
+           dsl::kLength)
+           .between(kNearestFocus, kFarthestFocus)});
   result.blocks = {key};
   result.required = true;
   return result;

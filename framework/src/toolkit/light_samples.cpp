@@ -212,11 +212,44 @@ void addAreaLight(LightSet& set, const AreaLight& areaLight, int count, int& seq
   }
 }
 
+/// Holes of masks count as if they shone.
+LightDisc discOf(const AreaLight& areaLight) {
+  LightDisc disc;
+  const auto part = [&](const Emitter& emitter) {
+    return static_cast<float>(emitter.weight / areaLight.weight);
+  };
+  for (const Emitter& emitter : areaLight.emitters) {
+    disc.centre += part(emitter) / 3.0f * (emitter.a + emitter.b + emitter.c);
+    disc.normal += part(emitter) * emitter.normal;
+  }
+  float meanSquare = 0.0f;
+  for (const Emitter& emitter : areaLight.emitters) {
+    // Over a triangle the mean of |p - c|^2 is (|a - c|^2 + |b - c|^2 + |c' - c|^2 + |a + b + c' - 3 c|^2)
+    // / 12.
+    const glm::vec3 a = emitter.a - disc.centre, b = emitter.b - disc.centre, c = emitter.c - disc.centre,
+                    sum = a + b + c;
+    meanSquare +=
+        part(emitter) / 12.0f * (glm::dot(a, a) + glm::dot(b, b) + glm::dot(c, c) + glm::dot(sum, sum));
+  }
+  disc.radius = std::sqrt(2.0f * meanSquare);  // over a disc it is half the square of the radius
+  return disc;
+}
+
+/// For the samples that belong to no disc yet.
+void addDiscOfEachSample(LightSet& set) {
+  for (std::size_t i = set.discs.size(); i < set.samples.size(); ++i) {
+    const LightSampleData& sample = set.samples[i];
+    set.discs.push_back(
+        {sample.position, std::sqrt(sample.patchRadiusSquared), sample.direction, static_cast<int>(i), 1});
+  }
+}
+
 void addAreaLights(LightSet& set, const Scene& scene, const SceneSnapshot& snapshot, int count,
                    int shadowSize) {
   std::vector<AreaLight> areaLights = areaLightsOf(scene, snapshot);
   if (areaLights.empty()) return;
-  if (static_cast<int>(areaLights.size()) > count) {
+  const bool eachItsDisc = static_cast<int>(areaLights.size()) <= count;
+  if (!eachItsDisc) {
     // Too many for a sample each: one area light of all emitters, the dimmest of which may get none.
     AreaLight all;
     for (const AreaLight& areaLight : areaLights) {
@@ -227,8 +260,15 @@ void addAreaLights(LightSet& set, const Scene& scene, const SceneSnapshot& snaps
   }
   const std::vector<int> samples = samplesOfAreaLights(areaLights, count);
   int sequence = 0;
-  for (std::size_t i = 0; i < areaLights.size(); ++i)
+  for (std::size_t i = 0; i < areaLights.size(); ++i) {
+    if (eachItsDisc) {
+      set.discs.push_back(discOf(areaLights[i]));
+      set.discs.back().firstSample = static_cast<int>(set.samples.size());
+      set.discs.back().sampleCount = samples[i];
+    }
     addAreaLight(set, areaLights[i], samples[i], sequence, snapshot.bounds, shadowSize);
+  }
+  if (!eachItsDisc) addDiscOfEachSample(set);
 }
 
 void addDirectional(LightSet& set, const LightState& light, const Bounds& bounds, int shadowSize) {
@@ -284,6 +324,8 @@ LightSet sampleLights(const Scene& scene, const SceneSnapshot& snapshot, int are
       }
     }
   }
+  for (std::size_t i = 0; i < set.samples.size(); ++i)
+    set.discs.push_back({set.samples[i].position, 0.0f, glm::vec3(0.0f), static_cast<int>(i), 1});
   addAreaLights(set, scene, snapshot, areaSamples, shadowSize);
   return set;
 }

@@ -47,9 +47,10 @@ std::string unmetNeed(Needs needs, const SceneTraits& traits);
 
 /// Sources that a pass reads besides its inputs and parameters. A pass is run again only when one of these or
 /// an input changed. materials: with their textures. lights: also the motion of emissive objects. camera:
-/// also the size of the image. partOfCamera: only what Pass::readsOfCamera() returns. time: also the frame's
-/// index. history: what earlier frames left, by PassContext::history() and accumulated(); such a pass runs in
-/// every frame of a run that accumulates (RenderOptions::accumulate).
+/// also the size of the image, but not its lens. lens: its aperture and focus; passes without it see as
+/// through a pinhole. partOfCamera: only what Pass::readsOfCamera() returns. time: also the frame's index.
+/// history: what earlier frames left, by PassContext::history() and accumulated(); such a pass runs in every
+/// frame of a run that accumulates (RenderOptions::accumulate).
 enum class Reads : std::uint32_t {
   nothing = 0,
   geometry = 1u << 0,
@@ -60,7 +61,8 @@ enum class Reads : std::uint32_t {
   partOfCamera = 1u << 5,
   environment = 1u << 6,
   media = 1u << 7,
-  history = 1u << 8
+  history = 1u << 8,
+  lens = 1u << 9
 };
 constexpr Reads operator|(Reads a, Reads b) {
   return static_cast<Reads>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
@@ -180,7 +182,10 @@ class InBase : public PortBase {
     return presence_ == Presence::history ? holds() : source_ != nullptr && source_->hasValue();
   }
   explicit operator bool() const { return present(); }
-  /// Connects or disconnects; the kinds must agree (checked by the graph with a message; asserted here).
+  /// Whether outputs of a kind can be connected.
+  virtual bool takes(const PortKind& kind) const { return kind.isSameType(this->kind()); }
+  /// Connects or disconnects; the input must take the kind (checked by the graph with a message; asserted
+  /// here).
   void connect(const OutBase* source);
   /// For a history: takes what the source has now, to be read in the next frame; or forgets it.
   virtual void hold() = 0;
@@ -221,6 +226,24 @@ class In : public InBase {
 
  private:
   std::optional<Port> held_;  ///< with Presence::history
+};
+
+/// An input that takes an output of any kind with fields (PortKind::fields), be it a technique's own, and
+/// sees of it what an exporter sees. It is read in the frame that made it.
+class InVoxels : public InBase {
+ public:
+  InVoxels(Pass* pass, std::string name, std::string meaning = {})
+      : InBase(pass, std::move(name), anyVoxels(), Presence::required, std::move(meaning), Needs::nothing,
+               {}) {}
+  bool takes(const PortKind& kind) const override { return !kind.fields.empty(); }
+  PortContents contents() const { return source_->contents(); }
+  void hold() override {}
+  void forget() override {}
+  /// The name under which texts and messages know it: no output is of this kind.
+  static const PortKind& anyVoxels();
+
+ protected:
+  bool holds() const override { return false; }
 };
 
 /// A parameter of a pass: a number, a switch (on/off) or a word, with its range and default. Set from the

@@ -171,7 +171,7 @@ struct FrameResult {
 
 /// One thing that a run leaves out.
 struct LeftOut {
-  enum class Level { plugin, pass, variant, resource, time } level;
+  enum class Level { plugin, pass, variant, resource, time, camera } level;
   std::string what, why;
   std::string pass;              ///< the pass that it belongs to; empty for plugins, variants and the pool
   std::uint64_t savedBytes = 0;  ///< 0 when not known

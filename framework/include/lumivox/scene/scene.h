@@ -109,13 +109,16 @@ struct CameraKey {
   glm::dvec3 eye{0}, target{0};
 };
 
-/// Pinhole with square pixels. With keys, eye and target are interpolated linearly in time and clamp at the
-/// ends.
+/// Pinhole or thin lens, with square pixels. With keys, eye and target are interpolated linearly in time and
+/// clamp at the ends.
 struct Camera {
   std::string name;
   glm::dvec3 eye{0, 0, 1}, target{0}, up{0, 1, 0};
   double fov = 0.7;  ///< full vertical angle, rad
   int width = 256, height = 256;
+  double aperture = 0.0;  ///< diameter of the lens, m; 0: a pinhole
+  double focus =
+      0.0;  ///< distance of the plane in focus along the view axis, m; above 0 where there is a lens
   std::vector<CameraKey> keys;
 };
 
@@ -193,6 +196,10 @@ struct CameraView {
   /// beside its centre. Renderers that take directions from direction() heed it; rasterisers move what they
   /// draw the other way.
   glm::vec2 shift{0.0f};
+  /// Of the thin lens around the eye, perpendicular to the view axis, m: its diameter, and the distance of
+  /// the plane in focus. All rays of one point of the image meet in that plane where the ray through the eye
+  /// does. An aperture of 0 is a pinhole, whatever the focus.
+  float aperture = 0.0f, focus = 0.0f;
   bool operator==(const CameraView&) const = default;
 
   /// Direction (not normalised, forward component 1) through a point of the image; (0,0) is the upper left

@@ -32,16 +32,29 @@ struct LightView {
   bool used = true;
 };
 
+/// A light as a whole: what a cone to it is aimed at.
+struct LightDisc {
+  glm::vec3 centre{0.0f};  ///< of an area light: the mean place of its power
+  /// That of a disc across which points lie as far from the centre, in the mean of the squares: half a side
+  /// times 1.15 of a square. 0 of a light without extent.
+  float radius = 0.0f;
+  /// Of an area light: the mean of its normals by power, of length 1 where it is flat and shorter where it is
+  /// curved. Else 0.
+  glm::vec3 normal{0.0f};
+  int firstSample = 0, sampleCount = 1;
+};
+
 struct LightSet {
   std::vector<LightSampleData> samples;
   std::vector<LightView> views;
+  std::vector<LightDisc> discs;  ///< one for each light, in the order of their samples
 };
 
 /// Lights without extent become one sample each. Emissive triangles together become `areaSamples` samples:
 /// one for each emissive part of an object and the others by emitted power, chosen with stratified numbers
 /// and placed by the R2 sequence, so that the same scene always gives the same samples. They lie where alpha
 /// masks leave the triangles, and the samples of a part carry all of its light: no hole shines. Of more parts
-/// than samples the dimmest may have none.
+/// than samples the dimmest may have none; each sample then is a disc of its own.
 LightSet sampleLights(const Scene& scene, const SceneSnapshot& snapshot, int areaSamples, int shadowSize);
 
 }  // namespace lumivox

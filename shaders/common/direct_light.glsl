@@ -1,0 +1,80 @@
+// Direct light of the visible surfaces: emission, and every light sample times its visibility through both lobes, from a g-buffer. The
+// includer has the axes LIGHTS, GLOSSY, EMISSION and MEDIUM; with LIGHTS it defines visibleShare, the visible share of sample i of the
+// lights, in [0,1]: posWorld is on the surface, whose geometricNormal faces the side that is lit; toLight has unit length.
+#ifndef LUMIVOX_DIRECT_LIGHT
+#define LUMIVOX_DIRECT_LIGHT
+#include "common/brdf.glsl"
+#if LIGHTS
+#include "common/lights.glsl"
+float visibleShare(int i, LightSample light, vec3 posWorld, vec3 geometricNormal, vec3 toLight);
+#endif
+#if MEDIUM != MEDIUM_NONE
+#include "common/media.glsl"
+#endif
+
+layout(std140, binding = 0) uniform DirectLight {
+  vec3 eyeWorld;
+  int lightCount;
+  vec3 environment;  // radiance that a camera ray sees when it hits nothing
+  int mediumSteps;   // most steps through a medium that varies, towards a light
+};
+
+layout(binding = 0) uniform sampler2D gPosition;
+layout(binding = 1) uniform sampler2D gNormal;
+layout(binding = 2) uniform sampler2D gGeometricNormal;
+layout(binding = 3) uniform sampler2D gDiffuse;
+#if GLOSSY
+layout(binding = 5) uniform sampler2D gSpecular;
+#endif
+#if EMISSION
+// Read once and unfiltered: an image, since stores of voxels may need all other samplers.
+layout(binding = 1, rgba32f) uniform readonly image2D emissionImage;
+#endif
+
+#if LIGHTS
+vec3 reflectedLight(ivec2 pixel, vec3 posWorld) {
+  vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
+  vec3 geometricNormal = texelFetch(gGeometricNormal, pixel, 0).xyz;
+  vec3 diffuse = texelFetch(gDiffuse, pixel, 0).rgb;
+  vec3 toEye = normalize(eyeWorld - posWorld);
+  vec3 reflected = vec3(0.0);
+  for (int i = 0; i < lightCount; ++i) {
+    LightSample light = lights[i];
+    vec3 toLight;
+    vec3 perpendicular = arrivingIrradiance(light, posWorld, toLight);
+    float cosSurface = dot(normal, toLight);
+    // Light from below either plane does not reach the side that is seen.
+    if (cosSurface <= 0.0 || dot(geometricNormal, toLight) <= 0.0) continue;
+    vec3 irradiance = perpendicular * cosSurface;
+    // A light that does not shine this way needs no visibility: it may be dear.
+    if (all(lessThanEqual(irradiance, vec3(0.0)))) continue;
+    irradiance *= visibleShare(i, light, posWorld, geometricNormal, toLight);
+#if MEDIUM != MEDIUM_NONE
+    if (any(greaterThan(irradiance, vec3(0.0)))) irradiance *= transmittanceToLight(light, posWorld, mediumSteps);
+#endif
+    vec3 lobes = diffuse / kPi;
+#if GLOSSY
+    vec4 specular = texelFetch(gSpecular, pixel, 0);
+    lobes += phongLobe(specular.rgb, specular.w, normal, toEye, toLight);
+#endif
+    reflected += irradiance * lobes;
+  }
+  return reflected;
+}
+#endif
+
+// Radiance towards the eye, W/(sr m^2).
+vec3 directLight(ivec2 pixel) {
+  vec4 position = texelFetch(gPosition, pixel, 0);
+  if (position.w == 0.0) return environment;
+  vec3 radiance = vec3(0.0);
+#if EMISSION
+  radiance += imageLoad(emissionImage, pixel).rgb;
+#endif
+#if LIGHTS
+  radiance += reflectedLight(pixel, position.xyz);
+#endif
+  return radiance;
+}
+
+#endif

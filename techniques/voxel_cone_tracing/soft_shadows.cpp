@@ -1,0 +1,141 @@
+// Soft shadows by cones to the lights: Crassin et al. 2011; thesis Gomes 2015, Sec. 2.4, Fig. 15.
+#include <cmath>
+#include <vector>
+
+#include "light_discs.h"
+#include "lumivox/base/error.h"
+#include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/light_samples.h"
+#include "lumivox/toolkit/media.h"
+#include "march.h"
+
+namespace lumivox::voxel_cone_tracing {
+namespace {
+
+namespace shadows = shaders::voxel_cone_tracing::soft_shadows;
+
+/// Mirror of LightDisc in soft_shadows.comp (std430).
+struct DiscData {
+  glm::vec4 centreRadius, normal;
+};
+
+/// The lights alone: what a pass needs that finds out about their visibility by itself.
+class LightsPass : public Pass {
+  enum class Cones { sample, light };
+
+  Param<int> areaSamples{this, "area_samples", 16, within(1, 1024),
+                         "point samples that represent all emissive triangles together"};
+  Param<Cones> cones{
+      this, "cones", Cones::sample,
+      "what a cone is aimed at: each sample, a disc of the area that it stands for; or the light as a whole, a disc of the spread of its power: one cone a light, and penumbras that voxels shape"};
+  Out<LightDiscs> lights{this, "lights",
+                         "every light as point samples, and the discs that cones are aimed at"};
+
+  Reads readsFrom() const override { return Reads::geometry | Reads::materials | Reads::lights; }
+  Needs needs() const override { return Needs::anyLight; }
+
+  void run(PassContext& frame) override {
+    constexpr int kNoShadow = 1;  // texels along a side of the views, which nothing draws
+    LightSet set = sampleLights(frame.sceneDescription(), frame.snapshot(), areaSamples, kNoShadow);
+    for (LightSampleData& sample : set.samples) sample.firstView = -1, sample.viewCount = 0;
+    std::vector<DiscData> discs;
+    std::vector<std::uint32_t> discOfSample;
+    for (const LightDisc& disc : set.discs) {
+      if (cones == Cones::light)
+        discs.push_back({glm::vec4(disc.centre, disc.radius), glm::vec4(disc.normal, 0.0f)});
+      for (int i = 0; i < disc.sampleCount; ++i) {
+        const LightSampleData& sample = set.samples[static_cast<std::size_t>(disc.firstSample + i)];
+        const bool area = sample.kind == LightSampleKind::area;
+        if (cones == Cones::sample)
+          discs.push_back({glm::vec4(sample.position, std::sqrt(sample.patchRadiusSquared)),
+                           glm::vec4(area ? sample.direction : glm::vec3(0.0f), 0.0f)});
+        discOfSample.push_back(static_cast<std::uint32_t>(discs.size() - 1));
+      }
+    }
+    lights = LightDiscs{
+        frame.uploaded(set.samples, "light samples"), frame.uploaded(discs, "discs of lights"),
+        frame.uploaded(discOfSample, "discs of light samples"), static_cast<int>(set.samples.size())};
+  }
+};
+
+class SoftShadowsPass : public Pass {
+  // In the order of soft_shadows.comp.
+  enum class Radius { larger, eye, light };
+  enum class Opacity { surfaces, medium };
+
+  In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
+  StoreInput store{this};
+  In<LightDiscs> lights{this, "lights", Presence::optional, "lights; without it only emission is seen"};
+  In<ScatteringGrid> media{this, "media", Presence::optional,
+                           "media between lights and surfaces, which dim the light on its way"};
+  Param<int> mediumSteps{this, "medium_steps", 32, within(1, 1024),
+                         "most steps through a medium that varies, towards a light"};
+  Param<Radius> radius{
+      this, "radius", Radius::larger,
+      "radius of a cone: the larger of that of the light's disc, which grows towards the light, and that of the eye's cone where it meets the surface; or one of the two alone: as published the eye's"};
+  Param<Opacity> opacity{
+      this, "opacity", Opacity::surfaces,
+      "what voxels hold: surfaces, of which a closed one lets nothing through; or a medium, as the other cones see it: trilinear reading then lets exp(-2) = 0.14 of the light through a sheet"};
+  Param<float> step{this, "step", 0.125f, within(0.05f, 2.0f),
+                    "step along a cone as a share of its diameter"};
+  Param<float> offset{this, "offset", 1.5f, within(0.0f, 8.0f),
+                      "start of a cone along the normal, and its end before an area light, in voxels"};
+  Param<float> start{this, "start", 0.5f, within(0.0f, 8.0f), "start of a cone along its axis, in voxels"};
+  Param<float> clearance{
+      this, "clearance", 1.0f / 3.0f, within(0.0f, 1e3f),
+      "largest voxels that are read as a share of their height over the surface, and over that of an area light: from a third on they reach it"};
+  Param<float> footprint{this, "footprint", 0.5f, within(0.25f, 1.0f),
+                         "voxels that are read as a share of the diameter of the cone"};
+  Out<Image> radiance{this, "radiance", Contributes::direct, Needs::nothing,
+                      "emission and light that is reflected once, W/(sr m^2)"};
+
+  Reads readsFrom() const override { return Reads::camera | Reads::lights | Reads::environment; }
+
+  void run(PassContext& frame) override {
+    const StoreBinding input = store.binding();
+    if (input.holdsMedia && media.present())
+      throw Error(
+          "voxel_cone_tracing.soft_shadows: the voxels of 'grid' already contain the media, and 'media' would dim the light once more; expected 'media' to be left out, or 'store_media off' in voxel_cone_tracing.inject");
+    const shader::BindingSet bound =
+        lights.present()
+            ? shader::BindingSet{shader::StorageSlot{"Lights"}(lights->lights), shadows::discs(lights->discs),
+                                 shadows::discOfSample(lights->discOfSample)}
+            : shader::BindingSet{};
+    const MediaBinding boundMedia(frame, media, lights.present());
+    const shadows::Variant variant{.lights = lights.present(),
+                                   .glossy = gbuffer->specular != nullptr,
+                                   .emission = frame.traits().emission,
+                                   .medium = boundMedia.axis,
+                                   .store = input.axis};
+    const shadows::Constants constants{.radiusOf = static_cast<int>(static_cast<Radius>(radius)),
+                                       .asMedium = opacity == Opacity::medium};
+    const CameraView& camera = frame.snapshot().camera;
+    radiance = Image{frame.image("direct radiance")};
+    frame.dispatch(
+        frame.program(variant, constants),
+        {shadows::directLight({.eyeWorld = camera.eye,
+                               .lightCount = lights.present() ? lights->lightCount : 0,
+                               .environment = frame.sceneDescription().environment,
+                               .mediumSteps = mediumSteps}),
+         shadows::shadows({.stepShare = step,
+                           .offset = offset,
+                           .startShare = start,
+                           .clearance = clearance,
+                           .footprint = footprint,
+                           .pixelWidth = 2.0f * camera.tanHalfFov / static_cast<float>(camera.height)}),
+         GBufferBinding(*gbuffer), shadows::emissionImage(gbuffer->emission), bound, boundMedia, input,
+         shadows::radianceImage(radiance->texture)},
+        pixels(frame));
+  }
+};
+
+}  // namespace
+
+void addSoftShadows(TechniqueRegistry& registry) {
+  registry.add<LightsPass>("lights", "Every light as point samples, without shadow maps");
+  registry.add<SoftShadowsPass>(
+      "soft_shadows",
+      "Direct light, with cones to the lights for shadows (Crassin et al. 2011; thesis Sec. 2.4)");
+}
+
+}  // namespace lumivox::voxel_cone_tracing
