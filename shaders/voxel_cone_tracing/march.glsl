@@ -16,6 +16,7 @@ layout(std140, binding = 2) uniform March {
   float startShare;   // start of a cone along its axis, in voxels
   float clearance;    // largest voxels that are read as a share of their height over the tangent plane
   float footprint;    // voxels that are read as a share of the cone's diameter
+  float leastShare;   // voxels that are read where they are partly covered, as a share of those wanted
   float jitter;       // most by which a cone's first step is shorter, as a share of it
   uvec2 seed;
 };
@@ -37,6 +38,7 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta, ui
   float firstShare = jitter > 0.0 ? 1.0 - jitter * shiftOf(cone) : 1.0;
   vec3 radiance = vec3(0.0);
   float opacity = 0.0;
+  float share = 1.0;
   float voxelSize = finestVoxel(apex);
   vec2 inside = insideStore(apex, direction);
   float distance = max(startShare * voxelSize, inside.x), end = min(maxDistance, inside.y);
@@ -51,14 +53,20 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta, ui
     float height = offset * voxelSize + cosTheta * distance;
     float wanted = min(footprint * 2.0 * tanHalfAngle * distance, clearance * height);
     // The last step ends where the grid does, so that walls there are read in full.
-    float stride = min(stepShare * max(sizeForStep(wanted) / footprint, voxelSize), end - distance) * firstShare;
+    wanted = max(wanted * share, min(wanted, voxelSize));
+    float stride = min(min(stepShare * max(wanted / footprint, voxelSize), longestStep(wanted)), end - distance) * firstShare;
+    StoreSample found = readStore(apex + direction * (distance + 0.5 * stride), direction, wanted, stride);
+    bool partly = found.opacity > 0.0 && found.opacity < kOpaque;
+    if (partly && wanted > voxelSize && share > leastShare) {
+      share *= 0.5;
+      continue;
+    }
+    share = min(2.0 * share, 1.0);
     firstShare = 1.0;
 #if MEDIUM != MEDIUM_NONE
-    vec3 sampled = apex + direction * distance;
-    vec3 thickness = opticalDepth(sampled, direction, stride, kMediumSteps);
+    vec3 thickness = opticalDepth(apex + direction * distance, direction, stride, kMediumSteps);
     passed *= exp(-0.5 * thickness);
 #endif
-    StoreSample found = readStore(apex + direction * (distance + 0.5 * stride), direction, wanted, stride);
     if (found.value.a > 0.0) {
       // Pre-multiplied radiance scales with the opacity; listing 4.13 mixes pre-multiplied and plain radiance, which this does not.
       radiance += passed * ((1.0 - opacity) * found.opacity / found.value.a * found.value.rgb);

@@ -1,7 +1,7 @@
 // The store of light and opacity that cones read, whichever it is. Each kind of store has a file that says
 //   vec2 insideStore(vec3 origin, vec3 direction)   where a ray enters it and where it leaves it, m along the ray
 //   float finestVoxel(vec3 at)                      its finest voxels there, m
-//   float sizeForStep(float size)                   by voxels of which size steps go where those of `size` m are read
+//   float longestStep(float size)                   m, through voxels of `size` m
 //   StoreSample readStore(vec3 at, vec3 direction, float size, float stride)
 //                                                   what a step of `stride` m through voxels of `size` m around a point looks like
 //   vec4 readStoreAsPublished(vec3 at, vec3 direction, float size)
@@ -35,6 +35,8 @@ float opacityOfStep(float opacity, float stride, float level, float blend) {
   return storeOpacityOfFinestVoxel != 0 ? stepOpacityOf(through, stride / storeVoxel)
                                         : stepOpacityOf(throughVoxel(through, blend), stride / (exp2(level) * storeVoxel));
 }
+
+const float kNoLimit = 1e30;
 
 #if STORE == STORE_DENSE
 #include "store_dense.glsl"

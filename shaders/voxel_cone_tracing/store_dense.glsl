@@ -5,7 +5,7 @@ vec2 insideStore(vec3 origin, vec3 direction) { return insideVolume(storeLow, st
 
 float finestVoxel(vec3 at) { return storeVoxel; }
 
-float sizeForStep(float size) { return size; }
+float longestStep(float size) { return kNoLimit; }
 
 StoreSample readStore(vec3 at, vec3 direction, float size, float stride) {
   vec3 texcoord = (at - storeLow) / storeExtent;

@@ -13,8 +13,8 @@ vec2 insideStore(vec3 origin, vec3 direction) { return insideVolume(storeLow, st
 
 float finestVoxel(vec3 at) { return storeVoxel; }
 
-// Layers are never skipped by steps of half the diameter: those between two levels are as long as for the finer one.
-float sizeForStep(float size) { return storeLayers != 0 ? storeVoxel * exp2(floor(log2(max(size / storeVoxel, 1.0)))) : size; }
+// No step skips a layer of the finer of the two levels that are read.
+float longestStep(float size) { return storeLayers != 0 ? storeVoxel * exp2(floor(log2(max(size / storeVoxel, 1.0)))) : kNoLimit; }
 
 vec4 seenAlongX(vec3 direction, vec3 texcoord, float level) {
   return direction.x < 0.0 ? textureLod(positiveX, texcoord, level) : textureLod(negativeX, texcoord, level);

@@ -31,7 +31,7 @@ vec2 insideStore(vec3 origin, vec3 direction) { return insideVolume(storeLow, st
 
 float finestVoxel(vec3 at) { return storeVoxel; }
 
-float sizeForStep(float size) { return size; }
+float longestStep(float size) { return kNoLimit; }
 
 // In the brick of a node; `at` counts voxels of the node's level from the middle of the first one.
 vec4 inBrick(uint brick, vec3 at, vec3 place) {

@@ -21,7 +21,7 @@ class GatherPass : public Pass {
   In<ScatteringGrid> media{this, "media", Presence::optional,
                            "media that dim what the cones see; light that they scatter is left out"};
   Param<int> cones{this, "cones", 6, within(1, 256), "diffuse cones per pixel"};
-  Param<int> glossyCones{this, "glossy_cones", 1, within(1, 64),
+  Param<int> glossyCones{this, "glossy_cones", 4, within(1, 64),
                          "cones per pixel that share the Phong lobe; 1, as published: one as wide as it"};
   Param<Distribution> distribution{
       this, "distribution", Distribution::cosine,
@@ -34,7 +34,7 @@ class GatherPass : public Pass {
       this, "as_published", false,
       "Listings 4.12 and 4.13 to the letter: the five cones with the weights 1 and 0.707, not normalised, from two voxels on by samples of two voxels and more; 'cones', 'distribution', 'step', 'offset', 'start', 'clearance', 'footprint', 'pattern' and 'resolution' have no say"};
   Param<int> pattern{
-      this, "pattern", 1, within(1, 8),
+      this, "pattern", 4, within(1, 8),
       "side of a square of pixels each of which sends its cones elsewhere; a joint bilateral filter as wide averages them, so that they count as that many times more"};
   Param<Resolution> resolution{
       this, "resolution", Resolution::full,

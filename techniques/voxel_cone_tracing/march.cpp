@@ -120,6 +120,9 @@ ConeMarch::ConeMarch(Pass* pass)
       footprint_(
           pass, "footprint", 0.5f, within(0.25f, 1.0f),
           "voxels that are read as a share of the diameter of the cone; as published: 1, which reads twice as wide as the cone"),
+      refinement_(
+          pass, "refinement", 0.5f, within(0.0f, 1.0f),
+          "least voxels that are read where they are partly covered, as a share of those that the cone asks for; 1: none smaller; 0: the finest"),
       reach_(pass, "reach", 0.0f, within(0.0f, 1e9f), "m", "length of a cone; 0: to the end of the grid"),
       jitter_(
           pass, "jitter", 0.0f, within(0.0f, 1.0f),
@@ -134,6 +137,7 @@ shader::BindingSet ConeMarch::binding(const PassContext& frame, const StoreBindi
                                                        .startShare = start_,
                                                        .clearance = clearance_,
                                                        .footprint = footprint_,
+                                                       .leastShare = refinement_,
                                                        .jitter = jitter_,
                                                        .seed = seedWords(frame)})};
 }

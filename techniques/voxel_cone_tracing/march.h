@@ -49,7 +49,7 @@ class ConeMarch {
   shader::BindingSet binding(const PassContext& frame, const StoreBinding& store) const;
 
  private:
-  Param<float> step_, offset_, start_, clearance_, footprint_, reach_, jitter_;
+  Param<float> step_, offset_, start_, clearance_, footprint_, refinement_, reach_, jitter_;
 };
 
 }  // namespace lumivox::voxel_cone_tracing

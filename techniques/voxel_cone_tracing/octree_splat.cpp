@@ -15,6 +15,11 @@ namespace {
 class OctreeSplatPass : public Pass {
   In<ReflectiveShadowMap> photons{this, "photons", "what the lights see"};
   In<RadianceOctree> octree{this, "octree", "surfaces without that light, pre-filtered", Levels::all};
+  // In the order of octree_photon_sums.comp.
+  enum class Photons { summed, averaged };
+  Param<Photons> rule{
+      this, "photons_are", Photons::summed,
+      "the flux of all of them goes into the area that surfaces have in a voxel, so that none is lost (Crassin et al. 2011); or they are averaged for each light, as published in the thesis: what lies between photons stays dark"};
   Out<RadianceOctree> radiance{this, "radiance", "the same octree with the photons' light at all depths",
                                Levels::all};
 
@@ -36,11 +41,13 @@ class OctreeSplatPass : public Pass {
     const shader::BindingSet ranked{bound, shader::StorageSlot{"OctreeRanks"}(tree.ranks)};
     const gpu::TextureRef nodes = nodeMap(frame, tree, ranked);
     markLit(frame, *nodes, ranked, lit);
-    for (int light = 0; light < std::max(photons->lightCount, 1); ++light) {
+    const int passes = rule == Photons::averaged ? std::max(photons->lightCount, 1) : 1;
+    const int ruleOfShader = static_cast<int>(static_cast<Photons>(rule));
+    for (int light = 0; light < passes; ++light) {
       if (light > 0) sums->clear();
-      average(frame, tree, light, ranked, nodes, sums);
+      average(frame, light, ranked, nodes, sums);
       forEachBrick(
-          frame, frame.program(octree_splat::kProgram),
+          frame, frame.program(octree_splat::Variant{}, octree_splat::Constants{.rule = ruleOfShader}),
           {octree_splat::splat({result.unit}), octree_splat::sums(sums),
            octree_splat::pool(light == 0 ? octree->radiance : result.radiance, gpu::Sampling::nearest),
            octree_splat::poolImage(result.radiance), ranked},
@@ -72,6 +79,8 @@ class OctreeSplatPass : public Pass {
                        {octree_node_map::photons(
                             {.gridLow = tree.grid.low, .voxelSize = tree.grid.voxelSize, .mapSize = size}),
                         octree_node_map::photonPosition(photons->position, gpu::Sampling::nearest),
+                        octree_node_map::photonNormal(photons->normal, gpu::Sampling::nearest),
+                        octree_node_map::pool(octree->radiance, gpu::Sampling::nearest),
                         octree_node_map::nodeMap(map), ranked},
                        countOf(size));
     for (int level = 1; level < map->description().levels; ++level) {
@@ -100,16 +109,16 @@ class OctreeSplatPass : public Pass {
     }
   }
 
-  void average(PassContext& frame, const VoxelOctree& tree, int light, const shader::BindingSet& ranked,
-               const gpu::TextureRef& nodes, const gpu::BufferRef& sums) {
+  void average(PassContext& frame, int light, const shader::BindingSet& ranked, const gpu::TextureRef& nodes,
+               const gpu::BufferRef& sums) {
     using Variant = octree_photon_sums::Variant;
     const glm::ivec3 size = sizeOf(*photons->position, 0);
     for (const int stage : {Variant::stageCount, Variant::stageAdd})
       frame.dispatchList(
-          frame.program(Variant{.stage = stage}),
+          frame.program(Variant{.stage = stage},
+                        octree_photon_sums::Constants{.rule = static_cast<int>(static_cast<Photons>(rule))}),
           {octree_photon_sums::photonsOfLight(
-               {.gridLow = tree.grid.low, .voxelSize = tree.grid.voxelSize, .mapSize = size, .light = light}),
-           octree_photon_sums::photonPosition(photons->position, gpu::Sampling::nearest),
+               {.mapSize = size, .light = light, .voxelSize = octree->tree.grid.voxelSize}),
            octree_photon_sums::photonNormal(photons->normal, gpu::Sampling::nearest),
            octree_photon_sums::photonFlux(photons->flux, gpu::Sampling::nearest),
            octree_photon_sums::nodes(nodes, gpu::Sampling::nearest), octree_photon_sums::sums(sums), ranked},

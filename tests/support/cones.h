@@ -5,11 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "../../techniques/voxel_cone_tracing/directional_grid.h"
 #include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 
 namespace lumivox::test::cones {
+
+using voxel_cone_tracing::DirectionalRadianceGrid;
 
 inline constexpr int kPixels = 8;  ///< along both sides of the images here
 
@@ -56,6 +59,19 @@ inline RadianceGrid makeGrid(int resolution, const std::function<glm::vec4(int, 
   return grid;
 }
 
+/// Six grids of [-1,1]^3 with all levels allocated; `fill` gives the finest, of the face with the outward
+/// normal +x, -x, +y, -y, +z or -z.
+inline DirectionalRadianceGrid makeDirections(int resolution,
+                                              const std::function<glm::vec4(int, int, int, int)>& fill) {
+  DirectionalRadianceGrid result;
+  for (int face = 0; face < 6; ++face) {
+    const RadianceGrid one = makeGrid(resolution, [&](int x, int y, int z) { return fill(face, x, y, z); });
+    result.grid = one.grid;
+    result.faces[static_cast<std::size_t>(face)] = one.radiance;
+  }
+  return result;
+}
+
 /// A grid whose voxels are all the same.
 inline RadianceGrid uniformGrid(int resolution, const glm::vec4& value) {
   return makeGrid(resolution, [&](int, int, int) { return value; });
@@ -77,6 +93,33 @@ inline RadianceGrid filtered(RadianceGrid grid, const char* opacity = "facing") 
   return harness.output<RadianceGrid>("mips");
 }
 
+/// Coarser levels in six grids, from a finest level of six or of one.
+inline DirectionalRadianceGrid filteredDirections(const DirectionalRadianceGrid& grid) {
+  const Scene scene = emptyScene();
+  PassHarness harness(device(), techniques(), "voxel_cone_tracing", "filter_directional", scene,
+                      snapshotOf(scene, 0.0));
+  harness.setInput("radiance", grid);
+  harness.run();
+  return harness.output<DirectionalRadianceGrid>("mips");
+}
+inline DirectionalRadianceGrid filteredDirections(const RadianceGrid& finest) {
+  const Scene scene = emptyScene();
+  PassHarness harness(device(), techniques(), "voxel_cone_tracing", "filter_directional", scene,
+                      snapshotOf(scene, 0.0));
+  harness.setInput("finest", finest);
+  harness.run();
+  return harness.output<DirectionalRadianceGrid>("mips");
+}
+
+/// One value of a face at a level of the grid.
+inline glm::vec4 faceAt(const DirectionalRadianceGrid& grid, int face, int level, const glm::ivec3& voxel) {
+  const glm::ivec3 size = levelResolution(grid.grid.resolution, level);
+  const std::vector<float> texels =
+      grid.faces[static_cast<std::size_t>(face)]->downloadFloats(level - grid.firstLevelOfFaces());
+  const std::size_t at = 4 * static_cast<std::size_t>((voxel.z * size.y + voxel.y) * size.x + voxel.x);
+  return {texels[at], texels[at + 1], texels[at + 2], texels[at + 3]};
+}
+
 struct GatherSettings {
   int cones = 6;
   const char* distribution = "cosine";
@@ -86,12 +129,19 @@ struct GatherSettings {
   double coneRatio = 1.1547005383792515;
   double jitter = 0;
   std::uint64_t seed = 1;
+  const char* reading = "layers";
   const char* lookUp = "ranks";
+  double refinement = 1;
+  int pattern = 1, glossyCones = 1;
+  const char* resolution = "full";
 };
 
 /// Which input of the cones a store is.
 inline const char* inputOf(const RadianceGrid&) {
   return "grid";
+}
+inline const char* inputOf(const DirectionalRadianceGrid&) {
+  return "directions";
 }
 
 /// Runs `gather` over a g-buffer; `read` gets the pass with its outputs.
@@ -110,7 +160,12 @@ auto gatherWith(const Scene& scene, const Store& grid, const GBuffer& gbuffer, c
   harness.setParameter("as_published", std::string(settings.asPublished ? "on" : "off"));
   harness.setParameter("cone_ratio", settings.coneRatio);
   harness.setParameter("jitter", settings.jitter);
+  harness.setParameter("reading", std::string(settings.reading));
   harness.setParameter("look_up", std::string(settings.lookUp));
+  harness.setParameter("refinement", settings.refinement);
+  harness.setParameter("pattern", settings.pattern);
+  harness.setParameter("glossy_cones", settings.glossyCones);
+  harness.setParameter("resolution", std::string(settings.resolution));
   harness.setInput("gbuffer", gbuffer);
   harness.setInput(inputOf(grid), grid);
   harness.run(settings.seed);
@@ -145,19 +200,21 @@ glm::vec3 gatherGlossy(const Scene& scene, const Store& grid, const glm::vec3& p
 struct InjectSettings {
   const char* precision = "float";
   double ambient = 0;
-  bool lights = true, storeMedia = false;
+  bool lights = true, storeMedia = false, twoSided = true;
   const ScatteringGrid* media = nullptr;
 };
 
-/// The grid after injecting the fragments of a scene under its lights.
-inline RadianceGrid injectedGrid(const Scene& scene, int resolution, const InjectSettings& settings = {},
-                                 VoxelFragments* fragments = nullptr) {
+/// The grid after injecting the fragments of a scene under its lights: RadianceGrid or
+/// DirectionalRadianceGrid.
+template <class Grid>
+Grid injectedAs(const char* pass, const Scene& scene, int resolution, const InjectSettings& settings = {},
+                VoxelFragments* fragments = nullptr) {
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshot);
   voxels.setParameter("resolution", resolution);
   voxels.run();
   PassHarness shadow(device(), techniques(), "direct_lighting", "shadow_map", scene, snapshot);
-  PassHarness inject(device(), techniques(), "voxel_cone_tracing", "inject", scene, snapshot);
+  PassHarness inject(device(), techniques(), "voxel_cone_tracing", pass, scene, snapshot);
   inject.setParameter("precision", std::string(settings.precision));
   inject.setParameter("ambient", settings.ambient);
   inject.setParameter("store_media", std::string(settings.storeMedia ? "on" : "off"));
@@ -168,8 +225,17 @@ inline RadianceGrid injectedGrid(const Scene& scene, int resolution, const Injec
   }
   if (settings.media != nullptr) inject.setInput("media", *settings.media);
   if (fragments != nullptr) *fragments = voxels.output<VoxelFragments>("fragments");
+  inject.setParameter("two_sided", std::string(settings.twoSided ? "on" : "off"));
   inject.run();
-  return inject.output<RadianceGrid>("radiance");
+  return inject.template output<Grid>("radiance");
+}
+inline RadianceGrid injectedGrid(const Scene& scene, int resolution, const InjectSettings& settings = {},
+                                 VoxelFragments* fragments = nullptr) {
+  return injectedAs<RadianceGrid>("inject", scene, resolution, settings, fragments);
+}
+inline DirectionalRadianceGrid injectedDirections(const Scene& scene, int resolution,
+                                                  const InjectSettings& settings = {}) {
+  return injectedAs<DirectionalRadianceGrid>("inject_directional", scene, resolution, settings);
 }
 
 }  // namespace lumivox::test::cones
