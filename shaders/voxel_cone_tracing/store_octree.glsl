@@ -7,15 +7,9 @@
 #pragma lumivox require STORE == octree || LOOK_UP == ranks
 #include "octree.glsl"
 #if LOOK_UP == LOOK_UP_RANKS
-#include "octree_tags.glsl"
-layout(std430, binding = 12) readonly buffer OctreeRanks { RankedTags octreeRanks[]; };
+#include "octree_ranks.glsl"
 
-uint brickOfNode(ivec3 place, int depth) {
-  uint morton = mortonOf(place);
-  RankedTags word = octreeRanks[firstWord(depth) + (morton >> 5)];
-  uint bit = morton & 31u;
-  return (word.tags >> bit & 1u) == 0u ? kNone : word.nodesBefore + uint(bitCount(below(word.tags, bit)));
-}
+uint brickOfNode(ivec3 place, int depth) { return rankedBrick(mortonOf(place), depth); }
 #else
 uint brickOfNode(ivec3 place, int depth) { return brickAt(place, depth); }
 #endif

@@ -106,7 +106,6 @@ StoreBinding StoreInput::inOctree() const {
        .firstVoxelGrows = tree.voxels == VoxelOctree::Voxels::asGrid ? 1.0f : 0.0f}));
   result.add(shader::SampledSlot{"brickPool"}(octree.radiance, gpu::Sampling::linear));
   result.add(OctreeBinding(tree, octree.poolShift));
-  result.add(shader::StorageSlot{"OctreeRanks"}(tree.ranks));
   return result;
 }
 
