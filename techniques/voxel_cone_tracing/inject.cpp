@@ -112,7 +112,8 @@ class Injection {
     glm::ivec3 brickCount{0};
     bool directional = false;
     bool inOctree = false;
-    shader::BindingSet places;  ///< where the sums of a voxel are found
+    gpu::BufferRef bricks;      ///< of a dense grid
+    shader::BindingSet places;  ///< where the sums of a voxel are found; refers to what it binds
     gpu::BufferRef voxels;
     shader::BindingSet bindings() const {
       if (directional) return {places, add::directionalSums(voxels)};
@@ -147,8 +148,8 @@ class Injection {
     const std::uint64_t bricks = GridPlacement{.resolution = sums.brickCount}.voxelCount(),
                         voxels = std::min<std::uint64_t>(fragments_->capacity,
                                                          GridPlacement{.resolution = size}.voxelCount());
-    const gpu::BufferRef bits = frame.emptyElements(claim::bricks, bricks, "occupied voxels of bricks");
-    sums.places = {add::bricks(bits)};
+    sums.bricks = frame.emptyElements(claim::bricks, bricks, "occupied voxels of bricks");
+    sums.places = {add::bricks(sums.bricks)};
     sums.voxels = directional ? frame.emptyElements(add::directionalSums, voxels, "sums of voxels' faces")
                               : frame.emptyElements(add::sums, voxels, "sums of voxels");
     occupied.bricks = frame.elements(claim::brickList, std::min<std::uint64_t>(fragments_->capacity, bricks),
@@ -156,11 +157,12 @@ class Injection {
     occupied.count = frame.buffer(OccupiedBricks::argumentsBytes(3), "occupied brick count");
     const gpu::BufferRef totals = frame.uploaded(std::array<std::uint32_t, 2>{}, "claimed bricks and voxels");
     const auto brickCount = claim::size({sums.brickCount});
-    forEachFragment(frame, frame.program(mark::kProgram), {brickCount, mark::bricks(bits)}, *fragments_);
-    frame.dispatch(
-        frame.program(claim::kProgram),
-        {brickCount, claim::bricks(bits), claim::brickList(occupied.bricks), claim::brickTotals(totals)},
-        sums.brickCount);
+    forEachFragment(frame, frame.program(mark::kProgram), {brickCount, mark::bricks(sums.bricks)},
+                    *fragments_);
+    frame.dispatch(frame.program(claim::kProgram),
+                   {brickCount, claim::bricks(sums.bricks), claim::brickList(occupied.bricks),
+                    claim::brickTotals(totals)},
+                   sums.brickCount);
     frame.dispatch(frame.program(arguments::kProgram),
                    {arguments::brickTotals(totals), arguments::brickCount(occupied.count)}, {1, 1, 1});
     return sums;

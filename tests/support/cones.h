@@ -130,10 +130,10 @@ struct GatherSettings {
   double jitter = 0;
   std::uint64_t seed = 1;
   const char* reading = "layers";
-  const char* lookUp = "ranks";
   double refinement = 1;
   int pattern = 1, glossyCones = 1;
   const char* resolution = "full";
+  const char* lookUp = "ranks";
 };
 
 /// Which input of the cones a store is.
@@ -161,11 +161,11 @@ auto gatherWith(const Scene& scene, const Store& grid, const GBuffer& gbuffer, c
   harness.setParameter("cone_ratio", settings.coneRatio);
   harness.setParameter("jitter", settings.jitter);
   harness.setParameter("reading", std::string(settings.reading));
-  harness.setParameter("look_up", std::string(settings.lookUp));
   harness.setParameter("refinement", settings.refinement);
   harness.setParameter("pattern", settings.pattern);
   harness.setParameter("glossy_cones", settings.glossyCones);
   harness.setParameter("resolution", std::string(settings.resolution));
+  harness.setParameter("look_up", std::string(settings.lookUp));
   harness.setInput("gbuffer", gbuffer);
   harness.setInput(inputOf(grid), grid);
   harness.run(settings.seed);
