@@ -92,6 +92,23 @@ TEST_CASE("in open sunlight a voxel has the radiance albedo / pi times the irrad
   }
 }
 
+TEST_CASE("a steep surface meets more voxels for its area, and each gets its share of the flux") {
+  // A voxel of width w meets a plane whose distance from its middle is less than (|nx| + |ny| + |nz|) w / 2:
+  // an area A meets A (|nx| + |ny| + |nz|) / w^2 of them. The slope's normal is (-1, 1, 0.5) / 1.5, its area
+  // 1.5 m^2; each voxel has the radiance albedo / pi times 2 W/m^2 times the cosine.
+  SceneBuilder builder;
+  const int grey = builder.lambert(0.5f);
+  builder.quad({0, 0, 0}, {-0.5f, 0, -1.0f}, {1, 1, 0}, grey);
+  builder.light(LightKind::directional, glm::vec3(2.0f), {0, 0, 0}, {0.1f, -1.0f, -0.2f});
+  builder.look({1, 3, 3}, {0, 0, 0}, {0, 1, 0}, 1.0, 16, 16);
+  const Splat splat = splatted(builder.scene, 48, "summed");
+  const double voxel = splat.photons.tree.grid.voxelSize,
+               cosine = glm::dot(glm::normalize(glm::dvec3(-1, 1, 0.5)),
+                                 -glm::normalize(glm::dvec3(0.1, -1, -0.2)));
+  CHECK(totalOf(splat.photons, 0) ==
+        Approx(0.5 / kPi * 2.0 * cosine * 1.5 * (2.5 / 1.5) / (voxel * voxel)).epsilon(0.05));
+}
+
 TEST_CASE(
     "the node map finds every brick that photons change: all levels are those of filtering everything") {
   for (const int lights : {1, 2}) {
