@@ -13,7 +13,8 @@ using namespace shaders::voxel_cone_tracing;
 namespace {
 
 class OctreeSplatPass : public Pass {
-  In<ReflectiveShadowMap> photons{this, "photons", "what the lights see"};
+  In<ReflectiveShadowMap> photons{this, "photons", Presence::optional,
+                                  "what the lights see; without it the octree stays as it is"};
   In<RadianceOctree> octree{this, "octree", "surfaces without that light, pre-filtered", Levels::all};
   // In the order of octree_photon_sums.comp.
   enum class Photons { summed, averaged };
@@ -24,6 +25,10 @@ class OctreeSplatPass : public Pass {
                                Levels::all};
 
   void run(PassContext& frame) override {
+    if (!photons.present()) {
+      radiance = *octree;
+      return;
+    }
     RadianceOctree result = *octree;
     const VoxelOctree& tree = result.tree;
     if (tree.voxels != VoxelOctree::Voxels::asGrid || tree.ranks == nullptr)

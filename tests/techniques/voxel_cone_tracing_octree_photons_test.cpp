@@ -141,3 +141,12 @@ TEST_CASE("photons in an octree without coarser levels, or with voxels elsewhere
   refused(leavesOf(list), "expected an octree with all levels");
   refused(filteredOctree(leavesOf(list, "at_corners"), "average"), "'voxels as_grid'");
 }
+
+TEST_CASE("without a light there are no photons, and the octree is dark") {
+  Scene scene = sunlit(1);
+  scene.lights.clear();
+  RenderOptions options;
+  options.width = options.height = 16;
+  const FrameResult frame = renderOnce(scene, pipeline("voxel_cone_tracing_octree_photons"), options);
+  for (const float value : frame.outputs.at("final").values()) CHECK(value == 0.0f);
+}
