@@ -37,6 +37,7 @@ float opacityOfStep(float opacity, float stride, float level, float blend) {
 }
 
 const float kNoLimit = 1e30;
+vec3 coneApex;  // m, of the cone that is traced
 
 #if STORE == STORE_DENSE
 #include "store_dense.glsl"

@@ -63,6 +63,13 @@ vec4 layers(vec3 texcoord, vec3 direction, float level, float stride) {
     z = textureLod(finestGrid, atZ, 0.0);
   }
   vec3 weights = faceWeights(direction);
+  // In the edge of a room a cone begins in the layer of a wall beside it. The wall lies in the middle of its layer as far as is known: a
+  // cone that leaves the middle does not meet it.
+  if (level == 0.0) {
+    vec3 apex = (coneApex - storeLow) / storeExtent * voxels;
+    vec3 closed = step(vec3(kOpaque), vec3(x.a, y.a, z.a)) * vec3(equal(floor(apex), floor(texcoord * voxels)));
+    weights *= 1.0 - closed * step(0.0, direction * (apex - floor(apex) - 0.5));
+  }
   vec4 mean = weights.x * x + weights.y * y + weights.z * z;
   if (mean.a <= 0.0) return vec4(0.0);
   const float kClosed = 1e-30;  // keeps what a cone along a wall sees of the wall finite

@@ -1,6 +1,6 @@
 // Coarser levels of six directional grids: Crassin et al. 2011, Sec. 8.1; thesis Gomes 2015, Sec. 3.1.3 and
 // 4.2.1, Fig. 64.
-#include "directional_grid.h"
+#include "levels.h"
 #include "lumivox/base/error.h"
 #include "lumivox/plugin/technique.h"
 #include "voxel_cone_tracing_shaders.h"
@@ -9,6 +9,49 @@ namespace lumivox::voxel_cone_tracing {
 namespace {
 
 namespace filter = shaders::voxel_cone_tracing::filter_directional;
+
+void fillLevel(PassContext& frame, const DirectionalRadianceGrid& result, int level) {
+  const glm::ivec3 coarse = levelResolution(result.grid.resolution, level),
+                   fine = levelResolution(result.grid.resolution, level - 1);
+  const int first = result.firstLevelOfFaces(), written = level - first;
+  const bool fromFinest = level - 1 < first;
+  const int read = fromFinest ? 0 : level - 1 - first;
+  const OccupiedBricks& occupied = result.occupied;
+  // The voxels of a level are those of the bricks down to one a brick, where bricks are halved evenly.
+  const bool followsBricks = occupied.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
+                             result.grid.resolution % OccupiedBricks::kSide == glm::ivec3(0);
+  const int perSide = OccupiedBricks::kSide >> level;
+  const auto source = [&](int face) -> const gpu::TextureRef& {
+    return fromFinest ? result.finest : result.faces[static_cast<std::size_t>(face)];
+  };
+  const auto target = [&](int face) -> const gpu::TextureRef& {
+    return result.faces[static_cast<std::size_t>(face)];
+  };
+  const shader::BindingSet bindings{
+      filter::parameters(
+          {.coarse = coarse, .levelOfFaces = read, .fine = fine, .perBrick = perSide * perSide * perSide}),
+      filter::positiveX(source(0), gpu::Sampling::nearest),
+      filter::negativeX(source(1), gpu::Sampling::nearest),
+      filter::positiveY(source(2), gpu::Sampling::nearest),
+      filter::negativeY(source(3), gpu::Sampling::nearest),
+      filter::positiveZ(source(4), gpu::Sampling::nearest),
+      filter::negativeZ(source(5), gpu::Sampling::nearest),
+      filter::positiveXImage(target(0), written),
+      filter::negativeXImage(target(1), written),
+      filter::positiveYImage(target(2), written),
+      filter::negativeYImage(target(3), written),
+      filter::positiveZImage(target(4), written),
+      filter::negativeZImage(target(5), written),
+      filter::brickList(occupied.bricks),
+      filter::brickCount(occupied.count)};
+  const auto& program = frame.program(filter::Variant{followsBricks});
+  if (!followsBricks) {
+    frame.dispatch(program, bindings, coarse);
+    return;
+  }
+  for (int face = 0; face < 6; ++face) target(face)->clear(glm::vec4(0.0f), written);
+  frame.dispatchIndirect(program, bindings, *occupied.count, OccupiedBricks::argumentsBytes(level));
+}
 
 class FilterDirectionalPass : public Pass {
   In<DirectionalRadianceGrid> radiance{this, "radiance", Presence::optional,
@@ -20,9 +63,7 @@ class FilterDirectionalPass : public Pass {
 
   void run(PassContext& frame) override {
     DirectionalRadianceGrid result = input(frame);
-    const glm::ivec3 size = result.grid.resolution;
-    result.filledLevels = gpu::fullLevelCount(size.x, size.y, size.z);
-    for (int level = 1; level < result.filledLevels; ++level) fill(frame, result, level);
+    fillLevels(frame, result);
     mips = result;
   }
 
@@ -45,52 +86,15 @@ class FilterDirectionalPass : public Pass {
                           gpu::fullLevelCount(size.x, size.y, size.z));
     return result;
   }
-
-  static void fill(PassContext& frame, const DirectionalRadianceGrid& result, int level) {
-    const glm::ivec3 coarse = levelResolution(result.grid.resolution, level),
-                     fine = levelResolution(result.grid.resolution, level - 1);
-    const int first = result.firstLevelOfFaces(), written = level - first;
-    const bool fromFinest = level - 1 < first;
-    const int read = fromFinest ? 0 : level - 1 - first;
-    const OccupiedBricks& occupied = result.occupied;
-    // The voxels of a level are those of the bricks down to one a brick, where bricks are halved evenly.
-    const bool followsBricks = occupied.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
-                               result.grid.resolution % OccupiedBricks::kSide == glm::ivec3(0);
-    const int perSide = OccupiedBricks::kSide >> level;
-    const auto source = [&](int face) -> const gpu::TextureRef& {
-      return fromFinest ? result.finest : result.faces[static_cast<std::size_t>(face)];
-    };
-    const auto target = [&](int face) -> const gpu::TextureRef& {
-      return result.faces[static_cast<std::size_t>(face)];
-    };
-    const shader::BindingSet bindings{
-        filter::parameters(
-            {.coarse = coarse, .levelOfFaces = read, .fine = fine, .perBrick = perSide * perSide * perSide}),
-        filter::positiveX(source(0), gpu::Sampling::nearest),
-        filter::negativeX(source(1), gpu::Sampling::nearest),
-        filter::positiveY(source(2), gpu::Sampling::nearest),
-        filter::negativeY(source(3), gpu::Sampling::nearest),
-        filter::positiveZ(source(4), gpu::Sampling::nearest),
-        filter::negativeZ(source(5), gpu::Sampling::nearest),
-        filter::positiveXImage(target(0), written),
-        filter::negativeXImage(target(1), written),
-        filter::positiveYImage(target(2), written),
-        filter::negativeYImage(target(3), written),
-        filter::positiveZImage(target(4), written),
-        filter::negativeZImage(target(5), written),
-        filter::brickList(occupied.bricks),
-        filter::brickCount(occupied.count)};
-    const auto& program = frame.program(filter::Variant{followsBricks});
-    if (!followsBricks) {
-      frame.dispatch(program, bindings, coarse);
-      return;
-    }
-    for (int face = 0; face < 6; ++face) target(face)->clear(glm::vec4(0.0f), written);
-    frame.dispatchIndirect(program, bindings, *occupied.count, OccupiedBricks::argumentsBytes(level));
-  }
 };
 
 }  // namespace
+
+void fillLevels(PassContext& frame, DirectionalRadianceGrid& grid) {
+  const glm::ivec3 size = grid.grid.resolution;
+  grid.filledLevels = gpu::fullLevelCount(size.x, size.y, size.z);
+  for (int level = 1; level < grid.filledLevels; ++level) fillLevel(frame, grid, level);
+}
 
 void addFilterDirectional(TechniqueRegistry& registry) {
   registry.add<FilterDirectionalPass>(

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <span>
 
-#include "directional_grid.h"
+#include "levels.h"
 #include "lumivox/base/error.h"
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/light_bounds.h"
 #include "lumivox/toolkit/media.h"
+#include "march.h"
 #include "octree.h"
-#include "voxel_cone_tracing_shaders.h"
 
 namespace lumivox::voxel_cone_tracing {
 namespace {
@@ -29,6 +29,21 @@ glm::ivec3 evenlyHalved(const glm::ivec3& size) {
   while (2 * kCoarse * multiple <= std::max({size.x, size.y, size.z})) multiple *= 2;
   return (size + (multiple - 1)) / multiple * multiple;
 }
+
+/// Bounces beyond the first, by light that cones gather for every fragment: members of a pass.
+class Bounces {
+ public:
+  explicit Bounces(Pass* pass)
+      : count_(
+            pass, "bounces", 1, within(1, 256),
+            "times that light was reflected where the cones find it; beyond the first, as published, cones gather it for every fragment through the grid of the one before"),
+        cones_(pass, "bounce_cones", 6, within(1, 256), "cones for each side of a fragment") {}
+  int count() const { return count_; }
+  int cones() const { return cones_; }
+
+ private:
+  Param<int> count_, cones_;
+};
 
 /// Injection into grids: members of a pass.
 class Injection {
@@ -61,14 +76,27 @@ class Injection {
   /// Fills the finest levels, of one texture for all sides or of six for the faces, and what the port says
   /// of them.
   template <class Grid>
-  void fill(PassContext& frame, Grid& result, std::span<const gpu::TextureRef> textures) {
+  void fill(PassContext& frame, Grid& result, std::span<const gpu::TextureRef> textures,
+            const Bounces& bounces) {
     result.grid = placement();
     result.holdsMedia = storesMedia();
-    const float brightest = brightestOf(frame, result.unit);
+    // Every bounce adds less than the one before.
+    const float brightest = brightestOf(frame, result.unit, bounces.count());
 
     const Sums sums = claimSums(frame, textures.size() > 1, result.occupied);
-    average(frame, sums, brightest);
+    const gpu::BufferRef direct = average(frame, sums, brightest);
     resolve(frame, sums, brightest, result.unit, result.holdsMedia, result.occupied, textures);
+    for (int bounce = 1; bounce < bounces.count(); ++bounce) {
+      if constexpr (std::is_same_v<Grid, RadianceGrid>) {
+        fillLevels(frame, result, Opacity::facing);
+        reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(result));
+      } else {
+        fillLevels(frame, result);
+        reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(result, true));
+      }
+      resolve(frame, sums, brightest, result.unit, result.holdsMedia, result.occupied, textures);
+    }
+    result.filledLevels = 1;
     if (result.holdsMedia) result.occupied = {};
   }
 
@@ -128,11 +156,12 @@ class Injection {
   }
   bool storesMedia() const { return storeMedia_ && media_.present(); }
   /// No voxel can reflect more; and of half floats the unit.
-  float brightestOf(PassContext& frame, float& unit) const {
+  float brightestOf(PassContext& frame, float& unit, int bounces = 1) const {
     // A grid cannot say anything of what lies nearer than half a voxel.
     const float brightest =
-        largestRadiance(frame.sceneDescription(), frame.snapshot(), 0.5f * fragments_->grid.voxelSize) +
-        ambient_ / glm::pi<float>();
+        static_cast<float>(bounces) *
+        (largestRadiance(frame.sceneDescription(), frame.snapshot(), 0.5f * fragments_->grid.voxelSize) +
+         ambient_ / glm::pi<float>());
     if (isHalf()) unit = brightest / kLargestHalf;
     return brightest;
   }
@@ -168,17 +197,52 @@ class Injection {
     return sums;
   }
 
-  /// The sums of occupied voxels.
-  void average(PassContext& frame, const Sums& sums, float brightest) {
-    const gpu::BufferRef radiances =
-        frame.buffer(std::max<std::uint64_t>(fragments_->capacity, 1) * (sums.directional ? 6 : 3) *
-                         add::radiances.elementBytes,
-                     "reflected radiance per fragment");
+  /// Room for what fragments reflect.
+  gpu::BufferRef radiancesOf(PassContext& frame, const Sums& sums) const {
+    return frame.buffer(std::max<std::uint64_t>(fragments_->capacity, 1) * (sums.directional ? 6 : 3) *
+                            add::radiances.elementBytes,
+                        "reflected radiance per fragment");
+  }
+
+  /// The sums of occupied voxels; returns what fragments reflect of the direct light.
+  gpu::BufferRef average(PassContext& frame, const Sums& sums, float brightest) {
+    const gpu::BufferRef radiances = radiancesOf(frame, sums);
     light(frame, sums, radiances, brightest);
+    addUp(frame, sums, radiances);
+    return radiances;
+  }
+
+  void addUp(PassContext& frame, const Sums& sums, const gpu::BufferRef& radiances) {
     forEachFragment(frame,
                     frame.program(add::Variant{.directions = sums.directional, .places = sums.inOctree}),
                     {add::averages({sums.brickCount, addsUp()}), add::radiances(radiances), sums.bindings()},
                     *fragments_);
+  }
+
+  /// The sums of what fragments reflect of the direct light and of what cones find in the store.
+  void reflect(PassContext& frame, const Sums& sums, const gpu::BufferRef& direct, float mostRadiance,
+               int cones, const StoreBinding& store) {
+    const gpu::BufferRef radiances = radiancesOf(frame, sums);
+    sums.voxels->clear(0u);
+    const MediaBinding bound(frame, media_, !store.holdsMedia);
+    const bounce::Variant variant{.directions = sums.directional,
+                                  .environment = frame.traits().environment,
+                                  .medium = bound.axis,
+                                  .store = store.axis};
+    // Cones that see what is partly covered by the finest voxels, and what they begin in, lose nothing in a
+    // closed room.
+    const MarchSettings march{.start = 0.0f, .refinement = 0.0f};
+    forEachFragment(frame, frame.program(variant),
+                    {bounce::parameters({.gridLow = fragments_->grid.low,
+                                         .voxelSize = fragments_->grid.voxelSize,
+                                         .brickCount = sums.brickCount,
+                                         .coneCount = cones,
+                                         .mostRadiance = mostRadiance,
+                                         .twoSided = twoSided_}),
+                     bounce::direct(direct), bounce::radiances(radiances), sums.bindings(), store,
+                     march.binding(frame, store), bound},
+                    *fragments_);
+    addUp(frame, sums, radiances);
   }
 
   /// The radiance that each fragment reflects, and of each voxel the number and the brightest of its
@@ -247,34 +311,40 @@ class Injection {
 
 class InjectPass : public Pass {
   Injection injection{this};
+  Bounces bounces{this};
   Param<bool> mips{this, "mips", true,
                    "room for the coarser levels that 'filter' fills; 'filter_directional' needs none"};
   Out<RadianceGrid> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
                              Levels::finest};
 
-  Reads readsFrom() const override { return Reads::lights | Reads::materials; }
+  Reads readsFrom() const override { return Reads::lights | Reads::materials | Reads::environment; }
+  int indirectBounces() const override { return bounces.count(); }
 
   void run(PassContext& frame) override {
+    if (bounces.count() > 1 && !mips)
+      throw Error(
+          "voxel_cone_tracing.inject: further bounces are gathered through coarser levels, for which there is no room; expected 'mips on' or 'bounces 1'");
     RadianceGrid result;
     result.radiance = injection.room(frame, "radiance grid", mips);
-    result.filledLevels = 1;
-    injection.fill(frame, result, {&result.radiance, 1});
+    injection.fill(frame, result, {&result.radiance, 1}, bounces);
     radiance = result;
   }
 };
 
 class InjectDirectionalPass : public Pass {
   Injection injection{this};
+  Bounces bounces{this};
   Out<DirectionalRadianceGrid> radiance{
       this, "radiance", "radiance that the faces of voxels reflect, and opacity; the finest level only",
       Levels::finest};
 
-  Reads readsFrom() const override { return Reads::lights | Reads::materials; }
+  Reads readsFrom() const override { return Reads::lights | Reads::materials | Reads::environment; }
+  int indirectBounces() const override { return bounces.count(); }
 
   void run(PassContext& frame) override {
     DirectionalRadianceGrid result;
     for (gpu::TextureRef& face : result.faces) face = injection.room(frame, "radiance grid of one side");
-    injection.fill(frame, result, result.faces);
+    injection.fill(frame, result, result.faces, bounces);
     radiance = result;
   }
 };

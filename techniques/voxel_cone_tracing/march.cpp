@@ -10,6 +10,50 @@ namespace lumivox::voxel_cone_tracing {
 
 namespace gather = shaders::voxel_cone_tracing::gather;
 
+StoreBinding storeOf(const RadianceGrid& grid) {
+  const glm::vec3 extent = glm::vec3(grid.grid.resolution) * grid.grid.voxelSize;
+  StoreBinding result;
+  result.axis = gather::Variant::storeDense;
+  result.length = 2.0f * glm::length(extent);
+  result.voxel = grid.grid.voxelSize;
+  result.holdsMedia = grid.holdsMedia;
+  result.add(shader::UniformSlot<gather::Store>{"Store"}(
+      {.storeLow = grid.grid.low,
+       .storeVoxel = grid.grid.voxelSize,
+       .storeExtent = extent,
+       .storeCoarsest = static_cast<float>(grid.radiance->description().levels - 1),
+       .storeUnit = grid.unit,
+       .storeOpacityOfFinestVoxel = grid.opacity == RadianceGrid::Opacity::ofFinestVoxel}));
+  result.add(shader::SampledSlot{"radianceGrid"}(grid.radiance, gpu::Sampling::linearMipsBorder));
+  return result;
+}
+
+StoreBinding storeOf(const DirectionalRadianceGrid& grid, bool layers) {
+  const glm::vec3 extent = glm::vec3(grid.grid.resolution) * grid.grid.voxelSize;
+  StoreBinding result;
+  result.axis = gather::Variant::storeDirectional;
+  result.length = 2.0f * glm::length(extent);
+  result.voxel = grid.grid.voxelSize;
+  result.holdsMedia = grid.holdsMedia;
+  result.add(shader::UniformSlot<gather::Store>{"Store"}(
+      {.storeLow = grid.grid.low,
+       .storeVoxel = grid.grid.voxelSize,
+       .storeExtent = extent,
+       .storeCoarsest = static_cast<float>(grid.filledLevels - 1),
+       .storeUnit = grid.unit,
+       .storeOpacityOfFinestVoxel = 0,
+       .storeFirstLevelOfFaces = static_cast<float>(grid.firstLevelOfFaces()),
+       .storeLayers = layers,
+       .storeVoxels = glm::vec3(grid.grid.resolution)}));
+  const gpu::TextureRef& finest = grid.finest != nullptr ? grid.finest : grid.faces[0];
+  result.add(shader::SampledSlot{"finestGrid"}(finest, gpu::Sampling::linearMipsBorder));
+  constexpr std::array kFaces = {"positiveX", "negativeX", "positiveY",
+                                 "negativeY", "positiveZ", "negativeZ"};
+  for (std::size_t face = 0; face < kFaces.size(); ++face)
+    result.add(shader::SampledSlot{kFaces[face]}(grid.faces[face], gpu::Sampling::linearMipsBorder));
+  return result;
+}
+
 StoreInput::StoreInput(Pass* pass)
     : grid_(pass, "grid", Presence::optional, "pre-filtered radiance, one mip per halving", Needs::nothing,
             Levels::all),
@@ -33,53 +77,8 @@ StoreBinding StoreInput::binding() const {
     throw Error(fmt::format(
         "voxel_cone_tracing: {} of light for the cones; expected one of the inputs 'grid', 'directions' and 'octree' to be connected",
         stores == 0 ? "no store" : "several stores"));
-  return grid_.present() ? dense() : directions_.present() ? directional() : inOctree();
-}
-
-StoreBinding StoreInput::dense() const {
-  const RadianceGrid& grid = *grid_;
-  const glm::vec3 extent = glm::vec3(grid.grid.resolution) * grid.grid.voxelSize;
-  StoreBinding result;
-  result.axis = gather::Variant::storeDense;
-  result.length = 2.0f * glm::length(extent);
-  result.voxel = grid.grid.voxelSize;
-  result.holdsMedia = grid.holdsMedia;
-  result.add(shader::UniformSlot<gather::Store>{"Store"}(
-      {.storeLow = grid.grid.low,
-       .storeVoxel = grid.grid.voxelSize,
-       .storeExtent = extent,
-       .storeCoarsest = static_cast<float>(grid.radiance->description().levels - 1),
-       .storeUnit = grid.unit,
-       .storeOpacityOfFinestVoxel = grid.opacity == RadianceGrid::Opacity::ofFinestVoxel}));
-  result.add(shader::SampledSlot{"radianceGrid"}(grid.radiance, gpu::Sampling::linearMipsBorder));
-  return result;
-}
-
-StoreBinding StoreInput::directional() const {
-  const DirectionalRadianceGrid& grid = *directions_;
-  const glm::vec3 extent = glm::vec3(grid.grid.resolution) * grid.grid.voxelSize;
-  StoreBinding result;
-  result.axis = gather::Variant::storeDirectional;
-  result.length = 2.0f * glm::length(extent);
-  result.voxel = grid.grid.voxelSize;
-  result.holdsMedia = grid.holdsMedia;
-  result.add(shader::UniformSlot<gather::Store>{"Store"}(
-      {.storeLow = grid.grid.low,
-       .storeVoxel = grid.grid.voxelSize,
-       .storeExtent = extent,
-       .storeCoarsest = static_cast<float>(grid.filledLevels - 1),
-       .storeUnit = grid.unit,
-       .storeOpacityOfFinestVoxel = 0,
-       .storeFirstLevelOfFaces = static_cast<float>(grid.firstLevelOfFaces()),
-       .storeLayers = reading_ == Reading::layers,
-       .storeVoxels = glm::vec3(grid.grid.resolution)}));
-  const gpu::TextureRef& finest = grid.finest != nullptr ? grid.finest : grid.faces[0];
-  result.add(shader::SampledSlot{"finestGrid"}(finest, gpu::Sampling::linearMipsBorder));
-  constexpr std::array kFaces = {"positiveX", "negativeX", "positiveY",
-                                 "negativeY", "positiveZ", "negativeZ"};
-  for (std::size_t face = 0; face < kFaces.size(); ++face)
-    result.add(shader::SampledSlot{kFaces[face]}(grid.faces[face], gpu::Sampling::linearMipsBorder));
-  return result;
+  if (grid_.present()) return storeOf(*grid_);
+  return directions_.present() ? storeOf(*directions_, reading_ == Reading::layers) : inOctree();
 }
 
 StoreBinding StoreInput::inOctree() const {
@@ -108,34 +107,43 @@ StoreBinding StoreInput::inOctree() const {
 }
 
 ConeMarch::ConeMarch(Pass* pass)
-    : step_(pass, "step", 0.5f, within(0.05f, 2.0f), "step along a cone as a share of its diameter"),
-      offset_(pass, "offset", 1.0f, within(0.0f, 8.0f), "start of a cone along the normal, in voxels"),
-      start_(pass, "start", 1.0f, within(0.0f, 8.0f), "start of a cone along its axis, in voxels"),
+    : step_(pass, "step", MarchSettings{}.step, within(0.05f, 2.0f),
+            "step along a cone as a share of its diameter"),
+      offset_(pass, "offset", MarchSettings{}.offset, within(0.0f, 8.0f),
+              "start of a cone along the normal, in voxels"),
+      start_(pass, "start", MarchSettings{}.start, within(0.0f, 8.0f),
+             "start of a cone along its axis, in voxels"),
       clearance_(
-          pass, "clearance", 0.5f, within(0.0f, 1e3f),
+          pass, "clearance", MarchSettings{}.clearance, within(0.0f, 1e3f),
           "largest voxels that are read as a share of their height over the surface; as published: no limit, 1000"),
       footprint_(
-          pass, "footprint", 0.5f, within(0.25f, 1.0f),
+          pass, "footprint", MarchSettings{}.footprint, within(0.25f, 1.0f),
           "voxels that are read as a share of the diameter of the cone; as published: 1, which reads twice as wide as the cone"),
       refinement_(
-          pass, "refinement", 0.5f, within(0.0f, 1.0f),
+          pass, "refinement", MarchSettings{}.refinement, within(0.0f, 1.0f),
           "least voxels that are read where they are partly covered, as a share of those that the cone asks for; 1: none smaller; 0: the finest"),
-      reach_(pass, "reach", 0.0f, within(0.0f, 1e9f), "m", "length of a cone; 0: to the end of the grid"),
+      reach_(pass, "reach", MarchSettings{}.reach, within(0.0f, 1e9f), "m",
+             "length of a cone; 0: to the end of the grid"),
       jitter_(
-          pass, "jitter", 0.0f, within(0.0f, 1.0f),
+          pass, "jitter", MarchSettings{}.jitter, within(0.0f, 1.0f),
           "most by which a cone's first step is shorter, as a share of it, by chance for each pixel and cone: noise in place of bands") {
 }
 
 shader::BindingSet ConeMarch::binding(const PassContext& frame, const StoreBinding& store) const {
+  return MarchSettings{step_, offset_, start_, clearance_, footprint_, refinement_, reach_, jitter_}.binding(
+      frame, store);
+}
+
+shader::BindingSet MarchSettings::binding(const PassContext& frame, const StoreBinding& store) const {
   return {shader::UniformSlot<gather::March>{"March"}({.environment = frame.sceneDescription().environment,
-                                                       .maxDistance = reach_ > 0.0f ? reach_ : store.length,
-                                                       .stepShare = step_,
-                                                       .offset = offset_,
-                                                       .startShare = start_,
-                                                       .clearance = clearance_,
-                                                       .footprint = footprint_,
-                                                       .leastShare = refinement_,
-                                                       .jitter = jitter_,
+                                                       .maxDistance = reach > 0.0f ? reach : store.length,
+                                                       .stepShare = step,
+                                                       .offset = offset,
+                                                       .startShare = start,
+                                                       .clearance = clearance,
+                                                       .footprint = footprint,
+                                                       .leastShare = refinement,
+                                                       .jitter = jitter,
                                                        .seed = seedWords(frame)})};
 }
 

@@ -19,6 +19,18 @@ struct StoreBinding : shader::BindingSet {
   bool holdsMedia = false;  ///< participating media are in the voxels
 };
 
+StoreBinding storeOf(const RadianceGrid& grid);
+/// By layers, or filtered along all axes.
+StoreBinding storeOf(const DirectionalRadianceGrid& grid, bool layers);
+
+/// How cones step through a store; the meaning of each is that of the parameter of its name (ConeMarch).
+struct MarchSettings {
+  float step = 0.5f, offset = 1.0f, start = 1.0f, clearance = 0.5f, footprint = 0.5f, refinement = 0.5f;
+  float reach = 0.0f, jitter = 0.0f;
+  /// The block March for cones through this store.
+  shader::BindingSet binding(const PassContext& frame, const StoreBinding& store) const;
+};
+
 /// The store that a pass reads, one of those that there are: members of the pass.
 class StoreInput {
  public:
@@ -36,8 +48,6 @@ class StoreInput {
   Param<LookUp> lookUp_;
   Param<Reading> reading_;
 
-  StoreBinding dense() const;
-  StoreBinding directional() const;
   StoreBinding inOctree() const;
 };
 

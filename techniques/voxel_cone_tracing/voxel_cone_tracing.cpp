@@ -1,6 +1,7 @@
 // Voxel cone tracing on a dense isotropic grid: Crassin et al. 2011, "Interactive indirect illumination using
 // voxel cone tracing"; thesis Gomes 2015, Sec. 4.2.1. Pre-filtering; injection is in
 // inject.cpp, final gathering in gather.cpp.
+#include "levels.h"
 #include "lumivox/base/error.h"
 #include "lumivox/plugin/technique.h"
 #include "voxel_cone_tracing_shaders.h"
@@ -14,14 +15,38 @@ void addOctree(TechniqueRegistry& registry);
 void addOctreeFilter(TechniqueRegistry& registry);
 void addOctreeSplat(TechniqueRegistry& registry);
 
+void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity) {
+  namespace filter = shaders::voxel_cone_tracing::filter;
+  const gpu::TextureDescription& texture = grid.radiance->description();
+  const glm::ivec3 finest(texture.width, texture.height, texture.depth);
+  const OccupiedBricks& occupied = grid.occupied;
+  const filter::Constants constants{.rule = static_cast<int>(opacity)};
+  const auto sampling = opacity == Opacity::trilinear ? gpu::Sampling::linearOneMip : gpu::Sampling::nearest;
+  for (int level = 1; level < texture.levels; ++level) {
+    const glm::ivec3 coarse = levelResolution(finest, level), fine = levelResolution(finest, level - 1);
+    // The voxels of a level are those of the bricks down to one a brick, where bricks are halved evenly.
+    const bool followsBricks = occupied.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
+                               finest % OccupiedBricks::kSide == glm::ivec3(0);
+    const auto& program = frame.program(filter::Variant{followsBricks}, constants);
+    const shader::BindingSet bindings{
+        filter::parameters({.coarse = coarse, .fineLevel = level - 1, .fine = fine}),
+        filter::radianceGrid(grid.radiance, sampling), filter::radianceImage(grid.radiance, level),
+        filter::brickList(occupied.bricks), filter::brickCount(occupied.count)};
+    if (!followsBricks) {
+      frame.dispatch(program, bindings, coarse);
+      continue;
+    }
+    grid.radiance->clear(glm::vec4(0.0f), level);
+    frame.dispatchIndirect(program, bindings, *occupied.count, OccupiedBricks::argumentsBytes(level));
+  }
+  grid.filledLevels = texture.levels;
+  grid.opacity =
+      opacity == Opacity::facing ? RadianceGrid::Opacity::ofVoxel : RadianceGrid::Opacity::ofFinestVoxel;
+}
+
 namespace {
 
-using namespace shaders::voxel_cone_tracing;
-
 class FilterPass : public Pass {
-  // In the order of filter.comp.
-  enum class Opacity { facing, average, trilinear };
-
   In<RadianceGrid> radiance{this, "radiance", "the finest level"};
   Param<Opacity> opacity{
       this, "opacity", Opacity::facing,
@@ -29,37 +54,12 @@ class FilterPass : public Pass {
   Out<RadianceGrid> mips{this, "mips", "the same grid with one level per halving", Levels::all};
 
   void run(PassContext& frame) override {
-    const gpu::TextureDescription& texture = radiance->radiance->description();
-    const glm::ivec3 finest(texture.width, texture.height, texture.depth);
-    if (texture.levels < gpu::fullLevelCount(finest.x, finest.y, finest.z))
+    RadianceGrid filtered = *radiance;
+    const glm::ivec3& size = filtered.grid.resolution;
+    if (filtered.radiance->description().levels < gpu::fullLevelCount(size.x, size.y, size.z))
       throw Error(
           "voxel_cone_tracing.filter: the grid 'radiance' has no room for coarser levels; expected 'mips on' in voxel_cone_tracing.inject");
-    const OccupiedBricks& occupied = radiance->occupied;
-    const filter::Constants constants{.rule = static_cast<int>(static_cast<Opacity>(opacity))};
-    const auto sampling =
-        opacity == Opacity::trilinear ? gpu::Sampling::linearOneMip : gpu::Sampling::nearest;
-    for (int level = 1; level < texture.levels; ++level) {
-      const glm::ivec3 coarse = levelResolution(finest, level), fine = levelResolution(finest, level - 1);
-      // The voxels of a level are those of the bricks down to one a brick, where bricks are halved evenly.
-      const bool followsBricks = occupied.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
-                                 finest % OccupiedBricks::kSide == glm::ivec3(0);
-      const auto& program = frame.program(filter::Variant{followsBricks}, constants);
-      const shader::BindingSet bindings{
-          filter::parameters({.coarse = coarse, .fineLevel = level - 1, .fine = fine}),
-          filter::radianceGrid(radiance->radiance, sampling),
-          filter::radianceImage(radiance->radiance, level), filter::brickList(occupied.bricks),
-          filter::brickCount(occupied.count)};
-      if (!followsBricks) {
-        frame.dispatch(program, bindings, coarse);
-        continue;
-      }
-      radiance->radiance->clear(glm::vec4(0.0f), level);
-      frame.dispatchIndirect(program, bindings, *occupied.count, OccupiedBricks::argumentsBytes(level));
-    }
-    RadianceGrid filtered = *radiance;
-    filtered.filledLevels = texture.levels;
-    filtered.opacity =
-        opacity == Opacity::facing ? RadianceGrid::Opacity::ofVoxel : RadianceGrid::Opacity::ofFinestVoxel;
+    fillLevels(frame, filtered, opacity);
     mips = filtered;
   }
 };

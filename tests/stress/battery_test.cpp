@@ -180,6 +180,19 @@ TEST_CASE("a report shows the stress cells of its store") {
   CHECK(Json::parse(place.read("report/index.json")).at("stress").size() == 2);
 }
 
+TEST_CASE("images of one scene have one exposure, whichever pipeline made them") {
+  const HostilePlace place;
+  // A hundredth of the radiance everywhere: at an exposure of its own it would look the same.
+  std::string faint = place.read("paint.pipeline");
+  faint.replace(faint.find("deed paint"), 10, "deed paint  value 0.01");
+  place.write("faint.pipeline", faint);
+  const Battery painted = place.run({"paint", "faint"}, "-o '" + place.file("page") + "'");
+  INFO(painted.cells.dump(1));
+  REQUIRE(place.has("page/images/faint__camera_on_surface.png"));
+  CHECK(place.read("page/images/faint__camera_on_surface.png") !=
+        place.read("page/images/paint__camera_on_surface.png"));
+}
+
 TEST_CASE("unknown cases, families and techniques are refused before anything runs") {
   checkRefused(runCommand("lumivox stress --case image_1x2"), "did you mean 'image_1x1'");
   checkRefused(runCommand("lumivox stress --family parameter"), "did you mean 'parameters'");

@@ -201,6 +201,7 @@ struct InjectSettings {
   const char* precision = "float";
   double ambient = 0;
   bool lights = true, storeMedia = false, twoSided = true;
+  int bounces = 1;
   const ScatteringGrid* media = nullptr;
 };
 
@@ -225,6 +226,7 @@ Grid injectedAs(const char* pass, const Scene& scene, int resolution, const Inje
   }
   if (settings.media != nullptr) inject.setInput("media", *settings.media);
   if (fragments != nullptr) *fragments = voxels.output<VoxelFragments>("fragments");
+  inject.setParameter("bounces", settings.bounces);
   inject.setParameter("two_sided", std::string(settings.twoSided ? "on" : "off"));
   inject.run();
   return inject.template output<Grid>("radiance");

@@ -129,6 +129,7 @@ TEST_CASE("one mistake in a scene gives one finding, at its line") {
        {"camera main", "camra main", 2, "did you mean camera"},
        {"camera main", "Camera main", 2, "did you mean camera"},
        {"mesh room", "mash room", 3, "did you mean mesh"},
+       {"{ file \"room.obj\" }", "\"room.obj\"\n  animate room { translate 1 0 0 }", 3, "'mesh' is a block"},
        {"mesh room", "mesh 1room", 3, "a name that begins with a letter"},
        {"intensity 1 1 1", "irradiance 1 1 1", 4, "expected one of position, intensity"},
        {"intensity 1 1 1", "intensity 1.0f", 4, "unknown unit 'f'"},

@@ -13,37 +13,6 @@ using Json = nlohmann::json;
 
 namespace {
 
-/// A pipeline of the technique that does what none may do, one point for each value.
-class Place : public Workplace {
- public:
-  Place() {
-    write(
-        "slow.pipeline",
-        "pipeline \"Slow\" {\n  param value 1 in 0..10\n  pass paint hostile.paint { deed rest  value $value }\n\n"
-        "  output direct paint.radiance\n}\n\nsweep values { value [1 2 3 4] }\n");
-    write(
-        "tire.pipeline",
-        "pipeline \"Tire\" {\n  pass paint hostile.paint { deed tire }\n\n  output direct paint.radiance\n}\n");
-  }
-  static std::string techniques() { return (binaryDirectory() / "tests/plugins/hostile").string(); }
-  std::vector<std::string> words(const std::string& command, const std::vector<std::string>& pipelines,
-                                 const std::vector<std::string>& more) const {
-    std::vector<std::string> words{"--techniques", techniques(), command, scene()};
-    for (const std::string& pipeline : pipelines)
-      words.insert(words.end(), {"--pipeline", file(pipeline + ".pipeline")});
-    words.insert(words.end(),
-                 {"--resolution", "8x8", "--spp", "4", "--subpixels", "1", "--repeats", "3", "--seeds", "2"});
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  }
-  CommandResult run(const std::string& command, const std::vector<std::string>& pipelines,
-                    const std::vector<std::string>& more) const {
-    std::string line = "lumivox";
-    for (const std::string& word : words(command, pipelines, more)) line += " '" + word + "'";
-    return runCommand(line);
-  }
-};
-
 std::size_t runsIn(const std::string& store) {
   try {
     return ResultsStore(store, ResultsStore::Mode::read).runs().size();

@@ -186,3 +186,47 @@ TEST_CASE("the reference in docs is what describe --markdown writes today") {
   INFO("bring it up to date: ./run describe --markdown > docs/reference.md");
   CHECK(same);
 }
+
+TEST_CASE("describe answers in JSON with numbers in base units, and switches and words as what they are") {
+  using Json = nlohmann::json;
+  const auto described = [](const std::string& word) {
+    return Json::parse(runCommand("lumivox describe " + word + " --json").output).at("found");
+  };
+  const auto member = [](const Json& list, const std::string& word) {
+    const auto found =
+        std::find_if(list.begin(), list.end(), [&](const Json& one) { return one.at("word") == word; });
+    REQUIRE(found != list.end());
+    return *found;
+  };
+  const Json camera = described("camera").at(0);
+  CHECK(camera.at("what") == "block");
+  CHECK(camera.at("in") == Json::array({"scene"}));
+  const Json fov = member(camera.at("properties"), "fov");
+  const double degree = std::acos(-1.0) / 180.0;
+  CHECK(fov.at("unit") == "rad");
+  CHECK(fov.at("default").get<double>() == Approx(40 * degree));
+  CHECK(fov.at("low").get<double>() == Approx(0.1 * degree));
+  CHECK(fov.at("high").get<double>() == Approx(179 * degree));
+  CHECK(member(camera.at("properties"), "up").at("default") == Json::array({0.0, 1.0, 0.0}));
+  CHECK(member(camera.at("properties"), "resolution").at("default") == Json::array({256.0, 256.0}));
+  CHECK_FALSE(member(camera.at("properties"), "eye").contains("low"));
+  CHECK(member(described("light").at(0).at("kinds").at("spot"), "intensity").at("required") == true);
+
+  const Json gather = described("voxel_cone_tracing.gather").at(0);
+  CHECK(gather.at("what") == "pass");
+  CHECK(member(gather.at("inputs"), "grid").at("levels") == "all");
+  CHECK(member(gather.at("outputs"), "diffuse").at("component") == "indirect_diffuse");
+  const Json cones = member(gather.at("parameters"), "cones"), step = member(gather.at("parameters"), "step");
+  CHECK(cones.at("type") == "integer");
+  CHECK(cones.at("default") == 6);
+  CHECK(cones.at("high") == 256);
+  CHECK(step.at("low") == 0.05);  // and not the float nearest to it
+  CHECK(member(gather.at("parameters"), "as_published").at("default") == false);
+  CHECK(member(gather.at("parameters"), "distribution").at("choices") ==
+        Json::array({"cosine", "published"}));
+  CHECK(member(gather.at("parameters"), "reach").at("unit") == "m");
+  CHECK(described("cones").at(0).at("pass") == "voxel_cone_tracing.gather");
+  CHECK(described("RadianceGrid").at(0).at("exported").size() == 2);
+  CHECK(described("voxelization").at(0).at("what") == "technique");
+  checkRefused(runCommand("lumivox describe conse --json"), "conse");
+}

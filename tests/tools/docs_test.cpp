@@ -1,7 +1,7 @@
 // The guides: what they quote stands in files that are built or tested, their links lead somewhere, and their
 // commands exist.
 #include <algorithm>
-#include <fstream>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -9,35 +9,15 @@
 #include <vector>
 
 #include "lumivox/base/file.h"
-#include "support/support.h"
+#include "lumivox/dsl/document.h"
+#include "tools/cli_support.h"
+#include "tools/guide.h"
 
 namespace fs = std::filesystem;
 using namespace lumivox;
+using namespace lumivox::test;
 
 namespace {
-
-struct Quote {
-  std::string language, text;
-  int line = 0;
-};
-
-/// The fenced blocks of a Markdown text.
-std::vector<Quote> quotesOf(const std::string& markdown) {
-  std::vector<Quote> quotes;
-  std::istringstream stream(markdown);
-  bool inside = false;
-  int number = 0;
-  for (std::string line; std::getline(stream, line);) {
-    ++number;
-    if (line.rfind("```", 0) == 0) {
-      inside = !inside;
-      if (inside) quotes.push_back({line.substr(3), "", number});
-    } else if (inside) {
-      quotes.back().text += line + '\n';
-    }
-  }
-  return quotes;
-}
 
 /// Layout may differ: white space does not count, since a formatter may break a line wherever it likes.
 std::string withoutLayout(const std::string& text) {
@@ -54,26 +34,6 @@ std::vector<std::string> linksOf(const std::string& markdown) {
   for (std::sregex_iterator match(markdown.begin(), markdown.end(), pattern), end; match != end; ++match)
     if ((*match)[1].str().find("://") == std::string::npos) links.push_back((*match)[1]);
   return links;
-}
-
-/// `./run WORD ...` and `lumivox WORD ...` at the start of a line.
-std::set<std::string> commandsOf(const std::string& shell) {
-  std::set<std::string> commands;
-  std::istringstream stream(shell);
-  static const std::regex pattern("^(?:\\./run|lumivox) ([a-z]+)\\b.*");
-  for (std::string line; std::getline(stream, line);) {
-    std::smatch match;
-    if (std::regex_match(line, match, pattern)) commands.insert(match[1]);
-  }
-  return commands;
-}
-
-std::vector<fs::path> guides() {
-  std::vector<fs::path> files = {test::sourceDirectory() / "README.md"};
-  for (const auto& entry : fs::directory_iterator(test::sourceDirectory() / "docs"))
-    if (entry.path().extension() == ".md") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
 }
 
 /// A text without what stands from "<!-- reproduced" to "<!-- end -->".
@@ -108,6 +68,37 @@ bool isThere(std::string file) {
          fs::exists(test::sourceDirectory() / "templates/technique" / ofTemplate);
 }
 
+/// The values of an enumeration of a header.
+std::vector<std::string> valuesOf(const std::string& header, const std::string& enumeration) {
+  std::smatch body;
+  std::vector<std::string> values;
+  if (!std::regex_search(header, body, std::regex("enum class " + enumeration + "[^{;]*\\{([^}]*)\\}")))
+    return values;
+  const std::string list = body[1];
+  static const std::regex value("(\\w+)( = [^,]*)?(,|\\s*$)");
+  for (std::sregex_iterator match(list.begin(), list.end(), value), end; match != end; ++match)
+    values.push_back((*match)[1]);
+  return values;
+}
+
+/// The words that the items of the first list behind a text are about: those before the colon.
+std::set<std::string> listedBehind(const std::string& markdown, const std::string& text) {
+  std::set<std::string> words;
+  std::istringstream lines(markdown.substr(std::min(markdown.find(text), markdown.size())));
+  bool isInside = false;
+  for (std::string line; std::getline(lines, line);) {
+    const bool isItem = line.rfind("- ", 0) == 0;
+    if (isInside && !isItem && line.rfind("  ", 0) != 0) break;
+    if (!isItem) continue;
+    isInside = true;
+    static const std::regex word("`(\\w+)`");
+    const std::string head = line.substr(0, line.find(':'));
+    for (std::sregex_iterator match(head.begin(), head.end(), word), end; match != end; ++match)
+      words.insert((*match)[1]);
+  }
+  return words;
+}
+
 /// Where quotes of a language may come from.
 std::string sourcesOf(const std::string& language) {
   static const std::vector<
@@ -134,12 +125,18 @@ std::string sourcesOf(const std::string& language) {
 }  // namespace
 
 TEST_CASE("the reader of guides sees quotes, links and commands") {
-  const auto quotes = quotesOf("a\n```cpp\nint  x;\n```\nb\n```sh\n./run render a\nls\n```\n");
+  const std::string text =
+      "a\n```cpp\nint  x;\n```\nb\n```sh\n./run render a  # why\nls\n```\nc `lumivox fmt --check A` `lumivox`\n";
+  const auto quotes = quotesOf(text);
   REQUIRE(quotes.size() == 2);
   CHECK(quotes[0].language == "cpp");
   CHECK(withoutLayout(quotes[0].text) == "intx;");
   CHECK(quotes[1].line == 6);
-  CHECK(commandsOf(quotes[1].text) == std::set<std::string>{"render"});
+  CHECK(commandLinesOf(text) == std::vector<std::string>{"./run render a", "ls"});
+  const std::vector<NamedCommand> named = namedCommandsOf(text);
+  REQUIRE(named.size() == 1);
+  CHECK(named[0].command == "fmt");
+  CHECK(named[0].options == std::vector<std::string>{"--check"});
   CHECK(linksOf("[a](b.md) [c](https://d.e) [f](g/h.md#i)") == std::vector<std::string>{"b.md", "g/h.md"});
 }
 
@@ -166,24 +163,41 @@ TEST_CASE("the links of the guides lead to files") {
     }
 }
 
-TEST_CASE("the commands that the guides show exist, and the files that they name are there") {
-  std::set<std::string> commands;
+TEST_CASE("the files that the commands of the guides name are there") {
   for (const fs::path& guide : guides())
-    for (const Quote& quote : quotesOf(readFile(guide))) {
-      if (quote.language != "sh") continue;
-      commands.merge(commandsOf(quote.text));
+    for (const std::string& command : commandLinesOf(readFile(guide))) {
       static const std::regex file("[\\w./]+\\.(scene|pipeline|sweep|reproduction)\\b");
-      for (std::sregex_iterator match(quote.text.begin(), quote.text.end(), file), end; match != end;
-           ++match) {
+      for (std::sregex_iterator match(command.begin(), command.end(), file), end; match != end; ++match) {
         INFO(guide << ": " << match->str());
-        CHECK(isThere(match->str()));
+        CHECK((match->str().rfind("out/", 0) == 0 || isThere(match->str())));
       }
     }
-  REQUIRE(commands.size() >= 5);
-  for (const std::string& command : commands) {
-    INFO(command);
-    CHECK(test::runCommand("lumivox " + command + " --help").exitCode == 0);
-  }
+}
+
+TEST_CASE("commands and options that sentences of guides and cards name exist") {
+  std::vector<fs::path> texts = guides();
+  for (const auto& entry : fs::directory_iterator(sourceDirectory() / "techniques"))
+    if (entry.is_directory()) texts.push_back(entry.path() / "README.md");
+  std::map<std::string, std::string> help;
+  std::size_t options = 0;
+  for (const fs::path& text : texts)
+    for (const NamedCommand& named : namedCommandsOf(readFile(text))) {
+      const std::string command = named.program + " " + named.command;
+      INFO(text << ": " << command);
+      if (help.count(command) == 0) {
+        const CommandResult result = runCommand("'" + (binaryDirectory() / "bin" / named.program).string() +
+                                                "' " + named.command + " --help");
+        CHECK(result.exitCode == 0);
+        help[command] = result.output;
+      }
+      for (const std::string& option : named.options) {
+        INFO(option);
+        CHECK(contains(help[command], option));
+        ++options;
+      }
+    }
+  CHECK(help.size() > 10);
+  CHECK(options > 10);
 }
 
 TEST_CASE("the guide to techniques shows every file of the one that `lumivox new technique` writes, whole") {
@@ -201,6 +215,34 @@ TEST_CASE("the guide to techniques shows every file of the one that `lumivox new
     ++shown;
   }
   CHECK(shown == 5);
+}
+
+TEST_CASE("the guide to techniques lists what an output contributes and needs, and the units of parameters") {
+  const std::string guide = readFile(sourceDirectory() / "docs/writing_a_technique.md");
+  const fs::path headers = sourceDirectory() / "framework/include/lumivox";
+  const std::vector<std::string> contributes =
+      valuesOf(readFile(headers / "pipeline/contributes.h"), "Contributes");
+  const std::vector<std::string> needs = valuesOf(readFile(headers / "pipeline/pass.h"), "Needs");
+  CHECK(contributes.size() == 7);
+  CHECK(needs.size() == 10);
+  CHECK(listedBehind(guide, "**An output says which component") ==
+        std::set<std::string>(contributes.begin(), contributes.end()));
+  CHECK(listedBehind(guide, "**And what the scene must have") ==
+        std::set<std::string>(needs.begin(), needs.end()));
+  // Base units: those in which a pass reads its parameters.
+  const std::size_t from = guide.find("**A `Param<float>` that has a unit says so**");
+  REQUIRE(from != std::string::npos);
+  const std::string units = guide.substr(from, guide.find("\n\n", from) - from);
+  static const std::regex unit("`\"([^\"]+)\"`");
+  std::size_t count = 0;
+  for (std::sregex_iterator match(units.begin(), units.end(), unit), end; match != end; ++match, ++count) {
+    INFO((*match)[1]);
+    const auto known = std::find_if(dsl::knownUnits().begin(), dsl::knownUnits().end(),
+                                    [&](const dsl::Unit& one) { return one.name == (*match)[1]; });
+    REQUIRE(known != dsl::knownUnits().end());
+    CHECK(known->toBase == 1.0);
+  }
+  CHECK(count == 5);
 }
 
 TEST_CASE("a paper card begins with an image of the technique and its three headline deviations") {

@@ -240,6 +240,14 @@ static std::string pascalCase(const std::string& name) {
   return result;
 }
 
+/// Where C++ names a technique. A name that is one word of English ("ambient") may stand in sentences and be
+/// a part of other names: it names the technique where a string is or begins with it, and as a namespace.
+static std::regex namePattern(const std::string& technique) {
+  if (technique.find('_') == std::string::npos)
+    return std::regex("\"" + technique + "[\"./]|\\b" + technique + "::");
+  return std::regex("\\b(" + technique + "|" + pascalCase(technique) + ")\\b");
+}
+
 /// The framework and the laboratory's tests of it know techniques only by what a text or a folder names.
 Violations namedTechniques(const Sources& sources, const std::vector<std::string>& techniques) {
   Violations found;
@@ -247,11 +255,9 @@ Violations namedTechniques(const Sources& sources, const std::vector<std::string
     if (!startsWith(source.path, "framework/") || !isCpp(source.path)) continue;
     const std::string code = withoutComments(source.text, Strings::keep);  // a comment may give an example
     for (const std::string& technique : techniques)
-      forEachMatch(
-          code, std::regex("\\b(" + technique + "|" + pascalCase(technique) + ")\\b"),
-          [&](int line, const std::smatch& match) {
-            found.push_back(fmt::format("{}:{}: names the technique '{}'", source.path, line, match.str()));
-          });
+      forEachMatch(code, namePattern(technique), [&](int line, const std::smatch& match) {
+        found.push_back(fmt::format("{}:{}: names the technique '{}'", source.path, line, match.str()));
+      });
   }
   return found;
 }

@@ -141,6 +141,12 @@ TEST_CASE("the scanner finds what breaks the rules of the house") {
   const std::vector<std::string> two = {"cone_tracing", "shading"};
   CHECK(namedTechniques({{"framework/src/pipeline/a.cpp", "open(\"cone_tracing\");"}}, two).size() == 1);
   CHECK(namedTechniques({{"framework/src/pipeline/a.cpp", "ConeTracing t;"}}, two).size() == 1);
+  // The technique that the guide writes has a name that is a word.
+  CHECK(namedTechniques({{"framework/src/pipeline/a.cpp", "open(\"ambient.gather\"); ambient::Gather g;"}},
+                        {"ambient"})
+            .size() == 2);
+  CHECK_NONE(namedTechniques(
+      {{"framework/src/pipeline/a.cpp", "say(\"the ambient occlusion\"); float ambient = 0;"}}, {"ambient"}));
   CHECK(namedTechniques({{"framework/src/pipeline/a.cpp", "// as in cone_tracing\nint cone_tracings;"}}, two)
             .empty());
   CHECK(dependentTechniques({{"techniques/shading/a.cpp", "#include \"cone_tracing_shaders.h\"\n"}}, two)
@@ -208,6 +214,7 @@ TEST_CASE("SQLite stays in the results, markup in the assets of pages, and analy
 TEST_CASE("the framework names no technique and no technique includes another") {
   REQUIRE_FALSE(projectTechniques().empty());
   CHECK_NONE(namedTechniques(projectSources(), projectTechniques()));
+  CHECK_NONE(namedTechniques(projectSources(), {"ambient"}));  // which a reader of the guide adds
   CHECK_NONE(dependentTechniques(projectSources(), projectTechniques()));
 }
 

@@ -1,6 +1,7 @@
 // `lumivox new technique`: what it writes and what it refuses; how the program describes itself to shells and
 // as a manual page. That what it writes is built and renders is tested by sdk_test.
 #include <algorithm>
+#include <regex>
 #include <set>
 
 #include "lumivox/base/file.h"
@@ -93,6 +94,32 @@ TEST_CASE("a folder that is no project, and a technique that exists, are refused
   checkRefused(runCommand("lumivox new technique shine --in '" + work.path().string() + "/lab'"),
                "shine.pipeline");
   CHECK_FALSE(fs::exists(work.path() / "lab/techniques/shine"));
+}
+
+TEST_CASE("a technique without a source or without a paper card is refused when it is configured") {
+  const TemporaryDirectory work;
+  work.write("CMakeLists.txt",
+             "cmake_minimum_required(VERSION 3.25)\nproject(lab LANGUAGES NONE)\ninclude(\"" +
+                 (sourceDirectory() / "cmake/LumivoxTechniques.cmake").string() +
+                 "\")\nlumivox_add_technique(glow)\n");
+  const auto configured = [&] {
+    const CommandResult result =
+        runCommand("cmake -S '" + work.path().string() + "' -B '" + work.path().string() + "/build'");
+    CHECK(result.exitCode != 0);
+    return std::regex_replace(result.errors, std::regex("\\s+"), " ");  // CMake breaks lines where it likes
+  };
+  const std::string folder = (work.path() / "techniques/glow").string();
+  CHECK(contains(configured(), "lumivox_add_technique(glow): there is no source " + folder + "/*.cpp"));
+  work.write("techniques/glow/glow.cpp", "");
+  const std::string cardless = configured();
+  INFO(cardless);
+  CHECK(contains(cardless,
+                 "lumivox_add_technique(glow): the paper card " + folder +
+                     "/README.md is missing; expected the paper, what is implemented, deviations, claims and "
+                     "limits; 'lumivox new technique' writes one to start from"));
+  // It is told of the list file that calls it, and nothing is built without a card.
+  CHECK(contains(cardless, "CMakeLists.txt:4 (lumivox_add_technique)"));
+  CHECK_FALSE(fs::exists(work.path() / "build/build.ninja"));
 }
 
 TEST_CASE("data of an installed program is in share/lumivox of its prefix, that of a built one above it") {

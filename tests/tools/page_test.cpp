@@ -2,6 +2,7 @@
 // no script fails, nothing is asked for from elsewhere. The check itself is tried on pages that are broken.
 #include <algorithm>
 
+#include "lumivox/page/stress_page.h"
 #include "support/page_check.h"
 #include "tools/cli_support.h"
 
@@ -172,4 +173,35 @@ TEST_CASE("the page of the voxelizers draws all plots and needs no network") {
   INFO(page.text());
   CHECK(page.problems.empty());
   CHECK(page.charts == 3);
+}
+
+TEST_CASE("the matrix of the stress battery fits windows and paper in blocks, with every pipeline in it") {
+  if (lacksBrowser()) return;
+  const TemporaryDirectory place;
+  std::vector<StressCell> cells;
+  // As many pipelines of as many techniques as are committed, with names and numbers as long as theirs.
+  for (int pipeline = 0; pipeline < 24; ++pipeline)
+    for (const char* name : {"homogeneous_medium_dense", "gather.clearance_highest", "image_1x1"}) {
+      StressCell cell;
+      cell.family = "stiff_transport";
+      cell.name = name;
+      cell.technique = pipeline < 14 ? "voxelization" : pipeline < 20 ? "light_propagation_volumes" : "smoke";
+      cell.pipeline = "light_propagation_volumes_" + std::to_string(pipeline) + ".pipeline";
+      cell.outcome = pipeline % 3 == 0   ? StressOutcome::refused
+                     : pipeline % 3 == 1 ? StressOutcome::diverges
+                                         : StressOutcome::stable;
+      cell.created = "2026-01-01 00:00:00 UTC";
+      cell.device = "device";
+      cell.measure = "RMSE";
+      cell.value = {0.00123 * (pipeline + 1), 1e-5};
+      cell.detail = "the light is bounded";
+      cell.command = "lumivox stress";
+      cells.push_back(cell);
+    }
+  Browser browser;
+  const PageFindings page = checkPage(browser, writeStressPage(place.path(), cells, "lumivox stress"));
+  INFO(page.text());
+  CHECK(page.problems.empty());
+  // The legend, three blocks in the widest window and the table of stable cells.
+  CHECK(page.tables == 4);
 }

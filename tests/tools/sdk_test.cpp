@@ -5,47 +5,13 @@
 
 #include "lumivox/base/file.h"
 #include "tools/cli_support.h"
+#include "tools/installation.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string quoted(const fs::path& path) {
-  return "'" + path.string() + "'";
-}
-
-/// An installation of what is built, in a prefix of its own, and a home folder; commands see neither the
-/// environment of the tests nor the tree.
-class Installation {
- public:
-  Installation() {
-    const CommandResult result =
-        runCommand("cmake --install " + quoted(binaryDirectory()) + " --prefix " + quoted(prefix()));
-    INFO(result.output << result.errors);
-    REQUIRE(result.exitCode == 0);
-    fs::create_directories(folder_.path() / "home");
-  }
-  fs::path prefix() const { return folder_.path() / "prefix"; }
-  fs::path data() const { return prefix() / "share/lumivox"; }
-  fs::path work() const { return folder_.path() / "home"; }
-  /// Runs a command in `folder`; the installed programs come first on the PATH.
-  CommandResult run(const fs::path& folder, const std::string& command) const {
-    return runCommand("cd " + quoted(folder) + " && env -i PATH=" + quoted(prefix() / "bin") +
-                      ":/usr/bin:/bin HOME=" + quoted(work()) + " sh -c '" + command + "'");
-  }
-  /// The same; it must end well. Returns its output.
-  std::string mustRun(const fs::path& folder, const std::string& command) const {
-    const CommandResult result = run(folder, command);
-    INFO(command << "\n" << result.output << result.errors);
-    REQUIRE(result.exitCode == 0);
-    return result.output;
-  }
-
- private:
-  TemporaryDirectory folder_;
-};
 
 /// Where a file names the source tree or the build folder. The names of sources in the assertions of programs
 /// and libraries are no paths that are ever opened.

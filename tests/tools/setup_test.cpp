@@ -99,3 +99,36 @@ TEST_CASE("what is configured already is not configured again, and a copied buil
   REQUIRE(machine.call("lumivox_configure").exitCode == 0);
   CHECK(readFile(machine.project() / "calls").find("--fresh") != std::string::npos);
 }
+
+TEST_CASE("./run and ./test set up what they need and pass their arguments on; alone ./run measures") {
+  const Machine machine;
+  const fs::path project = machine.project();
+  for (const char* script : {"run", "test", "cmake/setup.sh"})
+    fs::copy_file(test::sourceDirectory() / script, project / script);
+  fs::copy_file(project / "cmake/packages.txt", project / "build/.packages-ok");
+  writeFileAtomically(project / "build/build.ninja", "");
+  machine.program("ninja", "echo \"ninja $*\"");
+  machine.program("ctest", "echo \"ctest $*\"");
+  for (const char* program : {"lumivox", "vdbexport"}) {
+    const fs::path file = project / "build/bin" / program;
+    fs::create_directories(file.parent_path());
+    writeFileAtomically(file, "#!/bin/sh\necho \"" + std::string(program) + " $*\"\n");
+    fs::permissions(file, fs::perms::owner_all);
+  }
+  const auto run = [&](const std::string& line) {
+    return test::runCommand("PATH='" + (project.parent_path() / "bin").string() + "':$PATH '" +
+                            project.string() + "'/" + line);
+  };
+  const auto alone = run("run");
+  INFO(alone.errors);
+  CHECK(alone.output == "lumivox report scenes/cornell.scene --budget 60s\n");
+  CHECK(alone.errors.find("ninja laboratory\n") != std::string::npos);
+  CHECK(run("run render 'a b' -o c").output == "lumivox render a b -o c\n");
+  const auto exporter = run("run vdbexport --list a.vdb");
+  CHECK(exporter.output == "vdbexport --list a.vdb\n");
+  CHECK(exporter.errors.find("ninja laboratory vdbexport\n") != std::string::npos);
+  const auto tests = run("test -R dsl");
+  CHECK(tests.output.find("ctest --test-dir " + (project / "build").string()) == 0);
+  CHECK(tests.output.find(" -R dsl\n") != std::string::npos);
+  CHECK(tests.errors.find("ninja all\n") != std::string::npos);
+}

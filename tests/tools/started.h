@@ -1,4 +1,5 @@
-// The command line in a process of its own, for tests that interrupt it or run it twice at once.
+// The command line in a process of its own, for tests that interrupt it or run it twice at once, and points
+// that are measured fast, slowly or until they fail.
 #pragma once
 
 #include <fcntl.h>
@@ -11,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "support/support.h"
+#include "tools/cli_support.h"
 
 namespace lumivox::test {
 
@@ -53,6 +54,54 @@ class Started {
  private:
   pid_t pid_ = -1;
   bool ended_ = false;
+};
+
+/// The little room, and pipelines of the technique that does what none may do: `fast` and `slow`, which rests
+/// in every frame, with a sweep of four points, and `tire`, which fails sooner or later.
+class Place : public Workplace {
+ public:
+  Place() {
+    const auto swept = [](const std::string& title, const std::string& deed) {
+      return "pipeline \"" + title + "\" {\n  param value 1 in 0..10\n  pass paint hostile.paint { deed " +
+             deed +
+             "  value $value }\n\n  output direct paint.radiance\n}\n\nsweep values { value [1 2 3 4] }\n";
+    };
+    write("fast.pipeline", swept("Fast", "paint"));
+    write("slow.pipeline", swept("Slow", "rest"));
+    write(
+        "tire.pipeline",
+        "pipeline \"Tire\" {\n  pass paint hostile.paint { deed tire }\n\n  output direct paint.radiance\n}\n");
+  }
+  std::string quoted(const std::string& name) const { return "'" + file(name) + "'"; }
+  static std::string techniques() { return (binaryDirectory() / "tests/plugins/hostile").string(); }
+  /// The program with that technique.
+  static std::string program() { return "lumivox --techniques '" + techniques() + "' "; }
+  /// Options that measure as little as can be.
+  static std::vector<std::string> quickWords() {
+    return {"--resolution", "8x8", "--spp", "4", "--subpixels", "1", "--repeats", "3", "--seeds", "2"};
+  }
+  static std::string quick() {
+    std::string text = " ";
+    for (const std::string& word : quickWords()) text += word + " ";
+    return text;
+  }
+  /// A command with its words on the little room, of these pipelines, at those options.
+  std::vector<std::string> words(const std::string& command, const std::vector<std::string>& pipelines,
+                                 const std::vector<std::string>& more) const {
+    std::vector<std::string> words{"--techniques", techniques(), command, scene()};
+    for (const std::string& pipeline : pipelines)
+      words.insert(words.end(), {"--pipeline", file(pipeline + ".pipeline")});
+    const std::vector<std::string> options = quickWords();
+    words.insert(words.end(), options.begin(), options.end());
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  CommandResult run(const std::string& command, const std::vector<std::string>& pipelines,
+                    const std::vector<std::string>& more) const {
+    std::string line = "lumivox";
+    for (const std::string& word : words(command, pipelines, more)) line += " '" + word + "'";
+    return runCommand(line);
+  }
 };
 
 /// Waits until something holds, at most a minute, which is far more than any step of a test takes.

@@ -28,12 +28,14 @@ struct Column {
   bool words = false;     ///< may be broken at spaces
 };
 
-/// The longest word of a text.
+/// The width that the longest word of a text needs: those behind the first may begin a line, which is
+/// indented.
 std::size_t longestWord(const std::string& text) {
   std::size_t longest = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
-    longest = std::max(longest, shownWidth(std::string_view(text).substr(begin, end - begin)));
+    longest = std::max(longest,
+                       shownWidth(std::string_view(text).substr(begin, end - begin)) + (begin > 0 ? 1 : 0));
     begin = end + 1;
   }
   return longest;

@@ -48,7 +48,7 @@ int newTechniqueCommand(const std::string& name, const fs::path& in, const Globa
     print(fmt::format(
         "\nNext, in {}:\n  cmake --preset release && ninja -C build laboratory {}_tests\n"
         "  build/bin/{}_tests\n"
-        "  build/bin/lumivox render scenes/cornell.scene scenes/pipelines/{}.pipeline -o {}.png\n",
+        "  build/bin/lumivox render scenes/cornell.scene scenes/pipelines/{}.pipeline -o out/{}.png\n",
         folder, name, name, name, name));
     return kGood;
   }
@@ -56,7 +56,7 @@ int newTechniqueCommand(const std::string& name, const fs::path& in, const Globa
   print(fmt::format(
       "\nNext, in {}:\n  cmake -S . -B build -G Ninja{} && cmake --build build\n"
       "  ctest --test-dir build --output-on-failure\n"
-      "  {} render {}/cornell.scene scenes/pipelines/{}.pipeline --techniques build/lib/techniques -o {}.png\n",
+      "  {} render {}/cornell.scene scenes/pipelines/{}.pipeline --techniques build/lib/techniques -o out/{}.png\n",
       folder, prefix ? " -DCMAKE_PREFIX_PATH=" + prefix->string() : "",
       prefix ? (*prefix / "bin/lumivox").string() : "lumivox",
       programData("scenes").value_or("scenes").string(), name, name));

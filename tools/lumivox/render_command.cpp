@@ -104,11 +104,11 @@ class Metering {
   }
   double exposure() const { return meter_.exposure(); }
 
-  /// Kept for when its turn comes, where that costs little memory.
-  void keep(int frame, FrameResult result) {
+  /// Kept for when its turn comes, where that costs little memory; says whether.
+  bool keep(int frame, FrameResult result) {
     constexpr std::uint64_t kMost = std::uint64_t{256} << 20;
     keptBytes_ += bytesOf(result);
-    if (keptBytes_ <= kMost) kept_.emplace(frame, std::move(result));
+    return keptBytes_ <= kMost && kept_.emplace(frame, std::move(result)).second;
   }
   std::optional<FrameResult> take(int frame) {
     const auto found = kept_.find(frame);
@@ -292,23 +292,21 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
   const bool meters = command.displays() && !given;
   const std::set<int> ahead = meters ? Metering::framesOf(first, last) : std::set<int>{};
   Progress progress("rendering",
-                    ahead.size() + static_cast<std::uint64_t>(last - first + 1) *
-                                       static_cast<std::uint64_t>(std::max(command.accumulate, 1)),
+                    static_cast<std::uint64_t>(last - first + 1) *
+                        static_cast<std::uint64_t>(std::max(command.accumulate, 1)),
                     "frames");
   Metering metering;
   for (const int frame : ahead) {
     FrameResult result = executor.render(command.timeOf(frame), frame);
-    progress.advance();
     metering.add(command, scene, frame, result);
-    // One that follows others is made anew when its turn comes.
-    if (command.accumulate == 0) metering.keep(frame, std::move(result));
+    // One that follows others is made anew when its turn comes, and counts then.
+    if (command.accumulate == 0 && metering.keep(frame, std::move(result))) progress.advance();
   }
   executor.invalidate();
   executor.emptyHistories();
   files.expose(given.value_or(metering.exposure()));
   for (int frame = first; frame <= last; ++frame) {
     std::optional<FrameResult> kept = metering.take(frame);
-    if (kept) progress.advance();
     FrameResult result =
         kept ? std::move(*kept) : renderShown(command, executor, command.timeOf(frame), frame, progress);
     for (const auto* list : {&result.healthFindings, &result.readsFindings}) {

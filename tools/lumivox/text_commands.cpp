@@ -6,6 +6,7 @@
 #include <set>
 
 #include "command.h"
+#include "describe_json.h"
 #include "highlighting.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -218,30 +219,6 @@ std::string passText(const std::string& technique, const PassEntry& entry) {
   return text;
 }
 
-/// Calls back with every pass of every technique that can be opened.
-template <class Visit>
-void forEachPass(TechniqueSet& techniques, const Visit& visit) {
-  for (const std::string& name : techniques.available())
-    if (const Technique* technique = techniques.technique(name))
-      for (const PassEntry& entry : technique->passes) visit(*technique, entry);
-}
-
-/// The framework's kinds of port, and those that techniques brought.
-std::vector<const PortKind*> portKinds(TechniqueSet& techniques, std::vector<std::unique_ptr<Pass>>& passes) {
-  std::vector<const PortKind*> kinds = FrameworkPorts::kinds();
-  const auto add = [&](const PortBase* port) {
-    if (std::none_of(kinds.begin(), kinds.end(),
-                     [&](const PortKind* kind) { return kind->isSameType(port->kind()); }))
-      kinds.push_back(&port->kind());
-  };
-  forEachPass(techniques, [&](const Technique&, const PassEntry& entry) {
-    passes.push_back(entry.make());
-    for (const InBase* input : passes.back()->inputs()) add(input);
-    for (const OutBase* output : passes.back()->outputs()) add(output);
-  });
-  return kinds;
-}
-
 /// "rgb radiance, W/(sr m^2)", with what the health scan and the exporter make of it.
 std::string kindText(const PortKind& kind) {
   std::string text = fmt::format("port kind {}\n  {}\n", kind.name, kind.meaning);
@@ -317,13 +294,7 @@ int describe(const std::string& word, bool asJson, const GlobalOptions& global) 
   }
   text.erase(text.find_last_not_of('\n') + 1);
   if (asJson) {
-    Json list = Json::array();
-    for (std::size_t begin = 0; begin < text.size();) {
-      const std::size_t end = std::min(text.find("\n\n", begin), text.size());
-      list.push_back(text.substr(begin, end - begin));
-      begin = text.find_first_not_of('\n', end);
-    }
-    printJson({{"word", word}, {"found", list}});
+    printJson(describedAsJson(techniques, word));
   } else {
     print(text + "\n");
   }

@@ -88,6 +88,12 @@ class Reader {
 
   void collectNames(const Block& scene) {
     for (const dsl::Item& item : scene.items) {
+      // A block that was written as a property is a finding of its own, as a misspelt one: its name is known.
+      if (item.property && !item.property->values.empty()) {
+        const std::string& name = item.property->values.front().text;
+        if (item.property->word == "material") materialNames_.push_back(name);
+        if (item.property->word == "mesh") meshNames_.push_back(name);
+      }
       if (!item.block) continue;
       // A misspelt block is a finding of its own: its name is known all the same.
       std::string word = item.block->word;

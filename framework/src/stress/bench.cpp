@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <set>
 #include <variant>
 
@@ -12,7 +13,9 @@
 #include "lumivox/base/hash.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/experiment/voxelizers.h"
+#include "lumivox/measure/exposure.h"
 #include "lumivox/pipeline/pass.h"
+#include "lumivox/reference/path_tracer.h"
 #include "lumivox/scene/text.h"
 #include "stress/elsewhere.h"
 #include "stress/pass_parameters.h"
@@ -98,7 +101,11 @@ struct PipelineBench::State {
   const Pipeline& pipeline;
   ParameterValues values;
   ImageBuffer last, given;
+  bool isMetered = false;
+  std::optional<double> exposure;  ///< of the scene that was rendered last
 
+  /// Finds the exposure of a scene from a small reference of it, which is the same for all pipelines.
+  void meter(const Scene& scene, const Shot& shot, double time);
   Ready ready(const Shot& shot) const;
   /// Outputs of the last pass are kept where the pipeline has none of its own.
   void keepVoxels(PipelineExecutor& executor, const Pipeline& text) const;
@@ -169,8 +176,34 @@ Frame PipelineBench::State::frame(PipelineExecutor& executor, const SceneSnapsho
   return frame;
 }
 
+void PipelineBench::State::meter(const Scene& scene, const Shot& shot, double time) {
+  // Voxels are drawn as fractions.
+  if (!isMetered || pipeline.outputs.empty()) return;
+  constexpr int kPixels = 32, kSamples = 16;
+  const Ready made = ready(shot);
+  const double scale =
+      std::min(1.0, static_cast<double>(kPixels) / std::max(made.options.width, made.options.height));
+  ReferenceOptions options;
+  options.width = std::max(1, static_cast<int>(made.options.width * scale));
+  options.height = std::max(1, static_cast<int>(made.options.height * scale));
+  options.camera = shot.camera;
+  options.time = time;
+  options.samplesPerPixel = kSamples;
+  options.threads = 1;
+  options.progress = false;
+  exposure.reset();
+  try {
+    ExposureMeter light;
+    meterImage(light, scene, snapshotOf(scene, time, shot.camera, options.width, options.height),
+               renderReference(scene, options).layers.at("full"));
+    exposure = light.exposure();
+  } catch (const Error&) {
+    // What the path tracer refuses is displayed by itself.
+  }
+}
+
 PipelineBench::PipelineBench(Ground& ground, const Pipeline& pipeline)
-    : state_(new State{ground, pipeline, batteryValues(pipeline, ground.quick), {}, {}}) {}
+    : state_(new State{ground, pipeline, batteryValues(pipeline, ground.quick), {}, {}, false, {}}) {}
 PipelineBench::~PipelineBench() = default;
 
 bool PipelineBench::quick() const {
@@ -201,6 +234,7 @@ Frame PipelineBench::render(const Scene& scene, const Shot& shot) {
   const Ready ready = s.ready(shot);
   PipelineExecutor executor(s.ground.device, s.ground.techniques, scene, ready.pipeline, ready.options);
   if (s.pipeline.outputs.empty()) s.keepVoxels(executor, ready.pipeline);
+  s.meter(scene, shot, shot.time);
   return s.frame(executor, s.snapshot(scene, ready, shot.time), shot, 0);
 }
 
@@ -223,6 +257,7 @@ std::vector<Frame> PipelineBench::renderSequence(const Scene& scene, const std::
   Ready ready = s.ready(shot);
   ready.options.interactive = static_cast<bool>(edit);
   PipelineExecutor executor(s.ground.device, s.ground.techniques, scene, ready.pipeline, ready.options);
+  if (!times.empty()) s.meter(scene, shot, times.back());
   return s.sequence(executor, scene, ready, times, shot, edit);
 }
 
@@ -299,6 +334,14 @@ LayeredImage PipelineBench::reference(const Scene& scene, const Shot& shot, int 
 
 void PipelineBench::show(const ImageBuffer& image) {
   state_->given = image;
+}
+
+void PipelineBench::meterScenes() {
+  state_->isMetered = true;
+}
+
+double PipelineBench::exposure() const {
+  return state_->exposure.value_or(displayExposure(shown()));
 }
 
 const ImageBuffer& PipelineBench::shown() const {

@@ -47,6 +47,11 @@ class PipelineBench : public Bench {
 
   /// The image last given to show(), else the last whole image that was rendered; empty: none.
   const ImageBuffer& shown() const;
+  /// From now on exposures are found, which takes a small path-traced image of every scene that is rendered.
+  void meterScenes();
+  /// EV at which shown() is displayed: that of the scene rendered last, the same for every pipeline; the
+  /// image's own where there is none.
+  double exposure() const;
 
  private:
   struct State;

@@ -10,7 +10,6 @@
 #include "experiment/plan.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
-#include "lumivox/measure/exposure.h"
 #include "stress/cards.h"
 
 namespace lumivox::stress {
@@ -101,6 +100,7 @@ StressCell runCell(Ground& ground, const CellRequest& request,
   describeDevice(cell, workerDeviceOf(ground.device));
   ground.quick = request.quick;
   PipelineBench bench(ground, pipeline);
+  if (!request.image.empty()) bench.meterScenes();
   const auto start = std::chrono::steady_clock::now();
   runGuarded(*one, bench, cell);
   cell.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -110,7 +110,7 @@ StressCell runCell(Ground& ground, const CellRequest& request,
   const ImageBuffer& image = bench.shown();
   if (!request.image.empty() && !image.empty()) {
     createParentDirectories(request.image);
-    writePng(request.image, image, {displayExposure(image), Tone::srgb});
+    writePng(request.image, image, {bench.exposure(), Tone::srgb});
     cell.image = (request.image.parent_path().filename() / request.image.filename()).string();
   }
   return cell;

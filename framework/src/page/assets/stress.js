@@ -21,13 +21,15 @@ const stressSection = (function () {
     return [...groups].map(([group, names]) => ({ group, names: [...names] }));
   }
 
+  /** The matrix, in blocks of as many columns as fit: each names the cases again. */
   function matrix(cells) {
-    const cases = axis(cells, "family", "case"), techniques = axis(cells, "technique", "pipeline");
-    const pipelines = techniques.flatMap(one => one.names);
+    const cases = axis(cells, "family", "case");
+    const pipelines = axis(cells, "technique", "pipeline").flatMap(one => one.names.map(name => ({ technique: one.group, name })));
     const at = (name, pipeline) => cells.findLastIndex(cell => cell.case === name && cell.pipeline === pipeline);
     // Long units are in the title, so that a dozen columns fit.
     const brief = cell => cell.unit.length > 3 ? "" : unit(cell);
-    const text = cell => cell.outcome === "not_applicable" ? "" : hasNumber(cell) ? number(cell.value) + brief(cell) : words(cell.outcome);
+    const short = value => isNumber(value) && value !== 0 && Math.abs(value) < 1e-3 ? value.toExponential(1) : number(value);
+    const text = cell => cell.outcome === "not_applicable" ? "" : hasNumber(cell) ? short(cell.value) + brief(cell) : words(cell.outcome);
     const place = (name, pipeline) => {
       const index = at(name, pipeline), cell = cells[index];
       if (!cell) return h("td", null);
@@ -35,14 +37,34 @@ const stressSection = (function () {
       return h("td", { class: "cell " + cell.outcome, title: shortName(pipeline) + ", " + name + ": " + value + (cell.measure ? "; " + cell.measure : "") },
                text(cell) && h("a", { href: "#cell-" + index }, text(cell)));
     };
-    return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "pipelines and cases" }, h("table", { class: "stress" },
+    const heads = part => part.filter((one, i) => i === 0 || one.technique !== part[i - 1].technique).map(one =>
+      h("th", { class: "group", colspan: part.filter(other => other.technique === one.technique).length }, words(one.technique)));
+    const block = part => h("table", { class: "stress" },
       // Names of the columns stand upright, so that a dozen and more fit.
-      h("thead", null,
-        h("tr", null, h("th", null), techniques.map(one => h("th", { class: "group", colspan: one.names.length }, words(one.group)))),
-        h("tr", null, h("th", null, "case"), pipelines.map(one => h("th", { class: "upright" }, h("span", null, words(shortName(one))))))),
+      h("thead", null, h("tr", null, h("th", null), heads(part)),
+        h("tr", null, h("th", null, "case"), part.map(one => h("th", { class: "upright" }, h("span", null, words(shortName(one.name))))))),
       h("tbody", null, cases.map(family => [
-        h("tr", { class: "family" }, h("th", { colspan: pipelines.length + 1 }, words(family.group))),
-        family.names.map(name => h("tr", null, h("td", { class: "case" }, words(name)), pipelines.map(pipeline => place(name, pipeline))))]))));
+        h("tr", { class: "family" }, h("th", { colspan: part.length + 1 }, words(family.group))),
+        family.names.map(name => h("tr", null, h("td", { class: "case" }, words(name)), part.map(one => place(name, one.name))))])));
+    const whole = h("div", { class: "matrix", role: "region", "aria-label": "pipelines and cases" });
+    let columns = 0;
+    const fit = width => {
+      // The case beside its columns and the page's margins, CSS pixels; blocks of about the same number of columns.
+      const fitting = Math.max(2, Math.floor((width - (width > 900 ? 240 : 150)) / 66));
+      const wanted = Math.ceil(pipelines.length / Math.max(1, Math.ceil(pipelines.length / fitting)));
+      if (wanted === columns) return;
+      columns = wanted;
+      const blocks = [];
+      for (let from = 0; from < pipelines.length; from += columns) blocks.push(block(pipelines.slice(from, from + columns)));
+      whole.replaceChildren(...blocks);
+    };
+    const paper = 700;
+    const fitWindow = () => fit(Math.min(window.innerWidth || 1400, 1500));
+    fitWindow();
+    window.addEventListener("resize", fitWindow);
+    window.addEventListener("beforeprint", () => fit(paper));
+    window.addEventListener("afterprint", fitWindow);
+    return whole;
   }
 
   const legend = cells => h("table", { class: "stress legend" }, h("tbody", null, Object.entries(outcomes).map(([outcome, meaning]) =>
