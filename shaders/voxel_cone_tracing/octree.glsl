@@ -18,6 +18,7 @@ struct OctreeNode {
 layout(std140, binding = 3) uniform Octree {
   int octreeDepth;      // of the leaves
   int octreePoolShift;  // the pool has 2 to the power of this bricks along x and along y
+  int octreeRanked;     // 1: there are ranks (octree_ranks.glsl)
 };
 #ifdef OCTREE_BUILD
 #define OCTREE_ACCESS

@@ -1,5 +1,5 @@
 // The bricks of an octree by their depths, for passes over them. Included after the local size of kOctreeGroup, which is along x alone.
-// C++ side: OctreeLevels in techniques/voxel_cone_tracing/octree.h.
+// C++ side: VoxelOctree in techniques/voxel_cone_tracing/radiance_octree.h, forEachBrick in octree.h.
 #ifndef LUMIVOX_OCTREE_LEVELS
 #define LUMIVOX_OCTREE_LEVELS
 #include "common/voxel.glsl"

@@ -20,7 +20,7 @@ void main() {
   if (code == 0u) return;
   int first = 0;
   if (coarser.x > 0) first = depthOf(texelFetch(nodes, ivec3(min(texel.xy >> 1, coarser - 1), texel.z), level + 1).r) + 1;
-  for (int depth = first; depth <= depthOf(code); ++depth) {
+  for (int depth = first; depth <= min(depthOf(code), octreeDepth); ++depth) {
     uint brick = brickOfCode(ancestorOf(code, depth));
     if (brick != kNone) lit[brick] = 1u;  // whoever writes here writes the same
   }

@@ -1,5 +1,5 @@
 #version 450
-// The finest level of the node map: the leaf that each photon lies in (Crassin et al. 2011, Sec. 6).
+// The finest level of the node map: the voxel that each photon lies in, as if it were a node below its leaf (Crassin et al. 2011, Sec. 6).
 layout(local_size_x = 64) in;
 #include "octree_photons.glsl"
 
@@ -9,7 +9,18 @@ layout(std140, binding = 0) uniform Photons {
   ivec3 mapSize;    // texels, layers
 };
 layout(binding = 0) uniform sampler2DArray photonPosition;
+layout(binding = 1) uniform sampler2DArray photonNormal;
+layout(binding = 2) uniform sampler3D pool;
 layout(binding = 0, r32ui) uniform writeonly uimage2DArray nodeMap;
+
+// 0: no surface is there.
+uint voxelAt(vec3 at) {
+  ivec3 voxel = ivec3(floor(at));
+  if (any(lessThan(voxel, ivec3(0))) || any(greaterThanEqual(voxel, ivec3(2 << octreeDepth)))) return 0u;
+  uint brick = brickOfCode(codeOf(voxel >> 1, octreeDepth));
+  if (brick == kNone || texelFetch(pool, texelOf(brick) + (voxel & 1), 0).a == 0.0) return 0u;
+  return codeOf(voxel, octreeDepth + 1);
+}
 
 void main() {
   uint index = listIndex();
@@ -18,11 +29,12 @@ void main() {
   vec4 position = texelFetch(photonPosition, texel, 0);
   uint code = 0u;
   if (position.w > 0.0) {
-    ivec3 voxel = ivec3(floor((position.xyz - gridLow) / voxelSize));
-    if (all(greaterThanEqual(voxel, ivec3(0))) && all(lessThan(voxel, ivec3(2 << octreeDepth)))) {
-      code = codeOf(voxel >> 1, octreeDepth);
-      if (brickOfCode(code) == kNone) code = 0u;
-    }
+    // A surface on the face between two voxels lies in one of them to the voxelizer, and by rounding perhaps in the other to the photon.
+    const float kRounding = 0.01;  // voxels
+    vec3 at = (position.xyz - gridLow) / voxelSize, aside = kRounding * texelFetch(photonNormal, texel, 0).xyz;
+    code = voxelAt(at);
+    if (code == 0u) code = voxelAt(at + aside);
+    if (code == 0u) code = voxelAt(at - aside);
   }
   imageStore(nodeMap, texel, uvec4(code));
 }

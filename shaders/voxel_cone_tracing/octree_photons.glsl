@@ -3,9 +3,7 @@
 #ifndef LUMIVOX_OCTREE_PHOTONS
 #define LUMIVOX_OCTREE_PHOTONS
 #include "octree_levels.glsl"
-#include "octree_tags.glsl"
-
-layout(std430, binding = 12) readonly buffer OctreeRanks { RankedTags octreeRanks[]; };
+#include "octree_ranks.glsl"
 
 // The photons of one voxel.
 struct PhotonSums {
@@ -30,9 +28,7 @@ uint commonAncestor(uint a, uint b) {
 
 uint brickOfCode(uint code) {
   int depth = depthOf(code);
-  uint morton = code - (1u << 3 * depth), bit = morton & 31u;
-  RankedTags word = octreeRanks[firstWord(depth) + (morton >> 5)];
-  return (word.tags >> bit & 1u) == 0u ? kNone : word.nodesBefore + uint(bitCount(below(word.tags, bit)));
+  return rankedBrick(code - (1u << 3 * depth), depth);
 }
 
 #endif

@@ -1,8 +1,12 @@
 #version 450
-// Adds the photons of one light to the leaves that they lie in; what other bricks hold stays as it is. The light of several lights adds up,
-// which an average over all their photons would not.
+// Adds photons to the leaves that they lie in, the sum of all, or the averages of one light after another; what other bricks hold stays as it
+// is.
 layout(local_size_x = 64) in;
 #include "octree_photons.glsl"
+#include "common/integer_mean.glsl"
+
+const int kSum = 0, kAverage = 1;
+layout(constant_id = 0) const int rule = kSum;
 
 layout(std140, binding = 0) uniform Splat { float unit; };  // W/(sr m^2) that the value 1 of the pool stands for
 layout(std430, binding = 4) readonly buffer Sums { PhotonSums sums[]; };
@@ -17,8 +21,8 @@ void main() {
   if (brick >= octreeLevels[octreeDepth].firstBrick && all(lessThan(voxel, ivec3(2)))) {
     PhotonSums sum = sums[8u * (brick - octreeLevels[octreeDepth].firstBrick) + uint(voxel.x | voxel.y << 1 | voxel.z << 2)];
     // Pre-multiplied by the opacity of the surfaces.
-    if (sum.weight > 0u)
-      value.rgb += vec3(sum.red, sum.green, sum.blue) / float(sum.weight) * (value.a * uintBitsToFloat(sum.brightest) / unit);
+    float mean = rule == kSum ? kFixedPoint / float(max(sum.photons, 1u)) : float(max(sum.weight, 1u));
+    value.rgb += vec3(sum.red, sum.green, sum.blue) / mean * (value.a * uintBitsToFloat(sum.brightest) / unit);
   }
   imageStore(poolImage, texel, value);
 }

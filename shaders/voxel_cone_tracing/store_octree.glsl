@@ -7,21 +7,14 @@
 #pragma lumivox require STORE == octree || LOOK_UP == ranks
 #include "octree.glsl"
 #if LOOK_UP == LOOK_UP_RANKS
-#include "octree_tags.glsl"
-layout(std430, binding = 12) readonly buffer OctreeRanks { RankedTags octreeRanks[]; };
+#include "octree_ranks.glsl"
 
-uint brickOfNode(ivec3 place, int depth) {
-  uint morton = mortonOf(place);
-  RankedTags word = octreeRanks[firstWord(depth) + (morton >> 5)];
-  uint bit = morton & 31u;
-  return (word.tags >> bit & 1u) == 0u ? kNone : word.nodesBefore + uint(bitCount(below(word.tags, bit)));
-}
+uint brickOfNode(ivec3 place, int depth) { return rankedBrick(mortonOf(place), depth); }
 #else
 uint brickOfNode(ivec3 place, int depth) { return brickAt(place, depth); }
 #endif
 
 layout(std140, binding = 4) uniform OctreeStore {
-  vec3 poolSize;         // texels
   float firstVoxel;      // the middle of voxel 0 of the finest level, voxels from storeLow
   float firstVoxelGrows; // 1: by as many voxels of every level; 0: it is the same place
 };
@@ -33,10 +26,17 @@ float finestVoxel(vec3 at) { return storeVoxel; }
 
 float longestStep(float size) { return kNoLimit; }
 
-// In the brick of a node; `at` counts voxels of the node's level from the middle of the first one.
-vec4 inBrick(uint brick, vec3 at, vec3 place) {
-  if (brick == kNone) return vec4(0.0);
-  return textureLod(brickPool, (vec3(texelOf(brick)) + 0.5 + at - 2.0 * place) / poolSize, 0.0);
+// In a brick, `at` voxels from its first one along each axis. Filtered here and not by a sampler, whose coordinates are rounded by where in
+// which pool the brick lies: a frame would differ from the same frame alone.
+vec4 inBrick(uint brick, vec3 at) {
+  ivec3 low = min(ivec3(at), ivec3(1)), texel = texelOf(brick) + low;
+  vec3 part = at - vec3(low);
+  vec4 columns[4];
+  for (int i = 0; i < 4; ++i) {
+    ivec3 first = texel + ivec3(0, i & 1, i >> 1);
+    columns[i] = mix(texelFetch(brickPool, first, 0), texelFetch(brickPool, first + ivec3(1, 0, 0), 0), part.x);
+  }
+  return mix(mix(columns[0], columns[1], part.y), mix(columns[2], columns[3], part.y), part.z);
 }
 
 // Values of a level around a point, finest voxels from storeLow. False: the tree has no node of that level there. Below its voxel 0 lies one
@@ -48,7 +48,7 @@ bool readLevel(vec3 at, int level, out vec4 value) {
   ivec3 place = min(ivec3(inside) >> 1, ivec3((1 << depth) - 1));
   uint brick = brickOfNode(place, depth);
   vec3 border = clamp(1.0 + from, vec3(0.0), vec3(1.0));
-  value = border.x * border.y * border.z * inBrick(brick, inside, vec3(place));
+  value = brick == kNone ? vec4(0.0) : border.x * border.y * border.z * inBrick(brick, inside - vec3(2 * place));
   return brick != kNone;
 }
 

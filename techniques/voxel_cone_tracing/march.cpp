@@ -85,7 +85,6 @@ StoreBinding StoreInput::inOctree() const {
   const RadianceOctree& octree = *octree_;
   const VoxelOctree& tree = octree.tree;
   const glm::vec3 extent = glm::vec3(tree.grid.resolution) * tree.grid.voxelSize;
-  const gpu::TextureDescription& pool = octree.radiance->description();
   StoreBinding result;
   result.axis = gather::Variant::storeOctree;
   result.lookUp = tree.ranks != nullptr && lookUp_ == LookUp::ranks ? gather::Variant::lookUpRanks
@@ -100,12 +99,10 @@ StoreBinding StoreInput::inOctree() const {
        .storeUnit = octree.unit,
        .storeOpacityOfFinestVoxel = octree.opacity == RadianceOctree::Opacity::ofFinestVoxel}));
   result.add(shader::UniformSlot<gather::OctreeStore>{"OctreeStore"}(
-      {.poolSize = glm::vec3(pool.width, pool.height, pool.depth),
-       .firstVoxel = tree.firstVoxel(),
+      {.firstVoxel = tree.firstVoxel(),
        .firstVoxelGrows = tree.voxels == VoxelOctree::Voxels::asGrid ? 1.0f : 0.0f}));
-  result.add(shader::SampledSlot{"brickPool"}(octree.radiance, gpu::Sampling::linear));
+  result.add(shader::SampledSlot{"brickPool"}(octree.radiance, gpu::Sampling::nearest));
   result.add(OctreeBinding(tree, octree.poolShift));
-  result.add(shader::StorageSlot{"OctreeRanks"}(tree.ranks));
   return result;
 }
 

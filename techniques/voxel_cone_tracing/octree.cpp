@@ -14,11 +14,14 @@ namespace lumivox::voxel_cone_tracing {
 using namespace shaders::voxel_cone_tracing;
 
 OctreeBinding::OctreeBinding(const VoxelOctree& tree, int poolShift)
-    : shader::BindingSet{shader::UniformSlot<octree_nodes::Octree>{"Octree"}(
-                             {.octreeDepth = tree.depth, .octreePoolShift = poolShift}),
-                         shader::StorageSlot{"OctreeNodes"}(tree.nodes),
-                         shader::StorageSlot{"OctreeLevels"}(tree.levels),
-                         shader::StorageSlot{"OctreeBricks"}(tree.bricks)} {}
+    : shader::BindingSet{
+          shader::UniformSlot<octree_nodes::Octree>{"Octree"}({.octreeDepth = tree.depth,
+                                                               .octreePoolShift = poolShift,
+                                                               .octreeRanked = tree.ranks != nullptr}),
+          // Without them there are the tags of nothing: a shader that asks first never reads them.
+          shader::StorageSlot{"OctreeRanks"}(tree.ranks != nullptr ? tree.ranks : tree.nodes),
+          shader::StorageSlot{"OctreeNodes"}(tree.nodes), shader::StorageSlot{"OctreeLevels"}(tree.levels),
+          shader::StorageSlot{"OctreeBricks"}(tree.bricks)} {}
 
 void forEachBrick(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
                   const VoxelOctree& tree, int depth, int threads) {
@@ -112,13 +115,11 @@ class OctreePass : public Pass {
          octree_rank::tilesBefore(tiles), octree_rank::octreeRanks(result.ranks)},
         chunks);
     const std::uint32_t brickRoom = bricks_, tileRoom = tiles_;
-    frame.dispatch(
-        frame.program(octree_arguments::Variant{}),
-        {octree_arguments::room({brickRoom, tileRoom}), octree_arguments::octreeRanks(result.ranks), bound},
-        {result.depth + 2, 1, 1});
+    frame.dispatch(frame.program(octree_arguments::Variant{}),
+                   {octree_arguments::room({brickRoom, tileRoom}), bound}, {result.depth + 2, 1, 1});
     frame.dispatchList(frame.program(octree_nodes::kProgram),
                        {octree_nodes::nodeRoom({brickRoom, tileRoom, static_cast<std::uint32_t>(words)}),
-                        octree_nodes::tilesBefore(tiles), octree_nodes::octreeRanks(result.ranks), bound},
+                        octree_nodes::tilesBefore(tiles), bound},
                        words);
   }
 

@@ -13,12 +13,22 @@ using namespace shaders::voxel_cone_tracing;
 namespace {
 
 class OctreeSplatPass : public Pass {
-  In<ReflectiveShadowMap> photons{this, "photons", "what the lights see"};
+  In<ReflectiveShadowMap> photons{this, "photons", Presence::optional,
+                                  "what the lights see; without it the octree stays as it is"};
   In<RadianceOctree> octree{this, "octree", "surfaces without that light, pre-filtered", Levels::all};
+  // In the order of octree_photon_sums.comp.
+  enum class Photons { summed, averaged };
+  Param<Photons> rule{
+      this, "photons_are", Photons::summed,
+      "the flux of all of them goes into the area that surfaces have in a voxel, so that none is lost (Crassin et al. 2011); or they are averaged for each light, as published in the thesis: what lies between photons stays dark"};
   Out<RadianceOctree> radiance{this, "radiance", "the same octree with the photons' light at all depths",
                                Levels::all};
 
   void run(PassContext& frame) override {
+    if (!photons.present()) {
+      radiance = *octree;
+      return;
+    }
     RadianceOctree result = *octree;
     const VoxelOctree& tree = result.tree;
     if (tree.voxels != VoxelOctree::Voxels::asGrid || tree.ranks == nullptr)
@@ -33,17 +43,18 @@ class OctreeSplatPass : public Pass {
     const gpu::BufferRef lit = frame.emptyElements(octree_lit::lit, tree.brickRoom, "bricks of photons"),
                          sums = frame.emptyElements(octree_photon_sums::sums, 8 * tree.leafRoom,
                                                     "sums of photons");
-    const shader::BindingSet ranked{bound, shader::StorageSlot{"OctreeRanks"}(tree.ranks)};
-    const gpu::TextureRef nodes = nodeMap(frame, tree, ranked);
-    markLit(frame, *nodes, ranked, lit);
-    for (int light = 0; light < std::max(photons->lightCount, 1); ++light) {
+    const gpu::TextureRef nodes = nodeMap(frame, tree, bound);
+    markLit(frame, *nodes, bound, lit);
+    const int passes = rule == Photons::averaged ? std::max(photons->lightCount, 1) : 1;
+    const int ruleOfShader = static_cast<int>(static_cast<Photons>(rule));
+    for (int light = 0; light < passes; ++light) {
       if (light > 0) sums->clear();
-      average(frame, tree, light, ranked, nodes, sums);
+      average(frame, light, bound, nodes, sums);
       forEachBrick(
-          frame, frame.program(octree_splat::kProgram),
+          frame, frame.program(octree_splat::Variant{}, octree_splat::Constants{.rule = ruleOfShader}),
           {octree_splat::splat({result.unit}), octree_splat::sums(sums),
            octree_splat::pool(light == 0 ? octree->radiance : result.radiance, gpu::Sampling::nearest),
-           octree_splat::poolImage(result.radiance), ranked},
+           octree_splat::poolImage(result.radiance), bound},
           tree, tree.depth + 1, 27);
     }
     transferBorders(frame, result, tree.depth, Transfer::copy);
@@ -63,7 +74,7 @@ class OctreeSplatPass : public Pass {
   }
 
   /// The leaf of each photon, and the lowest common ancestors of those of neighbours.
-  gpu::TextureRef nodeMap(PassContext& frame, const VoxelOctree& tree, const shader::BindingSet& ranked) {
+  gpu::TextureRef nodeMap(PassContext& frame, const VoxelOctree& tree, const OctreeBinding& bound) {
     const glm::ivec3 size = sizeOf(*photons->position, 0);
     const gpu::TextureRef map = frame.texture({gpu::TextureKind::d2Array, gpu::Format::r32ui, size.x, size.y,
                                                size.z, gpu::fullLevelCount(size.x, size.y)},
@@ -72,7 +83,9 @@ class OctreeSplatPass : public Pass {
                        {octree_node_map::photons(
                             {.gridLow = tree.grid.low, .voxelSize = tree.grid.voxelSize, .mapSize = size}),
                         octree_node_map::photonPosition(photons->position, gpu::Sampling::nearest),
-                        octree_node_map::nodeMap(map), ranked},
+                        octree_node_map::photonNormal(photons->normal, gpu::Sampling::nearest),
+                        octree_node_map::pool(octree->radiance, gpu::Sampling::nearest),
+                        octree_node_map::nodeMap(map), bound},
                        countOf(size));
     for (int level = 1; level < map->description().levels; ++level) {
       const glm::ivec3 coarse = sizeOf(*map, level), fine = sizeOf(*map, level - 1);
@@ -85,7 +98,7 @@ class OctreeSplatPass : public Pass {
     return map;
   }
 
-  static void markLit(PassContext& frame, const gpu::Texture& nodes, const shader::BindingSet& ranked,
+  static void markLit(PassContext& frame, const gpu::Texture& nodes, const OctreeBinding& bound,
                       const gpu::BufferRef& lit) {
     for (int level = 0; level < nodes.description().levels; ++level) {
       const glm::ivec3 size = sizeOf(nodes, level);
@@ -95,24 +108,24 @@ class OctreeSplatPass : public Pass {
           {octree_lit::nodeMapLevel({.mapSize = size,
                                      .level = level,
                                      .coarser = last ? glm::ivec2(0) : glm::ivec2(sizeOf(nodes, level + 1))}),
-           octree_lit::nodes(nodes, gpu::Sampling::nearest), octree_lit::lit(lit), ranked},
+           octree_lit::nodes(nodes, gpu::Sampling::nearest), octree_lit::lit(lit), bound},
           countOf(size));
     }
   }
 
-  void average(PassContext& frame, const VoxelOctree& tree, int light, const shader::BindingSet& ranked,
-               const gpu::TextureRef& nodes, const gpu::BufferRef& sums) {
+  void average(PassContext& frame, int light, const OctreeBinding& bound, const gpu::TextureRef& nodes,
+               const gpu::BufferRef& sums) {
     using Variant = octree_photon_sums::Variant;
     const glm::ivec3 size = sizeOf(*photons->position, 0);
     for (const int stage : {Variant::stageCount, Variant::stageAdd})
       frame.dispatchList(
-          frame.program(Variant{.stage = stage}),
+          frame.program(Variant{.stage = stage},
+                        octree_photon_sums::Constants{.rule = static_cast<int>(static_cast<Photons>(rule))}),
           {octree_photon_sums::photonsOfLight(
-               {.gridLow = tree.grid.low, .voxelSize = tree.grid.voxelSize, .mapSize = size, .light = light}),
-           octree_photon_sums::photonPosition(photons->position, gpu::Sampling::nearest),
+               {.mapSize = size, .light = light, .voxelSize = octree->tree.grid.voxelSize}),
            octree_photon_sums::photonNormal(photons->normal, gpu::Sampling::nearest),
            octree_photon_sums::photonFlux(photons->flux, gpu::Sampling::nearest),
-           octree_photon_sums::nodes(nodes, gpu::Sampling::nearest), octree_photon_sums::sums(sums), ranked},
+           octree_photon_sums::nodes(nodes, gpu::Sampling::nearest), octree_photon_sums::sums(sums), bound},
           countOf(size));
   }
 

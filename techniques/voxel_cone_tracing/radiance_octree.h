@@ -147,7 +147,7 @@ struct PortTraits<voxel_cone_tracing::RadianceOctree> {
       const double middle =
           asGrid ? 0.5 * size : port.tree.firstVoxel() * static_cast<double>(port.tree.grid.voxelSize);
       const VoxelBox box{glm::dvec3(port.tree.grid.low) + middle - 0.5 * size, glm::dvec3(size),
-                         glm::ivec3((2 << (port.tree.depth - level)) + 1)};
+                         glm::ivec3(2 << (port.tree.depth - level))};
       const std::uint64_t bytes = port.radiance->sizeBytes();
       contents.field("radiance", box, VoxelsRead{3, bytes, [port, level] { return port.voxels(level, 0); }},
                      level);

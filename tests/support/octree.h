@@ -94,6 +94,13 @@ inline Cell cellOf(const glm::ivec3& place) {
   return {place.x, place.y, place.z};
 }
 
+/// Bytes of a store of floats that cones read: bricks, nodes, their places and ranks.
+inline std::uint64_t storeBytes(const VoxelOctree& tree) {
+  constexpr std::uint64_t kPooledBrick = 27 * 4 * sizeof(float);
+  return wantedOf(tree)[0] * (kPooledBrick + VoxelOctree::kBrickBytes) +
+         wantedOf(tree)[1] * VoxelOctree::kTileBytes + tree.ranks->sizeBytes();
+}
+
 /// Irradiance under which a fragment reflects its albedo, W/m^2.
 inline constexpr double kAmbient = kPi;
 

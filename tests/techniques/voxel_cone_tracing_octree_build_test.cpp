@@ -193,3 +193,23 @@ TEST_CASE("built level by level, as published, the tree has the same nodes") {
         CHECK(nodesOf(published, level) == nodesOf(ours, level));
     }
 }
+
+TEST_CASE("the octree takes the share of the dense grid's memory that the card says") {
+  struct Claim {
+    const char* scene;
+    int resolution;
+    double share;  // of the bytes of the dense grid with its mips
+  };
+  for (const Claim& claim :
+       {Claim{"cornell", 64, 1.06}, Claim{"cornell", 128, 0.61}, Claim{"cornell", 256, 0.31},
+        Claim{"arcade", 128, 1.50}, Claim{"arcade", 256, 0.90}}) {
+    const Scene scene = loadScene(sourceDirectory() / "scenes" / (std::string(claim.scene) + ".scene"));
+    PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshotOf(scene, 0.0));
+    voxels.setParameter("resolution", claim.resolution);
+    voxels.run();
+    const auto list = voxels.output<VoxelFragments>("fragments");
+    const double dense = static_cast<double>(list.grid.voxelCount()) * 16.0 * 8.0 / 7.0;
+    CAPTURE(claim.scene, claim.resolution);
+    CHECK(static_cast<double>(storeBytes(treeOf(list))) / dense == Approx(claim.share).epsilon(0.05));
+  }
+}

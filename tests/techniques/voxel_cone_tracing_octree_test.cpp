@@ -391,6 +391,31 @@ TEST_CASE("a steady frame waits for no count of the octree") {
   CHECK(device().transfers().stalls == before);
 }
 
+TEST_CASE("what is exported of an octree are its levels, each voxel once, where the dense grid has it") {
+  const auto [dense, sparse] = bothOf(cornell(), 32, "float", "facing");
+  PortContents contents(portKind<RadianceOctree>());
+  PortTraits<RadianceOctree>::contents(sparse, contents);
+  REQUIRE(contents.fields().size() == 2u * static_cast<std::size_t>(sparse.tree.depth + 1));
+  for (const PortContents::Field& field : contents.fields()) {
+    const auto& read = std::get<VoxelsRead>(field.source);
+    std::set<Cell> seen;
+    double sum = 0.0, expected = 0.0;
+    for (const auto& [voxel, value] : read.read()) {
+      CHECK(seen.insert(cellOf(voxel)).second);
+      CHECK(glm::all(glm::lessThan(voxel, field.box.resolution)));
+      sum += value.x;
+    }
+    const std::size_t channel = field.name == "opacity" ? 3 : 0;
+    const std::vector<float> texels = dense.radiance->downloadFloats(field.level);
+    for (std::size_t i = channel; i < texels.size(); i += 4)
+      expected += texels[i] * (channel == 0 ? dense.unit : 1.0f);
+    CAPTURE(field.name, field.level);
+    CHECK(sum == Approx(expected).epsilon(1e-5));
+    CHECK(glm::distance(field.box.low, glm::dvec3(dense.grid.low)) < 1e-6);
+    CHECK(field.box.voxelSize.x == Approx(dense.grid.voxelSize * (1 << field.level)));
+  }
+}
+
 TEST_CASE("rules that need the voxels elsewhere are refused with what would do") {
   const RadianceOctree leaves = leavesOf(listOf({fragmentAt({3, 3, 3})}, glm::ivec3(8)), "at_corners");
   CHECK_THROWS_WITH(filteredOctree(leaves, "facing"),
@@ -425,7 +450,7 @@ TEST_CASE("images are finite with the camera outside of the octree, inside geome
   for (const glm::dvec3& eye : {glm::dvec3(40, 3, 50), glm::dvec3(0.5, 0.005, 0.5)}) {
     SceneBuilder builder;
     builder.scene = litRoom(16, 16);
-    builder.look(eye, {0.5, 0.5, 0.5}, {0, 1, 0}, 0.7, 16, 16);
+    builder.look(eye, {0.5, 0.6, 0.2}, {0, 1, 0}, 0.7, 16, 16);
     check(builder.scene, eye.x > 1.0 ? "outside" : "in the floor's voxels");
   }
 }
