@@ -137,7 +137,9 @@ TEST_CASE("a thin lens is read with its units, and one that cannot be is refused
   const auto lens = [](const std::string& words) {
     return sceneWith("camera b { eye 0 0 1  target 0 0 0  " + words + " }");
   };
-  CHECK(lens("aperture 0  focus 2 m").empty());
+  const Scene pinhole = loadScene(directory.write(
+      "b.scene", "scene \"x\" {\n  camera b { eye 0 0 1  target 0 0 0  aperture 0  focus 2 m }\n}\n"));
+  CHECK(pinhole.camera("b").aperture == 0.0);
   CHECK_THAT(lens("aperture 5 cm"), Contains("a.scene:4:") &&
                                         Contains("'aperture' without a plane in focus") &&
                                         Contains("focus 3 m"));

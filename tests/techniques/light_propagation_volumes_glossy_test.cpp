@@ -79,6 +79,8 @@ double shown(const RadianceGrid& radiance, const glm::dvec3& eye, const glm::vec
   filter.setInput("radiance", placed);
   filter.run();
   PassHarness gather(device(), techniques(), "voxel_cone_tracing", "gather", builder.scene, snapshot);
+  gather.setParameter("glossy_cones", 1);
+  gather.setParameter("refinement", 1);
   const gpu::TextureRef normals = filledPixels(glm::vec4(normal, 1.0f));
   gather.setInput("gbuffer", GBuffer{filledPixels(glm::vec4(position - glm::vec3(snapshot.origin), 1.0f)),
                                      normals, normals, filledPixels(glm::vec4(0.0f)),

@@ -324,6 +324,7 @@ TEST_CASE("cones see the medium: an environment seen through d metres of it is d
   const glm::vec3 extinction(0.3f, 1.0f, 3.0f);
   PassHarness harness(device(), techniques(), "voxel_cone_tracing", "gather", scene, snapshotOf(scene, 0.0));
   harness.setParameter("cones", 1);
+  harness.setParameter("pattern", 1);
   harness.setInput("gbuffer", gbuffer);
   harness.setInput("grid", grid);
   harness.setInput("media", evenMedium(extinction, glm::vec3(0.5f), 0, {-50, 1, -50}, {50, 1.5f, 50}));
