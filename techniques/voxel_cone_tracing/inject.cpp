@@ -1,11 +1,14 @@
 // Injection of direct light: Crassin et al. 2011, Sec. 6; thesis Gomes 2015, Sec. 4.2.1. The mean of what the
 // fragments of each occupied voxel reflect, to all sides alike or by the six faces, independent of their
 // order.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <span>
 
 #include "levels.h"
 #include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/light_bounds.h"
@@ -66,11 +69,40 @@ class Injection {
                   "light on the back of a triangle counts; off, as published: only on the front"),
         precision_(pass, "precision", Precision::float_, "of the grid: 16 or 8 bytes a voxel") {}
 
-  /// Room for a grid whose finest level is that of the fragments, evenly halved.
-  gpu::TextureRef room(PassContext& frame, const char* label, bool coarserLevels = true) const {
-    const glm::ivec3 size = placement().resolution;
-    return frame.volume(size, precision_ == Precision::half ? gpu::Format::rgba16f : gpu::Format::rgba32f,
-                        label, coarserLevels ? gpu::fullLevelCount(size.x, size.y, size.z) : 1);
+  /// Room for so many grids whose finest level is that of the fragments, evenly halved. Where it does not
+  /// fit, nothing of it is taken, and the Error says what would.
+  std::vector<gpu::TextureRef> rooms(PassContext& frame, int count, const char* label,
+                                     bool coarserLevels) const {
+    const gpu::Format format = isHalf() ? gpu::Format::rgba16f : gpu::Format::rgba32f;
+    const auto levelsOf = [&](const glm::ivec3& size) {
+      return coarserLevels ? gpu::fullLevelCount(size.x, size.y, size.z) : 1;
+    };
+    const auto made = [&](const glm::ivec3& size) {
+      std::vector<gpu::TextureRef> textures;
+      for (int i = 0; i < count; ++i) textures.push_back(frame.volume(size, format, label, levelsOf(size)));
+      return textures;
+    };
+    const GridPlacement grid = placement();
+    try {
+      return made(grid.resolution);
+    } catch (const Error& error) {
+      std::uint64_t voxels = 0;
+      for (int level = 0; level < levelsOf(grid.resolution); ++level)
+        voxels += GridPlacement{.resolution = levelResolution(grid.resolution, level)}.voxelCount();
+      const std::uint64_t bytes = static_cast<std::uint64_t>(count) * voxels * gpu::bytesPerTexel(format);
+      for (int halvings = 1; grid.longest() >> halvings > 0; ++halvings) {
+        try {
+          made(levelResolution(grid.resolution, halvings));
+        } catch (const Error&) {
+          continue;
+        }
+        throw Error(fmt::format(
+            "room for {} of {} voxels along the longest side takes {}; of sizes halved from it the largest that fits is {} ({})",
+            count == 1 ? "a grid" : "six directional grids", grid.longest(), formatBytes(bytes),
+            grid.longest() >> halvings, error.what()));
+      }
+      throw;
+    }
   }
 
   /// Fills the finest levels, of one texture for all sides or of six for the faces, and what the port says
@@ -325,7 +357,7 @@ class InjectPass : public Pass {
       throw Error(
           "voxel_cone_tracing.inject: further bounces are gathered through coarser levels, for which there is no room; expected 'mips on' or 'bounces 1'");
     RadianceGrid result;
-    result.radiance = injection.room(frame, "radiance grid", mips);
+    result.radiance = injection.rooms(frame, 1, "radiance grid", mips).front();
     injection.fill(frame, result, {&result.radiance, 1}, bounces);
     radiance = result;
   }
@@ -343,7 +375,7 @@ class InjectDirectionalPass : public Pass {
 
   void run(PassContext& frame) override {
     DirectionalRadianceGrid result;
-    for (gpu::TextureRef& face : result.faces) face = injection.room(frame, "radiance grid of one side");
+    std::ranges::copy(injection.rooms(frame, 6, "radiance grid of one side", true), result.faces.begin());
     injection.fill(frame, result, result.faces, bounces);
     radiance = result;
   }

@@ -340,3 +340,30 @@ TEST_CASE("cones take exactly one store, and say which are there") {
                      snapshotOf(scene, 0.0));
   CHECK_THROWS_WITH(filter.run(), Contains("no finest level"));
 }
+
+TEST_CASE("grids that do not fit are refused with the bytes that they need and the largest that fit") {
+  gpu::DeviceOptions options;
+  options.memoryBytes = 32 << 20;
+  gpu::Device small(options);
+  const Scene scene = loadScene(sourceDirectory() / "scenes/cornell.scene");
+  const auto message = [&](const char* name) {
+    RenderOptions render;
+    render.width = render.height = 16;
+    const Pipeline text = pipeline(name);
+    render.parameters = text.settings({"resolution=128"});
+    PipelineExecutor executor(small, techniques(), scene, text, render);
+    try {
+      executor.render(0.0);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  // 128^3 voxels of 16 bytes and a seventh for the coarser levels: 36.6 MiB, and six times that.
+  CHECK_THAT(message("voxel_cone_tracing"),
+             Contains("a grid of 128 voxels along the longest side takes 36.6 MiB") &&
+                 Contains("the largest that fits is 64"));
+  CHECK_THAT(message("voxel_cone_tracing_directional"),
+             Contains("six directional grids of 128 voxels along the longest side takes 219") &&
+                 Contains("the largest that fits is"));
+}
