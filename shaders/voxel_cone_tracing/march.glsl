@@ -53,12 +53,14 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta, ui
     // Deviates from Listing 4.13: a wide cone at a slant would reach below the tangent plane and read the surface that it starts from.
     float height = offset * voxelSize + cosTheta * distance;
     float wanted = min(footprint * 2.0 * tanHalfAngle * distance, clearance * height);
-    // The last step ends where the grid does, so that walls there are read in full.
+    // What is partly covered is read once more by voxels of half the size, and so on; what is empty by larger ones again. Down to the
+    // finest, what is closed is looked at too: a cone that leaves a surface must not take its coarse voxel for a wall.
     wanted = max(wanted * share, min(wanted, voxelSize));
+    // The last step ends where the grid does, so that walls there are read in full.
     float stride = min(min(stepShare * max(wanted / footprint, voxelSize), longestStep(wanted)), end - distance) * firstShare;
     StoreSample found = readStore(apex + direction * (distance + 0.5 * stride), direction, wanted, stride);
-    bool partly = found.opacity > 0.0 && (found.opacity < kOpaque || leastShare == 0.0);
-    if (partly && wanted > voxelSize && share > leastShare) {
+    bool coarse = found.opacity > 0.0 && (found.opacity < kOpaque || leastShare == 0.0);
+    if (coarse && wanted > voxelSize && share > leastShare) {
       share *= 0.5;
       continue;
     }

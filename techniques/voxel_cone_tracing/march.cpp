@@ -10,41 +10,41 @@ namespace lumivox::voxel_cone_tracing {
 
 namespace gather = shaders::voxel_cone_tracing::gather;
 
-StoreBinding storeOf(const RadianceGrid& grid) {
-  const glm::vec3 extent = glm::vec3(grid.grid.resolution) * grid.grid.voxelSize;
+namespace {
+
+/// What every store says of itself; `block` holds the rest of the block Store.
+StoreBinding begun(int axis, const GridPlacement& grid, gather::Store block) {
   StoreBinding result;
-  result.axis = gather::Variant::storeDense;
-  result.length = 2.0f * glm::length(extent);
-  result.voxel = grid.grid.voxelSize;
+  block.storeLow = grid.low;
+  block.storeVoxel = result.voxel = grid.voxelSize;
+  block.storeExtent = glm::vec3(grid.resolution) * grid.voxelSize;
+  result.axis = axis;
+  result.length = 2.0f * glm::length(block.storeExtent);
+  result.add(shader::UniformSlot<gather::Store>{"Store"}(block));
+  return result;
+}
+
+}  // namespace
+
+StoreBinding storeOf(const RadianceGrid& grid) {
+  StoreBinding result =
+      begun(gather::Variant::storeDense, grid.grid,
+            {.storeCoarsest = static_cast<float>(grid.radiance->description().levels - 1),
+             .storeUnit = grid.unit,
+             .storeOpacityOfFinestVoxel = grid.opacity == RadianceGrid::Opacity::ofFinestVoxel});
   result.holdsMedia = grid.holdsMedia;
-  result.add(shader::UniformSlot<gather::Store>{"Store"}(
-      {.storeLow = grid.grid.low,
-       .storeVoxel = grid.grid.voxelSize,
-       .storeExtent = extent,
-       .storeCoarsest = static_cast<float>(grid.radiance->description().levels - 1),
-       .storeUnit = grid.unit,
-       .storeOpacityOfFinestVoxel = grid.opacity == RadianceGrid::Opacity::ofFinestVoxel}));
   result.add(shader::SampledSlot{"radianceGrid"}(grid.radiance, gpu::Sampling::linearMipsBorder));
   return result;
 }
 
 StoreBinding storeOf(const DirectionalRadianceGrid& grid, bool layers) {
-  const glm::vec3 extent = glm::vec3(grid.grid.resolution) * grid.grid.voxelSize;
-  StoreBinding result;
-  result.axis = gather::Variant::storeDirectional;
-  result.length = 2.0f * glm::length(extent);
-  result.voxel = grid.grid.voxelSize;
+  StoreBinding result = begun(gather::Variant::storeDirectional, grid.grid,
+                              {.storeCoarsest = static_cast<float>(grid.filledLevels - 1),
+                               .storeUnit = grid.unit,
+                               .storeFirstLevelOfFaces = static_cast<float>(grid.firstLevelOfFaces()),
+                               .storeLayers = layers,
+                               .storeVoxels = glm::vec3(grid.grid.resolution)});
   result.holdsMedia = grid.holdsMedia;
-  result.add(shader::UniformSlot<gather::Store>{"Store"}(
-      {.storeLow = grid.grid.low,
-       .storeVoxel = grid.grid.voxelSize,
-       .storeExtent = extent,
-       .storeCoarsest = static_cast<float>(grid.filledLevels - 1),
-       .storeUnit = grid.unit,
-       .storeOpacityOfFinestVoxel = 0,
-       .storeFirstLevelOfFaces = static_cast<float>(grid.firstLevelOfFaces()),
-       .storeLayers = layers,
-       .storeVoxels = glm::vec3(grid.grid.resolution)}));
   const gpu::TextureRef& finest = grid.finest != nullptr ? grid.finest : grid.faces[0];
   result.add(shader::SampledSlot{"finestGrid"}(finest, gpu::Sampling::linearMipsBorder));
   constexpr std::array kFaces = {"positiveX", "negativeX", "positiveY",
@@ -84,20 +84,13 @@ StoreBinding StoreInput::binding() const {
 StoreBinding StoreInput::inOctree() const {
   const RadianceOctree& octree = *octree_;
   const VoxelOctree& tree = octree.tree;
-  const glm::vec3 extent = glm::vec3(tree.grid.resolution) * tree.grid.voxelSize;
-  StoreBinding result;
-  result.axis = gather::Variant::storeOctree;
+  StoreBinding result =
+      begun(gather::Variant::storeOctree, tree.grid,
+            {.storeCoarsest = static_cast<float>(octree.filledLevels - 1),
+             .storeUnit = octree.unit,
+             .storeOpacityOfFinestVoxel = octree.opacity == RadianceOctree::Opacity::ofFinestVoxel});
   result.lookUp = tree.ranks != nullptr && lookUp_ == LookUp::ranks ? gather::Variant::lookUpRanks
                                                                     : gather::Variant::lookUpDescent;
-  result.length = 2.0f * glm::length(extent);
-  result.voxel = tree.grid.voxelSize;
-  result.add(shader::UniformSlot<gather::Store>{"Store"}(
-      {.storeLow = tree.grid.low,
-       .storeVoxel = tree.grid.voxelSize,
-       .storeExtent = extent,
-       .storeCoarsest = static_cast<float>(octree.filledLevels - 1),
-       .storeUnit = octree.unit,
-       .storeOpacityOfFinestVoxel = octree.opacity == RadianceOctree::Opacity::ofFinestVoxel}));
   result.add(shader::UniformSlot<gather::OctreeStore>{"OctreeStore"}(
       {.firstVoxel = tree.firstVoxel(),
        .firstVoxelGrows = tree.voxels == VoxelOctree::Voxels::asGrid ? 1.0f : 0.0f}));

@@ -94,21 +94,14 @@ inline RadianceGrid filtered(RadianceGrid grid, const char* opacity = "facing") 
 }
 
 /// Coarser levels in six grids, from a finest level of six or of one.
-inline DirectionalRadianceGrid filteredDirections(const DirectionalRadianceGrid& grid) {
+template <class Finest>
+DirectionalRadianceGrid filteredDirections(const Finest& finest) {
   const Scene scene = emptyScene();
   PassHarness harness(device(), techniques(), "voxel_cone_tracing", "filter_directional", scene,
                       snapshotOf(scene, 0.0));
-  harness.setInput("radiance", grid);
+  harness.setInput(std::is_same_v<Finest, RadianceGrid> ? "finest" : "radiance", finest);
   harness.run();
-  return harness.output<DirectionalRadianceGrid>("mips");
-}
-inline DirectionalRadianceGrid filteredDirections(const RadianceGrid& finest) {
-  const Scene scene = emptyScene();
-  PassHarness harness(device(), techniques(), "voxel_cone_tracing", "filter_directional", scene,
-                      snapshotOf(scene, 0.0));
-  harness.setInput("finest", finest);
-  harness.run();
-  return harness.output<DirectionalRadianceGrid>("mips");
+  return harness.template output<DirectionalRadianceGrid>("mips");
 }
 
 /// One value of a face at a level of the grid.
