@@ -68,33 +68,54 @@ class GatherPass : public Pass {
                                       .glossyCones = glossyCones};
     const int every = asPublished ? 1 : 1 << static_cast<int>(static_cast<Resolution>(resolution)),
               side = asPublished ? 1 : pattern;
-    const bool reconstructs = every > 1 || side > 1;
     const glm::ivec3 gathered = (pixels(frame) + (every - 1)) / glm::ivec3(every, every, 1);
     if (variant.diffuse) diffuse = Image{frame.image("indirect diffuse radiance")};
     if (variant.glossy) glossy = Image{frame.image("indirect glossy radiance")};
-    gpu::TextureRef samples[2] = {textureOf(diffuse), textureOf(glossy)};
-    if (reconstructs)
-      for (gpu::TextureRef& image : samples)
-        if (image != nullptr)
-          image = frame.texture({.format = gpu::Format::rgba32f, .width = gathered.x, .height = gathered.y},
-                                "gathered radiance");
+    const gpu::TextureDescription ofSamples{
+        .format = gpu::Format::rgba32f, .width = gathered.x, .height = gathered.y};
+    // Without a pattern, and a sample for each pixel, there is nothing to reconstruct.
+    const bool arrivingDiffuse = variant.diffuse && (every > 1 || side > 1),
+               arrivingGlossy = variant.glossy && every > 1;
+    Samples samples{arrivingDiffuse ? frame.texture(ofSamples, "gathered radiance") : textureOf(diffuse),
+                    arrivingGlossy ? frame.texture(ofSamples, "gathered radiance") : textureOf(glossy)};
     frame.dispatch(frame.program(variant, constants),
                    {gather::parameters({.eyeWorld = frame.snapshot().camera.eye,
                                         .coneRatio = coneRatio,
                                         .every = every,
                                         .pattern = side,
-                                        .reconstructs = reconstructs}),
+                                        .arrivingDiffuse = arrivingDiffuse,
+                                        .arrivingGlossy = arrivingGlossy}),
                     GBufferBinding(*gbuffer), bound, input, march.binding(frame, input),
-                    gather::diffuseImage(samples[0]), gather::glossyImage(samples[1])},
+                    gather::diffuseImage(samples.diffuse), gather::glossyImage(samples.glossy)},
                    gathered);
-    if (!reconstructs) return;
+    const reconstruct::Parameters filter{
+        .every = every, .pattern = side, .tolerance = tolerance * input.voxel};
+    if (arrivingDiffuse && side > 1) {
+      const gpu::TextureRef rows = frame.texture(ofSamples, "rows of gathered radiance");
+      reconstructed(frame, filter, {1, 0}, false, {samples.diffuse, nullptr}, {rows, nullptr}, gathered);
+      const gpu::TextureRef columns = every > 1 ? samples.diffuse : textureOf(diffuse);
+      reconstructed(frame, filter, {0, 1}, true, {rows, nullptr}, {columns, nullptr}, gathered);
+    }
+    if (every > 1)
+      reconstructed(frame, filter, {0, 0}, true, samples, {textureOf(diffuse), textureOf(glossy)},
+                    pixels(frame));
+  }
+
+  struct Samples {
+    gpu::TextureRef diffuse, glossy;  ///< null: none
+  };
+  /// One pass of reconstruct.comp.
+  void reconstructed(PassContext& frame, reconstruct::Parameters filter, glm::ivec2 along, bool finishes,
+                     const Samples& from, const Samples& to, glm::ivec3 threads) const {
+    filter.along = along;
+    filter.finishes = finishes;
     frame.dispatch(
-        frame.program(reconstruct::Variant{.diffuse = variant.diffuse, .glossy = variant.glossy}),
-        {reconstruct::parameters({.every = every, .pattern = side, .tolerance = tolerance * input.voxel}),
-         GBufferBinding(*gbuffer), reconstruct::gatheredDiffuse(samples[0], gpu::Sampling::nearest),
-         reconstruct::gatheredGlossy(samples[1], gpu::Sampling::nearest),
-         reconstruct::diffuseImage(textureOf(diffuse)), reconstruct::glossyImage(textureOf(glossy))},
-        pixels(frame));
+        frame.program(reconstruct::Variant{.diffuse = to.diffuse != nullptr, .glossy = to.glossy != nullptr}),
+        {reconstruct::parameters(filter), GBufferBinding(*gbuffer),
+         reconstruct::gatheredDiffuse(from.diffuse, gpu::Sampling::nearest),
+         reconstruct::gatheredGlossy(from.glossy, gpu::Sampling::nearest),
+         reconstruct::diffuseImage(to.diffuse), reconstruct::glossyImage(to.glossy)},
+        threads);
   }
 };
 
