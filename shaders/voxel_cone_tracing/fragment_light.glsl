@@ -1,6 +1,6 @@
 // The light that arrives at a fragment, on the side of its normal and behind it: Crassin et al. 2011, Sec. 6; thesis 004 Sec. 4.2.1,
 // Listing 4.8. Included after the local size, which is along x alone.
-// C++ side: Injection in techniques/voxel_cone_tracing/injection.h.
+// C++ side: DirectLight in techniques/voxel_cone_tracing/direct_light.h.
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis SHADOWS 0 1
 #pragma lumivox axis REFLECTED 0 1

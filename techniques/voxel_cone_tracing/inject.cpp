@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <span>
 
+#include "direct_light.h"
 #include "levels.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
-#include "lumivox/toolkit/light_bounds.h"
 #include "lumivox/toolkit/media.h"
 #include "march.h"
 #include "octree.h"
@@ -20,8 +20,6 @@ namespace lumivox::voxel_cone_tracing {
 namespace {
 
 using namespace shaders::voxel_cone_tracing;
-
-constexpr float kLargestHalf = 32768.0f;  // half floats end at 65504; filtering adds nothing to the largest
 
 /// The size of a grid with voxels added at its high ends so that halving it leaves no odd number above the
 /// few voxels of the coarsest levels. A level that is not of half the size of the finer one has voxels that
@@ -53,20 +51,10 @@ class Injection {
  public:
   explicit Injection(Pass* pass)
       : fragments_(pass, "fragments", "surface samples"),
-        shadow_(pass, "shadow", Presence::optional,
-                "lights and their visibility; without it the grid is dark but opaque"),
-        media_(pass, "media", Presence::optional,
-               "media between lights and surfaces, which dim the light on its way"),
-        mediumSteps_(pass, "medium_steps", 16, within(1, 1024),
-                     "most steps through a medium that varies, towards a light"),
+        light_(pass),
         storeMedia_(
             pass, "store_media", false,
             "the media lie in the voxels beside the surfaces and scatter light there, evenly to all sides, so that one set of cones sees both and 'gather' takes no media of its own (thesis Sec. 4.5)"),
-        ambient_(
-            pass, "ambient", 0.0f, within(0.0f, 1e9f),
-            "irradiance that all surfaces receive besides that of the lights, W/m^2: cones then see what no light reaches (thesis Fig. 66)"),
-        twoSided_(pass, "two_sided", true,
-                  "light on the back of a triangle counts; off, as published: only on the front"),
         precision_(pass, "precision", Precision::float_, "of the grid: 16 or 8 bytes a voxel") {}
 
   /// Room for so many grids whose finest level is that of the fragments, evenly halved. Where it does not
@@ -159,12 +147,8 @@ class Injection {
   enum class Precision { float_, half };
 
   In<VoxelFragments> fragments_;
-  In<ShadowMap> shadow_;
-  In<ScatteringGrid> media_;
-  Param<int> mediumSteps_;
+  DirectLight light_;
   Param<bool> storeMedia_;
-  Param<float> ambient_;
-  Param<bool> twoSided_;
   Param<Precision> precision_;
 
   /// Room for the sums of occupied voxels, and where they lie (bricks.glsl).
@@ -186,14 +170,12 @@ class Injection {
     grid.resolution = evenlyHalved(grid.resolution);
     return grid;
   }
-  bool storesMedia() const { return storeMedia_ && media_.present(); }
+  bool storesMedia() const { return storeMedia_ && light_.media.present(); }
   /// No voxel can reflect more; and of half floats the unit.
   float brightestOf(PassContext& frame, float& unit, int bounces = 1) const {
     // A grid cannot say anything of what lies nearer than half a voxel.
     const float brightest =
-        static_cast<float>(bounces) *
-        (largestRadiance(frame.sceneDescription(), frame.snapshot(), 0.5f * fragments_->grid.voxelSize) +
-         ambient_ / glm::pi<float>());
+        static_cast<float>(bounces) * light_.brightest(frame, 0.5f * fragments_->grid.voxelSize);
     if (isHalf()) unit = brightest / kLargestHalf;
     return brightest;
   }
@@ -256,7 +238,7 @@ class Injection {
                int cones, const StoreBinding& store) {
     const gpu::BufferRef radiances = radiancesOf(frame, sums);
     sums.voxels->clear(0u);
-    const MediaBinding bound(frame, media_, !store.holdsMedia);
+    const MediaBinding bound(frame, light_.media, !store.holdsMedia);
     const bounce::Variant variant{.directions = sums.directional,
                                   .environment = frame.traits().environment,
                                   .medium = bound.axis,
@@ -270,7 +252,7 @@ class Injection {
                                          .brickCount = sums.brickCount,
                                          .coneCount = cones,
                                          .mostRadiance = mostRadiance,
-                                         .twoSided = twoSided_}),
+                                         .twoSided = light_.twoSided}),
                      bounce::direct(direct), bounce::radiances(radiances), sums.bindings(), store,
                      march.binding(frame, store), bound},
                     *fragments_);
@@ -280,35 +262,21 @@ class Injection {
   /// The radiance that each fragment reflects, and of each voxel the number and the brightest of its
   /// fragments.
   void light(PassContext& frame, const Sums& sums, const gpu::BufferRef& radiances, float mostRadiance) {
-    const LightBinding lights(shadow_);
-    const MediaBinding bound(frame, media_, shadow_.present());
-    const inject::Variant variant{.directions = sums.directional,
-                                  .lights = shadow_.present(),
-                                  .shadows = shadow_.present(),
-                                  .reflected = fragments_->reflected != nullptr,
-                                  .medium = bound.axis,
-                                  .places = sums.inOctree};
-    forEachFragment(frame, frame.program(variant),
-                    {inject::grid({.gridLow = fragments_->grid.low,
-                                   .voxelSize = fragments_->grid.voxelSize,
-                                   .lightCount = lights.count,
-                                   .mostRadiance = mostRadiance,
-                                   .twoSided = twoSided_,
-                                   .mediumSteps = mediumSteps_,
-                                   .brickCount = sums.brickCount,
-                                   .ambient = ambient_}),
-                     inject::radiances(radiances), inject::reflected(fragments_->reflected), sums.bindings(),
-                     lights, bound},
-                    *fragments_);
+    light_.reflect(frame, *fragments_,
+                   {.directional = sums.directional,
+                    .places = sums.inOctree ? inject::Variant::placesOctree : inject::Variant::placesGrid,
+                    .brickCount = sums.brickCount,
+                    .mostRadiance = mostRadiance},
+                   {inject::radiances(radiances), sums.bindings()});
   }
 
   /// The finest levels from the sums: of the occupied bricks alone, or of all voxels where media lie in them.
   void resolve(PassContext& frame, const Sums& sums, float mostRadiance, float unit, bool holdsMedia,
                const OccupiedBricks& occupied, std::span<const gpu::TextureRef> textures) {
-    const LightBinding lights(shadow_);
-    const MediaBinding bound(frame, media_, holdsMedia);
+    const LightBinding lights(light_.shadow);
+    const MediaBinding bound(frame, light_.media, holdsMedia);
     const auto& program = frame.program(resolve::Variant{
-        .directions = sums.directional, .lights = holdsMedia && shadow_.present(), .medium = bound.axis});
+        .directions = sums.directional, .lights = holdsMedia && light_.shadow.present(), .medium = bound.axis});
     const GridPlacement grid = placement();
     shader::BindingSet bindings{resolve::parameters({.brickCount = sums.brickCount,
                                                      .unit = unit,
@@ -317,7 +285,7 @@ class Injection {
                                                      .gridLow = grid.low,
                                                      .voxelSize = grid.voxelSize,
                                                      .lightCount = lights.count,
-                                                     .mediumSteps = mediumSteps_,
+                                                     .mediumSteps = light_.mediumSteps,
                                                      .mostRadiance = mostRadiance}),
                                 resolve::brickList(occupied.bricks),
                                 resolve::brickCount(occupied.count),
