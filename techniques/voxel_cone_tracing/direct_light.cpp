@@ -25,26 +25,27 @@ float DirectLight::brightest(PassContext& frame, float nearest) const {
   return largestRadiance(frame.sceneDescription(), frame.snapshot(), nearest) + ambient / glm::pi<float>();
 }
 
-void DirectLight::reflect(PassContext& frame, const VoxelFragments& fragments, const Target& target,
-                          const shader::BindingSet& bindings) const {
+void DirectLight::reflect(PassContext& frame, const VoxelFragments& fragments, const VoxelSums& sums,
+                          float mostRadiance, const gpu::BufferRef& radiances) const {
   const LightBinding lights(shadow);
   const MediaBinding bound(frame, media, shadow.present());
-  const inject::Variant variant{.directions = target.directional,
+  const inject::Variant variant{.directions = sums.directional,
                                 .lights = shadow.present(),
                                 .shadows = shadow.present(),
                                 .reflected = fragments.reflected != nullptr,
                                 .medium = bound.axis,
-                                .places = target.places};
+                                .places = sums.kind};
   forEachFragment(frame, frame.program(variant),
                   {inject::grid({.gridLow = fragments.grid.low,
                                  .voxelSize = fragments.grid.voxelSize,
                                  .lightCount = lights.count,
-                                 .mostRadiance = target.mostRadiance,
+                                 .mostRadiance = mostRadiance,
                                  .twoSided = twoSided,
                                  .mediumSteps = mediumSteps,
-                                 .brickCount = target.brickCount,
+                                 .brickCount = sums.brickCount,
                                  .ambient = ambient}),
-                   inject::reflected(fragments.reflected), bindings, lights, bound},
+                   inject::radiances(radiances), inject::reflected(fragments.reflected), sums.bindings(),
+                   lights, bound},
                   fragments);
 }
 

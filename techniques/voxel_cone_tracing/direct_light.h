@@ -4,6 +4,7 @@
 
 #include "lumivox/plugin/technique.h"
 #include "voxel_cone_tracing_shaders.h"
+#include "voxel_sums.h"
 
 namespace lumivox::voxel_cone_tracing {
 
@@ -24,17 +25,10 @@ struct DirectLight {
   /// No voxel whose fragments are at this distance from lights at least can reflect more, W/(sr m^2).
   float brightest(PassContext& frame, float nearest) const;
 
-  /// Where what fragments reflect is counted.
-  struct Target {
-    bool directional = false;
-    int places = 0;  ///< value of the shader's axis PLACES
-    glm::ivec3 brickCount{0};
-    float mostRadiance = 0;
-  };
-  /// The radiance that each fragment reflects, and of each voxel the number and the brightest of its
-  /// fragments, into what `bindings` name.
-  void reflect(PassContext& frame, const VoxelFragments& fragments, const Target& target,
-               const shader::BindingSet& bindings) const;
+  /// The radiance that each fragment reflects, at most `mostRadiance`, into `radiances`, and of each voxel the
+  /// number and the brightest of its fragments. In a clipmap its levels say what is most.
+  void reflect(PassContext& frame, const VoxelFragments& fragments, const VoxelSums& sums, float mostRadiance,
+               const gpu::BufferRef& radiances) const;
 };
 
 }  // namespace lumivox::voxel_cone_tracing

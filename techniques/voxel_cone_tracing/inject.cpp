@@ -15,6 +15,7 @@
 #include "lumivox/toolkit/media.h"
 #include "march.h"
 #include "octree.h"
+#include "voxel_sums.h"
 
 namespace lumivox::voxel_cone_tracing {
 namespace {
@@ -103,7 +104,8 @@ class Injection {
     // Every bounce adds less than the one before.
     const float brightest = brightestOf(frame, result.unit, bounces.count());
 
-    const Sums sums = claimSums(frame, textures.size() > 1, result.occupied);
+    const VoxelSums sums =
+        claimSums(frame, *fragments_, result.grid.resolution, textures.size() > 1, result.occupied);
     const gpu::BufferRef direct = average(frame, sums, brightest);
     resolve(frame, sums, brightest, result.unit, result.holdsMedia, result.occupied, textures);
     for (int bounce = 1; bounce < bounces.count(); ++bounce) {
@@ -127,9 +129,9 @@ class Injection {
           "voxel_cone_tracing: 'store_media' fills voxels in which no surface lies, and an octree has none there; expected 'store_media off' or a dense grid");
     const VoxelOctree& tree = result.tree;
     const float brightest = brightestOf(frame, result.unit);
-    Sums sums;
+    VoxelSums sums;
     sums.places = OctreeBinding(tree, result.poolShift);
-    sums.inOctree = true;
+    sums.kind = inject::Variant::placesOctree;
     sums.voxels = frame.emptyElements(add::sums, 8 * tree.leafRoom, "sums of voxels");
     average(frame, sums, brightest);
     forEachBrick(
@@ -151,20 +153,6 @@ class Injection {
   Param<bool> storeMedia_;
   Param<Precision> precision_;
 
-  /// Room for the sums of occupied voxels, and where they lie (bricks.glsl).
-  struct Sums {
-    glm::ivec3 brickCount{0};
-    bool directional = false;
-    bool inOctree = false;
-    gpu::BufferRef bricks;      ///< of a dense grid
-    shader::BindingSet places;  ///< where the sums of a voxel are found; refers to what it binds
-    gpu::BufferRef voxels;
-    shader::BindingSet bindings() const {
-      if (directional) return {places, add::directionalSums(voxels)};
-      return {places, add::sums(voxels)};
-    }
-  };
-
   GridPlacement placement() const {
     GridPlacement grid = fragments_->grid;
     grid.resolution = evenlyHalved(grid.resolution);
@@ -181,62 +169,18 @@ class Injection {
   }
   bool addsUp() const { return fragments_->coverage == VoxelFragments::Coverage::sum; }
 
-  /// Finds the occupied bricks, and gives every occupied voxel its place among the sums. There are no more of
-  /// them than fragments, so that nothing that happens on the device need be known here.
-  Sums claimSums(PassContext& frame, bool directional, OccupiedBricks& occupied) const {
-    const glm::ivec3 size = placement().resolution;
-    Sums sums;
-    sums.directional = directional;
-    sums.brickCount = (size + (OccupiedBricks::kSide - 1)) / OccupiedBricks::kSide;
-    const std::uint64_t bricks = GridPlacement{.resolution = sums.brickCount}.voxelCount(),
-                        voxels = std::min<std::uint64_t>(fragments_->capacity,
-                                                         GridPlacement{.resolution = size}.voxelCount());
-    sums.bricks = frame.emptyElements(claim::bricks, bricks, "occupied voxels of bricks");
-    sums.places = {add::bricks(sums.bricks)};
-    sums.voxels = directional ? frame.emptyElements(add::directionalSums, voxels, "sums of voxels' faces")
-                              : frame.emptyElements(add::sums, voxels, "sums of voxels");
-    occupied.bricks = frame.elements(claim::brickList, std::min<std::uint64_t>(fragments_->capacity, bricks),
-                                     "occupied bricks");
-    occupied.count = frame.buffer(OccupiedBricks::argumentsBytes(3), "occupied brick count");
-    const gpu::BufferRef totals = frame.uploaded(std::array<std::uint32_t, 2>{}, "claimed bricks and voxels");
-    const auto brickCount = claim::size({sums.brickCount});
-    forEachFragment(frame, frame.program(mark::kProgram), {brickCount, mark::bricks(sums.bricks)},
-                    *fragments_);
-    frame.dispatch(frame.program(claim::kProgram),
-                   {brickCount, claim::bricks(sums.bricks), claim::brickList(occupied.bricks),
-                    claim::brickTotals(totals)},
-                   sums.brickCount);
-    frame.dispatch(frame.program(arguments::kProgram),
-                   {arguments::brickTotals(totals), arguments::brickCount(occupied.count)}, {1, 1, 1});
-    return sums;
-  }
-
-  /// Room for what fragments reflect.
-  gpu::BufferRef radiancesOf(PassContext& frame, const Sums& sums) const {
-    return frame.buffer(std::max<std::uint64_t>(fragments_->capacity, 1) * (sums.directional ? 6 : 3) *
-                            add::radiances.elementBytes,
-                        "reflected radiance per fragment");
-  }
-
   /// The sums of occupied voxels; returns what fragments reflect of the direct light.
-  gpu::BufferRef average(PassContext& frame, const Sums& sums, float brightest) {
-    const gpu::BufferRef radiances = radiancesOf(frame, sums);
-    light(frame, sums, radiances, brightest);
-    addUp(frame, sums, radiances);
+  gpu::BufferRef average(PassContext& frame, const VoxelSums& sums, float brightest) {
+    const gpu::BufferRef radiances = radiancesOf(frame, *fragments_, sums);
+    light_.reflect(frame, *fragments_, sums, brightest, radiances);
+    addUp(frame, *fragments_, sums, radiances);
     return radiances;
   }
 
-  void addUp(PassContext& frame, const Sums& sums, const gpu::BufferRef& radiances) {
-    forEachFragment(frame,
-                    frame.program(add::Variant{.directions = sums.directional, .places = sums.inOctree}),
-                    {add::averages({sums.brickCount, addsUp()}), add::radiances(radiances), sums.bindings()},
-                    *fragments_);
-  }
-
   /// The sums of what fragments reflect of the direct light and of what cones find in the store.
-  void reflect(PassContext& frame, const Sums& sums, const gpu::BufferRef& direct, float mostRadiance,
+  void reflect(PassContext& frame, const VoxelSums& sums, const gpu::BufferRef& direct, float mostRadiance,
                int cones, const StoreBinding& store) {
-    const gpu::BufferRef radiances = radiancesOf(frame, sums);
+    const gpu::BufferRef radiances = radiancesOf(frame, *fragments_, sums);
     sums.voxels->clear(0u);
     const MediaBinding bound(frame, light_.media, !store.holdsMedia);
     const bounce::Variant variant{.directions = sums.directional,
@@ -256,22 +200,11 @@ class Injection {
                      bounce::direct(direct), bounce::radiances(radiances), sums.bindings(), store,
                      march.binding(frame, store), bound},
                     *fragments_);
-    addUp(frame, sums, radiances);
-  }
-
-  /// The radiance that each fragment reflects, and of each voxel the number and the brightest of its
-  /// fragments.
-  void light(PassContext& frame, const Sums& sums, const gpu::BufferRef& radiances, float mostRadiance) {
-    light_.reflect(frame, *fragments_,
-                   {.directional = sums.directional,
-                    .places = sums.inOctree ? inject::Variant::placesOctree : inject::Variant::placesGrid,
-                    .brickCount = sums.brickCount,
-                    .mostRadiance = mostRadiance},
-                   {inject::radiances(radiances), sums.bindings()});
+    addUp(frame, *fragments_, sums, radiances);
   }
 
   /// The finest levels from the sums: of the occupied bricks alone, or of all voxels where media lie in them.
-  void resolve(PassContext& frame, const Sums& sums, float mostRadiance, float unit, bool holdsMedia,
+  void resolve(PassContext& frame, const VoxelSums& sums, float mostRadiance, float unit, bool holdsMedia,
                const OccupiedBricks& occupied, std::span<const gpu::TextureRef> textures) {
     const LightBinding lights(light_.shadow);
     const MediaBinding bound(frame, light_.media, holdsMedia);
