@@ -4,6 +4,9 @@
 #pragma lumivox axis DIFFUSE 0 1
 #pragma lumivox axis GLOSSY 0 1
 #pragma lumivox require DIFFUSE || GLOSSY
+// To which side the voxels of the dense grid shine.
+#pragma lumivox axis LOBES 0 1
+#pragma lumivox require !LOBES || STORE == dense
 #include "march.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -37,7 +37,9 @@ float opacityOfStep(float opacity, float stride, float level, float blend) {
 }
 
 const float kNoLimit = 1e30;
-vec3 coneApex;  // m, of the cone that is traced
+// Of the cone that is traced.
+vec3 coneApex;      // m
+float coneTangent;  // of its half angle
 
 #if STORE == STORE_DENSE
 #include "store_dense.glsl"

@@ -35,18 +35,18 @@ void DirectLight::reflect(PassContext& frame, const VoxelFragments& fragments, c
                                 .reflected = fragments.reflected != nullptr,
                                 .medium = bound.axis,
                                 .places = sums.kind};
-  forEachFragment(frame, frame.program(variant),
-                  {inject::grid({.gridLow = fragments.grid.low,
-                                 .voxelSize = fragments.grid.voxelSize,
-                                 .lightCount = lights.count,
-                                 .mostRadiance = mostRadiance,
-                                 .twoSided = twoSided,
-                                 .mediumSteps = mediumSteps,
-                                 .brickCount = sums.brickCount,
-                                 .ambient = ambient}),
-                   inject::radiances(radiances), inject::reflected(fragments.reflected), sums.bindings(),
-                   lights, bound},
-                  fragments);
+  forEachFragment(
+      frame, frame.program(variant),
+      {inject::grid({.gridLow = fragments.grid.low,
+                     .voxelSize = fragments.grid.voxelSize,
+                     .lightCount = lights.count,
+                     .mostRadiance = mostRadiance,
+                     .twoSided = twoSided,
+                     .mediumSteps = mediumSteps,
+                     .brickCount = sums.brickCount,
+                     .ambient = ambient}),
+       inject::radiances(radiances), inject::reflected(fragments.reflected), sums.bindings(), lights, bound},
+      fragments);
 }
 
 }  // namespace lumivox::voxel_cone_tracing

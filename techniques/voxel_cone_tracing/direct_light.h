@@ -25,8 +25,8 @@ struct DirectLight {
   /// No voxel whose fragments are at this distance from lights at least can reflect more, W/(sr m^2).
   float brightest(PassContext& frame, float nearest) const;
 
-  /// The radiance that each fragment reflects, at most `mostRadiance`, into `radiances`, and of each voxel the
-  /// number and the brightest of its fragments. In a clipmap its levels say what is most.
+  /// The radiance that each fragment reflects, at most `mostRadiance`, into `radiances`, and of each voxel
+  /// the number and the brightest of its fragments. In a clipmap its levels say what is most.
   void reflect(PassContext& frame, const VoxelFragments& fragments, const VoxelSums& sums, float mostRadiance,
                const gpu::BufferRef& radiances) const;
 };

@@ -4,6 +4,7 @@
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/media.h"
 #include "march.h"
+#include "normal_lobes.h"
 
 namespace lumivox::voxel_cone_tracing {
 namespace {
@@ -13,11 +14,14 @@ namespace reconstruct = shaders::voxel_cone_tracing::reconstruct;
 
 class GatherPass : public Pass {
   enum class Distribution { cosine, published };
+  enum class ConeLobe { sine, cosine };
   // In the order of their halvings.
   enum class Resolution { full, half, quarter };
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   StoreInput store{this};
+  In<NormalLobes> lobes{this, "lobes", Presence::optional,
+                        "beside 'grid': to which side its voxels shine; without them to all sides alike"};
   In<ScatteringGrid> media{this, "media", Presence::optional,
                            "media that dim what the cones see; light that they scatter is left out"};
   Param<int> cones{this, "cones", 6, within(1, 256), "diffuse cones per pixel"};
@@ -42,6 +46,9 @@ class GatherPass : public Pass {
   Param<float> tolerance{
       this, "tolerance", 1.0f, within(1e-3f, 1e3f),
       "distance off a pixel's surface, in voxels, at which that filter gives another one the weight 1/e"};
+  Param<ConeLobe> coneLobe{
+      this, "cone_lobe", ConeLobe::sine,
+      "with 'lobes': standard deviation of a cone's directions as the sine of its half angle; or, as published, its cosine"};
   ConeMarch march{this};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
                      "indirect light reflected by the diffuse lobe"};
@@ -55,9 +62,13 @@ class GatherPass : public Pass {
     if (input.holdsMedia && media.present())
       throw Error(
           "voxel_cone_tracing.gather: the voxels of 'grid' already contain the media, and 'media' would dim what the cones see once more; expected 'media' to be left out, or 'store_media off' in voxel_cone_tracing.inject");
+    if (lobes.present() && input.axis != gather::Variant::storeDense)
+      throw Error(
+          "voxel_cone_tracing.gather: 'lobes' say to which side the voxels of 'grid' shine, and the cones read another store; expected 'grid' to be connected or 'lobes' to be left out");
     const MediaBinding bound(frame, media);
     const gather::Variant variant{.diffuse = diffuse.wanted(),
                                   .glossy = glossy.wanted() && gbuffer->specular != nullptr,
+                                  .lobes = lobes.present(),
                                   .environment = frame.traits().environment,
                                   .medium = bound.axis,
                                   .store = input.axis,
@@ -65,7 +76,8 @@ class GatherPass : public Pass {
     const gather::Constants constants{.coneCount = cones,
                                       .publishedCones = distribution == Distribution::published,
                                       .asPublished = asPublished,
-                                      .glossyCones = glossyCones};
+                                      .glossyCones = glossyCones,
+                                      .publishedLobes = coneLobe == ConeLobe::cosine};
     const int every = asPublished ? 1 : 1 << static_cast<int>(static_cast<Resolution>(resolution)),
               side = asPublished ? 1 : pattern;
     const glm::ivec3 gathered = (pixels(frame) + (every - 1)) / glm::ivec3(every, every, 1);
@@ -78,6 +90,8 @@ class GatherPass : public Pass {
                arrivingGlossy = variant.glossy && every > 1;
     Samples samples{arrivingDiffuse ? frame.texture(ofSamples, "gathered radiance") : textureOf(diffuse),
                     arrivingGlossy ? frame.texture(ofSamples, "gathered radiance") : textureOf(glossy)};
+    shader::BindingSet ofLobes;
+    if (lobes.present()) ofLobes.add(gather::lobeGrid(lobes->lobes, gpu::Sampling::linearMipsBorder));
     frame.dispatch(frame.program(variant, constants),
                    {gather::parameters({.eyeWorld = frame.snapshot().camera.eye,
                                         .coneRatio = coneRatio,
@@ -85,7 +99,7 @@ class GatherPass : public Pass {
                                         .pattern = side,
                                         .arrivingDiffuse = arrivingDiffuse,
                                         .arrivingGlossy = arrivingGlossy}),
-                    GBufferBinding(*gbuffer), bound, input, march.binding(frame, input),
+                    GBufferBinding(*gbuffer), bound, input, ofLobes, march.binding(frame, input),
                     gather::diffuseImage(samples.diffuse), gather::glossyImage(samples.glossy)},
                    gathered);
     const reconstruct::Parameters filter{

@@ -22,16 +22,6 @@ namespace {
 
 using namespace shaders::voxel_cone_tracing;
 
-/// The size of a grid with voxels added at its high ends so that halving it leaves no odd number above the
-/// few voxels of the coarsest levels. A level that is not of half the size of the finer one has voxels that
-/// share children, and an opaque child makes both opaque: walls grow thicker from level to level.
-glm::ivec3 evenlyHalved(const glm::ivec3& size) {
-  constexpr int kCoarse = 4;  // voxels along the longest side from which on sizes may be odd
-  int multiple = 1;
-  while (2 * kCoarse * multiple <= std::max({size.x, size.y, size.z})) multiple *= 2;
-  return (size + (multiple - 1)) / multiple * multiple;
-}
-
 /// Bounces beyond the first, by light that cones gather for every fragment: members of a pass.
 class Bounces {
  public:
@@ -208,8 +198,9 @@ class Injection {
                const OccupiedBricks& occupied, std::span<const gpu::TextureRef> textures) {
     const LightBinding lights(light_.shadow);
     const MediaBinding bound(frame, light_.media, holdsMedia);
-    const auto& program = frame.program(resolve::Variant{
-        .directions = sums.directional, .lights = holdsMedia && light_.shadow.present(), .medium = bound.axis});
+    const auto& program = frame.program(resolve::Variant{.directions = sums.directional,
+                                                         .lights = holdsMedia && light_.shadow.present(),
+                                                         .medium = bound.axis});
     const GridPlacement grid = placement();
     shader::BindingSet bindings{resolve::parameters({.brickCount = sums.brickCount,
                                                      .unit = unit,

@@ -27,10 +27,10 @@ VoxelSums claimSums(PassContext& frame, const VoxelFragments& fragments, const g
   const gpu::BufferRef totals = frame.uploaded(std::array<std::uint32_t, 2>{}, "claimed bricks and voxels");
   const auto brickCount = claim::size({sums.brickCount});
   forEachFragment(frame, frame.program(mark::kProgram), {brickCount, mark::bricks(sums.bricks)}, fragments);
-  frame.dispatch(frame.program(claim::kProgram),
-                 {brickCount, claim::bricks(sums.bricks), claim::brickList(occupied.bricks),
-                  claim::brickTotals(totals)},
-                 sums.brickCount);
+  frame.dispatch(
+      frame.program(claim::kProgram),
+      {brickCount, claim::bricks(sums.bricks), claim::brickList(occupied.bricks), claim::brickTotals(totals)},
+      sums.brickCount);
   frame.dispatch(frame.program(arguments::kProgram),
                  {arguments::brickTotals(totals), arguments::brickCount(occupied.count)}, {1, 1, 1});
   return sums;
@@ -46,11 +46,10 @@ void addUp(PassContext& frame, const VoxelFragments& fragments, const VoxelSums&
            const gpu::BufferRef& radiances) {
   const add::Variant variant{
       .directions = sums.directional, .sampled = sums.sideMasks != nullptr, .places = sums.kind};
-  forEachFragment(
-      frame, frame.program(variant),
-      {add::averages({sums.brickCount, fragments.coverage == VoxelFragments::Coverage::sum}),
-       add::radiances(radiances), add::sideMasks(sums.sideMasks), sums.bindings()},
-      fragments);
+  forEachFragment(frame, frame.program(variant),
+                  {add::averages({sums.brickCount, fragments.coverage == VoxelFragments::Coverage::sum}),
+                   add::radiances(radiances), add::sideMasks(sums.sideMasks), sums.bindings()},
+                  fragments);
 }
 
 }  // namespace lumivox::voxel_cone_tracing
