@@ -18,6 +18,9 @@ DirectLight::DirectLight(Pass* pass)
       ambient(
           pass, "ambient", 0.0f, within(0.0f, 1e9f),
           "irradiance that all surfaces receive besides that of the lights, W/m^2: cones then see what no light reaches (thesis Fig. 66)"),
+      samples(
+          pass, "light_samples", 1, within(1, 256),
+          "points of a fragment's plane in its voxel that are lit, so that the edge of a shadow may lie in a voxel"),
       twoSided(pass, "two_sided", true,
                "light on the back of a triangle counts; off, as published: only on the front") {}
 
@@ -44,7 +47,8 @@ void DirectLight::reflect(PassContext& frame, const VoxelFragments& fragments, c
                      .twoSided = twoSided,
                      .mediumSteps = mediumSteps,
                      .brickCount = sums.brickCount,
-                     .ambient = ambient}),
+                     .ambient = ambient,
+                     .lightSamples = samples}),
        inject::radiances(radiances), inject::reflected(fragments.reflected), sums.bindings(), lights, bound},
       fragments);
 }

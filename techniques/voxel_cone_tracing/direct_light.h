@@ -20,6 +20,7 @@ struct DirectLight {
   In<ScatteringGrid> media;
   Param<int> mediumSteps;
   Param<float> ambient;
+  Param<int> samples;
   Param<bool> twoSided;
 
   /// No voxel whose fragments are at this distance from lights at least can reflect more, W/(sr m^2).
