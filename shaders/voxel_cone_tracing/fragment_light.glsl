@@ -1,6 +1,6 @@
 // The light that arrives at a fragment, on the side of its normal and behind it: Crassin et al. 2011, Sec. 6; thesis 004 Sec. 4.2.1,
 // Listing 4.8. Included after the local size, which is along x alone.
-// C++ side: Injection in techniques/voxel_cone_tracing/injection.h.
+// C++ side: DirectLight in techniques/voxel_cone_tracing/direct_light.h.
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis SHADOWS 0 1
 #pragma lumivox axis REFLECTED 0 1
@@ -37,6 +37,22 @@ layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
 layout(std430, binding = 7) readonly buffer Reflected { uint reflected[]; };
 #endif
 
+#if PLACES == PLACES_CLIPMAP
+#include "clipmap_stack.glsl"
+
+vec3 positionOf(VoxelFragment fragment) {
+  ivec3 voxel = unpackVoxel(fragment.voxel);
+  int level = levelInStack(voxel);
+  return stackOrigin + (vec3(voxelOfLevel(voxel, level)) + unpackOffset(fragment.offset)) * voxelSizeOf(level);
+}
+float mostRadianceIn(ivec3 voxel) { return stackLimits[levelInStack(voxel)].x; }
+#else
+vec3 positionOf(VoxelFragment fragment) {
+  return gridLow + (vec3(unpackVoxel(fragment.voxel)) + unpackOffset(fragment.offset)) * voxelSize;
+}
+float mostRadianceIn(ivec3 voxel) { return mostRadiance; }
+#endif
+
 // What a fragment is known to reflect of the light, W/(sr m^2); false where it has to be lit.
 bool isKnown(uint index, out vec3 radiance) {
 #if REFLECTED
@@ -55,8 +71,7 @@ void arrivingAt(VoxelFragment fragment, out vec3 front, out vec3 back) {
   front = vec3(0.0);
   back = vec3(0.0);
 #if LIGHTS
-  vec3 posWorld = gridLow + (vec3(unpackVoxel(fragment.voxel)) + unpackOffset(fragment.offset)) * voxelSize;
-  vec3 normal = unpackNormal(fragment.normal);
+  vec3 posWorld = positionOf(fragment), normal = unpackNormal(fragment.normal);
   for (int i = 0; i < lightCount; ++i) {
     LightSample light = lights[i];
     vec3 toLight;

@@ -40,6 +40,7 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta, ui
   float opacity = 0.0;
   float share = 1.0;
   coneApex = apex;
+  coneTangent = tanHalfAngle;
   float voxelSize = finestVoxel(apex);
   vec2 inside = insideStore(apex, direction);
   float distance = max(startShare * voxelSize, inside.x), end = min(maxDistance, inside.y);

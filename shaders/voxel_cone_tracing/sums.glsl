@@ -1,6 +1,6 @@
 // Where the sums of an occupied voxel lie: in the dense grid's bricks of 4 x 4 x 4 voxels (`bricks` and `brickCount` are declared before), or
-// eight for each leaf of an octree, those of the voxels that are its own. Included after the local size, which is along x alone.
-#pragma lumivox axis PLACES grid octree
+// eight for each leaf of an octree, those of the voxels that are its own. The levels of a clipmap lie side by side in one grid. Included after the local size, which is along x alone.
+#pragma lumivox axis PLACES grid octree clipmap
 #if PLACES == PLACES_OCTREE
 #include "octree_levels.glsl"
 #include "octree_ranks.glsl"
