@@ -1,8 +1,8 @@
 #version 450
 // Integer sums to the bricks of the leaves: radiance pre-multiplied by opacity, and opacity; resolve.comp says how.
 //
-// As in a grid and at corners: each brick gets the eight voxels that are its own; those that it shares with the neighbour above are copied from there
-// (octree_transfer.comp). Voxels in leaves: each vertex is the mean of the voxels of its own leaf around it (thesis 004, Sec. 4.2.2, Fig. 69:
+// As in a grid and at corners: each brick gets the eight voxels that are its own; those that it may share with the neighbour above are copied
+// from there (octree_transfer.comp). Voxels in leaves: each vertex is the mean of the voxels of its own leaf around it (thesis 004, Sec. 4.2.2, Fig. 69:
 // averages are stored in the corners of the brick, Listing 4.23, and spread through it), and of what the neighbours find once they are
 // averaged.
 layout(local_size_x = 64) in;
@@ -30,8 +30,8 @@ vec4 surfacesIn(VoxelSums sum) {
 
 void main() {
   uint brick, lane;
-  if (!itemOf(octreeDepth, 27u, brick, lane)) return;
-  ivec3 vertex = ivec3(lane % 3u, lane / 3u % 3u, lane / 9u);
+  if (!itemOf(octreeDepth, voxelsOfBrick(), brick, lane)) return;
+  ivec3 vertex = voxelOfLane(lane);
   uint first = 8u * (brick - octreeLevels[octreeDepth].firstBrick);
   vec4 value = vec4(0.0);
   if (inLeaves == 0) {

@@ -35,7 +35,6 @@ uint tilesIn(uint word) {
 }
 uint below(uint bits, uint place) { return bits & ((1u << place) - 1u); }
 
-
 // Tags beside the number of nodes before them, which is that of the first one's brick.
 struct RankedTags {
   uint tags;

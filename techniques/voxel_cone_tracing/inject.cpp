@@ -150,7 +150,7 @@ class Injection {
                                  .coverageSum = addsUp(),
                                  .inLeaves = tree.voxels == VoxelOctree::Voxels::inLeaves}),
          octree_resolve::sums(sums.voxels), octree_resolve::radianceImage(result.radiance), sums.places},
-        tree, tree.depth, 27);
+        tree, tree.depth, tree.brickVoxels());
   }
 
   bool isHalf() const { return precision_ == Precision::half; }
@@ -260,7 +260,8 @@ class Injection {
     const bounce::Variant variant{.directions = sums.directional,
                                   .environment = frame.traits().environment,
                                   .medium = bound.axis,
-                                  .store = store.axis};
+                                  .store = store.axis,
+                                  .lookUp = store.lookUp};
     // Cones that see what is partly covered by the finest voxels, and what they begin in, lose nothing in a
     // closed room.
     const MarchSettings march{.start = 0.0f, .refinement = 0.0f};

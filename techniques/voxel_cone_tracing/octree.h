@@ -25,7 +25,8 @@ void makePool(PassContext& frame, RadianceOctree& result, gpu::Format format);
 enum class Transfer { add, copy, average };
 
 /// Completes the voxels that bricks of a depth share with their neighbours, along x, y and z: the parts that
-/// both have are added or averaged, or those of the higher one are copied to the lower one.
+/// both have are added or averaged, or those of the higher one are copied to the lower one. Nothing where
+/// each voxel is held once.
 void transferBorders(PassContext& frame, const RadianceOctree& octree, int depth, Transfer way);
 
 }  // namespace lumivox::voxel_cone_tracing
