@@ -35,8 +35,8 @@ layout(std430, binding = 4) buffer DirectionalSums { VoxelDirections directions[
 const float kBackShare = 1.0 / 256.0;
 
 void main() {
-  uint index = listIndex();
-  if (index >= fragmentCount) return;
+  uint index;
+  if (!takenFragment(index)) return;
   VoxelFragment fragment = fragments[index];
   ivec3 voxel = unpackVoxel(fragment.voxel);
   uint place = sumsAt(voxel);
@@ -66,8 +66,8 @@ void main() {
 layout(std430, binding = 4) buffer Sums { VoxelSums sums[]; };
 
 void main() {
-  uint index = listIndex();
-  if (index >= fragmentCount) return;
+  uint index;
+  if (!takenFragment(index)) return;
   VoxelFragment fragment = fragments[index];
   ivec3 voxel = unpackVoxel(fragment.voxel);
   uint place = sumsAt(voxel);

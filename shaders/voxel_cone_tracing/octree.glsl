@@ -6,8 +6,8 @@
 // C++ side: VoxelOctree in techniques/voxel_cone_tracing/radiance_octree.h.
 #ifndef LUMIVOX_OCTREE
 #define LUMIVOX_OCTREE
+#include "octree_tags.glsl"
 
-const uint kNone = 0xffffffffu;
 const uint kTagged = 0xfffffffeu;  // in place of children: they are to be made
 
 struct OctreeNode {
@@ -48,10 +48,11 @@ uint brickAt(ivec3 place, int depth) {
   return node == kNone ? kNone : octreeNodes[node].brick;
 }
 
-// The first of the texels of a brick.
-ivec3 texelOf(uint brick) {
-  uint row = (1u << octreePoolShift) - 1u;
-  return octreeSide * ivec3(brick & row, brick >> octreePoolShift & row, brick >> 2 * octreePoolShift);
+// The first of the texels of a brick in a pool that has 2 to the power of `shift` of them along x and along y.
+ivec3 texelIn(int shift, uint brick) {
+  uint row = (1u << shift) - 1u;
+  return octreeSide * ivec3(brick & row, brick >> shift & row, brick >> 2 * shift);
 }
+ivec3 texelOf(uint brick) { return texelIn(octreePoolShift, brick); }
 
 #endif

@@ -16,9 +16,8 @@ layout(std430, binding = 14) OCTREE_CORNERS_ACCESS buffer OctreeCorners { uint o
 
 // The first of the eight bricks around a node by its place along the curve of its depth; kNone: nothing is shown.
 uint cornersOf(uint morton, int depth) {
-  RankedTags word = octreeShown[firstWord(depth) + (morton >> 5)];
-  uint bit = morton & 31u;
-  return (word.tags >> bit & 1u) == 0u ? kNone : 8u * (word.nodesBefore + uint(bitCount(below(word.tags, bit))));
+  uint shown = rankIn(octreeShown[firstWord(depth) + (morton >> 5)], morton);
+  return shown == kNone ? kNone : 8u * shown;
 }
 
 #endif

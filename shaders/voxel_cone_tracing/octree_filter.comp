@@ -6,11 +6,18 @@
 // opaque there, and grows to three of them in trilinear reading.
 //
 // LIT: only the bricks that photons have changed (octree_lit.comp); the others are there already.
+// CHANGED: what has not changed since static geometry was lit is copied from there.
 #pragma lumivox axis LIT 0 1
+#pragma lumivox axis CHANGED 0 1
+#pragma lumivox require !LIT || !CHANGED
 layout(local_size_x = 64) in;
 #include "children.glsl"
 #include "octree_levels.glsl"
 #include "octree_ranks.glsl"
+#if CHANGED
+#include "changed_cells.glsl"
+#include "octree_still.glsl"
+#endif
 
 const int kFacing = 0, kAverage = 1;
 layout(constant_id = 0) const int rule = kFacing;
@@ -36,6 +43,13 @@ void main() {
   if (lit[brick] == 0u) return;
 #endif
   ivec3 voxel = voxelOfLane(lane);
+#if CHANGED
+  uint morton = mortonOf(unpackVoxel(octreeBricks[brick].place));
+  if (!isChanged(morton, depth)) {
+    imageStore(poolImage, texelOf(brick) + voxel, stillVoxel(morton, depth, voxel));
+    return;
+  }
+#endif
   vec4 value = vec4(0.0);  // of those that are copied, unless there is nothing to copy
   if (all(lessThan(voxel, ivec3(2)))) {
     uint finer = childBrick(octreeBricks[brick], uint(voxel.x | voxel.y << 1 | voxel.z << 2));

@@ -3,7 +3,7 @@
 // Deviates: a bit a node in place of a mark in the node itself, so that no node must be there yet and all depths are done at once
 // (octree_tag.comp does as published).
 layout(local_size_x = 64) in;
-#include "common/fragments.glsl"
+#include "moving_fragments.glsl"
 #include "octree_tags.glsl"
 #include "octree_extent.glsl"
 
@@ -26,8 +26,8 @@ void tagShown(uint morton, int nodeDepth) {
 }
 
 void main() {
-  uint index = listIndex();
-  if (index >= fragmentCount) return;
+  uint index;
+  if (!fragmentOf(index)) return;
   ivec3 voxel = unpackVoxel(fragments[index].voxel);
   for (int nodeDepth = depth; nodeDepth >= 0; --nodeDepth) {
     ivec3 first, last;

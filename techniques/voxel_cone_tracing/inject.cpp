@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <span>
 
+#include "changed_cells.h"
 #include "levels.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -73,13 +74,12 @@ class Injection {
   /// fit, nothing of it is taken, and the Error says what would.
   std::vector<gpu::TextureRef> rooms(PassContext& frame, int count, const char* label,
                                      bool coarserLevels) const {
-    const gpu::Format format = isHalf() ? gpu::Format::rgba16f : gpu::Format::rgba32f;
     const auto levelsOf = [&](const glm::ivec3& size) {
       return coarserLevels ? gpu::fullLevelCount(size.x, size.y, size.z) : 1;
     };
     const auto made = [&](const glm::ivec3& size) {
       std::vector<gpu::TextureRef> textures;
-      for (int i = 0; i < count; ++i) textures.push_back(frame.volume(size, format, label, levelsOf(size)));
+      for (int i = 0; i < count; ++i) textures.push_back(frame.volume(size, format(), label, levelsOf(size)));
       return textures;
     };
     const GridPlacement grid = placement();
@@ -89,7 +89,7 @@ class Injection {
       std::uint64_t voxels = 0;
       for (int level = 0; level < levelsOf(grid.resolution); ++level)
         voxels += GridPlacement{.resolution = levelResolution(grid.resolution, level)}.voxelCount();
-      const std::uint64_t bytes = static_cast<std::uint64_t>(count) * voxels * gpu::bytesPerTexel(format);
+      const std::uint64_t bytes = static_cast<std::uint64_t>(count) * voxels * gpu::bytesPerTexel(format());
       for (int halvings = 1; grid.longest() >> halvings > 0; ++halvings) {
         try {
           made(levelResolution(grid.resolution, halvings));
@@ -116,7 +116,7 @@ class Injection {
     const float brightest = brightestOf(frame, result.unit, bounces.count());
 
     const Sums sums = claimSums(frame, textures.size() > 1, result.occupied);
-    const gpu::BufferRef direct = average(frame, sums, brightest);
+    const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
     resolve(frame, sums, brightest, result.unit, result.holdsMedia, result.occupied, textures);
     for (int bounce = 1; bounce < bounces.count(); ++bounce) {
       if constexpr (std::is_same_v<Grid, RadianceGrid>) {
@@ -137,23 +137,18 @@ class Injection {
     if (storesMedia())
       throw Error(
           "voxel_cone_tracing: 'store_media' fills voxels in which no surface lies, and an octree has none there; expected 'store_media off' or a dense grid");
-    const VoxelOctree& tree = result.tree;
     const float brightest = brightestOf(frame, result.unit);
-    Sums sums;
-    sums.places = OctreeBinding(tree, result.poolShift);
-    sums.inOctree = true;
-    sums.voxels = frame.emptyElements(add::sums, 8 * tree.leafRoom, "sums of voxels");
-    average(frame, sums, brightest);
-    forEachBrick(
-        frame, frame.program(octree_resolve::kProgram),
-        {octree_resolve::leaves({.unit = result.unit,
-                                 .coverageSum = addsUp(),
-                                 .inLeaves = tree.voxels == VoxelOctree::Voxels::inLeaves}),
-         octree_resolve::sums(sums.voxels), octree_resolve::radianceImage(result.radiance), sums.places},
-        tree, tree.depth, tree.brickVoxels());
+    if (const auto still = stillLight(frame, result.tree, brightest)) {
+      std::vector<Bounds> moving = *changes_.moving(frame);
+      moving.insert(moving.end(), still->moving.begin(), still->moving.end());
+      result.still = still->octree;
+      result.changed = Changes::cells(frame, *fragments_, still->cells, shadow_, moving);
+    }
+    fillLeaves(frame, *fragments_, result, brightest);
   }
 
   bool isHalf() const { return precision_ == Precision::half; }
+  gpu::Format format() const { return isHalf() ? gpu::Format::rgba16f : gpu::Format::rgba32f; }
 
  private:
   enum class Precision { float_, half };
@@ -172,14 +167,66 @@ class Injection {
     glm::ivec3 brickCount{0};
     bool directional = false;
     bool inOctree = false;
-    gpu::BufferRef bricks;      ///< of a dense grid
-    shader::BindingSet places;  ///< where the sums of a voxel are found; refers to what it binds
+    const ChangedCells* changed = nullptr;  ///< fragments count in these alone
+    gpu::BufferRef bricks;                  ///< of a dense grid
+    shader::BindingSet places;              ///< where the sums of a voxel are found; refers to what it binds
     gpu::BufferRef voxels;
     shader::BindingSet bindings() const {
       if (directional) return {places, add::directionalSums(voxels)};
       return {places, add::sums(voxels)};
     }
   };
+
+  /// Static geometry in the light of one moment, and what moved in that light.
+  struct StillLight {
+    std::shared_ptr<const RadianceOctree> octree;
+    std::vector<Bounds> moving;
+    CellFragments cells;
+  };
+  Changes changes_;
+  /// Of the frame before: only what did not change in it is worth keeping.
+  std::pair<gpu::BufferRef, LightPlacement> before_;
+
+  /// Kept as long as static geometry and lights stay where they are; nothing where that is not known, or
+  /// where they have moved in this frame.
+  std::optional<StillLight> stillLight(PassContext& frame, const VoxelOctree& tree, float brightest) {
+    if (tree.still == nullptr || media_.present() || fragments_->reflected != nullptr) return {};
+    auto key = std::pair(fragments_->still, Changes::placementOf(frame, shadow_, brightest));
+    const bool stays = key == before_;
+    before_ = key;
+    const auto moving = changes_.moving(frame);
+    if (!stays || !moving) return {};
+    return frame.kept("light of static geometry", key, [&] {
+      RadianceOctree still;
+      still.tree = *tree.still;
+      makePool(frame, still, format());
+      brightestOf(frame, still.unit);
+      fillLeaves(frame, stillOf(*fragments_), still, brightest);
+      return StillLight{std::make_shared<const RadianceOctree>(still), *moving,
+                        sortedByCells(frame, stillOf(*fragments_))};
+    });
+  }
+
+  void fillLeaves(PassContext& frame, const VoxelFragments& list, const RadianceOctree& result,
+                  float brightest) {
+    const VoxelOctree& tree = result.tree;
+    Sums sums;
+    sums.places = OctreeBinding(tree, result.poolShift);
+    sums.inOctree = true;
+    if (result.still != nullptr) {
+      sums.changed = &result.changed;
+      sums.places.add(stillBinding(result));
+    }
+    sums.voxels = frame.emptyElements(add::sums, 8 * tree.leafRoom, "sums of voxels");
+    average(frame, list, sums, brightest);
+    forEachBrick(
+        frame, frame.program(octree_resolve::Variant{.changed = sums.changed != nullptr}),
+        {octree_resolve::leaves({.unit = result.unit,
+                                 .coverageSum = addsUp(),
+                                 .inLeaves = tree.voxels == VoxelOctree::Voxels::inLeaves}),
+         octree_resolve::sums(sums.voxels), octree_resolve::radianceImage(result.radiance), sums.places},
+        tree, tree.depth, sums.changed != nullptr ? 1 : tree.brickVoxels());
+  }
 
   GridPlacement placement() const {
     GridPlacement grid = fragments_->grid;
@@ -237,18 +284,29 @@ class Injection {
   }
 
   /// The sums of occupied voxels; returns what fragments reflect of the direct light.
-  gpu::BufferRef average(PassContext& frame, const Sums& sums, float brightest) {
+  gpu::BufferRef average(PassContext& frame, const VoxelFragments& list, const Sums& sums, float brightest) {
     const gpu::BufferRef radiances = radiancesOf(frame, sums);
-    light(frame, sums, radiances, brightest);
-    addUp(frame, sums, radiances);
+    light(frame, list, sums, radiances, brightest);
+    addUp(frame, list, sums, radiances);
     return radiances;
   }
 
-  void addUp(PassContext& frame, const Sums& sums, const gpu::BufferRef& radiances) {
-    forEachFragment(frame,
-                    frame.program(add::Variant{.directions = sums.directional, .places = sums.inOctree}),
-                    {add::averages({sums.brickCount, addsUp()}), add::radiances(radiances), sums.bindings()},
-                    *fragments_);
+  static void forEachTaken(PassContext& frame, const shader::BoundProgram& program,
+                           const shader::BindingSet& bindings, const VoxelFragments& list, const Sums& sums) {
+    if (sums.changed != nullptr) {
+      forEachChanged(frame, program, bindings, list, *sums.changed);
+    } else {
+      forEachFragment(frame, program, bindings, list);
+    }
+  }
+
+  void addUp(PassContext& frame, const VoxelFragments& list, const Sums& sums,
+             const gpu::BufferRef& radiances) {
+    forEachTaken(
+        frame,
+        frame.program(add::Variant{
+            .directions = sums.directional, .places = sums.inOctree, .changed = sums.changed != nullptr}),
+        {add::averages({sums.brickCount, addsUp()}), add::radiances(radiances), sums.bindings()}, list, sums);
   }
 
   /// The sums of what fragments reflect of the direct light and of what cones find in the store.
@@ -275,12 +333,13 @@ class Injection {
                      bounce::direct(direct), bounce::radiances(radiances), sums.bindings(), store,
                      march.binding(frame, store), bound},
                     *fragments_);
-    addUp(frame, sums, radiances);
+    addUp(frame, *fragments_, sums, radiances);
   }
 
   /// The radiance that each fragment reflects, and of each voxel the number and the brightest of its
   /// fragments.
-  void light(PassContext& frame, const Sums& sums, const gpu::BufferRef& radiances, float mostRadiance) {
+  void light(PassContext& frame, const VoxelFragments& list, const Sums& sums,
+             const gpu::BufferRef& radiances, float mostRadiance) {
     const LightBinding lights(shadow_);
     const MediaBinding bound(frame, media_, shadow_.present());
     const inject::Variant variant{.directions = sums.directional,
@@ -288,19 +347,20 @@ class Injection {
                                   .shadows = shadow_.present(),
                                   .reflected = fragments_->reflected != nullptr,
                                   .medium = bound.axis,
-                                  .places = sums.inOctree};
-    forEachFragment(frame, frame.program(variant),
-                    {inject::grid({.gridLow = fragments_->grid.low,
-                                   .voxelSize = fragments_->grid.voxelSize,
-                                   .lightCount = lights.count,
-                                   .mostRadiance = mostRadiance,
-                                   .twoSided = twoSided_,
-                                   .mediumSteps = mediumSteps_,
-                                   .brickCount = sums.brickCount,
-                                   .ambient = ambient_}),
-                     inject::radiances(radiances), inject::reflected(fragments_->reflected), sums.bindings(),
-                     lights, bound},
-                    *fragments_);
+                                  .places = sums.inOctree,
+                                  .changed = sums.changed != nullptr};
+    forEachTaken(frame, frame.program(variant),
+                 {inject::grid({.gridLow = fragments_->grid.low,
+                                .voxelSize = fragments_->grid.voxelSize,
+                                .lightCount = lights.count,
+                                .mostRadiance = mostRadiance,
+                                .twoSided = twoSided_,
+                                .mediumSteps = mediumSteps_,
+                                .brickCount = sums.brickCount,
+                                .ambient = ambient_}),
+                  inject::radiances(radiances), inject::reflected(fragments_->reflected), sums.bindings(),
+                  lights, bound},
+                 list, sums);
   }
 
   /// The finest levels from the sums: of the occupied bricks alone, or of all voxels where media lie in them.
@@ -388,12 +448,12 @@ class OctreeInjectPass : public Pass {
   Out<RadianceOctree> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
                                Levels::finest};
 
-  Reads readsFrom() const override { return Reads::lights | Reads::materials; }
+  Reads readsFrom() const override { return Reads::geometry | Reads::lights | Reads::materials; }
 
   void run(PassContext& frame) override {
     RadianceOctree result;
     result.tree = *tree;
-    makePool(frame, result, injection.isHalf() ? gpu::Format::rgba16f : gpu::Format::rgba32f);
+    makePool(frame, result, injection.format());
     injection.fill(frame, result);
     const bool inLeaves = tree->voxels == VoxelOctree::Voxels::inLeaves;
     transferBorders(frame, result, tree->depth, inLeaves ? Transfer::average : Transfer::copy);

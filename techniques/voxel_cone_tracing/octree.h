@@ -13,6 +13,9 @@ class OctreeBinding : public shader::BindingSet {
   explicit OctreeBinding(const VoxelOctree& tree, int poolShift = 0);
 };
 
+/// What a shader with the axis CHANGED copies of static geometry; nothing where that is not known.
+shader::BindingSet stillBinding(const RadianceOctree& octree);
+
 /// `threads` invocations for each brick of a depth, and for those of all depths where it is that of the
 /// leaves and one more; a barrier follows.
 void forEachBrick(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,

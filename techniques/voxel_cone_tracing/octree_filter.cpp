@@ -96,6 +96,11 @@ class OctreeFilterPass : public Pass {
     if (!asGrid && opacity == Opacity::facing)
       throw Error(
           "voxel_cone_tracing.octree_filter: 'opacity facing' takes eight whole voxels for a coarse one, and with voxels at corners or in leaves it covers halves of others; expected 'opacity average', or 'voxels as_grid' in voxel_cone_tracing.octree");
+    if (result.still != nullptr)
+      result.still = frame.kept("levels of static geometry", result.still, [&] {
+        for (int depth = result.tree.depth - 1; depth >= 0; --depth) halve(frame, *result.still, depth);
+        return result.still;
+      });
     for (int depth = result.tree.depth - 1; depth >= 0; --depth) {
       if (asGrid) {
         halve(frame, result, depth);
@@ -103,6 +108,7 @@ class OctreeFilterPass : public Pass {
         addParts(frame, result, depth);
       }
     }
+    result.still = nullptr;
     result.filledLevels = result.tree.depth + 1;
     result.opacity = opacity == Opacity::facing ? RadianceOctree::Opacity::ofVoxel
                                                 : RadianceOctree::Opacity::ofFinestVoxel;
@@ -112,10 +118,11 @@ class OctreeFilterPass : public Pass {
   void halve(PassContext& frame, const RadianceOctree& octree, int depth) {
     forEachBrick(
         frame,
-        frame.program(octree_filter::Variant{},
+        frame.program(octree_filter::Variant{.changed = octree.still != nullptr},
                       octree_filter::Constants{.rule = static_cast<int>(static_cast<Opacity>(opacity))}),
         {octree_filter::coarse({depth}), octree_filter::pool(octree.radiance, gpu::Sampling::nearest),
-         octree_filter::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift)},
+         octree_filter::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift),
+         stillBinding(octree)},
         octree.tree, depth, octree.tree.brickVoxels());
     transferBorders(frame, octree, depth, Transfer::copy);
   }

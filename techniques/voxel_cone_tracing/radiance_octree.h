@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lumivox/pipeline/port.h"
+#include "lumivox/pipeline/ports.h"
 
 namespace lumivox::voxel_cone_tracing {
 
@@ -37,6 +38,9 @@ struct VoxelOctree {
   int depth = 0;  ///< of the leaves
   Voxels voxels = Voxels::asGrid;
   Bricks bricksAre = Bricks::published;
+  /// The tree of static geometry alone, of bricks of their own voxels; null where nothing moves, or where it
+  /// is not known apart.
+  std::shared_ptr<const VoxelOctree> still;
   std::uint64_t brickRoom = 0;  ///< bricks that there is room for
   std::uint64_t leafRoom = 0;   ///< of them those of the finest level
   /// Bricks of the depths 0, 0 and 1, 0 to 2 ...: what trees of 2, 4, 8 ... voxels a side take.
@@ -82,6 +86,14 @@ struct OctreeBrickList {
   }
 };
 
+/// A bit for each cell of 8 x 8 x 8 voxels whose fragments or whose light may differ from those of static
+/// geometry, and for what lies above them in a tree over the grid (changed_cells.glsl).
+struct ChangedCells {
+  gpu::BufferRef bits;
+  gpu::BufferRef fragments, count;    ///< those in changed cells: their places in the list; how many
+  int cellDepth = 0, voxelDepth = 0;  ///< in that tree, whose root is at depth 0
+};
+
 /// Pre-filtered outgoing radiance in the bricks of an octree, pre-multiplied by opacity.
 struct RadianceOctree {
   VoxelOctree tree;
@@ -91,6 +103,10 @@ struct RadianceOctree {
   int filledLevels = 1;      ///< finest first
   /// What opacity means in coarser levels, as RadianceGrid says it.
   enum class Opacity { ofVoxel, ofFinestVoxel } opacity = Opacity::ofVoxel;
+  /// What is not in one of these cells has the voxels of static geometry in `still`, which is null where that
+  /// is not known.
+  std::shared_ptr<const RadianceOctree> still;
+  ChangedCells changed;
 
   glm::ivec3 texelOf(std::uint32_t brick) const {
     const std::uint32_t row = (1u << poolShift) - 1u;
