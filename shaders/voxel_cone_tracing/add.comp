@@ -7,7 +7,12 @@
 // sides of a wall stay apart. The back of a fragment counts for a face only where no other looks that way (kBackShare): of a wall with two
 // faces in one voxel the insides are dark. The fragment's opacity along an axis is its coverage by the share of that axis in its normal,
 // over the largest of the three shares: a sheet is closed along the axis that it faces, and open along itself.
+//
+// SAMPLED: opacity is that of the samples of a voxel's sides that any fragment covers, beside the sum of the coverages.
 #pragma lumivox axis DIRECTIONS 0 1
+#pragma lumivox axis SAMPLED 0 1
+#pragma lumivox require !SAMPLED || (DIRECTIONS && PLACES == clipmap)
+#pragma lumivox require PLACES != clipmap || DIRECTIONS
 #include "bricks.glsl"
 #include "common/integer_mean.glsl"
 
@@ -32,6 +37,10 @@ vec4 partOf(vec3 radiance, float brightest, float weight) {
 #if DIRECTIONS
 layout(std430, binding = 4) buffer DirectionalSums { VoxelDirections directions[]; };
 
+#if SAMPLED
+layout(std430, binding = 9) readonly buffer SideMasks { uint sideMasksOf[]; };  // of each fragment, eight bits across x, y and z
+#endif
+
 const float kBackShare = 1.0 / 256.0;
 
 void main() {
@@ -47,11 +56,17 @@ void main() {
   float most = max(cosines.x, max(cosines.y, cosines.z));
   for (int axis = 0; axis < 3; ++axis) {
     float opacity = coverage * cosines[axis] / most;
+#if SAMPLED
+    // Sums of multiples of 256 leave the eight bits alone.
+    atomicAdd(directions[place].opacity[axis], uint(opacity * part * kSampledFixedPoint + 0.5) << kSideSamples);
+    atomicOr(directions[place].opacity[axis], sideMasksOf[index] >> kSideSamples * uint(axis) & kAllSides);
+#else
     if (coverageSum != 0) {
       atomicAdd(directions[place].opacity[axis], shareOf(opacity * part));
     } else {
       atomicMax(directions[place].opacity[axis], floatBitsToUint(opacity));
     }
+#endif
     for (int side = 0; side < 2; ++side) {
       bool towardsHigher = (normal[axis] > 0.0) == (side == 0);
       float weight = coverage * part * cosines[axis] * (side == 0 ? 1.0 : kBackShare);

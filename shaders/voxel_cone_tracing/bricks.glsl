@@ -16,9 +16,13 @@ struct VoxelSums {
 struct VoxelDirections {
   uint fragments;
   uint brightest;   // as above, of both sides
-  uint opacity[3];  // along x, y and z: bits of the largest, or the sum of shares of a mean
+  uint opacity[3];  // along x, y and z: bits of the largest, or the sum of shares of a mean; that sum in fewer bits over a voxel's samples
   uint faces[24];   // of each face red, green, blue and their weight: shares of averages
 };
+
+// Samples of a side of a voxel, a bit each, and the unit of the sum above them.
+const uint kSideSamples = 8u, kAllSides = (1u << kSideSamples) - 1u;
+const float kSampledFixedPoint = 8388608.0;  // 2^23
 
 uint brickOf(ivec3 voxel, ivec3 brickCount) {
   ivec3 brick = voxel >> 2;

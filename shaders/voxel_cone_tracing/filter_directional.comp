@@ -53,34 +53,7 @@ vec4 lowerFace(int axis, ivec3 child) {
                    : texelFetch(negativeZ, child, levelOfFaces);
 }
 
-// Means over the columns along an axis.
-void lookThrough(ivec3 cell, int axis, ivec3 first, ivec3 last, vec3 ratio, out vec4 higher, out vec4 lower) {
-  int side = (axis + 1) % 3, up = (axis + 2) % 3;
-  higher = vec4(0.0);
-  lower = vec4(0.0);
-  float weight = 0.0;
-  for (int v = first[up]; v <= last[up]; ++v)
-    for (int u = first[side]; u <= last[side]; ++u) {
-      float part = share(cell[up], v, ratio[up]) * share(cell[side], u, ratio[side]);
-      vec4 fromHigher = vec4(0.0), fromLower = vec4(0.0);
-      for (int w = first[axis]; w <= last[axis]; ++w) {
-        ivec3 child;
-        child[axis] = w;
-        child[side] = u;
-        child[up] = v;
-        float length = share(cell[axis], w, ratio[axis]);
-        vec4 ahead = slab(lowerFace(axis, child), length);
-        if (ahead.a <= 0.0) continue;
-        fromLower = over(fromLower, ahead);
-        fromHigher = over(slab(higherFace(axis, child), length), fromHigher);
-      }
-      higher += part * fromHigher;
-      lower += part * fromLower;
-      weight += part;
-    }
-  higher /= weight;
-  lower /= weight;
-}
+#include "columns.glsl"
 
 void main() {
 #if OCCUPIED

@@ -1,6 +1,6 @@
 // The light that arrives at a fragment, on the side of its normal and behind it: Crassin et al. 2011, Sec. 6; thesis 004 Sec. 4.2.1,
 // Listing 4.8. Included after the local size, which is along x alone.
-// C++ side: Injection in techniques/voxel_cone_tracing/injection.h.
+// C++ side: DirectLight in techniques/voxel_cone_tracing/direct_light.h.
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis SHADOWS 0 1
 #pragma lumivox axis REFLECTED 0 1
@@ -29,12 +29,29 @@ layout(std140, binding = 0) uniform Grid {
   int mediumSteps;      // most steps through a medium that varies, towards a light
   ivec3 brickCount;
   float ambient;        // irradiance of all surfaces besides that of the lights, W/m^2
+  int lightSamples;     // points of a fragment's plane in its voxel that are lit
 };
 layout(std430, binding = 2) writeonly buffer Radiances { float radiances[]; };  // W/(sr m^2): three of each fragment or of each side of one
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
 #if REFLECTED
 // Direct light that fragments are known to reflect: a word for each of the first of them.
 layout(std430, binding = 7) readonly buffer Reflected { uint reflected[]; };
+#endif
+
+#if PLACES == PLACES_CLIPMAP
+#include "clipmap_stack.glsl"
+
+vec3 positionOf(VoxelFragment fragment) {
+  ivec3 voxel = unpackVoxel(fragment.voxel);
+  int level = levelInStack(voxel);
+  return stackOrigin + (vec3(voxelOfLevel(voxel, level)) + unpackOffset(fragment.offset)) * voxelSizeOf(level);
+}
+float mostRadianceIn(ivec3 voxel) { return stackLimits[levelInStack(voxel)].x; }
+#else
+vec3 positionOf(VoxelFragment fragment) {
+  return gridLow + (vec3(unpackVoxel(fragment.voxel)) + unpackOffset(fragment.offset)) * voxelSize;
+}
+float mostRadianceIn(ivec3 voxel) { return mostRadiance; }
 #endif
 
 // What a fragment is known to reflect of the light, W/(sr m^2); false where it has to be lit.
@@ -50,13 +67,9 @@ bool isKnown(uint index, out vec3 radiance) {
 #endif
 }
 
-// Irradiance of both sides by the lights, W/m^2.
-void arrivingAt(VoxelFragment fragment, out vec3 front, out vec3 back) {
-  front = vec3(0.0);
-  back = vec3(0.0);
 #if LIGHTS
-  vec3 posWorld = gridLow + (vec3(unpackVoxel(fragment.voxel)) + unpackOffset(fragment.offset)) * voxelSize;
-  vec3 normal = unpackNormal(fragment.normal);
+// Adds the irradiance of a point by the lights, W/m^2.
+void lightPoint(vec3 posWorld, vec3 normal, inout vec3 front, inout vec3 back) {
   for (int i = 0; i < lightCount; ++i) {
     LightSample light = lights[i];
     vec3 toLight;
@@ -75,6 +88,42 @@ void arrivingAt(VoxelFragment fragment, out vec3 front, out vec3 back) {
 #endif
     if (behind) back += arriving;
     else front += arriving;
+  }
+}
+#endif
+
+// Irradiance of both sides by the lights, W/m^2: at the fragment's point; or the mean over points of its plane in its voxel, so that the
+// edge of a shadow may lie in it. They fill the side of the voxel that the plane faces evenly (R2: Roberts 2018).
+void arrivingAt(VoxelFragment fragment, out vec3 front, out vec3 back) {
+  front = vec3(0.0);
+  back = vec3(0.0);
+#if LIGHTS
+  vec3 low = gridLow + vec3(unpackVoxel(fragment.voxel)) * voxelSize, place = unpackOffset(fragment.offset);
+  vec3 normal = unpackNormal(fragment.normal);
+  if (lightSamples <= 1) {
+    lightPoint(low + place * voxelSize, normal, front, back);
+    return;
+  }
+  const vec2 kR2 = vec2(0.75487766624669276, 0.56984029099805327);
+  vec3 along = abs(normal);
+  int axis = along.x >= along.y && along.x >= along.z ? 0 : along.y >= along.z ? 1 : 2;
+  int side = (axis + 1) % 3, up = (axis + 2) % 3;
+  float inside = 0.0;
+  for (int i = 0; i < lightSamples; ++i) {
+    vec2 across = fract(0.5 + float(i) * kR2);
+    vec3 point = place;
+    point[side] = across.x;
+    point[up] = across.y;
+    point[axis] -= (normal[side] * (across.x - place[side]) + normal[up] * (across.y - place[up])) / normal[axis];
+    if (point[axis] < 0.0 || point[axis] > 1.0) continue;
+    inside += 1.0;
+    lightPoint(low + point * voxelSize, normal, front, back);
+  }
+  if (inside > 0.0) {
+    front /= inside;
+    back /= inside;
+  } else {
+    lightPoint(low + place * voxelSize, normal, front, back);
   }
 #endif
 }

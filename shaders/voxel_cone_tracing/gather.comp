@@ -4,6 +4,9 @@
 #pragma lumivox axis DIFFUSE 0 1
 #pragma lumivox axis GLOSSY 0 1
 #pragma lumivox require DIFFUSE || GLOSSY
+// To which side the voxels of the dense grid shine.
+#pragma lumivox axis LOBES 0 1
+#pragma lumivox require !LOBES || STORE == dense
 #include "march.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -18,7 +21,8 @@ layout(std140, binding = 0) uniform Parameters {
   float coneRatio;  // diameter of one of the five cones over its height
   int every;        // one pixel of so many along each axis is gathered
   int pattern;      // pixels in a square of this side have cones of their own
-  int reconstructs; // 1: what arrives is written, for reconstruct.comp; 0: what is reflected
+  int arrivingDiffuse; // 1: what arrives is written, for reconstruct.comp; 0: what is reflected
+  int arrivingGlossy;  // the same
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
@@ -117,14 +121,15 @@ void main() {
     if (asPublished == 0) apex += texelFetch(gGeometricNormal, pixel, 0).xyz * (offset * finestVoxel(apex));
 #if DIFFUSE
     vec3 albedo = texelFetch(gDiffuse, pixel, 0).rgb;
-    if (reconstructs != 0 || any(greaterThan(albedo, vec3(0.0)))) diffuse = (reconstructs != 0 ? vec3(1.0) : albedo) * gatherDiffuse(apex, normal);
+    if (arrivingDiffuse != 0) albedo = vec3(1.0);
+    if (any(greaterThan(albedo, vec3(0.0)))) diffuse = albedo * gatherDiffuse(apex, normal);
 #endif
 #if GLOSSY
     vec4 specular = texelFetch(gSpecular, pixel, 0);
     mirrors = any(greaterThan(specular.rgb, vec3(0.0)));
     if (mirrors) {
       vec3 mirror = reflect(normalize(position.xyz - eyeWorld), normal);
-      glossy = (reconstructs != 0 ? vec3(1.0) : specular.rgb) * gatherGlossy(apex, normal, mirror, specular.w);
+      glossy = (arrivingGlossy != 0 ? vec3(1.0) : specular.rgb) * gatherGlossy(apex, normal, mirror, specular.w);
     }
 #endif
   }
@@ -132,6 +137,6 @@ void main() {
   imageStore(diffuseImage, gathered, vec4(diffuse, 1.0));
 #endif
 #if GLOSSY
-  imageStore(glossyImage, gathered, vec4(glossy, reconstructs != 0 && !mirrors ? 0.0 : 1.0));  // 0: no sample
+  imageStore(glossyImage, gathered, vec4(glossy, arrivingGlossy != 0 && !mirrors ? 0.0 : 1.0));  // 0: no sample
 #endif
 }

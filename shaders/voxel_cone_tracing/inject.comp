@@ -4,6 +4,7 @@
 //
 // DIRECTIONS: both sides apart, that of the normal first.
 #pragma lumivox axis DIRECTIONS 0 1
+#pragma lumivox require PLACES != clipmap || DIRECTIONS
 
 layout(local_size_x = 64) in;
 #include "fragment_light.glsl"
@@ -26,20 +27,21 @@ void main() {
   if (!isKnown(index, known)) arrivingAt(fragment, front, back);
   ivec3 voxel = unpackVoxel(fragment.voxel);
   uint place = sumsAt(voxel);
+  float most = mostRadianceIn(voxel);
 #if DIRECTIONS
   // What is known does not tell the side.
   vec3 sides[2] = vec3[2](albedo / kPi * (ambient + front) + known, albedo / kPi * (ambient + back) + known);
   float brightest = 0.0;
   for (int side = 0; side < 2; ++side) {
-    vec3 radiance = min(sides[side], mostRadiance);
+    vec3 radiance = min(sides[side], most);
     brightest = max(brightest, largest(radiance));
     for (int channel = 0; channel < 3; ++channel) radiances[6 * index + 3 * side + channel] = radiance[channel];
   }
   atomicAdd(directions[place].fragments, 1u);
   atomicMax(directions[place].brightest, floatBitsToUint(brightest));
 #else
-  vec3 radiance = min(albedo / kPi * (ambient + front + back), mostRadiance);  // ambient: thesis Fig. 66
-  radiance = min(radiance + known, mostRadiance);
+  vec3 radiance = min(albedo / kPi * (ambient + front + back), most);  // ambient: thesis Fig. 66
+  radiance = min(radiance + known, most);
   for (int channel = 0; channel < 3; ++channel) radiances[3 * index + channel] = radiance[channel];
   atomicAdd(sums[place].fragments, 1u);
   atomicMax(sums[place].brightest, floatBitsToUint(largest(radiance)));

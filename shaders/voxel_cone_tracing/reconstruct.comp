@@ -2,8 +2,9 @@
 // What the cones of some pixels saw, filtered for all of them: a joint bilateral filter (Kopf et al. 2007) guided by the g-buffer, before
 // the light is multiplied by the surface's albedo, so that textures stay sharp.
 //
-// The samples lie `every` pixels apart, and their cones repeat in squares of side `pattern`. The filter is a box as wide as such a
-// square with ramps of one sample at its ends, so that every place in the pattern weighs the same; without a pattern it is linear.
+// The samples lie `every` pixels apart, and their cones repeat in squares of side `pattern`. A box as wide as such a square, with ramps of
+// one sample at its ends so that every place in the pattern weighs the same, goes over the samples, along the rows and then along the
+// columns: 2 x 5 looks for a pattern of 4 x 4 in place of 25. Pixels between samples blend the four around them.
 #pragma lumivox axis DIFFUSE 0 1
 #pragma lumivox axis GLOSSY 0 1
 #pragma lumivox require DIFFUSE || GLOSSY
@@ -11,8 +12,10 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140, binding = 0) uniform Parameters {
+  ivec2 along;      // the direction of the box, in samples; 0 0: pixels between samples
   int every, pattern;
   float tolerance;  // m off the surface's plane at which a sample counts 1/e
+  int finishes;     // 1: the mean is written, and where it is that of pixels, times the albedo; 0: the sum, and that of the weights
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 2) uniform sampler2D gGeometricNormal;
@@ -27,45 +30,88 @@ layout(binding = 6) uniform sampler2D gatheredGlossy;
 layout(binding = 1, rgba32f) uniform writeonly image2D glossyImage;
 #endif
 
-// The mean of the samples around a pixel. Each of them keeps a little weight, for pixels like none of the samples.
-vec3 filtered(sampler2D samples, ivec2 pixel, vec3 position, vec3 normal, int side) {
-  const float kLeast = 1e-4, kSharpness = 16.0;
-  float reach = 0.5 * float(side * every);
-  ivec2 count = textureSize(samples, 0), size = textureSize(gPosition, 0);
-  ivec2 low = max(ivec2(floor((vec2(pixel) - reach - 0.5 * float(every)) / float(every))), 0);
-  ivec2 high = min(ivec2(ceil((vec2(pixel) + reach + 0.5 * float(every)) / float(every))), count - 1);
-  vec3 sum = vec3(0.0);
-  float weights = 0.0;
-  for (int y = low.y; y <= high.y; ++y)
-    for (int x = low.x; x <= high.x; ++x) {
-      ivec2 at = min(every * ivec2(x, y) + every / 2, size - 1);
-      vec2 near = clamp(0.5 + (reach - abs(vec2(at - pixel))) / float(every), 0.0, 1.0);
-      vec4 other = texelFetch(gPosition, at, 0);
-      if (near.x * near.y <= 0.0 || !(other.w > 0.0)) continue;
-      vec3 otherNormal = texelFetch(gGeometricNormal, at, 0).xyz;
-      float off = dot(other.xyz - position, normal) / tolerance;
-      float alike = exp(-off * off) * pow(max(dot(normal, otherNormal), 0.0), kSharpness);
-      float weight = near.x * near.y * max(alike, kLeast);
-      vec4 found = texelFetch(samples, ivec2(x, y), 0);  // w is 0 where nothing was gathered
-      sum += weight * found.w * found.rgb;
-      weights += weight * found.w;
-    }
-  return weights > 0.0 ? sum / weights : vec3(0.0);
+// The pixel that a sample was gathered for.
+ivec2 pixelOf(ivec2 sampleAt) { return min(every * sampleAt + every / 2, textureSize(gPosition, 0) - 1); }
+
+// How far the surface of a pixel is that around a place: 1 where it is. Each keeps a little, for pixels like none of the samples.
+float alike(ivec2 pixel, vec3 position, vec3 normal) {
+  const float kLeast = 1e-4;
+  vec4 other = texelFetch(gPosition, pixel, 0);
+  if (!(other.w > 0.0)) return 0.0;
+  float off = dot(other.xyz - position, normal) / tolerance;
+  float facing = max(dot(normal, texelFetch(gGeometricNormal, pixel, 0).xyz), 0.0);
+  facing *= facing;  // ^2
+  facing *= facing;
+  facing *= facing;
+  facing *= facing;  // ^16
+  return max(exp(-off * off) * facing, kLeast);
 }
 
-void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(pixel, textureSize(gPosition, 0)))) return;
-  vec4 position = texelFetch(gPosition, pixel, 0);
-  vec3 normal = texelFetch(gGeometricNormal, pixel, 0).xyz;
+struct Sums {
+  vec4 diffuse, glossy;  // w: of the weights of the samples
+};
+
+void add(inout Sums sums, ivec2 sampleAt, float weight) {
 #if DIFFUSE
-  vec3 diffuse = position.w > 0.0 ? texelFetch(gDiffuse, pixel, 0).rgb : vec3(0.0);
-  if (any(greaterThan(diffuse, vec3(0.0)))) diffuse *= filtered(gatheredDiffuse, pixel, position.xyz, normal, pattern);
-  imageStore(diffuseImage, pixel, vec4(diffuse, 1.0));
+  sums.diffuse += weight * texelFetch(gatheredDiffuse, sampleAt, 0);
 #endif
 #if GLOSSY
-  vec3 glossy = position.w > 0.0 ? texelFetch(gSpecular, pixel, 0).rgb : vec3(0.0);
-  if (any(greaterThan(glossy, vec3(0.0)))) glossy *= filtered(gatheredGlossy, pixel, position.xyz, normal, 1);
-  imageStore(glossyImage, pixel, vec4(glossy, 1.0));
+  sums.glossy += weight * texelFetch(gatheredGlossy, sampleAt, 0);
+#endif
+}
+
+// The samples in a box as wide as the pattern around one of them.
+Sums inBox(ivec2 sampleAt, ivec2 count, vec3 position, vec3 normal) {
+  Sums sums = Sums(vec4(0.0), vec4(0.0));
+  int reach = pattern / 2;
+  for (int i = -reach; i <= reach; ++i) {
+    ivec2 at = sampleAt + i * along;
+    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, count))) continue;
+    float near = clamp(0.5 + 0.5 * float(pattern) - float(abs(i)), 0.0, 1.0);
+    add(sums, at, near * alike(pixelOf(at), position, normal));
+  }
+  return sums;
+}
+
+// The four samples around a pixel.
+Sums between(ivec2 pixel, ivec2 count, vec3 position, vec3 normal) {
+  Sums sums = Sums(vec4(0.0), vec4(0.0));
+  vec2 place = vec2(pixel - every / 2) / float(every);
+  ivec2 low = ivec2(floor(place));
+  for (int i = 0; i < 4; ++i) {
+    ivec2 at = low + ivec2(i & 1, i >> 1);
+    vec2 near = 1.0 - abs(place - vec2(at));
+    at = clamp(at, ivec2(0), count - 1);
+    if (near.x * near.y > 0.0) add(sums, at, near.x * near.y * alike(pixelOf(at), position, normal));
+  }
+  return sums;
+}
+
+vec4 meanOf(vec4 sum) { return sum.w > 0.0 ? vec4(sum.rgb / sum.w, 1.0) : vec4(0.0); }
+
+void main() {
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy), size = textureSize(gPosition, 0), count = (size + every - 1) / every;
+  bool pixels = along == ivec2(0);
+  if (any(greaterThanEqual(at, pixels ? size : count))) return;
+  ivec2 pixel = pixels ? at : pixelOf(at);
+  vec4 position = texelFetch(gPosition, pixel, 0);
+  Sums sums = Sums(vec4(0.0), vec4(0.0));
+  if (position.w > 0.0) {
+    vec3 normal = texelFetch(gGeometricNormal, pixel, 0).xyz;
+    if (pixels)
+      sums = between(at, count, position.xyz, normal);
+    else
+      sums = inBox(at, count, position.xyz, normal);
+  }
+  bool reflects = finishes != 0 && (pixels || every == 1);
+#if DIFFUSE
+  vec4 diffuse = finishes != 0 ? meanOf(sums.diffuse) : sums.diffuse;
+  if (reflects) diffuse = vec4(diffuse.rgb * texelFetch(gDiffuse, pixel, 0).rgb, 1.0);
+  imageStore(diffuseImage, at, diffuse);
+#endif
+#if GLOSSY
+  vec4 glossy = finishes != 0 ? meanOf(sums.glossy) : sums.glossy;
+  if (reflects) glossy = vec4(glossy.rgb * texelFetch(gSpecular, pixel, 0).rgb, 1.0);
+  imageStore(glossyImage, at, glossy);
 #endif
 }

@@ -51,20 +51,12 @@ layout(binding = 3) uniform writeonly image3D negativeYImage;
 layout(binding = 4) uniform writeonly image3D positiveZImage;
 layout(binding = 5) uniform writeonly image3D negativeZImage;
 
-vec4 faceOf(uint place, int face) {
-  float opacity = coverageSum != 0 ? float(directions[place].opacity[face / 2]) / kFixedPoint * float(directions[place].fragments)
-                                   : uintBitsToFloat(directions[place].opacity[face / 2]);
-  opacity = min(opacity, 1.0);
-  uint weight = directions[place].faces[4 * face + 3];
-  if (weight == 0u) return vec4(vec3(0.0), opacity);
-  vec3 sum = vec3(directions[place].faces[4 * face], directions[place].faces[4 * face + 1], directions[place].faces[4 * face + 2]);
-  return vec4(sum / float(weight) * (opacity * uintBitsToFloat(directions[place].brightest) / unit), opacity);
-}
+#include "face_sums.glsl"
 
 void store(ivec3 voxel, bool occupied, uint place, vec4 media) {
   vec4 faces[6];
   for (int face = 0; face < 6; ++face) {
-    faces[face] = occupied ? faceOf(place, face) : vec4(0.0);
+    faces[face] = occupied ? faceOf(place, face, coverageSum != 0, unit) : vec4(0.0);
     faces[face] += (1.0 - faces[face].a) * media;
   }
   imageStore(positiveXImage, voxel, faces[0]);

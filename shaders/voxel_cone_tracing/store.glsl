@@ -7,7 +7,7 @@
 //   vec4 readStoreAsPublished(vec3 at, vec3 direction, float size)
 //                                                   the values themselves, blended between levels as the thesis prints it
 // C++ side: StoreInput in techniques/voxel_cone_tracing/march.h.
-#pragma lumivox axis STORE dense directional octree
+#pragma lumivox axis STORE dense directional octree clipmap
 #ifndef LUMIVOX_STORE
 #define LUMIVOX_STORE
 #include "common/cones.glsl"
@@ -25,7 +25,7 @@ layout(std140, binding = 1) uniform Store {
   float storeUnit;              // W/(sr m^2) that the value 1 stands for
   int storeOpacityOfFinestVoxel;  // 1: what RadianceGrid::Opacity::ofFinestVoxel says
   float storeFirstLevelOfFaces;   // directional: level of the grid that the faces begin with
-  int storeLayers;                // directional: 1: voxels are read by layers; 0: filtered along all axes
+  int storeLayers;                // directional and clipmap: 1: voxels are read by layers; 0: filtered along all axes
   vec3 storeVoxels;               // of the finest level
 };
 
@@ -37,7 +37,9 @@ float opacityOfStep(float opacity, float stride, float level, float blend) {
 }
 
 const float kNoLimit = 1e30;
-vec3 coneApex;  // m, of the cone that is traced
+// Of the cone that is traced.
+vec3 coneApex;      // m
+float coneTangent;  // of its half angle
 
 #if STORE == STORE_DENSE
 #include "store_dense.glsl"
@@ -45,6 +47,8 @@ vec3 coneApex;  // m, of the cone that is traced
 #include "store_directional.glsl"
 #elif STORE == STORE_OCTREE
 #include "store_octree.glsl"
+#elif STORE == STORE_CLIPMAP
+#include "store_clipmap.glsl"
 #endif
 
 #endif

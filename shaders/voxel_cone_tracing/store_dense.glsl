@@ -7,11 +7,43 @@ float finestVoxel(vec3 at) { return storeVoxel; }
 
 float longestStep(float size) { return kNoLimit; }
 
+#ifdef LOBES
+#if LOBES
+// Lobes of the normals of lit surfaces: thesis 004, Sec. 3.1.2 and its part on indirect illumination. C++ side: NormalLobes.
+layout(binding = 12) uniform sampler3D lobeGrid;
+layout(constant_id = 4) const int publishedLobes = 0;
+
+// The normal distribution function up to x standard deviations (Page 1977), within 3e-4.
+float belowNormal(float x) { return 0.5 + 0.5 * tanh(clamp(0.79788456 * (x + 0.044715 * x * x * x), -20.0, 20.0)); }
+
+// What the light of voxels is multiplied by, seen along a direction. The normals of the lit sides are a Gaussian lobe around their mean
+// whose variance is (1 - |D|) / |D|; the cone's directions are one whose deviation is the sine of its half angle (as printed the cosine,
+// by which the narrowest cones would be the widest). The share of their convolution that faces the cone, over that of whichever side has
+// more of it: the side that shines keeps its radiance, the other one has what the spread leaves it, and what shines to all sides does.
+float facingShare(vec3 texcoord, vec3 direction, float level) {
+  vec4 lobe = textureLod(lobeGrid, texcoord, level);
+  float size = length(lobe.xyz);
+  if (size <= 0.0) return 1.0;
+  float share = min(size / lobe.w, 1.0);
+  float spread = publishedLobes != 0 ? 1.0 / (1.0 + coneTangent * coneTangent)
+                                     : coneTangent * coneTangent / (1.0 + coneTangent * coneTangent);
+  float x = -dot(lobe.xyz, direction) / size * inversesqrt(max((1.0 - share) / share + spread, 1e-6));
+  return belowNormal(x) / belowNormal(abs(x));
+}
+#endif
+#endif
+
 StoreSample readStore(vec3 at, vec3 direction, float size, float stride) {
   vec3 texcoord = (at - storeLow) / storeExtent;
   float blend, level = levelOf(max(size / storeVoxel, 1.0), storeCoarsest, blend);
   StoreSample result = StoreSample(textureLod(radianceGrid, texcoord, level + blend), 0.0);
-  if (result.value.a > 0.0) result.opacity = opacityOfStep(result.value.a, stride, level, blend);
+  if (result.value.a <= 0.0) return result;
+  result.opacity = opacityOfStep(result.value.a, stride, level, blend);
+#ifdef LOBES
+#if LOBES
+  result.value.rgb *= facingShare(texcoord, direction, level + blend);
+#endif
+#endif
   return result;
 }
 

@@ -1,13 +1,7 @@
 // Six directional grids: Crassin et al. 2011, Sec. 8.1; thesis 004, Sec. 3.1.3 and 4.2.1, Listing 4.15. The finest level may be one
 // isotropic grid. A cone sees the three faces of a voxel whose normals are against it.
+#include "faces.glsl"
 layout(binding = 4) uniform sampler3D finestGrid;
-// By the outward normals of the faces.
-layout(binding = 12) uniform sampler3D positiveX;
-layout(binding = 13) uniform sampler3D negativeX;
-layout(binding = 6) uniform sampler3D positiveY;
-layout(binding = 7) uniform sampler3D negativeY;
-layout(binding = 14) uniform sampler3D positiveZ;
-layout(binding = 15) uniform sampler3D negativeZ;
 
 vec2 insideStore(vec3 origin, vec3 direction) { return insideVolume(storeLow, storeExtent, origin, direction); }
 
@@ -15,21 +9,6 @@ float finestVoxel(vec3 at) { return storeVoxel; }
 
 // No step skips a layer of the finer of the two levels that are read.
 float longestStep(float size) { return storeLayers != 0 ? storeVoxel * exp2(floor(log2(max(size / storeVoxel, 1.0)))) : kNoLimit; }
-
-vec4 seenAlongX(vec3 direction, vec3 texcoord, float level) {
-  return direction.x < 0.0 ? textureLod(positiveX, texcoord, level) : textureLod(negativeX, texcoord, level);
-}
-vec4 seenAlongY(vec3 direction, vec3 texcoord, float level) {
-  return direction.y < 0.0 ? textureLod(positiveY, texcoord, level) : textureLod(negativeY, texcoord, level);
-}
-vec4 seenAlongZ(vec3 direction, vec3 texcoord, float level) {
-  return direction.z < 0.0 ? textureLod(positiveZ, texcoord, level) : textureLod(negativeZ, texcoord, level);
-}
-
-vec3 faceWeights(vec3 direction) {
-  vec3 along = abs(direction);
-  return along / (along.x + along.y + along.z);
-}
 
 // Listing 4.15: all faces at the point itself, filtered along all axes.
 vec4 interpolated(vec3 texcoord, vec3 direction, float level) {
@@ -62,20 +41,9 @@ vec4 layers(vec3 texcoord, vec3 direction, float level, float stride) {
     y = textureLod(finestGrid, atY, 0.0);
     z = textureLod(finestGrid, atZ, 0.0);
   }
-  vec3 weights = faceWeights(direction);
-  // In the edge of a room a cone begins in the layer of a wall beside it. The wall lies in the middle of its layer as far as is known: a
-  // cone that leaves the middle does not meet it.
-  if (level == 0.0) {
-    vec3 apex = (coneApex - storeLow) / storeExtent * voxels;
-    vec3 closed = step(vec3(kOpaque), vec3(x.a, y.a, z.a)) * vec3(equal(floor(apex), floor(texcoord * voxels)));
-    weights *= 1.0 - closed * step(0.0, direction * (apex - floor(apex) - 0.5));
-  }
-  vec4 mean = weights.x * x + weights.y * y + weights.z * z;
-  if (mean.a <= 0.0) return vec4(0.0);
-  const float kClosed = 1e-30;  // keeps what a cone along a wall sees of the wall finite
-  vec3 through = log2(max(1.0 - vec3(x.a, y.a, z.a), kClosed));
-  float opacity = 1.0 - exp2(dot(through, weights) * (stride / (exp2(level) * storeVoxel)));
-  return vec4(mean.rgb * (opacity / mean.a), opacity);
+  // Only the finest voxels tell where in the voxel a wall lies.
+  return throughFaces(x, y, z, direction, texcoord * voxels, (coneApex - storeLow) / storeExtent * voxels, level == 0.0,
+                      stride / (exp2(level) * storeVoxel));
 }
 
 StoreSample readStore(vec3 at, vec3 direction, float size, float stride) {

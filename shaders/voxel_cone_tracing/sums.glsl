@@ -1,9 +1,11 @@
 // Where the sums of an occupied voxel lie: in the dense grid's bricks of 4 x 4 x 4 voxels (`bricks` and `brickCount` are declared before), or
-// eight for each leaf of an octree, those of the voxels that are its own. Included after the local size, which is along x alone.
+// eight for each leaf of an octree, those of the voxels that are its own. The levels of a clipmap lie side by side in one grid. Included
+// after the local size, which is along x alone.
 //
 // CHANGED: only the fragments that changed_list.comp lists are taken.
-#pragma lumivox axis PLACES grid octree
+#pragma lumivox axis PLACES grid octree clipmap
 #pragma lumivox axis CHANGED 0 1
+#pragma lumivox require !CHANGED || PLACES != clipmap
 #if CHANGED
 layout(std430, binding = 13) readonly buffer ChangedCount { uint changedCount; };
 layout(std430, binding = 14) readonly buffer ChangedFragments { uint changedFragments[]; };

@@ -18,7 +18,7 @@ float cover(inout Covering cone, StoreSample found, float size, float stride) {
   const float kOneThing = 4.0;  // how often the opacity must fall for what follows to be another thing
   float opacity = found.value.a;
   bool byLayers = false;
-#if STORE == STORE_DIRECTIONAL
+#if STORE == STORE_DIRECTIONAL || STORE == STORE_CLIPMAP
   byLayers = storeLayers != 0;
 #endif
   if (byLayers) {

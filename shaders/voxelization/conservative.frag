@@ -10,7 +10,7 @@
 // 1: every voxel that the triangle touches in depth; 0: only the one at the middle of the column.
 layout(constant_id = 0) const int depthRange = 1;
 
-#include "column_sample.glsl"
+#include "common/column_sample.glsl"
 
 layout(location = 0) flat in mat3 corners;
 layout(location = 3) flat in mat3 cornerNormals;

@@ -9,7 +9,7 @@
 layout(std430, binding = 6) readonly buffer Indices { uint indices[]; };
 
 layout(std140, binding = 1) uniform Part { int firstIndex; };
-#include "corners.glsl"
+#include "common/corners.glsl"
 
 // Corners, normals and texture coordinates of the triangle, permuted so that z is the dominant axis; in voxels.
 layout(location = 0) flat out mat3 corners;

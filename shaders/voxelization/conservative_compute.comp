@@ -35,8 +35,8 @@ layout(std430, binding = 9) buffer Rows {
   uint rowGroupsX, rowGroupsY, rowGroupsZ;  // of the dispatch over them
   TileRow rows[];
 };
-#include "corners.glsl"
-#include "column_sample.glsl"
+#include "common/corners.glsl"
+#include "common/column_sample.glsl"
 
 const int kTile = 8;
 const int kBits = 64;             // voxels of a triangle that one thread notes

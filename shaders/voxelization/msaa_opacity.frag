@@ -17,7 +17,8 @@
 #else
 layout(binding = 0, r32ui) uniform uimage3D sampleMasks;
 #endif
-#include "column_sample.glsl"
+#include "common/column_sample.glsl"
+#include "common/covered_samples.glsl"
 
 layout(location = 0) flat in mat3 corners;
 layout(location = 3) flat in mat3 cornerNormals;
@@ -26,39 +27,6 @@ layout(location = 6) flat in int dominantAxis;
 layout(location = 7) flat in vec2 cornerTexcoords[3];
 #else
 const vec2 cornerTexcoords[3] = vec2[3](vec2(0.0), vec2(0.0), vec2(0.0));
-#endif
-
-#if TARGET == TARGET_MASKS
-// The sample that stands for a point of a voxel's side.
-uint nearestSample(vec2 point) {
-  int best = 0;
-  float least = 1e9;
-  for (int i = 0; i < sampleCount; ++i) {
-    vec2 offset = samples[i].xy - point;
-    float distanceSquared = dot(offset, offset);
-    if (distanceSquared < least) {
-      least = distanceSquared;
-      best = i;
-    }
-  }
-  return 1u << best;
-}
-
-// Bits of the planes across the grid's axes x, y, z: of the dominant axis the samples as they are.
-uint sideMasks(uint covered, float depths[kMostSamples], float slice) {
-  uvec3 masks = uvec3(0u, 0u, covered);  // across the permuted axes
-  for (int i = 0; i < sampleCount; ++i) {
-    if ((covered >> i & 1u) == 0u) continue;
-    for (int step = -1; step <= 1; ++step) {
-      float depth = depths[i] - slice + 0.5 * thickness * float(step);
-      if (depth < 0.0 || depth >= 1.0) continue;
-      masks.x |= nearestSample(vec2(samples[i].y, depth));
-      masks.y |= nearestSample(vec2(depth, samples[i].x));
-    }
-  }
-  ivec3 across = unpermute(ivec3(masks), dominantAxis);
-  return uint(across.x) | uint(across.y) << kMostSamples | uint(across.z) << (2 * kMostSamples);
-}
 #endif
 
 void main() {
@@ -96,7 +64,7 @@ void main() {
     uint index = atomicAdd(fragmentCount, 1u);
     if (index < uint(capacity)) fragments[index] = fragment;
 #else
-    if (blueCoverage.y >= kMaskThreshold) imageAtomicOr(sampleMasks, unpermute(voxel, dominantAxis), sideMasks(inside, depths, float(depth)));
+    if (blueCoverage.y >= kMaskThreshold) imageAtomicOr(sampleMasks, unpermute(voxel, dominantAxis), sideMasks(inside, depths, float(depth), dominantAxis));
 #endif
   }
 }

@@ -6,7 +6,8 @@
 
 layout(std430, binding = 6) readonly buffer Indices { uint indices[]; };
 #include "sample_grid.glsl"
-#include "corners.glsl"
+#include "common/corners.glsl"
+#include "common/covered_samples.glsl"
 
 layout(location = 0) flat out mat3 corners;
 layout(location = 3) flat out mat3 cornerNormals;
@@ -14,18 +15,6 @@ layout(location = 6) flat out int dominantAxis;
 #if TEXTURES || MASKS
 layout(location = 7) flat out vec2 cornerTexcoords[3];
 #endif
-
-// Adaptive supersampling: a triangle that a viewport of one pixel a voxel would meet with a few samples, or none, is rasterised in one of
-// smaller pixels, until it has this many or the pixels are the smallest.
-const float kEnoughSamples = 16.0;
-
-int scaleOf(mat3 corners) {
-  vec2 e1 = corners[1].xy - corners[0].xy, e2 = corners[2].xy - corners[0].xy;
-  float samples = 0.5 * abs(e1.x * e2.y - e1.y * e2.x) * float(sampleCount);
-  int result = 1;
-  while (result < mostScale && samples * float(result * result) < kEnoughSamples) result *= 2;
-  return result;
-}
 
 void main() {
   int triangle = gl_VertexID / 3;

@@ -1,6 +1,6 @@
 // Textures and masks at points of triangles, as the axes TEXTURES and MASKS say.
 // Including files declare the scene's geometry and grid_corner.glsl before.
-#include "textures.glsl"
+#include "common/textures.glsl"
 
 struct SurfaceTexture {
   vec3 albedo;  // that the material's is multiplied by

@@ -1,5 +1,5 @@
 // Which way an orthogonal view looks, and what part of the grid it sees.
-#include "triangle.glsl"
+#include "common/triangle.glsl"
 #include "list_grid.glsl"
 
 layout(std140, binding = 1) uniform View {

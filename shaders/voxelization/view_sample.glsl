@@ -9,7 +9,7 @@ layout(location = 1) in vec3 normalWorld;
 #if TEXTURES || MASKS
 layout(location = 2) in vec2 texcoord;
 #endif
-#include "textures.glsl"
+#include "common/textures.glsl"
 
 VoxelFragment sampleView() {
   MaterialData material = materials[materialIndex];

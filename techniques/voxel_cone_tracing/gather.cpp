@@ -4,6 +4,7 @@
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/media.h"
 #include "march.h"
+#include "normal_lobes.h"
 
 namespace lumivox::voxel_cone_tracing {
 namespace {
@@ -13,11 +14,14 @@ namespace reconstruct = shaders::voxel_cone_tracing::reconstruct;
 
 class GatherPass : public Pass {
   enum class Distribution { cosine, published };
+  enum class ConeLobe { sine, cosine };
   // In the order of their halvings.
   enum class Resolution { full, half, quarter };
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   StoreInput store{this};
+  In<NormalLobes> lobes{this, "lobes", Presence::optional,
+                        "beside 'grid': to which side its voxels shine; without them to all sides alike"};
   In<ScatteringGrid> media{this, "media", Presence::optional,
                            "media that dim what the cones see; light that they scatter is left out"};
   Param<int> cones{this, "cones", 6, within(1, 256), "diffuse cones per pixel"};
@@ -42,6 +46,9 @@ class GatherPass : public Pass {
   Param<float> tolerance{
       this, "tolerance", 1.0f, within(1e-3f, 1e3f),
       "distance off a pixel's surface, in voxels, at which that filter gives another one the weight 1/e"};
+  Param<ConeLobe> coneLobe{
+      this, "cone_lobe", ConeLobe::sine,
+      "with 'lobes': standard deviation of a cone's directions as the sine of its half angle; or, as published, its cosine"};
   ConeMarch march{this};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
                      "indirect light reflected by the diffuse lobe"};
@@ -55,9 +62,13 @@ class GatherPass : public Pass {
     if (input.holdsMedia && media.present())
       throw Error(
           "voxel_cone_tracing.gather: the voxels of 'grid' already contain the media, and 'media' would dim what the cones see once more; expected 'media' to be left out, or 'store_media off' in voxel_cone_tracing.inject");
+    if (lobes.present() && input.axis != gather::Variant::storeDense)
+      throw Error(
+          "voxel_cone_tracing.gather: 'lobes' say to which side the voxels of 'grid' shine, and the cones read another store; expected 'grid' to be connected or 'lobes' to be left out");
     const MediaBinding bound(frame, media);
     const gather::Variant variant{.diffuse = diffuse.wanted(),
                                   .glossy = glossy.wanted() && gbuffer->specular != nullptr,
+                                  .lobes = lobes.present(),
                                   .environment = frame.traits().environment,
                                   .medium = bound.axis,
                                   .store = input.axis,
@@ -65,36 +76,60 @@ class GatherPass : public Pass {
     const gather::Constants constants{.coneCount = cones,
                                       .publishedCones = distribution == Distribution::published,
                                       .asPublished = asPublished,
-                                      .glossyCones = glossyCones};
+                                      .glossyCones = glossyCones,
+                                      .publishedLobes = coneLobe == ConeLobe::cosine};
     const int every = asPublished ? 1 : 1 << static_cast<int>(static_cast<Resolution>(resolution)),
               side = asPublished ? 1 : pattern;
-    const bool reconstructs = every > 1 || side > 1;
     const glm::ivec3 gathered = (pixels(frame) + (every - 1)) / glm::ivec3(every, every, 1);
     if (variant.diffuse) diffuse = Image{frame.image("indirect diffuse radiance")};
     if (variant.glossy) glossy = Image{frame.image("indirect glossy radiance")};
-    gpu::TextureRef samples[2] = {textureOf(diffuse), textureOf(glossy)};
-    if (reconstructs)
-      for (gpu::TextureRef& image : samples)
-        if (image != nullptr)
-          image = frame.texture({.format = gpu::Format::rgba32f, .width = gathered.x, .height = gathered.y},
-                                "gathered radiance");
+    const gpu::TextureDescription ofSamples{
+        .format = gpu::Format::rgba32f, .width = gathered.x, .height = gathered.y};
+    // Without a pattern, and a sample for each pixel, there is nothing to reconstruct.
+    const bool arrivingDiffuse = variant.diffuse && (every > 1 || side > 1),
+               arrivingGlossy = variant.glossy && every > 1;
+    Samples samples{arrivingDiffuse ? frame.texture(ofSamples, "gathered radiance") : textureOf(diffuse),
+                    arrivingGlossy ? frame.texture(ofSamples, "gathered radiance") : textureOf(glossy)};
+    shader::BindingSet ofLobes;
+    if (lobes.present()) ofLobes.add(gather::lobeGrid(lobes->lobes, gpu::Sampling::linearMipsBorder));
     frame.dispatch(frame.program(variant, constants),
                    {gather::parameters({.eyeWorld = frame.snapshot().camera.eye,
                                         .coneRatio = coneRatio,
                                         .every = every,
                                         .pattern = side,
-                                        .reconstructs = reconstructs}),
-                    GBufferBinding(*gbuffer), bound, input, march.binding(frame, input),
-                    gather::diffuseImage(samples[0]), gather::glossyImage(samples[1])},
+                                        .arrivingDiffuse = arrivingDiffuse,
+                                        .arrivingGlossy = arrivingGlossy}),
+                    GBufferBinding(*gbuffer), bound, input, ofLobes, march.binding(frame, input),
+                    gather::diffuseImage(samples.diffuse), gather::glossyImage(samples.glossy)},
                    gathered);
-    if (!reconstructs) return;
+    const reconstruct::Parameters filter{
+        .every = every, .pattern = side, .tolerance = tolerance * input.voxel};
+    if (arrivingDiffuse && side > 1) {
+      const gpu::TextureRef rows = frame.texture(ofSamples, "rows of gathered radiance");
+      reconstructed(frame, filter, {1, 0}, false, {samples.diffuse, nullptr}, {rows, nullptr}, gathered);
+      const gpu::TextureRef columns = every > 1 ? samples.diffuse : textureOf(diffuse);
+      reconstructed(frame, filter, {0, 1}, true, {rows, nullptr}, {columns, nullptr}, gathered);
+    }
+    if (every > 1)
+      reconstructed(frame, filter, {0, 0}, true, samples, {textureOf(diffuse), textureOf(glossy)},
+                    pixels(frame));
+  }
+
+  struct Samples {
+    gpu::TextureRef diffuse, glossy;  ///< null: none
+  };
+  /// One pass of reconstruct.comp.
+  void reconstructed(PassContext& frame, reconstruct::Parameters filter, glm::ivec2 along, bool finishes,
+                     const Samples& from, const Samples& to, glm::ivec3 threads) const {
+    filter.along = along;
+    filter.finishes = finishes;
     frame.dispatch(
-        frame.program(reconstruct::Variant{.diffuse = variant.diffuse, .glossy = variant.glossy}),
-        {reconstruct::parameters({.every = every, .pattern = side, .tolerance = tolerance * input.voxel}),
-         GBufferBinding(*gbuffer), reconstruct::gatheredDiffuse(samples[0], gpu::Sampling::nearest),
-         reconstruct::gatheredGlossy(samples[1], gpu::Sampling::nearest),
-         reconstruct::diffuseImage(textureOf(diffuse)), reconstruct::glossyImage(textureOf(glossy))},
-        pixels(frame));
+        frame.program(reconstruct::Variant{.diffuse = to.diffuse != nullptr, .glossy = to.glossy != nullptr}),
+        {reconstruct::parameters(filter), GBufferBinding(*gbuffer),
+         reconstruct::gatheredDiffuse(from.diffuse, gpu::Sampling::nearest),
+         reconstruct::gatheredGlossy(from.glossy, gpu::Sampling::nearest),
+         reconstruct::diffuseImage(to.diffuse), reconstruct::glossyImage(to.glossy)},
+        threads);
   }
 };
 

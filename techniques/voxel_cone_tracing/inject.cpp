@@ -7,32 +7,21 @@
 #include <span>
 
 #include "changed_cells.h"
+#include "direct_light.h"
 #include "levels.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
-#include "lumivox/toolkit/light_bounds.h"
 #include "lumivox/toolkit/media.h"
 #include "march.h"
 #include "octree.h"
+#include "voxel_sums.h"
 
 namespace lumivox::voxel_cone_tracing {
 namespace {
 
 using namespace shaders::voxel_cone_tracing;
-
-constexpr float kLargestHalf = 32768.0f;  // half floats end at 65504; filtering adds nothing to the largest
-
-/// The size of a grid with voxels added at its high ends so that halving it leaves no odd number above the
-/// few voxels of the coarsest levels. A level that is not of half the size of the finer one has voxels that
-/// share children, and an opaque child makes both opaque: walls grow thicker from level to level.
-glm::ivec3 evenlyHalved(const glm::ivec3& size) {
-  constexpr int kCoarse = 4;  // voxels along the longest side from which on sizes may be odd
-  int multiple = 1;
-  while (2 * kCoarse * multiple <= std::max({size.x, size.y, size.z})) multiple *= 2;
-  return (size + (multiple - 1)) / multiple * multiple;
-}
 
 /// Bounces beyond the first, by light that cones gather for every fragment: members of a pass.
 class Bounces {
@@ -54,20 +43,10 @@ class Injection {
  public:
   explicit Injection(Pass* pass)
       : fragments_(pass, "fragments", "surface samples"),
-        shadow_(pass, "shadow", Presence::optional,
-                "lights and their visibility; without it the grid is dark but opaque"),
-        media_(pass, "media", Presence::optional,
-               "media between lights and surfaces, which dim the light on its way"),
-        mediumSteps_(pass, "medium_steps", 16, within(1, 1024),
-                     "most steps through a medium that varies, towards a light"),
+        light_(pass),
         storeMedia_(
             pass, "store_media", false,
             "the media lie in the voxels beside the surfaces and scatter light there, evenly to all sides, so that one set of cones sees both and 'gather' takes no media of its own (thesis Sec. 4.5)"),
-        ambient_(
-            pass, "ambient", 0.0f, within(0.0f, 1e9f),
-            "irradiance that all surfaces receive besides that of the lights, W/m^2: cones then see what no light reaches (thesis Fig. 66)"),
-        twoSided_(pass, "two_sided", true,
-                  "light on the back of a triangle counts; off, as published: only on the front"),
         precision_(pass, "precision", Precision::float_, "of the grid: 16 or 8 bytes a voxel") {}
 
   /// Room for so many grids whose finest level is that of the fragments, evenly halved. Where it does not
@@ -115,7 +94,8 @@ class Injection {
     // Every bounce adds less than the one before.
     const float brightest = brightestOf(frame, result.unit, bounces.count());
 
-    const Sums sums = claimSums(frame, textures.size() > 1, result.occupied);
+    const VoxelSums sums =
+        claimSums(frame, *fragments_, result.grid.resolution, textures.size() > 1, result.occupied);
     const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
     resolve(frame, sums, brightest, result.unit, result.holdsMedia, result.occupied, textures);
     for (int bounce = 1; bounce < bounces.count(); ++bounce) {
@@ -142,7 +122,7 @@ class Injection {
       std::vector<Bounds> moving = *changes_.moving(frame);
       moving.insert(moving.end(), still->moving.begin(), still->moving.end());
       result.still = still->octree;
-      result.changed = Changes::cells(frame, *fragments_, still->cells, shadow_, moving);
+      result.changed = Changes::cells(frame, *fragments_, still->cells, light_.shadow, moving);
     }
     fillLeaves(frame, *fragments_, result, brightest);
   }
@@ -154,28 +134,9 @@ class Injection {
   enum class Precision { float_, half };
 
   In<VoxelFragments> fragments_;
-  In<ShadowMap> shadow_;
-  In<ScatteringGrid> media_;
-  Param<int> mediumSteps_;
+  DirectLight light_;
   Param<bool> storeMedia_;
-  Param<float> ambient_;
-  Param<bool> twoSided_;
   Param<Precision> precision_;
-
-  /// Room for the sums of occupied voxels, and where they lie (bricks.glsl).
-  struct Sums {
-    glm::ivec3 brickCount{0};
-    bool directional = false;
-    bool inOctree = false;
-    const ChangedCells* changed = nullptr;  ///< fragments count in these alone
-    gpu::BufferRef bricks;                  ///< of a dense grid
-    shader::BindingSet places;              ///< where the sums of a voxel are found; refers to what it binds
-    gpu::BufferRef voxels;
-    shader::BindingSet bindings() const {
-      if (directional) return {places, add::directionalSums(voxels)};
-      return {places, add::sums(voxels)};
-    }
-  };
 
   /// Static geometry in the light of one moment, and what moved in that light.
   struct StillLight {
@@ -190,8 +151,8 @@ class Injection {
   /// Kept as long as static geometry and lights stay where they are; nothing where that is not known, or
   /// where they have moved in this frame.
   std::optional<StillLight> stillLight(PassContext& frame, const VoxelOctree& tree, float brightest) {
-    if (tree.still == nullptr || media_.present() || fragments_->reflected != nullptr) return {};
-    auto key = std::pair(fragments_->still, Changes::placementOf(frame, shadow_, brightest));
+    if (tree.still == nullptr || light_.media.present() || fragments_->reflected != nullptr) return {};
+    auto key = std::pair(fragments_->still, Changes::placementOf(frame, light_.shadow, brightest));
     const bool stays = key == before_;
     before_ = key;
     const auto moving = changes_.moving(frame);
@@ -210,9 +171,9 @@ class Injection {
   void fillLeaves(PassContext& frame, const VoxelFragments& list, const RadianceOctree& result,
                   float brightest) {
     const VoxelOctree& tree = result.tree;
-    Sums sums;
+    VoxelSums sums;
     sums.places = OctreeBinding(tree, result.poolShift);
-    sums.inOctree = true;
+    sums.kind = inject::Variant::placesOctree;
     if (result.still != nullptr) {
       sums.changed = &result.changed;
       sums.places.add(stillBinding(result));
@@ -233,88 +194,32 @@ class Injection {
     grid.resolution = evenlyHalved(grid.resolution);
     return grid;
   }
-  bool storesMedia() const { return storeMedia_ && media_.present(); }
+  bool storesMedia() const { return storeMedia_ && light_.media.present(); }
   /// No voxel can reflect more; and of half floats the unit.
   float brightestOf(PassContext& frame, float& unit, int bounces = 1) const {
     // A grid cannot say anything of what lies nearer than half a voxel.
     const float brightest =
-        static_cast<float>(bounces) *
-        (largestRadiance(frame.sceneDescription(), frame.snapshot(), 0.5f * fragments_->grid.voxelSize) +
-         ambient_ / glm::pi<float>());
+        static_cast<float>(bounces) * light_.brightest(frame, 0.5f * fragments_->grid.voxelSize);
     if (isHalf()) unit = brightest / kLargestHalf;
     return brightest;
   }
   bool addsUp() const { return fragments_->coverage == VoxelFragments::Coverage::sum; }
 
-  /// Finds the occupied bricks, and gives every occupied voxel its place among the sums. There are no more of
-  /// them than fragments, so that nothing that happens on the device need be known here.
-  Sums claimSums(PassContext& frame, bool directional, OccupiedBricks& occupied) const {
-    const glm::ivec3 size = placement().resolution;
-    Sums sums;
-    sums.directional = directional;
-    sums.brickCount = (size + (OccupiedBricks::kSide - 1)) / OccupiedBricks::kSide;
-    const std::uint64_t bricks = GridPlacement{.resolution = sums.brickCount}.voxelCount(),
-                        voxels = std::min<std::uint64_t>(fragments_->capacity,
-                                                         GridPlacement{.resolution = size}.voxelCount());
-    sums.bricks = frame.emptyElements(claim::bricks, bricks, "occupied voxels of bricks");
-    sums.places = {add::bricks(sums.bricks)};
-    sums.voxels = directional ? frame.emptyElements(add::directionalSums, voxels, "sums of voxels' faces")
-                              : frame.emptyElements(add::sums, voxels, "sums of voxels");
-    occupied.bricks = frame.elements(claim::brickList, std::min<std::uint64_t>(fragments_->capacity, bricks),
-                                     "occupied bricks");
-    occupied.count = frame.buffer(OccupiedBricks::argumentsBytes(3), "occupied brick count");
-    const gpu::BufferRef totals = frame.uploaded(std::array<std::uint32_t, 2>{}, "claimed bricks and voxels");
-    const auto brickCount = claim::size({sums.brickCount});
-    forEachFragment(frame, frame.program(mark::kProgram), {brickCount, mark::bricks(sums.bricks)},
-                    *fragments_);
-    frame.dispatch(frame.program(claim::kProgram),
-                   {brickCount, claim::bricks(sums.bricks), claim::brickList(occupied.bricks),
-                    claim::brickTotals(totals)},
-                   sums.brickCount);
-    frame.dispatch(frame.program(arguments::kProgram),
-                   {arguments::brickTotals(totals), arguments::brickCount(occupied.count)}, {1, 1, 1});
-    return sums;
-  }
-
-  /// Room for what fragments reflect.
-  gpu::BufferRef radiancesOf(PassContext& frame, const Sums& sums) const {
-    return frame.buffer(std::max<std::uint64_t>(fragments_->capacity, 1) * (sums.directional ? 6 : 3) *
-                            add::radiances.elementBytes,
-                        "reflected radiance per fragment");
-  }
-
   /// The sums of occupied voxels; returns what fragments reflect of the direct light.
-  gpu::BufferRef average(PassContext& frame, const VoxelFragments& list, const Sums& sums, float brightest) {
-    const gpu::BufferRef radiances = radiancesOf(frame, sums);
-    light(frame, list, sums, radiances, brightest);
+  gpu::BufferRef average(PassContext& frame, const VoxelFragments& list, const VoxelSums& sums,
+                         float brightest) {
+    const gpu::BufferRef radiances = radiancesOf(frame, list, sums);
+    light_.reflect(frame, list, sums, brightest, radiances);
     addUp(frame, list, sums, radiances);
     return radiances;
   }
 
-  static void forEachTaken(PassContext& frame, const shader::BoundProgram& program,
-                           const shader::BindingSet& bindings, const VoxelFragments& list, const Sums& sums) {
-    if (sums.changed != nullptr) {
-      forEachChanged(frame, program, bindings, list, *sums.changed);
-    } else {
-      forEachFragment(frame, program, bindings, list);
-    }
-  }
-
-  void addUp(PassContext& frame, const VoxelFragments& list, const Sums& sums,
-             const gpu::BufferRef& radiances) {
-    forEachTaken(
-        frame,
-        frame.program(add::Variant{
-            .directions = sums.directional, .places = sums.inOctree, .changed = sums.changed != nullptr}),
-        {add::averages({sums.brickCount, addsUp()}), add::radiances(radiances), sums.bindings()}, list, sums);
-  }
-
   /// The sums of what fragments reflect of the direct light and of what cones find in the store.
-  void reflect(PassContext& frame, const Sums& sums, const gpu::BufferRef& direct, float mostRadiance,
+  void reflect(PassContext& frame, const VoxelSums& sums, const gpu::BufferRef& direct, float mostRadiance,
                int cones, const StoreBinding& store) {
-    const gpu::BufferRef radiances = radiancesOf(frame, sums);
+    const gpu::BufferRef radiances = radiancesOf(frame, *fragments_, sums);
     sums.voxels->clear(0u);
-    const MediaBinding bound(frame, media_, !store.holdsMedia);
+    const MediaBinding bound(frame, light_.media, !store.holdsMedia);
     const bounce::Variant variant{.directions = sums.directional,
                                   .environment = frame.traits().environment,
                                   .medium = bound.axis,
@@ -329,47 +234,21 @@ class Injection {
                                          .brickCount = sums.brickCount,
                                          .coneCount = cones,
                                          .mostRadiance = mostRadiance,
-                                         .twoSided = twoSided_}),
+                                         .twoSided = light_.twoSided}),
                      bounce::direct(direct), bounce::radiances(radiances), sums.bindings(), store,
                      march.binding(frame, store), bound},
                     *fragments_);
     addUp(frame, *fragments_, sums, radiances);
   }
 
-  /// The radiance that each fragment reflects, and of each voxel the number and the brightest of its
-  /// fragments.
-  void light(PassContext& frame, const VoxelFragments& list, const Sums& sums,
-             const gpu::BufferRef& radiances, float mostRadiance) {
-    const LightBinding lights(shadow_);
-    const MediaBinding bound(frame, media_, shadow_.present());
-    const inject::Variant variant{.directions = sums.directional,
-                                  .lights = shadow_.present(),
-                                  .shadows = shadow_.present(),
-                                  .reflected = fragments_->reflected != nullptr,
-                                  .medium = bound.axis,
-                                  .places = sums.inOctree,
-                                  .changed = sums.changed != nullptr};
-    forEachTaken(frame, frame.program(variant),
-                 {inject::grid({.gridLow = fragments_->grid.low,
-                                .voxelSize = fragments_->grid.voxelSize,
-                                .lightCount = lights.count,
-                                .mostRadiance = mostRadiance,
-                                .twoSided = twoSided_,
-                                .mediumSteps = mediumSteps_,
-                                .brickCount = sums.brickCount,
-                                .ambient = ambient_}),
-                  inject::radiances(radiances), inject::reflected(fragments_->reflected), sums.bindings(),
-                  lights, bound},
-                 list, sums);
-  }
-
   /// The finest levels from the sums: of the occupied bricks alone, or of all voxels where media lie in them.
-  void resolve(PassContext& frame, const Sums& sums, float mostRadiance, float unit, bool holdsMedia,
+  void resolve(PassContext& frame, const VoxelSums& sums, float mostRadiance, float unit, bool holdsMedia,
                const OccupiedBricks& occupied, std::span<const gpu::TextureRef> textures) {
-    const LightBinding lights(shadow_);
-    const MediaBinding bound(frame, media_, holdsMedia);
-    const auto& program = frame.program(resolve::Variant{
-        .directions = sums.directional, .lights = holdsMedia && shadow_.present(), .medium = bound.axis});
+    const LightBinding lights(light_.shadow);
+    const MediaBinding bound(frame, light_.media, holdsMedia);
+    const auto& program = frame.program(resolve::Variant{.directions = sums.directional,
+                                                         .lights = holdsMedia && light_.shadow.present(),
+                                                         .medium = bound.axis});
     const GridPlacement grid = placement();
     shader::BindingSet bindings{resolve::parameters({.brickCount = sums.brickCount,
                                                      .unit = unit,
@@ -378,7 +257,7 @@ class Injection {
                                                      .gridLow = grid.low,
                                                      .voxelSize = grid.voxelSize,
                                                      .lightCount = lights.count,
-                                                     .mediumSteps = mediumSteps_,
+                                                     .mediumSteps = light_.mediumSteps,
                                                      .mostRadiance = mostRadiance}),
                                 resolve::brickList(occupied.bricks),
                                 resolve::brickCount(occupied.count),

@@ -6,6 +6,11 @@
 
 namespace lumivox::voxel_cone_tracing {
 
+/// The size of a grid with voxels added at its high ends so that halving it leaves no odd number above the
+/// few voxels of the coarsest levels. A level that is not of half the size of the finer one has voxels that
+/// share children, and an opaque child makes both opaque: walls grow thicker from level to level.
+glm::ivec3 evenlyHalved(const glm::ivec3& size);
+
 /// How children make a parent, in the order of filter.comp: seen through along the axis that they face; their
 /// plain mean; that mean in one read by the texture's filter.
 enum class Opacity { facing, average, trilinear };

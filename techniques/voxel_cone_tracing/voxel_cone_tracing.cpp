@@ -12,11 +12,19 @@ void addInject(TechniqueRegistry& registry);
 void addFilterDirectional(TechniqueRegistry& registry);
 void addGather(TechniqueRegistry& registry);
 void addSoftShadows(TechniqueRegistry& registry);
+void addLobes(TechniqueRegistry& registry);
 void addLens(TechniqueRegistry& registry);
 void addLook(TechniqueRegistry& registry);
 void addOctree(TechniqueRegistry& registry);
 void addOctreeFilter(TechniqueRegistry& registry);
 void addOctreeSplat(TechniqueRegistry& registry);
+
+glm::ivec3 evenlyHalved(const glm::ivec3& size) {
+  constexpr int kCoarse = 4;  // voxels along the longest side from which on sizes may be odd
+  int multiple = 1;
+  while (2 * kCoarse * multiple <= std::max({size.x, size.y, size.z})) multiple *= 2;
+  return (size + (multiple - 1)) / multiple * multiple;
+}
 
 void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity) {
   namespace filter = shaders::voxel_cone_tracing::filter;
@@ -77,6 +85,7 @@ LUMIVOX_TECHNIQUE(registry) {
   addInject(registry);
   registry.add<FilterPass>("filter", "Pre-filtered coarser levels (Crassin et al. 2011, Sec. 5)");
   addFilterDirectional(registry);
+  addLobes(registry);
   addOctree(registry);
   addOctreeFilter(registry);
   addOctreeSplat(registry);

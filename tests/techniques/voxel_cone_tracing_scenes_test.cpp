@@ -58,6 +58,7 @@ TEST_CASE("indirect light on the Cornell box is as near to the reference as the 
                  reference.layers.at("one_bounce_diffuse.variance"));
   };
   check("voxel_cone_tracing", {{{"resolution=64"}, 0.21, 1.06}, {{"resolution=64", "cones=64"}, 0.16, 0.99}});
+  check("voxel_cone_tracing_lobes", {{{"resolution=64"}, 0.185, 1.01}});
   check("voxel_cone_tracing_coarse_directional", {{{"resolution=64"}, 0.17, 1.07}});
   check("voxel_cone_tracing_directional",
         {{{"resolution=64"}, 0.14, 0.94}, {{"resolution=64", "cones=64"}, 0.105, 0.99}});

@@ -168,7 +168,7 @@ TEST_CASE("a scene pays for what it uses and nothing else: cones in voxels") {
                  {"environment", {"gather ENVIRONMENT=1"}},
                  {"glossy material",
                   {"bytes gather", "bytes gbuffer", "compose GLOSSY=1", "gather GLOSSY=1", "gbuffer GLOSSY=1",
-                   "reconstruct GLOSSY=1", "shade GLOSSY=1"}},
+                   "shade GLOSSY=1"}},
                  {"moving camera", {"again compose", "again direct", "again gather", "again gbuffer"}},
                  {"moving object",
                   {"again compose", "again direct", "again gather", "again gbuffer", "again grid",

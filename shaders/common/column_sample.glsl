@@ -1,6 +1,8 @@
 // The fragment that a triangle leaves in the voxels of a column; the same to the bit for every voxelizer that goes by columns.
-#include "textures.glsl"
-#include "triangle.glsl"
+#ifndef LUMIVOX_COLUMN_SAMPLE
+#define LUMIVOX_COLUMN_SAMPLE
+#include "common/textures.glsl"
+#include "common/triangle.glsl"
 
 // How far inside an edge, in voxels, the sample of a column lies whose middle the triangle does not cover. On the edge itself, where the next
 // surface begins, rounding would decide whether light reaches it.
@@ -75,3 +77,5 @@ VoxelFragment fragmentAt(ColumnSample s, ivec3 voxel, int axis) {
   fragment.offset = packOffset(unpermute(s.centre - vec3(voxel), axis));
   return fragment;
 }
+
+#endif

@@ -1,6 +1,8 @@
 // The corners of one triangle in voxels, permuted so that z is the dominant axis of its normal.
-// Including files declare the scene's geometry, the indices and the grid (gridLow, voxelSize) before.
-#include "triangle.glsl"
+// Including files declare the scene's geometry (common/scene.glsl), the indices and where the grid lies (gridLow, voxelSize) before.
+#ifndef LUMIVOX_CORNERS
+#define LUMIVOX_CORNERS
+#include "common/triangle.glsl"
 
 struct TriangleCorners {
   mat3 corners, normals;  // a column per corner; normals in world space, not permuted
@@ -27,3 +29,5 @@ TriangleCorners loadCorners(uint firstOfThree, int object) {
   for (int k = 0; k < 3; ++k) result.corners[k] = permute(corner[k], result.axis);
   return result;
 }
+
+#endif

@@ -1,6 +1,8 @@
 // One triangle against the voxels of a grid: which ones it touches. The rasteriser and the compute passes share this, so that they find the
 // same voxels.
 // Everything is in voxels, and permuted so that z is the dominant axis of the triangle's normal; a column is a row of voxels along z.
+#ifndef LUMIVOX_TRIANGLE
+#define LUMIVOX_TRIANGLE
 
 // Rounding of float arithmetic, relative. A corner is placed no better than this times the side of the grid, and an edge is evaluated no better
 // than this times its length; what lies closer than that to touching counts as touching, so that no voxel is lost.
@@ -41,18 +43,18 @@ void edgeAxes(vec2 a, vec2 b, vec2 c, float halfSide, out mat3 axes, out mat3 ra
   }
 }
 
-// `size`: voxels of the grid along the permuted axes.
-Overlap overlapOf(mat3 corners, ivec3 size) {
+// Against the voxels from `first` on and before `end`. `side`: voxels along the longest side of the grid that corners are placed in: what is
+// touched is the same for all boxes of one grid.
+Overlap overlapIn(mat3 corners, ivec3 first, ivec3 end, float side) {
   vec3 least = min(corners[0], min(corners[1], corners[2])), most = max(corners[0], max(corners[1], corners[2]));
   vec3 extent = most - least;
-  float side = float(max(size.x, max(size.y, size.z)));
   float tolerance = kRounding * (side + max(extent.x, max(extent.y, extent.z)));
   float halfSide = 0.5 + tolerance;
   Overlap o;
   o.origin = floor(least);
-  // Far outside of the grid integers end.
-  o.low = ivec3(clamp(floor(least - tolerance), vec3(0.0), vec3(size)));
-  o.high = ivec3(clamp(floor(most + tolerance), vec3(-1.0), vec3(size) - 1.0));
+  // Far outside of the box integers end.
+  o.low = ivec3(clamp(floor(least - tolerance), vec3(first), vec3(end)));
+  o.high = ivec3(clamp(floor(most + tolerance), vec3(first) - 1.0, vec3(end) - 1.0));
   vec3 a = corners[0] - o.origin, b = corners[1] - o.origin, c = corners[2] - o.origin;
   o.normal = cross(b - a, c - a);
   // The normal of a needle is the small difference of large products: its rounding is that of the products.
@@ -64,6 +66,9 @@ Overlap overlapOf(mat3 corners, ivec3 size) {
   edgeAxes(a.zx, b.zx, c.zx, halfSide, o.zxAxis, o.zxRange);
   return o;
 }
+
+// `size`: voxels of the grid along the permuted axes.
+Overlap overlapOf(mat3 corners, ivec3 size) { return overlapIn(corners, ivec3(0), size, float(max(size.x, max(size.y, size.z)))); }
 
 // NaN lies in no interval.
 bool within(mat3 axes, mat3 ranges, vec2 centre) {
@@ -94,3 +99,5 @@ ivec2 depthsOfColumn(Overlap o, mat3 corners, ivec2 column) {
   range = clamp(range, vec2(-1.0), vec2(o.high.z + 1));
   return ivec2(max(int(range.x), o.low.z), min(int(range.y), o.high.z));
 }
+
+#endif

@@ -1,0 +1,57 @@
+#include "direct_light.h"
+
+#include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/light_bounds.h"
+#include "lumivox/toolkit/media.h"
+
+namespace lumivox::voxel_cone_tracing {
+
+namespace inject = shaders::voxel_cone_tracing::inject;
+
+DirectLight::DirectLight(Pass* pass)
+    : shadow(pass, "shadow", Presence::optional,
+             "lights and their visibility; without it the voxels are dark but opaque"),
+      media(pass, "media", Presence::optional,
+            "media between lights and surfaces, which dim the light on its way"),
+      mediumSteps(pass, "medium_steps", 16, within(1, 1024),
+                  "most steps through a medium that varies, towards a light"),
+      ambient(
+          pass, "ambient", 0.0f, within(0.0f, 1e9f),
+          "irradiance that all surfaces receive besides that of the lights, W/m^2: cones then see what no light reaches (thesis Fig. 66)"),
+      samples(
+          pass, "light_samples", 1, within(1, 256),
+          "points of a fragment's plane in its voxel that are lit, so that the edge of a shadow may lie in a voxel"),
+      twoSided(pass, "two_sided", true,
+               "light on the back of a triangle counts; off, as published: only on the front") {}
+
+float DirectLight::brightest(PassContext& frame, float nearest) const {
+  return largestRadiance(frame.sceneDescription(), frame.snapshot(), nearest) + ambient / glm::pi<float>();
+}
+
+void DirectLight::reflect(PassContext& frame, const VoxelFragments& fragments, const VoxelSums& sums,
+                          float mostRadiance, const gpu::BufferRef& radiances) const {
+  const LightBinding lights(shadow);
+  const MediaBinding bound(frame, media, shadow.present());
+  const inject::Variant variant{.directions = sums.directional,
+                                .lights = shadow.present(),
+                                .shadows = shadow.present(),
+                                .reflected = fragments.reflected != nullptr,
+                                .medium = bound.axis,
+                                .places = sums.kind,
+                                .changed = sums.changed != nullptr};
+  forEachTaken(
+      frame, frame.program(variant),
+      {inject::grid({.gridLow = fragments.grid.low,
+                     .voxelSize = fragments.grid.voxelSize,
+                     .lightCount = lights.count,
+                     .mostRadiance = mostRadiance,
+                     .twoSided = twoSided,
+                     .mediumSteps = mediumSteps,
+                     .brickCount = sums.brickCount,
+                     .ambient = ambient,
+                     .lightSamples = samples}),
+       inject::radiances(radiances), inject::reflected(fragments.reflected), sums.bindings(), lights, bound},
+      fragments, sums);
+}
+
+}  // namespace lumivox::voxel_cone_tracing
