@@ -37,8 +37,9 @@ void DirectLight::reflect(PassContext& frame, const VoxelFragments& fragments, c
                                 .shadows = shadow.present(),
                                 .reflected = fragments.reflected != nullptr,
                                 .medium = bound.axis,
-                                .places = sums.kind};
-  forEachFragment(
+                                .places = sums.kind,
+                                .changed = sums.changed != nullptr};
+  forEachTaken(
       frame, frame.program(variant),
       {inject::grid({.gridLow = fragments.grid.low,
                      .voxelSize = fragments.grid.voxelSize,
@@ -50,7 +51,7 @@ void DirectLight::reflect(PassContext& frame, const VoxelFragments& fragments, c
                      .ambient = ambient,
                      .lightSamples = samples}),
        inject::radiances(radiances), inject::reflected(fragments.reflected), sums.bindings(), lights, bound},
-      fragments);
+      fragments, sums);
 }
 
 }  // namespace lumivox::voxel_cone_tracing

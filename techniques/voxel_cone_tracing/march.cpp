@@ -91,8 +91,12 @@ StoreBinding StoreInput::inOctree() const {
             {.storeCoarsest = static_cast<float>(octree.filledLevels - 1),
              .storeUnit = octree.unit,
              .storeOpacityOfFinestVoxel = octree.opacity == RadianceOctree::Opacity::ofFinestVoxel});
-  result.lookUp = tree.ranks != nullptr && lookUp_ == LookUp::ranks ? gather::Variant::lookUpRanks
-                                                                    : gather::Variant::lookUpDescent;
+  if (tree.nodes == nullptr && lookUp_ == LookUp::descent)
+    throw Error(
+        "voxel_cone_tracing: 'look_up descent' goes from node to node, and bricks of their own voxels have no nodes; expected 'look_up ranks', or 'bricks published' in voxel_cone_tracing.octree");
+  result.lookUp = tree.nodes == nullptr                               ? gather::Variant::lookUpOwn
+                  : tree.ranks != nullptr && lookUp_ == LookUp::ranks ? gather::Variant::lookUpRanks
+                                                                      : gather::Variant::lookUpDescent;
   result.add(shader::UniformSlot<gather::OctreeStore>{"OctreeStore"}(
       {.firstVoxel = tree.firstVoxel(),
        .firstVoxelGrows = tree.voxels == VoxelOctree::Voxels::asGrid ? 1.0f : 0.0f}));
