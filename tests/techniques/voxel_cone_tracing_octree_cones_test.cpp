@@ -10,7 +10,7 @@ namespace {
 
 /// A committed pipeline that reads the dense grid, with the octree in place of it.
 Pipeline throughOctree(const std::string& name, const char* options) {
-  std::string text = readTextFile(sourceDirectory() / ("scenes/pipelines/" + name + ".pipeline"));
+  std::string text = readFile(sourceDirectory() / ("scenes/pipelines/" + name + ".pipeline"));
   const auto replace = [&](const std::string& from, const std::string& to) {
     const std::size_t at = text.find(from);
     REQUIRE(at != std::string::npos);
