@@ -2,12 +2,16 @@
 // 2015, Sec. 3.1.1 and 4.2.2.
 #include "octree.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
 
 #include "changed_cells.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
 #include "lumivox/toolkit/bindings.h"
 
 namespace lumivox::voxel_cone_tracing {
@@ -29,6 +33,67 @@ OctreeBinding::OctreeBinding(const VoxelOctree& tree, int poolShift)
   if (tree.bricksAre == VoxelOctree::Bricks::published) return;
   add(shader::StorageSlot{"OctreeShown"}(tree.shown));
   add(shader::StorageSlot{"OctreeCorners"}(tree.corners));
+}
+
+namespace {
+
+/// Bytes of a tree of a depth or of a lesser one: of tags and ranks, and of nodes with their places, as far
+/// as they have been counted.
+struct TreeBytes {
+  std::uint64_t tags = 0, nodes = 0;
+};
+TreeBytes treeBytes(const VoxelOctree& tree, int depth) {
+  const bool own = tree.bricksAre == VoxelOctree::Bricks::own;
+  const std::uint64_t bricks = tree.bricksDownTo[static_cast<std::size_t>(depth)], all = tree.brickRoom,
+                      records = tree.recordRoom * bricks / all;
+  return {firstTagWord(depth + 1) * (own ? 2 * 4 + 2 * 8 : 4 + 2 * 8),
+          bricks * VoxelOctree::kBrickBytes +
+              records * (own ? VoxelOctree::kCornersBytes : VoxelOctree::kTileBytes)};
+}
+/// And of its bricks, with the sums that fill the leaves.
+std::uint64_t brickBytes(const VoxelOctree& tree, int depth, std::uint64_t voxelBytes) {
+  const std::uint64_t bricks = tree.bricksDownTo[static_cast<std::size_t>(depth)],
+                      leaves = depth > 0 ? bricks - tree.bricksDownTo[static_cast<std::size_t>(depth) - 1]
+                                         : bricks;
+  return bricks * static_cast<std::uint64_t>(tree.brickVoxels()) * voxelBytes +
+         8 * leaves * add::sums.elementBytes;
+}
+
+/// Whether so many bytes can be had. They are given back at once.
+bool fits(PassContext& frame, std::uint64_t bytes) {
+  try {
+    std::vector<gpu::BufferRef> taken;
+    const std::uint64_t most = frame.device().info().maxStorageBytes;
+    for (; bytes > 0; bytes -= std::min(bytes, most))
+      taken.push_back(frame.buffer(std::min(bytes, most), "room for an octree"));
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+void takeRoom(PassContext& frame, const VoxelOctree& tree, std::uint64_t voxelBytes, bool holdsTree,
+              const std::function<void()>& take) {
+  try {
+    take();
+  } catch (const Error& error) {
+    const TreeBytes all = treeBytes(tree, tree.depth);
+    const std::uint64_t bricks = brickBytes(tree, tree.depth, voxelBytes),
+                        held = holdsTree ? all.tags + all.nodes : 0;
+    for (int depth = tree.depth - 1; depth >= 0; --depth) {
+      const TreeBytes some = treeBytes(tree, depth);
+      const std::uint64_t bytes = some.tags + some.nodes + brickBytes(tree, depth, voxelBytes);
+      if (!fits(frame, bytes - std::min(bytes, held))) continue;
+      throw Error(fmt::format(
+          "an octree of {} voxels along its longest side takes {}{}: tags {}, nodes {}, {} bricks {}; of sizes halved from it the largest that fits is {} ({})",
+          tree.grid.longest(), tree.counted ? "" : "at least ", formatBytes(all.tags + all.nodes + bricks),
+          formatBytes(all.tags), formatBytes(all.nodes), tree.brickRoom, formatBytes(bricks),
+          tree.grid.longest() >> (tree.depth - depth), error.what()));
+    }
+    throw;
+  }
 }
 
 shader::BindingSet stillBinding(const RadianceOctree& octree) {
@@ -86,14 +151,13 @@ class OctreePass : public Pass {
   };
 
   void run(PassContext& frame) override {
-    VoxelOctree result = placed(frame, room_);
+    auto [result, tags] = placed(frame, room_);
     if (asPublished) {
       subdivide(frame, result);
     } else if (result.bricksAre == Bricks::own && fragments->still != nullptr) {
       const Still& still =
           frame.kept("nodes of static geometry", fragments->still, [&] { return nodesOfStill(frame); });
       result.still = still.tree;
-      const Tags tags = emptyTags(frame, result);
       const int words = static_cast<int>(wordsOf(result));
       frame.dispatchList(frame.program(octree_copy_tags::kProgram),
                          {octree_copy_tags::words({words}), octree_copy_tags::stillTags(still.tags.nodes),
@@ -103,7 +167,6 @@ class OctreePass : public Pass {
       mark(frame, result, movingOf(*fragments), tags, {.moving = 1});
       write(frame, result, tags, room_);
     } else {
-      const Tags tags = emptyTags(frame, result);
       mark(frame, result, *fragments, tags, {});
       write(frame, result, tags, room_);
     }
@@ -115,8 +178,8 @@ class OctreePass : public Pass {
   }
 
   Still nodesOfStill(PassContext& frame) {
-    VoxelOctree result = placed(frame, stillRoom_);
-    Still still{emptyTags(frame, result), nullptr};
+    auto [result, tags] = placed(frame, stillRoom_);
+    Still still{tags, nullptr};
     mark(frame, result, stillOf(*fragments), still.tags, {});
     write(frame, result, still.tags, stillRoom_);
     judge(frame, result, stillRoom_);
@@ -124,40 +187,49 @@ class OctreePass : public Pass {
     return still;
   }
 
-  /// A tree with so much room, and nothing in it.
-  VoxelOctree placed(PassContext& frame, const Room& room) const {
+  /// A tree with so much room, and nothing in it; and its tags.
+  std::pair<VoxelOctree, Tags> placed(PassContext& frame, const Room& room) const {
     VoxelOctree result;
     result.grid = fragments->grid;
     result.voxels = voxels;
     if (voxels == Voxels::asGrid && !asPublished) result.bricksAre = bricks;
     result.depth = voxelDepthOver(result.grid) - 1;
     result.brickRoom = std::max(room.bricks, 1u);
-    for (std::size_t depth = 1; depth < room.bricksAbove.size(); ++depth)
-      result.bricksDownTo.push_back(room.bricksAbove[depth]);
-    result.bricksDownTo.push_back(room.bricks);
     result.leafRoom = std::max(room.leaves, 1u);
-    const std::uint64_t records = std::max(room.records, 1u);
+    result.recordRoom = std::max(room.records, 1u);
+    result.counted = room.bricks > 0;
+    result.bricksDownTo.assign(static_cast<std::size_t>(result.depth) + 1, 0);
+    for (std::size_t depth = 1; depth < std::min(room.bricksAbove.size(), result.bricksDownTo.size());
+         ++depth)
+      result.bricksDownTo[depth - 1] = room.bricksAbove[depth];
+    result.bricksDownTo.back() = room.bricks;
+    std::pair<VoxelOctree, Tags> all;
+    takeRoom(frame, result, 4 * sizeof(float), false, [&] { all = taken(frame, result); });
+    return all;
+  }
+
+  std::pair<VoxelOctree, Tags> taken(PassContext& frame, VoxelOctree result) const {
+    Tags tags;
     if (result.bricksAre == Bricks::own) {
-      result.corners = frame.buffer(records * VoxelOctree::kCornersBytes, "octree bricks around nodes");
+      result.corners =
+          frame.buffer(result.recordRoom * VoxelOctree::kCornersBytes, "octree bricks around nodes");
     } else {
-      result.nodes = frame.buffer(records * VoxelOctree::kTileBytes, "octree nodes");
+      result.nodes = frame.buffer(result.recordRoom * VoxelOctree::kTileBytes, "octree nodes");
       result.nodes->clear(~0u);
     }
     result.bricks = frame.buffer(result.brickRoom * VoxelOctree::kBrickBytes, "octree bricks");
     result.levels = frame.buffer(VoxelOctree::levelsBytes(result.depth), "octree levels");
-    return result;
+    if (asPublished) return {result, tags};
+    const std::uint64_t words = wordsOf(result);
+    result.ranks = frame.elements(octree_rank::octreeRanks, words, "ranks of octree nodes");
+    tags.nodes = tags.shown = frame.emptyElements(octree_mark::tags, words, "tags of octree nodes");
+    if (result.bricksAre == Bricks::published) return {result, tags};
+    result.shown = frame.elements(octree_rank::records, words, "ranks of octree nodes that show something");
+    tags.shown = frame.emptyElements(octree_mark::shown, words, "octree nodes that show something");
+    return {result, tags};
   }
 
   static std::uint64_t wordsOf(const VoxelOctree& result) { return firstTagWord(result.depth + 1); }
-
-  static Tags emptyTags(PassContext& frame, const VoxelOctree& result) {
-    Tags tags;
-    tags.nodes = tags.shown = frame.emptyElements(octree_mark::tags, wordsOf(result), "tags of octree nodes");
-    if (result.bricksAre == Bricks::own)
-      tags.shown =
-          frame.emptyElements(octree_mark::shown, wordsOf(result), "octree nodes that show something");
-    return tags;
-  }
 
   static void mark(PassContext& frame, const VoxelOctree& result, const VoxelFragments& list,
                    const Tags& tags, const octree_mark::Variant& variant) {
@@ -174,9 +246,8 @@ class OctreePass : public Pass {
     const int wordCount = static_cast<int>(words);
     const bool own = result.bricksAre == Bricks::own;
     const gpu::BufferRef counts = frame.elements(octree_count::chunkCounts, chunks, "counts of octree nodes"),
-                         records = frame.elements(octree_rank::records, words, "ranks of octree records");
-    result.ranks = frame.elements(octree_rank::octreeRanks, words, "ranks of octree nodes");
-    if (own) result.shown = records;
+                         records = own ? result.shown
+                                       : frame.elements(octree_rank::records, words, "ranks of octree tiles");
     const OctreeBinding bound(result);
     frame.dispatchList(frame.program(octree_count::kProgram),
                        {octree_count::words({wordCount, own}), octree_count::tags(tags.nodes),

@@ -1,6 +1,8 @@
 // What passes over a sparse voxel octree share.
 #pragma once
 
+#include <functional>
+
 #include "lumivox/plugin/technique.h"
 #include "radiance_octree.h"
 #include "voxel_cone_tracing_shaders.h"
@@ -21,8 +23,19 @@ shader::BindingSet stillBinding(const RadianceOctree& octree);
 void forEachBrick(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
                   const VoxelOctree& tree, int depth, int threads);
 
-/// Room for the bricks of result.tree.
-void makePool(PassContext& frame, RadianceOctree& result, gpu::Format format);
+/// What take() takes of an octree, whose voxels have so many bytes. Where there is no room for it nothing is
+/// taken, and the Error says what all of the octree takes and the largest that fits. `holdsTree`: nodes and
+/// tags are held while bricks are taken.
+void takeRoom(PassContext& frame, const VoxelOctree& tree, std::uint64_t voxelBytes, bool holdsTree,
+              const std::function<void()>& take);
+
+/// Room for the bricks of result.tree, and for so many bytes more for each voxel of the leaves.
+gpu::BufferRef makePool(PassContext& frame, RadianceOctree& result, gpu::Format format,
+                        const shader::StorageSlot& sums);
+
+/// Fills all levels above the leaves of an octree whose voxels lie as in a grid, seen through along the axis
+/// that they face; what its `still` says has not changed is copied from there.
+void fillLevels(PassContext& frame, RadianceOctree& octree);
 
 /// In the order of octree_transfer.comp.
 enum class Transfer { add, copy, average };
