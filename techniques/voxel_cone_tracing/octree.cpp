@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -59,41 +60,46 @@ std::uint64_t brickBytes(const VoxelOctree& tree, int depth, std::uint64_t voxel
          8 * leaves * add::sums.elementBytes;
 }
 
-/// Whether so many bytes can be had. They are given back at once.
-bool fits(PassContext& frame, std::uint64_t bytes) {
+/// Why so many bytes cannot be had; empty where they can. They are given back at once.
+std::string whyNot(PassContext& frame, std::uint64_t bytes) {
   try {
-    std::vector<gpu::BufferRef> taken;
-    const std::uint64_t most = frame.device().info().maxStorageBytes;
-    for (; bytes > 0; bytes -= std::min(bytes, most))
-      taken.push_back(frame.buffer(std::min(bytes, most), "room for an octree"));
-    return true;
-  } catch (const Error&) {
-    return false;
+    std::vector<std::unique_ptr<gpu::Buffer>> taken;
+    for (const std::uint64_t most = frame.device().info().maxStorageBytes; bytes > 0;) {
+      const std::uint64_t some = std::min(bytes, most);
+      taken.push_back(std::make_unique<gpu::Buffer>(frame.device(), some, "room for an octree"));
+      bytes -= some;
+    }
+    return {};
+  } catch (const Error& error) {
+    return error.what();
   }
 }
 
 }  // namespace
 
-void takeRoom(PassContext& frame, const VoxelOctree& tree, std::uint64_t voxelBytes, bool holdsTree,
-              const std::function<void()>& take) {
-  try {
-    take();
-  } catch (const Error& error) {
-    const TreeBytes all = treeBytes(tree, tree.depth);
-    const std::uint64_t bricks = brickBytes(tree, tree.depth, voxelBytes),
-                        held = holdsTree ? all.tags + all.nodes : 0;
-    for (int depth = tree.depth - 1; depth >= 0; --depth) {
-      const TreeBytes some = treeBytes(tree, depth);
-      const std::uint64_t bytes = some.tags + some.nodes + brickBytes(tree, depth, voxelBytes);
-      if (!fits(frame, bytes - std::min(bytes, held))) continue;
-      throw Error(fmt::format(
-          "an octree of {} voxels along its longest side takes {}{}: tags {}, nodes {}, {} bricks {}; of sizes halved from it the largest that fits is {} ({})",
-          tree.grid.longest(), tree.counted ? "" : "at least ", formatBytes(all.tags + all.nodes + bricks),
-          formatBytes(all.tags), formatBytes(all.nodes), tree.brickRoom, formatBytes(bricks),
-          tree.grid.longest() >> (tree.depth - depth), error.what()));
-    }
-    throw;
-  }
+void requireRoom(PassContext& frame, const VoxelOctree& tree, std::uint64_t voxelBytes, bool holdsTree) {
+  if (!tree.needsMore) return;
+  const TreeBytes all = treeBytes(tree, tree.depth);
+  const std::uint64_t held = holdsTree ? all.tags + all.nodes : 0;
+  const auto bytesOf = [&](int depth) {
+    const TreeBytes some = treeBytes(tree, depth);
+    return some.tags + some.nodes + brickBytes(tree, depth, voxelBytes);
+  };
+  const auto missing = [&](int depth) {
+    return whyNot(frame, bytesOf(depth) - std::min(bytesOf(depth), held));
+  };
+  const std::string why = missing(tree.depth);
+  if (why.empty()) return;
+  int fits = tree.depth - 1;
+  while (fits >= 0 && !missing(fits).empty()) --fits;
+  throw Error(fmt::format(
+      "an octree of {} voxels along its longest side takes {}{}: tags {}, nodes {}, {} bricks {}; of sizes halved from it {} ({})",
+      tree.grid.longest(), tree.bricksDownTo.back() > 0 ? "" : "at least ", formatBytes(bytesOf(tree.depth)),
+      formatBytes(all.tags), formatBytes(all.nodes), tree.bricksDownTo.back(),
+      formatBytes(brickBytes(tree, tree.depth, voxelBytes)),
+      fits < 0 ? "none fits"
+               : fmt::format("the largest that fits is {}", tree.grid.longest() >> (tree.depth - fits)),
+      why));
 }
 
 shader::BindingSet stillBinding(const RadianceOctree& octree) {
@@ -137,8 +143,10 @@ class OctreePass : public Pass {
     std::uint32_t bricks = 0, leaves = 0;
     std::uint32_t records = 0;               ///< tiles of nodes, or bricks around nodes
     std::vector<std::uint32_t> bricksAbove;  ///< those of lesser depths, by depth
+    bool operator==(const Room&) const = default;
   };
   Room room_, stillRoom_;
+  std::optional<Room> roomBefore_, stillRoomBefore_;  ///< of the run before
 
   /// A bit for each node that could be: those that have bricks, and those in which reading finds something,
   /// which are the same where bricks hold all that their nodes show.
@@ -151,7 +159,7 @@ class OctreePass : public Pass {
   };
 
   void run(PassContext& frame) override {
-    auto [result, tags] = placed(frame, room_);
+    auto [result, tags] = placed(frame, room_, roomBefore_);
     if (asPublished) {
       subdivide(frame, result);
     } else if (result.bricksAre == Bricks::own && fragments->still != nullptr) {
@@ -178,7 +186,7 @@ class OctreePass : public Pass {
   }
 
   Still nodesOfStill(PassContext& frame) {
-    auto [result, tags] = placed(frame, stillRoom_);
+    auto [result, tags] = placed(frame, stillRoom_, stillRoomBefore_);
     Still still{tags, nullptr};
     mark(frame, result, stillOf(*fragments), still.tags, {});
     write(frame, result, still.tags, stillRoom_);
@@ -188,7 +196,8 @@ class OctreePass : public Pass {
   }
 
   /// A tree with so much room, and nothing in it; and its tags.
-  std::pair<VoxelOctree, Tags> placed(PassContext& frame, const Room& room) const {
+  std::pair<VoxelOctree, Tags> placed(PassContext& frame, const Room& room,
+                                      std::optional<Room>& before) const {
     VoxelOctree result;
     result.grid = fragments->grid;
     result.voxels = voxels;
@@ -197,15 +206,15 @@ class OctreePass : public Pass {
     result.brickRoom = std::max(room.bricks, 1u);
     result.leafRoom = std::max(room.leaves, 1u);
     result.recordRoom = std::max(room.records, 1u);
-    result.counted = room.bricks > 0;
+    result.needsMore = before != room;
     result.bricksDownTo.assign(static_cast<std::size_t>(result.depth) + 1, 0);
     for (std::size_t depth = 1; depth < std::min(room.bricksAbove.size(), result.bricksDownTo.size());
          ++depth)
       result.bricksDownTo[depth - 1] = room.bricksAbove[depth];
     result.bricksDownTo.back() = room.bricks;
-    std::pair<VoxelOctree, Tags> all;
-    takeRoom(frame, result, 4 * sizeof(float), false, [&] { all = taken(frame, result); });
-    return all;
+    before = room;
+    requireRoom(frame, result, 4 * sizeof(float), false);
+    return taken(frame, result);
   }
 
   std::pair<VoxelOctree, Tags> taken(PassContext& frame, VoxelOctree result) const {

@@ -1,8 +1,6 @@
 // What passes over a sparse voxel octree share.
 #pragma once
 
-#include <functional>
-
 #include "lumivox/plugin/technique.h"
 #include "radiance_octree.h"
 #include "voxel_cone_tracing_shaders.h"
@@ -23,11 +21,9 @@ shader::BindingSet stillBinding(const RadianceOctree& octree);
 void forEachBrick(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
                   const VoxelOctree& tree, int depth, int threads);
 
-/// What take() takes of an octree, whose voxels have so many bytes. Where there is no room for it nothing is
-/// taken, and the Error says what all of the octree takes and the largest that fits. `holdsTree`: nodes and
-/// tags are held while bricks are taken.
-void takeRoom(PassContext& frame, const VoxelOctree& tree, std::uint64_t voxelBytes, bool holdsTree,
-              const std::function<void()>& take);
+/// Before anything of it is taken: Error where there is no room for an octree whose voxels have so many
+/// bytes, with what it takes and the largest that fits. `holdsTree`: its nodes and tags are there already.
+void requireRoom(PassContext& frame, const VoxelOctree& tree, std::uint64_t voxelBytes, bool holdsTree);
 
 /// Room for the bricks of result.tree, and for so many bytes more for each voxel of the leaves.
 gpu::BufferRef makePool(PassContext& frame, RadianceOctree& result, gpu::Format format,

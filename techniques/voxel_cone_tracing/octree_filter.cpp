@@ -30,13 +30,9 @@ gpu::TextureRef pool(PassContext& frame, std::uint64_t bricks, int side, gpu::Fo
 gpu::BufferRef makePool(PassContext& frame, RadianceOctree& result, gpu::Format format,
                         const shader::StorageSlot& sums) {
   const VoxelOctree& tree = result.tree;
-  gpu::BufferRef leaves;
-  takeRoom(frame, tree, gpu::bytesPerTexel(format), true, [&] {
-    const gpu::TextureRef bricks = pool(frame, tree.brickRoom, tree.brickSide(), format, result.poolShift);
-    leaves = frame.emptyElements(sums, 8 * tree.leafRoom, "sums of voxels");
-    result.radiance = bricks;
-  });
-  return leaves;
+  requireRoom(frame, tree, gpu::bytesPerTexel(format), true);
+  result.radiance = pool(frame, tree.brickRoom, tree.brickSide(), format, result.poolShift);
+  return frame.emptyElements(sums, 8 * tree.leafRoom, "sums of voxels");
 }
 
 void transferBorders(PassContext& frame, const RadianceOctree& octree, int depth, Transfer way) {

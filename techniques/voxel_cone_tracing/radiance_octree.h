@@ -44,7 +44,7 @@ struct VoxelOctree {
   std::uint64_t brickRoom = 0;   ///< bricks that there is room for
   std::uint64_t leafRoom = 0;    ///< of them those of the finest level
   std::uint64_t recordRoom = 0;  ///< tiles of nodes, or nodes in which reading finds something
-  bool counted = false;          ///< an earlier frame has told how much room there must be
+  bool needsMore = true;         ///< than the frame before
   /// Bricks of the depths 0, 0 and 1, 0 to 2 ...: what trees of 2, 4, 8 ... voxels a side take.
   std::vector<std::uint32_t> bricksDownTo;
 
