@@ -308,22 +308,23 @@ class OctreePass : public Pass {
 
   static constexpr std::uint64_t kChunk = 64;  // words that a thread counts
 
-  /// Where a frame wanted more than there was room for, it is rendered again with as much as it wanted.
-  static void judge(PassContext& frame, const VoxelOctree& result, Room& room) {
-    judge(frame, result.levels, 0, room.bricks);
-    judge(frame, result.levels, 1, room.records);
-    judge(frame, result.levels, 2, room.leaves);
+  /// Where a frame wanted more than there was room for, it is rendered again with as much as it wanted; and
+  /// with a sixteenth more where later ones will want more or less, since things move.
+  void judge(PassContext& frame, const VoxelOctree& result, Room& room) const {
+    const std::uint32_t share = &room == &room_ && fragments->still != nullptr ? 16 : 0;
+    for (auto [word, wanted] : {std::pair{0, &room.bricks}, {1, &room.records}, {2, &room.leaves}})
+      judge(frame, result.levels, static_cast<std::uint64_t>(word), *wanted, share, true);
     room.bricksAbove.resize(static_cast<std::size_t>(result.depth) + 1);
     for (std::size_t depth = 1; depth < room.bricksAbove.size(); ++depth)
       judge(frame, result.levels, VoxelOctree::kLevelsBegin + VoxelOctree::kLevelWords * depth,
-            room.bricksAbove[depth]);
+            room.bricksAbove[depth], 0, false);
   }
-  static void judge(PassContext& frame, const gpu::BufferRef& levels, std::uint64_t word,
-                    std::uint32_t& room) {
-    frame.judgeLater(levels, word * sizeof(std::uint32_t), [&room](PassContext&, std::uint32_t wanted) {
-      const bool fits = wanted <= room;
-      room = std::max(room, wanted);
-      return fits;
+  static void judge(PassContext& frame, const gpu::BufferRef& levels, std::uint64_t word, std::uint32_t& room,
+                    std::uint32_t share, bool isRoom) {
+    frame.judgeLater(levels, word * sizeof(std::uint32_t), [=, &room](PassContext&, std::uint32_t wanted) {
+      if (wanted <= room) return true;
+      room = wanted + (share > 0 ? wanted / share : 0);
+      return !isRoom;
     });
   }
 };
