@@ -94,10 +94,13 @@ class Injection {
     // Every bounce adds less than the one before.
     const float brightest = brightestOf(frame, result.unit, bounces.count());
 
+    OccupiedBricks occupied;
     const VoxelSums sums =
-        claimSums(frame, *fragments_, result.grid.resolution, textures.size() > 1, result.occupied);
+        claimSums(frame, *fragments_, result.grid.resolution, textures.size() > 1, occupied);
+    // Media lie beside the surfaces' bricks.
+    if (!result.holdsMedia) result.occupied = occupied;
     const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
-    resolve(frame, sums, brightest, result.unit, result.holdsMedia, result.occupied, textures);
+    resolve(frame, sums, brightest, result.unit, result.holdsMedia, occupied, textures);
     for (int bounce = 1; bounce < bounces.count(); ++bounce) {
       if constexpr (std::is_same_v<Grid, RadianceGrid>) {
         fillLevels(frame, result, Opacity::facing);
@@ -106,10 +109,10 @@ class Injection {
         fillLevels(frame, result);
         reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(result, true));
       }
-      resolve(frame, sums, brightest, result.unit, result.holdsMedia, result.occupied, textures);
+      resolve(frame, sums, brightest, result.unit, result.holdsMedia, occupied, textures);
     }
     result.filledLevels = 1;
-    if (result.holdsMedia) result.occupied = {};
+    if constexpr (std::is_same_v<Grid, RadianceGrid>) result.bounces = bounces.count();
   }
 
   /// Makes the bricks of result.tree, and fills those of the leaves.
@@ -216,9 +219,12 @@ class Injection {
   bool storesMedia() const { return storeMedia_ && light_.media.present(); }
   /// No voxel can reflect more; and of half floats the unit.
   float brightestOf(PassContext& frame, float& unit, int bounces = 1) const {
-    // A grid cannot say anything of what lies nearer than half a voxel.
-    const float brightest =
+    // A grid cannot say anything of what lies nearer than half a voxel. What cones gather for further bounces
+    // is at most what the voxels of the bounce before hold, or the environment.
+    float brightest =
         static_cast<float>(bounces) * light_.brightest(frame, 0.5f * fragments_->grid.voxelSize);
+    const glm::vec3& sky = frame.sceneDescription().environment;
+    if (bounces > 1) brightest += std::max({sky.r, sky.g, sky.b});
     if (isHalf()) unit = brightest / kLargestHalf;
     return brightest;
   }

@@ -18,6 +18,7 @@ StoreBinding begun(int axis, const GridPlacement& grid, gather::Store block) {
   block.storeLow = grid.low;
   block.storeVoxel = result.voxel = grid.voxelSize;
   block.storeExtent = glm::vec3(grid.resolution) * grid.voxelSize;
+  result.grid = grid;
   result.axis = axis;
   result.length = 2.0f * glm::length(block.storeExtent);
   result.add(shader::UniformSlot<gather::Store>{"Store"}(block));
@@ -33,6 +34,7 @@ StoreBinding storeOf(const RadianceGrid& grid) {
              .storeUnit = grid.unit,
              .storeOpacityOfFinestVoxel = grid.opacity == RadianceGrid::Opacity::ofFinestVoxel});
   result.holdsMedia = grid.holdsMedia;
+  result.bounces = grid.bounces;
   result.add(shader::SampledSlot{"radianceGrid"}(grid.radiance, gpu::Sampling::linearMipsBorder));
   return result;
 }
