@@ -115,19 +115,26 @@ class Injection {
     if constexpr (std::is_same_v<Grid, RadianceGrid>) result.bounces = bounces.count();
   }
 
-  /// Fills the bricks of the leaves of result.tree.
-  void fill(PassContext& frame, RadianceOctree& result) {
+  /// Makes the bricks of result.tree, and fills those of the leaves.
+  void fill(PassContext& frame, RadianceOctree& result, const Bounces& bounces) {
     if (storesMedia())
       throw Error(
           "voxel_cone_tracing: 'store_media' fills voxels in which no surface lies, and an octree has none there; expected 'store_media off' or a dense grid");
-    const float brightest = brightestOf(frame, result.unit);
-    if (const auto still = stillLight(frame, result.tree, brightest)) {
-      std::vector<Bounds> moving = *changes_.moving(frame);
-      moving.insert(moving.end(), still->moving.begin(), still->moving.end());
-      result.still = still->octree;
-      result.changed = Changes::cells(frame, *fragments_, still->cells, light_.shadow, moving);
+    if (bounces.count() > 1 && result.tree.voxels != VoxelOctree::Voxels::asGrid)
+      throw Error(
+          "voxel_cone_tracing.octree_inject: further bounces are gathered through levels that lie as those of a grid; expected 'voxels as_grid' in voxel_cone_tracing.octree, or 'bounces 1'");
+    const float brightest = brightestOf(frame, result.unit, bounces.count());
+    // Every bounce changes all of the light.
+    if (bounces.count() == 1) result.still = stillIn(frame, result, brightest);
+    const VoxelSums sums = leafSums(frame, result);
+    const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
+    resolveLeaves(frame, result, sums);
+    for (int bounce = 1; bounce < bounces.count(); ++bounce) {
+      fillLevels(frame, result);
+      reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(result, result.tree.ranks == nullptr));
+      resolveLeaves(frame, result, sums);
     }
-    fillLeaves(frame, *fragments_, result, brightest);
+    result.filledLevels = 1;
   }
 
   bool isHalf() const { return precision_ == Precision::half; }
@@ -163,33 +170,45 @@ class Injection {
     return frame.kept("light of static geometry", key, [&] {
       RadianceOctree still;
       still.tree = *tree.still;
-      makePool(frame, still, format());
       brightestOf(frame, still.unit);
-      fillLeaves(frame, stillOf(*fragments_), still, brightest);
+      const VoxelSums sums = leafSums(frame, still);
+      average(frame, stillOf(*fragments_), sums, brightest);
+      resolveLeaves(frame, still, sums);
       return StillLight{std::make_shared<const RadianceOctree>(still), *moving,
                         sortedByCells(frame, stillOf(*fragments_))};
     });
   }
 
-  void fillLeaves(PassContext& frame, const VoxelFragments& list, const RadianceOctree& result,
-                  float brightest) {
-    const VoxelOctree& tree = result.tree;
+  /// Static geometry that has been lit, and in `octree` what has changed since; null where that is not known.
+  std::shared_ptr<const RadianceOctree> stillIn(PassContext& frame, RadianceOctree& octree, float brightest) {
+    const std::optional<StillLight> still = stillLight(frame, octree.tree, brightest);
+    if (!still) return nullptr;
+    std::vector<Bounds> moving = *changes_.moving(frame);
+    moving.insert(moving.end(), still->moving.begin(), still->moving.end());
+    octree.changed = Changes::cells(frame, *fragments_, still->cells, light_.shadow, moving);
+    return still->octree;
+  }
+
+  VoxelSums leafSums(PassContext& frame, RadianceOctree& result) const {
     VoxelSums sums;
-    sums.places = OctreeBinding(tree, result.poolShift);
     sums.kind = inject::Variant::placesOctree;
-    if (result.still != nullptr) {
-      sums.changed = &result.changed;
-      sums.places.add(stillBinding(result));
-    }
-    sums.voxels = frame.emptyElements(add::sums, 8 * tree.leafRoom, "sums of voxels");
-    average(frame, list, sums, brightest);
+    sums.voxels = makePool(frame, result, format(), add::sums);
+    sums.places = OctreeBinding(result.tree, result.poolShift);
+    if (result.still == nullptr) return sums;
+    sums.changed = &result.changed;
+    sums.places.add(stillBinding(result));
+    return sums;
+  }
+
+  void resolveLeaves(PassContext& frame, const RadianceOctree& result, const VoxelSums& sums) const {
+    const VoxelOctree& tree = result.tree;
+    const bool inLeaves = tree.voxels == VoxelOctree::Voxels::inLeaves;
     forEachBrick(
         frame, frame.program(octree_resolve::Variant{.changed = sums.changed != nullptr}),
-        {octree_resolve::leaves({.unit = result.unit,
-                                 .coverageSum = addsUp(),
-                                 .inLeaves = tree.voxels == VoxelOctree::Voxels::inLeaves}),
+        {octree_resolve::leaves({.unit = result.unit, .coverageSum = addsUp(), .inLeaves = inLeaves}),
          octree_resolve::sums(sums.voxels), octree_resolve::radianceImage(result.radiance), sums.places},
         tree, tree.depth, sums.changed != nullptr ? 1 : tree.brickVoxels());
+    transferBorders(frame, result, tree.depth, inLeaves ? Transfer::average : Transfer::copy);
   }
 
   GridPlacement placement() const {
@@ -230,7 +249,8 @@ class Injection {
                                   .environment = frame.traits().environment,
                                   .medium = bound.axis,
                                   .store = store.axis,
-                                  .lookUp = store.lookUp};
+                                  .lookUp = store.lookUp,
+                                  .places = sums.kind};
     // Cones that see what is partly covered by the finest voxels, and what they begin in, lose nothing in a
     // closed room.
     const MarchSettings march{.start = 0.0f, .refinement = 0.0f};
@@ -329,19 +349,20 @@ class InjectDirectionalPass : public Pass {
 
 class OctreeInjectPass : public Pass {
   Injection injection{this};
+  Bounces bounces{this};
   In<VoxelOctree> tree{this, "tree", "the nodes that the fragments make"};
   Out<RadianceOctree> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
                                Levels::finest};
 
-  Reads readsFrom() const override { return Reads::geometry | Reads::lights | Reads::materials; }
+  Reads readsFrom() const override {
+    return Reads::geometry | Reads::lights | Reads::materials | Reads::environment;
+  }
+  int indirectBounces() const override { return bounces.count(); }
 
   void run(PassContext& frame) override {
     RadianceOctree result;
     result.tree = *tree;
-    makePool(frame, result, injection.format());
-    injection.fill(frame, result);
-    const bool inLeaves = tree->voxels == VoxelOctree::Voxels::inLeaves;
-    transferBorders(frame, result, tree->depth, inLeaves ? Transfer::average : Transfer::copy);
+    injection.fill(frame, result, bounces);
     radiance = result;
   }
 };

@@ -56,6 +56,27 @@ StoreBinding storeOf(const DirectionalRadianceGrid& grid, bool layers) {
   return result;
 }
 
+StoreBinding storeOf(const RadianceOctree& octree, bool descends) {
+  const VoxelOctree& tree = octree.tree;
+  StoreBinding result =
+      begun(gather::Variant::storeOctree, tree.grid,
+            {.storeCoarsest = static_cast<float>(octree.filledLevels - 1),
+             .storeUnit = octree.unit,
+             .storeOpacityOfFinestVoxel = octree.opacity == RadianceOctree::Opacity::ofFinestVoxel});
+  if (tree.nodes == nullptr && descends)
+    throw Error(
+        "voxel_cone_tracing: 'look_up descent' goes from node to node, and bricks of their own voxels have no nodes; expected 'look_up ranks', or 'bricks published' in voxel_cone_tracing.octree");
+  result.lookUp = tree.nodes == nullptr                ? gather::Variant::lookUpOwn
+                  : tree.ranks != nullptr && !descends ? gather::Variant::lookUpRanks
+                                                       : gather::Variant::lookUpDescent;
+  result.add(shader::UniformSlot<gather::OctreeStore>{"OctreeStore"}(
+      {.firstVoxel = tree.firstVoxel(),
+       .firstVoxelGrows = tree.voxels == VoxelOctree::Voxels::asGrid ? 1.0f : 0.0f}));
+  result.add(shader::SampledSlot{"brickPool"}(octree.radiance, gpu::Sampling::nearest));
+  result.add(OctreeBinding(tree, octree.poolShift));
+  return result;
+}
+
 StoreInput::StoreInput(Pass* pass)
     : grid_(pass, "grid", Presence::optional, "pre-filtered radiance, one mip per halving", Needs::nothing,
             Levels::all),
@@ -80,29 +101,8 @@ StoreBinding StoreInput::binding() const {
         "voxel_cone_tracing: {} of light for the cones; expected one of the inputs 'grid', 'directions' and 'octree' to be connected",
         stores == 0 ? "no store" : "several stores"));
   if (grid_.present()) return storeOf(*grid_);
-  return directions_.present() ? storeOf(*directions_, reading_ == Reading::layers) : inOctree();
-}
-
-StoreBinding StoreInput::inOctree() const {
-  const RadianceOctree& octree = *octree_;
-  const VoxelOctree& tree = octree.tree;
-  StoreBinding result =
-      begun(gather::Variant::storeOctree, tree.grid,
-            {.storeCoarsest = static_cast<float>(octree.filledLevels - 1),
-             .storeUnit = octree.unit,
-             .storeOpacityOfFinestVoxel = octree.opacity == RadianceOctree::Opacity::ofFinestVoxel});
-  if (tree.nodes == nullptr && lookUp_ == LookUp::descent)
-    throw Error(
-        "voxel_cone_tracing: 'look_up descent' goes from node to node, and bricks of their own voxels have no nodes; expected 'look_up ranks', or 'bricks published' in voxel_cone_tracing.octree");
-  result.lookUp = tree.nodes == nullptr                               ? gather::Variant::lookUpOwn
-                  : tree.ranks != nullptr && lookUp_ == LookUp::ranks ? gather::Variant::lookUpRanks
-                                                                      : gather::Variant::lookUpDescent;
-  result.add(shader::UniformSlot<gather::OctreeStore>{"OctreeStore"}(
-      {.firstVoxel = tree.firstVoxel(),
-       .firstVoxelGrows = tree.voxels == VoxelOctree::Voxels::asGrid ? 1.0f : 0.0f}));
-  result.add(shader::SampledSlot{"brickPool"}(octree.radiance, gpu::Sampling::nearest));
-  result.add(OctreeBinding(tree, octree.poolShift));
-  return result;
+  return directions_.present() ? storeOf(*directions_, reading_ == Reading::layers)
+                               : storeOf(*octree_, lookUp_ == LookUp::descent);
 }
 
 ConeMarch::ConeMarch(Pass* pass)

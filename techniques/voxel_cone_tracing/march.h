@@ -24,6 +24,8 @@ struct StoreBinding : shader::BindingSet {
 StoreBinding storeOf(const RadianceGrid& grid);
 /// By layers, or filtered along all axes.
 StoreBinding storeOf(const DirectionalRadianceGrid& grid, bool layers);
+/// Bricks are found from the root in place of by their ranks.
+StoreBinding storeOf(const RadianceOctree& octree, bool descends);
 
 /// How cones step through a store; the meaning of each is that of the parameter of its name (ConeMarch).
 struct MarchSettings {
@@ -49,8 +51,6 @@ class StoreInput {
   In<RadianceOctree> octree_;
   Param<LookUp> lookUp_;
   Param<Reading> reading_;
-
-  StoreBinding inOctree() const;
 };
 
 /// Steps along cones: members of a pass.

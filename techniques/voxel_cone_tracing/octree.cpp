@@ -2,12 +2,17 @@
 // 2015, Sec. 3.1.1 and 4.2.2.
 #include "octree.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "changed_cells.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
 #include "lumivox/toolkit/bindings.h"
 
 namespace lumivox::voxel_cone_tracing {
@@ -29,6 +34,72 @@ OctreeBinding::OctreeBinding(const VoxelOctree& tree, int poolShift)
   if (tree.bricksAre == VoxelOctree::Bricks::published) return;
   add(shader::StorageSlot{"OctreeShown"}(tree.shown));
   add(shader::StorageSlot{"OctreeCorners"}(tree.corners));
+}
+
+namespace {
+
+/// Bytes of a tree of a depth or of a lesser one: of tags and ranks, and of nodes with their places, as far
+/// as they have been counted.
+struct TreeBytes {
+  std::uint64_t tags = 0, nodes = 0;
+};
+TreeBytes treeBytes(const VoxelOctree& tree, int depth) {
+  const bool own = tree.bricksAre == VoxelOctree::Bricks::own;
+  const std::uint64_t bricks = tree.bricksDownTo[static_cast<std::size_t>(depth)], all = tree.brickRoom,
+                      records = tree.recordRoom * bricks / all;
+  return {firstTagWord(depth + 1) * (own ? 2 * 4 + 2 * 8 : 4 + 2 * 8),
+          bricks * VoxelOctree::kBrickBytes +
+              records * (own ? VoxelOctree::kCornersBytes : VoxelOctree::kTileBytes)};
+}
+/// And of its bricks, with the sums that fill the leaves.
+std::uint64_t brickBytes(const VoxelOctree& tree, int depth, std::uint64_t voxelBytes) {
+  const std::uint64_t bricks = tree.bricksDownTo[static_cast<std::size_t>(depth)],
+                      leaves = depth > 0 ? bricks - tree.bricksDownTo[static_cast<std::size_t>(depth) - 1]
+                                         : bricks;
+  return bricks * static_cast<std::uint64_t>(tree.brickVoxels()) * voxelBytes +
+         8 * leaves * add::sums.elementBytes;
+}
+
+/// Why so many bytes cannot be had; empty where they can. They are given back at once.
+std::string whyNot(PassContext& frame, std::uint64_t bytes) {
+  try {
+    std::vector<std::unique_ptr<gpu::Buffer>> taken;
+    for (const std::uint64_t most = frame.device().info().maxStorageBytes; bytes > 0;) {
+      const std::uint64_t some = std::min(bytes, most);
+      taken.push_back(std::make_unique<gpu::Buffer>(frame.device(), some, "room for an octree"));
+      bytes -= some;
+    }
+    return {};
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+void requireRoom(PassContext& frame, const VoxelOctree& tree, std::uint64_t voxelBytes, bool holdsTree) {
+  if (!tree.needsMore) return;
+  const TreeBytes all = treeBytes(tree, tree.depth);
+  const std::uint64_t held = holdsTree ? all.tags + all.nodes : 0;
+  const auto bytesOf = [&](int depth) {
+    const TreeBytes some = treeBytes(tree, depth);
+    return some.tags + some.nodes + brickBytes(tree, depth, voxelBytes);
+  };
+  const auto missing = [&](int depth) {
+    return whyNot(frame, bytesOf(depth) - std::min(bytesOf(depth), held));
+  };
+  const std::string why = missing(tree.depth);
+  if (why.empty()) return;
+  int fits = tree.depth - 1;
+  while (fits >= 0 && !missing(fits).empty()) --fits;
+  throw Error(fmt::format(
+      "an octree of {} voxels along its longest side takes {}{}: tags {}, nodes {}, {} bricks {}; of sizes halved from it {} ({})",
+      tree.grid.longest(), tree.bricksDownTo.back() > 0 ? "" : "at least ", formatBytes(bytesOf(tree.depth)),
+      formatBytes(all.tags), formatBytes(all.nodes), tree.bricksDownTo.back(),
+      formatBytes(brickBytes(tree, tree.depth, voxelBytes)),
+      fits < 0 ? "none fits"
+               : fmt::format("the largest that fits is {}", tree.grid.longest() >> (tree.depth - fits)),
+      why));
 }
 
 shader::BindingSet stillBinding(const RadianceOctree& octree) {
@@ -72,8 +143,10 @@ class OctreePass : public Pass {
     std::uint32_t bricks = 0, leaves = 0;
     std::uint32_t records = 0;               ///< tiles of nodes, or bricks around nodes
     std::vector<std::uint32_t> bricksAbove;  ///< those of lesser depths, by depth
+    bool operator==(const Room&) const = default;
   };
   Room room_, stillRoom_;
+  std::optional<Room> roomBefore_, stillRoomBefore_;  ///< of the run before
 
   /// A bit for each node that could be: those that have bricks, and those in which reading finds something,
   /// which are the same where bricks hold all that their nodes show.
@@ -86,14 +159,13 @@ class OctreePass : public Pass {
   };
 
   void run(PassContext& frame) override {
-    VoxelOctree result = placed(frame, room_);
+    auto [result, tags] = placed(frame, room_, roomBefore_);
     if (asPublished) {
       subdivide(frame, result);
     } else if (result.bricksAre == Bricks::own && fragments->still != nullptr) {
       const Still& still =
           frame.kept("nodes of static geometry", fragments->still, [&] { return nodesOfStill(frame); });
       result.still = still.tree;
-      const Tags tags = emptyTags(frame, result);
       const int words = static_cast<int>(wordsOf(result));
       frame.dispatchList(frame.program(octree_copy_tags::kProgram),
                          {octree_copy_tags::words({words}), octree_copy_tags::stillTags(still.tags.nodes),
@@ -103,7 +175,6 @@ class OctreePass : public Pass {
       mark(frame, result, movingOf(*fragments), tags, {.moving = 1});
       write(frame, result, tags, room_);
     } else {
-      const Tags tags = emptyTags(frame, result);
       mark(frame, result, *fragments, tags, {});
       write(frame, result, tags, room_);
     }
@@ -115,8 +186,8 @@ class OctreePass : public Pass {
   }
 
   Still nodesOfStill(PassContext& frame) {
-    VoxelOctree result = placed(frame, stillRoom_);
-    Still still{emptyTags(frame, result), nullptr};
+    auto [result, tags] = placed(frame, stillRoom_, stillRoomBefore_);
+    Still still{tags, nullptr};
     mark(frame, result, stillOf(*fragments), still.tags, {});
     write(frame, result, still.tags, stillRoom_);
     judge(frame, result, stillRoom_);
@@ -124,40 +195,50 @@ class OctreePass : public Pass {
     return still;
   }
 
-  /// A tree with so much room, and nothing in it.
-  VoxelOctree placed(PassContext& frame, const Room& room) const {
+  /// A tree with so much room, and nothing in it; and its tags.
+  std::pair<VoxelOctree, Tags> placed(PassContext& frame, const Room& room,
+                                      std::optional<Room>& before) const {
     VoxelOctree result;
     result.grid = fragments->grid;
     result.voxels = voxels;
     if (voxels == Voxels::asGrid && !asPublished) result.bricksAre = bricks;
     result.depth = voxelDepthOver(result.grid) - 1;
     result.brickRoom = std::max(room.bricks, 1u);
-    for (std::size_t depth = 1; depth < room.bricksAbove.size(); ++depth)
-      result.bricksDownTo.push_back(room.bricksAbove[depth]);
-    result.bricksDownTo.push_back(room.bricks);
     result.leafRoom = std::max(room.leaves, 1u);
-    const std::uint64_t records = std::max(room.records, 1u);
+    result.recordRoom = std::max(room.records, 1u);
+    result.needsMore = before != room;
+    result.bricksDownTo.assign(static_cast<std::size_t>(result.depth) + 1, 0);
+    for (std::size_t depth = 1; depth < std::min(room.bricksAbove.size(), result.bricksDownTo.size());
+         ++depth)
+      result.bricksDownTo[depth - 1] = room.bricksAbove[depth];
+    result.bricksDownTo.back() = room.bricks;
+    before = room;
+    requireRoom(frame, result, 4 * sizeof(float), false);
+    return taken(frame, result);
+  }
+
+  std::pair<VoxelOctree, Tags> taken(PassContext& frame, VoxelOctree result) const {
+    Tags tags;
     if (result.bricksAre == Bricks::own) {
-      result.corners = frame.buffer(records * VoxelOctree::kCornersBytes, "octree bricks around nodes");
+      result.corners =
+          frame.buffer(result.recordRoom * VoxelOctree::kCornersBytes, "octree bricks around nodes");
     } else {
-      result.nodes = frame.buffer(records * VoxelOctree::kTileBytes, "octree nodes");
+      result.nodes = frame.buffer(result.recordRoom * VoxelOctree::kTileBytes, "octree nodes");
       result.nodes->clear(~0u);
     }
     result.bricks = frame.buffer(result.brickRoom * VoxelOctree::kBrickBytes, "octree bricks");
     result.levels = frame.buffer(VoxelOctree::levelsBytes(result.depth), "octree levels");
-    return result;
+    if (asPublished) return {result, tags};
+    const std::uint64_t words = wordsOf(result);
+    result.ranks = frame.elements(octree_rank::octreeRanks, words, "ranks of octree nodes");
+    tags.nodes = tags.shown = frame.emptyElements(octree_mark::tags, words, "tags of octree nodes");
+    if (result.bricksAre == Bricks::published) return {result, tags};
+    result.shown = frame.elements(octree_rank::records, words, "ranks of octree nodes that show something");
+    tags.shown = frame.emptyElements(octree_mark::shown, words, "octree nodes that show something");
+    return {result, tags};
   }
 
   static std::uint64_t wordsOf(const VoxelOctree& result) { return firstTagWord(result.depth + 1); }
-
-  static Tags emptyTags(PassContext& frame, const VoxelOctree& result) {
-    Tags tags;
-    tags.nodes = tags.shown = frame.emptyElements(octree_mark::tags, wordsOf(result), "tags of octree nodes");
-    if (result.bricksAre == Bricks::own)
-      tags.shown =
-          frame.emptyElements(octree_mark::shown, wordsOf(result), "octree nodes that show something");
-    return tags;
-  }
 
   static void mark(PassContext& frame, const VoxelOctree& result, const VoxelFragments& list,
                    const Tags& tags, const octree_mark::Variant& variant) {
@@ -174,9 +255,8 @@ class OctreePass : public Pass {
     const int wordCount = static_cast<int>(words);
     const bool own = result.bricksAre == Bricks::own;
     const gpu::BufferRef counts = frame.elements(octree_count::chunkCounts, chunks, "counts of octree nodes"),
-                         records = frame.elements(octree_rank::records, words, "ranks of octree records");
-    result.ranks = frame.elements(octree_rank::octreeRanks, words, "ranks of octree nodes");
-    if (own) result.shown = records;
+                         records = own ? result.shown
+                                       : frame.elements(octree_rank::records, words, "ranks of octree tiles");
     const OctreeBinding bound(result);
     frame.dispatchList(frame.program(octree_count::kProgram),
                        {octree_count::words({wordCount, own}), octree_count::tags(tags.nodes),
@@ -228,22 +308,23 @@ class OctreePass : public Pass {
 
   static constexpr std::uint64_t kChunk = 64;  // words that a thread counts
 
-  /// Where a frame wanted more than there was room for, it is rendered again with as much as it wanted.
-  static void judge(PassContext& frame, const VoxelOctree& result, Room& room) {
-    judge(frame, result.levels, 0, room.bricks);
-    judge(frame, result.levels, 1, room.records);
-    judge(frame, result.levels, 2, room.leaves);
+  /// Where a frame wanted more than there was room for, it is rendered again with as much as it wanted; and
+  /// with a sixteenth more where later ones will want more or less, since things move.
+  void judge(PassContext& frame, const VoxelOctree& result, Room& room) const {
+    const std::uint32_t share = &room == &room_ && fragments->still != nullptr ? 16 : 0;
+    for (auto [word, wanted] : {std::pair{0, &room.bricks}, {1, &room.records}, {2, &room.leaves}})
+      judge(frame, result.levels, static_cast<std::uint64_t>(word), *wanted, share, true);
     room.bricksAbove.resize(static_cast<std::size_t>(result.depth) + 1);
     for (std::size_t depth = 1; depth < room.bricksAbove.size(); ++depth)
       judge(frame, result.levels, VoxelOctree::kLevelsBegin + VoxelOctree::kLevelWords * depth,
-            room.bricksAbove[depth]);
+            room.bricksAbove[depth], 0, false);
   }
-  static void judge(PassContext& frame, const gpu::BufferRef& levels, std::uint64_t word,
-                    std::uint32_t& room) {
-    frame.judgeLater(levels, word * sizeof(std::uint32_t), [&room](PassContext&, std::uint32_t wanted) {
-      const bool fits = wanted <= room;
-      room = std::max(room, wanted);
-      return fits;
+  static void judge(PassContext& frame, const gpu::BufferRef& levels, std::uint64_t word, std::uint32_t& room,
+                    std::uint32_t share, bool isRoom) {
+    frame.judgeLater(levels, word * sizeof(std::uint32_t), [=, &room](PassContext&, std::uint32_t wanted) {
+      if (wanted <= room) return true;
+      room = wanted + (share > 0 ? wanted / share : 0);
+      return !isRoom;
     });
   }
 };

@@ -41,8 +41,10 @@ struct VoxelOctree {
   /// The tree of static geometry alone, of bricks of their own voxels; null where nothing moves, or where it
   /// is not known apart.
   std::shared_ptr<const VoxelOctree> still;
-  std::uint64_t brickRoom = 0;  ///< bricks that there is room for
-  std::uint64_t leafRoom = 0;   ///< of them those of the finest level
+  std::uint64_t brickRoom = 0;   ///< bricks that there is room for
+  std::uint64_t leafRoom = 0;    ///< of them those of the finest level
+  std::uint64_t recordRoom = 0;  ///< tiles of nodes, or nodes in which reading finds something
+  bool needsMore = true;         ///< than the frame before
   /// Bricks of the depths 0, 0 and 1, 0 to 2 ...: what trees of 2, 4, 8 ... voxels a side take.
   std::vector<std::uint32_t> bricksDownTo;
 

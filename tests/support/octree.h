@@ -45,17 +45,18 @@ inline FragmentData fragmentAt(const glm::ivec3& cell, const glm::vec3& albedo =
 }
 
 /// A list over a grid of [-1,1]^3, or of that along its longest side.
-inline VoxelFragments listOf(const std::vector<FragmentData>& fragments, const glm::ivec3& size) {
+inline VoxelFragments listOf(const std::vector<FragmentData>& fragments, const glm::ivec3& size,
+                             gpu::Device& on = device()) {
   VoxelFragments list;
   const int longest = std::max({size.x, size.y, size.z});
   list.grid = {glm::vec3(-1.0f), 2.0f / static_cast<float>(longest), size};
   list.capacity = std::max<std::size_t>(fragments.size(), 1);
-  list.fragments = std::make_shared<gpu::Buffer>(device(), list.capacity * sizeof(FragmentData), "list");
+  list.fragments = std::make_shared<gpu::Buffer>(on, list.capacity * sizeof(FragmentData), "list");
   if (!fragments.empty()) list.fragments->uploadValues(std::span<const FragmentData>(fragments));
   const auto count = static_cast<std::uint32_t>(fragments.size());
   const std::uint32_t groups = std::max((count + 63u) / 64u, 1u), rows = (groups + 65534u) / 65535u;
   const std::array<std::uint32_t, 4> words{count, std::min(groups, 65535u), rows, 1};
-  list.count = std::make_shared<gpu::Buffer>(device(), sizeof(words), "count");
+  list.count = std::make_shared<gpu::Buffer>(on, sizeof(words), "count");
   list.count->uploadValues(std::span<const std::uint32_t>(words));
   return list;
 }

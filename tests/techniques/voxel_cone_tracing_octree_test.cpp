@@ -1,6 +1,10 @@
 // Light in a sparse voxel octree: its bricks, its levels, and the cones through it, in closed form and beside
 // the dense grid.
+#include <fmt/format.h>
+
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <random>
 
 #include "lumivox/measure/metrics.h"
@@ -19,7 +23,8 @@ void checkNear(const glm::vec4& value, const glm::vec4& expected, double toleran
 
 /// The grid and the octree of a scene under its lights, filtered alike.
 std::pair<RadianceGrid, RadianceOctree> bothOf(const Scene& scene, int resolution, const char* precision,
-                                               const char* opacity, const char* bricks = "own") {
+                                               const char* opacity, const char* bricks = "own",
+                                               int bounces = 1) {
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshot);
   voxels.setParameter("resolution", resolution);
@@ -32,6 +37,7 @@ std::pair<RadianceGrid, RadianceOctree> bothOf(const Scene& scene, int resolutio
   PassHarness sparse(device(), techniques(), "voxel_cone_tracing", "octree_inject", scene, snapshot);
   for (PassHarness* inject : {&dense, &sparse}) {
     inject->setParameter("precision", std::string(precision));
+    inject->setParameter("bounces", bounces);
     inject->setInput("fragments", fragments);
     inject->setInput("shadow", light);
   }
@@ -452,6 +458,16 @@ TEST_CASE("what is exported of an octree are its levels, each voxel once, where 
 }
 
 TEST_CASE("rules that need the voxels elsewhere are refused with what would do") {
+  {
+    const Scene scene = emptyScene();
+    const VoxelFragments one = listOf({fragmentAt({3, 3, 3})}, glm::ivec3(8));
+    PassHarness inject(device(), techniques(), "voxel_cone_tracing", "octree_inject", scene,
+                       snapshotOf(scene, 0.0));
+    inject.setParameter("bounces", 2);
+    inject.setInput("fragments", one);
+    inject.setInput("tree", treeOf(one, "at_corners"));
+    CHECK_THROWS_WITH(inject.run(), Catch::Matchers::Contains("expected 'voxels as_grid'"));
+  }
   const VoxelFragments list = listOf({fragmentAt({3, 3, 3})}, glm::ivec3(8));
   const RadianceOctree leaves = leavesOf(list, "at_corners");
   CHECK_THROWS_WITH(filteredOctree(leaves, "facing"),
@@ -463,17 +479,75 @@ TEST_CASE("rules that need the voxels elsewhere are refused with what would do")
 }
 
 TEST_CASE("an octree that does not fit is refused with the bytes that it needs and the largest that fits") {
-  gpu::DeviceOptions options;
-  options.memoryBytes = 24 << 20;
-  gpu::Device small(options);
   const Scene scene = cornell();
-  RenderOptions render;
-  render.width = render.height = 16;
   const Pipeline text = pipeline("voxel_cone_tracing_octree");
-  render.parameters = text.settings({"resolution=128"});
-  PipelineExecutor executor(small, techniques(), scene, text, render);
-  CHECK_THROWS_WITH(executor.render(0.0), Catch::Matchers::Contains("an octree of 128 voxels") &&
-                                              Catch::Matchers::Contains("the largest that fits is 64"));
+  const auto render = [&](std::uint64_t bytes, int resolution, bool published) {
+    gpu::DeviceOptions options;
+    options.memoryBytes = bytes;
+    gpu::Device small(options);
+    RenderOptions settings;
+    settings.width = settings.height = 16;
+    settings.parameters = text.settings({"resolution=" + std::to_string(resolution)});
+    Pipeline pipelineOf = text;
+    if (published) {
+      std::ifstream file(sourceDirectory() / "scenes/pipelines/voxel_cone_tracing_octree.pipeline");
+      std::string words((std::istreambuf_iterator<char>(file)), {});
+      const std::string tree = "voxel_cone_tracing.octree { ";
+      words.insert(words.find(tree) + tree.size(), "bricks published ");
+      pipelineOf = Pipeline::parse(words, "made_by_a_test.pipeline");
+    }
+    PipelineExecutor executor(small, techniques(), scene, pipelineOf, settings);
+    executor.render(0.0);
+  };
+  struct Limit {
+    std::uint64_t bytes;
+    int resolution, fits;
+    bool published;
+    const char* what;
+  };
+  for (const Limit& limit :
+       {Limit{20u << 20, 128, 64, false, "takes "}, Limit{24u << 20, 128, 64, true, "takes "}}) {
+    CAPTURE(limit.bytes, limit.resolution, limit.published);
+    CHECK_THROWS_WITH(render(limit.bytes, limit.resolution, limit.published),
+                      Catch::Matchers::Contains(fmt::format("an octree of {} voxels", limit.resolution)) &&
+                          Catch::Matchers::Contains(limit.what) && Catch::Matchers::Contains("tags ") &&
+                          Catch::Matchers::Contains("nodes ") && Catch::Matchers::Contains("bricks ") &&
+                          Catch::Matchers::Contains(fmt::format("the largest that fits is {} ", limit.fits)));
+    CHECK_NOTHROW(render(limit.bytes, limit.fits, limit.published));
+  }
+}
+
+TEST_CASE("tags that do not fit are refused before anything is counted") {
+  // At 512 voxels there may be (8^9 - 1) / 7 nodes, of two bits with 64 bits of rank to 32 of each.
+  gpu::DeviceOptions options;
+  options.memoryBytes = 12u << 20;
+  gpu::Device small(options);
+  const Scene scene = emptyScene();
+  PassHarness tree(small, techniques(), "voxel_cone_tracing", "octree", scene, snapshotOf(scene, 0.0));
+  tree.setInput("fragments", listOf({fragmentAt({3, 3, 3})}, glm::ivec3(512), small));
+  CHECK_THROWS_WITH(
+      tree.run(),
+      Catch::Matchers::Contains(
+          "an octree of 512 voxels along its longest side takes at least 13.7 MiB: tags 13.7 MiB") &&
+          Catch::Matchers::Contains("the largest that fits is 256 "));
+}
+
+TEST_CASE("further bounces in the octree are those of the dense grid") {
+  for (const char* bricks : {"own", "published"}) {
+    const auto [dense, sparse] = bothOf(cornell(), 32, "float", "facing", bricks, 3);
+    const auto [once, direct] = bothOf(cornell(), 32, "float", "facing", bricks, 1);
+    const auto lightOf = [](const RadianceOctree& octree) {
+      double sum = 0.0;
+      for (const auto& [voxel, light] : octree.voxels(0, 0)) sum += light.x + light.y + light.z;
+      return sum;
+    };
+    double expected = 0.0;
+    const std::vector<float> texels = dense.radiance->downloadFloats(0);
+    for (std::size_t i = 0; i < texels.size(); ++i) expected += i % 4 < 3 ? texels[i] * dense.unit : 0.0f;
+    CAPTURE(bricks);
+    CHECK(lightOf(sparse) == Approx(expected).epsilon(0.005));
+    CHECK(lightOf(sparse) > 1.2 * lightOf(direct));
+  }
 }
 
 TEST_CASE("images are finite with the camera outside of the octree, inside geometry, far from the origin") {
