@@ -29,6 +29,7 @@ layout(std140, binding = 0) uniform Grid {
   int mediumSteps;      // most steps through a medium that varies, towards a light
   ivec3 brickCount;
   float ambient;        // irradiance of all surfaces besides that of the lights, W/m^2
+  int emissive;         // 1: surfaces that emit light do so in the voxels as well
 };
 layout(std430, binding = 2) writeonly buffer Radiances { float radiances[]; };  // W/(sr m^2): three of each fragment or of each side of one
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
@@ -37,7 +38,7 @@ layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
 layout(std430, binding = 7) readonly buffer Reflected { uint reflected[]; };
 #endif
 
-#if PLACES == PLACES_CLIPMAP
+#if defined(PLACES_CLIPMAP) && PLACES == PLACES_CLIPMAP  // programs without that axis have dense grids
 #include "clipmap_stack.glsl"
 
 vec3 positionOf(VoxelFragment fragment) {
@@ -65,6 +66,9 @@ bool isKnown(uint index, out vec3 radiance) {
   return false;
 #endif
 }
+
+// What the front of a fragment emits, W/(sr m^2).
+vec3 emittedBy(VoxelFragment fragment) { return emissive != 0 ? unpackShared(fragment.emission) : vec3(0.0); }
 
 // Irradiance of both sides by the lights, W/m^2.
 void arrivingAt(VoxelFragment fragment, out vec3 front, out vec3 back) {

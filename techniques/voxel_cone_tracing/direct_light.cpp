@@ -19,10 +19,16 @@ DirectLight::DirectLight(Pass* pass)
           pass, "ambient", 0.0f, within(0.0f, 1e9f),
           "irradiance that all surfaces receive besides that of the lights, W/m^2: cones then see what no light reaches (thesis Fig. 66)"),
       twoSided(pass, "two_sided", true,
-               "light on the back of a triangle counts; off, as published: only on the front") {}
+               "light on the back of a triangle counts; off, as published: only on the front"),
+      emission(
+          pass, "emission", false,
+          "surfaces that emit light shine in their voxels: for who looks at the voxels themselves, as 'lens' does; cones of 'gather' would take the direct light of lamps for indirect light") {
+}
 
 float DirectLight::brightest(PassContext& frame, float nearest) const {
-  return largestRadiance(frame.sceneDescription(), frame.snapshot(), nearest) + ambient / glm::pi<float>();
+  // What a surface reflects, and what it emits besides.
+  return (emission ? 2.0f : 1.0f) * largestRadiance(frame.sceneDescription(), frame.snapshot(), nearest) +
+         ambient / glm::pi<float>();
 }
 
 void DirectLight::reflect(PassContext& frame, const VoxelFragments& fragments, const VoxelSums& sums,
@@ -44,7 +50,8 @@ void DirectLight::reflect(PassContext& frame, const VoxelFragments& fragments, c
                      .twoSided = twoSided,
                      .mediumSteps = mediumSteps,
                      .brickCount = sums.brickCount,
-                     .ambient = ambient}),
+                     .ambient = ambient,
+                     .emissive = emission}),
        inject::radiances(radiances), inject::reflected(fragments.reflected), sums.bindings(), lights, bound},
       fragments);
 }

@@ -21,6 +21,7 @@ struct DirectLight {
   Param<int> mediumSteps;
   Param<float> ambient;
   Param<bool> twoSided;
+  Param<bool> emission;
 
   /// No voxel whose fragments are at this distance from lights at least can reflect more, W/(sr m^2).
   float brightest(PassContext& frame, float nearest) const;
