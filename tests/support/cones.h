@@ -193,7 +193,7 @@ glm::vec3 gatherGlossy(const Scene& scene, const Store& grid, const glm::vec3& p
 struct InjectSettings {
   const char* precision = "float";
   double ambient = 0;
-  bool lights = true, storeMedia = false, twoSided = true;
+  bool lights = true, storeMedia = false, twoSided = true, emission = false;
   int bounces = 1;
   const ScatteringGrid* media = nullptr;
 };
@@ -221,6 +221,7 @@ Grid injectedAs(const char* pass, const Scene& scene, int resolution, const Inje
   if (fragments != nullptr) *fragments = voxels.output<VoxelFragments>("fragments");
   inject.setParameter("bounces", settings.bounces);
   inject.setParameter("two_sided", std::string(settings.twoSided ? "on" : "off"));
+  inject.setParameter("emission", std::string(settings.emission ? "on" : "off"));
   inject.run();
   return inject.template output<Grid>("radiance");
 }
