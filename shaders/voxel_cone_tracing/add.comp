@@ -44,8 +44,8 @@ layout(std430, binding = 9) readonly buffer SideMasks { uint sideMasksOf[]; };  
 const float kBackShare = 1.0 / 256.0;
 
 void main() {
-  uint index = listIndex();
-  if (index >= fragmentCount) return;
+  uint index;
+  if (!takenFragment(index)) return;
   VoxelFragment fragment = fragments[index];
   ivec3 voxel = unpackVoxel(fragment.voxel);
   uint place = sumsAt(voxel);
@@ -81,8 +81,8 @@ void main() {
 layout(std430, binding = 4) buffer Sums { VoxelSums sums[]; };
 
 void main() {
-  uint index = listIndex();
-  if (index >= fragmentCount) return;
+  uint index;
+  if (!takenFragment(index)) return;
   VoxelFragment fragment = fragments[index];
   ivec3 voxel = unpackVoxel(fragment.voxel);
   uint place = sumsAt(voxel);

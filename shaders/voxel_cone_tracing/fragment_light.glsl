@@ -29,6 +29,7 @@ layout(std140, binding = 0) uniform Grid {
   int mediumSteps;      // most steps through a medium that varies, towards a light
   ivec3 brickCount;
   float ambient;        // irradiance of all surfaces besides that of the lights, W/m^2
+  int lightSamples;     // points of a fragment's plane in its voxel that are lit
   int emissive;         // 1: surfaces that emit light do so in the voxels as well
 };
 layout(std430, binding = 2) writeonly buffer Radiances { float radiances[]; };  // W/(sr m^2): three of each fragment or of each side of one
@@ -38,19 +39,18 @@ layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
 layout(std430, binding = 7) readonly buffer Reflected { uint reflected[]; };
 #endif
 
+// The voxel of a fragment: its low corner in world space, and in w its width, m.
 #if defined(PLACES_CLIPMAP) && PLACES == PLACES_CLIPMAP  // programs without that axis have dense grids
 #include "clipmap_stack.glsl"
 
-vec3 positionOf(VoxelFragment fragment) {
+vec4 voxelOfFragment(VoxelFragment fragment) {
   ivec3 voxel = unpackVoxel(fragment.voxel);
   int level = levelInStack(voxel);
-  return stackOrigin + (vec3(voxelOfLevel(voxel, level)) + unpackOffset(fragment.offset)) * voxelSizeOf(level);
+  return vec4(stackOrigin + vec3(voxelOfLevel(voxel, level)) * voxelSizeOf(level), voxelSizeOf(level));
 }
 float mostRadianceIn(ivec3 voxel) { return stackLimits[levelInStack(voxel)].x; }
 #else
-vec3 positionOf(VoxelFragment fragment) {
-  return gridLow + (vec3(unpackVoxel(fragment.voxel)) + unpackOffset(fragment.offset)) * voxelSize;
-}
+vec4 voxelOfFragment(VoxelFragment fragment) { return vec4(gridLow + vec3(unpackVoxel(fragment.voxel)) * voxelSize, voxelSize); }
 float mostRadianceIn(ivec3 voxel) { return mostRadiance; }
 #endif
 
@@ -70,12 +70,9 @@ bool isKnown(uint index, out vec3 radiance) {
 // What the front of a fragment emits, W/(sr m^2).
 vec3 emittedBy(VoxelFragment fragment) { return emissive != 0 ? unpackShared(fragment.emission) : vec3(0.0); }
 
-// Irradiance of both sides by the lights, W/m^2.
-void arrivingAt(VoxelFragment fragment, out vec3 front, out vec3 back) {
-  front = vec3(0.0);
-  back = vec3(0.0);
 #if LIGHTS
-  vec3 posWorld = positionOf(fragment), normal = unpackNormal(fragment.normal);
+// Adds the irradiance of a point by the lights, W/m^2.
+void lightPoint(vec3 posWorld, vec3 normal, inout vec3 front, inout vec3 back) {
   for (int i = 0; i < lightCount; ++i) {
     LightSample light = lights[i];
     vec3 toLight;
@@ -94,6 +91,43 @@ void arrivingAt(VoxelFragment fragment, out vec3 front, out vec3 back) {
 #endif
     if (behind) back += arriving;
     else front += arriving;
+  }
+}
+#endif
+
+// Irradiance of both sides by the lights, W/m^2: at the fragment's point; or the mean over points of its plane in its voxel, so that the
+// edge of a shadow may lie in it. They fill the side of the voxel that the plane faces evenly (R2: Roberts 2018).
+void arrivingAt(VoxelFragment fragment, out vec3 front, out vec3 back) {
+  front = vec3(0.0);
+  back = vec3(0.0);
+#if LIGHTS
+  vec4 voxel = voxelOfFragment(fragment);
+  vec3 place = unpackOffset(fragment.offset);
+  vec3 normal = unpackNormal(fragment.normal);
+  if (lightSamples <= 1) {
+    lightPoint(voxel.xyz + place * voxel.w, normal, front, back);
+    return;
+  }
+  const vec2 kR2 = vec2(0.75487766624669276, 0.56984029099805327);
+  vec3 along = abs(normal);
+  int axis = along.x >= along.y && along.x >= along.z ? 0 : along.y >= along.z ? 1 : 2;
+  int side = (axis + 1) % 3, up = (axis + 2) % 3;
+  float inside = 0.0;
+  for (int i = 0; i < lightSamples; ++i) {
+    vec2 across = fract(0.5 + float(i) * kR2);
+    vec3 point = place;
+    point[side] = across.x;
+    point[up] = across.y;
+    point[axis] -= (normal[side] * (across.x - place[side]) + normal[up] * (across.y - place[up])) / normal[axis];
+    if (point[axis] < 0.0 || point[axis] > 1.0) continue;
+    inside += 1.0;
+    lightPoint(voxel.xyz + point * voxel.w, normal, front, back);
+  }
+  if (inside > 0.0) {
+    front /= inside;
+    back /= inside;
+  } else {
+    lightPoint(voxel.xyz + place * voxel.w, normal, front, back);
   }
 #endif
 }

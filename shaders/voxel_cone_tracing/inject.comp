@@ -19,8 +19,8 @@ layout(std430, binding = 4) buffer Sums { VoxelSums sums[]; };
 float largest(vec3 value) { return max(value.r, max(value.g, value.b)); }
 
 void main() {
-  uint index = listIndex();
-  if (index >= fragmentCount) return;
+  uint index;
+  if (!takenFragment(index)) return;
   VoxelFragment fragment = fragments[index];
   vec3 albedo = albedoOf(fragment);
   vec3 known, front = vec3(0.0), back = vec3(0.0), emitted = emittedBy(fragment);

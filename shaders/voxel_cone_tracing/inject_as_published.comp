@@ -1,8 +1,8 @@
 #version 450
 // Thesis 004 Sec. 4.2.1, Listings 4.8 and 4.9 to the letter: the light that falls on the front of a fragment goes into a running average of
 // its voxel, in 8 bits a channel. The last channel counts the fragments modulo 256: the 256th makes 0 of it, and the next one begins anew.
-// The average depends on the order in which fragments come, and so does every image that is made of it. Deviates: radiance in units of what
-// no fragment exceeds, where the listing cuts off at 1.
+// The average depends on the order in which fragments come, and so does every image that is made of it. Deviates: radiance, albedo / pi
+// times irradiance, in units of what the largest byte stands for, and at most that; the listing stores colours, and brighter ones wrap.
 //
 // GRIDS six: the same average in each of six grids, one after another. What the faces of the finest voxels hold is not printed.
 #pragma lumivox axis GRIDS one six

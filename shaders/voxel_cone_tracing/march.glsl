@@ -9,7 +9,7 @@
 
 // C++ side: ConeMarch in techniques/voxel_cone_tracing/march.h.
 layout(std140, binding = 2) uniform March {
-  vec3 environment;   // radiance of a cone that meets nothing
+  vec3 environment;   // radiance of the environment
   float maxDistance;  // m
   float stepShare;    // step along a cone as a share of its diameter
   float offset;       // start of a cone along the normal, in voxels
@@ -22,6 +22,11 @@ layout(std140, binding = 2) uniform March {
 };
 
 const int kMediumSteps = 8;   // most steps through a medium that varies, within one step of a cone
+
+#if ENVIRONMENT
+// What a cone that meets nothing sees of the environment: of one alike to all sides the same, whatever its axis and its width.
+vec3 environmentAlong(vec3 direction, float tanHalfAngle) { return environment; }
+#endif
 
 // How far a cone's first sample is moved, [0, 1): by the pixel, the cone and the seed.
 float shiftOf(uint cone) {
@@ -86,7 +91,7 @@ vec3 traceCone(vec3 apex, vec3 direction, float tanHalfAngle, float cosTheta, ui
 #if MEDIUM != MEDIUM_NONE
   if (opacity < kOpaque) passed *= exp(-opticalDepth(apex + direction * distance, direction, kNoReach, kMediumSteps));
 #endif
-  radiance += passed * (max(1.0 - opacity, 0.0) * environment);
+  radiance += passed * (max(1.0 - opacity, 0.0) * environmentAlong(direction, tanHalfAngle));
 #endif
   return radiance;
 }
@@ -119,7 +124,7 @@ vec3 traceConeAsPublished(vec3 apex, vec3 direction, float ratio, uint cone) {
 #if MEDIUM != MEDIUM_NONE
   passed *= exp(-opticalDepth(apex, direction, kNoReach, kMediumSteps));
 #endif
-  radiance += passed * environment;
+  radiance += passed * environmentAlong(direction, 0.5 * ratio);
 #endif
   return radiance;
 }

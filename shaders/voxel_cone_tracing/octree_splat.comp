@@ -15,8 +15,8 @@ layout(binding = 0) uniform writeonly image3D poolImage;  // for the first light
 
 void main() {
   uint brick, lane;
-  if (!itemOf(octreeDepth + 1, 27u, brick, lane)) return;
-  ivec3 voxel = ivec3(lane % 3u, lane / 3u % 3u, lane / 9u), texel = texelOf(brick) + voxel;
+  if (!itemOf(octreeDepth + 1, voxelsOfBrick(), brick, lane)) return;
+  ivec3 voxel = voxelOfLane(lane), texel = texelOf(brick) + voxel;
   vec4 value = texelFetch(pool, texel, 0);
   if (brick >= octreeLevels[octreeDepth].firstBrick && all(lessThan(voxel, ivec3(2)))) {
     PhotonSums sum = sums[8u * (brick - octreeLevels[octreeDepth].firstBrick) + uint(voxel.x | voxel.y << 1 | voxel.z << 2)];

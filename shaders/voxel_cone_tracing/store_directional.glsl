@@ -28,7 +28,7 @@ vec4 interpolated(vec3 texcoord, vec3 direction, float level) {
 // edges that filtering gives it. A uniform medium of opacity a lets (1-a)^lengths through either way, since the weights sum to 1.
 vec4 layers(vec3 texcoord, vec3 direction, float level, float stride) {
   float levelOfFaces = level - storeFirstLevelOfFaces;
-  vec3 voxels = max(floor(storeVoxels * exp2(-level)), 1.0);
+  vec3 voxels = vec3(max(ivec3(storeVoxels) >> int(level), 1));
   vec3 centre = (floor(texcoord * voxels) + 0.5) / voxels;
   vec3 atX = vec3(centre.x, texcoord.yz), atY = vec3(texcoord.x, centre.y, texcoord.z), atZ = vec3(texcoord.xy, centre.z);
   vec4 x, y, z;

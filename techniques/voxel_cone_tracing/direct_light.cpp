@@ -18,6 +18,9 @@ DirectLight::DirectLight(Pass* pass)
       ambient(
           pass, "ambient", 0.0f, within(0.0f, 1e9f),
           "irradiance that all surfaces receive besides that of the lights, W/m^2: cones then see what no light reaches (thesis Fig. 66)"),
+      samples(
+          pass, "light_samples", 1, within(1, 256),
+          "points of a fragment's plane in its voxel that are lit, so that the edge of a shadow may lie in a voxel"),
       twoSided(pass, "two_sided", true,
                "light on the back of a triangle counts; off, as published: only on the front"),
       emission(
@@ -40,8 +43,9 @@ void DirectLight::reflect(PassContext& frame, const VoxelFragments& fragments, c
                                 .shadows = shadow.present(),
                                 .reflected = fragments.reflected != nullptr,
                                 .medium = bound.axis,
-                                .places = sums.kind};
-  forEachFragment(
+                                .places = sums.kind,
+                                .changed = sums.changed != nullptr};
+  forEachTaken(
       frame, frame.program(variant),
       {inject::grid({.gridLow = fragments.grid.low,
                      .voxelSize = fragments.grid.voxelSize,
@@ -51,9 +55,10 @@ void DirectLight::reflect(PassContext& frame, const VoxelFragments& fragments, c
                      .mediumSteps = mediumSteps,
                      .brickCount = sums.brickCount,
                      .ambient = ambient,
+                     .lightSamples = samples,
                      .emissive = emission}),
        inject::radiances(radiances), inject::reflected(fragments.reflected), sums.bindings(), lights, bound},
-      fragments);
+      fragments, sums);
 }
 
 }  // namespace lumivox::voxel_cone_tracing

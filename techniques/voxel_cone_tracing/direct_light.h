@@ -20,6 +20,7 @@ struct DirectLight {
   In<ScatteringGrid> media;
   Param<int> mediumSteps;
   Param<float> ambient;
+  Param<int> samples;
   Param<bool> twoSided;
   Param<bool> emission;
 

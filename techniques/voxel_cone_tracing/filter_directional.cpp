@@ -47,7 +47,7 @@ void fillLevel(PassContext& frame, const DirectionalRadianceGrid& result, int le
       filter::brickCount(occupied.count)};
   if (drawn) {
     drawVoxels(frame, frame.program(shaders::voxel_cone_tracing::filter_directional_drawn::kProgram),
-               bindings, coarse);
+               bindings, coarse, 6);
     return;
   }
   const auto& program = frame.program(filter::Variant{followsBricks});

@@ -30,6 +30,13 @@ class InjectAsPublishedPass : public Pass {
                        "lights and their visibility; without it the grid is dark but opaque"};
   Param<Grids> grids{this, "grids", Grids::one,
                      "for voxels that look the same from all sides, or for those of six directional grids"};
+  Param<float> white{
+      this,
+      "white",
+      0.0f,
+      within(0.0f, 1e12f),
+      "W/(sr m^2)",
+      "radiance that the largest byte stands for; brighter voxels have no more; 0: what no fragment exceeds, which beside a point light leaves the bytes of all others dark"};
   Param<float> ambient{this, "ambient", 0.0f, within(0.0f, 1e9f),
                        "irradiance that all surfaces receive besides that of the lights, W/m^2 (Fig. 66)"};
   Out<VoxelAverages> averages{this, "averages", "what depends on the order of the fragments"};
@@ -41,9 +48,10 @@ class InjectAsPublishedPass : public Pass {
     // As many voxels along all axes.
     result.grid = fragments->grid;
     result.grid.resolution = glm::ivec3(fragments->grid.longest());
-    result.unit =
-        largestRadiance(frame.sceneDescription(), frame.snapshot(), 0.5f * fragments->grid.voxelSize) +
-        ambient / glm::pi<float>();
+    result.unit = white > 0.0f ? white
+                               : largestRadiance(frame.sceneDescription(), frame.snapshot(),
+                                                 0.5f * fragments->grid.voxelSize) +
+                                     ambient / glm::pi<float>();
     const int count = grids == Grids::six ? 6 : 1;
     for (int i = 0; i < count; ++i)
       result.grids.push_back(

@@ -18,6 +18,7 @@ StoreBinding begun(int axis, const GridPlacement& grid, gather::Store block) {
   block.storeLow = grid.low;
   block.storeVoxel = result.voxel = grid.voxelSize;
   block.storeExtent = glm::vec3(grid.resolution) * grid.voxelSize;
+  result.grid = grid;
   result.axis = axis;
   result.length = 2.0f * glm::length(block.storeExtent);
   result.add(shader::UniformSlot<gather::Store>{"Store"}(block));
@@ -33,6 +34,7 @@ StoreBinding storeOf(const RadianceGrid& grid) {
              .storeUnit = grid.unit,
              .storeOpacityOfFinestVoxel = grid.opacity == RadianceGrid::Opacity::ofFinestVoxel});
   result.holdsMedia = grid.holdsMedia;
+  result.bounces = grid.bounces;
   result.add(shader::SampledSlot{"radianceGrid"}(grid.radiance, gpu::Sampling::linearMipsBorder));
   return result;
 }
@@ -89,8 +91,12 @@ StoreBinding StoreInput::inOctree() const {
             {.storeCoarsest = static_cast<float>(octree.filledLevels - 1),
              .storeUnit = octree.unit,
              .storeOpacityOfFinestVoxel = octree.opacity == RadianceOctree::Opacity::ofFinestVoxel});
-  result.lookUp = tree.ranks != nullptr && lookUp_ == LookUp::ranks ? gather::Variant::lookUpRanks
-                                                                    : gather::Variant::lookUpDescent;
+  if (tree.nodes == nullptr && lookUp_ == LookUp::descent)
+    throw Error(
+        "voxel_cone_tracing: 'look_up descent' goes from node to node, and bricks of their own voxels have no nodes; expected 'look_up ranks', or 'bricks published' in voxel_cone_tracing.octree");
+  result.lookUp = tree.nodes == nullptr                               ? gather::Variant::lookUpOwn
+                  : tree.ranks != nullptr && lookUp_ == LookUp::ranks ? gather::Variant::lookUpRanks
+                                                                      : gather::Variant::lookUpDescent;
   result.add(shader::UniformSlot<gather::OctreeStore>{"OctreeStore"}(
       {.firstVoxel = tree.firstVoxel(),
        .firstVoxelGrows = tree.voxels == VoxelOctree::Voxels::asGrid ? 1.0f : 0.0f}));

@@ -16,6 +16,8 @@ struct StoreBinding : shader::BindingSet {
   int lookUp = 0;           ///< and of LOOK_UP
   float length = 0;         ///< no cone need be longer, m
   float voxel = 0;          ///< finest voxels, m
+  GridPlacement grid;       ///< of the finest level
+  int bounces = 1;          ///< times that light was reflected, as far as the store says
   bool holdsMedia = false;  ///< participating media are in the voxels
 };
 

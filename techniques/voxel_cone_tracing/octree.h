@@ -13,6 +13,9 @@ class OctreeBinding : public shader::BindingSet {
   explicit OctreeBinding(const VoxelOctree& tree, int poolShift = 0);
 };
 
+/// What a shader with the axis CHANGED copies of static geometry; nothing where that is not known.
+shader::BindingSet stillBinding(const RadianceOctree& octree);
+
 /// `threads` invocations for each brick of a depth, and for those of all depths where it is that of the
 /// leaves and one more; a barrier follows.
 void forEachBrick(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
@@ -25,7 +28,8 @@ void makePool(PassContext& frame, RadianceOctree& result, gpu::Format format);
 enum class Transfer { add, copy, average };
 
 /// Completes the voxels that bricks of a depth share with their neighbours, along x, y and z: the parts that
-/// both have are added or averaged, or those of the higher one are copied to the lower one.
+/// both have are added or averaged, or those of the higher one are copied to the lower one. Nothing where
+/// each voxel is held once.
 void transferBorders(PassContext& frame, const RadianceOctree& octree, int depth, Transfer way);
 
 }  // namespace lumivox::voxel_cone_tracing

@@ -55,7 +55,7 @@ class OctreeSplatPass : public Pass {
           {octree_splat::splat({result.unit}), octree_splat::sums(sums),
            octree_splat::pool(light == 0 ? octree->radiance : result.radiance, gpu::Sampling::nearest),
            octree_splat::poolImage(result.radiance), bound},
-          tree, tree.depth + 1, 27);
+          tree, tree.depth + 1, tree.brickVoxels());
     }
     transferBorders(frame, result, tree.depth, Transfer::copy);
     for (int depth = tree.depth - 1; depth >= 0; --depth) halve(frame, result, depth, lit);
@@ -137,7 +137,7 @@ class OctreeSplatPass : public Pass {
         {octree_filter::coarse({depth}), octree_filter::lit(lit),
          octree_filter::pool(result.radiance, gpu::Sampling::nearest),
          octree_filter::poolImage(result.radiance), OctreeBinding(result.tree, result.poolShift)},
-        result.tree, depth, 27);
+        result.tree, depth, result.tree.brickVoxels());
     transferBorders(frame, result, depth, Transfer::copy);
   }
 };

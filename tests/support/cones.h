@@ -196,6 +196,7 @@ struct InjectSettings {
   bool lights = true, storeMedia = false, twoSided = true, emission = false;
   int bounces = 1;
   const ScatteringGrid* media = nullptr;
+  int lightSamples = 1;
 };
 
 /// The grid after injecting the fragments of a scene under its lights: RadianceGrid or
@@ -219,6 +220,7 @@ Grid injectedAs(const char* pass, const Scene& scene, int resolution, const Inje
   }
   if (settings.media != nullptr) inject.setInput("media", *settings.media);
   if (fragments != nullptr) *fragments = voxels.output<VoxelFragments>("fragments");
+  inject.setParameter("light_samples", settings.lightSamples);
   inject.setParameter("bounces", settings.bounces);
   inject.setParameter("two_sided", std::string(settings.twoSided ? "on" : "off"));
   inject.setParameter("emission", std::string(settings.emission ? "on" : "off"));

@@ -1,6 +1,7 @@
-// Light that comes through a wall between a lit and a dark room, by the wall's thickness and the store.
-#include "support/scene_builder.h"
-#include "support/techniques.h"
+// What lets light through walls: their thickness, by the store; voxels that the edge of a shadow lies in.
+#include <cmath>
+
+#include "support/cones.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -57,5 +58,39 @@ TEST_CASE("of the light of a room less comes through a thin wall by six directio
     CHECK(coarse == Approx(row.coarse).epsilon(0.1));
     CHECK(directional == Approx(row.directional).epsilon(0.1));
     CHECK(octree == Approx(isotropic).epsilon(0.1));
+  }
+}
+
+TEST_CASE("a voxel that the edge of a shadow lies in is lit as far as it lies outside, by several samples") {
+  // The sun stands over a floor whose part below -0.37 along x lies in the shadow of a sheet.
+  constexpr float kEdge = -0.37f;
+  SceneBuilder builder;
+  const int grey = builder.lambert(0.7f);
+  builder.quad({-1, -0.5f, -1}, {2, 0, 0}, {0, 0, 2}, grey);
+  builder.quad({-1, 0.5f, -1}, {kEdge + 1, 0, 0}, {0, 0, 2}, grey);
+  builder.light(LightKind::directional, glm::vec3(2.0f), {}, {0, -1, 0});
+  builder.look({0, 2, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);
+  const double full = 2.0 * 0.7 / M_PI;
+  for (const int samples : {1, 256}) {
+    cones::InjectSettings settings;
+    settings.lightSamples = samples;
+    const RadianceGrid grid = cones::injectedGrid(builder.scene, 9, settings);
+    const std::vector<float> texels = grid.radiance->downloadFloats(0);
+    const glm::ivec3 size = grid.grid.resolution;
+    const float voxel = grid.grid.voxelSize;
+    const int y = static_cast<int>((-0.5f - grid.grid.low.y) / voxel), z = 4;
+    int partly = 0;
+    for (int x = 2; x < 7; ++x) {
+      const float low = grid.grid.low.x + static_cast<float>(x) * voxel;
+      const double outside = std::clamp((low + voxel - kEdge) / voxel, 0.0f, 1.0f);
+      const double share = texels[static_cast<std::size_t>(4 * ((z * size.y + y) * size.x + x))] / full;
+      CAPTURE(samples, x, outside);
+      if (samples > 1)
+        CHECK(share == Approx(outside).margin(0.04));  // of a texel of the shadow map, 0.01 of a voxel
+      else
+        CHECK(std::min(std::abs(share), std::abs(share - 1.0)) < 0.01);
+      partly += outside > 0.2 && outside < 0.8;
+    }
+    CHECK(partly == 1);
   }
 }
