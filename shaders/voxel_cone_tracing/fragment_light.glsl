@@ -30,6 +30,7 @@ layout(std140, binding = 0) uniform Grid {
   ivec3 brickCount;
   float ambient;        // irradiance of all surfaces besides that of the lights, W/m^2
   int lightSamples;     // points of a fragment's plane in its voxel that are lit
+  int emissive;         // 1: surfaces that emit light do so in the voxels as well
 };
 layout(std430, binding = 2) writeonly buffer Radiances { float radiances[]; };  // W/(sr m^2): three of each fragment or of each side of one
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
@@ -39,7 +40,7 @@ layout(std430, binding = 7) readonly buffer Reflected { uint reflected[]; };
 #endif
 
 // The voxel of a fragment: its low corner in world space, and in w its width, m.
-#if defined(PLACES_CLIPMAP) && PLACES == PLACES_CLIPMAP
+#if defined(PLACES_CLIPMAP) && PLACES == PLACES_CLIPMAP  // programs without that axis have dense grids
 #include "clipmap_stack.glsl"
 
 vec4 voxelOfFragment(VoxelFragment fragment) {
@@ -65,6 +66,9 @@ bool isKnown(uint index, out vec3 radiance) {
   return false;
 #endif
 }
+
+// What the front of a fragment emits, W/(sr m^2).
+vec3 emittedBy(VoxelFragment fragment) { return emissive != 0 ? unpackShared(fragment.emission) : vec3(0.0); }
 
 #if LIGHTS
 // Adds the irradiance of a point by the lights, W/m^2.
