@@ -5,7 +5,7 @@
 #pragma lumivox axis SHADOWS 0 1
 #pragma lumivox axis REFLECTED 0 1
 #pragma lumivox axis MEDIUM none even varying
-#pragma lumivox require !SHADOWS || LIGHTS
+#pragma lumivox require (!SHADOWS || LIGHTS) && (!LIGHTS || SHADOWS)
 #pragma lumivox require MEDIUM == none || LIGHTS
 #include "common/constants.glsl"
 #include "bricks.glsl"

@@ -6,6 +6,7 @@
 //
 // GRIDS six: the same average in each of six grids, one after another. What the faces of the finest voxels hold is not printed.
 #pragma lumivox axis GRIDS one six
+#pragma lumivox require MEDIUM == none && !REFLECTED
 
 layout(local_size_x = 64) in;
 #include "fragment_light.glsl"
