@@ -271,7 +271,8 @@ class OctreePass : public Pass {
                         octree_rank::records(records), octree_rank::octreeRanks(result.ranks)},
                        chunks);
     frame.dispatch(frame.program(octree_arguments::Variant{}),
-                   {octree_arguments::room({room.bricks, room.records}), bound}, {result.depth + 2, 1, 1});
+                   {octree_arguments::room({room.bricks, room.records, room.leaves}), bound},
+                   {result.depth + 2, 1, 1});
     frame.dispatchList(
         frame.program(octree_nodes::Variant{.bricks = own ? octree_nodes::Variant::bricksOwn
                                                           : octree_nodes::Variant::bricksPublished}),
@@ -303,7 +304,8 @@ class OctreePass : public Pass {
                              *range, kGroups);
     }
     frame.dispatch(frame.program(octree_arguments::Variant{.published = 1}),
-                   {octree_arguments::room({brickRoom, tileRoom}), bound}, {result.depth + 2, 1, 1});
+                   {octree_arguments::room({brickRoom, tileRoom, room_.leaves}), bound},
+                   {result.depth + 2, 1, 1});
   }
 
   static constexpr std::uint64_t kChunk = 64;  // words that a thread counts
