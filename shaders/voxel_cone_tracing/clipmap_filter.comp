@@ -52,22 +52,26 @@ void findChildren(int finer, ivec3 voxel) {
 }
 
 void main() {
+  // All addresses of the block: those that hold no voxel now are emptied.
+  ivec3 item = ivec3(gl_GlobalInvocationID);
 #if ABOVE
-  ivec3 voxel = ownFirst[level].xyz + ivec3(gl_GlobalInvocationID);
-  if (any(greaterThanEqual(voxel, ownEnd[level].xyz))) return;
+  if (any(greaterThanEqual(item, ivec3(ownFirst[level].w)))) return;
+  ivec3 voxel = ownFirst[level].xyz + item;
+  bool isVoxel = all(lessThan(voxel, ownEnd[level].xyz));
   ClipmapPlace place = ownPlace(level, voxel);
 #else
-  ivec3 voxel = innerFirst[level].xyz + ivec3(gl_GlobalInvocationID);
-  if (any(greaterThanEqual(voxel, innerEnd[level].xyz))) return;
+  if (any(greaterThanEqual(item, ivec3(innerFirst[level].w)))) return;
+  ivec3 voxel = innerFirst[level].xyz + item;
+  bool isVoxel = all(lessThan(voxel, innerEnd[level].xyz));
   ClipmapPlace place = innerPlace(level, voxel), own = ownPlace(level, voxel);
 #endif
-  findChildren(level - 1, voxel);
+  if (isVoxel) findChildren(level - 1, voxel);
   bool occupied = occupiedChildren != 0u;
 #if !ABOVE
   // Where the finer level begins, nothing is of it: reading goes on there without a leap.
   float fromBorder = 0.5 * withinReach(level - 1, 2.0 * (vec3(voxel) + 0.5));
   float share = clamp((fromBorder - 1.0) / max(clipmapRamp, 1e-6), 0.0, 1.0);
-  bool voxelized = share < 1.0 && isOccupied(own);
+  bool voxelized = isVoxel && share < 1.0 && isOccupied(own);
   occupied = occupied || voxelized;
 #endif
   if (!occupied && !isOccupied(place)) return;

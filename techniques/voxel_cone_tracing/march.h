@@ -4,6 +4,7 @@
 
 #include "directional_grid.h"
 #include "lumivox/plugin/technique.h"
+#include "radiance_clipmap.h"
 #include "radiance_octree.h"
 #include "voxel_cone_tracing_shaders.h"
 
@@ -22,6 +23,7 @@ struct StoreBinding : shader::BindingSet {
 StoreBinding storeOf(const RadianceGrid& grid);
 /// By layers, or filtered along all axes.
 StoreBinding storeOf(const DirectionalRadianceGrid& grid, bool layers);
+StoreBinding storeOf(const RadianceClipmap& clipmap, bool layers);
 
 /// How cones step through a store; the meaning of each is that of the parameter of its name (ConeMarch).
 struct MarchSettings {
@@ -45,6 +47,7 @@ class StoreInput {
   In<RadianceGrid> grid_;
   In<DirectionalRadianceGrid> directions_;
   In<RadianceOctree> octree_;
+  In<RadianceClipmap> clipmap_;
   Param<LookUp> lookUp_;
   Param<Reading> reading_;
 

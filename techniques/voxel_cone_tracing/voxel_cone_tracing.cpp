@@ -14,6 +14,7 @@ void addGather(TechniqueRegistry& registry);
 void addSoftShadows(TechniqueRegistry& registry);
 void addLens(TechniqueRegistry& registry);
 void addLook(TechniqueRegistry& registry);
+void addClipmap(TechniqueRegistry& registry);
 void addOctree(TechniqueRegistry& registry);
 void addOctreeFilter(TechniqueRegistry& registry);
 void addOctreeSplat(TechniqueRegistry& registry);
@@ -77,6 +78,7 @@ LUMIVOX_TECHNIQUE(registry) {
   addInject(registry);
   registry.add<FilterPass>("filter", "Pre-filtered coarser levels (Crassin et al. 2011, Sec. 5)");
   addFilterDirectional(registry);
+  addClipmap(registry);
   addOctree(registry);
   addOctreeFilter(registry);
   addOctreeSplat(registry);
