@@ -146,38 +146,50 @@ class ClipmapPass : public Pass {
 
   // ---- room ----------------------------------------------------------------------------------------------
 
-  /// The volumes and bits of a layout.
-  void takeRoom(PassContext& frame, const ClipmapLayout& layout, RadianceClipmap& result) const {
-    for (gpu::TextureRef& face : result.faces)
-      face = frame.volume(layout.volume, isHalf() ? gpu::Format::rgba16f : gpu::Format::rgba32f,
-                          "clipmap of one side");
-    result.occupied = frame.buffer(layout.words * sizeof(std::uint32_t), "occupied voxels of a clipmap");
+  gpu::Format format() const { return isHalf() ? gpu::Format::rgba16f : gpu::Format::rgba32f; }
+
+  /// Whether the device has room for the volumes of a layout beside all that there is. What is asked for is
+  /// given back at once, and not to the pool, where it would wait.
+  bool fits(PassContext& frame, const ClipmapLayout& layout) const {
+    const gpu::TextureDescription volume{.kind = gpu::TextureKind::d3,
+                                         .format = format(),
+                                         .width = layout.volume.x,
+                                         .height = layout.volume.y,
+                                         .depth = layout.volume.z};
+    try {
+      std::vector<std::unique_ptr<gpu::Texture>> volumes;
+      for (int face = 0; face < 6; ++face)
+        volumes.push_back(std::make_unique<gpu::Texture>(frame.device(), volume, "clipmap of one side"));
+      return true;
+    } catch (const Error&) {
+      return false;
+    }
   }
 
   std::shared_ptr<ClipmapState> stateFor(PassContext& frame, const ClipmapPlacement& placement) const {
-    auto state = std::make_shared<ClipmapState>();
+    const ClipmapStack stack(resolution, levels);  // Error for more than a list can number
     const ClipmapLayout layout = layoutOf(placement);
-    try {
-      takeRoom(frame, layout, state->clipmap);
-      return state;
-    } catch (const Error& error) {
-      // What fits is given back at once.
-      state->clipmap = {};
-      const gpu::Format format = isHalf() ? gpu::Format::rgba16f : gpu::Format::rgba32f;
-      for (int smaller = resolution / 2; smaller > 0; smaller /= 2) {
-        RadianceClipmap room;
-        try {
-          takeRoom(frame, layoutOf(placeClipmap(frame.snapshot(), smaller, levels, extent)), room);
-        } catch (const Error&) {
-          continue;
-        }
-        throw Error(fmt::format(
-            "room for {} levels of {} voxels along a side takes {}; of sizes halved from it the largest that fits is {} ({})",
-            static_cast<int>(levels), static_cast<int>(resolution), formatBytes(layout.bytes(format)),
-            smaller, error.what()));
-      }
-      throw;
+    int largest = resolution;
+    if (!fits(frame, layout)) {
+      do {
+        largest /= 2;
+      } while (largest > 1 &&
+               !fits(frame, layoutOf(placeClipmap(frame.snapshot(), largest, levels, extent))));
     }
+    auto state = std::make_shared<ClipmapState>();
+    try {
+      // What does not fit beside what waits in the pool may be the very thing that waits.
+      for (gpu::TextureRef& face : state->clipmap.faces)
+        face = frame.volume(layout.volume, format(), "clipmap of one side");
+      state->clipmap.occupied =
+          frame.buffer(layout.words * sizeof(std::uint32_t), "occupied voxels of a clipmap");
+    } catch (const Error& error) {
+      throw Error(fmt::format(
+          "room for {} levels of {} voxels along a side takes {}; of sizes halved from it the largest that fits is {} ({})",
+          static_cast<int>(levels), static_cast<int>(resolution), formatBytes(layout.bytes(format())), largest,
+          error.what()));
+    }
+    return state;
   }
 
   // ---- what has changed ----------------------------------------------------------------------------------
