@@ -148,27 +148,28 @@ TEST_CASE("a camera that turns, or moves within a voxel, fills no voxel anew, an
   CHECK(ran(camera.render(eye + glm::dvec3(0.02, 0, 0))));
 }
 
-TEST_CASE("crossing levels flickers no more than the same path through one level of the finest voxels") {
-  // Against the path tracer, frame by frame: a camera that goes over several voxels of all levels.
+TEST_CASE("a camera that crosses levels sees no more flicker than one level of as many voxels has, and 10 %") {
+  // Against the path tracer, frame by frame: the camera goes over several voxels of all levels.
   Scene scene = cornell();
   constexpr int kFrames = 8, kSide = 24;
   std::vector<ImageBuffer> references, variances, withLevels, without;
   const Pipeline levels = pipeline("voxel_cone_tracing_clipmap");
   RenderOptions options;
   options.width = options.height = kSide;
-  options.parameters = levels.settings({"resolution=16", "levels=3"});
+  options.parameters = levels.settings({"levels=3"});
   PipelineExecutor three(device(), techniques(), scene, levels, options);
-  options.parameters = levels.settings({"resolution=64", "levels=1"});
+  options.parameters = levels.settings({"levels=1"});
   PipelineExecutor one(device(), techniques(), scene, levels, options);
   for (int i = 0; i < kFrames; ++i) {
-    scene.cameras.front().eye = glm::dvec3(0.2, 0.25, 0.05) + static_cast<double>(i) * glm::dvec3(0.017, 0.004, 0.006);
+    scene.cameras.front().eye =
+        glm::dvec3(0.2, 0.25, 0.05) + static_cast<double>(i) * glm::dvec3(0.017, 0.004, 0.006);
     scene.cameras.front().target = scene.cameras.front().eye + glm::dvec3(0.3, -0.1, 1.0);
-    const SceneSnapshot snapshot = snapshotOf(scene, 0.0, {}, kSide, kSide);
-    ReferenceOptions samples = quietly(512);
+    ReferenceOptions samples = quietly(4096, 2);
     samples.width = samples.height = kSide;
     const LayeredImage truth = renderReference(scene, samples);
     references.push_back(truth.layers.at("one_bounce_diffuse"));
     variances.push_back(truth.layers.at("one_bounce_diffuse.variance"));
+    const SceneSnapshot snapshot = snapshotOf(scene, 0.0, {}, kSide, kSide);
     withLevels.push_back(three.render(snapshot, i).outputs.at("indirect_diffuse"));
     without.push_back(one.render(snapshot, i).outputs.at("indirect_diffuse"));
   }
@@ -202,7 +203,7 @@ TEST_CASE("a step of one voxel costs at most 15 % of a full update", "[.]") {
     };
     double full = 1e9;
     std::array<double, 4> least{1e9, 1e9, 1e9, 1e9};  // x, y, z, diagonal
-    for (int turn = 0; turn < 6; ++turn) {
+    for (int turn = 0; turn < 5; ++turn) {
       camera.executor().invalidate();
       full = std::min(full, milliseconds(middle));
       for (int way = 0; way < 4; ++way) {
