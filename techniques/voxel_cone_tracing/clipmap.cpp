@@ -96,8 +96,9 @@ class ClipmapPass : public Pass {
   Param<int> levels{this, "levels", 3, within(1, 10),
                     "around the camera, each with voxels of twice the size"};
   Param<float> extent{
-      this, "extent", 0.0f, within(0.0f, 1e9f),
-      "m", "side of the finest level; 0: so that the coarsest level contains the whole scene"};
+      this, "extent",
+      0.0f, within(0.0f, 1e9f),
+      "m",  "side of the finest level; 0: so that the coarsest level contains the whole scene"};
   Param<Coverage> coverage{
       this, "coverage", Coverage::touched,
       "what triangles cover: each voxel that they touch, as in the other stores; or, as published, opacity by eight samples of each side of a voxel and emittance by more where a triangle is small"};
@@ -186,8 +187,8 @@ class ClipmapPass : public Pass {
     } catch (const Error& error) {
       throw Error(fmt::format(
           "room for {} levels of {} voxels along a side takes {}; of sizes halved from it the largest that fits is {} ({})",
-          static_cast<int>(levels), static_cast<int>(resolution), formatBytes(layout.bytes(format())), largest,
-          error.what()));
+          static_cast<int>(levels), static_cast<int>(resolution), formatBytes(layout.bytes(format())),
+          largest, error.what()));
     }
     return state;
   }
@@ -196,7 +197,8 @@ class ClipmapPass : public Pass {
 
   LitBy litBy(PassContext& frame) const {
     LitBy result;
-    if (light.shadow.present()) result.resources = {light.shadow->depth, light.shadow->lights, light.shadow->views};
+    if (light.shadow.present())
+      result.resources = {light.shadow->depth, light.shadow->lights, light.shadow->views};
     if (light.media.present() && light.shadow.present())
       for (const ScatteringGrid::Medium& medium : light.media->media) {
         result.resources.push_back(medium.density);
@@ -262,21 +264,35 @@ class ClipmapPass : public Pass {
     std::vector<LevelRange> ranges = changed(state, placement, all, moving);
     if (ranges.size() > kMostBoxes) ranges = changed(state, placement, all = true, moving);
     place(frame, state.clipmap, placement);
+    tellChange(state, placement, all, ranges);
     if (all) {
       for (const gpu::TextureRef& face : state.clipmap.faces) face->clear(glm::vec4(0.0f));
       state.clipmap.occupied->clear();
     } else {
       for (const LevelRange& range : ranges)
-        frame.dispatch(frame.program(clipmap_clear::kProgram),
-                       {clipmap_clear::box({range.voxels.first, range.level, range.voxels.end}),
-                        writing(state.clipmap)},
-                       range.voxels.size());
+        frame.dispatch(
+            frame.program(clipmap_clear::kProgram),
+            {clipmap_clear::box({range.voxels.first, range.level, range.voxels.end}), writing(state.clipmap)},
+            range.voxels.size());
     }
     if (!ranges.empty()) fill(frame, state.clipmap, placement, ranges, all ? roomForAll_ : roomForParts_);
     state.placement = placement;
     state.litBy = std::move(lit);
     state.moving = std::move(moving);
     state.filled = true;
+  }
+
+  static void tellChange(ClipmapState& state, const ClipmapPlacement& placement, bool all,
+                         const std::vector<LevelRange>& ranges) {
+    RadianceClipmap::Change& change = state.clipmap.change;
+    ++change.number;
+    change.all = all;
+    change.first = all ? placement.first : state.placement.first;
+    change.voxelized.assign(placement.first.size(), {});
+    for (const LevelRange& range : ranges) {
+      VoxelRange& voxels = change.voxelized[static_cast<std::size_t>(range.level)];
+      voxels = voxels.around(range.voxels);
+    }
   }
 
   /// What the port says of the levels.
@@ -305,8 +321,8 @@ class ClipmapPass : public Pass {
     for (int level = 0; level < placement.levels(); ++level) {
       const auto i = static_cast<std::size_t>(level);
       block.stackFirst[i] = {placement.first[i], 0};
-      block.stackLimits[i] = {brightestOf(frame, placement, level),
-                              std::ldexp(placement.sceneSide, -level), 0.0f, 0.0f};
+      block.stackLimits[i] = {brightestOf(frame, placement, level), std::ldexp(placement.sceneSide, -level),
+                              0.0f, 0.0f};
     }
     return {shader::UniformSlot<clipmap_voxelize::ClipmapStack>{"ClipmapStack"}(block)};
   }
@@ -333,7 +349,8 @@ class ClipmapPass : public Pass {
     fragments.count->clear();
     fragments.fragments = frame.elements(clipmap_voxelize::fragments, room, "voxel fragments of levels");
     gpu::BufferRef sideMasks;
-    if (isSampled()) sideMasks = frame.elements(clipmap_voxelize::sideMasks, room, "samples of voxels' sides");
+    if (isSampled())
+      sideMasks = frame.elements(clipmap_voxelize::sideMasks, room, "samples of voxels' sides");
     voxelize(frame, fragments, sideMasks, stackBound, ranges);
     finish(frame, fragments.count, room);
 
@@ -363,9 +380,8 @@ class ClipmapPass : public Pass {
     }
     int mostScale = 1;
     while (2 * mostScale <= supersampling) mostScale *= 2;
-    const gpu::BufferRef rows =
-        frame.buffer(kRowHeadBytes + kRowCapacity * clipmap_voxelize::rows.elementBytes,
-                     "rows of large triangles");
+    const gpu::BufferRef rows = frame.buffer(
+        kRowHeadBytes + kRowCapacity * clipmap_voxelize::rows.elementBytes, "rows of large triangles");
     for (const SceneDraw& draw : frame.scene().draws()) {
       const std::array<std::uint32_t, 4> noRows{0, 0, 1, 1};
       rows->uploadValues(std::span<const std::uint32_t>(noRows));
@@ -394,10 +410,10 @@ class ClipmapPass : public Pass {
 
   /// Where a frame wanted more than there was room for, it is rendered again with an eighth more than that.
   static void finish(PassContext& frame, const gpu::BufferRef& count, std::uint64_t& room) {
-    frame.dispatch(frame.program(clipmap_finish::kProgram),
-                   {clipmap_finish::room({static_cast<std::uint32_t>(room), kGroup}),
-                    clipmap_finish::count(count)},
-                   {1, 1, 1});
+    frame.dispatch(
+        frame.program(clipmap_finish::kProgram),
+        {clipmap_finish::room({static_cast<std::uint32_t>(room), kGroup}), clipmap_finish::count(count)},
+        {1, 1, 1});
     constexpr std::uint64_t kWantedOffset = 4 * sizeof(std::uint32_t);
     frame.judgeLater(count, kWantedOffset, [&room, had = room](PassContext&, std::uint32_t wanted) {
       if (wanted > 0x7fffffffu) throw Error(fmt::format("{} fragments do not fit into one list", wanted));
@@ -416,24 +432,62 @@ class ClipmapFilterPass : public Pass {
   Param<float> border{
       this, "border", 0.25f, within(0.0f, 1.0f),
       "share of that way over which cones go on to the next coarser level; 0: within a voxel"};
-  Out<RadianceClipmap> mips{this, "mips", "the same, where levels have the finer one's voxels, and with those above",
-                            Levels::all};
+  Out<RadianceClipmap> mips{
+      this, "mips", "the same, where levels have the finer one's voxels, and with those above", Levels::all};
+
+  /// The change up to which the blocks of these volumes are made.
+  struct Made {
+    gpu::BufferRef of;
+    std::uint64_t number = 0;
+  };
 
   void run(PassContext& frame) override {
     RadianceClipmap result = *radiance;
     const auto half = 0.5f * static_cast<float>(result.levels.front().own.period);
     result.ramp = 0.5f * half * ramp;  // in voxels of the coarser level
     result.border = std::max(half * border, 1.0f);
-    const int all = static_cast<int>(result.levels.size());
-    for (int level = 1; level < all; ++level) {
+    const std::shared_ptr<Made> made = frame.kept("what is made of levels", result.occupied, [&] {
+      return std::make_shared<Made>(Made{result.occupied, 0});
+    });
+    const bool all = result.change.all || made->number + 1 != result.change.number;
+    made->number = result.change.number;
+    // What differs from before, as it is read, level by level.
+    VoxelRange changed = result.change.voxelized.empty() ? VoxelRange{} : result.change.voxelized.front();
+    const int count = static_cast<int>(result.levels.size());
+    for (int level = 1; level < count; ++level) {
+      const RadianceClipmap::Level& there = result.levels[static_cast<std::size_t>(level)];
       const bool above = level >= result.around;
-      const RadianceClipmap::Level& made = result.levels[static_cast<std::size_t>(level)];
+      const RadianceClipmap::Block& block = above ? there.own : there.inner;
+      const VoxelRange addresses{block.voxels.first, block.voxels.first + block.period};
+      // Where the finer level has moved, all is blended otherwise.
+      const bool anew = all || hasMoved(result, above ? result.around - 1 : level - 1);
+      VoxelRange part = anew ? addresses : coarserTouching(changed);
+      changed = anew ? block.voxels.around(above || all ? VoxelRange{} : innerBefore(result, level)) : part;
+      if (!above) {
+        const VoxelRange& voxelized = result.change.voxelized[static_cast<std::size_t>(level)];
+        if (!anew) part = part.around(voxelized);
+        changed = changed.around(voxelized);
+      }
+      part = part.within(addresses);
+      if (part.empty()) continue;
       frame.dispatch(frame.program(clipmap_filter::Variant{.above = above}),
-                     {clipmap_filter::level({level}), facesOf(result.faces, gpu::Sampling::nearest), writing(result)},
-                     glm::ivec3((above ? made.own : made.inner).period));
+                     {clipmap_filter::level({part.first, level, part.end}),
+                      facesOf(result.faces, gpu::Sampling::nearest), writing(result)},
+                     part.size());
     }
-    result.filledLevels = all;
+    result.filledLevels = count;
     mips = result;
+  }
+
+  static bool hasMoved(const RadianceClipmap& clipmap, int level) {
+    const auto i = static_cast<std::size_t>(level);
+    return clipmap.change.first[i] != clipmap.levels[i].own.voxels.first;
+  }
+  /// Voxels of a level that the finer one touched before.
+  static VoxelRange innerBefore(const RadianceClipmap& clipmap, int level) {
+    const auto finer = static_cast<std::size_t>(level) - 1;
+    const glm::ivec3 first = clipmap.change.first[finer];
+    return coarserTouching({first, first + clipmap.levels[finer].own.period});
   }
 };
 

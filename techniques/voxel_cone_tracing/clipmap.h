@@ -9,9 +9,9 @@ namespace lumivox::voxel_cone_tracing {
 
 /// Levels of a clipmap in the scene.
 struct ClipmapPlacement {
-  glm::vec3 origin{0.0f};        ///< corner of voxel (0,0,0) of all levels, m
-  float voxelSize = 1.0f;        ///< of the finest level, m
-  int resolution = 0;            ///< voxels along each side of a level
+  glm::vec3 origin{0.0f};         ///< corner of voxel (0,0,0) of all levels, m
+  float voxelSize = 1.0f;         ///< of the finest level, m
+  int resolution = 0;             ///< voxels along each side of a level
   std::vector<glm::ivec3> first;  ///< voxel of each level at its corner
   /// Voxels of each level that lie beyond no side of the store; where the coarsest holds the scene.
   std::vector<VoxelRange> scene;
@@ -32,10 +32,13 @@ struct ClipmapPlacement {
 };
 
 /// Levels around the camera, moved by whole voxels of their own. Without a `finestExtent` the coarsest holds
-/// the scene and does not move, and the finer ones lie no further out than the scene; a placement of one level
-/// is then that of placeGrid(). With one, the finest is so many metres wide. Finer levels lie in coarser ones.
-/// A function of its arguments alone.
+/// the scene and does not move, and the finer ones lie no further out than the scene; a placement of one
+/// level is then that of placeGrid(). With one, the finest is so many metres wide. Finer levels lie in
+/// coarser ones. A function of its arguments alone.
 ClipmapPlacement placeClipmap(const SceneSnapshot& snapshot, int resolution, int levels, float finestExtent);
+
+/// The voxels of the next coarser level that share any with these.
+VoxelRange coarserTouching(const VoxelRange& finer);
 
 /// The blocks of all levels, and the size of the volumes and the bits that hold them.
 struct ClipmapLayout {

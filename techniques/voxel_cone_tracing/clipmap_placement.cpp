@@ -9,7 +9,7 @@ namespace lumivox::voxel_cone_tracing {
 
 namespace {
 
-/// No finest voxel has a number beyond this (kLowest of clipmap.glsl).
+/// No finest voxel has a number beyond this.
 constexpr double kFarthest = 1 << 27;
 
 int halfDown(int value) {
@@ -18,6 +18,7 @@ int halfDown(int value) {
 int halfUp(int value) {
   return -halfDown(-value);
 }
+/// Of voxels that lie in these finer ones, the first or the end.
 glm::ivec3 halfDown(const glm::ivec3& v) {
   return {halfDown(v.x), halfDown(v.y), halfDown(v.z)};
 }
@@ -26,6 +27,10 @@ glm::ivec3 halfUp(const glm::ivec3& v) {
 }
 
 }  // namespace
+
+VoxelRange coarserTouching(const VoxelRange& finer) {
+  return {halfDown(finer.first), halfUp(finer.end)};
+}
 
 ClipmapPlacement placeClipmap(const SceneSnapshot& snapshot, int resolution, int levels, float finestExtent) {
   ClipmapPlacement result;
@@ -103,12 +108,12 @@ ClipmapLayout layoutOf(const ClipmapPlacement& placement) {
   }
   for (int level = 1; level < around; ++level) {
     const VoxelRange finer = placement.rangeOf(level - 1);
-    place(layout.levels[static_cast<std::size_t>(level)].inner,
-          {halfUp(finer.first), halfDown(finer.end)}, (resolution + 1) / 2);
+    place(layout.levels[static_cast<std::size_t>(level)].inner, {halfUp(finer.first), halfDown(finer.end)},
+          (resolution + 1) / 2);
   }
   VoxelRange range = placement.rangeOf(around - 1);
   for (int size = resolution; size > 1; size = (size + 1) / 2) {
-    range = {halfDown(range.first), halfUp(range.end)};
+    range = coarserTouching(range);
     RadianceClipmap::Level& made = layout.levels.emplace_back();
     // One that begins at an odd voxel reaches into one more.
     place(made.own, range, (size + 1) / 2 + (placement.scene.empty() ? 1 : 0));
@@ -132,6 +137,8 @@ gpu::ResourceBinding clipmapBinding(const RadianceClipmap& clipmap) {
     block.ownFirst[i] = {level.own.voxels.first, level.own.period};
     block.ownEnd[i] = {level.own.voxels.end, static_cast<int>(level.own.word)};
     block.ownTexel[i] = {level.own.texel, 0};
+    block.ownStart[i] = {VoxelRange::addressOf(level.own.voxels.first, level.own.period), 0};
+    block.innerStart[i] = {VoxelRange::addressOf(level.inner.voxels.first, level.inner.period), 0};
     block.innerFirst[i] = {level.inner.voxels.first, level.inner.period};
     block.innerEnd[i] = {level.inner.voxels.end, static_cast<int>(level.inner.word)};
     block.innerTexel[i] = {level.inner.texel, 0};

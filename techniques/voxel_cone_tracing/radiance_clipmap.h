@@ -23,6 +23,11 @@ struct VoxelRange {
   VoxelRange within(const VoxelRange& other) const {
     return {glm::max(first, other.first), glm::min(end, other.end)};
   }
+  /// The least range that holds both.
+  VoxelRange around(const VoxelRange& other) const {
+    if (empty()) return other;
+    return other.empty() ? *this : VoxelRange{glm::min(first, other.first), glm::max(end, other.end)};
+  }
   bool operator==(const VoxelRange&) const = default;
 
   /// Address of a voxel in a level of `period` voxels: frac(world / size) of thesis Sec. 3.5.1, in voxels.
@@ -61,9 +66,7 @@ struct RadianceClipmap {
     glm::ivec3 texel{0};     ///< of the address (0,0,0)
     int period = 1;          ///< voxels along each axis that there is room for
     std::uint32_t word = 0;  ///< of `occupied`, where its bits begin
-    glm::ivec3 texelOf(const glm::ivec3& voxel) const {
-      return texel + VoxelRange::addressOf(voxel, period);
-    }
+    glm::ivec3 texelOf(const glm::ivec3& voxel) const { return texel + VoxelRange::addressOf(voxel, period); }
   };
   struct Level {
     Block own;    ///< as voxelized; of levels above those around the camera: from the finer one
@@ -85,12 +88,21 @@ struct RadianceClipmap {
   std::array<gpu::TextureRef, 6> faces;
   gpu::BufferRef occupied;  ///< a bit for each voxel of each block
 
+  /// What filling the levels has changed in these volumes since the time before, whose number is one less.
+  struct Change {
+    std::uint64_t number = 0;
+    bool all = true;
+    std::vector<VoxelRange> voxelized;  ///< by level; empty: nothing
+    std::vector<glm::ivec3> first;      ///< where the levels around the camera were before
+  };
+  Change change;
+
   float sizeOf(int level) const { return voxelSize * static_cast<float>(1 << level); }
   /// All levels that are filled are of use, and `inner` is.
   bool filtered() const { return filledLevels == static_cast<int>(levels.size()); }
 
-  /// The voxels of a level that are not empty, each once, by the value that cones read; numbers count from the
-  /// first voxel of the level. `face`: by outward normals; 6: the opacity along x, y and z.
+  /// The voxels of a level that are not empty, each once, by the value that cones read; numbers count from
+  /// the first voxel of the level. `face`: by outward normals; 6: the opacity along x, y and z.
   std::vector<VoxelsRead::Voxel> voxels(int index, int face) const {
     const Level& level = levels[static_cast<std::size_t>(index)];
     const bool opacities = face == 6;
@@ -113,8 +125,7 @@ struct RadianceClipmap {
             if (value != glm::vec3(0.0f)) result.push_back({{x, y, z}, value});
           } else if (texels[0][texel + 3] > 0.0f) {
             result.push_back(
-                {{x, y, z},
-                 unit * glm::vec3(texels[0][texel], texels[0][texel + 1], texels[0][texel + 2])});
+                {{x, y, z}, unit * glm::vec3(texels[0][texel], texels[0][texel + 1], texels[0][texel + 2])});
           }
         }
     return result;
