@@ -4,6 +4,7 @@
 
 #include "directional_grid.h"
 #include "lumivox/plugin/technique.h"
+#include "radiance_clipmap.h"
 #include "radiance_octree.h"
 #include "voxel_cone_tracing_shaders.h"
 
@@ -26,6 +27,7 @@ StoreBinding storeOf(const RadianceGrid& grid);
 StoreBinding storeOf(const DirectionalRadianceGrid& grid, bool layers);
 /// Bricks are found from the root in place of by their ranks.
 StoreBinding storeOf(const RadianceOctree& octree, bool descends);
+StoreBinding storeOf(const RadianceClipmap& clipmap, bool layers);
 
 /// How cones step through a store; the meaning of each is that of the parameter of its name (ConeMarch).
 struct MarchSettings {
@@ -49,6 +51,7 @@ class StoreInput {
   In<RadianceGrid> grid_;
   In<DirectionalRadianceGrid> directions_;
   In<RadianceOctree> octree_;
+  In<RadianceClipmap> clipmap_;
   Param<LookUp> lookUp_;
   Param<Reading> reading_;
 };

@@ -17,6 +17,7 @@ void addSoftShadows(TechniqueRegistry& registry);
 void addLobes(TechniqueRegistry& registry);
 void addLens(TechniqueRegistry& registry);
 void addLook(TechniqueRegistry& registry);
+void addClipmap(TechniqueRegistry& registry);
 void addOctree(TechniqueRegistry& registry);
 void addOctreeFilter(TechniqueRegistry& registry);
 void addOctreeSplat(TechniqueRegistry& registry);
@@ -98,6 +99,7 @@ LUMIVOX_TECHNIQUE(registry) {
   registry.add<FilterPass>("filter", "Pre-filtered coarser levels (Crassin et al. 2011, Sec. 5)");
   addFilterDirectional(registry);
   addLobes(registry);
+  addClipmap(registry);
   addOctree(registry);
   addOctreeFilter(registry);
   addOctreeSplat(registry);
