@@ -192,10 +192,10 @@ TEST_CASE(
 TEST_CASE("a step of one voxel costs at most 15 % of a full update", "[.]") {
   // In turns, the least of several times of the two passes of the clipmap:
   // voxel_cone_tracing_tests "a step of one voxel costs at most 15 % of a full update"
-  for (const char* name : {"cornell"}) {
+  for (const char* name : {"cornell", "arcade"}) {
     const Scene scene = loadScene(sourceDirectory() / "scenes" / (std::string(name) + ".scene"));
     Walk camera(scene, {"64", "4", ""});
-    const SceneSnapshot start = snapshotOf(scene, 0.0);
+    const SceneSnapshot start = snapshotOf(scene, 0.0, {}, 8, 8);
     const glm::dvec3 middle = start.origin + 0.5 * glm::dvec3(start.bounds.low + start.bounds.high);
     camera.render(middle);
     const double voxel = camera.clipmap().voxelSize;
