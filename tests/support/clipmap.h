@@ -29,7 +29,7 @@ struct ClipmapSettings {
   double extent = 0.0;
   const char* coverage = "touched";
   const char* precision = "float";
-  double ramp = 0.5, border = 0.25;
+  double ramp = 0.25, border = 0.25;
   double ambient = 0.0;
   bool lights = true;
 };
