@@ -12,6 +12,10 @@ layout(std140, binding = 0) uniform Level {
   ivec3 firstMade;  // voxels of the level that are made anew, and all addresses of the block that hold none
   int level;
   ivec3 endMade;
+  float settled;       // behind so many voxels from the finer level's border nothing differs from before but in these:
+  ivec3 firstTouched;
+  int unused;
+  ivec3 endTouched;
 };
 // By the outward normals of the faces.
 layout(binding = 0) uniform sampler3D positiveX;
@@ -72,12 +76,18 @@ void main() {
 #endif
   Children children;
   children.occupied = 0u;
+#if ABOVE
   if (isVoxel) children = childrenOf(level - 1, voxel);
-  bool occupied = children.occupied != 0u;
-#if !ABOVE
+#else
   // Where the finer level begins, nothing is of it: reading goes on there without a leap.
   float fromBorder = 0.5 * withinReach(level - 1, 2.0 * (vec3(voxel) + 0.5));
+  bool touched = all(greaterThanEqual(voxel, firstTouched)) && all(lessThan(voxel, endTouched));
+  if (fromBorder >= settled && !touched) return;
   float share = clamp((fromBorder - 1.0) / max(clipmapRamp, 1e-6), 0.0, 1.0);
+  if (isVoxel && share > 0.0) children = childrenOf(level - 1, voxel);
+#endif
+  bool occupied = children.occupied != 0u;
+#if !ABOVE
   bool voxelized = isVoxel && share < 1.0 && isOccupied(own);
   occupied = occupied || voxelized;
 #endif

@@ -263,8 +263,9 @@ class ClipmapPass : public Pass {
     bool all = !state.filled || lit != state.litBy || moving.size() != state.moving.size();
     std::vector<LevelRange> ranges = changed(state, placement, all, moving);
     if (ranges.size() > kMostBoxes) ranges = changed(state, placement, all = true, moving);
+    std::vector<RadianceClipmap::Level> before = state.clipmap.levels;
     place(frame, state.clipmap, placement);
-    tellChange(state, placement, all, ranges);
+    tellChange(state.clipmap.change, std::move(before), placement.levels(), all, ranges);
     if (all) {
       for (const gpu::TextureRef& face : state.clipmap.faces) face->clear(glm::vec4(0.0f));
       state.clipmap.occupied->clear();
@@ -282,13 +283,12 @@ class ClipmapPass : public Pass {
     state.filled = true;
   }
 
-  static void tellChange(ClipmapState& state, const ClipmapPlacement& placement, bool all,
-                         const std::vector<LevelRange>& ranges) {
-    RadianceClipmap::Change& change = state.clipmap.change;
+  static void tellChange(RadianceClipmap::Change& change, std::vector<RadianceClipmap::Level> before,
+                         int levels, bool all, const std::vector<LevelRange>& ranges) {
     ++change.number;
     change.all = all;
-    change.first = all ? placement.first : state.placement.first;
-    change.voxelized.assign(placement.first.size(), {});
+    change.before = std::move(before);
+    change.voxelized.assign(static_cast<std::size_t>(levels), {});
     for (const LevelRange& range : ranges) {
       VoxelRange& voxels = change.voxelized[static_cast<std::size_t>(range.level)];
       voxels = voxels.around(range.voxels);
@@ -427,7 +427,7 @@ class ClipmapPass : public Pass {
 class ClipmapFilterPass : public Pass {
   In<RadianceClipmap> radiance{this, "radiance", "levels as voxelized"};
   Param<float> ramp{
-      this, "ramp", 0.5f, within(0.0f, 1.0f),
+      this, "ramp", 0.25f, within(0.0f, 1.0f),
       "share of the way from the border of the finer level to its middle over which a level goes over from what was voxelized to what the finer one makes of it; 0: with a leap"};
   Param<float> border{
       this, "border", 0.25f, within(0.0f, 1.0f),
@@ -452,42 +452,52 @@ class ClipmapFilterPass : public Pass {
     const bool all = result.change.all || made->number + 1 != result.change.number;
     made->number = result.change.number;
     // What differs from before, as it is read, level by level.
-    VoxelRange changed = result.change.voxelized.empty() ? VoxelRange{} : result.change.voxelized.front();
+    VoxelRange changed = result.change.voxelized.front();
     const int count = static_cast<int>(result.levels.size());
     for (int level = 1; level < count; ++level) {
-      const RadianceClipmap::Level& there = result.levels[static_cast<std::size_t>(level)];
+      const auto i = static_cast<std::size_t>(level);
+      const RadianceClipmap::Level& there = result.levels[i];
       const bool above = level >= result.around;
       const RadianceClipmap::Block& block = above ? there.own : there.inner;
       const VoxelRange addresses{block.voxels.first, block.voxels.first + block.period};
-      // Where the finer level has moved, all is blended otherwise.
-      const bool anew = all || hasMoved(result, above ? result.around - 1 : level - 1);
-      VoxelRange part = anew ? addresses : coarserTouching(changed);
-      changed = anew ? block.voxels.around(above || all ? VoxelRange{} : innerBefore(result, level)) : part;
-      if (!above) {
-        const VoxelRange& voxelized = result.change.voxelized[static_cast<std::size_t>(level)];
-        if (!anew) part = part.around(voxelized);
-        changed = changed.around(voxelized);
-      }
-      part = part.within(addresses);
+      const std::size_t moving = std::min(i, static_cast<std::size_t>(result.around)) - 1;
+      // Where the finer level has moved its border has, and with it the ramp.
+      const bool anew = all || movedBy(result, moving) > 0;
+      VoxelRange touched = coarserTouching(changed);
+      if (!above) touched = touched.around(result.change.voxelized[i]);
+      const VoxelRange part = (anew ? addresses : touched).within(addresses);
+      changed = touched;
+      if (anew) changed = changed.around(block.voxels);
+      if (anew && !all && !above) changed = changed.around(result.change.before[i].inner.voxels);
       if (part.empty()) continue;
-      frame.dispatch(frame.program(clipmap_filter::Variant{.above = above}),
-                     {clipmap_filter::level({part.first, level, part.end}),
-                      facesOf(result.faces, gpu::Sampling::nearest), writing(result)},
-                     part.size());
+      // Behind the ramp only what the finer voxels have changed differs.
+      float settled = RadianceClipmap::kEndless;
+      if (!all && !above && sameSides(result, moving))
+        settled = result.ramp + 2.0f + static_cast<float>(movedBy(result, moving));
+      frame.dispatch(
+          frame.program(clipmap_filter::Variant{.above = above}),
+          {clipmap_filter::level({part.first, level, part.end, settled, touched.first, 0, touched.end}),
+           facesOf(result.faces, gpu::Sampling::nearest), writing(result)},
+          part.size());
     }
     result.filledLevels = count;
     mips = result;
   }
 
-  static bool hasMoved(const RadianceClipmap& clipmap, int level) {
-    const auto i = static_cast<std::size_t>(level);
-    return clipmap.change.first[i] != clipmap.levels[i].own.voxels.first;
+  /// Voxels by which a level has moved, along the axis along which it is the most.
+  static int movedBy(const RadianceClipmap& clipmap, std::size_t level) {
+    if (clipmap.change.before.empty()) return 0;
+    const glm::ivec3 way =
+        glm::abs(clipmap.levels[level].own.voxels.first - clipmap.change.before[level].own.voxels.first);
+    return std::max({way.x, way.y, way.z});
   }
-  /// Voxels of a level that the finer one touched before.
-  static VoxelRange innerBefore(const RadianceClipmap& clipmap, int level) {
-    const auto finer = static_cast<std::size_t>(level) - 1;
-    const glm::ivec3 first = clipmap.change.first[finer];
-    return coarserTouching({first, first + clipmap.levels[finer].own.period});
+  /// Whether the store ends at the same sides of a level as before.
+  static bool sameSides(const RadianceClipmap& clipmap, std::size_t level) {
+    const RadianceClipmap::Level &a = clipmap.levels[level], &b = clipmap.change.before[level];
+    const auto ends = [](const glm::vec3& reach) {
+      return glm::greaterThan(glm::abs(reach), glm::vec3(0.5f * RadianceClipmap::kEndless));
+    };
+    return ends(a.reachFirst) == ends(b.reachFirst) && ends(a.reachEnd) == ends(b.reachEnd);
   }
 };
 

@@ -93,7 +93,7 @@ struct RadianceClipmap {
     std::uint64_t number = 0;
     bool all = true;
     std::vector<VoxelRange> voxelized;  ///< by level; empty: nothing
-    std::vector<glm::ivec3> first;      ///< where the levels around the camera were before
+    std::vector<Level> before;          ///< the levels then; empty where `all`
   };
   Change change;
 

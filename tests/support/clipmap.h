@@ -29,7 +29,7 @@ struct ClipmapSettings {
   double extent = 0.0;
   const char* coverage = "touched";
   const char* precision = "float";
-  double ramp = 0.5, border = 0.25;
+  double ramp = 0.25, border = 0.25;
   double ambient = 0.0;
   bool lights = true;
 };
@@ -64,8 +64,8 @@ inline RadianceClipmap filtered(const RadianceClipmap& levels, const ClipmapSett
   return harness.output<RadianceClipmap>("mips");
 }
 
-/// Levels around `eye` of which `fill` gives the value of each face of each voxel: by the level, the middle of
-/// the voxel (m) and the face. Filtered.
+/// Levels around `eye` of which `fill` gives the value of each face of each voxel: by the level, the middle
+/// of the voxel (m) and the face. Filtered.
 using Fill = std::function<glm::vec4(int level, const glm::vec3& middle, int face)>;
 inline RadianceClipmap madeClipmap(const ClipmapSettings& settings, const glm::vec3& eye, const Fill& fill) {
   Scene scene = cones::emptyScene();
@@ -75,7 +75,8 @@ inline RadianceClipmap madeClipmap(const ClipmapSettings& settings, const glm::v
   const gpu::TextureDescription& volume = result.faces[0]->description();
   std::vector<std::uint32_t> bits = result.occupied->downloadValues<std::uint32_t>();
   for (std::size_t face = 0; face < 6; ++face) {
-    std::vector<float> texels(4 * static_cast<std::size_t>(volume.width * volume.height * volume.depth), 0.0f);
+    std::vector<float> texels(4 * static_cast<std::size_t>(volume.width * volume.height * volume.depth),
+                              0.0f);
     for (int level = 0; level < result.around; ++level) {
       const RadianceClipmap::Block& block = result.levels[static_cast<std::size_t>(level)].own;
       // Texels around the block hold the voxels of its other side.
@@ -84,17 +85,18 @@ inline RadianceClipmap madeClipmap(const ClipmapSettings& settings, const glm::v
           for (int x = -1; x <= block.period; ++x) {
             const glm::ivec3 address = VoxelRange::addressOf({x, y, z}, block.period),
                              first = VoxelRange::addressOf(block.voxels.first, block.period),
-                             voxel = block.voxels.first +
-                                     VoxelRange::addressOf(address - first, block.period);
-            const glm::vec4 value = fill(
-                level, result.origin + result.sizeOf(level) * (glm::vec3(voxel) + 0.5f), static_cast<int>(face));
+                             voxel =
+                                 block.voxels.first + VoxelRange::addressOf(address - first, block.period);
+            const glm::vec4 value =
+                fill(level, result.origin + result.sizeOf(level) * (glm::vec3(voxel) + 0.5f),
+                     static_cast<int>(face));
             const glm::ivec3 at = block.texel + glm::ivec3(x, y, z);
             const std::size_t texel =
                 4 * static_cast<std::size_t>((at.z * volume.height + at.y) * volume.width + at.x);
             for (int c = 0; c < 4; ++c) texels[texel + static_cast<std::size_t>(c)] = value[c];
             if (value.w == 0.0f) continue;
-            const auto bit = static_cast<std::uint32_t>(
-                (address.z * block.period + address.y) * block.period + address.x);
+            const auto bit =
+                static_cast<std::uint32_t>((address.z * block.period + address.y) * block.period + address.x);
             bits[block.word + bit / 32] |= 1u << bit % 32;
           }
     }

@@ -27,7 +27,8 @@ glm::vec3 alongNormal(const RadianceClipmap& clipmap, const glm::vec3& position,
                       const glm::vec3& environment = glm::vec3(0.0f)) {
   const glm::vec3 d = glm::normalize(direction);
   Scene scene = emptyScene(environment);
-  scene.cameras.front().eye = glm::dvec3(position) + 2.0 * glm::dvec3(d);  // the mirror direction is the normal
+  scene.cameras.front().eye =
+      glm::dvec3(position) + 2.0 * glm::dvec3(d);  // the mirror direction is the normal
   return gatherGlossy(scene, clipmap, position, d, glm::vec4(1, 1, 1, exponent), settings);
 }
 
@@ -126,7 +127,8 @@ TEST_CASE("each level of several is the dense grid of its voxels where the finer
   CHECK(compared > 500);
 }
 
-TEST_CASE("on the Cornell box the image of one level differs from that of the dense grid by a FLIP under 0.03") {
+TEST_CASE(
+    "on the Cornell box the image of one level differs from that of the dense grid by a FLIP under 0.03") {
   RenderOptions options;
   options.width = options.height = 64;
   const Scene scene = cornell();
@@ -180,19 +182,19 @@ TEST_CASE("a uniform medium gives L (1 - T) across all levels, whatever the widt
 }
 
 TEST_CASE("narrow cones all around a single lit voxel see its radiance times its solid angle") {
-  // Cones through the points of a plane in the middle of the voxel, which lies in one of the levels beyond the
-  // finer ones: each stands for the solid angle of its part of the plane. A face of s^2 at a distance d
+  // Cones through the points of a plane in the middle of the voxel, which lies in one of the levels beyond
+  // the finer ones: each stands for the solid angle of its part of the plane. A face of s^2 at a distance d
   // subtends s^2 / d^2.
   for (const int level : {0, 1, 2}) {
     const double size = 0.5 / 32 * (1 << level);
     const glm::dvec3 middle(13.5 * size, 0.5 * size, 0.5 * size);
-    const RadianceClipmap lit = madeClipmap(
-        {.resolution = 32, .levels = 3, .extent = 0.5, .ramp = 0.0, .border = 0.0}, glm::vec3(0.0f),
-        [&](int l, const glm::vec3& at, int) {
-          const glm::dvec3 away = glm::abs(glm::dvec3(at) - middle);
-          const bool isIt = l == level && std::max({away.x, away.y, away.z}) < 0.25 * size;
-          return glm::vec4(isIt ? 1.0f : 0.0f);
-        });
+    const RadianceClipmap lit =
+        madeClipmap({.resolution = 32, .levels = 3, .extent = 0.5, .ramp = 0.0, .border = 0.0},
+                    glm::vec3(0.0f), [&](int l, const glm::vec3& at, int) {
+                      const glm::dvec3 away = glm::abs(glm::dvec3(at) - middle);
+                      const bool isIt = l == level && std::max({away.x, away.y, away.z}) < 0.25 * size;
+                      return glm::vec4(isIt ? 1.0f : 0.0f);
+                    });
     constexpr int kSide = 25;
     double sum = 0.0;
     const double reach = 2.5 * size;
@@ -212,14 +214,16 @@ TEST_CASE("narrow cones all around a single lit voxel see its radiance times its
 TEST_CASE("a closed box whose walls all radiate L gives L back within 3 %, through all levels") {
   // A wall one coarsest voxel thick where all levels lie in it, and boxes in finer levels.
   for (const double wall : {0.9, 0.4, 0.2}) {
-    const RadianceClipmap box = madeClipmap(kThree, glm::vec3(0.0f), [&](int level, const glm::vec3& at, int) {
-      const double size = 0.5 / 32 * (1 << level);
-      const glm::vec3 away = glm::abs(at);
-      const double most = std::max({away.x, away.y, away.z});
-      // The voxels that the shell from `wall` on, a coarsest voxel thick, touches.
-      return most + 0.5 * size > wall && most - 0.5 * size < wall + 0.0625 ? glm::vec4(0.5f, 0.5f, 0.5f, 1.0f)
-                                                                           : glm::vec4(0.0f);
-    });
+    const RadianceClipmap box =
+        madeClipmap(kThree, glm::vec3(0.0f), [&](int level, const glm::vec3& at, int) {
+          const double size = 0.5 / 32 * (1 << level);
+          const glm::vec3 away = glm::abs(at);
+          const double most = std::max({away.x, away.y, away.z});
+          // The voxels that the shell from `wall` on, a coarsest voxel thick, touches.
+          return most + 0.5 * size > wall && most - 0.5 * size < wall + 0.0625
+                     ? glm::vec4(0.5f, 0.5f, 0.5f, 1.0f)
+                     : glm::vec4(0.0f);
+        });
     for (const int cones : {6, 64})
       for (const float along : {-0.5f, 0.0f, 0.4f}) {
         const auto height = static_cast<float>(-wall + 0.1);
@@ -235,9 +239,11 @@ TEST_CASE("a closed box whose walls all radiate L gives L back within 3 %, throu
 
 TEST_CASE("a coarse voxel is what its finer ones make of it in the middle, and as voxelized at the border") {
   // Finer voxels are red, coarser ones as voxelized green, all closed: the ramp is the share of red.
-  const RadianceClipmap mixed = madeClipmap(
-      {.resolution = 32, .levels = 2, .extent = 1.0, .ramp = 0.5}, glm::vec3(0.0f),
-      [](int level, const glm::vec3&, int) { return level == 0 ? glm::vec4(1, 0, 0, 1) : glm::vec4(0, 1, 0, 1); });
+  const RadianceClipmap mixed =
+      madeClipmap({.resolution = 32, .levels = 2, .extent = 1.0, .ramp = 0.5}, glm::vec3(0.0f),
+                  [](int level, const glm::vec3&, int) {
+                    return level == 0 ? glm::vec4(1, 0, 0, 1) : glm::vec4(0, 1, 0, 1);
+                  });
   const auto voxels = voxelsOf(mixed, 1, 0);
   const VoxelRange& range = mixed.levels[1].own.voxels;
   // Half of the way from the border of the finer level, 8 coarse voxels, to its middle is 4 voxels.
@@ -251,9 +257,11 @@ TEST_CASE("a coarse voxel is what its finer ones make of it in the middle, and a
     CHECK(value.g == Approx(1.0 - expected).margin(1e-5));
   }
   // Without a ramp it is one or the other.
-  const RadianceClipmap leap = madeClipmap(
-      {.resolution = 32, .levels = 2, .extent = 1.0, .ramp = 0.0}, glm::vec3(0.0f),
-      [](int level, const glm::vec3&, int) { return level == 0 ? glm::vec4(1, 0, 0, 1) : glm::vec4(0, 1, 0, 1); });
+  const RadianceClipmap leap =
+      madeClipmap({.resolution = 32, .levels = 2, .extent = 1.0, .ramp = 0.0}, glm::vec3(0.0f),
+                  [](int level, const glm::vec3&, int) {
+                    return level == 0 ? glm::vec4(1, 0, 0, 1) : glm::vec4(0, 1, 0, 1);
+                  });
   const auto leaps = voxelsOf(leap, 1, 0);
   for (const auto& [cell, value] : leaps) CHECK((value.r == 0.0f || value.r == 1.0f));
 }
@@ -267,8 +275,10 @@ TEST_CASE("what cones see changes without a leap from level to level") {
   double before = -1.0;
   for (int i = 0; i <= 120; ++i) {
     const float x = -0.9f + 0.01f * static_cast<float>(i);
-    const glm::vec3 seen = gather(emptyScene(), wall, {x, 0.05f, 0.01f}, {0, 1, 0}, {9, "cosine", 1, 1, 0, 0.25});
-    const glm::vec3 down = gather(emptyScene(), wall, {x, 0.1f, 0.01f}, {0, -1, 0}, {9, "cosine", 1, 1, 0, 0.25});
+    const glm::vec3 seen =
+        gather(emptyScene(), wall, {x, 0.05f, 0.01f}, {0, 1, 0}, {9, "cosine", 1, 1, 0, 0.25});
+    const glm::vec3 down =
+        gather(emptyScene(), wall, {x, 0.1f, 0.01f}, {0, -1, 0}, {9, "cosine", 1, 1, 0, 0.25});
     CAPTURE(x);
     CHECK(seen.x < 0.05f);
     if (before >= 0.0) CHECK(std::abs(down.x - before) < 0.06);
@@ -300,7 +310,8 @@ TEST_CASE("sizes that are no powers of two, and few voxels, give the light of th
   CHECK(meanAt("8", "1") == Approx(expected).epsilon(0.5));
 }
 
-TEST_CASE("cameras outside of the scene, inside geometry and far away, and levels that reach nothing, are fine") {
+TEST_CASE(
+    "cameras outside of the scene, inside geometry and far away, and levels that reach nothing, are fine") {
   RenderOptions options;
   options.width = options.height = 16;
   const Pipeline levels = pipeline("voxel_cone_tracing_clipmap");
@@ -311,14 +322,14 @@ TEST_CASE("cameras outside of the scene, inside geometry and far away, and level
     source.insert(source.find(before), "extent " + extent + "\n    ");
     return Pipeline::parse(source, result.file);
   };
-  for (const glm::dvec3 eye : {glm::dvec3(0.0, 0.3, 20.0), {0.1, 1e-9, 0.1}, {1e8, 1e7, -1e8}, {0.3, 0.3, 0.3}})
+  for (const glm::dvec3 eye :
+       {glm::dvec3(0.0, 0.3, 20.0), {0.1, 1e-9, 0.1}, {1e8, 1e7, -1e8}, {0.3, 0.3, 0.3}})
     for (const char* extent : {"", "0.2 m", "100 m"}) {
       Scene scene = cornell();
       scene.cameras.front().eye = eye;
       scene.cameras.front().target = {0.28, 0.27, 0.28};
       if (eye == scene.cameras.front().target) scene.cameras.front().target.z -= 1.0;
-      const FrameResult frame =
-          renderOnce(scene, *extent == '\0' ? levels : text(extent), options);
+      const FrameResult frame = renderOnce(scene, *extent == '\0' ? levels : text(extent), options);
       CAPTURE(eye.x, extent);
       for (const float value : frame.outputs.at("indirect_diffuse").values()) {
         CHECK(std::isfinite(value));
@@ -347,14 +358,16 @@ TEST_CASE("levels that do not fit are refused with what they take and what would
     harness.run();
   };
   // Six faces of 16 bytes: 3 levels of 34^3 texels and about one of 36 x 36 x 36 for what finer ones make.
-  CHECK_THAT(messageOf<Error>([&] { run(128); }),
-             Contains("3 levels of 128 voxels") && Contains("takes 873.8 MiB") && Contains("that fits is 32"));
+  CHECK_THAT(messageOf<Error>([&] { run(128); }), Contains("3 levels of 128 voxels") &&
+                                                      Contains("takes 873.8 MiB") &&
+                                                      Contains("that fits is 32"));
   CHECK_NOTHROW(run(32));
   // More levels than a list of fragments can number.
   PassHarness many(device(), techniques(), "voxel_cone_tracing", "clipmap", scene, snapshotOf(scene, 0.0));
   many.setParameter("resolution", 400);
   many.setParameter("levels", 5);
-  CHECK_THAT(messageOf<Error>([&] { many.run(); }), Contains("5 levels of 400 voxels") && Contains("at most 4 levels"));
+  CHECK_THAT(messageOf<Error>([&] { many.run(); }),
+             Contains("5 levels of 400 voxels") && Contains("at most 4 levels"));
 }
 
 TEST_CASE("what is exported of a clipmap are its levels, each voxel once, where it lies in the scene") {
@@ -370,8 +383,8 @@ TEST_CASE("what is exported of a clipmap are its levels, each voxel once, where 
     CHECK(field.box.resolution.x <= 16);
     CHECK(field.box.voxelSize.x == Approx(clipmap.sizeOf(field.level)));
     CHECK(glm::distance(field.box.low,
-                        glm::dvec3(clipmap.origin) +
-                            static_cast<double>(clipmap.sizeOf(field.level)) * glm::dvec3(range.first)) < 1e-6);
+                        glm::dvec3(clipmap.origin) + static_cast<double>(clipmap.sizeOf(field.level)) *
+                                                         glm::dvec3(range.first)) < 1e-6);
     std::set<Cell> seen;
     for (const auto& [voxel, value] : std::get<VoxelsRead>(field.source).read()) {
       CHECK(seen.insert({voxel.x, voxel.y, voxel.z}).second);
