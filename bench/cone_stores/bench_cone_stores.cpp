@@ -58,7 +58,7 @@ constexpr const char* kScenes[] = {"cornell",
                                    "untuned/turning_corridor"};
 
 struct Size {
-  int pixels = 128, voxels = 128, samples = 256, repeats = 7;
+  int pixels = 128, voxels = 128, samples = 256, repeats = 3;
 };
 
 struct Running {

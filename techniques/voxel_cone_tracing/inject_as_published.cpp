@@ -31,12 +31,8 @@ class InjectAsPublishedPass : public Pass {
   Param<Grids> grids{this, "grids", Grids::one,
                      "for voxels that look the same from all sides, or for those of six directional grids"};
   Param<float> white{
-      this,
-      "white",
-      0.0f,
-      within(0.0f, 1e12f),
-      "W/(sr m^2)",
-      "radiance that the largest byte stands for; brighter voxels have no more; 0: what no fragment exceeds, which beside a point light leaves the bytes of all others dark"};
+      this, "white", 0.0f, within(0.0f, 1e12f),
+      "radiance that the largest byte stands for, W/(sr m^2); brighter voxels have no more; 0: what no fragment exceeds, which beside a point light leaves the bytes of all others dark"};
   Param<float> ambient{this, "ambient", 0.0f, within(0.0f, 1e9f),
                        "irradiance that all surfaces receive besides that of the lights, W/m^2 (Fig. 66)"};
   Out<VoxelAverages> averages{this, "averages", "what depends on the order of the fragments"};
