@@ -204,6 +204,11 @@ TEST_CASE("no committed shader uses more than a device is asked for at the start
           ++stages;
           for (const auto& [limit, uses] : usesOf(pack.codes[stage.code].glsl, stage.stage)) {
             INFO(pack.technique << "/" << program.name << ": " << limit);
+            // What OpenGL does not promise and few passes use is asked for by those passes (DeviceInfo).
+            if (limit == "vertex images" && program.name.ends_with("_drawn")) {
+              CHECK(uses <= test::device().info().vertexImages);
+              continue;
+            }
             CHECK(uses <= promised.at(limit));
             if (limit == "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS") storage = std::max(storage, uses);
           }
