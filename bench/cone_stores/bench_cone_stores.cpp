@@ -43,12 +43,16 @@ constexpr const char* kEnd = "<!-- end -->";
 
 struct Store {
   const char *name, *pipeline;
-  const char *pass, *port;  ///< the output that holds it, filtered
+  const char *pass, *port;                                  ///< the output that holds it, filtered
+  const char *besidePass = nullptr, *besidePort = nullptr;  ///< and what belongs to it
+  int levels = 1;  ///< of so many voxels around the camera, the coarsest around the scene
 };
 constexpr Store kStores[] = {{"one grid", "voxel_cone_tracing", "grid", "mips"},
+                             {"with lobes", "voxel_cone_tracing_lobes", "grid", "mips", "sides", "lobes"},
                              {"coarse directional", "voxel_cone_tracing_coarse_directional", "grid", "mips"},
                              {"six grids", "voxel_cone_tracing_directional", "grid", "mips"},
-                             {"octree", "voxel_cone_tracing_octree", "bricks", "mips"}};
+                             {"octree", "voxel_cone_tracing_octree", "bricks", "mips"},
+                             {"clipmap", "voxel_cone_tracing_clipmap", "grid", "mips", nullptr, nullptr, 2}};
 constexpr const char* kScenes[] = {"cornell",
                                    "arcade",
                                    "corridor",
@@ -101,10 +105,14 @@ void measure(gpu::Device& device, TechniqueSet& techniques, const std::string& n
     RenderOptions options;
     options.width = options.height = size.pixels;
     options.wanted = {"indirect_diffuse"};
-    options.parameters = pipeline.settings({fmt::format("resolution={}", size.voxels)});
+    // Its finest voxels, those around the camera, are as wide as those of the other stores.
+    std::vector<std::string> settings{fmt::format("resolution={}", size.voxels >> (store.levels - 1))};
+    if (store.levels > 1) settings.push_back(fmt::format("levels={}", store.levels));
+    options.parameters = pipeline.settings(settings);
     all.push_back(
         {&store, std::make_unique<PipelineExecutor>(device, techniques, scene, pipeline, options), {}, {}});
     all.back().executor->keepOutput(store.pass, store.port);
+    if (store.besidePass != nullptr) all.back().executor->keepOutput(store.besidePass, store.besidePort);
   }
   for (int repeat = -2; repeat < size.repeats; ++repeat)  // two rounds of warm-up
     for (Running& one : all) {
@@ -129,14 +137,19 @@ void measure(gpu::Device& device, TechniqueSet& techniques, const std::string& n
       throw Error(fmt::format("{}: no output {}.{}", one.store->pipeline, one.store->pass, one.store->port));
     double build = 0.0;
     for (const auto& [pass, times] : one.times)
-      if (pass == "light" || pass == "tree" || pass == one.store->pass) build += median(times);
+      if (pass == "light" || pass == "tree" || pass == one.store->pass ||
+          (one.store->besidePass != nullptr && pass == one.store->besidePass))
+        build += median(times);
+    std::uint64_t bytes = heldBytes(*output);
+    if (one.store->besidePass != nullptr)
+      bytes += heldBytes(*one.executor->output(one.store->besidePass, one.store->besidePort));
     results.push_back({{"scene", fs::path(name).filename().string()},
                        {"store", one.store->name},
                        {"error", error},
                        {"mean", mean},
                        {"gather_ms", median(one.times.at("gather"))},
                        {"build_ms", build},
-                       {"bytes", heldBytes(*output)},
+                       {"bytes", bytes},
                        {"voxels", opaqueVoxels(*output).value_or(0)}});
   }
 }

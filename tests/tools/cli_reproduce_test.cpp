@@ -230,7 +230,7 @@ TEST_CASE("a small table is measured: ratios to its first row, a verdict for eac
     CHECK(contains(run["command"].get<std::string>(), "reproduce"));
     CHECK(contains(run["command"].get<std::string>(), "--spp 16"));
   }
-  CHECK(runs[0]["identity"]["kept"] == Json::array({"voxels.fragments"}));
+  CHECK(runs[0]["identity"]["kept"] == Json::array({"light.radiance", "voxels.fragments"}));
   CHECK(runs[2]["identity"]["kept"].empty());
   checkRefused(runCommand("lumivox reproduce " + data("room.reproduction") + " --spp 16"), "--store");
 }
