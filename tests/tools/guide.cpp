@@ -121,7 +121,8 @@ const std::vector<Omission>& omissions() {
 const std::vector<Reduction>& reductions() {
   static const std::vector<Reduction> list = {
       {"^\\./run$", "./run report scenes/cornell.scene"},
-      {"\\b(render|reference|explain) (\\S*scenes/|docs/examples/)", "$1 --resolution 32x32 $2"},
+      {"^(?!.* --resolution )(.*?\\b(?:render|reference|explain)) (\\S*scenes/|docs/examples/)",
+       "$1 --resolution 32x32 $2"},
       {"--spp (64|1024)", "--spp 16"},
       // Texts of sweeps name scenes and pipelines; what they would measure is planned.
       {"\\bsweep (\\S+\\.sweep)", "sweep --plan --no-sweep $1"},
