@@ -251,9 +251,9 @@ class Injection {
                                   .store = store.axis,
                                   .lookUp = store.lookUp,
                                   .places = sums.kind};
-    // Cones that see what is partly covered by the finest voxels, and what they begin in, lose nothing in a
-    // closed room.
-    const MarchSettings march{.start = 0.0f, .refinement = 0.0f};
+    // Cones that see what is partly covered by the finest voxels, and with six faces what they begin in, lose
+    // nothing in a closed room. With one value for all sides what they begin in is the surface itself.
+    const MarchSettings march{.start = sums.directional ? 0.0f : 1.0f, .refinement = 0.0f};
     forEachFragment(frame, frame.program(variant),
                     {bounce::parameters({.gridLow = fragments_->grid.low,
                                          .voxelSize = fragments_->grid.voxelSize,
