@@ -15,12 +15,7 @@ layout(binding = 2) uniform sampler3D positiveY;
 layout(binding = 3) uniform sampler3D negativeY;
 layout(binding = 4) uniform sampler3D positiveZ;
 layout(binding = 5) uniform sampler3D negativeZ;
-layout(binding = 0) uniform writeonly image3D positiveXImage;
-layout(binding = 1) uniform writeonly image3D negativeXImage;
-layout(binding = 2) uniform writeonly image3D positiveYImage;
-layout(binding = 3) uniform writeonly image3D negativeYImage;
-layout(binding = 4) uniform writeonly image3D positiveZImage;
-layout(binding = 5) uniform writeonly image3D negativeZImage;
+#include "face_images.glsl"
 
 // A child as seen by who looks towards lower coordinates, at its higher face, and by who looks the other way.
 vec4 higherFace(int axis, ivec3 child) {
@@ -39,14 +34,7 @@ vec4 lowerFace(int axis, ivec3 child) {
 void filterCell(ivec3 cell) {
   vec3 ratio = vec3(fine) / vec3(coarse);
   ivec3 first = ivec3(floor(vec3(cell) * ratio)), last = min(ivec3(ceil(vec3(cell + 1) * ratio)) - 1, fine - 1);
-  vec4 higher, lower;
-  lookThrough(cell, 0, first, last, ratio, higher, lower);
-  imageStore(positiveXImage, cell, higher);
-  imageStore(negativeXImage, cell, lower);
-  lookThrough(cell, 1, first, last, ratio, higher, lower);
-  imageStore(positiveYImage, cell, higher);
-  imageStore(negativeYImage, cell, lower);
-  lookThrough(cell, 2, first, last, ratio, higher, lower);
-  imageStore(positiveZImage, cell, higher);
-  imageStore(negativeZImage, cell, lower);
+  vec4 faces[6];
+  for (int axis = 0; axis < 3; ++axis) lookThrough(cell, axis, first, last, ratio, faces[2 * axis], faces[2 * axis + 1]);
+  storeFaces(cell, faces);
 }
