@@ -58,8 +58,8 @@ StoreBinding storeOf(const RadianceClipmap& clipmap, bool layers) {
   // The box of the coarsest level around the camera, in finest voxels.
   const int coarsest = clipmap.around - 1;
   const VoxelRange& voxels = clipmap.levels[static_cast<std::size_t>(coarsest)].own.voxels;
-  const GridPlacement box{clipmap.origin + clipmap.sizeOf(coarsest) * glm::vec3(voxels.first), clipmap.voxelSize,
-                          voxels.size() * (1 << coarsest)};
+  const GridPlacement box{clipmap.origin + clipmap.sizeOf(coarsest) * glm::vec3(voxels.first),
+                          clipmap.voxelSize, voxels.size() * (1 << coarsest)};
   StoreBinding result = begun(gather::Variant::storeClipmap, box,
                               {.storeCoarsest = static_cast<float>(clipmap.filledLevels - 1),
                                .storeUnit = clipmap.unit,

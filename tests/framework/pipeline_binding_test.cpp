@@ -259,8 +259,8 @@ TEST_CASE("a pass whose parameter has an unknown unit, or one that is no base un
   CHECK_NOTHROW(Measured("m"));
   CHECK_NOTHROW(Measured("/m"));
   for (const char* wrong : {"furlong", "cm"})
-    CHECK_THROWS_WITH(Measured(wrong),
-                      Contains("parameter 'length'") && Contains(wrong) && Contains("expected one of m, s, rad"));
+    CHECK_THROWS_WITH(Measured(wrong), Contains("parameter 'length'") && Contains(wrong) &&
+                                           Contains("expected one of m, s, rad"));
 }
 
 TEST_CASE("an unknown parameter of the pipeline is refused with the nearest") {
