@@ -4,9 +4,9 @@
 // Here each fragment adds its share of a mean of integers, in units of the brightest fragment of its voxel (common/integer_mean.glsl).
 //
 // DIRECTIONS: an average for each face of the voxel, weighted by the cosine between its normal and that of the fragment, so that the two
-// sides of a wall stay apart. The back of a fragment counts for a face only where no other looks that way (kBackShare): of a wall with two
+// sides of a wall stay apart. The back of a fragment counts for a face only where no other looks that way (backWeight): of a wall with two
 // faces in one voxel the insides are dark. The fragment's opacity along an axis is its coverage by the share of that axis in its normal,
-// over the largest of the three shares: a sheet is closed along the axis that it faces, and open along itself.
+// over the largest of the three shares: a sheet is closed along the axis that it faces, and open along itself (alongAll: closed all round).
 //
 // SAMPLED: opacity is that of the samples of a voxel's sides that any fragment covers, beside the sum of the coverages.
 #pragma lumivox axis DIRECTIONS 0 1
@@ -21,7 +21,9 @@ layout(local_size_x = 64) in;
 
 layout(std140, binding = 0) uniform Averages {
   ivec3 brickCount;
-  int coverageSum;  // DIRECTIONS; 1: the coverages of a voxel add up, to 1 at most; 0: the largest counts
+  int coverageSum;   // DIRECTIONS; 1: the coverages of a voxel add up, to 1 at most; 0: the largest counts
+  float backWeight;  // DIRECTIONS: of a fragment's back in the mean of a face, where fronts have 1
+  int alongAll;      // DIRECTIONS; 1: a fragment closes its voxel along all axes; 0: along those that it faces
 };
 layout(std430, binding = 2) readonly buffer Radiances { float radiances[]; };  // three of each fragment or of each side of one, W/(sr m^2)
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
@@ -41,8 +43,6 @@ layout(std430, binding = 4) buffer DirectionalSums { VoxelDirections directions[
 layout(std430, binding = 9) readonly buffer SideMasks { uint sideMasksOf[]; };  // of each fragment, eight bits across x, y and z
 #endif
 
-const float kBackShare = 1.0 / 256.0;
-
 void main() {
   uint index;
   if (!takenFragment(index)) return;
@@ -55,7 +55,7 @@ void main() {
   vec3 normal = unpackNormal(fragment.normal), cosines = abs(normal);
   float most = max(cosines.x, max(cosines.y, cosines.z));
   for (int axis = 0; axis < 3; ++axis) {
-    float opacity = coverage * cosines[axis] / most;
+    float opacity = alongAll != 0 ? coverage : coverage * cosines[axis] / most;
 #if SAMPLED
     // Sums of multiples of 256 leave the eight bits alone.
     atomicAdd(directions[place].opacity[axis], uint(opacity * part * kSampledFixedPoint + 0.5) << kSideSamples);
@@ -69,7 +69,7 @@ void main() {
 #endif
     for (int side = 0; side < 2; ++side) {
       bool towardsHigher = (normal[axis] > 0.0) == (side == 0);
-      float weight = coverage * part * cosines[axis] * (side == 0 ? 1.0 : kBackShare);
+      float weight = coverage * part * cosines[axis] * (side == 0 ? 1.0 : backWeight);
       uvec4 addend = shareOf(partOf(radianceAt(6 * index + 3 * uint(side)), brightest, weight));
       int first = 4 * (2 * axis + (towardsHigher ? 0 : 1));
       for (int channel = 0; channel < 4; ++channel)

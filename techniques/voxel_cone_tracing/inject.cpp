@@ -88,15 +88,15 @@ class Injection {
   /// of them.
   template <class Grid>
   void fill(PassContext& frame, Grid& result, std::span<const gpu::TextureRef> textures,
-            const Bounces& bounces) {
+            const Bounces& bounces, const FaceRule& faces = {}) {
     result.grid = placement();
     result.holdsMedia = storesMedia();
     // Every bounce adds less than the one before.
     const float brightest = brightestOf(frame, result.unit, bounces.count());
 
     OccupiedBricks occupied;
-    const VoxelSums sums =
-        claimSums(frame, *fragments_, result.grid.resolution, textures.size() > 1, occupied);
+    VoxelSums sums = claimSums(frame, *fragments_, result.grid.resolution, textures.size() > 1, occupied);
+    sums.faces = faces;
     // Media lie beside the surfaces' bricks.
     if (!result.holdsMedia) result.occupied = occupied;
     const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
@@ -330,8 +330,16 @@ class InjectPass : public Pass {
 };
 
 class InjectDirectionalPass : public Pass {
+  enum class OpaqueAlong { facing, all };
+
   Injection injection{this};
   Bounces bounces{this};
+  Param<float> backWeight{
+      this, "back_weight", FaceRule{}.backWeight, within(0.0f, 1.0f),
+      "of the back of a fragment in the mean of a face, where fronts have 1: the dark insides of a thin wall do not count beside its lit face; 0: the backs of sheets are dark"};
+  Param<OpaqueAlong> opaqueAlong{
+      this, "opaque_along", OpaqueAlong::facing,
+      "axes along which a fragment closes its voxel: as far as it faces them, or all, as in one grid"};
   Out<DirectionalRadianceGrid> radiance{
       this, "radiance", "radiance that the faces of voxels reflect, and opacity; the finest level only",
       Levels::finest};
@@ -342,7 +350,7 @@ class InjectDirectionalPass : public Pass {
   void run(PassContext& frame) override {
     DirectionalRadianceGrid result;
     std::ranges::copy(injection.rooms(frame, 6, "radiance grid of one side", true), result.faces.begin());
-    injection.fill(frame, result, result.faces, bounces);
+    injection.fill(frame, result, result.faces, bounces, {backWeight, opaqueAlong == OpaqueAlong::all});
     radiance = result;
   }
 };

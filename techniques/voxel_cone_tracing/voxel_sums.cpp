@@ -59,7 +59,10 @@ void addUp(PassContext& frame, const VoxelFragments& fragments, const VoxelSums&
                              .places = sums.kind,
                              .changed = sums.changed != nullptr};
   forEachTaken(frame, frame.program(variant),
-               {add::averages({sums.brickCount, fragments.coverage == VoxelFragments::Coverage::sum}),
+               {add::averages({.brickCount = sums.brickCount,
+                               .coverageSum = fragments.coverage == VoxelFragments::Coverage::sum,
+                               .backWeight = sums.faces.backWeight,
+                               .alongAll = sums.faces.alongAll}),
                 add::radiances(radiances), add::sideMasks(sums.sideMasks), sums.bindings()},
                fragments, sums);
 }

@@ -9,11 +9,18 @@ namespace lumivox::voxel_cone_tracing {
 
 struct ChangedCells;
 
+/// What fragments do to the faces of their voxel, where it has six.
+struct FaceRule {
+  float backWeight = 1.0f / 256.0f;  ///< of a fragment's back in the mean of a face, where fronts have 1
+  bool alongAll = false;             ///< closes its voxel along all axes, not only along those that it faces
+};
+
 /// Room for the sums of occupied voxels, and where they lie.
 struct VoxelSums {
   int kind = 0;  ///< value of the shader's axis PLACES
   glm::ivec3 brickCount{0};
   bool directional = false;
+  FaceRule faces;             ///< directional
   gpu::BufferRef bricks;      ///< of a grid
   gpu::BufferRef sideMasks;   ///< samples of voxels' sides, a word a fragment; null: none
   shader::BindingSet places;  ///< where the sums of a voxel are found; refers to what it binds

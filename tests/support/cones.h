@@ -190,6 +190,18 @@ glm::vec3 gatherGlossy(const Scene& scene, const Store& grid, const glm::vec3& p
       [](PassHarness& harness) { return pixelOf(imageOf(*harness.output<Image>("glossy").texture)); });
 }
 
+/// What one cone of a mirroring lobe along a direction sees.
+template <class Store>
+glm::vec3 alongNormal(const Store& grid, const glm::vec3& position, const glm::vec3& direction,
+                      float exponent, const GatherSettings& settings,
+                      const glm::vec3& environment = glm::vec3(0.0f)) {
+  const glm::vec3 d = glm::normalize(direction);
+  Scene scene = emptyScene(environment);
+  scene.cameras.front().eye =
+      glm::dvec3(position) + 2.0 * glm::dvec3(d);  // the mirror direction is the normal
+  return gatherGlossy(scene, grid, position, d, glm::vec4(1, 1, 1, exponent), settings);
+}
+
 struct InjectSettings {
   const char* precision = "float";
   double ambient = 0;
@@ -197,6 +209,8 @@ struct InjectSettings {
   int bounces = 1;
   const ScatteringGrid* media = nullptr;
   int lightSamples = 1;
+  double backWeight = 1.0 / 256.0;  // directional, as the next
+  const char* opaqueAlong = "facing";
 };
 
 /// The grid after injecting the fragments of a scene under its lights: RadianceGrid or
@@ -221,6 +235,10 @@ Grid injectedAs(const char* pass, const Scene& scene, int resolution, const Inje
   if (settings.media != nullptr) inject.setInput("media", *settings.media);
   if (fragments != nullptr) *fragments = voxels.output<VoxelFragments>("fragments");
   inject.setParameter("light_samples", settings.lightSamples);
+  if constexpr (std::is_same_v<Grid, DirectionalRadianceGrid>) {
+    inject.setParameter("back_weight", settings.backWeight);
+    inject.setParameter("opaque_along", std::string(settings.opaqueAlong));
+  }
   inject.setParameter("bounces", settings.bounces);
   inject.setParameter("two_sided", std::string(settings.twoSided ? "on" : "off"));
   inject.setParameter("emission", std::string(settings.emission ? "on" : "off"));

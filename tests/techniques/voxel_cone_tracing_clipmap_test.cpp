@@ -21,17 +21,6 @@ Scene cornell() {
 /// Levels of [-1,1]^3 in all and of less around the middle, finest voxels of 1/32.
 const ClipmapSettings kThree{.resolution = 32, .levels = 3, .extent = 0.5};
 
-/// What one cone of a mirroring lobe from a place along a direction sees.
-glm::vec3 alongNormal(const RadianceClipmap& clipmap, const glm::vec3& position, const glm::vec3& direction,
-                      float exponent, const GatherSettings& settings,
-                      const glm::vec3& environment = glm::vec3(0.0f)) {
-  const glm::vec3 d = glm::normalize(direction);
-  Scene scene = emptyScene(environment);
-  scene.cameras.front().eye =
-      glm::dvec3(position) + 2.0 * glm::dvec3(d);  // the mirror direction is the normal
-  return gatherGlossy(scene, clipmap, position, d, glm::vec4(1, 1, 1, exponent), settings);
-}
-
 }  // namespace
 
 TEST_CASE("the example of a 6 x 6 clipmap that moves by (2,2): new voxels take the places of those left") {

@@ -29,17 +29,6 @@ glm::vec3 wallOpacity(int resolution, int x, int y, int z, bool alongAll) {
   return alongAll && opacity != glm::vec3(0.0f) ? glm::vec3(1.0f) : opacity;
 }
 
-/// What one cone of a mirroring lobe along a direction sees.
-glm::vec3 alongNormal(const DirectionalRadianceGrid& grid, const glm::vec3& position,
-                      const glm::vec3& direction, float exponent, const GatherSettings& settings,
-                      const glm::vec3& environment = glm::vec3(0.0f)) {
-  const glm::vec3 d = glm::normalize(direction);
-  Scene scene = emptyScene(environment);
-  scene.cameras.front().eye =
-      glm::dvec3(position) + 2.0 * glm::dvec3(d);  // the mirror direction is the normal
-  return gatherGlossy(scene, grid, position, d, glm::vec4(1, 1, 1, exponent), settings);
-}
-
 }  // namespace
 
 TEST_CASE("children of a column are composited as seen from each side, and the four columns are averaged") {
@@ -119,6 +108,12 @@ TEST_CASE("one wall of one sheet, lit on one side, shines to that side alone") {
     // Along the sheet nothing is in the way.
     CHECK(faceAt(grid, kHigherY, 0, voxel).a < 1e-3f);
     CHECK(faceAt(grid, kHigherZ, 0, voxel).a < 1e-3f);
+    // A sheet's back is dark where backs have no weight.
+    InjectSettings fronts;
+    fronts.backWeight = 0.0;
+    const DirectionalRadianceGrid oneSided = injectedDirections(lit.scene, 16, fronts);
+    CHECK((faceAt(oneSided, kLowerX, 0, voxel).r > 0.0f) == false);
+    CHECK((faceAt(oneSided, kHigherX, 0, voxel).r > 0.0f) == (side > 0));
     // As published, light on the back of a triangle does not count.
     InjectSettings front;
     front.twoSided = false;
@@ -146,6 +141,16 @@ TEST_CASE("the two faces of a thin wall in one voxel keep what each reflects, an
   CHECK(faceAt(grid, kHigherX, 0, voxel).r == Approx(0.5 / kPi * 4.0).epsilon(0.006));
   CHECK(faceAt(grid, kLowerX, 0, voxel).r == Approx(0.5 / kPi * 1.0).epsilon(0.006));
   CHECK(faceAt(grid, kHigherX, 0, voxel).a == 1.0f);
+  // Where backs count as much as fronts, half of what a face reflects is that of a dark inside.
+  InjectSettings alike;
+  alike.backWeight = 1.0;
+  const DirectionalRadianceGrid mixed = injectedDirections(builder.scene, 16, alike);
+  CHECK(faceAt(mixed, kHigherX, 0, voxel).r == Approx(0.25 / kPi * 4.0).epsilon(0.006));
+  CHECK(faceAt(mixed, kLowerX, 0, voxel).r == Approx(0.25 / kPi * 1.0).epsilon(0.006));
+  // Along the wall it is open; closed along all axes it is not.
+  CHECK(faceAt(grid, kHigherY, 0, voxel).a < 1e-3f);
+  alike.opaqueAlong = "all";
+  CHECK(faceAt(injectedDirections(builder.scene, 16, alike), kHigherY, 0, voxel).a == 1.0f);
 }
 
 TEST_CASE("a constant environment passes through empty directional grids unchanged") {
