@@ -1,5 +1,7 @@
 // What figures of the thesis (Gomes 2015) must show, as numbers, from the texts that reproduce them
 // (scenes/reproductions) on scenes that are in the tree.
+#include <cmath>
+
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 
@@ -42,6 +44,29 @@ TEST_CASE(
   CHECK(mean(outputs.at("final")) == Approx(parts).epsilon(1e-4));
 }
 
+TEST_CASE(
+    "Figs. 62 and 63: half the step along a cone halves the bands that whole steps make in reflections") {
+  const auto reflections = [](const char* step) {
+    return outputsOf("cornell_glossy", "scenes/reproductions/004_cone_steps.pipeline",
+                     {"resolution=64", step})
+        .at("indirect_glossy");
+  };
+  const ImageBuffer fine = reflections("step=0.05");
+  // RMS difference from reflections by steps that are as good as none, over their mean.
+  const auto bands = [&](const char* step) {
+    const ImageBuffer image = reflections(step);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < image.values().size(); ++i)
+      sum += std::pow(image.values()[i] - fine.values()[i], 2);
+    return std::sqrt(sum / static_cast<double>(image.values().size())) / mean(fine) * (3 * kSize * kSize);
+  };
+  const double whole = bands("step=1"), half = bands("step=0.5"), quarter = bands("step=0.25");
+  CAPTURE(whole, half, quarter);
+  CHECK(whole > 0.1);
+  CHECK(half == Approx(0.5 * whole).epsilon(0.2));
+  CHECK(quarter == Approx(0.25 * whole).epsilon(0.2));
+}
+
 TEST_CASE("Fig. 64: voxels composited along x keep what looks to either side apart, at every level") {
   for (const char* level : {"level=0", "level=2"}) {
     CAPTURE(level);
@@ -68,4 +93,24 @@ TEST_CASE("Fig. 66: ambient light at injection shows in reflections what no ligh
     for (int x = 0; x < kSize; ++x)
       appeared += with.at(x, y, 1) > 0.001f && without.at(x, y, 1) < 0.1f * with.at(x, y, 1);
   CHECK(appeared > 10);
+}
+
+TEST_CASE(
+    "Fig. 87: in the clipmap reflections twice as strong are twice as bright, and all else is as it was") {
+  const auto outputs = [](float specular) {
+    SceneBuilder builder;
+    builder.box({-1, 0, -1}, {1, 2, 1}, builder.lambert(0.6f), true);
+    const int floor = builder.phong(0.3f, specular, 40.0f);
+    builder.quad({-0.9f, 0.05f, -0.9f}, {0, 0, 1.8f}, {1.8f, 0, 0}, floor);
+    builder.light(LightKind::point, glm::vec3(1.0f), {0.3, 1.6, 0.2});
+    builder.look({0, 1, 0.9}, {0, 0.3, -0.5}, {0, 1, 0}, 0.9, kSize, kSize);
+    RenderOptions options;
+    const Pipeline text = pipeline("voxel_cone_tracing_clipmap");
+    options.parameters = text.settings({"resolution=32"});
+    return renderOnce(builder.scene, text, options).outputs;
+  };
+  const auto once = outputs(0.2f), twice = outputs(0.4f);
+  CHECK(mean(once.at("indirect_glossy")) > 0.0);
+  CHECK(mean(twice.at("indirect_glossy")) == Approx(2.0 * mean(once.at("indirect_glossy"))).epsilon(1e-3));
+  CHECK(mean(twice.at("indirect_diffuse")) == Approx(mean(once.at("indirect_diffuse"))).epsilon(1e-5));
 }

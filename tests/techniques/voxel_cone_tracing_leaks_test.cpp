@@ -53,7 +53,7 @@ TEST_CASE("of the light of a room less comes through a thin wall by six directio
     double thickness;                              // voxels
     double isotropic, lobes, coarse, directional;  // as the card says
   };
-  for (const Row& row : {Row{0, 0.185, 0.0637, 0.174, 0.0192}, Row{0.5, 0.0301, 0.0073, 0.0085, 0.00123},
+  for (const Row& row : {Row{0, 0.185, 0.0637, 0.174, 0.0184}, Row{0.5, 0.0301, 0.0073, 0.0085, 0.00123},
                          Row{1, 0.0269, 0.0063, 0.0048, 0.00102}, Row{2, 0.0209, 0.0052, 0.0081, 0.0005},
                          Row{4, 0.0221, 0.0043, 0.0109, 0.00023}}) {
     const double isotropic = leaked(pipeline("voxel_cone_tracing"), row.thickness),
