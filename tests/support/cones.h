@@ -59,6 +59,19 @@ inline RadianceGrid makeGrid(int resolution, const std::function<glm::vec4(int, 
   return grid;
 }
 
+/// A committed pipeline with a line added to each pass of these kinds.
+inline Pipeline pipelineWith(const std::string& name,
+                             const std::vector<std::pair<std::string, std::string>>& added) {
+  const Pipeline text = pipeline(name);
+  std::string source = text.document->source;
+  for (const auto& [pass, line] : added) {
+    const std::size_t place = source.find('{', source.find(pass + " "));
+    REQUIRE(place != std::string::npos);
+    source.insert(place + 1, "\n" + line + "\n");
+  }
+  return Pipeline::parse(source, text.file);
+}
+
 /// Six grids of [-1,1]^3 with all levels allocated; `fill` gives the finest, of the face with the outward
 /// normal +x, -x, +y, -y, +z or -z.
 inline DirectionalRadianceGrid makeDirections(int resolution,

@@ -1,7 +1,6 @@
 // What lets light through walls: their thickness, by the store; voxels that the edge of a shadow lies in.
 #include <cmath>
 
-#include "lumivox/base/file.h"
 #include "support/cones.h"
 
 using namespace lumivox;
@@ -10,17 +9,6 @@ using namespace lumivox::test;
 namespace {
 
 constexpr int kResolution = 32;  // voxels along both rooms, which are 2 m long
-
-/// A committed pipeline with one more line in a pass.
-Pipeline with(const char* name, const std::string& pass, const std::string& line) {
-  const auto file = sourceDirectory() / "scenes/pipelines" / (std::string(name) + ".pipeline");
-  std::string text = readFile(file);
-  const std::string head = "voxel_cone_tracing." + pass + " {\n";
-  const std::size_t at = text.find(head);
-  REQUIRE(at != std::string::npos);
-  text.insert(at + head.size(), "    " + line + "\n");
-  return Pipeline::parse(text, file);
-}
 
 /// Mean indirect light on the walls of the dark room, of that in the lit one; the wall is so many voxels
 /// thick, 0: one sheet.
@@ -86,7 +74,8 @@ TEST_CASE("what keeps light from leaking through walls is worth what the card sa
                          Row{"gather", "clearance 1000", 0.0393, 0.00200, 0.00174},
                          Row{"gather", "refinement 1", 0.0281, 0.00156, 0.00139},
                          Row{"gather", "reading interpolated", 0.0724, 0.0332, 0.0288}}) {
-    const Pipeline text = with("voxel_cone_tracing_directional", row.pass, row.line);
+    const Pipeline text = cones::pipelineWith("voxel_cone_tracing_directional",
+                                              {{std::string("voxel_cone_tracing.") + row.pass, row.line}});
     CAPTURE(row.line);
     CHECK(leaked(text, 0.0) == Approx(row.sheet).epsilon(0.1));
     CHECK(leaked(text, 0.5) == Approx(row.half).epsilon(0.1));

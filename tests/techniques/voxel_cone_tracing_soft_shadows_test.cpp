@@ -99,28 +99,16 @@ Scene edgeScene(const Edge& edge) {
   return builder.scene;
 }
 
-/// The committed pipeline with a line added to each pass of these kinds.
-Pipeline with(const std::string& name, const std::vector<std::pair<std::string, std::string>>& added) {
-  const Pipeline text = pipeline(name);
-  std::string source = text.document->source;
-  for (const auto& [pass, line] : added) {
-    const std::size_t place = source.find('{', source.find(pass + " "));
-    REQUIRE(place != std::string::npos);
-    source.insert(place + 1, "\n" + line + "\n");
-  }
-  return Pipeline::parse(source, text.file);
-}
-
 /// Visible shares along x in the middle row of the image, from left to right.
 std::vector<double> sharesAlong(const Scene& scene, const std::vector<std::string>& settings,
                                 const std::string& ofLights = {}, const std::string& ofShadows = {}) {
-  const Pipeline cones =
-      with("voxel_cone_tracing_soft_shadows",
-           {{"voxel_cone_tracing.lights", ofLights}, {"voxel_cone_tracing.soft_shadows", ofShadows}});
+  const Pipeline traced = cones::pipelineWith(
+      "voxel_cone_tracing_soft_shadows",
+      {{"voxel_cone_tracing.lights", ofLights}, {"voxel_cone_tracing.soft_shadows", ofShadows}});
   RenderOptions options;
-  options.parameters = cones.settings(settings);
-  const ImageBuffer shadowed = renderOnce(scene, cones, options).outputs.at("direct");
-  const Pipeline open = with("direct_lighting", {{"direct_lighting.shade", "shadows off"}});
+  options.parameters = traced.settings(settings);
+  const ImageBuffer shadowed = renderOnce(scene, traced, options).outputs.at("direct");
+  const Pipeline open = cones::pipelineWith("direct_lighting", {{"direct_lighting.shade", "shadows off"}});
   const ImageBuffer all = renderOnce(scene, open).outputs.at("direct");
   std::vector<double> shares;
   for (int x = 0; x < all.width(); ++x)
