@@ -1,6 +1,7 @@
 #version 450
 // Thesis 004, Sec. 4.5: bilateral upsampling (Kopf, Cohen, Lischinski & Uyttendaele 2007, "Joint bilateral upsampling"). Samples of the
 // march are blended over four by four of them, one period of the dither pattern, with weights that keep to rays which end alike.
+#include "common/joint_bilateral.glsl"
 #include "range.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -25,7 +26,7 @@ void main() {
   if (range.x < range.y) {
     ivec2 samples = textureSize(scatteredSamples, 0);
     float radius = 2.0 * float(pixelsPerSample);
-    ivec2 first = ivec2(floor((vec2(pixel) + 0.5) / float(pixelsPerSample) - 0.5)) - 1;
+    ivec2 first = firstOfFour(pixel, ivec2(pixelsPerSample));
     vec3 sum = vec3(0.0), through = vec3(0.0);
     float weights = 0.0;
     for (int y = 0; y < 4; ++y)
@@ -33,11 +34,11 @@ void main() {
         ivec2 texel = first + ivec2(x, y);
         if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, samples))) continue;
         vec4 value = texelFetch(scatteredSamples, texel, 0);
-        vec2 path = abs(vec2(pixelOf(texel) - pixel)) / radius;
+        vec2 away = abs(vec2(pixelOf(texel) - pixel));
         float difference = (value.w - range.y) / (similarity * range.y);
         // Where nothing is alike the nearest in depth wins, because the weight never vanishes.
         float alike = 1.0 / (1.0 + difference * difference);
-        float weight = max(1.0 - path.x, kLeast) * max(1.0 - path.y, kLeast) * max(alike * alike * alike * alike, 1e-20);
+        float weight = tent(away.x, radius, kLeast) * tent(away.y, radius, kLeast) * max(alike * alike * alike * alike, 1e-20);
         sum += weight * value.rgb;
         through += weight * texelFetch(transmittanceSamples, texel, 0).rgb;
         weights += weight;
