@@ -21,11 +21,15 @@ shader::BindingSet stillBinding(const RadianceOctree& octree);
 void forEachBrick(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
                   const VoxelOctree& tree, int depth, int threads);
 
-/// Before anything of it is taken: Error where there is no room for an octree whose voxels have so many
-/// bytes, with what it takes and the largest that fits. `holdsTree`: its nodes and tags are there already.
-void requireRoom(PassContext& frame, const VoxelOctree& tree, std::uint64_t voxelBytes, bool holdsTree);
+/// Bytes of a voxel in the pool, all of its faces, and of the sums that fill one of a leaf.
+struct VoxelBytes {
+  std::uint64_t texels = 0, sums = 0;
+};
+/// Before anything of it is taken: Error where there is no room for an octree of such voxels, with what it
+/// takes and the largest that fits. `holdsTree`: its nodes and tags are there already.
+void requireRoom(PassContext& frame, const VoxelOctree& tree, const VoxelBytes& voxel, bool holdsTree);
 
-/// Room for the bricks of result.tree, and for so many bytes more for each voxel of the leaves.
+/// Room for the bricks of result.tree, of result.faces each; and of such sums for each voxel of the leaves.
 gpu::BufferRef makePool(PassContext& frame, RadianceOctree& result, gpu::Format format,
                         const shader::StorageSlot& sums);
 

@@ -30,8 +30,9 @@ gpu::TextureRef pool(PassContext& frame, std::uint64_t bricks, int side, gpu::Fo
 gpu::BufferRef makePool(PassContext& frame, RadianceOctree& result, gpu::Format format,
                         const shader::StorageSlot& sums) {
   const VoxelOctree& tree = result.tree;
-  requireRoom(frame, tree, gpu::bytesPerTexel(format), true);
-  result.radiance = pool(frame, tree.brickRoom, tree.brickSide(), format, result.poolShift);
+  const auto faces = static_cast<std::uint64_t>(result.faces);
+  requireRoom(frame, tree, {.texels = faces * gpu::bytesPerTexel(format), .sums = sums.elementBytes}, true);
+  result.radiance = pool(frame, faces * tree.brickRoom, tree.brickSide(), format, result.poolShift);
   return frame.emptyElements(sums, 8 * tree.leafRoom, "sums of voxels");
 }
 
@@ -41,7 +42,7 @@ void transferBorders(PassContext& frame, const RadianceOctree& octree, int depth
     forEachBrick(
         frame,
         frame.program(octree_transfer::Variant{}, octree_transfer::Constants{.way = static_cast<int>(how)}),
-        {octree_transfer::transfer({depth, axis}),
+        {octree_transfer::borders({depth, axis, octree.faces}),
          octree_transfer::pool(octree.radiance, gpu::Sampling::nearest),
          octree_transfer::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift)},
         octree.tree, depth, 9);
@@ -58,8 +59,9 @@ namespace {
 enum class Halving { facing, average };
 void halve(PassContext& frame, const RadianceOctree& octree, int depth, Halving rule) {
   forEachBrick(frame,
-               frame.program(octree_filter::Variant{.changed = octree.still != nullptr},
-                             octree_filter::Constants{.rule = static_cast<int>(rule)}),
+               frame.program(
+                   octree_filter::Variant{.changed = octree.still != nullptr, .directions = octree.faces > 1},
+                   octree_filter::Constants{.rule = static_cast<int>(rule)}),
                {octree_filter::coarse({depth}), octree_filter::pool(octree.radiance, gpu::Sampling::nearest),
                 octree_filter::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift),
                 stillBinding(octree)},
@@ -95,6 +97,9 @@ class OctreeFilterPass : public Pass {
     if (!asGrid && opacity == Opacity::facing)
       throw Error(
           "voxel_cone_tracing.octree_filter: 'opacity facing' takes eight whole voxels for a coarse one, and with voxels at corners or in leaves it covers halves of others; expected 'opacity average', or 'voxels as_grid' in voxel_cone_tracing.octree");
+    if (result.faces > 1 && opacity != Opacity::facing)
+      throw Error(
+          "voxel_cone_tracing.octree_filter: each of the six faces of a coarse voxel is what is seen through it along its axis, and 'opacity average' has no sides; expected 'opacity facing', or 'faces one' in voxel_cone_tracing.octree_inject");
     if (result.still != nullptr)
       result.still = frame.kept("levels of static geometry", result.still, [&] {
         for (int depth = result.tree.depth - 1; depth >= 0; --depth)

@@ -35,6 +35,9 @@ class OctreeSplatPass : public Pass {
     if (tree.voxels != VoxelOctree::Voxels::asGrid || tree.ranks == nullptr)
       throw Error(
           "voxel_cone_tracing.octree_splat: a photon changes the one voxel of each level that it lies in only with 'voxels as_grid'; expected that and 'as_published off' in voxel_cone_tracing.octree");
+    if (result.faces > 1)
+      throw Error(
+          "voxel_cone_tracing.octree_splat: photons light voxels that look the same from all sides; expected 'faces one' in voxel_cone_tracing.octree_inject");
     if (result.filledLevels != tree.depth + 1)
       throw Error(
           "voxel_cone_tracing.octree_splat: expected an octree with all levels, such as voxel_cone_tracing.octree_filter gives");
