@@ -25,27 +25,11 @@ void checkNear(const glm::vec4& value, const glm::vec4& expected, double toleran
 std::pair<RadianceGrid, RadianceOctree> bothOf(const Scene& scene, int resolution, const char* precision,
                                                const char* opacity, const char* bricks = "own",
                                                int bounces = 1) {
-  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshot);
-  voxels.setParameter("resolution", resolution);
-  voxels.run();
-  const auto fragments = voxels.output<VoxelFragments>("fragments");
-  PassHarness shadow(device(), techniques(), "direct_lighting", "shadow_map", scene, snapshot);
-  shadow.run();
-  const auto light = shadow.output<ShadowMap>("depth");
-  PassHarness dense(device(), techniques(), "voxel_cone_tracing", "inject", scene, snapshot);
-  PassHarness sparse(device(), techniques(), "voxel_cone_tracing", "octree_inject", scene, snapshot);
-  for (PassHarness* inject : {&dense, &sparse}) {
-    inject->setParameter("precision", std::string(precision));
-    inject->setParameter("bounces", bounces);
-    inject->setInput("fragments", fragments);
-    inject->setInput("shadow", light);
-  }
-  sparse.setInput("tree", treeOf(fragments, "as_grid", false, bricks));
-  dense.run();
-  sparse.run();
-  return {filtered(dense.output<RadianceGrid>("radiance"), opacity),
-          filteredOctree(sparse.output<RadianceOctree>("radiance"), opacity)};
+  InjectSettings settings;
+  settings.precision = precision;
+  settings.bounces = bounces;
+  return {filtered(injectedGrid(scene, resolution, settings), opacity),
+          filteredOctree(injectedOctree(scene, resolution, settings, "one", bricks), opacity)};
 }
 
 Scene cornell() {
