@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "clipmap.h"
+#include "levels.h"
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
 #include "octree.h"
@@ -71,8 +72,12 @@ StoreBinding storeOf(const RadianceClipmap& clipmap, bool layers) {
 
 StoreBinding storeOf(const RadianceOctree& octree, bool descends, bool layers) {
   const VoxelOctree& tree = octree.tree;
+  // With the empty voxels that a dense grid has at its high ends: a wall in the last voxels is read to half a
+  // voxel of every level behind it, and a cone that ended with it would take half of the wall for open.
+  GridPlacement whole = tree.grid;
+  whole.resolution = evenlyHalved(whole.resolution);
   StoreBinding result =
-      begun(gather::Variant::storeOctree, tree.grid,
+      begun(gather::Variant::storeOctree, whole,
             {.storeCoarsest = static_cast<float>(octree.filledLevels - 1),
              .storeUnit = octree.unit,
              .storeOpacityOfFinestVoxel = octree.opacity == RadianceOctree::Opacity::ofFinestVoxel,
