@@ -131,12 +131,12 @@ class Injection {
     if (bounces.count() == 1) result.still = stillIn(frame, result, brightest);
     const VoxelSums sums = leafSums(frame, result);
     const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
-    resolveLeaves(frame, result, sums);
+    resolveLeaves(frame, result, sums, addsUp());
     for (int bounce = 1; bounce < bounces.count(); ++bounce) {
       fillLevels(frame, result);
       reflect(frame, sums, direct, brightest, bounces.cones(),
               storeOf(result, result.tree.ranks == nullptr, true));
-      resolveLeaves(frame, result, sums);
+      resolveLeaves(frame, result, sums, addsUp());
     }
     result.filledLevels = 1;
   }
@@ -179,7 +179,7 @@ class Injection {
       brightestOf(frame, still.unit);
       const VoxelSums sums = leafSums(frame, still);
       average(frame, stillOf(*fragments_), sums, brightest);
-      resolveLeaves(frame, still, sums);
+      resolveLeaves(frame, still, sums, addsUp());
       return StillLight{std::make_shared<const RadianceOctree>(still), *moving,
                         sortedByCells(frame, stillOf(*fragments_))};
     });
@@ -206,19 +206,6 @@ class Injection {
     sums.changed = &result.changed;
     sums.places.add(stillBinding(result));
     return sums;
-  }
-
-  void resolveLeaves(PassContext& frame, const RadianceOctree& result, const VoxelSums& sums) const {
-    const VoxelOctree& tree = result.tree;
-    const bool inLeaves = tree.voxels == VoxelOctree::Voxels::inLeaves;
-    forEachBrick(
-        frame,
-        frame.program(
-            octree_resolve::Variant{.changed = sums.changed != nullptr, .directions = sums.directional}),
-        {octree_resolve::leaves({.unit = result.unit, .coverageSum = addsUp(), .inLeaves = inLeaves}),
-         octree_resolve::radianceImage(result.radiance), sums.bindings()},
-        tree, tree.depth, sums.changed != nullptr ? 1 : tree.brickVoxels());
-    transferBorders(frame, result, tree.depth, inLeaves ? Transfer::average : Transfer::copy);
   }
 
   GridPlacement placement() const {

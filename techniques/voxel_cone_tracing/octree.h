@@ -4,6 +4,7 @@
 #include "lumivox/plugin/technique.h"
 #include "radiance_octree.h"
 #include "voxel_cone_tracing_shaders.h"
+#include "voxel_sums.h"
 
 namespace lumivox::voxel_cone_tracing {
 
@@ -37,6 +38,9 @@ gpu::BufferRef makePool(PassContext& frame, RadianceOctree& result, gpu::Format 
 /// that they face; what its `still` says has not changed is copied from there.
 void fillLevels(PassContext& frame, RadianceOctree& octree);
 
+/// The bricks of the leaves from the sums of their voxels. `coverageSum`: coverages add up.
+void resolveLeaves(PassContext& frame, const RadianceOctree& octree, const VoxelSums& sums, bool coverageSum);
+
 /// In the order of octree_transfer.comp.
 enum class Transfer { add, copy, average };
 
@@ -44,5 +48,9 @@ enum class Transfer { add, copy, average };
 /// both have are added or averaged, or those of the higher one are copied to the lower one. Nothing where
 /// each voxel is held once.
 void transferBorders(PassContext& frame, const RadianceOctree& octree, int depth, Transfer way);
+
+/// A depth of an octree whose voxels lie at corners or in leaves, from the next one: centres, faces, edges
+/// and corners, one after another, as means that neighbours average or as shares that they add up.
+void addParts(PassContext& frame, const RadianceOctree& octree, int depth, bool means);
 
 }  // namespace lumivox::voxel_cone_tracing

@@ -53,6 +53,32 @@ void transferBorders(PassContext& frame, const RadianceOctree& octree, int depth
   }
 }
 
+void resolveLeaves(PassContext& frame, const RadianceOctree& octree, const VoxelSums& sums,
+                   bool coverageSum) {
+  const VoxelOctree& tree = octree.tree;
+  const bool inLeaves = tree.voxels == VoxelOctree::Voxels::inLeaves;
+  forEachBrick(
+      frame,
+      frame.program(
+          octree_resolve::Variant{.changed = sums.changed != nullptr, .directions = sums.directional}),
+      {octree_resolve::leaves({.unit = octree.unit, .coverageSum = coverageSum, .inLeaves = inLeaves}),
+       octree_resolve::radianceImage(octree.radiance), sums.bindings()},
+      tree, tree.depth, sums.changed != nullptr ? 1 : tree.brickVoxels());
+  transferBorders(frame, octree, tree.depth, inLeaves ? Transfer::average : Transfer::copy);
+}
+
+void addParts(PassContext& frame, const RadianceOctree& octree, int depth, bool means) {
+  constexpr std::array<int, 4> kPartThreads{1, 6, 12, 8};
+  for (int part = 0; part < 4; ++part)
+    forEachBrick(
+        frame, frame.program(octree_filter_part::Variant{}, octree_filter_part::Constants{.part = part}),
+        {octree_filter_part::parts({.depth = depth, .means = means}),
+         octree_filter_part::pool(octree.radiance, gpu::Sampling::nearest),
+         octree_filter_part::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift)},
+        octree.tree, depth, kPartThreads[static_cast<std::size_t>(part)]);
+  transferBorders(frame, octree, depth, means ? Transfer::average : Transfer::add);
+}
+
 namespace {
 
 /// Voxels of a depth from those of the next one; in the order of octree_filter.comp.
@@ -110,7 +136,7 @@ class OctreeFilterPass : public Pass {
       if (asGrid) {
         halve(frame, result, depth, opacity);
       } else {
-        addParts(frame, result, depth);
+        addParts(frame, result, depth, borders == Borders::averaged);
       }
     }
     result.still = nullptr;
@@ -118,20 +144,6 @@ class OctreeFilterPass : public Pass {
     result.opacity = opacity == Opacity::facing ? RadianceOctree::Opacity::ofVoxel
                                                 : RadianceOctree::Opacity::ofFinestVoxel;
     mips = result;
-  }
-
-  /// Centres, faces, edges and corners, one after another.
-  void addParts(PassContext& frame, const RadianceOctree& octree, int depth) {
-    constexpr std::array<int, 4> kPartThreads{1, 6, 12, 8};
-    const bool means = borders == Borders::averaged;
-    for (int part = 0; part < 4; ++part)
-      forEachBrick(
-          frame, frame.program(octree_filter_part::Variant{}, octree_filter_part::Constants{.part = part}),
-          {octree_filter_part::parts({.depth = depth, .means = means}),
-           octree_filter_part::pool(octree.radiance, gpu::Sampling::nearest),
-           octree_filter_part::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift)},
-          octree.tree, depth, kPartThreads[static_cast<std::size_t>(part)]);
-    transferBorders(frame, octree, depth, means ? Transfer::average : Transfer::add);
   }
 };
 
