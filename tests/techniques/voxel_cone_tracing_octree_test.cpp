@@ -389,17 +389,21 @@ TEST_CASE("as published, a sample between two levels is blended the other way ro
         Approx(expected).epsilon(1e-3));
 }
 
-TEST_CASE("on the Cornell box the octree's image differs from the dense grid's by a FLIP under 0.03") {
+TEST_CASE("the octree's image differs from the dense grid's by a FLIP under 0.03, in grids of any shape") {
+  // The room fills no cube: its dense grid has empty voxels at the high ends, behind the walls.
   RenderOptions options;
   options.width = options.height = 64;
-  const Scene scene = cornell();
-  const FrameResult dense = renderOnce(scene, pipeline("voxel_cone_tracing"), options),
-                    sparse = renderOnce(scene, pipeline("voxel_cone_tracing_octree"), options);
-  for (const char* output : {"indirect_diffuse", "final"}) {
-    const ImageError error = compare(sparse.outputs.at(output), dense.outputs.at(output));
-    INFO(output << ": FLIP " << error.flip);
-    CHECK(error.flip < 0.03);
-    CHECK(error.meanRatio.value == Approx(1.0).epsilon(0.01));
+  for (const char* name : {"cornell", "untuned/room"}) {
+    const Scene scene = loadScene(sourceDirectory() / "scenes" / (std::string(name) + ".scene"));
+    CAPTURE(name);
+    const FrameResult dense = renderOnce(scene, pipeline("voxel_cone_tracing"), options),
+                      sparse = renderOnce(scene, pipeline("voxel_cone_tracing_octree"), options);
+    for (const char* output : {"indirect_diffuse", "final"}) {
+      const ImageError error = compare(sparse.outputs.at(output), dense.outputs.at(output));
+      INFO(output << ": FLIP " << error.flip);
+      CHECK(error.flip < 0.03);
+      CHECK(error.meanRatio.value == Approx(1.0).epsilon(0.001));
+    }
   }
 }
 
