@@ -1,8 +1,9 @@
 #version 450
 // Photons relight the mean colour of their voxel, whose mean normal faces the light more or less, and are averaged: thesis 004, Sec. 4.2.2,
 // Listing 4.24 as printed. Its average in 8 bits depends on the order; here it does not (common/integer_mean.glsl).
-// The colour of the light, which the listing leaves open, is its irradiance over pi, so that a Lambert surface has the radiance that it reflects.
-// What is averaged holds the voxels of neighbours' leaves too: of half a surface beside nothing the normal turns towards (-1, -1, -1).
+// The colour of the light, which the listing leaves open, is its irradiance over pi, so that a Lambert surface has the radiance that it
+// reflects. What is averaged holds the voxels of neighbours' leaves too: of half a surface beside nothing the normal turns towards
+// (-1, -1, -1).
 #pragma lumivox axis STAGE count add
 layout(local_size_x = 64) in;
 #include "octree_photons.glsl"

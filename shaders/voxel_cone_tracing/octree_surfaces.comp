@@ -1,6 +1,6 @@
 #version 450
-// The colours and the normals of fragments, to be averaged in the leaves of an octree as their light is (thesis 004, Sec. 4.2.2): what octree_relight.comp
-// lights. Normals as the thesis packs them, half of each plus a half. Counts fragments as inject.comp does.
+// The colours and the normals of fragments, to be averaged in the leaves of an octree as their light is (thesis 004, Sec. 4.2.2): what
+// octree_relight.comp lights. Normals as the thesis packs them, half of each plus a half. Counts fragments as inject.comp does.
 #pragma lumivox axis WHAT colour normal
 #pragma lumivox require PLACES == octree && !CHANGED
 layout(local_size_x = 64) in;
