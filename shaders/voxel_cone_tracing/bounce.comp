@@ -4,7 +4,7 @@
 //
 // DIRECTIONS: both sides gather. Otherwise a voxel shines the same to all sides, and the side to which more light comes counts.
 #pragma lumivox axis DIRECTIONS 0 1
-#pragma lumivox require (!DIRECTIONS || STORE == directional) && (STORE != directional || DIRECTIONS)
+#pragma lumivox require (STORE == directional || FACES == six) == (DIRECTIONS == 1)
 #pragma lumivox require STORE != clipmap
 #pragma lumivox require !CHANGED && PLACES != clipmap && (PLACES == octree) == (STORE == octree)
 layout(local_size_x = 64) in;

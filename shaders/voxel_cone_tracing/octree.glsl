@@ -55,4 +55,8 @@ ivec3 texelIn(int shift, uint brick) {
 }
 ivec3 texelOf(uint brick) { return texelIn(octreePoolShift, brick); }
 
+// Where voxels have six faces, the pool has six bricks for each, one behind the other: by the outward normals +x, -x, +y, -y, +z and -z.
+const uint kBrickFaces = 6u;
+uint brickOfFace(uint brick, uint face) { return kBrickFaces * brick + face; }
+
 #endif

@@ -7,9 +7,11 @@
 //
 // LIT: only the bricks that photons have changed (octree_lit.comp); the others are there already.
 // CHANGED: what has not changed since static geometry was lit is copied from there.
+// DIRECTIONS: voxels with six faces, as filter_directional.comp does it.
 #pragma lumivox axis LIT 0 1
 #pragma lumivox axis CHANGED 0 1
-#pragma lumivox require !LIT || !CHANGED
+#pragma lumivox axis DIRECTIONS 0 1
+#pragma lumivox require !LIT || (!CHANGED && !DIRECTIONS)
 layout(local_size_x = 64) in;
 #include "children.glsl"
 #include "octree_levels.glsl"
@@ -36,6 +38,33 @@ uint childBrick(OctreeBrick brick, uint child) {
   return tile == kNone ? kNone : octreeNodes[tile + child].brick;
 }
 
+#if DIRECTIONS
+uint finerBrick;
+vec4 higherFace(int axis, ivec3 child) { return texelFetch(pool, texelOf(brickOfFace(finerBrick, 2u * uint(axis))) + child, 0); }
+vec4 lowerFace(int axis, ivec3 child) { return texelFetch(pool, texelOf(brickOfFace(finerBrick, 2u * uint(axis) + 1u)) + child, 0); }
+#include "columns.glsl"
+const uint kFaces = kBrickFaces;
+
+// The faces of the voxel that the voxels of a brick make; kNone: nothing is there.
+void filtered(uint finer, out vec4 faces[kFaces]) {
+  for (uint face = 0u; face < kFaces; ++face) faces[face] = vec4(0.0);
+  if (finer == kNone) return;
+  finerBrick = finer;
+  for (int axis = 0; axis < 3; ++axis) lookThrough(ivec3(0), axis, ivec3(0), ivec3(1), vec3(2.0), faces[2 * axis], faces[2 * axis + 1]);
+}
+#else
+const uint kFaces = 1u;
+
+void filtered(uint finer, out vec4 faces[kFaces]) {
+  faces[0] = vec4(0.0);
+  if (finer == kNone) return;
+  vec4 child[8];
+  for (int i = 0; i < 8; ++i) child[i] = texelFetch(pool, texelOf(finer) + ivec3(i & 1, i >> 1 & 1, i >> 2), 0);
+  if (rule == kFacing) faces[0] = seenThrough(child);
+  for (int i = 0; i < 8 && rule == kAverage; ++i) faces[0] += child[i] / 8.0;
+}
+#endif
+
 void main() {
   uint brick, lane;
   if (!itemOf(depth, voxelsOfBrick(), brick, lane)) return;
@@ -46,19 +75,14 @@ void main() {
 #if CHANGED
   uint morton = mortonOf(unpackVoxel(octreeBricks[brick].place));
   if (!isChanged(morton, depth)) {
-    imageStore(poolImage, texelOf(brick) + voxel, stillVoxel(morton, depth, voxel));
+    for (uint face = 0u; face < kFaces; ++face)
+      imageStore(poolImage, texelOf(kFaces * brick + face) + voxel, stillVoxel(morton, depth, voxel, face));
     return;
   }
 #endif
-  vec4 value = vec4(0.0);  // of those that are copied, unless there is nothing to copy
-  if (all(lessThan(voxel, ivec3(2)))) {
-    uint finer = childBrick(octreeBricks[brick], uint(voxel.x | voxel.y << 1 | voxel.z << 2));
-    if (finer != kNone) {
-      vec4 child[8];
-      for (int i = 0; i < 8; ++i) child[i] = texelFetch(pool, texelOf(finer) + ivec3(i & 1, i >> 1 & 1, i >> 2), 0);
-      if (rule == kFacing) value = seenThrough(child);
-      for (int i = 0; i < 8 && rule == kAverage; ++i) value += child[i] / 8.0;
-    }
-  }
-  imageStore(poolImage, texelOf(brick) + voxel, value);
+  uint finer = kNone;  // of voxels that are copied, unless there is nothing to copy
+  if (all(lessThan(voxel, ivec3(2)))) finer = childBrick(octreeBricks[brick], uint(voxel.x | voxel.y << 1 | voxel.z << 2));
+  vec4 faces[kFaces];
+  filtered(finer, faces);
+  for (uint face = 0u; face < kFaces; ++face) imageStore(poolImage, texelOf(kFaces * brick + face) + voxel, faces[face]);
 }

@@ -9,12 +9,26 @@ layout(local_size_x = 64) in;
 const int kAdd = 0, kCopy = 1, kAverage = 2;
 layout(constant_id = 0) const int way = kCopy;
 
-layout(std140, binding = 0) uniform Transfer {
+layout(std140, binding = 0) uniform Borders {
   int depth;
   int axis;
+  int faces;  // of a voxel: 1 or 6
 };
 layout(binding = 0) uniform sampler3D pool;
 layout(binding = 0) uniform writeonly image3D poolImage;  // the same
+
+void transfer(ivec3 left, ivec3 right) {
+  if (way == kCopy) {
+    imageStore(poolImage, left, texelFetch(pool, right, 0));
+    return;
+  }
+  vec4 sum = texelFetch(pool, left, 0) + texelFetch(pool, right, 0);
+  if (way == kAverage) {
+    sum *= 0.5;
+    imageStore(poolImage, left, sum);
+  }
+  imageStore(poolImage, right, sum);
+}
 
 void main() {
   uint brick, lane;
@@ -28,15 +42,6 @@ void main() {
   low[(axis + 2) % 3] = int(lane / 3u);
   ivec3 high = low;
   high[axis] = 2;
-  ivec3 left = texelOf(brick) + high, right = texelOf(octreeNodes[neighbour].brick) + low;
-  if (way == kCopy) {
-    imageStore(poolImage, left, texelFetch(pool, right, 0));
-    return;
-  }
-  vec4 sum = texelFetch(pool, left, 0) + texelFetch(pool, right, 0);
-  if (way == kAverage) {
-    sum *= 0.5;
-    imageStore(poolImage, left, sum);
-  }
-  imageStore(poolImage, right, sum);
+  for (uint face = 0u; face < uint(faces); ++face)
+    transfer(texelOf(uint(faces) * brick + face) + high, texelOf(uint(faces) * octreeNodes[neighbour].brick + face) + low);
 }

@@ -7,12 +7,9 @@ vec2 insideStore(vec3 origin, vec3 direction) { return insideVolume(storeLow, st
 
 float finestVoxel(vec3 at) { return storeVoxel; }
 
-// No step skips a layer of the finer of the two levels that are read.
-float longestStep(float size) { return storeLayers != 0 ? storeVoxel * exp2(floor(log2(max(size / storeVoxel, 1.0)))) : kNoLimit; }
-
 // Listing 4.15: all faces at the point itself, filtered along all axes.
-vec4 interpolated(vec3 texcoord, vec3 direction, float level) {
-  vec3 weights = faceWeights(direction);
+vec4 interpolated(vec3 posWorld, vec3 direction, float level) {
+  vec3 texcoord = (posWorld - storeLow) / storeExtent, weights = faceWeights(direction);
   float levelOfFaces = level - storeFirstLevelOfFaces;
   vec4 faces = vec4(0.0);
   if (levelOfFaces > -1.0)
@@ -22,11 +19,8 @@ vec4 interpolated(vec3 texcoord, vec3 direction, float level) {
   return levelOfFaces >= 0.0 ? faces : mix(faces, textureLod(finestGrid, texcoord, 0.0), -levelOfFaces);
 }
 
-// Deviates from Listing 4.15: a step of `stride` through one level takes of each face the layer of voxels across its axis that its middle
-// lies in, filtered across that axis alone, and multiplies what the faces let through. Filtered along all axes the opacity of a wall falls
-// linearly to both sides, and steps through it let exp(-2 / cos) through (see the card); so no wall is missed, while an opening has the
-// edges that filtering gives it. A uniform medium of opacity a lets (1-a)^lengths through either way, since the weights sum to 1.
-vec4 layers(vec3 texcoord, vec3 direction, float level, float stride) {
+vec4 layers(vec3 posWorld, vec3 direction, float level, float stride) {
+  vec3 texcoord = (posWorld - storeLow) / storeExtent;
   float levelOfFaces = level - storeFirstLevelOfFaces;
   vec3 voxels = vec3(max(ivec3(storeVoxels) >> int(level), 1));
   vec3 centre = (floor(texcoord * voxels) + 0.5) / voxels;
@@ -46,25 +40,8 @@ vec4 layers(vec3 texcoord, vec3 direction, float level, float stride) {
                       stride / (exp2(level) * storeVoxel));
 }
 
-StoreSample readStore(vec3 at, vec3 direction, float size, float stride) {
-  vec3 texcoord = (at - storeLow) / storeExtent;
-  float blend, level = levelOf(max(size / storeVoxel, 1.0), storeCoarsest, blend);
-  if (storeLayers != 0) {
-    if (blend <= 0.0) {
-      vec4 value = layers(texcoord, direction, level, stride);
-      return StoreSample(value, value.a);
-    }
-    // Where the coarser level is empty the finer one is: its voxels are what that one was made of. Most of a room is.
-    vec4 coarser = layers(texcoord, direction, level + 1.0, stride);
-    if (coarser.a <= 0.0) return StoreSample(vec4(0.0), 0.0);
-    vec4 value = mix(layers(texcoord, direction, level, stride), coarser, blend);
-    return StoreSample(value, value.a);
-  }
-  StoreSample result = StoreSample(interpolated(texcoord, direction, level + blend), 0.0);
-  if (result.value.a > 0.0) result.opacity = opacityOfStep(result.value.a, stride, level, blend);
-  return result;
-}
+#include "read_faces.glsl"
 
 vec4 readStoreAsPublished(vec3 at, vec3 direction, float size) {
-  return interpolated((at - storeLow) / storeExtent, direction, log2(size / storeVoxel));
+  return interpolated(at, direction, log2(size / storeVoxel));
 }

@@ -78,7 +78,8 @@ class GatherPass : public Pass {
                                   .environment = frame.traits().environment,
                                   .medium = bound.axis,
                                   .store = input.axis,
-                                  .lookUp = input.lookUp};
+                                  .lookUp = input.lookUp,
+                                  .faces = input.faces};
     const gather::Constants constants{.coneCount = cones,
                                       .publishedCones = distribution == Distribution::published,
                                       .asPublished = asPublished,

@@ -120,6 +120,9 @@ class Injection {
     if (storesMedia())
       throw Error(
           "voxel_cone_tracing: 'store_media' fills voxels in which no surface lies, and an octree has none there; expected 'store_media off' or a dense grid");
+    if (result.faces > 1 && result.tree.voxels != VoxelOctree::Voxels::asGrid)
+      throw Error(
+          "voxel_cone_tracing.octree_inject: the six faces of a coarse voxel are seen through eight whole ones, and voxels at corners or in leaves cover halves of others; expected 'voxels as_grid' in voxel_cone_tracing.octree, or 'faces one'");
     if (bounces.count() > 1 && result.tree.voxels != VoxelOctree::Voxels::asGrid)
       throw Error(
           "voxel_cone_tracing.octree_inject: further bounces are gathered through levels that lie as those of a grid; expected 'voxels as_grid' in voxel_cone_tracing.octree, or 'bounces 1'");
@@ -128,11 +131,12 @@ class Injection {
     if (bounces.count() == 1) result.still = stillIn(frame, result, brightest);
     const VoxelSums sums = leafSums(frame, result);
     const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
-    resolveLeaves(frame, result, sums);
+    resolveLeaves(frame, result, sums, addsUp());
     for (int bounce = 1; bounce < bounces.count(); ++bounce) {
       fillLevels(frame, result);
-      reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(result, result.tree.ranks == nullptr));
-      resolveLeaves(frame, result, sums);
+      reflect(frame, sums, direct, brightest, bounces.cones(),
+              storeOf(result, result.tree.ranks == nullptr, true));
+      resolveLeaves(frame, result, sums, addsUp());
     }
     result.filledLevels = 1;
   }
@@ -160,7 +164,8 @@ class Injection {
 
   /// Kept as long as static geometry and lights stay where they are; nothing where that is not known, or
   /// where they have moved in this frame.
-  std::optional<StillLight> stillLight(PassContext& frame, const VoxelOctree& tree, float brightest) {
+  std::optional<StillLight> stillLight(PassContext& frame, const VoxelOctree& tree, int faces,
+                                       float brightest) {
     if (tree.still == nullptr || light_.media.present() || fragments_->reflected != nullptr) return {};
     auto key = std::pair(fragments_->still, Changes::placementOf(frame, light_.shadow, brightest));
     const bool stays = key == before_;
@@ -170,10 +175,11 @@ class Injection {
     return frame.kept("light of static geometry", key, [&] {
       RadianceOctree still;
       still.tree = *tree.still;
+      still.faces = faces;
       brightestOf(frame, still.unit);
       const VoxelSums sums = leafSums(frame, still);
       average(frame, stillOf(*fragments_), sums, brightest);
-      resolveLeaves(frame, still, sums);
+      resolveLeaves(frame, still, sums, addsUp());
       return StillLight{std::make_shared<const RadianceOctree>(still), *moving,
                         sortedByCells(frame, stillOf(*fragments_))};
     });
@@ -181,7 +187,7 @@ class Injection {
 
   /// Static geometry that has been lit, and in `octree` what has changed since; null where that is not known.
   std::shared_ptr<const RadianceOctree> stillIn(PassContext& frame, RadianceOctree& octree, float brightest) {
-    const std::optional<StillLight> still = stillLight(frame, octree.tree, brightest);
+    const std::optional<StillLight> still = stillLight(frame, octree.tree, octree.faces, brightest);
     if (!still) return nullptr;
     std::vector<Bounds> moving = *changes_.moving(frame);
     moving.insert(moving.end(), still->moving.begin(), still->moving.end());
@@ -192,23 +198,14 @@ class Injection {
   VoxelSums leafSums(PassContext& frame, RadianceOctree& result) const {
     VoxelSums sums;
     sums.kind = inject::Variant::placesOctree;
-    sums.voxels = makePool(frame, result, format(), add::sums);
+    sums.directional = result.faces > 1;
+    sums.voxels = sums.directional ? makePool(frame, result, format(), add::directionalSums)
+                                   : makePool(frame, result, format(), add::sums);
     sums.places = OctreeBinding(result.tree, result.poolShift);
     if (result.still == nullptr) return sums;
     sums.changed = &result.changed;
     sums.places.add(stillBinding(result));
     return sums;
-  }
-
-  void resolveLeaves(PassContext& frame, const RadianceOctree& result, const VoxelSums& sums) const {
-    const VoxelOctree& tree = result.tree;
-    const bool inLeaves = tree.voxels == VoxelOctree::Voxels::inLeaves;
-    forEachBrick(
-        frame, frame.program(octree_resolve::Variant{.changed = sums.changed != nullptr}),
-        {octree_resolve::leaves({.unit = result.unit, .coverageSum = addsUp(), .inLeaves = inLeaves}),
-         octree_resolve::sums(sums.voxels), octree_resolve::radianceImage(result.radiance), sums.places},
-        tree, tree.depth, sums.changed != nullptr ? 1 : tree.brickVoxels());
-    transferBorders(frame, result, tree.depth, inLeaves ? Transfer::average : Transfer::copy);
   }
 
   GridPlacement placement() const {
@@ -250,6 +247,7 @@ class Injection {
                                   .medium = bound.axis,
                                   .store = store.axis,
                                   .lookUp = store.lookUp,
+                                  .faces = store.faces,
                                   .places = sums.kind};
     // Cones that see what is partly covered by the finest voxels, and with six faces what they begin in, lose
     // nothing in a closed room. With one value for all sides what they begin in is the surface itself.
@@ -358,7 +356,11 @@ class InjectDirectionalPass : public Pass {
 class OctreeInjectPass : public Pass {
   Injection injection{this};
   Bounces bounces{this};
+  enum class Faces { one, six };
   In<VoxelOctree> tree{this, "tree", "the nodes that the fragments make"};
+  Param<Faces> faces{
+      this, "faces", Faces::one,
+      "of a voxel: one, the same from all sides; or six at all levels, each with its own light and opacity, as those of inject_directional (Crassin et al. 2011, Sec. 8.1; thesis Sec. 3.1.3)"};
   Out<RadianceOctree> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
                                Levels::finest};
 
@@ -370,6 +372,7 @@ class OctreeInjectPass : public Pass {
   void run(PassContext& frame) override {
     RadianceOctree result;
     result.tree = *tree;
+    result.faces = faces == Faces::six ? 6 : 1;
     injection.fill(frame, result, bounces);
     radiance = result;
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "clipmap.h"
+#include "levels.h"
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
 #include "octree.h"
@@ -69,19 +70,25 @@ StoreBinding storeOf(const RadianceClipmap& clipmap, bool layers) {
   return result;
 }
 
-StoreBinding storeOf(const RadianceOctree& octree, bool descends) {
+StoreBinding storeOf(const RadianceOctree& octree, bool descends, bool layers) {
   const VoxelOctree& tree = octree.tree;
+  // With the empty voxels that a dense grid has at its high ends: a wall in the last voxels is read to half a
+  // voxel of every level behind it, and a cone that ended with it would take half of the wall for open.
+  GridPlacement whole = tree.grid;
+  whole.resolution = evenlyHalved(whole.resolution);
   StoreBinding result =
-      begun(gather::Variant::storeOctree, tree.grid,
+      begun(gather::Variant::storeOctree, whole,
             {.storeCoarsest = static_cast<float>(octree.filledLevels - 1),
              .storeUnit = octree.unit,
-             .storeOpacityOfFinestVoxel = octree.opacity == RadianceOctree::Opacity::ofFinestVoxel});
+             .storeOpacityOfFinestVoxel = octree.opacity == RadianceOctree::Opacity::ofFinestVoxel,
+             .storeLayers = layers});
   if (tree.nodes == nullptr && descends)
     throw Error(
         "voxel_cone_tracing: 'look_up descent' goes from node to node, and bricks of their own voxels have no nodes; expected 'look_up ranks', or 'bricks published' in voxel_cone_tracing.octree");
   result.lookUp = tree.nodes == nullptr                ? gather::Variant::lookUpOwn
                   : tree.ranks != nullptr && !descends ? gather::Variant::lookUpRanks
                                                        : gather::Variant::lookUpDescent;
+  result.faces = octree.faces > 1 ? gather::Variant::facesSix : gather::Variant::facesOne;
   result.add(shader::UniformSlot<gather::OctreeStore>{"OctreeStore"}(
       {.firstVoxel = tree.firstVoxel(),
        .firstVoxelGrows = tree.voxels == VoxelOctree::Voxels::asGrid ? 1.0f : 0.0f}));
@@ -107,7 +114,7 @@ StoreInput::StoreInput(Pass* pass)
           "of 'octree': how the brick of a node is found: by counting the nodes before it; from the root, as published"),
       reading_(
           pass, "reading", Reading::layers,
-          "of 'directions' and 'clipmap': each face by the layer of voxels across its axis, so that walls are closed; or filtered along all axes and averaged, as published") {
+          "of 'directions', 'clipmap' and an octree with six faces: each face by the layer of voxels across its axis, so that walls are closed; or filtered along all axes and averaged, as published") {
 }
 
 StoreBinding StoreInput::binding() const {
@@ -119,7 +126,7 @@ StoreBinding StoreInput::binding() const {
   if (grid_.present()) return storeOf(*grid_);
   if (clipmap_.present()) return storeOf(*clipmap_, reading_ == Reading::layers);
   return directions_.present() ? storeOf(*directions_, reading_ == Reading::layers)
-                               : storeOf(*octree_, lookUp_ == LookUp::descent);
+                               : storeOf(*octree_, lookUp_ == LookUp::descent, reading_ == Reading::layers);
 }
 
 ConeMarch::ConeMarch(Pass* pass)

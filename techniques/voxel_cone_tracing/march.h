@@ -15,6 +15,7 @@ namespace lumivox::voxel_cone_tracing {
 struct StoreBinding : shader::BindingSet {
   int axis = 0;             ///< value of the shader's axis STORE
   int lookUp = 0;           ///< and of LOOK_UP
+  int faces = 0;            ///< and of FACES
   float length = 0;         ///< no cone need be longer, m
   float voxel = 0;          ///< finest voxels, m
   GridPlacement grid;       ///< of the finest level
@@ -25,8 +26,9 @@ struct StoreBinding : shader::BindingSet {
 StoreBinding storeOf(const RadianceGrid& grid);
 /// By layers, or filtered along all axes.
 StoreBinding storeOf(const DirectionalRadianceGrid& grid, bool layers);
-/// Bricks are found from the root in place of by their ranks.
-StoreBinding storeOf(const RadianceOctree& octree, bool descends);
+/// Bricks are found from the root in place of by their ranks; those of six faces are read by layers, or
+/// filtered along all axes.
+StoreBinding storeOf(const RadianceOctree& octree, bool descends, bool layers);
 StoreBinding storeOf(const RadianceClipmap& clipmap, bool layers);
 
 /// How cones step through a store; the meaning of each is that of the parameter of its name (ConeMarch).

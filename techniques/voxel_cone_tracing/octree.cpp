@@ -52,12 +52,11 @@ TreeBytes treeBytes(const VoxelOctree& tree, int depth) {
               records * (own ? VoxelOctree::kCornersBytes : VoxelOctree::kTileBytes)};
 }
 /// And of its bricks, with the sums that fill the leaves.
-std::uint64_t brickBytes(const VoxelOctree& tree, int depth, std::uint64_t voxelBytes) {
+std::uint64_t brickBytes(const VoxelOctree& tree, int depth, const VoxelBytes& voxel) {
   const std::uint64_t bricks = tree.bricksDownTo[static_cast<std::size_t>(depth)],
                       leaves = depth > 0 ? bricks - tree.bricksDownTo[static_cast<std::size_t>(depth) - 1]
                                          : bricks;
-  return bricks * static_cast<std::uint64_t>(tree.brickVoxels()) * voxelBytes +
-         8 * leaves * add::sums.elementBytes;
+  return bricks * static_cast<std::uint64_t>(tree.brickVoxels()) * voxel.texels + 8 * leaves * voxel.sums;
 }
 
 /// Why so many bytes cannot be had; empty where they can. They are given back at once.
@@ -77,13 +76,13 @@ std::string whyNot(PassContext& frame, std::uint64_t bytes) {
 
 }  // namespace
 
-void requireRoom(PassContext& frame, const VoxelOctree& tree, std::uint64_t voxelBytes, bool holdsTree) {
+void requireRoom(PassContext& frame, const VoxelOctree& tree, const VoxelBytes& voxel, bool holdsTree) {
   if (!tree.needsMore) return;
   const TreeBytes all = treeBytes(tree, tree.depth);
   const std::uint64_t held = holdsTree ? all.tags + all.nodes : 0;
   const auto bytesOf = [&](int depth) {
     const TreeBytes some = treeBytes(tree, depth);
-    return some.tags + some.nodes + brickBytes(tree, depth, voxelBytes);
+    return some.tags + some.nodes + brickBytes(tree, depth, voxel);
   };
   const auto missing = [&](int depth) {
     return whyNot(frame, bytesOf(depth) - std::min(bytesOf(depth), held));
@@ -96,7 +95,7 @@ void requireRoom(PassContext& frame, const VoxelOctree& tree, std::uint64_t voxe
       "an octree of {} voxels along its longest side takes {}{}: tags {}, nodes {}, {} bricks {}; of sizes halved from it {} ({})",
       tree.grid.longest(), tree.bricksDownTo.back() > 0 ? "" : "at least ", formatBytes(bytesOf(tree.depth)),
       formatBytes(all.tags), formatBytes(all.nodes), tree.bricksDownTo.back(),
-      formatBytes(brickBytes(tree, tree.depth, voxelBytes)),
+      formatBytes(brickBytes(tree, tree.depth, voxel)),
       fits < 0 ? "none fits"
                : fmt::format("the largest that fits is {}", tree.grid.longest() >> (tree.depth - fits)),
       why));
@@ -213,7 +212,7 @@ class OctreePass : public Pass {
       result.bricksDownTo[depth - 1] = room.bricksAbove[depth];
     result.bricksDownTo.back() = room.bricks;
     before = room;
-    requireRoom(frame, result, 4 * sizeof(float), false);
+    requireRoom(frame, result, {.texels = 4 * sizeof(float), .sums = add::sums.elementBytes}, false);
     return taken(frame, result);
   }
 

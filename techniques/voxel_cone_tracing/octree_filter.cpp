@@ -30,8 +30,9 @@ gpu::TextureRef pool(PassContext& frame, std::uint64_t bricks, int side, gpu::Fo
 gpu::BufferRef makePool(PassContext& frame, RadianceOctree& result, gpu::Format format,
                         const shader::StorageSlot& sums) {
   const VoxelOctree& tree = result.tree;
-  requireRoom(frame, tree, gpu::bytesPerTexel(format), true);
-  result.radiance = pool(frame, tree.brickRoom, tree.brickSide(), format, result.poolShift);
+  const auto faces = static_cast<std::uint64_t>(result.faces);
+  requireRoom(frame, tree, {.texels = faces * gpu::bytesPerTexel(format), .sums = sums.elementBytes}, true);
+  result.radiance = pool(frame, faces * tree.brickRoom, tree.brickSide(), format, result.poolShift);
   return frame.emptyElements(sums, 8 * tree.leafRoom, "sums of voxels");
 }
 
@@ -41,7 +42,7 @@ void transferBorders(PassContext& frame, const RadianceOctree& octree, int depth
     forEachBrick(
         frame,
         frame.program(octree_transfer::Variant{}, octree_transfer::Constants{.way = static_cast<int>(how)}),
-        {octree_transfer::transfer({depth, axis}),
+        {octree_transfer::borders({depth, axis, octree.faces}),
          octree_transfer::pool(octree.radiance, gpu::Sampling::nearest),
          octree_transfer::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift)},
         octree.tree, depth, 9);
@@ -52,14 +53,41 @@ void transferBorders(PassContext& frame, const RadianceOctree& octree, int depth
   }
 }
 
+void resolveLeaves(PassContext& frame, const RadianceOctree& octree, const VoxelSums& sums,
+                   bool coverageSum) {
+  const VoxelOctree& tree = octree.tree;
+  const bool inLeaves = tree.voxels == VoxelOctree::Voxels::inLeaves;
+  forEachBrick(
+      frame,
+      frame.program(
+          octree_resolve::Variant{.changed = sums.changed != nullptr, .directions = sums.directional}),
+      {octree_resolve::leaves({.unit = octree.unit, .coverageSum = coverageSum, .inLeaves = inLeaves}),
+       octree_resolve::radianceImage(octree.radiance), sums.bindings()},
+      tree, tree.depth, sums.changed != nullptr ? 1 : tree.brickVoxels());
+  transferBorders(frame, octree, tree.depth, inLeaves ? Transfer::average : Transfer::copy);
+}
+
+void addParts(PassContext& frame, const RadianceOctree& octree, int depth, bool means) {
+  constexpr std::array<int, 4> kPartThreads{1, 6, 12, 8};
+  for (int part = 0; part < 4; ++part)
+    forEachBrick(
+        frame, frame.program(octree_filter_part::Variant{}, octree_filter_part::Constants{.part = part}),
+        {octree_filter_part::parts({.depth = depth, .means = means}),
+         octree_filter_part::pool(octree.radiance, gpu::Sampling::nearest),
+         octree_filter_part::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift)},
+        octree.tree, depth, kPartThreads[static_cast<std::size_t>(part)]);
+  transferBorders(frame, octree, depth, means ? Transfer::average : Transfer::add);
+}
+
 namespace {
 
 /// Voxels of a depth from those of the next one; in the order of octree_filter.comp.
 enum class Halving { facing, average };
 void halve(PassContext& frame, const RadianceOctree& octree, int depth, Halving rule) {
   forEachBrick(frame,
-               frame.program(octree_filter::Variant{.changed = octree.still != nullptr},
-                             octree_filter::Constants{.rule = static_cast<int>(rule)}),
+               frame.program(
+                   octree_filter::Variant{.changed = octree.still != nullptr, .directions = octree.faces > 1},
+                   octree_filter::Constants{.rule = static_cast<int>(rule)}),
                {octree_filter::coarse({depth}), octree_filter::pool(octree.radiance, gpu::Sampling::nearest),
                 octree_filter::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift),
                 stillBinding(octree)},
@@ -95,6 +123,9 @@ class OctreeFilterPass : public Pass {
     if (!asGrid && opacity == Opacity::facing)
       throw Error(
           "voxel_cone_tracing.octree_filter: 'opacity facing' takes eight whole voxels for a coarse one, and with voxels at corners or in leaves it covers halves of others; expected 'opacity average', or 'voxels as_grid' in voxel_cone_tracing.octree");
+    if (result.faces > 1 && opacity != Opacity::facing)
+      throw Error(
+          "voxel_cone_tracing.octree_filter: each of the six faces of a coarse voxel is what is seen through it along its axis, and 'opacity average' has no sides; expected 'opacity facing', or 'faces one' in voxel_cone_tracing.octree_inject");
     if (result.still != nullptr)
       result.still = frame.kept("levels of static geometry", result.still, [&] {
         for (int depth = result.tree.depth - 1; depth >= 0; --depth)
@@ -105,7 +136,7 @@ class OctreeFilterPass : public Pass {
       if (asGrid) {
         halve(frame, result, depth, opacity);
       } else {
-        addParts(frame, result, depth);
+        addParts(frame, result, depth, borders == Borders::averaged);
       }
     }
     result.still = nullptr;
@@ -113,20 +144,6 @@ class OctreeFilterPass : public Pass {
     result.opacity = opacity == Opacity::facing ? RadianceOctree::Opacity::ofVoxel
                                                 : RadianceOctree::Opacity::ofFinestVoxel;
     mips = result;
-  }
-
-  /// Centres, faces, edges and corners, one after another.
-  void addParts(PassContext& frame, const RadianceOctree& octree, int depth) {
-    constexpr std::array<int, 4> kPartThreads{1, 6, 12, 8};
-    const bool means = borders == Borders::averaged;
-    for (int part = 0; part < 4; ++part)
-      forEachBrick(
-          frame, frame.program(octree_filter_part::Variant{}, octree_filter_part::Constants{.part = part}),
-          {octree_filter_part::parts({.depth = depth, .means = means}),
-           octree_filter_part::pool(octree.radiance, gpu::Sampling::nearest),
-           octree_filter_part::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift)},
-          octree.tree, depth, kPartThreads[static_cast<std::size_t>(part)]);
-    transferBorders(frame, octree, depth, means ? Transfer::average : Transfer::add);
   }
 };
 

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "directional_grid.h"
 #include "lumivox/pipeline/port.h"
 #include "lumivox/pipeline/ports.h"
 
@@ -100,9 +102,12 @@ struct ChangedCells {
 struct RadianceOctree {
   VoxelOctree tree;
   gpu::TextureRef radiance;  ///< the pool: a texel a voxel of a brick
-  int poolShift = 0;         ///< the pool has 2 to the power of this bricks along x and y
-  float unit = 1.0f;         ///< W/(sr m^2): keeps very bright and very dark light within half floats
-  int filledLevels = 1;      ///< finest first
+  /// Of a voxel: 1, the same from all sides; or 6, by the outward normals +x, -x, +y, -y, +z and -z, each
+  /// with the opacity along it, in bricks one behind the other (thesis 3.1.3).
+  int faces = 1;
+  int poolShift = 0;     ///< the pool has 2 to the power of this bricks of a face along x and y
+  float unit = 1.0f;     ///< W/(sr m^2): keeps very bright and very dark light within half floats
+  int filledLevels = 1;  ///< finest first
   /// What opacity means in coarser levels, as RadianceGrid says it.
   enum class Opacity { ofVoxel, ofFinestVoxel } opacity = Opacity::ofVoxel;
   /// What is not in one of these cells has the voxels of static geometry in `still`, which is null where that
@@ -110,25 +115,37 @@ struct RadianceOctree {
   std::shared_ptr<const RadianceOctree> still;
   ChangedCells changed;
 
-  glm::ivec3 texelOf(std::uint32_t brick) const {
+  glm::ivec3 texelOf(std::uint32_t brick, int face = 0) const {
     const std::uint32_t row = (1u << poolShift) - 1u;
+    brick = brick * static_cast<std::uint32_t>(faces) + static_cast<std::uint32_t>(face);
     return tree.brickSide() * glm::ivec3(brick & row, brick >> poolShift & row, brick >> (2 * poolShift));
   }
   /// The voxels of a level, each once: those that a brick shares with the neighbour above are that one's.
   /// `component`: 3 gives the opacity, 0 the three channels of radiance.
-  std::vector<VoxelsRead::Voxel> voxels(int level, int component) const {
+  std::vector<VoxelsRead::Voxel> voxels(int level, int component, int face = 0) const {
     const std::vector<float> texels = radiance->downloadFloats(0);
     const gpu::TextureDescription& pool = radiance->description();
     std::vector<VoxelsRead::Voxel> result;
     for (const OctreeBrickList::Brick& brick : OctreeBrickList::of(tree, level).bricks)
       for (int corner = 0; corner < 8; ++corner) {
-        const glm::ivec3 local(corner & 1, corner >> 1 & 1, corner >> 2), at = texelOf(brick.index) + local;
+        const glm::ivec3 local(corner & 1, corner >> 1 & 1, corner >> 2),
+            at = texelOf(brick.index, face) + local;
         const float* texel =
             texels.data() + 4 * static_cast<std::size_t>((at.z * pool.height + at.y) * pool.width + at.x);
         const glm::vec3 value =
             component == 3 ? glm::vec3(texel[3]) : unit * glm::vec3(texel[0], texel[1], texel[2]);
         if (texel[3] > 0.0f) result.push_back({2 * brick.place + local, value});
       }
+    return result;
+  }
+  /// Of voxels with six faces: the opacities along x, y and z of those that have one.
+  std::vector<VoxelsRead::Voxel> opacities(int level) const {
+    std::map<std::array<int, 3>, glm::vec3> found;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const auto& [voxel, value] : voxels(level, 3, 2 * axis))
+        found[{voxel.x, voxel.y, voxel.z}][axis] = value.x;
+    std::vector<VoxelsRead::Voxel> result;
+    for (const auto& [at, value] : found) result.push_back({{at[0], at[1], at[2]}, value});
     return result;
   }
 };
@@ -168,9 +185,14 @@ struct PortTraits<voxel_cone_tracing::RadianceOctree> {
     result.meaning = "outgoing radiance and opacity in the bricks of a sparse voxel octree";
     result.resources.push_back(
         {"radiance", "d3 rgba16f or rgba32f",
-         "2 x 2 x 2 or 3 x 3 x 3 texels a brick: rgb radiance * opacity / unit, a opacity"});
+         "2 x 2 x 2 or 3 x 3 x 3 texels a brick, for each of one or six faces: rgb radiance * opacity / unit, a opacity"});
     result.fields = {{"radiance", "outgoing radiance, multiplied by the opacity", "W/(sr m^2)"},
                      {"opacity", "opacity", "1", PortField::Role::fog}};
+    for (const char* face : PortTraits<voxel_cone_tracing::DirectionalRadianceGrid>::kFaces)
+      result.fields.push_back({std::string("radiance_") + face,
+                               "outgoing radiance of the face with that normal, multiplied by the opacity",
+                               "W/(sr m^2)"});
+    result.fields.push_back({"opacity_along", "opacity along x, y and z, of voxels with six faces", "1"});
     return result;
   }
   static void contents(const voxel_cone_tracing::RadianceOctree& port, PortContents& contents) {
@@ -184,11 +206,28 @@ struct PortTraits<voxel_cone_tracing::RadianceOctree> {
       const VoxelBox box{glm::dvec3(port.tree.grid.low) + middle - 0.5 * size, glm::dvec3(size),
                          glm::ivec3(2 << (port.tree.depth - level))};
       const std::uint64_t bytes = port.radiance->sizeBytes();
+      if (port.faces > 1) {
+        sides(port, level, box, contents);
+        continue;
+      }
       contents.field("radiance", box, VoxelsRead{3, bytes, [port, level] { return port.voxels(level, 0); }},
                      level);
       contents.field("opacity", box, VoxelsRead{1, bytes, [port, level] { return port.voxels(level, 3); }},
                      level);
     }
+  }
+  static void sides(const voxel_cone_tracing::RadianceOctree& port, int level, const VoxelBox& box,
+                    PortContents& contents) {
+    const std::uint64_t bytes = port.radiance->sizeBytes();
+    int face = 0;
+    for (const char* side : PortTraits<voxel_cone_tracing::DirectionalRadianceGrid>::kFaces) {
+      contents.field(std::string("radiance_") + side, box,
+                     VoxelsRead{3, bytes, [port, level, face] { return port.voxels(level, 0, face); }},
+                     level);
+      ++face;
+    }
+    contents.field("opacity_along", box,
+                   VoxelsRead{3, bytes, [port, level] { return port.opacities(level); }}, level);
   }
 };
 

@@ -109,14 +109,38 @@ inline constexpr double kAmbient = kPi;
 
 /// The finest level of an octree whose fragments reflect their albedo.
 inline RadianceOctree leavesOf(const VoxelFragments& list, const char* voxels = "as_grid",
-                               const char* precision = "float", const char* bricks = "own") {
+                               const char* precision = "float", const char* bricks = "own",
+                               const char* faces = "one") {
   const Scene scene = cones::emptyScene();
   PassHarness inject(device(), techniques(), "voxel_cone_tracing", "octree_inject", scene,
                      snapshotOf(scene, 0.0));
   inject.setParameter("ambient", kAmbient);
   inject.setParameter("precision", std::string(precision));
+  inject.setParameter("faces", std::string(faces));
   inject.setInput("fragments", list);
   inject.setInput("tree", treeOf(list, voxels, false, bricks));
+  inject.run();
+  return inject.output<RadianceOctree>("radiance");
+}
+
+/// The finest level of the octree of a scene under its lights.
+inline RadianceOctree injectedOctree(const Scene& scene, int resolution,
+                                     const cones::InjectSettings& settings = {}, const char* faces = "one",
+                                     const char* bricks = "own") {
+  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
+  PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshot);
+  voxels.setParameter("resolution", resolution);
+  voxels.run();
+  const auto fragments = voxels.output<VoxelFragments>("fragments");
+  PassHarness shadow(device(), techniques(), "direct_lighting", "shadow_map", scene, snapshot);
+  shadow.run();
+  PassHarness inject(device(), techniques(), "voxel_cone_tracing", "octree_inject", scene, snapshot);
+  inject.setParameter("precision", std::string(settings.precision));
+  inject.setParameter("bounces", settings.bounces);
+  inject.setParameter("faces", std::string(faces));
+  inject.setInput("fragments", fragments);
+  inject.setInput("tree", treeOf(fragments, "as_grid", false, bricks));
+  inject.setInput("shadow", shadow.output<ShadowMap>("depth"));
   inject.run();
   return inject.output<RadianceOctree>("radiance");
 }
@@ -134,7 +158,8 @@ inline RadianceOctree filteredOctree(const RadianceOctree& leaves, const char* o
 }
 
 /// The voxels of every brick of a level: by the node's place, x first, of the 27 that it may have.
-inline std::map<Cell, std::array<glm::vec4, 27>> bricksOf(const RadianceOctree& octree, int level) {
+inline std::map<Cell, std::array<glm::vec4, 27>> bricksOf(const RadianceOctree& octree, int level,
+                                                          int face = 0) {
   const std::vector<float> texels = octree.radiance->downloadFloats(0);
   const gpu::TextureDescription& pool = octree.radiance->description();
   std::map<Cell, std::array<glm::vec4, 27>> result;
@@ -143,7 +168,7 @@ inline std::map<Cell, std::array<glm::vec4, 27>> bricksOf(const RadianceOctree& 
     for (int i = 0; i < 27; ++i) {
       const glm::ivec3 local(i % 3, i / 3 % 3, i / 9);
       if (glm::any(glm::greaterThanEqual(local, glm::ivec3(octree.tree.brickSide())))) continue;
-      const glm::ivec3 at = octree.texelOf(brick.index) + local;
+      const glm::ivec3 at = octree.texelOf(brick.index, face) + local;
       const std::size_t texel = 4 * static_cast<std::size_t>((at.z * pool.height + at.y) * pool.width + at.x);
       values[static_cast<std::size_t>(i)] = {texels[texel], texels[texel + 1], texels[texel + 2],
                                              texels[texel + 3]};

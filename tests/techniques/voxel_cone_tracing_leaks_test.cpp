@@ -48,15 +48,17 @@ TEST_CASE("of the light of a room less comes through a thin wall by six directio
                  lobes = leaked(pipeline("voxel_cone_tracing_lobes"), row.thickness),
                  coarse = leaked(pipeline("voxel_cone_tracing_coarse_directional"), row.thickness),
                  directional = leaked(pipeline("voxel_cone_tracing_directional"), row.thickness),
-                 octree = leaked(pipeline("voxel_cone_tracing_octree"), row.thickness);
+                 octree = leaked(pipeline("voxel_cone_tracing_octree"), row.thickness),
+                 sides = leaked(pipeline("voxel_cone_tracing_octree_directional"), row.thickness);
     INFO("a wall of " << row.thickness << " voxels: " << isotropic << ", " << lobes << ", " << coarse << ", "
-                      << directional << ", octree " << octree);
+                      << directional << ", octree " << octree << ", of six faces " << sides);
     // A tenth for other drivers.
     CHECK(isotropic == Approx(row.isotropic).epsilon(0.1));
     CHECK(lobes == Approx(row.lobes).epsilon(0.1));
     CHECK(coarse == Approx(row.coarse).epsilon(0.1));
     CHECK(directional == Approx(row.directional).epsilon(0.1));
     CHECK(octree == Approx(isotropic).epsilon(0.1));
+    CHECK(sides == Approx(directional).epsilon(0.1));
   }
 }
 

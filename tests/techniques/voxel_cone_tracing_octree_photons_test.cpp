@@ -141,6 +141,7 @@ TEST_CASE("photons in an octree without coarser levels, or with voxels elsewhere
   };
   refused(leavesOf(list), "expected an octree with all levels");
   refused(filteredOctree(leavesOf(list, "at_corners"), "average"), "'voxels as_grid'");
+  refused(filteredOctree(leavesOf(list, "as_grid", "float", "own", "six")), "'faces one'");
 }
 
 TEST_CASE("without a light there are no photons, and the octree is dark") {

@@ -25,27 +25,11 @@ void checkNear(const glm::vec4& value, const glm::vec4& expected, double toleran
 std::pair<RadianceGrid, RadianceOctree> bothOf(const Scene& scene, int resolution, const char* precision,
                                                const char* opacity, const char* bricks = "own",
                                                int bounces = 1) {
-  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshot);
-  voxels.setParameter("resolution", resolution);
-  voxels.run();
-  const auto fragments = voxels.output<VoxelFragments>("fragments");
-  PassHarness shadow(device(), techniques(), "direct_lighting", "shadow_map", scene, snapshot);
-  shadow.run();
-  const auto light = shadow.output<ShadowMap>("depth");
-  PassHarness dense(device(), techniques(), "voxel_cone_tracing", "inject", scene, snapshot);
-  PassHarness sparse(device(), techniques(), "voxel_cone_tracing", "octree_inject", scene, snapshot);
-  for (PassHarness* inject : {&dense, &sparse}) {
-    inject->setParameter("precision", std::string(precision));
-    inject->setParameter("bounces", bounces);
-    inject->setInput("fragments", fragments);
-    inject->setInput("shadow", light);
-  }
-  sparse.setInput("tree", treeOf(fragments, "as_grid", false, bricks));
-  dense.run();
-  sparse.run();
-  return {filtered(dense.output<RadianceGrid>("radiance"), opacity),
-          filteredOctree(sparse.output<RadianceOctree>("radiance"), opacity)};
+  InjectSettings settings;
+  settings.precision = precision;
+  settings.bounces = bounces;
+  return {filtered(injectedGrid(scene, resolution, settings), opacity),
+          filteredOctree(injectedOctree(scene, resolution, settings, "one", bricks), opacity)};
 }
 
 Scene cornell() {
@@ -257,8 +241,7 @@ TEST_CASE("cones see in the octree what they see in the dense grid, however its 
   };
   for (const auto& [bricks, lookUp] :
        {Way{"own", "ranks"}, Way{"published", "ranks"}, Way{"published", "descent"}}) {
-    auto [dense, sparse] = bothOf(cornell(), 64, "float", "facing", bricks);
-    sparse.tree.grid.resolution = dense.grid.resolution;  // with the empty voxels that a grid adds at its end
+    const auto [dense, sparse] = bothOf(cornell(), 64, "float", "facing", bricks);
     for (const glm::vec3& place : {glm::vec3(0.1f, 0.1f, 0.1f), {0.0f, 0.45f, -0.1f}, {-0.15f, 0.4f, 0.05f}})
       for (const double clearance : {0.0, 0.5}) {  // the finest level alone, and wide voxels
         GatherSettings settings{16};
@@ -406,17 +389,21 @@ TEST_CASE("as published, a sample between two levels is blended the other way ro
         Approx(expected).epsilon(1e-3));
 }
 
-TEST_CASE("on the Cornell box the octree's image differs from the dense grid's by a FLIP under 0.03") {
+TEST_CASE("the octree's image differs from the dense grid's by a FLIP under 0.03, in grids of any shape") {
+  // The room fills no cube: its dense grid has empty voxels at the high ends, behind the walls.
   RenderOptions options;
   options.width = options.height = 64;
-  const Scene scene = cornell();
-  const FrameResult dense = renderOnce(scene, pipeline("voxel_cone_tracing"), options),
-                    sparse = renderOnce(scene, pipeline("voxel_cone_tracing_octree"), options);
-  for (const char* output : {"indirect_diffuse", "final"}) {
-    const ImageError error = compare(sparse.outputs.at(output), dense.outputs.at(output));
-    INFO(output << ": FLIP " << error.flip);
-    CHECK(error.flip < 0.03);
-    CHECK(error.meanRatio.value == Approx(1.0).epsilon(0.01));
+  for (const char* name : {"cornell", "untuned/room"}) {
+    const Scene scene = loadScene(sourceDirectory() / "scenes" / (std::string(name) + ".scene"));
+    CAPTURE(name);
+    const FrameResult dense = renderOnce(scene, pipeline("voxel_cone_tracing"), options),
+                      sparse = renderOnce(scene, pipeline("voxel_cone_tracing_octree"), options);
+    for (const char* output : {"indirect_diffuse", "final"}) {
+      const ImageError error = compare(sparse.outputs.at(output), dense.outputs.at(output));
+      INFO(output << ": FLIP " << error.flip);
+      CHECK(error.flip < 0.03);
+      CHECK(error.meanRatio.value == Approx(1.0).epsilon(0.001));
+    }
   }
 }
 

@@ -32,6 +32,7 @@ const char* const kPipelines[] = {"voxel_cone_tracing",
                                   "voxel_cone_tracing_coarse_directional",
                                   "voxel_cone_tracing_directional",
                                   "voxel_cone_tracing_octree",
+                                  "voxel_cone_tracing_octree_directional",
                                   "voxel_cone_tracing_clipmap"};
 
 ImageBuffer indirectLight(const Scene& scene, const char* name) {

@@ -195,6 +195,7 @@ TEST_CASE("a scene pays for what it uses and nothing else: light propagated from
             "gather ENVIRONMENT=0",
             "gather GLOSSY=1",
             "gather LOBES=0",
+            "gather FACES=one",
             "gather LOOK_UP=own",
             "gather MEDIUM=none",
             "gather STORE=dense",
