@@ -1,6 +1,7 @@
 #include "changed_cells.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "lumivox/toolkit/bindings.h"
 
@@ -171,25 +172,45 @@ void forEachChanged(PassContext& frame, const shader::BoundProgram& program,
                          *changed.count, sizeof(std::uint32_t));
 }
 
-ChangedCells Changes::cells(PassContext& frame, const VoxelFragments& list, const CellFragments& still,
-                            const In<ShadowMap>& shadow, const std::vector<Bounds>& moving) {
+namespace {
+
+/// What is listed of changed cells.
+shader::BindingSet listing(const ChangedCells& cells) {
+  return {bindingOf(cells), changed_mark::changedCount(cells.count),
+          changed_mark::changedFragments(cells.fragments)};
+}
+
+}  // namespace
+
+ChangedCells Changes::movingCells(PassContext& frame, const VoxelFragments& list) {
   ChangedCells result = cellsOver(list.grid);
   result.bits =
       frame.emptyElements(changed_mark::changedCells, firstTagWord(result.cellDepth + 1), "changed cells");
   result.fragments = frame.elements(changed_mark::changedFragments, list.capacity, "changed fragments");
   result.count = frame.buffer(4 * sizeof(std::uint32_t), "changed fragment count");
   result.count->clear();
-  const shader::BindingSet bindings{bindingOf(result), changed_mark::changedCount(result.count),
-                                    changed_mark::changedFragments(result.fragments)};
-  forEachFragment(frame, frame.program(changed_mark::Variant{.moving = 1}), {bindings, behindStill(list)},
-                  movingOf(list));
+  forEachFragment(frame, frame.program(changed_mark::Variant{.moving = 1}),
+                  {listing(result), behindStill(list)}, movingOf(list));
+  return result;
+}
+
+ChangedCells Changes::cells(PassContext& frame, const VoxelFragments& list, const CellFragments& still,
+                            const In<ShadowMap>& shadow, const std::vector<Bounds>& moving,
+                            gpu::BufferRef* before) {
+  ChangedCells result = movingCells(frame, list);
+  if (before != nullptr) {
+    std::swap(result.bits, *before);
+    frame.dispatchList(frame.program(changed_join::kProgram),
+                       {bindingOf(result), changed_join::otherCells(*before)},
+                       firstTagWord(result.cellDepth + 1));
+  }
   if (shadow.present() && !moving.empty() && shadow->layerCount > 0)
     markLit(frame, list, still, shadow, moving, result);
   frame.dispatchList(
       frame.program(changed_list::kProgram),
-      {bindings, changed_list::cellEnds(still.ends), changed_list::cellFragments(still.fragments)},
+      {listing(result), changed_list::cellEnds(still.ends), changed_list::cellFragments(still.fragments)},
       countOf(result));
-  frame.dispatch(frame.program(changed_arguments::kProgram), bindings, {1, 1, 1});
+  frame.dispatch(frame.program(changed_arguments::kProgram), listing(result), {1, 1, 1});
   return result;
 }
 

@@ -52,9 +52,13 @@ class Changes {
   /// it emits.
   std::optional<std::vector<Bounds>> moving(PassContext& frame);
   static LightPlacement placementOf(const PassContext& frame, const In<ShadowMap>& shadow, float brightest);
-  /// The cells of moving fragments, and of light that passes through these bounds.
+  /// The cells of moving fragments alone, which are listed.
+  static ChangedCells movingCells(PassContext& frame, const VoxelFragments& list);
+  /// The cells of moving fragments, and of light that passes through these bounds. `before`: bits of cells
+  /// that count as well, those of the fragments that moved in another frame; they become those of this one.
   static ChangedCells cells(PassContext& frame, const VoxelFragments& list, const CellFragments& still,
-                            const In<ShadowMap>& shadow, const std::vector<Bounds>& moving);
+                            const In<ShadowMap>& shadow, const std::vector<Bounds>& moving,
+                            gpu::BufferRef* before = nullptr);
 
  private:
   std::vector<std::vector<Bounds>> atRest_;  ///< of draws, in their order: of runs of triangles; object space
