@@ -42,8 +42,7 @@ class Bounces {
 class Injection {
  public:
   /// Geometry: bounds of what moves.
-  static constexpr Reads kReads =
-      Reads::geometry | Reads::lights | Reads::materials | Reads::environment;
+  static constexpr Reads kReads = Reads::geometry | Reads::lights | Reads::materials | Reads::environment;
 
   explicit Injection(Pass* pass)
       : fragments_(pass, "fragments", "surface samples"),
@@ -104,8 +103,8 @@ class Injection {
     // Every bounce changes all of the light.
     if (bounces.count() > 1 || !knowsStill() || !changes_.moving(frame)) return nullptr;
     float unit = 1.0f;
-    const auto key = std::pair(
-        fragments_->still, Changes::placementOf(frame, light_.shadow, brightestOf(frame, unit)));
+    const auto key =
+        std::pair(fragments_->still, Changes::placementOf(frame, light_.shadow, brightestOf(frame, unit)));
     return frame.kept("voxels of static geometry in unchanged light", key, [&] {
       auto result = std::make_shared<KeptGrid>();
       result->textures = makeRooms();

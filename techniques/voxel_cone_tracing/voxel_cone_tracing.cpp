@@ -46,8 +46,7 @@ void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity, bool dr
   for (int level = 1; level < texture.levels; ++level) {
     const glm::ivec3 coarse = levelResolution(finest, level), fine = levelResolution(finest, level - 1);
     // The voxels of a level are those of the bricks down to one a brick, where bricks are halved evenly.
-    const bool followsBricks = !drawn && bricks.bricks != nullptr &&
-                               (OccupiedBricks::kSide >> level) >= 1 &&
+    const bool followsBricks = !drawn && bricks.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
                                finest % OccupiedBricks::kSide == glm::ivec3(0);
     const shader::BindingSet bindings{
         filter::parameters({.coarse = coarse, .fineLevel = level - 1, .fine = fine}),

@@ -49,7 +49,6 @@ inline void area(SceneBuilder& builder) {
   builder.quad({-0.2f, 0.95f, -0.2f}, {0.4f, 0, 0}, {0, 0, 0.4f}, builder.lambert(0.5f, 5.0f));
 }
 
-
 struct RoomLight {
   const char* name;
   void (*light)(SceneBuilder&);

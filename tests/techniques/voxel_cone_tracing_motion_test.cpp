@@ -1,5 +1,5 @@
-// What moves changes only a part of a grid: the rest is kept, and nothing tells a frame from the first one of a
-// fresh run; and what that costs, in every store.
+// What moves changes only a part of a grid: the rest is kept, and nothing tells a frame from the first one of
+// a fresh run; and what that costs, in every store.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -29,8 +29,7 @@ struct Voxels {
     const auto sameBits = [](const std::vector<float>& a, const std::vector<float>& b) {
       return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
     };
-    return unit == other.unit && bricks == other.bricks &&
-           std::ranges::equal(levels, other.levels, sameBits);
+    return unit == other.unit && bricks == other.bricks && std::ranges::equal(levels, other.levels, sameBits);
   }
 };
 
@@ -169,7 +168,7 @@ TEST_CASE("a parameter, a light or a scene that changes while things move makes 
     run.executor().setParameters(run.parameters({"resolution=32", "ambient=1"}));
     CHECK(sameAs(Run(name, scene, 32, "", "1"), 0.2));
     CHECK(sameAs(Run(name, scene, 32, "", "1"), 0.3));
-    for (const Scene* next : {&brighter, &other, &scene}) {
+    for (const Scene* next : std::array<const Scene*, 3>{&brighter, &other, &scene}) {
       run.executor().setScene(*next);
       for (const double time : {0.4, 0.5, 0.2}) CHECK(sameAs(Run(name, *next, 32, "", "1"), time));
     }
@@ -217,9 +216,8 @@ TEST_CASE("moving a tenth of the triangles costs at most a third of a full rebui
         parts.clear();
         for (const auto& passes : executor.timedPasses())
           for (const PassRecord& pass : passes)
-            if (pass.ran &&
-                (pass.name == "voxels" || pass.name == "tree" || pass.name == "light" || pass.name == "grid" ||
-                 pass.name == "bricks")) {
+            if (pass.ran && (pass.name == "voxels" || pass.name == "tree" || pass.name == "light" ||
+                             pass.name == "grid" || pass.name == "bricks")) {
               sum += pass.deviceMs;
               parts += " " + pass.name + " " + std::to_string(pass.deviceMs);
             }
