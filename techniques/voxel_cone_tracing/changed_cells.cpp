@@ -11,7 +11,9 @@ using namespace shaders::voxel_cone_tracing;
 
 namespace {
 
-constexpr int kCellShift = 3;  // 8 voxels along a cell
+/// Cells are bricks of 4 x 4 x 4 voxels, and larger ones where there would be more of them along an axis:
+/// each is looked for behind all that moves.
+constexpr int kLeastShift = 2, kMostCellDepth = 5;
 
 /// Light is looked for behind about so many boxes around what moves, and one for each draw at least.
 constexpr std::uint32_t kBoxes = 64;
@@ -93,6 +95,27 @@ std::optional<std::vector<Bounds>> Changes::moving(PassContext& frame) {
   return result;
 }
 
+std::vector<Bounds> Changes::atEither(const std::vector<Bounds>& now, const std::vector<Bounds>& then) {
+  const auto faces = [](const Bounds& box) {
+    const glm::vec3 size = box.high - box.low;
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+  };
+  std::vector<Bounds> result = now;
+  for (std::size_t i = 0; i < then.size(); ++i) {
+    if (i < now.size()) {
+      Bounds both = now[i];
+      both.grow(then[i].low);
+      both.grow(then[i].high);
+      if (faces(both) <= faces(now[i]) + faces(then[i])) {
+        result[i] = both;
+        continue;
+      }
+    }
+    result.push_back(then[i]);
+  }
+  return result;
+}
+
 LightPlacement Changes::placementOf(const PassContext& frame, const In<ShadowMap>& shadow, float brightest) {
   const SceneSnapshot& snapshot = frame.snapshot();
   LightPlacement result{.lights = snapshot.lights,
@@ -112,7 +135,7 @@ namespace {
 ChangedCells cellsOver(const GridPlacement& grid) {
   ChangedCells result;
   result.voxelDepth = voxelDepthOver(grid);
-  result.cellDepth = std::max(result.voxelDepth - kCellShift, 0);
+  result.cellDepth = std::clamp(result.voxelDepth - kLeastShift, 0, kMostCellDepth);
   return result;
 }
 std::uint64_t countOf(const ChangedCells& cells) {

@@ -51,6 +51,8 @@ class Changes {
   /// Bounds of what moves, m, at this moment; nothing where it cannot be told what moving geometry changes:
   /// it emits.
   std::optional<std::vector<Bounds>> moving(PassContext& frame);
+  /// What contains the bounds of both of two moments: one box for two that lie near each other.
+  static std::vector<Bounds> atEither(const std::vector<Bounds>& now, const std::vector<Bounds>& then);
   static LightPlacement placementOf(const PassContext& frame, const In<ShadowMap>& shadow, float brightest);
   /// The cells of moving fragments alone, which are listed.
   static ChangedCells movingCells(PassContext& frame, const VoxelFragments& list);

@@ -209,9 +209,8 @@ class Injection {
   /// What has changed since the frame before: both that moves now and what did then.
   ChangedCells changesOf(PassContext& frame, KeptGrid& kept) {
     if (kept.still.ends == nullptr) kept.still = sortedByCells(frame, stillOf(*fragments_));
-    std::vector<Bounds> moving = *changes_.moving(frame);
-    moving.insert(moving.end(), kept.moving.begin(), kept.moving.end());
-    return Changes::cells(frame, *fragments_, kept.still, light_.shadow, moving, &kept.movingCells);
+    return Changes::cells(frame, *fragments_, kept.still, light_.shadow,
+                          Changes::atEither(*changes_.moving(frame), kept.moving), &kept.movingCells);
   }
 
   /// Kept as long as static geometry and lights stay where they are; nothing where that is not known, or
@@ -239,9 +238,8 @@ class Injection {
   std::shared_ptr<const RadianceOctree> stillIn(PassContext& frame, RadianceOctree& octree, float brightest) {
     const std::optional<StillLight> still = stillLight(frame, octree.tree, brightest);
     if (!still) return nullptr;
-    std::vector<Bounds> moving = *changes_.moving(frame);
-    moving.insert(moving.end(), still->moving.begin(), still->moving.end());
-    octree.changed = Changes::cells(frame, *fragments_, still->cells, light_.shadow, moving);
+    octree.changed = Changes::cells(frame, *fragments_, still->cells, light_.shadow,
+                                    Changes::atEither(*changes_.moving(frame), still->moving));
     return still->octree;
   }
 
