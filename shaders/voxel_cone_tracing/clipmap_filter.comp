@@ -2,11 +2,18 @@
 // The voxels of a level of a clipmap that the finer one has too, as filter_directional.comp makes coarser levels: those of a level around the
 // camera, blended with what was voxelized by a ramp of the distance from the border of the finer level (thesis 004 Sec. 3.5.2), so that a
 // thing that comes into the finer level does not change by a leap; or all of a level above those.
+//
+// CHANGED: in the box of what differs from before only changed cells do.
 #pragma lumivox axis ABOVE 0 1
+#pragma lumivox axis CHANGED 0 1
+#pragma lumivox require !ABOVE || !CHANGED
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #include "clipmap_write.glsl"
 
 #include "common/cones.glsl"
+#if CHANGED
+#include "clipmap_cells.glsl"
+#endif
 
 layout(std140, binding = 0) uniform Level {
   ivec3 firstMade;  // voxels of the level that are made anew, and all addresses of the block that hold none
@@ -82,6 +89,9 @@ void main() {
   // Where the finer level begins, nothing is of it: reading goes on there without a leap.
   float fromBorder = 0.5 * withinReach(level - 1, 2.0 * (vec3(voxel) + 0.5));
   bool touched = all(greaterThanEqual(voxel, firstTouched)) && all(lessThan(voxel, endTouched));
+#if CHANGED
+  touched = touched && (!isVoxel || (clipmapCells[cellIndex(level, voxel - ownFirst[level].xyz, ownFirst[level].w)] & kRead) != 0u);
+#endif
   if (fromBorder >= settled && !touched) return;
   float share = clamp((fromBorder - 1.0) / max(clipmapRamp, 1e-6), 0.0, 1.0);
   if (isVoxel && share > 0.0) children = childrenOf(level - 1, voxel);

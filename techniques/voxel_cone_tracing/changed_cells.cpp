@@ -145,31 +145,36 @@ std::uint64_t countOf(const ChangedCells& cells) {
 /// Marks the cells in which light that passes through these bounds arrives.
 void markLit(PassContext& frame, const VoxelFragments& list, const CellFragments& still,
              const In<ShadowMap>& shadow, const std::vector<Bounds>& moving, const ChangedCells& result) {
-  std::vector<glm::vec4> boxes;
-  for (const Bounds& one : moving)
-    for (const glm::vec3& corner : {one.low, one.high}) boxes.emplace_back(corner, 0.0f);
-  const LightBinding lights(shadow);
-  const int boxCount = static_cast<int>(moving.size()), casts = boxCount * shadow->layerCount;
-  const gpu::BufferRef cast = frame.elements(changed_views::casts, static_cast<std::uint64_t>(casts),
-                                             "what moves in shadow views"),
-                       bounds = frame.uploaded(boxes, "bounds of what moves");
-  frame.dispatch(frame.program(changed_views::kProgram),
-                 {changed_views::boxes({boxCount, shadow->layerCount}), changed_views::moving(bounds),
-                  changed_views::casts(cast), lights},
-                 {casts, 1, 1});
+  const BoxesInViews boxes(frame, shadow, moving);
   const int voxels = 1 << (result.voxelDepth - result.cellDepth);
-  frame.dispatchList(
-      frame.program(changed_cells::kProgram),
-      {changed_cells::cells({.gridLow = list.grid.low,
-                             .cellSize = static_cast<float>(voxels) * list.grid.voxelSize,
-                             .boxCount = boxCount,
-                             .lightCount = lights.count,
-                             .texel = 2.0f / static_cast<float>(shadow->depth->description().width)}),
-       changed_cells::casts(cast), changed_cells::cellEnds(still.ends), lights, bindingOf(result)},
-      countOf(result));
+  frame.dispatchList(frame.program(changed_cells::kProgram),
+                     {changed_cells::cells({.gridLow = list.grid.low,
+                                            .cellSize = static_cast<float>(voxels) * list.grid.voxelSize,
+                                            .boxCount = boxes.count,
+                                            .lightCount = boxes.lightCount,
+                                            .texel = boxes.texel}),
+                      changed_cells::cellEnds(still.ends), boxes.bindings(), bindingOf(result)},
+                     countOf(result));
 }
 
 }  // namespace
+
+BoxesInViews::BoxesInViews(PassContext& frame, const In<ShadowMap>& shadow, const std::vector<Bounds>& boxes)
+    : count(static_cast<int>(boxes.size())), lights_(shadow) {
+  std::vector<glm::vec4> corners;
+  for (const Bounds& one : boxes)
+    for (const glm::vec3& corner : {one.low, one.high}) corners.emplace_back(corner, 0.0f);
+  bounds = frame.uploaded(corners, "bounds of what moves");
+  const int views = shadow.present() ? shadow->layerCount : 0, all = count * views;
+  casts = frame.elements(changed_views::casts, static_cast<std::uint64_t>(all), "what moves in shadow views");
+  if (all == 0) return;
+  lightCount = lights_.count;
+  texel = 2.0f / static_cast<float>(shadow->depth->description().width);
+  frame.dispatch(frame.program(changed_views::kProgram),
+                 {changed_views::boxes({count, views}), changed_views::moving(bounds),
+                  changed_views::casts(casts), lights_},
+                 {all, 1, 1});
+}
 
 CellFragments sortedByCells(PassContext& frame, const VoxelFragments& still) {
   ChangedCells cells = cellsOver(still.grid);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lumivox/plugin/technique.h"
+#include "lumivox/toolkit/bindings.h"
 #include "radiance_octree.h"
 #include "voxel_cone_tracing_shaders.h"
 
@@ -43,6 +44,19 @@ struct LightPlacement {
   int lightCount = 0, layerCount = 0, side = 0;
   float brightest = 0.0f;
   bool operator==(const LightPlacement&) const = default;
+};
+
+/// Boxes in the views of a shadow map (shadowed_anew.glsl).
+struct BoxesInViews {
+  int count = 0, lightCount = 0;  ///< no lights where nothing casts a shadow
+  float texel = 0.0f;             ///< of the views, in clip space
+  gpu::BufferRef bounds, casts;
+
+  BoxesInViews(PassContext& frame, const In<ShadowMap>& shadow, const std::vector<Bounds>& boxes);
+  shader::BindingSet bindings() const { return {shader::StorageSlot{"Casts"}(casts), lights_}; }
+
+ private:
+  LightBinding lights_;
 };
 
 /// Finds what has changed: a member of a pass.
