@@ -476,7 +476,8 @@ class ClipmapFilterPass : public Pass {
         settled = result.ramp + 2.0f + static_cast<float>(movedBy(result, moving));
       }
       frame.dispatch(
-          frame.program(clipmap_filter::Variant{.above = above, .changed = onlyChanges && !above}),
+          frame.program(
+              clipmap_filter::Variant{.above = above, .changed = onlyChanges && level <= result.around}),
           {clipmap_filter::level({part.first, level, part.end, settled, touched.first, 0, touched.end}),
            facesOf(result.faces, gpu::Sampling::nearest), writing(result),
            clipmap_filter::clipmapCells(result.change.cells)},

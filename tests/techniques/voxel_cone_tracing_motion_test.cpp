@@ -109,7 +109,9 @@ Scene movingArcade() {
       low = glm::min(low, glm::dvec3(scene.positions[i]));
       high = glm::max(high, glm::dvec3(scene.positions[i]));
     }
-    object.motion = RigidMotion{{0, 1, 0}, 0.3, 0.5 * (low + high), {isCloth ? 0.0 : 0.1, 0.02, 0.05}};
+    // Within the walls: bounds that change move the sun's shadow map, and all light with it.
+    object.motion =
+        RigidMotion{{0, 1, 0}, isCloth ? 0.2 : 0.02, 0.5 * (low + high), {isCloth ? 0.0 : 0.2, 0, 0.1}};
     object.placedBounds.reset();
     object.sweptBounds.reset();
     for (const Part& part : object.parts) moving += part.indexCount / 3;
