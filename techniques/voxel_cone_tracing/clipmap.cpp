@@ -448,7 +448,8 @@ class ClipmapFilterPass : public Pass {
     });
     const bool all = result.change.all || made->number + 1 != result.change.number;
     made->number = result.change.number;
-    const bool onlyChanges = !all && result.change.cells != nullptr;
+    // Ramps that move with their levels change more than the cells say.
+    const bool onlyChanges = !all && result.change.cells != nullptr && stays(result);
     // What differs from before, as it is read, level by level.
     VoxelRange changed = result.change.voxelized.front();
     const int count = static_cast<int>(result.levels.size());
@@ -487,6 +488,11 @@ class ClipmapFilterPass : public Pass {
     mips = result;
   }
 
+  static bool stays(const RadianceClipmap& clipmap) {
+    for (std::size_t level = 0; level < static_cast<std::size_t>(clipmap.around); ++level)
+      if (movedBy(clipmap, level) > 0) return false;
+    return true;
+  }
   /// Voxels by which a level has moved, along the axis along which it is the most.
   static int movedBy(const RadianceClipmap& clipmap, std::size_t level) {
     if (clipmap.change.before.empty()) return 0;

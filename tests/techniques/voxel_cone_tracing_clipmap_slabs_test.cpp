@@ -131,7 +131,8 @@ TEST_CASE("things that move in unchanged light change only their voxels and thei
     std::vector<std::pair<glm::dvec3, double>> frames;
     for (const double time : {0.0, 0.05, 0.3, 0.1, 6.0, 0.2, 0.2}) frames.emplace_back(eye, time);
     for (int i = 1; i < 4; ++i) frames.emplace_back(eye - 0.1 * i * glm::dvec3(1, 0.5, 1), 0.2 + 0.1 * i);
-    frames.emplace_back(eye, 0.5);
+    // Of a finest voxel, where coarser levels stay.
+    for (int i = 0; i < 4; ++i) frames.emplace_back(eye + 0.04 * i * glm::dvec3(-1, 0, 0), 0.5 + 0.02 * i);
     CAPTURE(one.name);
     checkSequence(scene, {"16", "3", ""}, frames);
     checkSequence(scene, {"26", "1", "precision half"}, frames);
