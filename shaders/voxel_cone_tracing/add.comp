@@ -12,7 +12,7 @@
 #pragma lumivox axis DIRECTIONS 0 1
 #pragma lumivox axis SAMPLED 0 1
 #pragma lumivox require !SAMPLED || (DIRECTIONS && PLACES == clipmap)
-#pragma lumivox require (PLACES != clipmap || DIRECTIONS) && (!CHANGED || PLACES == octree)
+#pragma lumivox require PLACES != clipmap || DIRECTIONS
 #include "bricks.glsl"
 #include "common/integer_mean.glsl"
 

@@ -2,11 +2,17 @@
 // The voxels of a level of a clipmap that the finer one has too, as filter_directional.comp makes coarser levels: those of a level around the
 // camera, blended with what was voxelized by a ramp of the distance from the border of the finer level (thesis 004 Sec. 3.5.2), so that a
 // thing that comes into the finer level does not change by a leap; or all of a level above those.
+//
+// CHANGED: in the box of what differs from before only changed cells do.
 #pragma lumivox axis ABOVE 0 1
+#pragma lumivox axis CHANGED 0 1
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #include "clipmap_write.glsl"
 
 #include "common/cones.glsl"
+#if CHANGED
+#include "clipmap_cells.glsl"
+#endif
 
 layout(std140, binding = 0) uniform Level {
   ivec3 firstMade;  // voxels of the level that are made anew, and all addresses of the block that hold none
@@ -48,6 +54,19 @@ Children childrenOf(int finer, ivec3 voxel) {
   return result;
 }
 
+#if CHANGED && ABOVE
+// Of the first level above those around the camera, whose finer one has cells.
+bool isChildRead(ivec3 voxel) {
+  int finer = level - 1;
+  ivec3 last = ownEnd[finer].xyz - 1 - ownFirst[finer].xyz;
+  for (int i = 0; i < 8; ++i) {
+    ivec3 child = clamp(2 * voxel + ivec3(i & 1, i >> 1 & 1, i >> 2) - ownFirst[finer].xyz, ivec3(0), last);
+    if ((clipmapCells[cellIndex(finer, child, ownFirst[finer].w)] & kRead) != 0u) return true;
+  }
+  return false;
+}
+#endif
+
 // A face of a coarse voxel as columns.glsl makes it, of eight whole children without loops: the columns of two along an axis, where the
 // second child lies `along` behind the first one, in front of it from the higher side, and their mean over the two other axes in turn.
 vec4 seenThrough(sampler3D face, Children children, int along, int side, int up, bool fromHigher) {
@@ -77,11 +96,17 @@ void main() {
   Children children;
   children.occupied = 0u;
 #if ABOVE
+#if CHANGED
+  if (isVoxel && !isChildRead(voxel)) return;
+#endif
   if (isVoxel) children = childrenOf(level - 1, voxel);
 #else
   // Where the finer level begins, nothing is of it: reading goes on there without a leap.
   float fromBorder = 0.5 * withinReach(level - 1, 2.0 * (vec3(voxel) + 0.5));
   bool touched = all(greaterThanEqual(voxel, firstTouched)) && all(lessThan(voxel, endTouched));
+#if CHANGED
+  touched = touched && (!isVoxel || (clipmapCells[cellIndex(level, voxel - ownFirst[level].xyz, ownFirst[level].w)] & kRead) != 0u);
+#endif
   if (fromBorder >= settled && !touched) return;
   float share = clamp((fromBorder - 1.0) / max(clipmapRamp, 1e-6), 0.0, 1.0);
   if (isVoxel && share > 0.0) children = childrenOf(level - 1, voxel);

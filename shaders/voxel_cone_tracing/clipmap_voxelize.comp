@@ -7,11 +7,13 @@
 // SAMPLED 1: as in Sec. 3.5.2, where multisampled rasterisation does it: eight samples in each column along the dominant axis. Those of a
 // voxel are its opacity, seen along each axis (covered_samples.glsl); emittance is that of the covered share of the voxel's side, by more
 // samples where the triangle is small, so that nothing shines by leaps as it moves (Fig. 56).
+// CHANGED: of some boxes only the voxels in changed cells are filled.
 // LARGE: as in voxelization: a triangle of many voxels is put aside in rows of tiles of 8 x 8 columns, and a work group takes a row.
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
 #pragma lumivox axis LARGE 0 1
 #pragma lumivox axis SAMPLED 0 1
+#pragma lumivox axis CHANGED 0 1
 #define SCENE_GEOMETRY
 #define SCENE_MATERIALS
 #include "common/scene.glsl"
@@ -32,7 +34,7 @@ layout(std140, binding = 1) uniform Part {
 };
 layout(std140, binding = 2) uniform Boxes {
   ivec4 boxFirst[kMostBoxes];  // voxels of a level; w: the level
-  ivec4 boxEnd[kMostBoxes];
+  ivec4 boxEnd[kMostBoxes];    // w: 1: only changed cells
 };
 layout(std430, binding = 6) readonly buffer Indices { uint indices[]; };
 layout(std430, binding = 7) buffer Count { uint fragmentCount; };
@@ -57,6 +59,29 @@ int level;
 
 #include "common/corners.glsl"
 #include "common/column_sample.glsl"
+
+#if CHANGED
+#include "clipmap_cells.glsl"
+bool onlyChanges;  // of the box
+
+bool isTaken(ivec3 voxel, int axis) {
+  return !onlyChanges || (clipmapCells[cellIndex(level, unpermute(voxel, axis) - stackFirst[level].xyz, stackSide)] & kVoxelized) != 0u;
+}
+// False where no voxel of these is taken; not all are looked at where they are many.
+bool isAnyTaken(ivec3 low, ivec3 high, int axis) {
+  const int kFewCells = 3;
+  ivec3 first = unpermute(low, axis) - stackFirst[level].xyz, last = unpermute(high, axis) - stackFirst[level].xyz;
+  if (!onlyChanges || any(greaterThanEqual((last >> 2) - (first >> 2), ivec3(kFewCells)))) return true;
+  for (int z = first.z >> 2; z <= last.z >> 2; ++z)
+    for (int y = first.y >> 2; y <= last.y >> 2; ++y)
+      for (int x = first.x >> 2; x <= last.x >> 2; ++x)
+        if ((clipmapCells[cellIndex(level, 4 * ivec3(x, y, z), stackSide)] & kVoxelized) != 0u) return true;
+  return false;
+}
+#else
+bool isTaken(ivec3 voxel, int axis) { return true; }
+bool isAnyTaken(ivec3 low, ivec3 high, int axis) { return true; }
+#endif
 
 const int kTile = 8;
 const int kFewVoxels = 64;  // of a triangle that one thread does alone
@@ -111,6 +136,7 @@ void appendSamples(TriangleCorners t, ColumnSample s, ivec2 column, ivec2 slices
   if (covered == 0u && scale == 1) return;
   bool closes = unpackHalf2x16(s.fragment.albedoBCoverage).y >= kMaskThreshold;
   for (int slice = slices.x; slice <= slices.y; ++slice) {
+    if (!isTaken(ivec3(column, slice), t.axis)) continue;
     uint there = 0u;
     for (int i = 0; i < kMostSamples; ++i)
       if (int(floor(depths[i])) == slice) there |= covered & 1u << i;
@@ -134,19 +160,23 @@ void appendSamples(TriangleCorners t, ColumnSample s, ivec2 column, ivec2 slices
 // All voxels of one column.
 void appendColumn(TriangleCorners t, Overlap o, MaterialData material, VoxelFragment base, ivec2 column) {
   if (!touchesColumn(o, column)) return;
+  ivec2 slices = depthsOfColumn(o, t.corners, column);
+  if (slices.y >= slices.x && !isAnyTaken(ivec3(column, slices.x), ivec3(column, slices.y), t.axis)) return;
   ColumnSample s = sampleColumn(t.corners, t.normals, t.texcoords, material, base, column);
   if (isHole(s)) return;
-  ivec2 slices = depthsOfColumn(o, t.corners, column);
 #if SAMPLED
   appendSamples(t, s, column, slices);
 #else
   for (int slice = slices.x; slice <= slices.y; ++slice)
-    if (touchesInColumn(o, ivec3(column, slice))) put(s, ivec3(column, slice), t.axis, 1.0, 0u);
+    if (isTaken(ivec3(column, slice), t.axis) && touchesInColumn(o, ivec3(column, slice))) put(s, ivec3(column, slice), t.axis, 1.0, 0u);
 #endif
 }
 
 TriangleCorners cornersIn(uint triangle, uint box, out Overlap o) {
   level = boxFirst[box].w;
+#if CHANGED
+  onlyChanges = boxEnd[box].w != 0;
+#endif
   gridLow = stackOrigin;
   voxelSize = voxelSizeOf(level);
   TriangleCorners t = loadCorners(uint(firstIndex) + 3u * triangle, objectIndex);
@@ -179,7 +209,7 @@ void main() {
   Overlap o;
   TriangleCorners t = cornersIn(triangle, box, o);
   ivec3 size = o.high - o.low + 1;
-  if (any(lessThan(size, ivec3(1)))) return;
+  if (any(lessThan(size, ivec3(1))) || !isAnyTaken(o.low, o.high, t.axis)) return;
   MaterialData material = materials[materialIndex];
   VoxelFragment base = fragmentOf(material);
   int first = o.low.y;

@@ -5,7 +5,7 @@
 // DIRECTIONS: both sides apart, that of the normal first.
 #pragma lumivox axis DIRECTIONS 0 1
 #pragma lumivox require PLACES != clipmap || DIRECTIONS
-#pragma lumivox require (!CHANGED || PLACES == octree) && (!REFLECTED || (!CHANGED && PLACES != clipmap))
+#pragma lumivox require !REFLECTED || (!CHANGED && PLACES != clipmap)
 
 layout(local_size_x = 64) in;
 #include "fragment_light.glsl"

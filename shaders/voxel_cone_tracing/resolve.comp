@@ -7,10 +7,12 @@
 // shines with what it scatters of the arriving light, evenly to all sides: a voxel has one radiance for all directions.
 //
 // DIRECTIONS: the same for each of the six faces of a voxel.
+// CHANGED: the bricks that are listed hold what was in them before, and voxels that are empty by now are made so.
 #pragma lumivox axis DIRECTIONS 0 1
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis MEDIUM none even varying
-#pragma lumivox require !LIGHTS || MEDIUM != none
+#pragma lumivox axis CHANGED 0 1
+#pragma lumivox require (!LIGHTS || MEDIUM != none) && (!CHANGED || MEDIUM == none)
 
 #include "common/voxel.glsl"
 #include "bricks.glsl"
@@ -85,7 +87,8 @@ void main() {
   if (item / 64u >= listed) return;
   ivec3 voxel = voxelOf(unpackVoxel(brickList[item / 64u]), item % 64u);
   Brick brick = bricks[brickOf(voxel, brickCount)];
-  if (isOccupied(brick, item % 64u)) store(voxel, true, sumsOf(brick, item % 64u), vec4(0.0));
+  bool occupied = isOccupied(brick, item % 64u);
+  if (occupied || CHANGED != 0) store(voxel, occupied, sumsOf(brick, item % 64u), vec4(0.0));
 }
 #else
 // The light that reaches a point from all sides, W/m^2.

@@ -5,11 +5,11 @@
 // before its own, in two reads whatever the depth and without a loop. Bricks have the voxels of their neighbours at their sides, as published,
 // or (own) are their own ones alone, and those around a node are known by it.
 //
-// FACES: six: each voxel has six faces, read by the rules of the six directional grids.
+// FACES: six: each voxel has six faces, read by the rules of the six directional grids, in bricks of their own voxels.
 #pragma lumivox axis LOOK_UP own ranks descent
 #pragma lumivox require STORE == octree || LOOK_UP == own
 #pragma lumivox axis FACES one six
-#pragma lumivox require STORE == octree || FACES == one
+#pragma lumivox require FACES == one || (STORE == octree && LOOK_UP == own)
 #include "octree.glsl"
 #if LOOK_UP == LOOK_UP_OWN
 #include "octree_corners.glsl"
@@ -83,6 +83,12 @@ vec4 shareOfVoxel(Around around, uint which) {
 vec4 amongVoxels(vec3 from, int depth) {
   Around around = voxelsAround(from, depth);
   if (around.corners == kNone) return vec4(0.0);
+#if FACES == FACES_SIX
+  // As published: eight voxels of three faces each are much to write out.
+  vec4 value = vec4(0.0);
+  for (uint which = 0u; which < 8u; ++which) value += shareOfVoxel(around, which);
+  return value;
+#endif
   return shareOfVoxel(around, 0u) + shareOfVoxel(around, 1u) + shareOfVoxel(around, 2u) + shareOfVoxel(around, 3u) +
          shareOfVoxel(around, 4u) + shareOfVoxel(around, 5u) + shareOfVoxel(around, 6u) + shareOfVoxel(around, 7u);
 }
@@ -143,13 +149,7 @@ vec4 layerAcross(vec3 at, vec3 direction, int level, int axis) {
   share[axis] = 1.0;
   from[axis] = floor(at[axis]);
   lookAtFaces(direction, share);
-  vec4 value;
-#if LOOK_UP == LOOK_UP_OWN
-  value = acrossAxis(from, octreeDepth - level, axis);
-#else
-  readVoxels(from, level, value);
-#endif
-  return value;
+  return acrossAxis(from, octreeDepth - level, axis);
 }
 
 vec4 layers(vec3 posWorld, vec3 direction, float level, float stride) {

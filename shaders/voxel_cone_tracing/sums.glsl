@@ -1,15 +1,9 @@
 // Where the sums of an occupied voxel lie: in the dense grid's bricks of 4 x 4 x 4 voxels (`bricks` and `brickCount` are declared before), or
 // eight for each leaf of an octree, those of the voxels that are its own. The levels of a clipmap lie side by side in one grid. Included
 // after the local size, which is along x alone.
-//
-// CHANGED: only the fragments that changed_list.comp lists are taken.
 #pragma lumivox axis PLACES grid octree clipmap
-#pragma lumivox axis CHANGED 0 1
 #pragma lumivox require !CHANGED || PLACES != clipmap
-#if CHANGED
-layout(std430, binding = 13) readonly buffer ChangedCount { uint changedCount; };
-layout(std430, binding = 14) readonly buffer ChangedFragments { uint changedFragments[]; };
-#endif
+#include "taken_fragments.glsl"
 #if PLACES == PLACES_OCTREE
 #include "octree_levels.glsl"
 #include "octree_ranks.glsl"
@@ -24,15 +18,3 @@ uint sumsAt(ivec3 voxel) {
 #else
 uint sumsAt(ivec3 voxel) { return sumsOf(bricks[brickOf(voxel, brickCount)], bitOf(voxel)); }
 #endif
-
-// The fragment of this thread; false behind the last.
-bool takenFragment(out uint index) {
-  index = listIndex();
-#if CHANGED
-  if (index >= changedCount) return false;
-  index = changedFragments[index];
-  return true;
-#else
-  return index < fragmentCount;
-#endif
-}

@@ -1,6 +1,7 @@
 #include "changed_cells.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "lumivox/toolkit/bindings.h"
 
@@ -10,7 +11,9 @@ using namespace shaders::voxel_cone_tracing;
 
 namespace {
 
-constexpr int kCellShift = 3;  // 8 voxels along a cell
+/// Cells are bricks of 4 x 4 x 4 voxels, and larger ones where there would be more of them along an axis:
+/// each is looked for behind all that moves.
+constexpr int kLeastShift = 2, kMostCellDepth = 5;
 
 /// Light is looked for behind about so many boxes around what moves, and one for each draw at least.
 constexpr std::uint32_t kBoxes = 64;
@@ -92,6 +95,27 @@ std::optional<std::vector<Bounds>> Changes::moving(PassContext& frame) {
   return result;
 }
 
+std::vector<Bounds> Changes::atEither(const std::vector<Bounds>& now, const std::vector<Bounds>& then) {
+  const auto faces = [](const Bounds& box) {
+    const glm::vec3 size = box.high - box.low;
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+  };
+  std::vector<Bounds> result = now;
+  for (std::size_t i = 0; i < then.size(); ++i) {
+    if (i < now.size()) {
+      Bounds both = now[i];
+      both.grow(then[i].low);
+      both.grow(then[i].high);
+      if (faces(both) <= faces(now[i]) + faces(then[i])) {
+        result[i] = both;
+        continue;
+      }
+    }
+    result.push_back(then[i]);
+  }
+  return result;
+}
+
 LightPlacement Changes::placementOf(const PassContext& frame, const In<ShadowMap>& shadow, float brightest) {
   const SceneSnapshot& snapshot = frame.snapshot();
   LightPlacement result{.lights = snapshot.lights,
@@ -111,7 +135,7 @@ namespace {
 ChangedCells cellsOver(const GridPlacement& grid) {
   ChangedCells result;
   result.voxelDepth = voxelDepthOver(grid);
-  result.cellDepth = std::max(result.voxelDepth - kCellShift, 0);
+  result.cellDepth = std::clamp(result.voxelDepth - kLeastShift, 0, kMostCellDepth);
   return result;
 }
 std::uint64_t countOf(const ChangedCells& cells) {
@@ -121,31 +145,36 @@ std::uint64_t countOf(const ChangedCells& cells) {
 /// Marks the cells in which light that passes through these bounds arrives.
 void markLit(PassContext& frame, const VoxelFragments& list, const CellFragments& still,
              const In<ShadowMap>& shadow, const std::vector<Bounds>& moving, const ChangedCells& result) {
-  std::vector<glm::vec4> boxes;
-  for (const Bounds& one : moving)
-    for (const glm::vec3& corner : {one.low, one.high}) boxes.emplace_back(corner, 0.0f);
-  const LightBinding lights(shadow);
-  const int boxCount = static_cast<int>(moving.size()), casts = boxCount * shadow->layerCount;
-  const gpu::BufferRef cast = frame.elements(changed_views::casts, static_cast<std::uint64_t>(casts),
-                                             "what moves in shadow views"),
-                       bounds = frame.uploaded(boxes, "bounds of what moves");
-  frame.dispatch(frame.program(changed_views::kProgram),
-                 {changed_views::boxes({boxCount, shadow->layerCount}), changed_views::moving(bounds),
-                  changed_views::casts(cast), lights},
-                 {casts, 1, 1});
+  const BoxesInViews boxes(frame, shadow, moving);
   const int voxels = 1 << (result.voxelDepth - result.cellDepth);
-  frame.dispatchList(
-      frame.program(changed_cells::kProgram),
-      {changed_cells::cells({.gridLow = list.grid.low,
-                             .cellSize = static_cast<float>(voxels) * list.grid.voxelSize,
-                             .boxCount = boxCount,
-                             .lightCount = lights.count,
-                             .texel = 2.0f / static_cast<float>(shadow->depth->description().width)}),
-       changed_cells::casts(cast), changed_cells::cellEnds(still.ends), lights, bindingOf(result)},
-      countOf(result));
+  frame.dispatchList(frame.program(changed_cells::kProgram),
+                     {changed_cells::cells({.gridLow = list.grid.low,
+                                            .cellSize = static_cast<float>(voxels) * list.grid.voxelSize,
+                                            .boxCount = boxes.count,
+                                            .lightCount = boxes.lightCount,
+                                            .texel = boxes.texel}),
+                      changed_cells::cellEnds(still.ends), boxes.bindings(), bindingOf(result)},
+                     countOf(result));
 }
 
 }  // namespace
+
+BoxesInViews::BoxesInViews(PassContext& frame, const In<ShadowMap>& shadow, const std::vector<Bounds>& boxes)
+    : count(static_cast<int>(boxes.size())), lights_(shadow) {
+  std::vector<glm::vec4> corners;
+  for (const Bounds& one : boxes)
+    for (const glm::vec3& corner : {one.low, one.high}) corners.emplace_back(corner, 0.0f);
+  bounds = frame.uploaded(corners, "bounds of what moves");
+  const int views = shadow.present() ? shadow->layerCount : 0, all = count * views;
+  casts = frame.elements(changed_views::casts, static_cast<std::uint64_t>(all), "what moves in shadow views");
+  if (all == 0) return;
+  lightCount = lights_.count;
+  texel = 2.0f / static_cast<float>(shadow->depth->description().width);
+  frame.dispatch(frame.program(changed_views::kProgram),
+                 {changed_views::boxes({count, views}), changed_views::moving(bounds),
+                  changed_views::casts(casts), lights_},
+                 {all, 1, 1});
+}
 
 CellFragments sortedByCells(PassContext& frame, const VoxelFragments& still) {
   ChangedCells cells = cellsOver(still.grid);
@@ -171,25 +200,45 @@ void forEachChanged(PassContext& frame, const shader::BoundProgram& program,
                          *changed.count, sizeof(std::uint32_t));
 }
 
-ChangedCells Changes::cells(PassContext& frame, const VoxelFragments& list, const CellFragments& still,
-                            const In<ShadowMap>& shadow, const std::vector<Bounds>& moving) {
+namespace {
+
+/// What is listed of changed cells.
+shader::BindingSet listing(const ChangedCells& cells) {
+  return {bindingOf(cells), changed_mark::changedCount(cells.count),
+          changed_mark::changedFragments(cells.fragments)};
+}
+
+}  // namespace
+
+ChangedCells Changes::movingCells(PassContext& frame, const VoxelFragments& list) {
   ChangedCells result = cellsOver(list.grid);
   result.bits =
       frame.emptyElements(changed_mark::changedCells, firstTagWord(result.cellDepth + 1), "changed cells");
   result.fragments = frame.elements(changed_mark::changedFragments, list.capacity, "changed fragments");
   result.count = frame.buffer(4 * sizeof(std::uint32_t), "changed fragment count");
   result.count->clear();
-  const shader::BindingSet bindings{bindingOf(result), changed_mark::changedCount(result.count),
-                                    changed_mark::changedFragments(result.fragments)};
-  forEachFragment(frame, frame.program(changed_mark::Variant{.moving = 1}), {bindings, behindStill(list)},
-                  movingOf(list));
+  forEachFragment(frame, frame.program(changed_mark::Variant{.moving = 1}),
+                  {listing(result), behindStill(list)}, movingOf(list));
+  return result;
+}
+
+ChangedCells Changes::cells(PassContext& frame, const VoxelFragments& list, const CellFragments& still,
+                            const In<ShadowMap>& shadow, const std::vector<Bounds>& moving,
+                            gpu::BufferRef* before) {
+  ChangedCells result = movingCells(frame, list);
+  if (before != nullptr) {
+    std::swap(result.bits, *before);
+    frame.dispatchList(frame.program(changed_join::kProgram),
+                       {bindingOf(result), changed_join::otherCells(*before)},
+                       firstTagWord(result.cellDepth + 1));
+  }
   if (shadow.present() && !moving.empty() && shadow->layerCount > 0)
     markLit(frame, list, still, shadow, moving, result);
   frame.dispatchList(
       frame.program(changed_list::kProgram),
-      {bindings, changed_list::cellEnds(still.ends), changed_list::cellFragments(still.fragments)},
+      {listing(result), changed_list::cellEnds(still.ends), changed_list::cellFragments(still.fragments)},
       countOf(result));
-  frame.dispatch(frame.program(changed_arguments::kProgram), bindings, {1, 1, 1});
+  frame.dispatch(frame.program(changed_arguments::kProgram), listing(result), {1, 1, 1});
   return result;
 }
 

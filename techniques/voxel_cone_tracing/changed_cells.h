@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lumivox/plugin/technique.h"
+#include "lumivox/toolkit/bindings.h"
 #include "radiance_octree.h"
 #include "voxel_cone_tracing_shaders.h"
 
@@ -45,16 +46,35 @@ struct LightPlacement {
   bool operator==(const LightPlacement&) const = default;
 };
 
+/// Boxes in the views of a shadow map (shadowed_anew.glsl).
+struct BoxesInViews {
+  int count = 0, lightCount = 0;  ///< no lights where nothing casts a shadow
+  float texel = 0.0f;             ///< of the views, in clip space
+  gpu::BufferRef bounds, casts;
+
+  BoxesInViews(PassContext& frame, const In<ShadowMap>& shadow, const std::vector<Bounds>& boxes);
+  shader::BindingSet bindings() const { return {shader::StorageSlot{"Casts"}(casts), lights_}; }
+
+ private:
+  LightBinding lights_;
+};
+
 /// Finds what has changed: a member of a pass.
 class Changes {
  public:
   /// Bounds of what moves, m, at this moment; nothing where it cannot be told what moving geometry changes:
   /// it emits.
   std::optional<std::vector<Bounds>> moving(PassContext& frame);
+  /// What contains the bounds of both of two moments: one box for two that lie near each other.
+  static std::vector<Bounds> atEither(const std::vector<Bounds>& now, const std::vector<Bounds>& then);
   static LightPlacement placementOf(const PassContext& frame, const In<ShadowMap>& shadow, float brightest);
-  /// The cells of moving fragments, and of light that passes through these bounds.
+  /// The cells of moving fragments alone, which are listed.
+  static ChangedCells movingCells(PassContext& frame, const VoxelFragments& list);
+  /// The cells of moving fragments, and of light that passes through these bounds. `before`: bits of cells
+  /// that count as well, those of the fragments that moved in another frame; they become those of this one.
   static ChangedCells cells(PassContext& frame, const VoxelFragments& list, const CellFragments& still,
-                            const In<ShadowMap>& shadow, const std::vector<Bounds>& moving);
+                            const In<ShadowMap>& shadow, const std::vector<Bounds>& moving,
+                            gpu::BufferRef* before = nullptr);
 
  private:
   std::vector<std::vector<Bounds>> atRest_;  ///< of draws, in their order: of runs of triangles; object space

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <span>
 
+#include "changed_cells.h"
 #include "direct_light.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -21,10 +23,15 @@ using namespace shaders::voxel_cone_tracing;
 
 namespace {
 
+bool sameBounds(const Bounds& a, const Bounds& b) {
+  return a.low == b.low && a.high == b.high && a.empty == b.empty;
+}
+
 /// A range of voxels of one level.
 struct LevelRange {
   int level = 0;
   VoxelRange voxels;
+  bool onlyChanges = false;  ///< only those in changed cells
 };
 
 /// The levels side by side as one grid (clipmap_stack.glsl).
@@ -44,16 +51,10 @@ struct ClipmapStack {
   glm::ivec3 size() const { return {side, side * rows, side * row}; }
 };
 
-/// Where an object is that moves or deforms.
-struct MovingObject {
-  glm::mat4 toWorld{1.0f};
-  bool deforms = false;
-  Bounds bounds;  ///< m
-};
-
 /// What the voxels were lit by: resources that are held, so that no others can take their place unseen.
 struct LitBy {
-  std::vector<std::shared_ptr<const void>> resources;
+  LightPlacement lights;
+  std::vector<std::shared_ptr<const void>> media;
   std::vector<float> numbers;
   bool operator==(const LitBy&) const = default;
 };
@@ -63,7 +64,8 @@ struct ClipmapState {
   RadianceClipmap clipmap;
   ClipmapPlacement placement;
   LitBy litBy;
-  std::vector<MovingObject> moving;
+  std::vector<std::shared_ptr<const void>> shadow;
+  std::optional<std::vector<Bounds>> moving;  ///< nothing: it cannot be told what they change
   bool filled = false;
 };
 
@@ -72,20 +74,6 @@ struct ClipmapKey {
   ClipmapPlacement placement;
   bool operator==(const ClipmapKey& other) const { return placement.sameVoxels(other.placement); }
 };
-
-/// Adds the voxels of a range that are in no range of its level yet.
-void addTo(std::vector<LevelRange>& ranges, int level, const VoxelRange& added) {
-  std::vector<VoxelRange> rest{added};
-  for (const LevelRange& before : ranges) {
-    if (before.level != level) continue;
-    std::vector<VoxelRange> next;
-    for (const VoxelRange& part : rest)
-      for (const VoxelRange& left : part.without(before.voxels)) next.push_back(left);
-    rest = std::move(next);
-  }
-  for (const VoxelRange& part : rest)
-    if (!part.empty()) ranges.push_back({level, part});
-}
 
 class ClipmapPass : public Pass {
   enum class Coverage { touched, samples };
@@ -113,13 +101,13 @@ class ClipmapPass : public Pass {
                                 "radiance that the faces of voxels reflect, and opacity; levels as voxelized",
                                 Levels::finest};
 
+  Changes changes_;
   /// Fragments that lists are made for: a guess, or what earlier frames needed; of all levels, and of parts.
   std::uint64_t roomForAll_ = 0, roomForParts_ = 0;
   /// Rows of tiles of large triangles that a draw may put aside; what does not fit is done without.
   static constexpr std::uint32_t kRowCapacity = 1u << 16;
   static constexpr std::uint64_t kRowHeadBytes = 4 * sizeof(std::uint32_t);
   static constexpr int kGroup = 64;  ///< invocations of passes over the list
-  static constexpr std::size_t kMostBoxes = std::tuple_size_v<decltype(clipmap_voxelize::Boxes::boxFirst)>;
 
  public:
   Reads readsFrom() const override {
@@ -196,89 +184,95 @@ class ClipmapPass : public Pass {
   // ---- what has changed ----------------------------------------------------------------------------------
 
   LitBy litBy(PassContext& frame) const {
-    LitBy result;
-    if (light.shadow.present())
-      result.resources = {light.shadow->depth, light.shadow->lights, light.shadow->views};
+    // Nearer lights may send more than a level takes.
+    LitBy result{Changes::placementOf(frame, light.shadow, light.brightest(frame, 1.0f)), {}, {}};
     if (light.media.present() && light.shadow.present())
       for (const ScatteringGrid::Medium& medium : light.media->media) {
-        result.resources.push_back(medium.density);
+        result.media.push_back(medium.density);
         for (const glm::vec3& corner : {medium.bounds.low, medium.bounds.high, medium.grid.low})
           result.numbers.insert(result.numbers.end(), {corner.x, corner.y, corner.z});
       }
-    // Nearer lights may send more than a level takes.
-    result.numbers.push_back(light.brightest(frame, 1.0f));
     return result;
   }
-
-  static std::vector<MovingObject> movingObjects(PassContext& frame) {
-    std::vector<MovingObject> result;
-    const Scene& scene = frame.sceneDescription();
-    int before = -1;
-    for (const SceneDraw& draw : frame.scene().draws()) {
-      if (!draw.moving || std::exchange(before, draw.object) == draw.object) continue;
-      const Object& object = scene.objects[static_cast<std::size_t>(draw.object)];
-      const ObjectState& there = frame.snapshot().objects[static_cast<std::size_t>(draw.object)];
-      MovingObject moving{there.toWorld, !there.positions.empty(), {}};
-      const auto* const positions =
-          moving.deforms ? there.positions.data() : scene.positions.data() + object.firstVertex;
-      for (std::uint32_t i = 0; i < object.vertexCount; ++i)
-        moving.bounds.grow(glm::vec3(there.toWorld * glm::vec4(positions[i], 1.0f)));
-      result.push_back(moving);
-    }
-    return result;
+  std::vector<std::shared_ptr<const void>> shadowMap() const {
+    if (!light.shadow.present()) return {};
+    return {light.shadow->depth, light.shadow->lights, light.shadow->views};
   }
 
-  /// The voxels that have to be filled anew: everything; or what the levels reach anew, and what moving
-  /// objects have left or come to.
-  static std::vector<LevelRange> changed(const ClipmapState& before, const ClipmapPlacement& placement,
-                                         bool all, const std::vector<MovingObject>& moving) {
+  /// What has to be filled anew: what the levels reach anew, and of the rest what is in changed cells.
+  static std::vector<LevelRange> rangesOf(const ClipmapPlacement& before, const ClipmapPlacement& placement,
+                                          bool all, bool moves) {
     std::vector<LevelRange> result;
     for (int level = 0; level < placement.levels(); ++level) {
       const VoxelRange range = placement.rangeOf(level);
-      const VoxelRange had = all ? VoxelRange{} : before.placement.rangeOf(level);
+      const VoxelRange had = all ? VoxelRange{} : before.rangeOf(level).within(range);
       for (const VoxelRange& slab : range.without(had)) result.push_back({level, slab});
-      if (all) continue;
-      for (std::size_t i = 0; i < moving.size(); ++i) {
-        if (!moving[i].deforms && moving[i].toWorld == before.moving[i].toWorld) continue;
-        for (const Bounds& bounds : {moving[i].bounds, before.moving[i].bounds})
-          addTo(result, level, rangeOf(bounds, placement, level).within(range));
-      }
+      if (moves && !had.empty()) result.push_back({level, had, true});
     }
     return result;
   }
 
-  /// The voxels of a level that bounds reach, and one more to each side for rounding.
-  static VoxelRange rangeOf(const Bounds& bounds, const ClipmapPlacement& placement, int level) {
-    if (bounds.empty) return {};
-    const double size = std::ldexp(static_cast<double>(placement.voxelSize), level);
-    const glm::dvec3 origin(placement.origin), most(1 << 29);
-    const glm::dvec3 low = glm::floor((glm::dvec3(bounds.low) - origin) / size) - 1.0,
-                     high = glm::floor((glm::dvec3(bounds.high) - origin) / size) + 2.0;
-    return {glm::ivec3(glm::clamp(low, -most, most)), glm::ivec3(glm::clamp(high, -most, most))};
+  /// Which cells differ from the frame before, a word each (clipmap_cells.glsl): those that something moving
+  /// has left or come to, and those that lie behind it in the shadow map.
+  gpu::BufferRef changedCells(PassContext& frame, const RadianceClipmap& clipmap,
+                              const ClipmapPlacement& before, const ClipmapPlacement& placement,
+                              const std::vector<Bounds>& moving) const {
+    const std::uint64_t along = (static_cast<std::uint64_t>(placement.resolution) + 3) / 4,
+                        cells = along * along * along,
+                        levelCount = static_cast<std::uint64_t>(placement.levels());
+    const gpu::BufferRef result =
+        frame.elements(clipmap_changed::clipmapCells, cells * levelCount, "changed cells of levels");
+    const BoxesInViews boxes(frame, light.shadow, moving);
+    clipmap_changed::Moved moved{
+        .boxCount = boxes.count, .lightCount = boxes.lightCount, .texel = boxes.texel};
+    for (int level = 0; level < placement.levels(); ++level) {
+      const auto i = static_cast<std::size_t>(level);
+      const VoxelRange stays = before.rangeOf(level).within(placement.rangeOf(level));
+      moved.stayFirst[i] = {stays.first, 0};
+      moved.stayEnd[i] = {stays.end, 0};
+    }
+    const shader::BindingSet bindings{clipmapBinding(clipmap), clipmap_changed::clipmapCells(result)};
+    frame.dispatchList(
+        frame.program(clipmap_changed::Variant{.lights = light.shadow.present()}),
+        {bindings, boxes.bindings(), clipmap_changed::moved(moved), clipmap_changed::moving(boxes.bounds),
+         clipmap_changed::clipmapOccupied(clipmap.occupied)},
+        cells * levelCount);
+    for (int level = 1; level < placement.levels(); ++level)
+      frame.dispatchList(frame.program(clipmap_changed::Variant{.finer = 1}),
+                         {bindings, clipmap_changed::level({level})}, cells);
+    return result;
   }
 
   void update(PassContext& frame, ClipmapState& state, const ClipmapPlacement& placement) {
     LitBy lit = litBy(frame);
-    std::vector<MovingObject> moving = movingObjects(frame);
-    bool all = !state.filled || lit != state.litBy || moving.size() != state.moving.size();
-    std::vector<LevelRange> ranges = changed(state, placement, all, moving);
-    if (ranges.size() > kMostBoxes) ranges = changed(state, placement, all = true, moving);
+    auto shadow = shadowMap();
+    std::optional<std::vector<Bounds>> moving = changes_.moving(frame);
+    const bool known = state.filled && moving && state.moving && moving->size() == state.moving->size();
+    const bool moves = known && !std::ranges::equal(*moving, *state.moving, sameBounds);
+    // Another shadow map is that of what moves, or nothing is known of it.
+    const bool all = !known || lit != state.litBy || (shadow != state.shadow && !moves);
+    const std::vector<LevelRange> ranges = rangesOf(state.placement, placement, all, moves && !all);
     std::vector<RadianceClipmap::Level> before = state.clipmap.levels;
     place(frame, state.clipmap, placement);
     tellChange(state.clipmap.change, std::move(before), placement.levels(), all, ranges);
+    state.clipmap.change.cells = moves && !all
+                                     ? changedCells(frame, state.clipmap, state.placement, placement,
+                                                    Changes::atEither(*moving, *state.moving))
+                                     : nullptr;
     if (all) {
       for (const gpu::TextureRef& face : state.clipmap.faces) face->clear(glm::vec4(0.0f));
       state.clipmap.occupied->clear();
     } else {
       for (const LevelRange& range : ranges)
-        frame.dispatch(
-            frame.program(clipmap_clear::kProgram),
-            {clipmap_clear::box({range.voxels.first, range.level, range.voxels.end}), writing(state.clipmap)},
-            range.voxels.size());
+        frame.dispatch(frame.program(clipmap_clear::Variant{.changed = range.onlyChanges}),
+                       {clipmap_clear::box({range.voxels.first, range.level, range.voxels.end}),
+                        writing(state.clipmap), clipmap_clear::clipmapCells(state.clipmap.change.cells)},
+                       range.voxels.size());
     }
     if (!ranges.empty()) fill(frame, state.clipmap, placement, ranges, all ? roomForAll_ : roomForParts_);
     state.placement = placement;
     state.litBy = std::move(lit);
+    state.shadow = std::move(shadow);
     state.moving = std::move(moving);
     state.filled = true;
   }
@@ -351,7 +345,7 @@ class ClipmapPass : public Pass {
     gpu::BufferRef sideMasks;
     if (isSampled())
       sideMasks = frame.elements(clipmap_voxelize::sideMasks, room, "samples of voxels' sides");
-    voxelize(frame, fragments, sideMasks, stackBound, ranges);
+    voxelize(frame, fragments, sideMasks, stackBound, ranges, clipmap.change.cells);
     finish(frame, fragments.count, room);
 
     OccupiedBricks occupied;
@@ -372,11 +366,12 @@ class ClipmapPass : public Pass {
 
   /// All ranges at once, a draw at a time.
   void voxelize(PassContext& frame, const VoxelFragments& list, const gpu::BufferRef& sideMasks,
-                const shader::BindingSet& stack, const std::vector<LevelRange>& ranges) const {
+                const shader::BindingSet& stack, const std::vector<LevelRange>& ranges,
+                const gpu::BufferRef& changedCells) const {
     clipmap_voxelize::Boxes boxes{};
     for (std::size_t i = 0; i < ranges.size(); ++i) {
       boxes.boxFirst[i] = {ranges[i].voxels.first, ranges[i].level};
-      boxes.boxEnd[i] = {ranges[i].voxels.end, 0};
+      boxes.boxEnd[i] = {ranges[i].voxels.end, ranges[i].onlyChanges};
     }
     int mostScale = 1;
     while (2 * mostScale <= supersampling) mostScale *= 2;
@@ -387,7 +382,8 @@ class ClipmapPass : public Pass {
       rows->uploadValues(std::span<const std::uint32_t>(noRows));
       const int triangles = static_cast<int>(draw.indexCount / 3);
       const SceneBinding scene(frame, draw);
-      auto variant = scene.in(clipmap_voxelize::Variant{.sampled = isSampled()});
+      auto variant =
+          scene.in(clipmap_voxelize::Variant{.sampled = isSampled(), .changed = changedCells != nullptr});
       const shader::BindingSet bindings{
           scene,
           stack,
@@ -401,7 +397,8 @@ class ClipmapPass : public Pass {
           clipmap_voxelize::count(list.count),
           clipmap_voxelize::fragments(list.fragments),
           clipmap_voxelize::sideMasks(sideMasks),
-          clipmap_voxelize::rows(rows)};
+          clipmap_voxelize::rows(rows),
+          clipmap_voxelize::clipmapCells(changedCells)};
       frame.dispatch(frame.program(variant), bindings, {triangles, static_cast<int>(ranges.size()), 1});
       variant.large = 1;
       frame.dispatchIndirect(frame.program(variant), bindings, *rows, sizeof(std::uint32_t));
@@ -451,6 +448,8 @@ class ClipmapFilterPass : public Pass {
     });
     const bool all = result.change.all || made->number + 1 != result.change.number;
     made->number = result.change.number;
+    // Ramps that move with their levels change more than the cells say.
+    const bool onlyChanges = !all && result.change.cells != nullptr && stays(result);
     // What differs from before, as it is read, level by level.
     VoxelRange changed = result.change.voxelized.front();
     const int count = static_cast<int>(result.levels.size());
@@ -470,20 +469,30 @@ class ClipmapFilterPass : public Pass {
       if (anew) changed = changed.around(block.voxels);
       if (anew && !all && !above) changed = changed.around(result.change.before[i].inner.voxels);
       if (part.empty()) continue;
-      // Behind the ramp only what the finer voxels have changed differs.
+      // Behind the ramp, and everywhere where it has not moved, only what has changed differs.
       float settled = RadianceClipmap::kEndless;
-      if (!all && !above && sameSides(result, moving))
+      if (!anew) {
+        settled = -RadianceClipmap::kEndless;
+      } else if (!all && !above && sameSides(result, moving)) {
         settled = result.ramp + 2.0f + static_cast<float>(movedBy(result, moving));
+      }
       frame.dispatch(
-          frame.program(clipmap_filter::Variant{.above = above}),
+          frame.program(
+              clipmap_filter::Variant{.above = above, .changed = onlyChanges && level <= result.around}),
           {clipmap_filter::level({part.first, level, part.end, settled, touched.first, 0, touched.end}),
-           facesOf(result.faces, gpu::Sampling::nearest), writing(result)},
+           facesOf(result.faces, gpu::Sampling::nearest), writing(result),
+           clipmap_filter::clipmapCells(result.change.cells)},
           part.size());
     }
     result.filledLevels = count;
     mips = result;
   }
 
+  static bool stays(const RadianceClipmap& clipmap) {
+    for (std::size_t level = 0; level < static_cast<std::size_t>(clipmap.around); ++level)
+      if (movedBy(clipmap, level) > 0) return false;
+    return true;
+  }
   /// Voxels by which a level has moved, along the axis along which it is the most.
   static int movedBy(const RadianceClipmap& clipmap, std::size_t level) {
     if (clipmap.change.before.empty()) return 0;

@@ -23,6 +23,7 @@ struct DirectionalRadianceGrid {
   bool holdsMedia = false;  ///< participating media are in the voxels beside the surfaces
   /// Outside of these bricks the finest level is 0; null members: not known.
   OccupiedBricks occupied;
+  ChangedBricks changed;
 
   /// Level of the grid that the first level of `faces` is.
   int firstLevelOfFaces() const { return finest != nullptr ? 1 : 0; }

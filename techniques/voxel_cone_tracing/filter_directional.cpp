@@ -11,15 +11,16 @@ namespace {
 
 namespace filter = shaders::voxel_cone_tracing::filter_directional;
 
-void fillLevel(PassContext& frame, const DirectionalRadianceGrid& result, int level, bool drawn) {
+void fillLevel(PassContext& frame, const DirectionalRadianceGrid& result, int level, bool drawn,
+               bool onlyChanges) {
   const glm::ivec3 coarse = levelResolution(result.grid.resolution, level),
                    fine = levelResolution(result.grid.resolution, level - 1);
   const int first = result.firstLevelOfFaces(), written = level - first;
   const bool fromFinest = level - 1 < first;
   const int read = fromFinest ? 0 : level - 1 - first;
-  const OccupiedBricks& occupied = result.occupied;
+  const OccupiedBricks& bricks = onlyChanges ? result.changed.bricks : result.occupied;
   // The voxels of a level are those of the bricks down to one a brick, where bricks are halved evenly.
-  const bool followsBricks = !drawn && occupied.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
+  const bool followsBricks = !drawn && bricks.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
                              result.grid.resolution % OccupiedBricks::kSide == glm::ivec3(0);
   const int perSide = OccupiedBricks::kSide >> level;
   const auto source = [&](int face) -> const gpu::TextureRef& {
@@ -43,8 +44,8 @@ void fillLevel(PassContext& frame, const DirectionalRadianceGrid& result, int le
       filter::negativeYImage(target(3), written),
       filter::positiveZImage(target(4), written),
       filter::negativeZImage(target(5), written),
-      filter::brickList(occupied.bricks),
-      filter::brickCount(occupied.count)};
+      filter::brickList(bricks.bricks),
+      filter::brickCount(bricks.count)};
   if (drawn) {
     drawVoxels(frame, frame.program(shaders::voxel_cone_tracing::filter_directional_drawn::kProgram),
                bindings, coarse, 6);
@@ -55,8 +56,8 @@ void fillLevel(PassContext& frame, const DirectionalRadianceGrid& result, int le
     frame.dispatch(program, bindings, coarse);
     return;
   }
-  for (int face = 0; face < 6; ++face) target(face)->clear(glm::vec4(0.0f), written);
-  frame.dispatchIndirect(program, bindings, *occupied.count, OccupiedBricks::argumentsBytes(level));
+  for (int face = 0; face < 6 && !onlyChanges; ++face) target(face)->clear(glm::vec4(0.0f), written);
+  frame.dispatchIndirect(program, bindings, *bricks.count, OccupiedBricks::argumentsBytes(level));
 }
 
 class FilterDirectionalPass : public Pass {
@@ -70,9 +71,15 @@ class FilterDirectionalPass : public Pass {
 
   void run(PassContext& frame) override {
     DirectionalRadianceGrid result = input(frame);
-    fillLevels(frame, result, drawn);
+    fillLevels(frame, result, drawn, continuesLevels(frame, result.changed));
     mips = result;
   }
+
+  /// Coarser levels beside a finest one that is changed where it lies.
+  struct KeptFaces {
+    std::array<gpu::TextureRef, 6> faces;
+    std::shared_ptr<ChangedBricks::Levels> levels = std::make_shared<ChangedBricks::Levels>();
+  };
 
   /// The finest level, with room for the others.
   DirectionalRadianceGrid input(PassContext& frame) const {
@@ -87,20 +94,34 @@ class FilterDirectionalPass : public Pass {
     result.unit = finest->unit;
     result.holdsMedia = finest->holdsMedia;
     result.occupied = finest->occupied;
-    const glm::ivec3 size = levelResolution(result.grid.resolution, 1);
-    for (gpu::TextureRef& face : result.faces)
-      face = frame.volume(size, result.finest->description().format, "coarser levels of one side",
-                          gpu::fullLevelCount(size.x, size.y, size.z));
+    result.changed = finest->changed;
+    const auto rooms = [&] {
+      const glm::ivec3 size = levelResolution(result.grid.resolution, 1);
+      std::array<gpu::TextureRef, 6> faces;
+      for (gpu::TextureRef& face : faces)
+        face = frame.volume(size, result.finest->description().format, "coarser levels of one side",
+                            gpu::fullLevelCount(size.x, size.y, size.z));
+      return faces;
+    };
+    if (finest->changed.levels == nullptr) {
+      result.faces = rooms();
+      return result;
+    }
+    // These are not in the textures of the finest level, and so not among the levels that others may fill.
+    const KeptFaces& kept = frame.kept("coarser levels of static geometry in unchanged light",
+                                       finest->changed.levels, [&] { return KeptFaces{rooms()}; });
+    result.faces = kept.faces;
+    result.changed.levels = kept.levels;
     return result;
   }
 };
 
 }  // namespace
 
-void fillLevels(PassContext& frame, DirectionalRadianceGrid& grid, bool drawn) {
+void fillLevels(PassContext& frame, DirectionalRadianceGrid& grid, bool drawn, bool onlyChanges) {
   const glm::ivec3 size = grid.grid.resolution;
   grid.filledLevels = gpu::fullLevelCount(size.x, size.y, size.z);
-  for (int level = 1; level < grid.filledLevels; ++level) fillLevel(frame, grid, level, drawn);
+  for (int level = 1; level < grid.filledLevels; ++level) fillLevel(frame, grid, level, drawn, onlyChanges);
 }
 
 void addFilterDirectional(TechniqueRegistry& registry) {

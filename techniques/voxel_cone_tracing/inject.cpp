@@ -41,6 +41,9 @@ class Bounces {
 /// Injection into grids: members of a pass.
 class Injection {
  public:
+  /// Geometry: bounds of what moves.
+  static constexpr Reads kReads = Reads::geometry | Reads::lights | Reads::materials | Reads::environment;
+
   explicit Injection(Pass* pass)
       : fragments_(pass, "fragments", "surface samples"),
         light_(pass),
@@ -84,23 +87,58 @@ class Injection {
     }
   }
 
+  /// A grid that is changed where it lies, and what it was made of.
+  struct KeptGrid {
+    std::vector<gpu::TextureRef> textures;
+    ChangedBricks changed{std::make_shared<ChangedBricks::Levels>(), 0, {}};
+    /// Of the frame before: bounds of what moved, the cells of its fragments, and the occupied voxels.
+    std::vector<Bounds> moving;
+    gpu::BufferRef movingCells, bricks;
+    CellFragments still;
+  };
+
+  /// As long as static geometry and the lights on it stay where they are; null where that is not known.
+  template <class MakeRooms>
+  std::shared_ptr<KeptGrid> keptGrid(PassContext& frame, const Bounces& bounces, MakeRooms&& makeRooms) {
+    // Every bounce changes all of the light.
+    if (bounces.count() > 1 || !knowsStill() || !changes_.moving(frame)) return nullptr;
+    float unit = 1.0f;
+    const auto key =
+        std::pair(fragments_->still, Changes::placementOf(frame, light_.shadow, brightestOf(frame, unit)));
+    return frame.kept("voxels of static geometry in unchanged light", key, [&] {
+      auto result = std::make_shared<KeptGrid>();
+      result->textures = makeRooms();
+      return result;
+    });
+  }
+
   /// Fills the finest levels, of one texture for all sides or of six for the faces, and what the port says
-  /// of them.
+  /// of them. `kept`: of the same textures, or null.
   template <class Grid>
   void fill(PassContext& frame, Grid& result, std::span<const gpu::TextureRef> textures,
-            const Bounces& bounces, const FaceRule& faces = {}) {
+            const Bounces& bounces, KeptGrid* kept, const FaceRule& faces = {}) {
     result.grid = placement();
     result.holdsMedia = storesMedia();
     // Every bounce adds less than the one before.
     const float brightest = brightestOf(frame, result.unit, bounces.count());
 
     OccupiedBricks occupied;
-    VoxelSums sums = claimSums(frame, *fragments_, result.grid.resolution, textures.size() > 1, occupied);
+    const bool onlyChanges = kept != nullptr && kept->bricks != nullptr;
+    ChangedCells changed;
+    VoxelSums sums;
+    if (onlyChanges) {
+      changed = changesOf(frame, *kept);
+      sums = claimChanged(frame, *fragments_, result.grid.resolution, textures.size() > 1, changed,
+                          kept->bricks, occupied, kept->changed.bricks);
+    } else {
+      sums = claimSums(frame, *fragments_, result.grid.resolution, textures.size() > 1, occupied);
+    }
     sums.faces = faces;
     // Media lie beside the surfaces' bricks.
     if (!result.holdsMedia) result.occupied = occupied;
     const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
-    resolve(frame, sums, brightest, result.unit, result.holdsMedia, occupied, textures);
+    const OccupiedBricks& bricks = onlyChanges ? kept->changed.bricks : occupied;
+    resolve(frame, sums, brightest, result.unit, result.holdsMedia, bricks, textures);
     for (int bounce = 1; bounce < bounces.count(); ++bounce) {
       if constexpr (std::is_same_v<Grid, RadianceGrid>) {
         fillLevels(frame, result, Opacity::facing);
@@ -113,6 +151,12 @@ class Injection {
     }
     result.filledLevels = 1;
     if constexpr (std::is_same_v<Grid, RadianceGrid>) result.bounces = bounces.count();
+    if (kept == nullptr) return;
+    if (!onlyChanges) kept->movingCells = Changes::movingCells(frame, *fragments_).bits;
+    kept->bricks = sums.bricks;
+    kept->moving = *changes_.moving(frame);
+    ++kept->changed.number;
+    result.changed = kept->changed;
   }
 
   /// Makes the bricks of result.tree, and fills those of the leaves.
@@ -162,11 +206,23 @@ class Injection {
   /// Of the frame before: only what did not change in it is worth keeping.
   std::pair<gpu::BufferRef, LightPlacement> before_;
 
+  /// Whether what stands still is known apart, and light on it changes only in the shadows of what moves.
+  bool knowsStill() const {
+    return fragments_->still != nullptr && !light_.media.present() && fragments_->reflected == nullptr;
+  }
+
+  /// What has changed since the frame before: both that moves now and what did then.
+  ChangedCells changesOf(PassContext& frame, KeptGrid& kept) {
+    if (kept.still.ends == nullptr) kept.still = sortedByCells(frame, stillOf(*fragments_));
+    return Changes::cells(frame, *fragments_, kept.still, light_.shadow,
+                          Changes::atEither(*changes_.moving(frame), kept.moving), &kept.movingCells);
+  }
+
   /// Kept as long as static geometry and lights stay where they are; nothing where that is not known, or
   /// where they have moved in this frame.
   std::optional<StillLight> stillLight(PassContext& frame, const VoxelOctree& tree, int faces,
                                        float brightest) {
-    if (tree.still == nullptr || light_.media.present() || fragments_->reflected != nullptr) return {};
+    if (tree.still == nullptr || !knowsStill()) return {};
     auto key = std::pair(fragments_->still, Changes::placementOf(frame, light_.shadow, brightest));
     const bool stays = key == before_;
     before_ = key;
@@ -189,9 +245,8 @@ class Injection {
   std::shared_ptr<const RadianceOctree> stillIn(PassContext& frame, RadianceOctree& octree, float brightest) {
     const std::optional<StillLight> still = stillLight(frame, octree.tree, octree.faces, brightest);
     if (!still) return nullptr;
-    std::vector<Bounds> moving = *changes_.moving(frame);
-    moving.insert(moving.end(), still->moving.begin(), still->moving.end());
-    octree.changed = Changes::cells(frame, *fragments_, still->cells, light_.shadow, moving);
+    octree.changed = Changes::cells(frame, *fragments_, still->cells, light_.shadow,
+                                    Changes::atEither(*changes_.moving(frame), still->moving));
     return still->octree;
   }
 
@@ -265,14 +320,15 @@ class Injection {
     addUp(frame, *fragments_, sums, radiances);
   }
 
-  /// The finest levels from the sums: of the occupied bricks alone, or of all voxels where media lie in them.
+  /// The finest levels from the sums: of these bricks alone, or of all voxels where media lie in them.
   void resolve(PassContext& frame, const VoxelSums& sums, float mostRadiance, float unit, bool holdsMedia,
-               const OccupiedBricks& occupied, std::span<const gpu::TextureRef> textures) {
+               const OccupiedBricks& bricks, std::span<const gpu::TextureRef> textures) {
     const LightBinding lights(light_.shadow);
     const MediaBinding bound(frame, light_.media, holdsMedia);
     const auto& program = frame.program(resolve::Variant{.directions = sums.directional,
                                                          .lights = holdsMedia && light_.shadow.present(),
-                                                         .medium = bound.axis});
+                                                         .medium = bound.axis,
+                                                         .changed = sums.changed != nullptr});
     const GridPlacement grid = placement();
     shader::BindingSet bindings{resolve::parameters({.brickCount = sums.brickCount,
                                                      .unit = unit,
@@ -283,8 +339,8 @@ class Injection {
                                                      .lightCount = lights.count,
                                                      .mediumSteps = light_.mediumSteps,
                                                      .mostRadiance = mostRadiance}),
-                                resolve::brickList(occupied.bricks),
-                                resolve::brickCount(occupied.count),
+                                resolve::brickList(bricks.bricks),
+                                resolve::brickCount(bricks.count),
                                 sums.bindings(),
                                 lights,
                                 bound};
@@ -300,8 +356,9 @@ class Injection {
       frame.dispatch(program, bindings, grid.resolution);
       return;
     }
-    for (const gpu::TextureRef& texture : textures) texture->clear(glm::vec4(0.0f), 0);
-    frame.dispatchIndirect(program, bindings, *occupied.count, OccupiedBricks::argumentsBytes(0));
+    if (sums.changed == nullptr)
+      for (const gpu::TextureRef& texture : textures) texture->clear(glm::vec4(0.0f), 0);
+    frame.dispatchIndirect(program, bindings, *bricks.count, OccupiedBricks::argumentsBytes(0));
   }
 };
 
@@ -313,16 +370,18 @@ class InjectPass : public Pass {
   Out<RadianceGrid> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
                              Levels::finest};
 
-  Reads readsFrom() const override { return Reads::lights | Reads::materials | Reads::environment; }
+  Reads readsFrom() const override { return Injection::kReads; }
   int indirectBounces() const override { return bounces.count(); }
 
   void run(PassContext& frame) override {
     if (bounces.count() > 1 && !mips)
       throw Error(
           "voxel_cone_tracing.inject: further bounces are gathered through coarser levels, for which there is no room; expected 'mips on' or 'bounces 1'");
+    const auto rooms = [&] { return injection.rooms(frame, 1, "radiance grid", mips); };
+    const auto kept = injection.keptGrid(frame, bounces, rooms);
     RadianceGrid result;
-    result.radiance = injection.rooms(frame, 1, "radiance grid", mips).front();
-    injection.fill(frame, result, {&result.radiance, 1}, bounces);
+    result.radiance = (kept != nullptr ? kept->textures : rooms()).front();
+    injection.fill(frame, result, {&result.radiance, 1}, bounces, kept.get());
     radiance = result;
   }
 };
@@ -342,13 +401,16 @@ class InjectDirectionalPass : public Pass {
       this, "radiance", "radiance that the faces of voxels reflect, and opacity; the finest level only",
       Levels::finest};
 
-  Reads readsFrom() const override { return Reads::lights | Reads::materials | Reads::environment; }
+  Reads readsFrom() const override { return Injection::kReads; }
   int indirectBounces() const override { return bounces.count(); }
 
   void run(PassContext& frame) override {
+    const auto rooms = [&] { return injection.rooms(frame, 6, "radiance grid of one side", true); };
+    const auto kept = injection.keptGrid(frame, bounces, rooms);
     DirectionalRadianceGrid result;
-    std::ranges::copy(injection.rooms(frame, 6, "radiance grid of one side", true), result.faces.begin());
-    injection.fill(frame, result, result.faces, bounces, {backWeight, opaqueAlong == OpaqueAlong::all});
+    std::ranges::copy(kept != nullptr ? kept->textures : rooms(), result.faces.begin());
+    injection.fill(frame, result, result.faces, bounces, kept.get(),
+                   {backWeight, opaqueAlong == OpaqueAlong::all});
     radiance = result;
   }
 };
@@ -364,9 +426,7 @@ class OctreeInjectPass : public Pass {
   Out<RadianceOctree> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
                                Levels::finest};
 
-  Reads readsFrom() const override {
-    return Reads::geometry | Reads::lights | Reads::materials | Reads::environment;
-  }
+  Reads readsFrom() const override { return Injection::kReads; }
   int indirectBounces() const override { return bounces.count(); }
 
   void run(PassContext& frame) override {

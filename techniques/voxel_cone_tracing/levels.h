@@ -16,8 +16,14 @@ glm::ivec3 evenlyHalved(const glm::ivec3& size);
 enum class Opacity { facing, average, trilinear };
 
 /// Fills all levels above the finest, for which the texture has room.
-/// `drawn`: by draws without attributes (drawn.h), of all voxels.
-void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity, bool drawn = false);
-void fillLevels(PassContext& frame, DirectionalRadianceGrid& grid, bool drawn = false);
+/// `drawn`: by draws without attributes (drawn.h), of all voxels. `onlyChanges`: the levels hold what they
+/// did before grid.changed, and the next two above the finest are made anew only there.
+void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity, bool drawn = false,
+                bool onlyChanges = false);
+void fillLevels(PassContext& frame, DirectionalRadianceGrid& grid, bool drawn = false,
+                bool onlyChanges = false);
+
+/// Whether the pass that runs made the levels of the run before, so that only what has changed differs.
+bool continuesLevels(PassContext& frame, const ChangedBricks& changed);
 
 }  // namespace lumivox::voxel_cone_tracing

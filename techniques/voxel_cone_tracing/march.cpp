@@ -85,6 +85,9 @@ StoreBinding storeOf(const RadianceOctree& octree, bool descends, bool layers) {
   if (tree.nodes == nullptr && descends)
     throw Error(
         "voxel_cone_tracing: 'look_up descent' goes from node to node, and bricks of their own voxels have no nodes; expected 'look_up ranks', or 'bricks published' in voxel_cone_tracing.octree");
+  if (octree.faces > 1 && tree.nodes != nullptr)
+    throw Error(
+        "voxel_cone_tracing: cones read six faces in bricks of their own voxels alone; expected 'bricks own' in voxel_cone_tracing.octree, or 'faces one' in voxel_cone_tracing.octree_inject");
   result.lookUp = tree.nodes == nullptr                ? gather::Variant::lookUpOwn
                   : tree.ranks != nullptr && !descends ? gather::Variant::lookUpRanks
                                                        : gather::Variant::lookUpDescent;

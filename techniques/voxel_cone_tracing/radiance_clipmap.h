@@ -94,6 +94,9 @@ struct RadianceClipmap {
     bool all = true;
     std::vector<VoxelRange> voxelized;  ///< by level; empty: nothing
     std::vector<Level> before;          ///< the levels then; empty where `all`
+    /// Of what was in the levels then and is still there, the cells of 4 x 4 x 4 voxels in which something
+    /// differs (clipmap_cells.glsl); null: what `voxelized` says.
+    gpu::BufferRef cells;
   };
   Change change;
 

@@ -29,24 +29,29 @@ glm::ivec3 evenlyHalved(const glm::ivec3& size) {
   return (size + (multiple - 1)) / multiple * multiple;
 }
 
-void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity, bool drawn) {
+bool continuesLevels(PassContext& frame, const ChangedBricks& changed) {
+  if (changed.levels == nullptr) return false;
+  return changed.continues(frame.kept("levels of static geometry in unchanged light", changed.levels,
+                                      [] { return std::shared_ptr<const void>(std::make_shared<int>(0)); }));
+}
+
+void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity, bool drawn, bool onlyChanges) {
   namespace filter = shaders::voxel_cone_tracing::filter;
   namespace filter_drawn = shaders::voxel_cone_tracing::filter_drawn;
   const gpu::TextureDescription& texture = grid.radiance->description();
   const glm::ivec3 finest(texture.width, texture.height, texture.depth);
-  const OccupiedBricks& occupied = grid.occupied;
+  const OccupiedBricks& bricks = onlyChanges ? grid.changed.bricks : grid.occupied;
   const filter::Constants constants{.rule = static_cast<int>(opacity)};
   const auto sampling = opacity == Opacity::trilinear ? gpu::Sampling::linearOneMip : gpu::Sampling::nearest;
   for (int level = 1; level < texture.levels; ++level) {
     const glm::ivec3 coarse = levelResolution(finest, level), fine = levelResolution(finest, level - 1);
     // The voxels of a level are those of the bricks down to one a brick, where bricks are halved evenly.
-    const bool followsBricks = !drawn && occupied.bricks != nullptr &&
-                               (OccupiedBricks::kSide >> level) >= 1 &&
+    const bool followsBricks = !drawn && bricks.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
                                finest % OccupiedBricks::kSide == glm::ivec3(0);
     const shader::BindingSet bindings{
         filter::parameters({.coarse = coarse, .fineLevel = level - 1, .fine = fine}),
         filter::radianceGrid(grid.radiance, sampling), filter::radianceImage(grid.radiance, level),
-        filter::brickList(occupied.bricks), filter::brickCount(occupied.count)};
+        filter::brickList(bricks.bricks), filter::brickCount(bricks.count)};
     if (drawn) {
       drawVoxels(frame,
                  frame.program(filter_drawn::Variant{}, filter_drawn::Constants{.rule = constants.rule}),
@@ -58,8 +63,8 @@ void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity, bool dr
       frame.dispatch(program, bindings, coarse);
       continue;
     }
-    grid.radiance->clear(glm::vec4(0.0f), level);
-    frame.dispatchIndirect(program, bindings, *occupied.count, OccupiedBricks::argumentsBytes(level));
+    if (!onlyChanges) grid.radiance->clear(glm::vec4(0.0f), level);
+    frame.dispatchIndirect(program, bindings, *bricks.count, OccupiedBricks::argumentsBytes(level));
   }
   grid.filledLevels = texture.levels;
   grid.opacity =
@@ -82,7 +87,7 @@ class FilterPass : public Pass {
     if (filtered.radiance->description().levels < gpu::fullLevelCount(size.x, size.y, size.z))
       throw Error(
           "voxel_cone_tracing.filter: the grid 'radiance' has no room for coarser levels; expected 'mips on' in voxel_cone_tracing.inject");
-    fillLevels(frame, filtered, opacity, drawn);
+    fillLevels(frame, filtered, opacity, drawn, continuesLevels(frame, filtered.changed));
     mips = filtered;
   }
 };

@@ -10,30 +10,85 @@ namespace lumivox::voxel_cone_tracing {
 
 using namespace shaders::voxel_cone_tracing;
 
-VoxelSums claimSums(PassContext& frame, const VoxelFragments& fragments, const glm::ivec3& size,
-                    bool directional, OccupiedBricks& occupied) {
+namespace {
+
+/// Without sums, and of bricks only how many there are.
+VoxelSums placed(const glm::ivec3& size, bool directional) {
   VoxelSums sums;
   sums.directional = directional;
   sums.brickCount = (size + (OccupiedBricks::kSide - 1)) / OccupiedBricks::kSide;
-  const std::uint64_t bricks = GridPlacement{.resolution = sums.brickCount}.voxelCount(),
-                      voxels = std::min<std::uint64_t>(fragments.capacity,
-                                                       GridPlacement{.resolution = size}.voxelCount());
-  sums.bricks = frame.emptyElements(claim::bricks, bricks, "occupied voxels of bricks");
+  return sums;
+}
+std::uint64_t bricksOf(const VoxelSums& sums) {
+  return GridPlacement{.resolution = sums.brickCount}.voxelCount();
+}
+/// No more voxels than fragments are occupied.
+std::uint64_t mostSums(const VoxelFragments& fragments, const glm::ivec3& size) {
+  return std::min<std::uint64_t>(fragments.capacity, GridPlacement{.resolution = size}.voxelCount());
+}
+
+/// Room for a list of so many bricks at most, and their totals.
+struct BrickRoom {
+  OccupiedBricks bricks;
+  gpu::BufferRef totals;
+
+  BrickRoom(PassContext& frame, std::uint64_t most, const std::string& label)
+      : bricks{frame.elements(claim::brickList, most, label),
+               frame.buffer(OccupiedBricks::argumentsBytes(3), label + ": how many")},
+        totals(frame.uploaded(std::array<std::uint32_t, 2>{}, "claimed bricks and voxels")) {}
+  /// The dispatches over them.
+  void finish(PassContext& frame) const {
+    frame.dispatch(frame.program(arguments::kProgram),
+                   {arguments::brickTotals(totals), arguments::brickCount(bricks.count)}, {1, 1, 1});
+  }
+};
+
+}  // namespace
+
+VoxelSums claimSums(PassContext& frame, const VoxelFragments& fragments, const glm::ivec3& size,
+                    bool directional, OccupiedBricks& occupied) {
+  VoxelSums sums = placed(size, directional);
+  sums.bricks = frame.emptyElements(claim::bricks, bricksOf(sums), "occupied voxels of bricks");
   sums.places = {add::bricks(sums.bricks)};
+  const std::uint64_t voxels = mostSums(fragments, size);
   sums.voxels = directional ? frame.emptyElements(add::directionalSums, voxels, "sums of voxels' faces")
                             : frame.emptyElements(add::sums, voxels, "sums of voxels");
-  occupied.bricks = frame.elements(claim::brickList, std::min<std::uint64_t>(fragments.capacity, bricks),
-                                   "occupied bricks");
-  occupied.count = frame.buffer(OccupiedBricks::argumentsBytes(3), "occupied brick count");
-  const gpu::BufferRef totals = frame.uploaded(std::array<std::uint32_t, 2>{}, "claimed bricks and voxels");
+  const BrickRoom room(frame, std::min(fragments.capacity, bricksOf(sums)), "occupied bricks");
   const auto brickCount = claim::size({sums.brickCount});
-  forEachFragment(frame, frame.program(mark::kProgram), {brickCount, mark::bricks(sums.bricks)}, fragments);
-  frame.dispatch(
-      frame.program(claim::kProgram),
-      {brickCount, claim::bricks(sums.bricks), claim::brickList(occupied.bricks), claim::brickTotals(totals)},
-      sums.brickCount);
-  frame.dispatch(frame.program(arguments::kProgram),
-                 {arguments::brickTotals(totals), arguments::brickCount(occupied.count)}, {1, 1, 1});
+  forEachFragment(frame, frame.program(mark::Variant{}), {brickCount, mark::bricks(sums.bricks)}, fragments);
+  frame.dispatch(frame.program(claim::Variant{}),
+                 {brickCount, claim::bricks(sums.bricks), claim::brickList(room.bricks.bricks),
+                  claim::brickTotals(room.totals)},
+                 sums.brickCount);
+  room.finish(frame);
+  occupied = room.bricks;
+  return sums;
+}
+
+VoxelSums claimChanged(PassContext& frame, const VoxelFragments& fragments, const glm::ivec3& size,
+                       bool directional, const ChangedCells& changed, const gpu::BufferRef& bricks,
+                       OccupiedBricks& occupied, OccupiedBricks& changedBricks) {
+  VoxelSums sums = placed(size, directional);
+  sums.changed = &changed;
+  sums.bricks = bricks;
+  sums.places = {add::bricks(sums.bricks)};
+  const std::uint64_t voxels = mostSums(fragments, size);
+  sums.voxels = directional ? frame.elements(add::directionalSums, voxels, "sums of voxels' faces")
+                            : frame.elements(add::sums, voxels, "sums of voxels");
+  const BrickRoom all(frame, std::min(fragments.capacity, bricksOf(sums)), "occupied bricks"),
+      // What was occupied before may be so no more.
+      some(frame, std::min(2 * fragments.capacity, bricksOf(sums)), "changed bricks");
+  const shader::BindingSet bindings{claim::size({sums.brickCount}), bindingOf(changed), sums.bindings()};
+  frame.dispatch(frame.program(changed_bricks::kProgram), bindings, sums.brickCount);
+  forEachTaken(frame, frame.program(mark::Variant{.changed = 1}), bindings, fragments, sums);
+  frame.dispatch(frame.program(claim::Variant{.changed = 1, .directions = directional}),
+                 {bindings, claim::brickList(all.bricks.bricks), claim::brickTotals(all.totals),
+                  claim::changedBrickList(some.bricks.bricks), claim::changedTotals(some.totals)},
+                 sums.brickCount);
+  all.finish(frame);
+  some.finish(frame);
+  occupied = all.bricks;
+  changedBricks = some.bricks;
   return sums;
 }
 

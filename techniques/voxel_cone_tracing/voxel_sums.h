@@ -37,6 +37,12 @@ struct VoxelSums {
 VoxelSums claimSums(PassContext& frame, const VoxelFragments& fragments, const glm::ivec3& size,
                     bool directional, OccupiedBricks& occupied);
 
+/// The same where only some cells have changed since `bricks` was claimed, which is brought up to date: room
+/// for the sums of those alone. `changedBricks`: those that hold or held anything.
+VoxelSums claimChanged(PassContext& frame, const VoxelFragments& fragments, const glm::ivec3& size,
+                       bool directional, const ChangedCells& changed, const gpu::BufferRef& bricks,
+                       OccupiedBricks& occupied, OccupiedBricks& changedBricks);
+
 /// Room for what fragments reflect.
 gpu::BufferRef radiancesOf(PassContext& frame, const VoxelFragments& fragments, const VoxelSums& sums);
 

@@ -6,6 +6,7 @@
 #include "lumivox/measure/metrics.h"
 #include "lumivox/reference/path_tracer.h"
 #include "support/clipmap.h"
+#include "support/moving_room.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -120,6 +121,24 @@ TEST_CASE("things that move change the levels as a frame alone has them") {
   frames.emplace_back(eye, 0.6);
   frames.emplace_back(eye, 0.0);
   checkSequence(scene, {"16", "2", ""}, frames);
+}
+
+TEST_CASE("things that move in unchanged light change only their voxels and their shadows, to the bit") {
+  for (const RoomLight& one : kRoomLights) {
+    const Scene scene = movingRoom(one.light);
+    const glm::dvec3 eye(0, 0, 0.9);
+    // Slowly, back, far away and back, at rest, and while the levels move.
+    std::vector<std::pair<glm::dvec3, double>> frames;
+    for (const double time : {0.0, 0.05, 0.3, 0.1, 6.0, 0.2, 0.2}) frames.emplace_back(eye, time);
+    for (int i = 1; i < 4; ++i) frames.emplace_back(eye - 0.1 * i * glm::dvec3(1, 0.5, 1), 0.2 + 0.1 * i);
+    // Of a finest voxel, where coarser levels stay.
+    for (int i = 0; i < 4; ++i) frames.emplace_back(eye + 0.04 * i * glm::dvec3(-1, 0, 0), 0.5 + 0.02 * i);
+    CAPTURE(one.name);
+    checkSequence(scene, {"16", "3", ""}, frames);
+    checkSequence(scene, {"26", "1", "precision half"}, frames);
+    checkSequence(scene, {"13", "2", "coverage samples"}, frames);
+    checkSequence(scene, {"16", "2", "extent 0.5 m"}, frames);
+  }
 }
 
 TEST_CASE("leaving out and keeping everything give the same bits") {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
+
 #include "lumivox/pipeline/port.h"
 
 namespace lumivox {
@@ -17,6 +20,27 @@ struct OccupiedBricks {
   }
 };
 
+/// A volume that its pass changes where it lies: what of its finest level differs from what the run before
+/// left.
+struct ChangedBricks {
+  /// What the coarser levels in the same textures were made by, and from which run. It is held, so that
+  /// nothing else can pass for it.
+  struct Levels {
+    std::shared_ptr<const void> by;
+    std::uint64_t number = 0;
+  };
+  std::shared_ptr<Levels> levels;  ///< those of these textures; null: every run makes the volume anew
+  std::uint64_t number = 0;        ///< of the run, one more than that of the run before
+  OccupiedBricks bricks;           ///< bricks that are empty by now are among them; null members: all
+  /// Whether `by` made the coarser levels of the run before, so that only what lies above these bricks
+  /// differs. From now on they are those of this run.
+  bool continues(const std::shared_ptr<const void>& by) const {
+    const bool result = levels->by == by && levels->number + 1 == number && bricks.bricks != nullptr;
+    *levels = {by, number};
+    return result;
+  }
+};
+
 /// Pre-filtered outgoing radiance, pre-multiplied by opacity, one mip per halving (Crassin et al. 2011).
 struct RadianceGrid {
   GridPlacement grid;
@@ -30,6 +54,7 @@ struct RadianceGrid {
   bool holdsMedia = false;  ///< participating media are in the voxels beside the surfaces
   /// Outside of these bricks the finest level is 0; null members: not known.
   OccupiedBricks occupied;
+  ChangedBricks changed;
 };
 
 template <>
