@@ -52,6 +52,7 @@ constexpr Store kStores[] = {{"one grid", "voxel_cone_tracing", "grid", "mips"},
                              {"coarse directional", "voxel_cone_tracing_coarse_directional", "grid", "mips"},
                              {"six grids", "voxel_cone_tracing_directional", "grid", "mips"},
                              {"octree", "voxel_cone_tracing_octree", "bricks", "mips"},
+                             {"of six faces", "voxel_cone_tracing_octree_directional", "bricks", "mips"},
                              {"clipmap", "voxel_cone_tracing_clipmap", "grid", "mips", nullptr, nullptr, 2}};
 constexpr const char* kScenes[] = {"cornell",
                                    "arcade",
