@@ -19,6 +19,7 @@ int main(int argumentCount, char** arguments) {
     lumivox::models::writeSkylight(directory);
     lumivox::models::writeQuad(directory);
     lumivox::models::writeBlock(directory);
+    lumivox::models::writeWavingCloth(directory);
     lumivox::models::writeArcade(directory);
     lumivox::models::writeArcadeTextures(directory / "textures");
     lumivox::models::writeStressModels(directory);

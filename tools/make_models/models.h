@@ -11,6 +11,7 @@ void writeFurnace(const std::filesystem::path& directory);
 void writeSkylight(const std::filesystem::path& directory);
 void writeQuad(const std::filesystem::path& directory);
 void writeBlock(const std::filesystem::path& directory);
+void writeWavingCloth(const std::filesystem::path& directory);
 void writeArcade(const std::filesystem::path& directory);
 void writeArcadeTextures(const std::filesystem::path& directory);
 void writeStressModels(const std::filesystem::path& directory);

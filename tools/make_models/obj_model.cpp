@@ -114,7 +114,8 @@ std::string ObjModel::objText() const {
   std::string text = fmt::format("# {}\nmtllib {}.mtl\n", comment_, name_);
   for (const std::string& line : positions_) text += "v " + line + '\n';
   for (const std::string& line : texcoords_) text += "vt " + line + '\n';
-  for (const std::string& line : normals_) text += "vn " + line + '\n';
+  if (writesNormals)
+    for (const std::string& line : normals_) text += "vn " + line + '\n';
   int object = -1, material = -1;
   for (const Face& face : faces_) {
     if (face.object != object) {
@@ -127,7 +128,9 @@ std::string ObjModel::objText() const {
       text += "usemtl " + materials_[static_cast<std::size_t>(material)].name + '\n';
     }
     text += 'f';
-    for (const glm::ivec3& c : face.corners) text += fmt::format(" {}/{}/{}", c.x + 1, c.y + 1, c.z + 1);
+    for (const glm::ivec3& c : face.corners)
+      text += writesNormals ? fmt::format(" {}/{}/{}", c.x + 1, c.y + 1, c.z + 1)
+                            : fmt::format(" {}/{}", c.x + 1, c.y + 1);
     text += '\n';
   }
   return text;

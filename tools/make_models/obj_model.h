@@ -52,6 +52,10 @@ class ObjModel {
 
   double textureSize = 1.0;  ///< metres of a surface that one repetition of its texture covers
 
+  /// Off: none are written, and a scene smooths by its 'crease'. The frames of a sequence must have the same
+  /// faces, and equal normals are written once.
+  bool writesNormals = true;
+
   std::size_t triangleCount() const { return faces_.size(); }
   void write(const std::filesystem::path& directory) const;
 
