@@ -159,7 +159,8 @@ TEST_CASE(
       for (std::size_t i = 0; i < here.values().size(); ++i)
         difference += std::abs(here.values()[i] - moved.values()[i]);
       difference /= static_cast<double>(here.values().size());
-      CHECK(difference < 0.001 * mean);
+      // A step whose middle lies on the border of two layers of voxels falls to either side.
+      CHECK(difference < 0.005 * mean);
     }
 }
 
