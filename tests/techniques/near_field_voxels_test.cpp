@@ -1,0 +1,227 @@
+// Rays through bits: whichever way the first voxel is found, it is the same one.
+#include <cmath>
+#include <random>
+
+#include "lumivox/measure/voxel_walk.h"
+#include "lumivox/pipeline/pass.h"
+#include "support/scene_builder.h"
+#include "support/techniques.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+struct Rays {
+  std::vector<glm::vec3> origins, directions;  ///< in voxels
+  std::vector<float> reaches;
+  void add(const glm::vec3& origin, const glm::vec3& direction, float reach = 1e9f) {
+    origins.push_back(origin);
+    directions.push_back(direction);
+    reaches.push_back(reach);
+  }
+};
+
+/// Voxels of one metre from the origin on, so that metres are voxels.
+BinaryGrid gridOf(const VoxelSet& set) {
+  const glm::ivec3 size = set.resolution();
+  const int layers = (size.z + BinaryGrid::kStack - 1) / BinaryGrid::kStack;
+  BinaryGrid result{{glm::vec3(0.0f), 1.0f, size}, nullptr};
+  const int levels = gpu::fullLevelCount(size.x, size.y, 1);
+  result.stacks =
+      std::make_shared<gpu::Texture>(device(),
+                                     gpu::TextureDescription{gpu::TextureKind::d2Array, gpu::Format::rgba32ui,
+                                                             size.x, size.y, layers, levels},
+                                     "test bits");
+  for (int level = 0; level < levels; ++level) {
+    const glm::ivec2 texels = glm::max(glm::ivec2(size) >> level, 1);
+    std::vector<std::uint32_t> words(static_cast<std::size_t>(texels.x) * static_cast<std::size_t>(texels.y) *
+                                     static_cast<std::size_t>(layers) * 4);
+    for (int z = 0; z < size.z; ++z)
+      for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x) {
+          if (!set.contains({x, y, z})) continue;
+          const glm::ivec2 texel = glm::min(glm::ivec2(x, y) >> level, texels - 1);
+          words[4 *
+                    (static_cast<std::size_t>(z / 128) * static_cast<std::size_t>(texels.y) +
+                     static_cast<std::size_t>(texel.y)) *
+                    static_cast<std::size_t>(texels.x) +
+                4 * static_cast<std::size_t>(texel.x) + static_cast<std::size_t>(z % 128 / 32)] |=
+              1u << (z % 32);
+        }
+    result.stacks->upload(level, std::as_bytes(std::span(words)));
+  }
+  return result;
+}
+
+struct Found {
+  glm::ivec3 voxel;
+  float t, fetches;
+};
+
+std::vector<Found> probed(const BinaryGrid& grid, const Rays& rays, const char* method) {
+  constexpr int kWidth = 256;
+  const int height = (static_cast<int>(rays.origins.size()) + kWidth - 1) / kWidth;
+  std::vector<float> origins(static_cast<std::size_t>(4 * kWidth * height), -1.0f), directions(origins);
+  for (std::size_t i = 0; i < rays.origins.size(); ++i)
+    for (int c = 0; c < 4; ++c) {
+      const auto at = 4 * i + static_cast<std::size_t>(c);
+      origins[at] = c < 3 ? rays.origins[i][c] : rays.reaches[i];
+      directions[at] = c < 3 ? rays.directions[i][c] : 0.0f;
+    }
+  const auto image = [&](const std::vector<float>& values) {
+    auto texture = std::make_shared<gpu::Texture>(
+        device(), gpu::TextureDescription{.format = gpu::Format::rgba32f, .width = kWidth, .height = height},
+        "test rays");
+    texture->uploadFloats(0, values);
+    return Image{texture};
+  };
+  SceneBuilder builder;
+  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, 8, 8);
+  PassHarness probe(device(), techniques(), "near_field_voxels", "probe", builder.scene,
+                    snapshotOf(builder.scene, 0.0));
+  probe.setParameter("method", std::string(method));
+  probe.setInput("bits", grid);
+  probe.setInput("origins", image(origins));
+  probe.setInput("directions", image(directions));
+  probe.run();
+  const std::vector<float> hits = probe.output<Image>("hits").texture->downloadFloats(0),
+                           fetches = probe.output<Image>("fetches").texture->downloadFloats(0);
+  std::vector<Found> result;
+  for (std::size_t i = 0; i < rays.origins.size(); ++i)
+    result.push_back({{static_cast<int>(hits[4 * i]), static_cast<int>(hits[4 * i + 1]),
+                       static_cast<int>(hits[4 * i + 2])},
+                      hits[4 * i + 3],
+                      fetches[4 * i]});
+  return result;
+}
+
+VoxelSet randomSet(const glm::ivec3& size, double share, unsigned seed) {
+  VoxelSet set(size);
+  std::mt19937 random(seed);
+  std::bernoulli_distribution is(share);
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x)
+        if (is(random)) set.insert({x, y, z});
+  return set;
+}
+
+/// Of every kind: random, from outside, along axes, in planes, along edges, through corners, nearly along an
+/// axis, from planes.
+Rays allKinds(const glm::ivec3& size, int count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> unit(0.0f, 1.0f), normal(-1.0f, 1.0f);
+  const glm::vec3 side(size);
+  const auto place = [&] { return side * glm::vec3(unit(random), unit(random), unit(random)); };
+  const auto turn = [&] {
+    glm::vec3 direction;
+    do direction = {normal(random), normal(random), normal(random)};
+    while (glm::dot(direction, direction) > 1.0f || glm::dot(direction, direction) < 1e-4f);
+    return glm::normalize(direction);
+  };
+  Rays rays;
+  for (int i = 0; i < count; ++i) {
+    const int axis = i / 10 % 3;
+    glm::vec3 origin = place(), direction = turn();
+    glm::vec3 along(0.0f);
+    along[axis] = i % 2 == 0 ? 1.0f : -1.0f;
+    switch (i % 10) {
+      case 0:
+        break;
+      case 1:
+        origin = 0.5f * side - 2.0f * glm::length(side) * direction + 0.4f * (place() - 0.5f * side);
+        break;
+      case 2:
+        direction = along;
+        break;
+      case 3:  // in a plane of the grid, and sometimes along an edge
+        origin[axis] = std::floor(origin[axis]);
+        direction[axis] = 0.0f;
+        direction = glm::normalize(direction);
+        break;
+      case 4:
+        origin = glm::floor(origin);
+        direction = along;
+        break;
+      case 5:  // through corners
+        origin = glm::floor(origin);
+        direction = glm::normalize(glm::sign(direction));
+        break;
+      case 6:  // ties with slopes of powers of two
+        origin = glm::floor(origin) + 0.5f;
+        direction = glm::sign(direction) * glm::vec3(1.0f, 0.5f, 0.25f);
+        break;
+      case 7:
+        direction = glm::normalize(along + 1e-5f * direction);
+        break;
+      case 8:
+        origin[axis] = along[axis] > 0.0f ? 0.0f : side[axis];
+        break;
+      default:  // from a side of the grid, through its corners
+        origin = side * glm::vec3(i / 10 & 1, i / 20 & 1, i / 40 & 1);
+        direction = glm::normalize(0.5f * side - origin + 0.01f * direction);
+        break;
+    }
+    rays.add(origin, direction, i % 7 == 0 ? 0.3f * glm::length(side) : 1e9f);
+  }
+  return rays;
+}
+
+}  // namespace
+
+TEST_CASE("a ray finds the same first voxel through the hierarchy, the stacks and one by one as on the CPU") {
+  struct Grid {
+    glm::ivec3 size;
+    double share;
+  };
+  for (const Grid& one : {Grid{{32, 32, 32}, 0.02}, Grid{{33, 17, 70}, 0.1}, Grid{{128, 128, 128}, 0.0005},
+                          Grid{{5, 1, 300}, 0.01}, Grid{{16, 16, 1024}, 0.001}, Grid{{64, 64, 64}, 0.5},
+                          Grid{{1, 1, 1}, 1.0}}) {
+    const VoxelSet set = randomSet(one.size, one.share, 7);
+    const BinaryGrid grid = gridOf(set);
+    const Rays rays = allKinds(one.size, 20000, 11);
+    int hits = 0;
+    std::vector<VoxelHit> expected;
+    for (std::size_t i = 0; i < rays.origins.size(); ++i) {
+      const auto hit = firstVoxel(set, rays.origins[i], rays.directions[i], rays.reaches[i]);
+      hits += hit.has_value();
+      expected.push_back(hit.value_or(VoxelHit{glm::ivec3(-1), -1.0f}));
+    }
+    REQUIRE(hits > 1000);
+    REQUIRE(hits < static_cast<int>(rays.origins.size()));
+    for (const char* method : {"hierarchy", "stacks", "plain"}) {
+      const std::vector<Found> found = probed(grid, rays, method);
+      int other = 0;
+      std::size_t first = 0;
+      for (std::size_t i = 0; i < found.size(); ++i)
+        if (found[i].voxel != expected[i].voxel || found[i].t != expected[i].t)
+          if (other++ == 0) first = i;
+      CAPTURE(one.size.x, one.size.y, one.size.z, method, first, found[first].voxel.x,
+              expected[first].voxel.x, found[first].t, expected[first].t);
+      CHECK(other == 0);
+    }
+  }
+}
+
+TEST_CASE(
+    "a ray that begins in a set voxel ends there, and one from a plane in the voxel that holds the plane") {
+  VoxelSet set({8, 8, 8});
+  set.insert({3, 4, 5});
+  Rays rays;
+  rays.add({3.5f, 4.5f, 5.5f}, {0, 0, 1});
+  rays.add({3.0f, 4.0f, 5.0f}, {-1, 0, 0});  // the lower planes belong to the voxel
+  rays.add({4.0f, 4.5f, 5.5f}, {-1, 0, 0});  // the upper ones do not
+  rays.add({4.0f, 4.5f, 5.5f}, {1, 0, 0});
+  rays.add({-2.0f, 4.5f, 5.5f}, {1, 0, 0}, 4.5f);
+  rays.add({-2.0f, 4.5f, 5.5f}, {1, 0, 0}, 5.0f);
+  const float way[] = {0, 0, 0, -1, -1, 5};
+  for (const char* method : {"hierarchy", "stacks", "plain"}) {
+    const std::vector<Found> found = probed(gridOf(set), rays, method);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      CAPTURE(method, i);
+      CHECK(found[i].t == way[i]);
+      CHECK(found[i].voxel == (way[i] < 0 ? glm::ivec3(-1) : glm::ivec3(3, 4, 5)));
+    }
+  }
+}
