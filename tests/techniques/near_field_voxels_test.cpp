@@ -129,8 +129,9 @@ Rays allKinds(const glm::ivec3& size, int count, unsigned seed) {
     switch (i % 10) {
       case 0:
         break;
-      case 1:
-        origin = 0.5f * side - 2.0f * glm::length(side) * direction + 0.4f * (place() - 0.5f * side);
+      case 1:  // from outside, some from far away, where planes are crossed at rounded places
+        origin = 0.5f * side - (i % 20 == 1 ? 2.0f : 300.0f) * glm::length(side) * direction +
+                 0.4f * (place() - 0.5f * side);
         break;
       case 2:
         direction = along;
