@@ -25,7 +25,8 @@ vec3 barycentric(mat3 corners, vec2 point) {
 
 // The sample of the triangle in a column: the fragment of every voxel there, but for its place.
 struct ColumnSample {
-  vec3 centre;  // point of the triangle nearest to the middle of the column
+  mat3 corners;  // of the triangle
+  vec3 centre;   // its point nearest to the middle of the column
   VoxelFragment fragment;
 };
 
@@ -42,6 +43,7 @@ VoxelFragment fragmentOf(MaterialData material) {
 ColumnSample sampleColumn(mat3 corners, mat3 cornerNormals, vec2 cornerTexcoords[3], MaterialData material, VoxelFragment base, ivec2 column) {
   ColumnSample result;
   vec3 weights = barycentric(corners, vec2(column) + 0.5);
+  result.corners = corners;
   result.centre = corners * weights;
   result.fragment = base;
 #if TEXTURES || MASKS
@@ -71,10 +73,25 @@ ColumnSample sampleColumn(mat3 corners, mat3 cornerNormals, vec2 cornerTexcoords
 // The mask leaves nothing of the triangle there.
 bool isHole(ColumnSample s) { return s.fragment.albedoBCoverage >> 16 == 0u; }
 
+// A point of the triangle in a voxel of the column, from its corner. Where the sample lies in another voxel than this one it goes along the
+// triangle to this one's depth: only moved in depth it would lie off the triangle, and in its shadow. The axis of the columns is that which
+// the triangle faces most, so that the way through the voxel is no longer than half of it along each axis.
+vec3 placeIn(ColumnSample s, ivec3 voxel) {
+  vec3 place = s.centre - vec3(voxel);
+  float missing = clamp(place.z, 0.0, 1.0) - place.z;
+  if (missing == 0.0) return place;
+  vec3 facing = cross(s.corners[1] - s.corners[0], s.corners[2] - s.corners[0]);
+  float slope = abs(facing.x) + abs(facing.y);
+  if (slope == 0.0 || facing.z == 0.0) return place;
+  vec2 way = sign(facing.xy) * (-missing * facing.z / slope);
+  vec2 to = clamp(place.xy + way, 0.0, 1.0) + vec2(voxel.xy);
+  return s.corners * barycentric(s.corners, to) - vec3(voxel);
+}
+
 VoxelFragment fragmentAt(ColumnSample s, ivec3 voxel, int axis) {
   VoxelFragment fragment = s.fragment;
   fragment.voxel = packVoxel(unpermute(voxel, axis));
-  fragment.offset = packOffset(unpermute(s.centre - vec3(voxel), axis));
+  fragment.offset = packOffset(unpermute(placeIn(s, voxel), axis));
   return fragment;
 }
 

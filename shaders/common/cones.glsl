@@ -10,7 +10,7 @@ const float kOpaque = 0.999;  // what lies behind this opacity adds less than a 
 vec4 over(vec4 front, vec4 back) { return front + (1.0 - front.a) * back; }
 
 // Half of a cone's diameter over its height.
-float tanOfHalfAngle(float cosHalfAngle) { return sqrt(1.0 - cosHalfAngle * cosHalfAngle) / cosHalfAngle; }
+float tanOfHalfAngle(float cosHalfAngle) { return sqrt(max(1.0 - cosHalfAngle * cosHalfAngle, 0.0)) / cosHalfAngle; }
 
 // A cone of the solid angle of the lobe cos^n, 2 pi / (n + 1) = 2 pi (1 - cos(half angle)); at most 60 degrees.
 float cosHalfAngleOfLobe(float exponent) { return max(1.0 - 1.0 / (exponent + 1.0), 0.5); }
@@ -45,15 +45,16 @@ vec2 insideVolume(vec3 low, vec3 extent, vec3 origin, vec3 direction) {
 // The mip level for voxels of `size` finest voxels, 1 at least, and the share of the next one: between the levels l and l+1 the blend is
 // size / 2^l - 1.
 float levelOf(float size, float coarsest, out float blend) {
-  float level = min(floor(log2(size)), coarsest);
-  blend = level < coarsest ? size * exp2(-level) - 1.0 : 0.0;
+  // Logarithms and powers are only as exact as they need be (GLSL 4.50, Sec. 4.7.1).
+  float level = clamp(floor(log2(size)), 0.0, coarsest);
+  blend = level < coarsest ? clamp(size * exp2(-level) - 1.0, 0.0, 1.0) : 0.0;
   return level;
 }
 
 // Transmittance of one finer voxel where two levels are blended: the blend of a medium with transmittance T per voxel of the finer one is
 // (1-f) T + f T^2, solved for T.
 float throughVoxel(float through, float blend) {
-  return 2.0 * through / (1.0 - blend + sqrt((1.0 - blend) * (1.0 - blend) + 4.0 * blend * through));
+  return 2.0 * through / max(1.0 - blend + sqrt((1.0 - blend) * (1.0 - blend) + 4.0 * blend * through), 1e-30);
 }
 
 // Opacity correction (Crassin et al. 2011; thesis 004 Sec. 4.2.1): the transmittance of a known length is raised to the step in such lengths.

@@ -12,7 +12,7 @@
 #pragma lumivox axis DIRECTIONS 0 1
 #pragma lumivox axis SAMPLED 0 1
 #pragma lumivox require !SAMPLED || (DIRECTIONS && PLACES == clipmap)
-#pragma lumivox require PLACES != clipmap || DIRECTIONS
+#pragma lumivox require (PLACES != clipmap || DIRECTIONS) && (PLACES != octree || !DIRECTIONS) && (!CHANGED || PLACES == octree)
 #include "bricks.glsl"
 #include "common/integer_mean.glsl"
 
@@ -44,8 +44,8 @@ layout(std430, binding = 9) readonly buffer SideMasks { uint sideMasksOf[]; };  
 const float kBackShare = 1.0 / 256.0;
 
 void main() {
-  uint index = listIndex();
-  if (index >= fragmentCount) return;
+  uint index;
+  if (!takenFragment(index)) return;
   VoxelFragment fragment = fragments[index];
   ivec3 voxel = unpackVoxel(fragment.voxel);
   uint place = sumsAt(voxel);
@@ -81,8 +81,8 @@ void main() {
 layout(std430, binding = 4) buffer Sums { VoxelSums sums[]; };
 
 void main() {
-  uint index = listIndex();
-  if (index >= fragmentCount) return;
+  uint index;
+  if (!takenFragment(index)) return;
   VoxelFragment fragment = fragments[index];
   ivec3 voxel = unpackVoxel(fragment.voxel);
   uint place = sumsAt(voxel);

@@ -4,6 +4,9 @@
 //
 // DIRECTIONS: both sides gather. Otherwise a voxel shines the same to all sides, and the side to which more light comes counts.
 #pragma lumivox axis DIRECTIONS 0 1
+#pragma lumivox require (!DIRECTIONS || STORE == directional) && (STORE != directional || DIRECTIONS)
+#pragma lumivox require STORE != clipmap
+#pragma lumivox require !CHANGED && PLACES != clipmap && (PLACES == octree) == (STORE == octree)
 layout(local_size_x = 64) in;
 #include "march.glsl"
 #include "common/fragments.glsl"
@@ -20,6 +23,7 @@ layout(std140, binding = 0) uniform Parameters {
 layout(std430, binding = 2) readonly buffer Direct { float direct[]; };  // W/(sr m^2): three of each fragment or of each side of one
 layout(std430, binding = 7) writeonly buffer Radiances { float radiances[]; };
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
+#include "sums.glsl"
 #if DIRECTIONS
 layout(std430, binding = 4) buffer DirectionalSums { VoxelDirections directions[]; };
 #else
@@ -40,8 +44,8 @@ vec3 arrivingFrom(vec3 posWorld, vec3 normal, vec2 place) {
 float total(vec3 value) { return value.r + value.g + value.b; }
 
 void main() {
-  uint index = listIndex();
-  if (index >= fragmentCount) return;
+  uint index;
+  if (!takenFragment(index)) return;
   VoxelFragment fragment = fragments[index];
   ivec3 voxel = unpackVoxel(fragment.voxel);
   vec3 posWorld = gridLow + (vec3(voxel) + unpackOffset(fragment.offset)) * voxelSize, normal = unpackNormal(fragment.normal);
@@ -65,7 +69,7 @@ void main() {
       brightest = max(brightest, radiance);
     }
   }
-  uint sum = sumsOf(bricks[brickOf(voxel, brickCount)], bitOf(voxel));
+  uint sum = sumsAt(voxel);
 #if DIRECTIONS
   atomicAdd(directions[sum].fragments, 1u);
   atomicMax(directions[sum].brightest, floatBitsToUint(brightest));

@@ -11,7 +11,7 @@ float share(int cell, int child, float childrenPerCell) {
 // A child seen through `length` of its own width.
 vec4 slab(vec4 value, float length) {
   if (length >= 1.0 || value.a <= 0.0) return length >= 1.0 ? value : vec4(0.0);
-  float opacity = 1.0 - pow(1.0 - value.a, length);
+  float opacity = 1.0 - pow(max(1.0 - value.a, 0.0), length);
   return vec4(value.rgb * (opacity / value.a), opacity);
 }
 
@@ -25,7 +25,7 @@ vec4 facing(vec4 x, vec4 y, vec4 z) {
   vec3 weight = vec3(x.a, y.a, z.a) / largest;
   weight *= weight;
   vec4 sum = weight.x * x + weight.y * y + weight.z * z;
-  return sum * (largest / sum.a);
+  return vec4(sum.rgb * (largest / sum.a), largest);
 }
 
 // Of eight whole children, x first, the opacity of the axis that is most closed.

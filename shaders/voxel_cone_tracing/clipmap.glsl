@@ -16,24 +16,21 @@ layout(std140, binding = 4) uniform Clipmap {
   float clipmapBorder;  // voxels of a level over which reading goes on to the next one, before its border
   float clipmapRamp;    // voxels over which a level goes over from what was voxelized to what the finer one makes of it
   // Of each level: its voxels from the first on and before the end; w: period of addresses, and where the bits of its occupied voxels begin.
+  // Start: the address of the first voxel, the remainder of its number.
   ivec4 ownFirst[kMostLevels];
   ivec4 ownEnd[kMostLevels];
   ivec4 ownTexel[kMostLevels];  // of the address (0,0,0)
+  ivec4 ownStart[kMostLevels];
   ivec4 innerFirst[kMostLevels];
   ivec4 innerEnd[kMostLevels];
   ivec4 innerTexel[kMostLevels];
+  ivec4 innerStart[kMostLevels];
   // Where the level is read, in voxels; far away on sides beyond which the whole store ends.
   vec4 reachFirst[kMostLevels];
   vec4 reachEnd[kMostLevels];
 };
 
 const float kFarAway = 1e29;
-
-// The remainder, 0 to period - 1, also of voxels below 0.
-ivec3 addressOf(ivec3 voxel, int period) {
-  const int kLowest = 1 << 29;  // no voxel lies below -kLowest
-  return (voxel + (kLowest / period + 1) * period) % period;
-}
 
 bool isInner(int level, ivec3 voxel) {
   return all(greaterThanEqual(voxel, innerFirst[level].xyz)) && all(lessThan(voxel, innerEnd[level].xyz));
@@ -51,15 +48,19 @@ struct ClipmapPlace {
   int period;
   uint word, bit;
 };
-ClipmapPlace placeIn(ivec4 first, ivec4 end, ivec4 texel, ivec3 voxel) {
+// Of a voxel less than a period from the first one.
+ClipmapPlace placeIn(ivec4 first, ivec4 end, ivec4 texel, ivec4 start, ivec3 voxel) {
   ClipmapPlace place;
   place.period = first.w;
-  place.address = addressOf(voxel, place.period);
+  place.address = start.xyz + (voxel - first.xyz);
+  place.address -= mix(ivec3(0), ivec3(place.period), greaterThanEqual(place.address, ivec3(place.period)));
   place.texel = texel.xyz + place.address;
   uint index = uint((place.address.z * place.period + place.address.y) * place.period + place.address.x);
   place.word = uint(end.w) + (index >> 5);
   place.bit = 1u << (index & 31u);
   return place;
 }
-ClipmapPlace ownPlace(int level, ivec3 voxel) { return placeIn(ownFirst[level], ownEnd[level], ownTexel[level], voxel); }
-ClipmapPlace innerPlace(int level, ivec3 voxel) { return placeIn(innerFirst[level], innerEnd[level], innerTexel[level], voxel); }
+ClipmapPlace ownPlace(int level, ivec3 voxel) { return placeIn(ownFirst[level], ownEnd[level], ownTexel[level], ownStart[level], voxel); }
+ClipmapPlace innerPlace(int level, ivec3 voxel) {
+  return placeIn(innerFirst[level], innerEnd[level], innerTexel[level], innerStart[level], voxel);
+}

@@ -6,8 +6,16 @@
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #include "clipmap_write.glsl"
 
+#include "common/cones.glsl"
+
 layout(std140, binding = 0) uniform Level {
-  int level;  // that is made
+  ivec3 firstMade;  // voxels of the level that are made anew, and all addresses of the block that hold none
+  int level;
+  ivec3 endMade;
+  float settled;       // behind so many voxels from the finer level's border nothing differs from before but in these:
+  ivec3 firstTouched;
+  int unused;
+  ivec3 endTouched;
 };
 // By the outward normals of the faces.
 layout(binding = 0) uniform sampler3D positiveX;
@@ -18,63 +26,77 @@ layout(binding = 4) uniform sampler3D positiveZ;
 layout(binding = 5) uniform sampler3D negativeZ;
 
 // Texels of the children, x first, and which of them are not empty.
-ivec3 childTexel[8];
-uint occupiedChildren = 0u;
-ivec3 firstChild;
-
-vec4 higherFace(int axis, ivec3 child) {
-  ivec3 at = child - firstChild;
-  int index = at.x | at.y << 1 | at.z << 2;
-  if ((occupiedChildren >> index & 1u) == 0u) return vec4(0.0);
-  ivec3 texel = childTexel[index];
-  return axis == 0 ? texelFetch(positiveX, texel, 0) : axis == 1 ? texelFetch(positiveY, texel, 0) : texelFetch(positiveZ, texel, 0);
-}
-vec4 lowerFace(int axis, ivec3 child) {
-  ivec3 at = child - firstChild;
-  int index = at.x | at.y << 1 | at.z << 2;
-  if ((occupiedChildren >> index & 1u) == 0u) return vec4(0.0);
-  ivec3 texel = childTexel[index];
-  return axis == 0 ? texelFetch(negativeX, texel, 0) : axis == 1 ? texelFetch(negativeY, texel, 0) : texelFetch(negativeZ, texel, 0);
-}
-#include "columns.glsl"
-
-void findChildren(int finer, ivec3 voxel) {
-  firstChild = 2 * voxel;
+struct Children {
+  ivec3 texels[8];
+  uint occupied;
+};
+Children childrenOf(int finer, ivec3 voxel) {
+  Children result;
+  result.occupied = 0u;
   for (int i = 0; i < 8; ++i) {
-    ivec3 child = firstChild + ivec3(i & 1, i >> 1 & 1, i >> 2);
+    ivec3 child = 2 * voxel + ivec3(i & 1, i >> 1 & 1, i >> 2);
+    result.texels[i] = ivec3(0);
     // A voxel at the border of the coarsest level may reach beyond it.
     if (any(lessThan(child, ownFirst[finer].xyz)) || any(greaterThanEqual(child, ownEnd[finer].xyz))) continue;
-    ClipmapPlace place = isInner(finer, child) ? innerPlace(finer, child) : ownPlace(finer, child);
+    bool inner = isInner(finer, child);
+    ClipmapPlace place = placeIn(inner ? innerFirst[finer] : ownFirst[finer], inner ? innerEnd[finer] : ownEnd[finer],
+                                 inner ? innerTexel[finer] : ownTexel[finer], inner ? innerStart[finer] : ownStart[finer], child);
     if (!isOccupied(place)) continue;
-    occupiedChildren |= 1u << i;
-    childTexel[i] = place.texel;
+    result.occupied |= 1u << i;
+    result.texels[i] = place.texel;
   }
+  return result;
+}
+
+// A face of a coarse voxel as columns.glsl makes it, of eight whole children without loops: the columns of two along an axis, where the
+// second child lies `along` behind the first one, in front of it from the higher side, and their mean over the two other axes in turn.
+vec4 seenThrough(sampler3D face, Children children, int along, int side, int up, bool fromHigher) {
+  vec4 values[8];
+  for (int i = 0; i < 8; ++i) {
+    values[i] = vec4(0.0);
+    if ((children.occupied >> i & 1u) != 0u) values[i] = texelFetch(face, children.texels[i], 0);
+  }
+  vec4 sum = vec4(0.0);
+  for (int column = 0; column < 4; ++column) {
+    int first = (column & 1) * side + (column >> 1) * up;
+    sum += fromHigher ? over(values[first + along], values[first]) : over(values[first], values[first + along]);
+  }
+  return sum / 4.0;
 }
 
 void main() {
+  ivec3 voxel = firstMade + ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(voxel, endMade))) return;
 #if ABOVE
-  ivec3 voxel = ownFirst[level].xyz + ivec3(gl_GlobalInvocationID);
-  if (any(greaterThanEqual(voxel, ownEnd[level].xyz))) return;
+  bool isVoxel = all(lessThan(voxel, ownEnd[level].xyz));
   ClipmapPlace place = ownPlace(level, voxel);
 #else
-  ivec3 voxel = innerFirst[level].xyz + ivec3(gl_GlobalInvocationID);
-  if (any(greaterThanEqual(voxel, innerEnd[level].xyz))) return;
+  bool isVoxel = all(lessThan(voxel, innerEnd[level].xyz));
   ClipmapPlace place = innerPlace(level, voxel), own = ownPlace(level, voxel);
 #endif
-  findChildren(level - 1, voxel);
-  bool occupied = occupiedChildren != 0u;
-#if !ABOVE
+  Children children;
+  children.occupied = 0u;
+#if ABOVE
+  if (isVoxel) children = childrenOf(level - 1, voxel);
+#else
   // Where the finer level begins, nothing is of it: reading goes on there without a leap.
   float fromBorder = 0.5 * withinReach(level - 1, 2.0 * (vec3(voxel) + 0.5));
+  bool touched = all(greaterThanEqual(voxel, firstTouched)) && all(lessThan(voxel, endTouched));
+  if (fromBorder >= settled && !touched) return;
   float share = clamp((fromBorder - 1.0) / max(clipmapRamp, 1e-6), 0.0, 1.0);
-  bool voxelized = share < 1.0 && isOccupied(own);
+  if (isVoxel && share > 0.0) children = childrenOf(level - 1, voxel);
+#endif
+  bool occupied = children.occupied != 0u;
+#if !ABOVE
+  bool voxelized = isVoxel && share < 1.0 && isOccupied(own);
   occupied = occupied || voxelized;
 #endif
   if (!occupied && !isOccupied(place)) return;
   vec4 faces[6] = vec4[6](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
-  if (occupiedChildren != 0u)
-    for (int axis = 0; axis < 3; ++axis)
-      lookThrough(voxel, axis, firstChild, firstChild + 1, vec3(2.0), faces[2 * axis], faces[2 * axis + 1]);
+  if (children.occupied != 0u)
+    faces = vec4[6](seenThrough(positiveX, children, 1, 2, 4, true), seenThrough(negativeX, children, 1, 2, 4, false),
+                    seenThrough(positiveY, children, 2, 4, 1, true), seenThrough(negativeY, children, 2, 4, 1, false),
+                    seenThrough(positiveZ, children, 4, 1, 2, true), seenThrough(negativeZ, children, 4, 1, 2, false));
 #if !ABOVE
   vec4 before[6] = vec4[6](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
   if (voxelized)

@@ -20,13 +20,28 @@ vec4 faceOf(uint place, int face, bool addsUp, float unit) {
   return vec4(radianceOfFace(place, face, opacity, unit), opacity);
 }
 
-// By samples of the voxel's sides: radiance by the share that the fragments cover; opacity by the samples, which are few, and never less than
-// that share, or what little a small thing covers would not be seen.
+// What the fragments send to all sides in the mean, in the same units.
+vec3 radianceOfVoxel(uint place, float unit) {
+  vec3 sum = vec3(0.0);
+  float weight = 0.0;
+  for (int face = 0; face < 6; ++face) {
+    sum += vec3(directions[place].faces[4 * face], directions[place].faces[4 * face + 1], directions[place].faces[4 * face + 2]);
+    weight += float(directions[place].faces[4 * face + 3]);
+  }
+  return weight > 0.0 ? sum / weight * (uintBitsToFloat(directions[place].brightest) / unit) : vec3(0.0);
+}
+
+// By samples of the voxel's sides: opacity by those that are covered, which are few, and never less than the share that the fragments cover;
+// radiance by that share, which is finer. What makes a surface thicker than it is seen from the side shines as the whole voxel does (thesis
+// 004 Sec. 3.5.2: emittance goes into all directions), but in no larger share than the fragments cover of any side, so that nothing small
+// shines by leaps.
 vec4 faceOfSamples(uint place, int face, float unit) {
-  uint sum = directions[place].opacity[face / 2];
-  float covered = min(float(sum >> kSideSamples) / kSampledFixedPoint * float(directions[place].fragments), 1.0);
-  float opacity = max(float(bitCount(sum & kAllSides)) / float(kSideSamples), covered);
-  return vec4(radianceOfFace(place, face, covered, unit), opacity);
+  float covered[3];
+  for (int axis = 0; axis < 3; ++axis)
+    covered[axis] = min(float(directions[place].opacity[axis] >> kSideSamples) / kSampledFixedPoint * float(directions[place].fragments), 1.0);
+  float own = covered[face / 2], most = max(covered[0], max(covered[1], covered[2]));
+  float opacity = max(float(bitCount(directions[place].opacity[face / 2] & kAllSides)) / float(kSideSamples), own);
+  return vec4(radianceOfFace(place, face, own, unit) + min(opacity - own, most) * radianceOfVoxel(place, unit), opacity);
 }
 
 #endif

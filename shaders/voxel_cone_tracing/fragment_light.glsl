@@ -5,7 +5,7 @@
 #pragma lumivox axis SHADOWS 0 1
 #pragma lumivox axis REFLECTED 0 1
 #pragma lumivox axis MEDIUM none even varying
-#pragma lumivox require !SHADOWS || LIGHTS
+#pragma lumivox require (!SHADOWS || LIGHTS) && (!LIGHTS || SHADOWS)
 #pragma lumivox require MEDIUM == none || LIGHTS
 #include "common/constants.glsl"
 #include "bricks.glsl"
@@ -30,6 +30,7 @@ layout(std140, binding = 0) uniform Grid {
   ivec3 brickCount;
   float ambient;        // irradiance of all surfaces besides that of the lights, W/m^2
   int lightSamples;     // points of a fragment's plane in its voxel that are lit
+  int emissive;         // 1: surfaces that emit light do so in the voxels as well
 };
 layout(std430, binding = 2) writeonly buffer Radiances { float radiances[]; };  // W/(sr m^2): three of each fragment or of each side of one
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
@@ -38,19 +39,18 @@ layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
 layout(std430, binding = 7) readonly buffer Reflected { uint reflected[]; };
 #endif
 
-#if PLACES == PLACES_CLIPMAP
+// The voxel of a fragment: its low corner in world space, and in w its width, m.
+#if defined(PLACES_CLIPMAP) && PLACES == PLACES_CLIPMAP  // programs without that axis have dense grids
 #include "clipmap_stack.glsl"
 
-vec3 positionOf(VoxelFragment fragment) {
+vec4 voxelOfFragment(VoxelFragment fragment) {
   ivec3 voxel = unpackVoxel(fragment.voxel);
   int level = levelInStack(voxel);
-  return stackOrigin + (vec3(voxelOfLevel(voxel, level)) + unpackOffset(fragment.offset)) * voxelSizeOf(level);
+  return vec4(stackOrigin + vec3(voxelOfLevel(voxel, level)) * voxelSizeOf(level), voxelSizeOf(level));
 }
 float mostRadianceIn(ivec3 voxel) { return stackLimits[levelInStack(voxel)].x; }
 #else
-vec3 positionOf(VoxelFragment fragment) {
-  return gridLow + (vec3(unpackVoxel(fragment.voxel)) + unpackOffset(fragment.offset)) * voxelSize;
-}
+vec4 voxelOfFragment(VoxelFragment fragment) { return vec4(gridLow + vec3(unpackVoxel(fragment.voxel)) * voxelSize, voxelSize); }
 float mostRadianceIn(ivec3 voxel) { return mostRadiance; }
 #endif
 
@@ -66,6 +66,9 @@ bool isKnown(uint index, out vec3 radiance) {
   return false;
 #endif
 }
+
+// What the front of a fragment emits, W/(sr m^2).
+vec3 emittedBy(VoxelFragment fragment) { return emissive != 0 ? unpackShared(fragment.emission) : vec3(0.0); }
 
 #if LIGHTS
 // Adds the irradiance of a point by the lights, W/m^2.
@@ -98,10 +101,11 @@ void arrivingAt(VoxelFragment fragment, out vec3 front, out vec3 back) {
   front = vec3(0.0);
   back = vec3(0.0);
 #if LIGHTS
-  vec3 low = gridLow + vec3(unpackVoxel(fragment.voxel)) * voxelSize, place = unpackOffset(fragment.offset);
+  vec4 voxel = voxelOfFragment(fragment);
+  vec3 place = unpackOffset(fragment.offset);
   vec3 normal = unpackNormal(fragment.normal);
   if (lightSamples <= 1) {
-    lightPoint(low + place * voxelSize, normal, front, back);
+    lightPoint(voxel.xyz + place * voxel.w, normal, front, back);
     return;
   }
   const vec2 kR2 = vec2(0.75487766624669276, 0.56984029099805327);
@@ -117,13 +121,13 @@ void arrivingAt(VoxelFragment fragment, out vec3 front, out vec3 back) {
     point[axis] -= (normal[side] * (across.x - place[side]) + normal[up] * (across.y - place[up])) / normal[axis];
     if (point[axis] < 0.0 || point[axis] > 1.0) continue;
     inside += 1.0;
-    lightPoint(low + point * voxelSize, normal, front, back);
+    lightPoint(voxel.xyz + point * voxel.w, normal, front, back);
   }
   if (inside > 0.0) {
     front /= inside;
     back /= inside;
   } else {
-    lightPoint(low + place * voxelSize, normal, front, back);
+    lightPoint(voxel.xyz + place * voxel.w, normal, front, back);
   }
 #endif
 }

@@ -96,7 +96,7 @@ vec3 gatherGlossy(vec3 apex, vec3 normal, vec3 mirror, float exponent) {
   vec3 tangent = tangentTo(mirror), bitangent = cross(mirror, tangent), sum = vec3(0.0);
   for (int i = 0; i < glossyCones; ++i) {
     float share = (float(i) + 0.5) / float(glossyCones), angle = float(i) * kGoldenAngle;
-    float cosAxis = pow(1.0 - share, 1.0 / (exponent + 1.0)), sinAxis = sqrt(1.0 - cosAxis * cosAxis);
+    float cosAxis = pow(1.0 - share, 1.0 / (exponent + 1.0)), sinAxis = sqrt(max(1.0 - cosAxis * cosAxis, 0.0));
     vec3 direction = mirror * cosAxis + (tangent * cos(angle) + bitangent * sin(angle)) * sinAxis;
     float cosTheta = dot(direction, normal);
     if (cosTheta <= 0.0) continue;

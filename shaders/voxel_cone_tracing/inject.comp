@@ -4,7 +4,8 @@
 //
 // DIRECTIONS: both sides apart, that of the normal first.
 #pragma lumivox axis DIRECTIONS 0 1
-#pragma lumivox require PLACES != clipmap || DIRECTIONS
+#pragma lumivox require (PLACES != clipmap || DIRECTIONS) && (PLACES != octree || !DIRECTIONS)
+#pragma lumivox require (!CHANGED || PLACES == octree) && (!REFLECTED || (!CHANGED && PLACES != clipmap))
 
 layout(local_size_x = 64) in;
 #include "fragment_light.glsl"
@@ -19,18 +20,18 @@ layout(std430, binding = 4) buffer Sums { VoxelSums sums[]; };
 float largest(vec3 value) { return max(value.r, max(value.g, value.b)); }
 
 void main() {
-  uint index = listIndex();
-  if (index >= fragmentCount) return;
+  uint index;
+  if (!takenFragment(index)) return;
   VoxelFragment fragment = fragments[index];
   vec3 albedo = albedoOf(fragment);
-  vec3 known, front = vec3(0.0), back = vec3(0.0);
+  vec3 known, front = vec3(0.0), back = vec3(0.0), emitted = emittedBy(fragment);
   if (!isKnown(index, known)) arrivingAt(fragment, front, back);
   ivec3 voxel = unpackVoxel(fragment.voxel);
   uint place = sumsAt(voxel);
   float most = mostRadianceIn(voxel);
 #if DIRECTIONS
   // What is known does not tell the side.
-  vec3 sides[2] = vec3[2](albedo / kPi * (ambient + front) + known, albedo / kPi * (ambient + back) + known);
+  vec3 sides[2] = vec3[2](albedo / kPi * (ambient + front) + known + emitted, albedo / kPi * (ambient + back) + known);
   float brightest = 0.0;
   for (int side = 0; side < 2; ++side) {
     vec3 radiance = min(sides[side], most);
@@ -41,7 +42,7 @@ void main() {
   atomicMax(directions[place].brightest, floatBitsToUint(brightest));
 #else
   vec3 radiance = min(albedo / kPi * (ambient + front + back), most);  // ambient: thesis Fig. 66
-  radiance = min(radiance + known, most);
+  radiance = min(radiance + known + emitted, most);
   for (int channel = 0; channel < 3; ++channel) radiances[3 * index + channel] = radiance[channel];
   atomicAdd(sums[place].fragments, 1u);
   atomicMax(sums[place].brightest, floatBitsToUint(largest(radiance)));

@@ -1,6 +1,7 @@
 #version 450
 // Sums of the normals of the lit sides of a voxel's fragments, times the light that they reflect, for lobes of normals (thesis 004, Sec.
 // 3.1.2). As integers, in units of the brightest fragment of the voxel (common/integer_mean.glsl).
+#pragma lumivox require PLACES == grid && !CHANGED
 #include "bricks.glsl"
 #include "common/integer_mean.glsl"
 

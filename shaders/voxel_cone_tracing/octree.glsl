@@ -1,12 +1,13 @@
 // A sparse voxel octree: Crassin et al. 2011, Sec. 4; thesis 004, Sec. 3.1.1 and 4.2.2, Listing 4.16. Depth 0 is the root, `octreeDepth` that
 // of the leaves. The eight children of a node are a tile of 2 x 2 x 2 nodes, one behind the other; the root has a tile to itself. Node n of a
 // depth covers the voxels 2n to 2n + 2 of that depth along each axis: the 3 x 3 x 3 of its brick, which shares its sides with its
-// neighbours', so that trilinear reading never leaves a brick.
+// neighbours', so that trilinear reading never leaves a brick. Or its brick has its own voxels 2n and 2n + 1 alone, so that each is held once:
+// trees of such bricks have tags with ranks (octree_ranks.glsl) and no nodes.
 // C++ side: VoxelOctree in techniques/voxel_cone_tracing/radiance_octree.h.
 #ifndef LUMIVOX_OCTREE
 #define LUMIVOX_OCTREE
+#include "octree_tags.glsl"
 
-const uint kNone = 0xffffffffu;
 const uint kTagged = 0xfffffffeu;  // in place of children: they are to be made
 
 struct OctreeNode {
@@ -19,6 +20,7 @@ layout(std140, binding = 3) uniform Octree {
   int octreeDepth;      // of the leaves
   int octreePoolShift;  // the pool has 2 to the power of this bricks along x and along y
   int octreeRanked;     // 1: there are ranks (octree_ranks.glsl)
+  int octreeSide;       // voxels along a brick: 3, or 2 of its own
 };
 #ifdef OCTREE_BUILD
 #define OCTREE_ACCESS
@@ -46,10 +48,11 @@ uint brickAt(ivec3 place, int depth) {
   return node == kNone ? kNone : octreeNodes[node].brick;
 }
 
-// The first of the 3 x 3 x 3 texels of a brick.
-ivec3 texelOf(uint brick) {
-  uint row = (1u << octreePoolShift) - 1u;
-  return 3 * ivec3(brick & row, brick >> octreePoolShift & row, brick >> 2 * octreePoolShift);
+// The first of the texels of a brick in a pool that has 2 to the power of `shift` of them along x and along y.
+ivec3 texelIn(int shift, uint brick) {
+  uint row = (1u << shift) - 1u;
+  return octreeSide * ivec3(brick & row, brick >> shift & row, brick >> 2 * shift);
 }
+ivec3 texelOf(uint brick) { return texelIn(octreePoolShift, brick); }
 
 #endif

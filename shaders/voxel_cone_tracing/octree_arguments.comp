@@ -9,7 +9,7 @@
 layout(local_size_x = 16) in;
 #include "octree_levels.glsl"
 
-layout(std140, binding = 0) uniform Room { uint roomBricks, roomTiles; };
+layout(std140, binding = 0) uniform Room { uint roomBricks, roomTiles, roomLeaves; };
 #if PUBLISHED
 uint firstBrickOf(int depth) { return octreeLevels[depth].firstBrick; }
 #else
@@ -22,7 +22,9 @@ void main() {
   if (depth > octreeDepth + 1) return;
   uint first = depth <= octreeDepth ? firstBrickOf(depth) : 0u;
   uint end = depth < octreeDepth ? firstBrickOf(depth + 1) : wantedBricks;
-  uint bricks = wantedBricks <= roomBricks && wantedTiles <= roomTiles ? end - first : 0u;
+  uint leaves = wantedBricks - firstBrickOf(octreeDepth);
+  bool fits = wantedBricks <= roomBricks && wantedTiles <= roomTiles && leaves <= roomLeaves;
+  uint bricks = fits ? end - first : 0u;
 #if !PUBLISHED
   octreeLevels[depth].firstBrick = first;
 #endif

@@ -6,10 +6,18 @@
 // opaque there, and grows to three of them in trilinear reading.
 //
 // LIT: only the bricks that photons have changed (octree_lit.comp); the others are there already.
+// CHANGED: what has not changed since static geometry was lit is copied from there.
 #pragma lumivox axis LIT 0 1
+#pragma lumivox axis CHANGED 0 1
+#pragma lumivox require !LIT || !CHANGED
 layout(local_size_x = 64) in;
 #include "children.glsl"
 #include "octree_levels.glsl"
+#include "octree_ranks.glsl"
+#if CHANGED
+#include "changed_cells.glsl"
+#include "octree_still.glsl"
+#endif
 
 const int kFacing = 0, kAverage = 1;
 layout(constant_id = 0) const int rule = kFacing;
@@ -21,17 +29,30 @@ layout(std430, binding = 4) readonly buffer Lit { uint lit[]; };  // by brick
 layout(binding = 0) uniform sampler3D pool;
 layout(binding = 0) uniform writeonly image3D poolImage;  // the same
 
+// The brick of a child of a brick's node.
+uint childBrick(OctreeBrick brick, uint child) {
+  if (octreeRanked != 0) return rankedBrick(mortonOf(unpackVoxel(brick.place)) << 3 | child, depth + 1);
+  uint tile = octreeNodes[brick.node].children;
+  return tile == kNone ? kNone : octreeNodes[tile + child].brick;
+}
+
 void main() {
   uint brick, lane;
-  if (!itemOf(depth, 27u, brick, lane)) return;
+  if (!itemOf(depth, voxelsOfBrick(), brick, lane)) return;
 #if LIT
   if (lit[brick] == 0u) return;
 #endif
-  ivec3 voxel = ivec3(lane % 3u, lane / 3u % 3u, lane / 9u);
+  ivec3 voxel = voxelOfLane(lane);
+#if CHANGED
+  uint morton = mortonOf(unpackVoxel(octreeBricks[brick].place));
+  if (!isChanged(morton, depth)) {
+    imageStore(poolImage, texelOf(brick) + voxel, stillVoxel(morton, depth, voxel));
+    return;
+  }
+#endif
   vec4 value = vec4(0.0);  // of those that are copied, unless there is nothing to copy
-  uint tile = octreeNodes[octreeBricks[brick].node].children;
-  if (tile != kNone && all(lessThan(voxel, ivec3(2)))) {
-    uint finer = octreeNodes[tile + uint(voxel.x | voxel.y << 1 | voxel.z << 2)].brick;
+  if (all(lessThan(voxel, ivec3(2)))) {
+    uint finer = childBrick(octreeBricks[brick], uint(voxel.x | voxel.y << 1 | voxel.z << 2));
     if (finer != kNone) {
       vec4 child[8];
       for (int i = 0; i < 8; ++i) child[i] = texelFetch(pool, texelOf(finer) + ivec3(i & 1, i >> 1 & 1, i >> 2), 0);

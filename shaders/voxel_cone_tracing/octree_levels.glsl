@@ -34,4 +34,10 @@ bool itemOf(int depth, uint threads, out uint brick, out uint lane) {
   return item / threads < octreeLevels[depth].bricks;
 }
 
+uint voxelsOfBrick() { return uint(octreeSide * octreeSide * octreeSide); }
+ivec3 voxelOfLane(uint lane) {
+  uint side = uint(octreeSide);
+  return ivec3(lane % side, lane / side % side, lane / (side * side));
+}
+
 #endif

@@ -30,7 +30,9 @@ void main() {
   vec4 normalArea = texelFetch(photonNormal, texel, 0), flux = texelFetch(photonFlux, texel, 0);
   float area = normalArea.w;
   if (code == 0u || !(area > 0.0) || (rule == kAverage && int(flux.w) != light)) return;
-  uint place = 8u * (brickOfCode(code >> 3) - octreeLevels[octreeDepth].firstBrick) + (code & 7u);
+  uint brick = brickOfCode(code >> 3);
+  if (brick == kNone) return;
+  uint place = 8u * (brick - octreeLevels[octreeDepth].firstBrick) + (code & 7u);
   // A Lambert surface that reflects a flux from an area has the radiance flux / (pi area).
   vec3 steepness = abs(normalArea.xyz);
   float inVoxel = voxelSize * voxelSize / (steepness.x + steepness.y + steepness.z);

@@ -26,7 +26,9 @@ uint commonAncestor(uint a, uint b) {
   return differing == 0u ? a : a >> 3 * (findMSB(differing) / 3 + 1);
 }
 
+// kNone where there is none, or where the tree had too little room and is empty.
 uint brickOfCode(uint code) {
+  if (octreeLevels[octreeDepth].bricks == 0u) return kNone;
   int depth = depthOf(code);
   return rankedBrick(code - (1u << 3 * depth), depth);
 }

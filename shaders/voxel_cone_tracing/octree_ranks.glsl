@@ -8,9 +8,7 @@ layout(std430, binding = 12) readonly buffer OctreeRanks { RankedTags octreeRank
 
 // Of a node by its place along the curve of its depth; kNone: there is none.
 uint rankedBrick(uint morton, int depth) {
-  RankedTags word = octreeRanks[firstWord(depth) + (morton >> 5)];
-  uint bit = morton & 31u;
-  return (word.tags >> bit & 1u) == 0u ? kNone : word.nodesBefore + uint(bitCount(below(word.tags, bit)));
+  return rankIn(octreeRanks[firstWord(depth) + (morton >> 5)], morton);
 }
 
 #endif

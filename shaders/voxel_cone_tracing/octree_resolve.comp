@@ -1,14 +1,21 @@
 #version 450
 // Integer sums to the bricks of the leaves: radiance pre-multiplied by opacity, and opacity; resolve.comp says how.
 //
-// As in a grid and at corners: each brick gets the eight voxels that are its own; those that it shares with the neighbour above are copied from there
-// (octree_transfer.comp). Voxels in leaves: each vertex is the mean of the voxels of its own leaf around it (thesis 004, Sec. 4.2.2, Fig. 69:
+// As in a grid and at corners: each brick gets the eight voxels that are its own; those that it may share with the neighbour above are copied
+// from there (octree_transfer.comp). Voxels in leaves: each vertex is the mean of the voxels of its own leaf around it (thesis 004, Sec. 4.2.2, Fig. 69:
 // averages are stored in the corners of the brick, Listing 4.23, and spread through it), and of what the neighbours find once they are
 // averaged.
+//
+// CHANGED: what has not changed since static geometry was lit is copied from there, a brick by one thread.
+#pragma lumivox axis CHANGED 0 1
 layout(local_size_x = 64) in;
 #include "bricks.glsl"
 #include "common/integer_mean.glsl"
 #include "octree_levels.glsl"
+#if CHANGED
+#include "changed_cells.glsl"
+#include "octree_still.glsl"
+#endif
 
 layout(std140, binding = 0) uniform Leaves {
   float unit;       // W/(sr m^2) that the value 1 of the pool stands for
@@ -28,20 +35,34 @@ vec4 surfacesIn(VoxelSums sum) {
   return vec4(value.rgb * (uintBitsToFloat(sum.brightest) / unit), min(value.a, 1.0));
 }
 
+vec4 leafVoxel(uint first, ivec3 vertex) {
+  if (inLeaves == 0) return all(lessThan(vertex, ivec3(2))) ? surfacesIn(sums[first + uint(vertex.x | vertex.y << 1 | vertex.z << 2)]) : vec4(0.0);
+  vec4 value = vec4(0.0);
+  ivec3 low = max(vertex - 1, 0), high = min(vertex, 1), count = high - low + 1;
+  for (int z = low.z; z <= high.z; ++z)
+    for (int y = low.y; y <= high.y; ++y)
+      for (int x = low.x; x <= high.x; ++x) value += surfacesIn(sums[first + uint(x | y << 1 | z << 2)]);
+  return value / float(count.x * count.y * count.z);
+}
+
 void main() {
   uint brick, lane;
-  if (!itemOf(octreeDepth, 27u, brick, lane)) return;
-  ivec3 vertex = ivec3(lane % 3u, lane / 3u % 3u, lane / 9u);
+#if CHANGED
+  if (!itemOf(octreeDepth, 1u, brick, lane)) return;
+  uint morton = mortonOf(unpackVoxel(octreeBricks[brick].place)), voxels = voxelsOfBrick();
+  bool changed = isChanged(morton, octreeDepth);
+#else
+  if (!itemOf(octreeDepth, voxelsOfBrick(), brick, lane)) return;
+  const uint voxels = 1u;
+#endif
   uint first = 8u * (brick - octreeLevels[octreeDepth].firstBrick);
-  vec4 value = vec4(0.0);
-  if (inLeaves == 0) {
-    if (all(lessThan(vertex, ivec3(2)))) value = surfacesIn(sums[first + uint(vertex.x | vertex.y << 1 | vertex.z << 2)]);
-  } else {
-    ivec3 low = max(vertex - 1, 0), high = min(vertex, 1), count = high - low + 1;
-    for (int z = low.z; z <= high.z; ++z)
-      for (int y = low.y; y <= high.y; ++y)
-        for (int x = low.x; x <= high.x; ++x) value += surfacesIn(sums[first + uint(x | y << 1 | z << 2)]);
-    value /= float(count.x * count.y * count.z);
+  for (uint i = 0u; i < voxels; ++i) {
+    ivec3 vertex = voxelOfLane(lane + i);
+#if CHANGED
+    vec4 value = changed ? leafVoxel(first, vertex) : stillVoxel(morton, octreeDepth, vertex);
+#else
+    vec4 value = leafVoxel(first, vertex);
+#endif
+    imageStore(radianceImage, texelOf(brick) + vertex, value);
   }
-  imageStore(radianceImage, texelOf(brick) + vertex, value);
 }

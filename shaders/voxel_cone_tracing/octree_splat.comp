@@ -8,15 +8,18 @@ layout(local_size_x = 64) in;
 const int kSum = 0, kAverage = 1;
 layout(constant_id = 0) const int rule = kSum;
 
-layout(std140, binding = 0) uniform Splat { float unit; };  // W/(sr m^2) that the value 1 of the pool stands for
+layout(std140, binding = 0) uniform Splat {
+  float unit;     // W/(sr m^2) that the value 1 of the pool stands for
+  float largest;  // value that the pool can hold
+};
 layout(std430, binding = 4) readonly buffer Sums { PhotonSums sums[]; };
 layout(binding = 0) uniform sampler3D pool;
 layout(binding = 0) uniform writeonly image3D poolImage;  // for the first light another one
 
 void main() {
   uint brick, lane;
-  if (!itemOf(octreeDepth + 1, 27u, brick, lane)) return;
-  ivec3 voxel = ivec3(lane % 3u, lane / 3u % 3u, lane / 9u), texel = texelOf(brick) + voxel;
+  if (!itemOf(octreeDepth + 1, voxelsOfBrick(), brick, lane)) return;
+  ivec3 voxel = voxelOfLane(lane), texel = texelOf(brick) + voxel;
   vec4 value = texelFetch(pool, texel, 0);
   if (brick >= octreeLevels[octreeDepth].firstBrick && all(lessThan(voxel, ivec3(2)))) {
     PhotonSums sum = sums[8u * (brick - octreeLevels[octreeDepth].firstBrick) + uint(voxel.x | voxel.y << 1 | voxel.z << 2)];
@@ -24,5 +27,6 @@ void main() {
     float mean = rule == kSum ? kFixedPoint / float(max(sum.photons, 1u)) : float(max(sum.weight, 1u));
     value.rgb += vec3(sum.red, sum.green, sum.blue) / mean * (value.a * uintBitsToFloat(sum.brightest) / unit);
   }
-  imageStore(poolImage, texel, value);
+  // A voxel may meet more surface than one plane has in it, and so more flux than the unit of half floats is made for.
+  imageStore(poolImage, texel, vec4(min(value.rgb, largest), value.a));
 }

@@ -43,13 +43,7 @@ layout(std140, binding = 0) uniform Parameters {
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
 #if DIRECTIONS
 layout(std430, binding = 4) readonly buffer DirectionalSums { VoxelDirections directions[]; };
-// Of whatever float format the grids have; by the outward normals of the faces.
-layout(binding = 0) uniform writeonly image3D positiveXImage;
-layout(binding = 1) uniform writeonly image3D negativeXImage;
-layout(binding = 2) uniform writeonly image3D positiveYImage;
-layout(binding = 3) uniform writeonly image3D negativeYImage;
-layout(binding = 4) uniform writeonly image3D positiveZImage;
-layout(binding = 5) uniform writeonly image3D negativeZImage;
+#include "face_images.glsl"
 
 #include "face_sums.glsl"
 
@@ -59,12 +53,7 @@ void store(ivec3 voxel, bool occupied, uint place, vec4 media) {
     faces[face] = occupied ? faceOf(place, face, coverageSum != 0, unit) : vec4(0.0);
     faces[face] += (1.0 - faces[face].a) * media;
   }
-  imageStore(positiveXImage, voxel, faces[0]);
-  imageStore(negativeXImage, voxel, faces[1]);
-  imageStore(positiveYImage, voxel, faces[2]);
-  imageStore(negativeYImage, voxel, faces[3]);
-  imageStore(positiveZImage, voxel, faces[4]);
-  imageStore(negativeZImage, voxel, faces[5]);
+  storeFaces(voxel, faces);
 }
 #else
 layout(std430, binding = 4) readonly buffer Sums { VoxelSums sums[]; };

@@ -30,7 +30,7 @@ float longestStep(float size) { return storeLayers != 0 ? storeVoxel * exp2(floo
 
 // Voxels of a level around a point: the block that they are read from.
 struct ClipmapBlock {
-  vec3 first, end, texel;
+  vec3 first, end, texel, start;
   float period;
 };
 ClipmapBlock blockAround(vec3 at, int level) {
@@ -40,14 +40,16 @@ ClipmapBlock blockAround(vec3 at, int level) {
   bool inner = level > 0 && level < clipmapLevels && all(greaterThanEqual(at, first)) && all(lessThanEqual(at, end));
   ivec4 from = inner ? innerFirst[level] : ownFirst[level];
   return ClipmapBlock(vec3(from.xyz), vec3(inner ? innerEnd[level].xyz : ownEnd[level].xyz),
-                      vec3(inner ? innerTexel[level].xyz : ownTexel[level].xyz), float(from.w));
+                      vec3(inner ? innerTexel[level].xyz : ownTexel[level].xyz), vec3(inner ? innerStart[level].xyz : ownStart[level].xyz),
+                      float(from.w));
 }
 
 // Where a point lies in the volumes. Beyond the store's own voxels there is nothing: the share of what is filtered that is inside.
 vec3 texelAround(ClipmapBlock block, vec3 at, out float share) {
   vec3 nearest = clamp(at, block.first + 0.5, block.end - 0.5), beside = clamp(1.0 - abs(at - nearest), 0.0, 1.0);
   share = beside.x * beside.y * beside.z;
-  return block.texel + nearest - block.period * floor(nearest / block.period);
+  vec3 address = block.start + (nearest - block.first);
+  return block.texel + address - block.period * step(block.period, address);
 }
 
 // The faces across x, y and z that a cone sees, each around a point of its own.

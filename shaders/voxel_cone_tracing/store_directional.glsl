@@ -28,7 +28,7 @@ vec4 interpolated(vec3 texcoord, vec3 direction, float level) {
 // edges that filtering gives it. A uniform medium of opacity a lets (1-a)^lengths through either way, since the weights sum to 1.
 vec4 layers(vec3 texcoord, vec3 direction, float level, float stride) {
   float levelOfFaces = level - storeFirstLevelOfFaces;
-  vec3 voxels = max(floor(storeVoxels * exp2(-level)), 1.0);
+  vec3 voxels = vec3(max(ivec3(storeVoxels) >> int(level), 1));
   vec3 centre = (floor(texcoord * voxels) + 0.5) / voxels;
   vec3 atX = vec3(centre.x, texcoord.yz), atY = vec3(texcoord.x, centre.y, texcoord.z), atZ = vec3(texcoord.xy, centre.z);
   vec4 x, y, z;
@@ -50,8 +50,14 @@ StoreSample readStore(vec3 at, vec3 direction, float size, float stride) {
   vec3 texcoord = (at - storeLow) / storeExtent;
   float blend, level = levelOf(max(size / storeVoxel, 1.0), storeCoarsest, blend);
   if (storeLayers != 0) {
-    vec4 value = layers(texcoord, direction, level, stride);
-    if (blend > 0.0) value = mix(value, layers(texcoord, direction, level + 1.0, stride), blend);
+    if (blend <= 0.0) {
+      vec4 value = layers(texcoord, direction, level, stride);
+      return StoreSample(value, value.a);
+    }
+    // Where the coarser level is empty the finer one is: its voxels are what that one was made of. Most of a room is.
+    vec4 coarser = layers(texcoord, direction, level + 1.0, stride);
+    if (coarser.a <= 0.0) return StoreSample(vec4(0.0), 0.0);
+    vec4 value = mix(layers(texcoord, direction, level, stride), coarser, blend);
     return StoreSample(value, value.a);
   }
   StoreSample result = StoreSample(interpolated(texcoord, direction, level + blend), 0.0);

@@ -1,6 +1,15 @@
 // Where the sums of an occupied voxel lie: in the dense grid's bricks of 4 x 4 x 4 voxels (`bricks` and `brickCount` are declared before), or
-// eight for each leaf of an octree, those of the voxels that are its own. The levels of a clipmap lie side by side in one grid. Included after the local size, which is along x alone.
+// eight for each leaf of an octree, those of the voxels that are its own. The levels of a clipmap lie side by side in one grid. Included
+// after the local size, which is along x alone.
+//
+// CHANGED: only the fragments that changed_list.comp lists are taken.
 #pragma lumivox axis PLACES grid octree clipmap
+#pragma lumivox axis CHANGED 0 1
+#pragma lumivox require !CHANGED || PLACES != clipmap
+#if CHANGED
+layout(std430, binding = 13) readonly buffer ChangedCount { uint changedCount; };
+layout(std430, binding = 14) readonly buffer ChangedFragments { uint changedFragments[]; };
+#endif
 #if PLACES == PLACES_OCTREE
 #include "octree_levels.glsl"
 #include "octree_ranks.glsl"
@@ -8,10 +17,22 @@
 uint sumsAt(ivec3 voxel) {
   // Where the tree was built as published there are no ranks.
   uint brick = octreeRanked != 0 ? rankedBrick(mortonOf(voxel >> 1), octreeDepth) : brickAt(voxel >> 1, octreeDepth);
-  if (brick == kNone) return 0u;  // the tree had too little room, and the frame is not shown
+  if (brick == kNone || octreeLevels[octreeDepth].bricks == 0u) return 0u;  // there was too little room, and the frame is not shown
   ivec3 own = voxel & 1;
   return 8u * (brick - octreeLevels[octreeDepth].firstBrick) + uint(own.x | own.y << 1 | own.z << 2);
 }
 #else
 uint sumsAt(ivec3 voxel) { return sumsOf(bricks[brickOf(voxel, brickCount)], bitOf(voxel)); }
 #endif
+
+// The fragment of this thread; false behind the last.
+bool takenFragment(out uint index) {
+  index = listIndex();
+#if CHANGED
+  if (index >= changedCount) return false;
+  index = changedFragments[index];
+  return true;
+#else
+  return index < fragmentCount;
+#endif
+}

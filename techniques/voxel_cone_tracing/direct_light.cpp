@@ -22,10 +22,16 @@ DirectLight::DirectLight(Pass* pass)
           pass, "light_samples", 1, within(1, 256),
           "points of a fragment's plane in its voxel that are lit, so that the edge of a shadow may lie in a voxel"),
       twoSided(pass, "two_sided", true,
-               "light on the back of a triangle counts; off, as published: only on the front") {}
+               "light on the back of a triangle counts; off, as published: only on the front"),
+      emission(
+          pass, "emission", false,
+          "surfaces that emit light shine in their voxels: for who looks at the voxels themselves, as 'lens' does; cones of 'gather' would take the direct light of lamps for indirect light") {
+}
 
 float DirectLight::brightest(PassContext& frame, float nearest) const {
-  return largestRadiance(frame.sceneDescription(), frame.snapshot(), nearest) + ambient / glm::pi<float>();
+  // What a surface reflects, and what it emits besides.
+  return (emission ? 2.0f : 1.0f) * largestRadiance(frame.sceneDescription(), frame.snapshot(), nearest) +
+         ambient / glm::pi<float>();
 }
 
 void DirectLight::reflect(PassContext& frame, const VoxelFragments& fragments, const VoxelSums& sums,
@@ -37,8 +43,9 @@ void DirectLight::reflect(PassContext& frame, const VoxelFragments& fragments, c
                                 .shadows = shadow.present(),
                                 .reflected = fragments.reflected != nullptr,
                                 .medium = bound.axis,
-                                .places = sums.kind};
-  forEachFragment(
+                                .places = sums.kind,
+                                .changed = sums.changed != nullptr};
+  forEachTaken(
       frame, frame.program(variant),
       {inject::grid({.gridLow = fragments.grid.low,
                      .voxelSize = fragments.grid.voxelSize,
@@ -48,9 +55,10 @@ void DirectLight::reflect(PassContext& frame, const VoxelFragments& fragments, c
                      .mediumSteps = mediumSteps,
                      .brickCount = sums.brickCount,
                      .ambient = ambient,
-                     .lightSamples = samples}),
+                     .lightSamples = samples,
+                     .emissive = emission}),
        inject::radiances(radiances), inject::reflected(fragments.reflected), sums.bindings(), lights, bound},
-      fragments);
+      fragments, sums);
 }
 
 }  // namespace lumivox::voxel_cone_tracing

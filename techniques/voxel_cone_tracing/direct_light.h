@@ -22,6 +22,7 @@ struct DirectLight {
   Param<float> ambient;
   Param<int> samples;
   Param<bool> twoSided;
+  Param<bool> emission;
 
   /// No voxel whose fragments are at this distance from lights at least can reflect more, W/(sr m^2).
   float brightest(PassContext& frame, float nearest) const;

@@ -1,5 +1,6 @@
 // Coarser levels of six directional grids: Crassin et al. 2011, Sec. 8.1; thesis Gomes 2015, Sec. 3.1.3 and
 // 4.2.1, Fig. 64.
+#include "drawn.h"
 #include "levels.h"
 #include "lumivox/base/error.h"
 #include "lumivox/plugin/technique.h"
@@ -10,7 +11,7 @@ namespace {
 
 namespace filter = shaders::voxel_cone_tracing::filter_directional;
 
-void fillLevel(PassContext& frame, const DirectionalRadianceGrid& result, int level) {
+void fillLevel(PassContext& frame, const DirectionalRadianceGrid& result, int level, bool drawn) {
   const glm::ivec3 coarse = levelResolution(result.grid.resolution, level),
                    fine = levelResolution(result.grid.resolution, level - 1);
   const int first = result.firstLevelOfFaces(), written = level - first;
@@ -18,7 +19,7 @@ void fillLevel(PassContext& frame, const DirectionalRadianceGrid& result, int le
   const int read = fromFinest ? 0 : level - 1 - first;
   const OccupiedBricks& occupied = result.occupied;
   // The voxels of a level are those of the bricks down to one a brick, where bricks are halved evenly.
-  const bool followsBricks = occupied.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
+  const bool followsBricks = !drawn && occupied.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
                              result.grid.resolution % OccupiedBricks::kSide == glm::ivec3(0);
   const int perSide = OccupiedBricks::kSide >> level;
   const auto source = [&](int face) -> const gpu::TextureRef& {
@@ -44,6 +45,11 @@ void fillLevel(PassContext& frame, const DirectionalRadianceGrid& result, int le
       filter::negativeZImage(target(5), written),
       filter::brickList(occupied.bricks),
       filter::brickCount(occupied.count)};
+  if (drawn) {
+    drawVoxels(frame, frame.program(shaders::voxel_cone_tracing::filter_directional_drawn::kProgram),
+               bindings, coarse, 6);
+    return;
+  }
   const auto& program = frame.program(filter::Variant{followsBricks});
   if (!followsBricks) {
     frame.dispatch(program, bindings, coarse);
@@ -59,11 +65,12 @@ class FilterDirectionalPass : public Pass {
   In<RadianceGrid> finest{this, "finest", Presence::optional,
                           "in place of 'radiance': a finest level that is the same from all sides, so that "
                           "only coarser ones have six grids (thesis Sec. 3.1.3)"};
+  Param<bool> drawn{this, "drawn", false, kDrawnMeaning};
   Out<DirectionalRadianceGrid> mips{this, "mips", "the same with one level per halving", Levels::all};
 
   void run(PassContext& frame) override {
     DirectionalRadianceGrid result = input(frame);
-    fillLevels(frame, result);
+    fillLevels(frame, result, drawn);
     mips = result;
   }
 
@@ -90,10 +97,10 @@ class FilterDirectionalPass : public Pass {
 
 }  // namespace
 
-void fillLevels(PassContext& frame, DirectionalRadianceGrid& grid) {
+void fillLevels(PassContext& frame, DirectionalRadianceGrid& grid, bool drawn) {
   const glm::ivec3 size = grid.grid.resolution;
   grid.filledLevels = gpu::fullLevelCount(size.x, size.y, size.z);
-  for (int level = 1; level < grid.filledLevels; ++level) fillLevel(frame, grid, level);
+  for (int level = 1; level < grid.filledLevels; ++level) fillLevel(frame, grid, level, drawn);
 }
 
 void addFilterDirectional(TechniqueRegistry& registry) {

@@ -65,6 +65,12 @@ class GatherPass : public Pass {
     if (lobes.present() && input.axis != gather::Variant::storeDense)
       throw Error(
           "voxel_cone_tracing.gather: 'lobes' say to which side the voxels of 'grid' shine, and the cones read another store; expected 'grid' to be connected or 'lobes' to be left out");
+    if (lobes.present() && (input.holdsMedia || input.bounces > 1))
+      throw Error(
+          "voxel_cone_tracing.gather: 'lobes' know the sides of surfaces in direct light alone, and the voxels of 'grid' hold media or further bounces, which shine to all sides; expected 'lobes' to be left out, or 'store_media off' and 'bounces 1' in voxel_cone_tracing.inject");
+    if (lobes.present() && !(lobes->grid == input.grid))
+      throw Error(
+          "voxel_cone_tracing.gather: 'lobes' are those of another grid than 'grid'; expected the same fragments for both");
     const MediaBinding bound(frame, media);
     const gather::Variant variant{.diffuse = diffuse.wanted(),
                                   .glossy = glossy.wanted() && gbuffer->specular != nullptr,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <span>
 
+#include "changed_cells.h"
 #include "direct_light.h"
 #include "levels.h"
 #include "lumivox/base/error.h"
@@ -52,13 +53,12 @@ class Injection {
   /// fit, nothing of it is taken, and the Error says what would.
   std::vector<gpu::TextureRef> rooms(PassContext& frame, int count, const char* label,
                                      bool coarserLevels) const {
-    const gpu::Format format = isHalf() ? gpu::Format::rgba16f : gpu::Format::rgba32f;
     const auto levelsOf = [&](const glm::ivec3& size) {
       return coarserLevels ? gpu::fullLevelCount(size.x, size.y, size.z) : 1;
     };
     const auto made = [&](const glm::ivec3& size) {
       std::vector<gpu::TextureRef> textures;
-      for (int i = 0; i < count; ++i) textures.push_back(frame.volume(size, format, label, levelsOf(size)));
+      for (int i = 0; i < count; ++i) textures.push_back(frame.volume(size, format(), label, levelsOf(size)));
       return textures;
     };
     const GridPlacement grid = placement();
@@ -68,7 +68,7 @@ class Injection {
       std::uint64_t voxels = 0;
       for (int level = 0; level < levelsOf(grid.resolution); ++level)
         voxels += GridPlacement{.resolution = levelResolution(grid.resolution, level)}.voxelCount();
-      const std::uint64_t bytes = static_cast<std::uint64_t>(count) * voxels * gpu::bytesPerTexel(format);
+      const std::uint64_t bytes = static_cast<std::uint64_t>(count) * voxels * gpu::bytesPerTexel(format());
       for (int halvings = 1; grid.longest() >> halvings > 0; ++halvings) {
         try {
           made(levelResolution(grid.resolution, halvings));
@@ -94,10 +94,13 @@ class Injection {
     // Every bounce adds less than the one before.
     const float brightest = brightestOf(frame, result.unit, bounces.count());
 
+    OccupiedBricks occupied;
     const VoxelSums sums =
-        claimSums(frame, *fragments_, result.grid.resolution, textures.size() > 1, result.occupied);
-    const gpu::BufferRef direct = average(frame, sums, brightest);
-    resolve(frame, sums, brightest, result.unit, result.holdsMedia, result.occupied, textures);
+        claimSums(frame, *fragments_, result.grid.resolution, textures.size() > 1, occupied);
+    // Media lie beside the surfaces' bricks.
+    if (!result.holdsMedia) result.occupied = occupied;
+    const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
+    resolve(frame, sums, brightest, result.unit, result.holdsMedia, occupied, textures);
     for (int bounce = 1; bounce < bounces.count(); ++bounce) {
       if constexpr (std::is_same_v<Grid, RadianceGrid>) {
         fillLevels(frame, result, Opacity::facing);
@@ -106,34 +109,36 @@ class Injection {
         fillLevels(frame, result);
         reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(result, true));
       }
-      resolve(frame, sums, brightest, result.unit, result.holdsMedia, result.occupied, textures);
+      resolve(frame, sums, brightest, result.unit, result.holdsMedia, occupied, textures);
     }
     result.filledLevels = 1;
-    if (result.holdsMedia) result.occupied = {};
+    if constexpr (std::is_same_v<Grid, RadianceGrid>) result.bounces = bounces.count();
   }
 
-  /// Fills the bricks of the leaves of result.tree.
-  void fill(PassContext& frame, RadianceOctree& result) {
+  /// Makes the bricks of result.tree, and fills those of the leaves.
+  void fill(PassContext& frame, RadianceOctree& result, const Bounces& bounces) {
     if (storesMedia())
       throw Error(
           "voxel_cone_tracing: 'store_media' fills voxels in which no surface lies, and an octree has none there; expected 'store_media off' or a dense grid");
-    const VoxelOctree& tree = result.tree;
-    const float brightest = brightestOf(frame, result.unit);
-    VoxelSums sums;
-    sums.places = OctreeBinding(tree, result.poolShift);
-    sums.kind = inject::Variant::placesOctree;
-    sums.voxels = frame.emptyElements(add::sums, 8 * tree.leafRoom, "sums of voxels");
-    average(frame, sums, brightest);
-    forEachBrick(
-        frame, frame.program(octree_resolve::kProgram),
-        {octree_resolve::leaves({.unit = result.unit,
-                                 .coverageSum = addsUp(),
-                                 .inLeaves = tree.voxels == VoxelOctree::Voxels::inLeaves}),
-         octree_resolve::sums(sums.voxels), octree_resolve::radianceImage(result.radiance), sums.places},
-        tree, tree.depth, 27);
+    if (bounces.count() > 1 && result.tree.voxels != VoxelOctree::Voxels::asGrid)
+      throw Error(
+          "voxel_cone_tracing.octree_inject: further bounces are gathered through levels that lie as those of a grid; expected 'voxels as_grid' in voxel_cone_tracing.octree, or 'bounces 1'");
+    const float brightest = brightestOf(frame, result.unit, bounces.count());
+    // Every bounce changes all of the light.
+    if (bounces.count() == 1) result.still = stillIn(frame, result, brightest);
+    const VoxelSums sums = leafSums(frame, result);
+    const gpu::BufferRef direct = average(frame, *fragments_, sums, brightest);
+    resolveLeaves(frame, result, sums);
+    for (int bounce = 1; bounce < bounces.count(); ++bounce) {
+      fillLevels(frame, result);
+      reflect(frame, sums, direct, brightest, bounces.cones(), storeOf(result, result.tree.ranks == nullptr));
+      resolveLeaves(frame, result, sums);
+    }
+    result.filledLevels = 1;
   }
 
   bool isHalf() const { return precision_ == Precision::half; }
+  gpu::Format format() const { return isHalf() ? gpu::Format::rgba16f : gpu::Format::rgba32f; }
 
  private:
   enum class Precision { float_, half };
@@ -143,6 +148,69 @@ class Injection {
   Param<bool> storeMedia_;
   Param<Precision> precision_;
 
+  /// Static geometry in the light of one moment, and what moved in that light.
+  struct StillLight {
+    std::shared_ptr<const RadianceOctree> octree;
+    std::vector<Bounds> moving;
+    CellFragments cells;
+  };
+  Changes changes_;
+  /// Of the frame before: only what did not change in it is worth keeping.
+  std::pair<gpu::BufferRef, LightPlacement> before_;
+
+  /// Kept as long as static geometry and lights stay where they are; nothing where that is not known, or
+  /// where they have moved in this frame.
+  std::optional<StillLight> stillLight(PassContext& frame, const VoxelOctree& tree, float brightest) {
+    if (tree.still == nullptr || light_.media.present() || fragments_->reflected != nullptr) return {};
+    auto key = std::pair(fragments_->still, Changes::placementOf(frame, light_.shadow, brightest));
+    const bool stays = key == before_;
+    before_ = key;
+    const auto moving = changes_.moving(frame);
+    if (!stays || !moving) return {};
+    return frame.kept("light of static geometry", key, [&] {
+      RadianceOctree still;
+      still.tree = *tree.still;
+      brightestOf(frame, still.unit);
+      const VoxelSums sums = leafSums(frame, still);
+      average(frame, stillOf(*fragments_), sums, brightest);
+      resolveLeaves(frame, still, sums);
+      return StillLight{std::make_shared<const RadianceOctree>(still), *moving,
+                        sortedByCells(frame, stillOf(*fragments_))};
+    });
+  }
+
+  /// Static geometry that has been lit, and in `octree` what has changed since; null where that is not known.
+  std::shared_ptr<const RadianceOctree> stillIn(PassContext& frame, RadianceOctree& octree, float brightest) {
+    const std::optional<StillLight> still = stillLight(frame, octree.tree, brightest);
+    if (!still) return nullptr;
+    std::vector<Bounds> moving = *changes_.moving(frame);
+    moving.insert(moving.end(), still->moving.begin(), still->moving.end());
+    octree.changed = Changes::cells(frame, *fragments_, still->cells, light_.shadow, moving);
+    return still->octree;
+  }
+
+  VoxelSums leafSums(PassContext& frame, RadianceOctree& result) const {
+    VoxelSums sums;
+    sums.kind = inject::Variant::placesOctree;
+    sums.voxels = makePool(frame, result, format(), add::sums);
+    sums.places = OctreeBinding(result.tree, result.poolShift);
+    if (result.still == nullptr) return sums;
+    sums.changed = &result.changed;
+    sums.places.add(stillBinding(result));
+    return sums;
+  }
+
+  void resolveLeaves(PassContext& frame, const RadianceOctree& result, const VoxelSums& sums) const {
+    const VoxelOctree& tree = result.tree;
+    const bool inLeaves = tree.voxels == VoxelOctree::Voxels::inLeaves;
+    forEachBrick(
+        frame, frame.program(octree_resolve::Variant{.changed = sums.changed != nullptr}),
+        {octree_resolve::leaves({.unit = result.unit, .coverageSum = addsUp(), .inLeaves = inLeaves}),
+         octree_resolve::sums(sums.voxels), octree_resolve::radianceImage(result.radiance), sums.places},
+        tree, tree.depth, sums.changed != nullptr ? 1 : tree.brickVoxels());
+    transferBorders(frame, result, tree.depth, inLeaves ? Transfer::average : Transfer::copy);
+  }
+
   GridPlacement placement() const {
     GridPlacement grid = fragments_->grid;
     grid.resolution = evenlyHalved(grid.resolution);
@@ -151,19 +219,23 @@ class Injection {
   bool storesMedia() const { return storeMedia_ && light_.media.present(); }
   /// No voxel can reflect more; and of half floats the unit.
   float brightestOf(PassContext& frame, float& unit, int bounces = 1) const {
-    // A grid cannot say anything of what lies nearer than half a voxel.
-    const float brightest =
+    // A grid cannot say anything of what lies nearer than half a voxel. What cones gather for further bounces
+    // is at most what the voxels of the bounce before hold, or the environment.
+    float brightest =
         static_cast<float>(bounces) * light_.brightest(frame, 0.5f * fragments_->grid.voxelSize);
+    const glm::vec3& sky = frame.sceneDescription().environment;
+    if (bounces > 1) brightest += std::max({sky.r, sky.g, sky.b});
     if (isHalf()) unit = brightest / kLargestHalf;
     return brightest;
   }
   bool addsUp() const { return fragments_->coverage == VoxelFragments::Coverage::sum; }
 
   /// The sums of occupied voxels; returns what fragments reflect of the direct light.
-  gpu::BufferRef average(PassContext& frame, const VoxelSums& sums, float brightest) {
-    const gpu::BufferRef radiances = radiancesOf(frame, *fragments_, sums);
-    light_.reflect(frame, *fragments_, sums, brightest, radiances);
-    addUp(frame, *fragments_, sums, radiances);
+  gpu::BufferRef average(PassContext& frame, const VoxelFragments& list, const VoxelSums& sums,
+                         float brightest) {
+    const gpu::BufferRef radiances = radiancesOf(frame, list, sums);
+    light_.reflect(frame, list, sums, brightest, radiances);
+    addUp(frame, list, sums, radiances);
     return radiances;
   }
 
@@ -176,10 +248,12 @@ class Injection {
     const bounce::Variant variant{.directions = sums.directional,
                                   .environment = frame.traits().environment,
                                   .medium = bound.axis,
-                                  .store = store.axis};
-    // Cones that see what is partly covered by the finest voxels, and what they begin in, lose nothing in a
-    // closed room.
-    const MarchSettings march{.start = 0.0f, .refinement = 0.0f};
+                                  .store = store.axis,
+                                  .lookUp = store.lookUp,
+                                  .places = sums.kind};
+    // Cones that see what is partly covered by the finest voxels, and with six faces what they begin in, lose
+    // nothing in a closed room. With one value for all sides what they begin in is the surface itself.
+    const MarchSettings march{.start = sums.directional ? 0.0f : 1.0f, .refinement = 0.0f};
     forEachFragment(frame, frame.program(variant),
                     {bounce::parameters({.gridLow = fragments_->grid.low,
                                          .voxelSize = fragments_->grid.voxelSize,
@@ -275,19 +349,20 @@ class InjectDirectionalPass : public Pass {
 
 class OctreeInjectPass : public Pass {
   Injection injection{this};
+  Bounces bounces{this};
   In<VoxelOctree> tree{this, "tree", "the nodes that the fragments make"};
   Out<RadianceOctree> radiance{this, "radiance", "reflected radiance and opacity; the finest level only",
                                Levels::finest};
 
-  Reads readsFrom() const override { return Reads::lights | Reads::materials; }
+  Reads readsFrom() const override {
+    return Reads::geometry | Reads::lights | Reads::materials | Reads::environment;
+  }
+  int indirectBounces() const override { return bounces.count(); }
 
   void run(PassContext& frame) override {
     RadianceOctree result;
     result.tree = *tree;
-    makePool(frame, result, injection.isHalf() ? gpu::Format::rgba16f : gpu::Format::rgba32f);
-    injection.fill(frame, result);
-    const bool inLeaves = tree->voxels == VoxelOctree::Voxels::inLeaves;
-    transferBorders(frame, result, tree->depth, inLeaves ? Transfer::average : Transfer::copy);
+    injection.fill(frame, result, bounces);
     radiance = result;
   }
 };

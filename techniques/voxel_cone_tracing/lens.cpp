@@ -43,7 +43,8 @@ class LensPass : public Pass {
     radiance = Image{frame.image("radiance through the lens")};
     frame.dispatch(frame.program(code::Variant{.environment = frame.traits().environment,
                                                .medium = bound.axis,
-                                               .store = input.axis},
+                                               .store = input.axis,
+                                               .lookUp = input.lookUp},
                                  code::Constants{.widthRule = static_cast<int>(static_cast<Width>(width)),
                                                  .asMedium = opacity == Opacity::medium}),
                    {code::lens({.eyeWorld = camera.eye,

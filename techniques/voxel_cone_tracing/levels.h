@@ -16,7 +16,8 @@ glm::ivec3 evenlyHalved(const glm::ivec3& size);
 enum class Opacity { facing, average, trilinear };
 
 /// Fills all levels above the finest, for which the texture has room.
-void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity);
-void fillLevels(PassContext& frame, DirectionalRadianceGrid& grid);
+/// `drawn`: by draws without attributes (drawn.h), of all voxels.
+void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity, bool drawn = false);
+void fillLevels(PassContext& frame, DirectionalRadianceGrid& grid, bool drawn = false);
 
 }  // namespace lumivox::voxel_cone_tracing

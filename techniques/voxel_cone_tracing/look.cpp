@@ -245,7 +245,8 @@ class LookPass : public Pass {
                                   .low = low,
                                   .high = high,
                                   .absorption = absorption,
-                                  .voxelSize = static_cast<float>(shown.box.voxelSize.x),
+                                  .voxelSize = static_cast<float>(std::min(
+                                      {shown.box.voxelSize.x, shown.box.voxelSize.y, shown.box.voxelSize.z})),
                                   .opacityComponent = opacities.components[0],
                                   .opacityLevel = opacities.level,
                                   .multiplied = multiplied,

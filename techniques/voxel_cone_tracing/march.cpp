@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "clipmap.h"
 #include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
 #include "octree.h"
@@ -18,6 +19,7 @@ StoreBinding begun(int axis, const GridPlacement& grid, gather::Store block) {
   block.storeLow = grid.low;
   block.storeVoxel = result.voxel = grid.voxelSize;
   block.storeExtent = glm::vec3(grid.resolution) * grid.voxelSize;
+  result.grid = grid;
   result.axis = axis;
   result.length = 2.0f * glm::length(block.storeExtent);
   result.add(shader::UniformSlot<gather::Store>{"Store"}(block));
@@ -33,6 +35,7 @@ StoreBinding storeOf(const RadianceGrid& grid) {
              .storeUnit = grid.unit,
              .storeOpacityOfFinestVoxel = grid.opacity == RadianceGrid::Opacity::ofFinestVoxel});
   result.holdsMedia = grid.holdsMedia;
+  result.bounces = grid.bounces;
   result.add(shader::SampledSlot{"radianceGrid"}(grid.radiance, gpu::Sampling::linearMipsBorder));
   return result;
 }
@@ -47,10 +50,43 @@ StoreBinding storeOf(const DirectionalRadianceGrid& grid, bool layers) {
   result.holdsMedia = grid.holdsMedia;
   const gpu::TextureRef& finest = grid.finest != nullptr ? grid.finest : grid.faces[0];
   result.add(shader::SampledSlot{"finestGrid"}(finest, gpu::Sampling::linearMipsBorder));
-  constexpr std::array kFaces = {"positiveX", "negativeX", "positiveY",
-                                 "negativeY", "positiveZ", "negativeZ"};
-  for (std::size_t face = 0; face < kFaces.size(); ++face)
-    result.add(shader::SampledSlot{kFaces[face]}(grid.faces[face], gpu::Sampling::linearMipsBorder));
+  result.add(facesOf(grid.faces, gpu::Sampling::linearMipsBorder));
+  return result;
+}
+
+StoreBinding storeOf(const RadianceClipmap& clipmap, bool layers) {
+  // The box of the coarsest level around the camera, in finest voxels.
+  const int coarsest = clipmap.around - 1;
+  const VoxelRange& voxels = clipmap.levels[static_cast<std::size_t>(coarsest)].own.voxels;
+  const GridPlacement box{clipmap.origin + clipmap.sizeOf(coarsest) * glm::vec3(voxels.first),
+                          clipmap.voxelSize, voxels.size() * (1 << coarsest)};
+  StoreBinding result = begun(gather::Variant::storeClipmap, box,
+                              {.storeCoarsest = static_cast<float>(clipmap.filledLevels - 1),
+                               .storeUnit = clipmap.unit,
+                               .storeLayers = layers});
+  result.add(clipmapBinding(clipmap));
+  result.add(facesOf(clipmap.faces, gpu::Sampling::linear));
+  return result;
+}
+
+StoreBinding storeOf(const RadianceOctree& octree, bool descends) {
+  const VoxelOctree& tree = octree.tree;
+  StoreBinding result =
+      begun(gather::Variant::storeOctree, tree.grid,
+            {.storeCoarsest = static_cast<float>(octree.filledLevels - 1),
+             .storeUnit = octree.unit,
+             .storeOpacityOfFinestVoxel = octree.opacity == RadianceOctree::Opacity::ofFinestVoxel});
+  if (tree.nodes == nullptr && descends)
+    throw Error(
+        "voxel_cone_tracing: 'look_up descent' goes from node to node, and bricks of their own voxels have no nodes; expected 'look_up ranks', or 'bricks published' in voxel_cone_tracing.octree");
+  result.lookUp = tree.nodes == nullptr                ? gather::Variant::lookUpOwn
+                  : tree.ranks != nullptr && !descends ? gather::Variant::lookUpRanks
+                                                       : gather::Variant::lookUpDescent;
+  result.add(shader::UniformSlot<gather::OctreeStore>{"OctreeStore"}(
+      {.firstVoxel = tree.firstVoxel(),
+       .firstVoxelGrows = tree.voxels == VoxelOctree::Voxels::asGrid ? 1.0f : 0.0f}));
+  result.add(shader::SampledSlot{"brickPool"}(octree.radiance, gpu::Sampling::nearest));
+  result.add(OctreeBinding(tree, octree.poolShift));
   return result;
 }
 
@@ -63,40 +99,27 @@ StoreInput::StoreInput(Pass* pass)
       octree_(pass, "octree", Presence::optional,
               "in place of 'grid': pre-filtered radiance in a sparse voxel octree", Needs::nothing,
               Levels::all),
+      clipmap_(pass, "clipmap", Presence::optional,
+               "in place of 'grid': pre-filtered radiance in levels around the camera", Needs::nothing,
+               Levels::all),
       lookUp_(
           pass, "look_up", LookUp::ranks,
           "of 'octree': how the brick of a node is found: by counting the nodes before it; from the root, as published"),
       reading_(
           pass, "reading", Reading::layers,
-          "of 'directions': each face by the layer of voxels across its axis, so that walls are closed; or filtered along all axes and averaged, as published") {
+          "of 'directions' and 'clipmap': each face by the layer of voxels across its axis, so that walls are closed; or filtered along all axes and averaged, as published") {
 }
 
 StoreBinding StoreInput::binding() const {
-  const int stores = grid_.present() + directions_.present() + octree_.present();
+  const int stores = grid_.present() + directions_.present() + octree_.present() + clipmap_.present();
   if (stores != 1)
     throw Error(fmt::format(
-        "voxel_cone_tracing: {} of light for the cones; expected one of the inputs 'grid', 'directions' and 'octree' to be connected",
+        "voxel_cone_tracing: {} of light for the cones; expected one of the inputs 'grid', 'directions', 'octree' and 'clipmap' to be connected",
         stores == 0 ? "no store" : "several stores"));
   if (grid_.present()) return storeOf(*grid_);
-  return directions_.present() ? storeOf(*directions_, reading_ == Reading::layers) : inOctree();
-}
-
-StoreBinding StoreInput::inOctree() const {
-  const RadianceOctree& octree = *octree_;
-  const VoxelOctree& tree = octree.tree;
-  StoreBinding result =
-      begun(gather::Variant::storeOctree, tree.grid,
-            {.storeCoarsest = static_cast<float>(octree.filledLevels - 1),
-             .storeUnit = octree.unit,
-             .storeOpacityOfFinestVoxel = octree.opacity == RadianceOctree::Opacity::ofFinestVoxel});
-  result.lookUp = tree.ranks != nullptr && lookUp_ == LookUp::ranks ? gather::Variant::lookUpRanks
-                                                                    : gather::Variant::lookUpDescent;
-  result.add(shader::UniformSlot<gather::OctreeStore>{"OctreeStore"}(
-      {.firstVoxel = tree.firstVoxel(),
-       .firstVoxelGrows = tree.voxels == VoxelOctree::Voxels::asGrid ? 1.0f : 0.0f}));
-  result.add(shader::SampledSlot{"brickPool"}(octree.radiance, gpu::Sampling::nearest));
-  result.add(OctreeBinding(tree, octree.poolShift));
-  return result;
+  if (clipmap_.present()) return storeOf(*clipmap_, reading_ == Reading::layers);
+  return directions_.present() ? storeOf(*directions_, reading_ == Reading::layers)
+                               : storeOf(*octree_, lookUp_ == LookUp::descent);
 }
 
 ConeMarch::ConeMarch(Pass* pass)

@@ -4,6 +4,7 @@
 
 #include "directional_grid.h"
 #include "lumivox/plugin/technique.h"
+#include "radiance_clipmap.h"
 #include "radiance_octree.h"
 #include "voxel_cone_tracing_shaders.h"
 
@@ -16,12 +17,17 @@ struct StoreBinding : shader::BindingSet {
   int lookUp = 0;           ///< and of LOOK_UP
   float length = 0;         ///< no cone need be longer, m
   float voxel = 0;          ///< finest voxels, m
+  GridPlacement grid;       ///< of the finest level
+  int bounces = 1;          ///< times that light was reflected, as far as the store says
   bool holdsMedia = false;  ///< participating media are in the voxels
 };
 
 StoreBinding storeOf(const RadianceGrid& grid);
 /// By layers, or filtered along all axes.
 StoreBinding storeOf(const DirectionalRadianceGrid& grid, bool layers);
+/// Bricks are found from the root in place of by their ranks.
+StoreBinding storeOf(const RadianceOctree& octree, bool descends);
+StoreBinding storeOf(const RadianceClipmap& clipmap, bool layers);
 
 /// How cones step through a store; the meaning of each is that of the parameter of its name (ConeMarch).
 struct MarchSettings {
@@ -45,10 +51,9 @@ class StoreInput {
   In<RadianceGrid> grid_;
   In<DirectionalRadianceGrid> directions_;
   In<RadianceOctree> octree_;
+  In<RadianceClipmap> clipmap_;
   Param<LookUp> lookUp_;
   Param<Reading> reading_;
-
-  StoreBinding inOctree() const;
 };
 
 /// Steps along cones: members of a pass.

@@ -24,7 +24,8 @@ struct PortTraits<voxel_cone_tracing::NormalLobes> {
   static PortKind kind() {
     return {"NormalLobes",
             "to which side the surfaces in voxels shine, one mip per halving",
-            {{"lobes", "d3 rgba32f with mips", "xyz normals of lit sides times light, w light"}},
+            {{"lobes", "d3 rgba32f with mips", "xyz normals of lit sides times light, w light",
+              PortResource::Sign::any}},
             {{"normal", "mean normal of lit sides, multiplied by the light that they reflect", "W/(sr m^2)"},
              {"light", "the light that they reflect, mean of the channels", "W/(sr m^2)"}}};
   }

@@ -13,19 +13,32 @@ class OctreeBinding : public shader::BindingSet {
   explicit OctreeBinding(const VoxelOctree& tree, int poolShift = 0);
 };
 
+/// What a shader with the axis CHANGED copies of static geometry; nothing where that is not known.
+shader::BindingSet stillBinding(const RadianceOctree& octree);
+
 /// `threads` invocations for each brick of a depth, and for those of all depths where it is that of the
 /// leaves and one more; a barrier follows.
 void forEachBrick(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
                   const VoxelOctree& tree, int depth, int threads);
 
-/// Room for the bricks of result.tree.
-void makePool(PassContext& frame, RadianceOctree& result, gpu::Format format);
+/// Before anything of it is taken: Error where there is no room for an octree whose voxels have so many
+/// bytes, with what it takes and the largest that fits. `holdsTree`: its nodes and tags are there already.
+void requireRoom(PassContext& frame, const VoxelOctree& tree, std::uint64_t voxelBytes, bool holdsTree);
+
+/// Room for the bricks of result.tree, and for so many bytes more for each voxel of the leaves.
+gpu::BufferRef makePool(PassContext& frame, RadianceOctree& result, gpu::Format format,
+                        const shader::StorageSlot& sums);
+
+/// Fills all levels above the leaves of an octree whose voxels lie as in a grid, seen through along the axis
+/// that they face; what its `still` says has not changed is copied from there.
+void fillLevels(PassContext& frame, RadianceOctree& octree);
 
 /// In the order of octree_transfer.comp.
 enum class Transfer { add, copy, average };
 
 /// Completes the voxels that bricks of a depth share with their neighbours, along x, y and z: the parts that
-/// both have are added or averaged, or those of the higher one are copied to the lower one.
+/// both have are added or averaged, or those of the higher one are copied to the lower one. Nothing where
+/// each voxel is held once.
 void transferBorders(PassContext& frame, const RadianceOctree& octree, int depth, Transfer way);
 
 }  // namespace lumivox::voxel_cone_tracing

@@ -14,51 +14,29 @@ using namespace shaders::voxel_cone_tracing;
 
 namespace {
 
-constexpr int kSide = 3;  // voxels along a brick
-
-/// Room for so many bricks, about a cube of them: less than a layer of it stays empty.
-gpu::TextureRef pool(PassContext& frame, std::uint64_t bricks, gpu::Format format, int& shift) {
+/// Room for so many bricks of so many voxels a side, about a cube of them: less than a layer of it stays
+/// empty.
+gpu::TextureRef pool(PassContext& frame, std::uint64_t bricks, int side, gpu::Format format, int& shift) {
   shift = 0;
   while ((std::uint64_t{1} << (3 * (shift + 1))) <= bricks) ++shift;
   const int row = 1 << shift;
   const std::uint64_t layer = static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(row);
-  return frame.volume({kSide * row, kSide * row, kSide * static_cast<int>((bricks + layer - 1) / layer)},
-                      format, "octree bricks of radiance");
-}
-
-bool fits(PassContext& frame, std::uint64_t bricks, gpu::Format format) {
-  try {
-    int shift = 0;
-    pool(frame, bricks, format, shift);
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
+  return frame.volume({side * row, side * row, side * static_cast<int>((bricks + layer - 1) / layer)}, format,
+                      "octree bricks of radiance");
 }
 
 }  // namespace
 
-void makePool(PassContext& frame, RadianceOctree& result, gpu::Format format) {
+gpu::BufferRef makePool(PassContext& frame, RadianceOctree& result, gpu::Format format,
+                        const shader::StorageSlot& sums) {
   const VoxelOctree& tree = result.tree;
-  try {
-    result.radiance = pool(frame, tree.brickRoom, format, result.poolShift);
-  } catch (const Error& error) {
-    // The bricks of the lesser depths are about those of coarser trees. What fits is given back at once.
-    int longest = tree.grid.longest();
-    for (std::size_t depth = tree.bricksDownTo.size() - 1; depth-- > 0;) {
-      longest /= 2;
-      if (!fits(frame, tree.bricksDownTo[depth], format)) continue;
-      const std::uint64_t bytes = kSide * kSide * kSide * gpu::bytesPerTexel(format);
-      throw Error(fmt::format(
-          "an octree of {} voxels along its longest side has {} bricks of {}, {}; of sizes halved from it the largest that fits is {} ({})",
-          tree.grid.longest(), tree.brickRoom, formatBytes(bytes), formatBytes(tree.brickRoom * bytes),
-          longest, error.what()));
-    }
-    throw;
-  }
+  requireRoom(frame, tree, gpu::bytesPerTexel(format), true);
+  result.radiance = pool(frame, tree.brickRoom, tree.brickSide(), format, result.poolShift);
+  return frame.emptyElements(sums, 8 * tree.leafRoom, "sums of voxels");
 }
 
 void transferBorders(PassContext& frame, const RadianceOctree& octree, int depth, Transfer way) {
+  if (octree.tree.bricksAre == VoxelOctree::Bricks::own) return;
   const auto along = [&](int axis, Transfer how) {
     forEachBrick(
         frame,
@@ -76,9 +54,30 @@ void transferBorders(PassContext& frame, const RadianceOctree& octree, int depth
 
 namespace {
 
+/// Voxels of a depth from those of the next one; in the order of octree_filter.comp.
+enum class Halving { facing, average };
+void halve(PassContext& frame, const RadianceOctree& octree, int depth, Halving rule) {
+  forEachBrick(frame,
+               frame.program(octree_filter::Variant{.changed = octree.still != nullptr},
+                             octree_filter::Constants{.rule = static_cast<int>(rule)}),
+               {octree_filter::coarse({depth}), octree_filter::pool(octree.radiance, gpu::Sampling::nearest),
+                octree_filter::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift),
+                stillBinding(octree)},
+               octree.tree, depth, octree.tree.brickVoxels());
+  transferBorders(frame, octree, depth, Transfer::copy);
+}
+
+}  // namespace
+
+void fillLevels(PassContext& frame, RadianceOctree& octree) {
+  for (int depth = octree.tree.depth - 1; depth >= 0; --depth) halve(frame, octree, depth, Halving::facing);
+  octree.filledLevels = octree.tree.depth + 1;
+}
+
+namespace {
+
 class OctreeFilterPass : public Pass {
-  // In the order of octree_filter.comp.
-  enum class Opacity { facing, average };
+  using Opacity = Halving;
   enum class Borders { added, averaged };
 
   In<RadianceOctree> radiance{this, "radiance", "the finest level"};
@@ -96,28 +95,24 @@ class OctreeFilterPass : public Pass {
     if (!asGrid && opacity == Opacity::facing)
       throw Error(
           "voxel_cone_tracing.octree_filter: 'opacity facing' takes eight whole voxels for a coarse one, and with voxels at corners or in leaves it covers halves of others; expected 'opacity average', or 'voxels as_grid' in voxel_cone_tracing.octree");
+    if (result.still != nullptr)
+      result.still = frame.kept("levels of static geometry", result.still, [&] {
+        for (int depth = result.tree.depth - 1; depth >= 0; --depth)
+          halve(frame, *result.still, depth, opacity);
+        return result.still;
+      });
     for (int depth = result.tree.depth - 1; depth >= 0; --depth) {
       if (asGrid) {
-        halve(frame, result, depth);
+        halve(frame, result, depth, opacity);
       } else {
         addParts(frame, result, depth);
       }
     }
+    result.still = nullptr;
     result.filledLevels = result.tree.depth + 1;
     result.opacity = opacity == Opacity::facing ? RadianceOctree::Opacity::ofVoxel
                                                 : RadianceOctree::Opacity::ofFinestVoxel;
     mips = result;
-  }
-
-  void halve(PassContext& frame, const RadianceOctree& octree, int depth) {
-    forEachBrick(
-        frame,
-        frame.program(octree_filter::Variant{},
-                      octree_filter::Constants{.rule = static_cast<int>(static_cast<Opacity>(opacity))}),
-        {octree_filter::coarse({depth}), octree_filter::pool(octree.radiance, gpu::Sampling::nearest),
-         octree_filter::poolImage(octree.radiance), OctreeBinding(octree.tree, octree.poolShift)},
-        octree.tree, depth, 27);
-    transferBorders(frame, octree, depth, Transfer::copy);
   }
 
   /// Centres, faces, edges and corners, one after another.

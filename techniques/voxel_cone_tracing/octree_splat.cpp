@@ -2,6 +2,7 @@
 // lie in, and a node map finds the nodes above that change. Crassin et al. 2011, Sec. 6; thesis Gomes 2015,
 // Sec. 3.1.3 and 4.2.2.
 #include <algorithm>
+#include <limits>
 
 #include "lumivox/base/error.h"
 #include "octree.h"
@@ -52,10 +53,13 @@ class OctreeSplatPass : public Pass {
       average(frame, light, bound, nodes, sums);
       forEachBrick(
           frame, frame.program(octree_splat::Variant{}, octree_splat::Constants{.rule = ruleOfShader}),
-          {octree_splat::splat({result.unit}), octree_splat::sums(sums),
+          {octree_splat::splat({result.unit, result.radiance->description().format == gpu::Format::rgba16f
+                                                 ? 65504.0f
+                                                 : std::numeric_limits<float>::max()}),
+           octree_splat::sums(sums),
            octree_splat::pool(light == 0 ? octree->radiance : result.radiance, gpu::Sampling::nearest),
            octree_splat::poolImage(result.radiance), bound},
-          tree, tree.depth + 1, 27);
+          tree, tree.depth + 1, tree.brickVoxels());
     }
     transferBorders(frame, result, tree.depth, Transfer::copy);
     for (int depth = tree.depth - 1; depth >= 0; --depth) halve(frame, result, depth, lit);
@@ -137,7 +141,7 @@ class OctreeSplatPass : public Pass {
         {octree_filter::coarse({depth}), octree_filter::lit(lit),
          octree_filter::pool(result.radiance, gpu::Sampling::nearest),
          octree_filter::poolImage(result.radiance), OctreeBinding(result.tree, result.poolShift)},
-        result.tree, depth, 27);
+        result.tree, depth, result.tree.brickVoxels());
     transferBorders(frame, result, depth, Transfer::copy);
   }
 };

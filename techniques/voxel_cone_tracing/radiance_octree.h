@@ -9,27 +9,42 @@
 #include <vector>
 
 #include "lumivox/pipeline/port.h"
+#include "lumivox/pipeline/ports.h"
 
 namespace lumivox::voxel_cone_tracing {
 
 /// A sparse voxel octree (Crassin et al. 2011, Sec. 4; thesis Gomes 2015, Sec. 3.1.1 and 4.2.2). Depth 0 is
 /// the root; level l of a grid with mips is depth `depth - l`. Node n of a level has a brick of the voxels 2n
-/// to 2n + 2 of that level along each axis, the last of which is its neighbour's own.
+/// to 2n + 2 of that level along each axis, the last of which is its neighbour's own; or of its own voxels
+/// alone.
 struct VoxelOctree {
   /// Where voxels lie. As in a grid with mips, coarse voxel j around the finer ones 2j and 2j + 1. Or at the
   /// corners of nodes: coarse voxel j where finer voxel 2j is (Crassin et al. 2011). Or one to each eighth of
   /// a leaf, and at the corners of nodes means of those around (thesis).
   enum class Voxels { asGrid, atCorners, inLeaves };
+  /// Of what bricks are: of their own 2 x 2 x 2 voxels, found by ranks and without nodes; or of 3 x 3 x 3,
+  /// those of their neighbours at their sides too, so that reading stays within a brick (Crassin et al.
+  /// 2011).
+  enum class Bricks { own, published };
 
   GridPlacement grid;     ///< of the finest voxels
-  gpu::BufferRef nodes;   ///< OctreeNode
+  gpu::BufferRef nodes;   ///< OctreeNode; null with bricks of their own voxels
   gpu::BufferRef bricks;  ///< OctreeBrick, by depth
   gpu::BufferRef levels;  ///< OctreeLevels
   gpu::BufferRef ranks;   ///< RankedTags; null: bricks are found from the root alone
-  int depth = 0;          ///< of the leaves
+  /// Bricks of their own voxels: RankedTags of the nodes in which reading finds something, and for each the
+  /// eight bricks around it; null with those as published.
+  gpu::BufferRef shown, corners;
+  int depth = 0;  ///< of the leaves
   Voxels voxels = Voxels::asGrid;
-  std::uint64_t brickRoom = 0;  ///< bricks that there is room for
-  std::uint64_t leafRoom = 0;   ///< of them those of the finest level
+  Bricks bricksAre = Bricks::published;
+  /// The tree of static geometry alone, of bricks of their own voxels; null where nothing moves, or where it
+  /// is not known apart.
+  std::shared_ptr<const VoxelOctree> still;
+  std::uint64_t brickRoom = 0;   ///< bricks that there is room for
+  std::uint64_t leafRoom = 0;    ///< of them those of the finest level
+  std::uint64_t recordRoom = 0;  ///< tiles of nodes, or nodes in which reading finds something
+  bool needsMore = true;         ///< than the frame before
   /// Bricks of the depths 0, 0 and 1, 0 to 2 ...: what trees of 2, 4, 8 ... voxels a side take.
   std::vector<std::uint32_t> bricksDownTo;
 
@@ -37,12 +52,16 @@ struct VoxelOctree {
   static constexpr std::uint64_t kLevelsBegin = 3, kLevelWords = 20, kLevelGroups = 2;
   /// Numbers of threads a brick for which there are dispatches.
   static constexpr std::array<int, 6> kThreads{1, 6, 8, 9, 12, 27};
-  static constexpr std::uint64_t kNodeBytes = 20, kTileBytes = 8 * kNodeBytes, kBrickBytes = 8;
+  static constexpr std::uint64_t kNodeBytes = 20, kTileBytes = 8 * kNodeBytes, kBrickBytes = 8,
+                                 kCornersBytes = 8 * sizeof(std::uint32_t);
   static constexpr std::uint64_t levelsBytes(int depth) {
     return (kLevelsBegin + kLevelWords * (static_cast<std::uint64_t>(depth) + 2)) * sizeof(std::uint32_t);
   }
   /// The middle of voxel 0 of the finest level, in voxels from the corner of the grid; with `asGrid` it is so
   /// in voxels of every level.
+  /// Voxels along a brick, and in it.
+  int brickSide() const { return bricksAre == Bricks::own ? 2 : 3; }
+  int brickVoxels() const { return brickSide() * brickSide() * brickSide(); }
   float firstVoxel() const { return voxels == Voxels::inLeaves ? 0.0f : 0.5f; }
 };
 
@@ -69,19 +88,31 @@ struct OctreeBrickList {
   }
 };
 
+/// A bit for each cell of 8 x 8 x 8 voxels whose fragments or whose light may differ from those of static
+/// geometry, and for what lies above them in a tree over the grid (changed_cells.glsl).
+struct ChangedCells {
+  gpu::BufferRef bits;
+  gpu::BufferRef fragments, count;    ///< those in changed cells: their places in the list; how many
+  int cellDepth = 0, voxelDepth = 0;  ///< in that tree, whose root is at depth 0
+};
+
 /// Pre-filtered outgoing radiance in the bricks of an octree, pre-multiplied by opacity.
 struct RadianceOctree {
   VoxelOctree tree;
-  gpu::TextureRef radiance;  ///< the pool: 3 x 3 x 3 texels a brick
+  gpu::TextureRef radiance;  ///< the pool: a texel a voxel of a brick
   int poolShift = 0;         ///< the pool has 2 to the power of this bricks along x and y
   float unit = 1.0f;         ///< W/(sr m^2): keeps very bright and very dark light within half floats
   int filledLevels = 1;      ///< finest first
   /// What opacity means in coarser levels, as RadianceGrid says it.
   enum class Opacity { ofVoxel, ofFinestVoxel } opacity = Opacity::ofVoxel;
+  /// What is not in one of these cells has the voxels of static geometry in `still`, which is null where that
+  /// is not known.
+  std::shared_ptr<const RadianceOctree> still;
+  ChangedCells changed;
 
   glm::ivec3 texelOf(std::uint32_t brick) const {
     const std::uint32_t row = (1u << poolShift) - 1u;
-    return 3 * glm::ivec3(brick & row, brick >> poolShift & row, brick >> (2 * poolShift));
+    return tree.brickSide() * glm::ivec3(brick & row, brick >> poolShift & row, brick >> (2 * poolShift));
   }
   /// The voxels of a level, each once: those that a brick shares with the neighbour above are that one's.
   /// `component`: 3 gives the opacity, 0 the three channels of radiance.
@@ -112,17 +143,20 @@ struct PortTraits<voxel_cone_tracing::VoxelOctree> {
     return {
         "VoxelOctree",
         "the nodes of a sparse voxel octree",
-        {{"nodes", "buffer", "array of OctreeNode in shaders/voxel_cone_tracing/octree.glsl"},
+        {{"nodes", "buffer", "array of OctreeNode in shaders/voxel_cone_tracing/octree.glsl; or null"},
          {"bricks", "buffer", "array of OctreeBrick: the node of each brick and where it lies"},
          {"levels", "buffer", "bricks, tiles and leaves wanted; for each depth its bricks and dispatches"},
-         {"ranks", "buffer",
-          "a bit for each node that could be, beside the number of those before; or null"}}};
+         {"ranks", "buffer", "a bit for each node that could be, beside the number of those before; or null"},
+         {"shown", "buffer", "the same for nodes in which reading between voxels finds something; or null"},
+         {"corners", "buffer", "the eight bricks around each of those; or null"}}};
   }
   static void contents(const voxel_cone_tracing::VoxelOctree& port, PortContents& contents) {
     contents.buffer("nodes", port.nodes);
     contents.buffer("bricks", port.bricks);
     contents.buffer("levels", port.levels);
     contents.buffer("ranks", port.ranks);
+    contents.buffer("shown", port.shown);
+    contents.buffer("corners", port.corners);
   }
 };
 
@@ -132,8 +166,9 @@ struct PortTraits<voxel_cone_tracing::RadianceOctree> {
     PortKind result = PortTraits<voxel_cone_tracing::VoxelOctree>::kind();
     result.name = "RadianceOctree";
     result.meaning = "outgoing radiance and opacity in the bricks of a sparse voxel octree";
-    result.resources.push_back({"radiance", "d3 rgba16f or rgba32f",
-                                "3 x 3 x 3 texels a brick: rgb radiance * opacity / unit, a opacity"});
+    result.resources.push_back(
+        {"radiance", "d3 rgba16f or rgba32f",
+         "2 x 2 x 2 or 3 x 3 x 3 texels a brick: rgb radiance * opacity / unit, a opacity"});
     result.fields = {{"radiance", "outgoing radiance, multiplied by the opacity", "W/(sr m^2)"},
                      {"opacity", "opacity", "1", PortField::Role::fog}};
     return result;

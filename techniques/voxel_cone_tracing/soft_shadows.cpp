@@ -106,7 +106,8 @@ class SoftShadowsPass : public Pass {
                                    .glossy = gbuffer->specular != nullptr,
                                    .emission = frame.traits().emission,
                                    .medium = boundMedia.axis,
-                                   .store = input.axis};
+                                   .store = input.axis,
+                                   .lookUp = input.lookUp};
     const shadows::Constants constants{.radiusOf = static_cast<int>(static_cast<Radius>(radius)),
                                        .asMedium = opacity == Opacity::medium};
     const CameraView& camera = frame.snapshot().camera;

@@ -1,6 +1,7 @@
 // Voxel cone tracing on a dense isotropic grid: Crassin et al. 2011, "Interactive indirect illumination using
 // voxel cone tracing"; thesis Gomes 2015, Sec. 4.2.1. Pre-filtering; injection is in
 // inject.cpp, final gathering in gather.cpp.
+#include "drawn.h"
 #include "levels.h"
 #include "lumivox/base/error.h"
 #include "lumivox/plugin/technique.h"
@@ -9,12 +10,14 @@
 namespace lumivox::voxel_cone_tracing {
 
 void addInject(TechniqueRegistry& registry);
+void addInjectAsPublished(TechniqueRegistry& registry);
 void addFilterDirectional(TechniqueRegistry& registry);
 void addGather(TechniqueRegistry& registry);
 void addSoftShadows(TechniqueRegistry& registry);
 void addLobes(TechniqueRegistry& registry);
 void addLens(TechniqueRegistry& registry);
 void addLook(TechniqueRegistry& registry);
+void addClipmap(TechniqueRegistry& registry);
 void addOctree(TechniqueRegistry& registry);
 void addOctreeFilter(TechniqueRegistry& registry);
 void addOctreeSplat(TechniqueRegistry& registry);
@@ -26,8 +29,9 @@ glm::ivec3 evenlyHalved(const glm::ivec3& size) {
   return (size + (multiple - 1)) / multiple * multiple;
 }
 
-void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity) {
+void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity, bool drawn) {
   namespace filter = shaders::voxel_cone_tracing::filter;
+  namespace filter_drawn = shaders::voxel_cone_tracing::filter_drawn;
   const gpu::TextureDescription& texture = grid.radiance->description();
   const glm::ivec3 finest(texture.width, texture.height, texture.depth);
   const OccupiedBricks& occupied = grid.occupied;
@@ -36,13 +40,20 @@ void fillLevels(PassContext& frame, RadianceGrid& grid, Opacity opacity) {
   for (int level = 1; level < texture.levels; ++level) {
     const glm::ivec3 coarse = levelResolution(finest, level), fine = levelResolution(finest, level - 1);
     // The voxels of a level are those of the bricks down to one a brick, where bricks are halved evenly.
-    const bool followsBricks = occupied.bricks != nullptr && (OccupiedBricks::kSide >> level) >= 1 &&
+    const bool followsBricks = !drawn && occupied.bricks != nullptr &&
+                               (OccupiedBricks::kSide >> level) >= 1 &&
                                finest % OccupiedBricks::kSide == glm::ivec3(0);
-    const auto& program = frame.program(filter::Variant{followsBricks}, constants);
     const shader::BindingSet bindings{
         filter::parameters({.coarse = coarse, .fineLevel = level - 1, .fine = fine}),
         filter::radianceGrid(grid.radiance, sampling), filter::radianceImage(grid.radiance, level),
         filter::brickList(occupied.bricks), filter::brickCount(occupied.count)};
+    if (drawn) {
+      drawVoxels(frame,
+                 frame.program(filter_drawn::Variant{}, filter_drawn::Constants{.rule = constants.rule}),
+                 bindings, coarse);
+      continue;
+    }
+    const auto& program = frame.program(filter::Variant{followsBricks}, constants);
     if (!followsBricks) {
       frame.dispatch(program, bindings, coarse);
       continue;
@@ -62,6 +73,7 @@ class FilterPass : public Pass {
   Param<Opacity> opacity{
       this, "opacity", Opacity::facing,
       "how children make a parent: seen through along the axis that they face; their plain mean; or that mean as published, in one read by the texture's filter, which misses children where sizes are odd"};
+  Param<bool> drawn{this, "drawn", false, kDrawnMeaning};
   Out<RadianceGrid> mips{this, "mips", "the same grid with one level per halving", Levels::all};
 
   void run(PassContext& frame) override {
@@ -70,7 +82,7 @@ class FilterPass : public Pass {
     if (filtered.radiance->description().levels < gpu::fullLevelCount(size.x, size.y, size.z))
       throw Error(
           "voxel_cone_tracing.filter: the grid 'radiance' has no room for coarser levels; expected 'mips on' in voxel_cone_tracing.inject");
-    fillLevels(frame, filtered, opacity);
+    fillLevels(frame, filtered, opacity, drawn);
     mips = filtered;
   }
 };
@@ -83,9 +95,11 @@ LUMIVOX_TECHNIQUE(registry) {
   registry.describe("Voxel cone tracing on a dense isotropic grid",
                     "Crassin et al. 2011; thesis Gomes 2015, Sec. 4.2.1");
   addInject(registry);
+  addInjectAsPublished(registry);
   registry.add<FilterPass>("filter", "Pre-filtered coarser levels (Crassin et al. 2011, Sec. 5)");
   addFilterDirectional(registry);
   addLobes(registry);
+  addClipmap(registry);
   addOctree(registry);
   addOctreeFilter(registry);
   addOctreeSplat(registry);

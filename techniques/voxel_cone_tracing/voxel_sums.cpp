@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "changed_cells.h"
 #include "lumivox/toolkit/bindings.h"
 
 namespace lumivox::voxel_cone_tracing {
@@ -42,14 +43,25 @@ gpu::BufferRef radiancesOf(PassContext& frame, const VoxelFragments& fragments, 
                       "reflected radiance per fragment");
 }
 
+void forEachTaken(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
+                  const VoxelFragments& fragments, const VoxelSums& sums) {
+  if (sums.changed != nullptr) {
+    forEachChanged(frame, program, bindings, fragments, *sums.changed);
+  } else {
+    forEachFragment(frame, program, bindings, fragments);
+  }
+}
+
 void addUp(PassContext& frame, const VoxelFragments& fragments, const VoxelSums& sums,
            const gpu::BufferRef& radiances) {
-  const add::Variant variant{
-      .directions = sums.directional, .sampled = sums.sideMasks != nullptr, .places = sums.kind};
-  forEachFragment(frame, frame.program(variant),
-                  {add::averages({sums.brickCount, fragments.coverage == VoxelFragments::Coverage::sum}),
-                   add::radiances(radiances), add::sideMasks(sums.sideMasks), sums.bindings()},
-                  fragments);
+  const add::Variant variant{.directions = sums.directional,
+                             .sampled = sums.sideMasks != nullptr,
+                             .places = sums.kind,
+                             .changed = sums.changed != nullptr};
+  forEachTaken(frame, frame.program(variant),
+               {add::averages({sums.brickCount, fragments.coverage == VoxelFragments::Coverage::sum}),
+                add::radiances(radiances), add::sideMasks(sums.sideMasks), sums.bindings()},
+               fragments, sums);
 }
 
 }  // namespace lumivox::voxel_cone_tracing

@@ -7,6 +7,8 @@
 
 namespace lumivox::voxel_cone_tracing {
 
+struct ChangedCells;
+
 /// Room for the sums of occupied voxels, and where they lie.
 struct VoxelSums {
   int kind = 0;  ///< value of the shader's axis PLACES
@@ -16,6 +18,7 @@ struct VoxelSums {
   gpu::BufferRef sideMasks;   ///< samples of voxels' sides, a word a fragment; null: none
   shader::BindingSet places;  ///< where the sums of a voxel are found; refers to what it binds
   gpu::BufferRef voxels;
+  const ChangedCells* changed = nullptr;  ///< where there are some, the fragments in them are taken alone
   shader::BindingSet bindings() const {
     if (directional) return {places, shaders::voxel_cone_tracing::add::directionalSums(voxels)};
     return {places, shaders::voxel_cone_tracing::add::sums(voxels)};
@@ -29,6 +32,10 @@ VoxelSums claimSums(PassContext& frame, const VoxelFragments& fragments, const g
 
 /// Room for what fragments reflect.
 gpu::BufferRef radiancesOf(PassContext& frame, const VoxelFragments& fragments, const VoxelSums& sums);
+
+/// An invocation for each fragment that is taken, by a program with the axis CHANGED; a barrier follows.
+void forEachTaken(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bindings,
+                  const VoxelFragments& fragments, const VoxelSums& sums);
 
 /// Adds what fragments reflect to the sums of their voxels, of which the number and the brightest of the
 /// fragments are known.

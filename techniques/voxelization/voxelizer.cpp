@@ -147,6 +147,10 @@ VoxelFragments Voxelizer::listOfStatic(PassContext& frame, const GridPlacement& 
   list.coverage = coverage();
   if (!still.empty()) append(frame, list, still);
   frame.device().barrier();
+  list.still = countBuffer(frame, "static voxel fragment count");
+  frame.dispatch(frame.program(copy_count::kProgram),
+                 {copy_count::from(list.count), copy_count::to(list.still)}, {1, 1, 1});
+  finishCount(frame, list.still, list.capacity);
   return list;
 }
 
@@ -162,6 +166,16 @@ void Voxelizer::run(PassContext& frame) {
                  {copy_count::from(countOfStatic), copy_count::to(list.count)}, {1, 1, 1});
   if (!moving.empty()) append(frame, list, moving);
   frame.device().barrier();
+  if (still.empty() || moving.empty()) {
+    list.still = nullptr;
+  } else {
+    list.moving = countBuffer(frame, "moving voxel fragment count");
+    frame.dispatch(
+        frame.program(count_behind::kProgram),
+        {count_behind::first(list.still), count_behind::count(list.count), count_behind::behind(list.moving),
+         count_behind::parameters({static_cast<int>(list.capacity), kWorkGroupSize})},
+        {1, 1, 1});
+  }
   // Where nothing moves, the next list from nothing will be as long as this one.
   finishGuessed(frame, list.count, list.capacity, 0, room_, moving.empty() && around == Around::scene);
   fragments = list;

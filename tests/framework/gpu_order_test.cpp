@@ -204,6 +204,12 @@ TEST_CASE("no committed shader uses more than a device is asked for at the start
           ++stages;
           for (const auto& [limit, uses] : usesOf(pack.codes[stage.code].glsl, stage.stage)) {
             INFO(pack.technique << "/" << program.name << ": " << limit);
+            // Of what OpenGL does not promise passes that draw voxels ask DeviceInfo::vertexImages.
+            constexpr std::int64_t kDrawnImages = 6;
+            if (limit == "vertex images" && program.name.ends_with("_drawn")) {
+              CHECK(uses <= kDrawnImages);
+              continue;
+            }
             CHECK(uses <= promised.at(limit));
             if (limit == "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS") storage = std::max(storage, uses);
           }

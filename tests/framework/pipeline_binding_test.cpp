@@ -250,6 +250,19 @@ TEST_CASE("a parameter in a unit of another dimension is refused") {
              Contains("expected a number without a unit"));
 }
 
+TEST_CASE("a pass whose parameter has an unknown unit, or one that is no base unit, is refused") {
+  struct Measured : Pass {
+    explicit Measured(const char* unit) : length(this, "length", 1.0f, within(0.0f, 2.0f), unit, "") {}
+    Param<float> length;
+    void run(PassContext&) override {}
+  };
+  CHECK_NOTHROW(Measured("m"));
+  CHECK_NOTHROW(Measured("/m"));
+  for (const char* wrong : {"furlong", "cm"})
+    CHECK_THROWS_WITH(Measured(wrong), Contains("parameter 'length'") && Contains(wrong) &&
+                                           Contains("expected one of m, s, rad"));
+}
+
 TEST_CASE("an unknown parameter of the pipeline is refused with the nearest") {
   CHECK_THAT(findings("param size 8\npass v toy.voxels { resolution $sise }\npass w toy.voxels { resolution "
                       "$size }\noutput o v.grid"),

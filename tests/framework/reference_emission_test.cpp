@@ -61,3 +61,30 @@ TEST_CASE("pixels that emit are those in which the reference without any further
   REQUIRE(shining > 5);
   CHECK(countOf(pixels) < 4 * shining);
 }
+
+TEST_CASE("through a lens the pixels that emit are those over which a lamp is spread") {
+  Scene scene = litRoom(48, 48);
+  scene.cameras.front().aperture = 0.3;
+  scene.cameras.front().focus = 0.8;  // in front of the room
+  const std::vector<unsigned char> pixels = emittingPixels(scene, snapshotOf(scene, 0.0));
+  const LayeredImage reference = renderReference(scene, quietly(256, 0));
+  const std::size_t sharp = countOf(emittingPixels(litRoom(48, 48), snapshotOf(litRoom(48, 48), 0.0)));
+  CHECK(countOf(pixels) > 2 * sharp);
+  std::size_t shining = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    // A tenth of the lens sees the lamp of 15 W/(sr m2).
+    if (reference.layers.at("direct").values()[3 * i] < 1.5f) continue;
+    shining += 1;
+    CHECK(int{pixels[i]} == 1);
+  }
+  CHECK(shining > sharp / 2);
+  // Half of the lens sees the sky past the panel's edge, and more beyond.
+  SceneBuilder dark = panel(true);
+  for (Material& material : dark.scene.materials) material.emission = glm::vec3(0.0f);
+  dark.scene.environment = glm::vec3(0.1f);
+  dark.scene.cameras.front().aperture = 0.1;
+  dark.scene.cameras.front().focus = 0.5;
+  const std::size_t sky = countOf(emittingPixels(dark.scene, snapshotOf(dark.scene, 0.0)));
+  CHECK(sky > 1100);
+  CHECK(sky < 1300);
+}

@@ -193,7 +193,7 @@ glm::vec3 gatherGlossy(const Scene& scene, const Store& grid, const glm::vec3& p
 struct InjectSettings {
   const char* precision = "float";
   double ambient = 0;
-  bool lights = true, storeMedia = false, twoSided = true;
+  bool lights = true, storeMedia = false, twoSided = true, emission = false;
   int bounces = 1;
   const ScatteringGrid* media = nullptr;
   int lightSamples = 1;
@@ -223,6 +223,7 @@ Grid injectedAs(const char* pass, const Scene& scene, int resolution, const Inje
   inject.setParameter("light_samples", settings.lightSamples);
   inject.setParameter("bounces", settings.bounces);
   inject.setParameter("two_sided", std::string(settings.twoSided ? "on" : "off"));
+  inject.setParameter("emission", std::string(settings.emission ? "on" : "off"));
   inject.run();
   return inject.template output<Grid>("radiance");
 }

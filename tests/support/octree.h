@@ -45,27 +45,29 @@ inline FragmentData fragmentAt(const glm::ivec3& cell, const glm::vec3& albedo =
 }
 
 /// A list over a grid of [-1,1]^3, or of that along its longest side.
-inline VoxelFragments listOf(const std::vector<FragmentData>& fragments, const glm::ivec3& size) {
+inline VoxelFragments listOf(const std::vector<FragmentData>& fragments, const glm::ivec3& size,
+                             gpu::Device& on = device()) {
   VoxelFragments list;
   const int longest = std::max({size.x, size.y, size.z});
   list.grid = {glm::vec3(-1.0f), 2.0f / static_cast<float>(longest), size};
   list.capacity = std::max<std::size_t>(fragments.size(), 1);
-  list.fragments = std::make_shared<gpu::Buffer>(device(), list.capacity * sizeof(FragmentData), "list");
+  list.fragments = std::make_shared<gpu::Buffer>(on, list.capacity * sizeof(FragmentData), "list");
   if (!fragments.empty()) list.fragments->uploadValues(std::span<const FragmentData>(fragments));
   const auto count = static_cast<std::uint32_t>(fragments.size());
   const std::uint32_t groups = std::max((count + 63u) / 64u, 1u), rows = (groups + 65534u) / 65535u;
   const std::array<std::uint32_t, 4> words{count, std::min(groups, 65535u), rows, 1};
-  list.count = std::make_shared<gpu::Buffer>(device(), sizeof(words), "count");
+  list.count = std::make_shared<gpu::Buffer>(on, sizeof(words), "count");
   list.count->uploadValues(std::span<const std::uint32_t>(words));
   return list;
 }
 
 inline VoxelOctree treeOf(const VoxelFragments& list, const char* voxels = "as_grid",
-                          bool asPublished = false) {
+                          bool asPublished = false, const char* bricks = "own") {
   const Scene scene = cones::emptyScene();
   PassHarness harness(device(), techniques(), "voxel_cone_tracing", "octree", scene, snapshotOf(scene, 0.0));
   harness.setParameter("voxels", std::string(voxels));
   harness.setParameter("as_published", std::string(asPublished ? "on" : "off"));
+  harness.setParameter("bricks", std::string(bricks));
   harness.setInput("fragments", list);
   harness.run();
   return harness.output<VoxelOctree>("tree");
@@ -94,11 +96,12 @@ inline Cell cellOf(const glm::ivec3& place) {
   return {place.x, place.y, place.z};
 }
 
-/// Bytes of a store of floats that cones read: bricks, nodes, their places and ranks.
+/// Bytes of a store of floats that cones read: bricks, what finds them, their places and ranks.
 inline std::uint64_t storeBytes(const VoxelOctree& tree) {
-  constexpr std::uint64_t kPooledBrick = 27 * 4 * sizeof(float);
-  return wantedOf(tree)[0] * (kPooledBrick + VoxelOctree::kBrickBytes) +
-         wantedOf(tree)[1] * VoxelOctree::kTileBytes + tree.ranks->sizeBytes();
+  const std::uint64_t brick = static_cast<std::uint64_t>(tree.brickVoxels()) * 4 * sizeof(float);
+  return wantedOf(tree)[0] * (brick + VoxelOctree::kBrickBytes) +
+         wantedOf(tree)[1] * (tree.nodes != nullptr ? VoxelOctree::kTileBytes : VoxelOctree::kCornersBytes) +
+         tree.ranks->sizeBytes() + (tree.shown != nullptr ? tree.shown->sizeBytes() : 0);
 }
 
 /// Irradiance under which a fragment reflects its albedo, W/m^2.
@@ -106,14 +109,14 @@ inline constexpr double kAmbient = kPi;
 
 /// The finest level of an octree whose fragments reflect their albedo.
 inline RadianceOctree leavesOf(const VoxelFragments& list, const char* voxels = "as_grid",
-                               const char* precision = "float") {
+                               const char* precision = "float", const char* bricks = "own") {
   const Scene scene = cones::emptyScene();
   PassHarness inject(device(), techniques(), "voxel_cone_tracing", "octree_inject", scene,
                      snapshotOf(scene, 0.0));
   inject.setParameter("ambient", kAmbient);
   inject.setParameter("precision", std::string(precision));
   inject.setInput("fragments", list);
-  inject.setInput("tree", treeOf(list, voxels));
+  inject.setInput("tree", treeOf(list, voxels, false, bricks));
   inject.run();
   return inject.output<RadianceOctree>("radiance");
 }
@@ -130,7 +133,7 @@ inline RadianceOctree filteredOctree(const RadianceOctree& leaves, const char* o
   return filter.output<RadianceOctree>("mips");
 }
 
-/// All 27 voxels of every brick of a level: by the node's place, x first.
+/// The voxels of every brick of a level: by the node's place, x first, of the 27 that it may have.
 inline std::map<Cell, std::array<glm::vec4, 27>> bricksOf(const RadianceOctree& octree, int level) {
   const std::vector<float> texels = octree.radiance->downloadFloats(0);
   const gpu::TextureDescription& pool = octree.radiance->description();
@@ -138,7 +141,9 @@ inline std::map<Cell, std::array<glm::vec4, 27>> bricksOf(const RadianceOctree& 
   for (const auto& brick : OctreeBrickList::of(octree.tree, level).bricks) {
     auto& values = result[cellOf(brick.place)];
     for (int i = 0; i < 27; ++i) {
-      const glm::ivec3 at = octree.texelOf(brick.index) + glm::ivec3(i % 3, i / 3 % 3, i / 9);
+      const glm::ivec3 local(i % 3, i / 3 % 3, i / 9);
+      if (glm::any(glm::greaterThanEqual(local, glm::ivec3(octree.tree.brickSide())))) continue;
+      const glm::ivec3 at = octree.texelOf(brick.index) + local;
       const std::size_t texel = 4 * static_cast<std::size_t>((at.z * pool.height + at.y) * pool.width + at.x);
       values[static_cast<std::size_t>(i)] = {texels[texel], texels[texel + 1], texels[texel + 2],
                                              texels[texel + 3]};

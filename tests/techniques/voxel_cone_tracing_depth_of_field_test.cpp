@@ -226,3 +226,32 @@ TEST_CASE("voxels that hold the media are refused beside the media themselves, t
   CHECK_THAT(messageOf<Error>([&] { harness.run(); }),
              Contains("already contain the media") && Contains("store_media off"));
 }
+
+TEST_CASE(
+    "the lens sees a lamp of the radiance L as bright as it is where injection takes emission, and else black") {
+  SceneBuilder builder;
+  Camera& camera = builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.4, kSide, kSide);
+  camera.focus = 2.0;
+  builder.quad({-1, -1, 0.03f}, {2, 0, 0}, {0, 2, 0}, builder.lambert(0.0f, 5.0f));  // looks at the camera
+  builder.quad({-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, builder.lambert(0.5f));
+  for (const bool on : {true, false}) {
+    cones::InjectSettings settings;
+    settings.emission = on;
+    const RadianceGrid grid = cones::filtered(cones::injectedGrid(builder.scene, 64, settings));
+    const ImageBuffer image = seen(builder.scene, grid, {0.0, 2.0});
+    for (int channel = 0; channel < 3; ++channel)
+      CHECK(image.at(kSide / 2, kSide / 2, channel) == Approx(on ? 5.0 : 0.0).margin(0.05));
+  }
+  // Of six grids the back of the lamp stays dark.
+  cones::InjectSettings settings;
+  settings.emission = true;
+  const auto faces = cones::injectedDirections(builder.scene, 32, settings);
+  const auto largestOf = [&](std::size_t face) {
+    const std::vector<float> texels = faces.faces[face]->downloadFloats(0);
+    float most = 0.0f;
+    for (std::size_t i = 0; i < texels.size(); i += 4) most = std::max(most, texels[i] * faces.unit);
+    return most;
+  };
+  CHECK(largestOf(4) == Approx(5.0).epsilon(0.01));  // towards +z
+  CHECK(largestOf(5) < 0.5f);
+}

@@ -102,6 +102,7 @@ TEST_CASE("a steep surface meets more voxels for its area, and each gets its sha
   builder.light(LightKind::directional, glm::vec3(2.0f), {0, 0, 0}, {0.1f, -1.0f, -0.2f});
   builder.look({1, 3, 3}, {0, 0, 0}, {0, 1, 0}, 1.0, 16, 16);
   const Splat splat = splatted(builder.scene, 48, "summed");
+  CHECK(totalOf(splat.lit, 0) == Approx(totalOf(splat.photons, 0)).epsilon(0.05));
   const double voxel = splat.photons.tree.grid.voxelSize,
                cosine = glm::dot(glm::normalize(glm::dvec3(-1, 1, 0.5)),
                                  -glm::normalize(glm::dvec3(0.1, -1, -0.2)));

@@ -1,6 +1,10 @@
 // Light in a sparse voxel octree: its bricks, its levels, and the cones through it, in closed form and beside
 // the dense grid.
+#include <fmt/format.h>
+
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <random>
 
 #include "lumivox/measure/metrics.h"
@@ -19,7 +23,8 @@ void checkNear(const glm::vec4& value, const glm::vec4& expected, double toleran
 
 /// The grid and the octree of a scene under its lights, filtered alike.
 std::pair<RadianceGrid, RadianceOctree> bothOf(const Scene& scene, int resolution, const char* precision,
-                                               const char* opacity) {
+                                               const char* opacity, const char* bricks = "own",
+                                               int bounces = 1) {
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshot);
   voxels.setParameter("resolution", resolution);
@@ -32,10 +37,11 @@ std::pair<RadianceGrid, RadianceOctree> bothOf(const Scene& scene, int resolutio
   PassHarness sparse(device(), techniques(), "voxel_cone_tracing", "octree_inject", scene, snapshot);
   for (PassHarness* inject : {&dense, &sparse}) {
     inject->setParameter("precision", std::string(precision));
+    inject->setParameter("bounces", bounces);
     inject->setInput("fragments", fragments);
     inject->setInput("shadow", light);
   }
-  sparse.setInput("tree", treeOf(fragments));
+  sparse.setInput("tree", treeOf(fragments, "as_grid", false, bricks));
   dense.run();
   sparse.run();
   return {filtered(dense.output<RadianceGrid>("radiance"), opacity),
@@ -51,33 +57,37 @@ Scene cornell() {
 TEST_CASE(
     "voxels of the octree are those of the dense grid, to the bit, at every level that is halved evenly") {
   const Scene scene = cornell();
-  for (const char* precision : {"float", "half"})
-    for (const char* opacity : {"facing", "average"}) {
-      const auto [dense, sparse] = bothOf(scene, 32, precision, opacity);
-      CHECK(dense.unit == sparse.unit);
-      for (int level = 0; level <= sparse.tree.depth; ++level) {
-        const glm::ivec3 size = levelResolution(dense.grid.resolution, level);
-        const std::vector<float> texels = dense.radiance->downloadFloats(level);
-        std::map<Cell, glm::vec4> expected;
-        for (int i = 0; i < size.x * size.y * size.z; ++i) {
-          const float* texel = texels.data() + 4 * static_cast<std::size_t>(i);
-          if (texel[3] > 0.0f)
-            expected[{i % size.x, i / size.x % size.y, i / (size.x * size.y)}] = {texel[0], texel[1],
-                                                                                  texel[2], texel[3]};
-        }
-        std::map<Cell, glm::vec4> found;
-        for (const auto& [voxel, opacityThere] : sparse.voxels(level, 3))
-          found[cellOf(voxel)].w = opacityThere.x;
-        for (const auto& [voxel, light] : sparse.voxels(level, 0))
-          found[cellOf(voxel)] = glm::vec4(light / sparse.unit, found[cellOf(voxel)].w);
-        CAPTURE(precision, opacity, level, expected.size());
-        CHECK((found == expected));
+  struct Way {
+    const char *precision, *opacity, *bricks;
+  };
+  for (const auto& [precision, opacity, bricks] :
+       {Way{"float", "facing", "own"}, Way{"half", "average", "own"}, Way{"float", "facing", "published"},
+        Way{"half", "average", "published"}}) {
+    const auto [dense, sparse] = bothOf(scene, 32, precision, opacity, bricks);
+    CHECK(dense.unit == sparse.unit);
+    for (int level = 0; level <= sparse.tree.depth; ++level) {
+      const glm::ivec3 size = levelResolution(dense.grid.resolution, level);
+      const std::vector<float> texels = dense.radiance->downloadFloats(level);
+      std::map<Cell, glm::vec4> expected;
+      for (int i = 0; i < size.x * size.y * size.z; ++i) {
+        const float* texel = texels.data() + 4 * static_cast<std::size_t>(i);
+        if (texel[3] > 0.0f)
+          expected[{i % size.x, i / size.x % size.y, i / (size.x * size.y)}] = {texel[0], texel[1], texel[2],
+                                                                                texel[3]};
       }
+      std::map<Cell, glm::vec4> found;
+      for (const auto& [voxel, opacityThere] : sparse.voxels(level, 3))
+        found[cellOf(voxel)].w = opacityThere.x;
+      for (const auto& [voxel, light] : sparse.voxels(level, 0))
+        found[cellOf(voxel)] = glm::vec4(light / sparse.unit, found[cellOf(voxel)].w);
+      CAPTURE(precision, opacity, bricks, level, expected.size());
+      CHECK((found == expected));
     }
+  }
 }
 
 TEST_CASE("what bricks share with their neighbours is the same in both, and nothing where there is none") {
-  const auto [dense, sparse] = bothOf(cornell(), 32, "float", "facing");
+  const auto [dense, sparse] = bothOf(cornell(), 32, "float", "facing", "published");
   for (int level = 0; level < sparse.tree.depth; ++level) {
     const auto bricks = bricksOf(sparse, level);
     std::size_t wrong = 0, shared = 0;
@@ -242,21 +252,52 @@ TEST_CASE("a uniform octree of opacity and radiance returns L (1 - (1-a)^(d / vo
 }
 
 TEST_CASE("cones see in the octree what they see in the dense grid, however its bricks are looked up") {
-  auto [dense, sparse] = bothOf(cornell(), 64, "float", "facing");
-  sparse.tree.grid.resolution = dense.grid.resolution;  // with the empty voxels that a grid adds at its end
-  for (const glm::vec3& place : {glm::vec3(0.1f, 0.1f, 0.1f), {0.0f, 0.45f, -0.1f}, {-0.15f, 0.4f, 0.05f}})
-    for (const double clearance : {0.0, 0.5})  // the finest level alone, and wide voxels
-      for (const char* lookUp : {"ranks", "descent"}) {
+  struct Way {
+    const char *bricks, *lookUp;
+  };
+  for (const auto& [bricks, lookUp] :
+       {Way{"own", "ranks"}, Way{"published", "ranks"}, Way{"published", "descent"}}) {
+    auto [dense, sparse] = bothOf(cornell(), 64, "float", "facing", bricks);
+    sparse.tree.grid.resolution = dense.grid.resolution;  // with the empty voxels that a grid adds at its end
+    for (const glm::vec3& place : {glm::vec3(0.1f, 0.1f, 0.1f), {0.0f, 0.45f, -0.1f}, {-0.15f, 0.4f, 0.05f}})
+      for (const double clearance : {0.0, 0.5}) {  // the finest level alone, and wide voxels
         GatherSettings settings{16};
         settings.clearance = clearance;
         settings.lookUp = lookUp;
         const glm::vec3 normal = glm::normalize(glm::vec3(1, -2, 0.5f));
         const glm::vec3 a = gather(emptyScene(), dense, place, normal, settings),
                         b = gather(emptyScene(), sparse, place, normal, settings);
-        CAPTURE(place.x, clearance, lookUp);
+        CAPTURE(bricks, place.x, clearance, lookUp);
         CHECK(glm::length(a) > 1e-3f);
         for (int c = 0; c < 3; ++c) CHECK(b[c] == Approx(a[c]).epsilon(1e-3));
       }
+  }
+}
+
+TEST_CASE("cones see the same in bricks of their own voxels and in those that hold their neighbours' too") {
+  // Everywhere in the grid and beyond it, also where voxels lie at its very ends.
+  const auto fill = [](const glm::ivec3& at) {
+    const std::uint32_t hash =
+        static_cast<std::uint32_t>(at.x * 73856093 ^ at.y * 19349663 ^ at.z * 83492791);
+    return hash % 3 == 0 ? glm::vec4(0.1f + 0.1f * static_cast<float>(hash % 7), 0.5f, 0.25f, 0.125f)
+                         : glm::vec4(0.0f);
+  };
+  for (const glm::ivec3& size : {glm::ivec3(16), glm::ivec3(13, 16, 6)}) {
+    const VoxelFragments list = listOf(fragmentsWhere(size, fill), size);
+    const RadianceOctree own = filteredOctree(leavesOf(list)),
+                         published = filteredOctree(leavesOf(list, "as_grid", "float", "published"));
+    REQUIRE(own.tree.nodes == nullptr);
+    REQUIRE(published.tree.nodes != nullptr);
+    for (int i = 0; i < 24; ++i) {
+      const glm::vec3 apex(-1.2f + 0.1f * static_cast<float>(i), 0.9f - 0.08f * static_cast<float>(i),
+                           0.05f * static_cast<float>(i % 5) - 1.0f);
+      const glm::vec3 normal = glm::normalize(glm::vec3(i % 3 - 1, i % 2 == 0 ? 1 : -1, i % 5 - 2));
+      const glm::vec3 a = gather(emptyScene(), published, apex, normal, {4}),
+                      b = gather(emptyScene(), own, apex, normal, {4});
+      CAPTURE(size.x, i);
+      for (int c = 0; c < 3; ++c) CHECK(b[c] == Approx(a[c]).epsilon(1e-5).margin(1e-7));
+    }
+  }
 }
 
 TEST_CASE("a closed box whose thick walls all radiate L gives L back within 3 %") {
@@ -417,23 +458,96 @@ TEST_CASE("what is exported of an octree are its levels, each voxel once, where 
 }
 
 TEST_CASE("rules that need the voxels elsewhere are refused with what would do") {
-  const RadianceOctree leaves = leavesOf(listOf({fragmentAt({3, 3, 3})}, glm::ivec3(8)), "at_corners");
+  {
+    const Scene scene = emptyScene();
+    const VoxelFragments one = listOf({fragmentAt({3, 3, 3})}, glm::ivec3(8));
+    PassHarness inject(device(), techniques(), "voxel_cone_tracing", "octree_inject", scene,
+                       snapshotOf(scene, 0.0));
+    inject.setParameter("bounces", 2);
+    inject.setInput("fragments", one);
+    inject.setInput("tree", treeOf(one, "at_corners"));
+    CHECK_THROWS_WITH(inject.run(), Catch::Matchers::Contains("expected 'voxels as_grid'"));
+  }
+  const VoxelFragments list = listOf({fragmentAt({3, 3, 3})}, glm::ivec3(8));
+  const RadianceOctree leaves = leavesOf(list, "at_corners");
   CHECK_THROWS_WITH(filteredOctree(leaves, "facing"),
                     Catch::Matchers::Contains("expected 'opacity average'"));
+  GatherSettings descent;
+  descent.lookUp = "descent";
+  CHECK_THROWS_WITH(gather(emptyScene(), filteredOctree(leavesOf(list)), glm::vec3(0.0f), {0, 1, 0}, descent),
+                    Catch::Matchers::Contains("'bricks published'"));
 }
 
 TEST_CASE("an octree that does not fit is refused with the bytes that it needs and the largest that fits") {
-  gpu::DeviceOptions options;
-  options.memoryBytes = 24 << 20;
-  gpu::Device small(options);
   const Scene scene = cornell();
-  RenderOptions render;
-  render.width = render.height = 16;
   const Pipeline text = pipeline("voxel_cone_tracing_octree");
-  render.parameters = text.settings({"resolution=128"});
-  PipelineExecutor executor(small, techniques(), scene, text, render);
-  CHECK_THROWS_WITH(executor.render(0.0), Catch::Matchers::Contains("an octree of 128 voxels") &&
-                                              Catch::Matchers::Contains("the largest that fits is 64"));
+  const auto render = [&](std::uint64_t bytes, int resolution, bool published) {
+    gpu::DeviceOptions options;
+    options.memoryBytes = bytes;
+    gpu::Device small(options);
+    RenderOptions settings;
+    settings.width = settings.height = 16;
+    settings.parameters = text.settings({"resolution=" + std::to_string(resolution)});
+    Pipeline pipelineOf = text;
+    if (published) {
+      std::ifstream file(sourceDirectory() / "scenes/pipelines/voxel_cone_tracing_octree.pipeline");
+      std::string words((std::istreambuf_iterator<char>(file)), {});
+      const std::string tree = "voxel_cone_tracing.octree { ";
+      words.insert(words.find(tree) + tree.size(), "bricks published ");
+      pipelineOf = Pipeline::parse(words, "made_by_a_test.pipeline");
+    }
+    PipelineExecutor executor(small, techniques(), scene, pipelineOf, settings);
+    executor.render(0.0);
+  };
+  struct Limit {
+    std::uint64_t bytes;
+    int resolution, fits;
+    bool published;
+    const char* what;
+  };
+  for (const Limit& limit :
+       {Limit{20u << 20, 128, 64, false, "takes "}, Limit{24u << 20, 128, 64, true, "takes "}}) {
+    CAPTURE(limit.bytes, limit.resolution, limit.published);
+    CHECK_THROWS_WITH(render(limit.bytes, limit.resolution, limit.published),
+                      Catch::Matchers::Contains(fmt::format("an octree of {} voxels", limit.resolution)) &&
+                          Catch::Matchers::Contains(limit.what) && Catch::Matchers::Contains("tags ") &&
+                          Catch::Matchers::Contains("nodes ") && Catch::Matchers::Contains("bricks ") &&
+                          Catch::Matchers::Contains(fmt::format("the largest that fits is {} ", limit.fits)));
+    CHECK_NOTHROW(render(limit.bytes, limit.fits, limit.published));
+  }
+}
+
+TEST_CASE("tags that do not fit are refused before anything is counted") {
+  // At 512 voxels there may be (8^9 - 1) / 7 nodes, of two bits with 64 bits of rank to 32 of each.
+  gpu::DeviceOptions options;
+  options.memoryBytes = 12u << 20;
+  gpu::Device small(options);
+  const Scene scene = emptyScene();
+  PassHarness tree(small, techniques(), "voxel_cone_tracing", "octree", scene, snapshotOf(scene, 0.0));
+  tree.setInput("fragments", listOf({fragmentAt({3, 3, 3})}, glm::ivec3(512), small));
+  CHECK_THROWS_WITH(
+      tree.run(),
+      Catch::Matchers::Contains(
+          "an octree of 512 voxels along its longest side takes at least 13.7 MiB: tags 13.7 MiB") &&
+          Catch::Matchers::Contains("the largest that fits is 256 "));
+}
+
+TEST_CASE("further bounces in the octree are those of the dense grid") {
+  for (const char* bricks : {"own", "published"}) {
+    const auto [dense, sparse] = bothOf(cornell(), 32, "float", "facing", bricks, 3);
+    const auto [once, direct] = bothOf(cornell(), 32, "float", "facing", bricks, 1);
+    const auto lightOf = [](const RadianceOctree& octree) {
+      double sum = 0.0;
+      for (const auto& [voxel, light] : octree.voxels(0, 0)) sum += light.x + light.y + light.z;
+      return sum;
+    };
+    double expected = 0.0;
+    const std::vector<float> texels = dense.radiance->downloadFloats(0);
+    for (std::size_t i = 0; i < texels.size(); ++i) expected += i % 4 < 3 ? texels[i] * dense.unit : 0.0f;
+    CAPTURE(bricks);
+    CHECK(lightOf(sparse) == Approx(expected).epsilon(0.005));
+    CHECK(lightOf(sparse) > 1.2 * lightOf(direct));
+  }
 }
 
 TEST_CASE("images are finite with the camera outside of the octree, inside geometry, far from the origin") {

@@ -117,6 +117,28 @@ TEST_CASE("the fragments of still geometry stay at the beginning of the list, un
   CHECK(run.reusesStaticGeometry());
 }
 
+TEST_CASE("a list tells its first fragments, of what stands still, from those behind, and keeps its proof") {
+  const Scene scene = movingRoom();
+  Run run(scene, "resolution 24");
+  const auto listAt = [&](double time) {
+    run.executor.render(time);
+    return static_cast<const Out<VoxelFragments>*>(run.executor.output("voxels", "fragments"))->value();
+  };
+  listAt(0.0);
+  const VoxelFragments first = listAt(0.1), second = listAt(0.2);
+  Scene still = scene;
+  std::erase_if(still.objects, [](const Object& object) { return object.animated(); });
+  const auto words = [](const gpu::BufferRef& buffer) { return buffer->downloadValues<std::uint32_t>(); };
+  REQUIRE(second.still != nullptr);
+  CHECK(first.still == second.still);
+  CHECK(words(second.still)[0] == Run(still, "resolution 24").at(0.0).fragments.size());
+  CHECK(words(second.still)[0] + words(second.moving)[0] == words(second.count)[0]);
+  CHECK(words(second.moving)[0] > 0);
+  // Dispatches over both.
+  CHECK(words(second.still)[1] == (words(second.still)[0] + 63) / 64);
+  CHECK(words(second.moving)[1] == (words(second.moving)[0] + 63) / 64);
+}
+
 TEST_CASE("without anything that stands still, and without anything that moves, the list is right as well") {
   Scene moving = movingRoom();
   std::erase_if(moving.objects, [](const Object& object) { return !object.animated(); });

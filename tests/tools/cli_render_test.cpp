@@ -84,6 +84,11 @@ TEST_CASE("render of one output alone has it as the main layer, and a wrong name
   REQUIRE(runCommand(command + " --output direct").exitCode == 0);
   CHECK(readExr(place.path() / "a.exr").layers.size() == 1);
   checkRefused(runCommand(command + " --output dirext"), "did you mean 'direct'");
+  checkRefused(
+      runCommand("lumivox render " + quoted(sourceDirectory() / "scenes/pipelines/direct_lighting.pipeline") +
+                 " " + quoted(sourceDirectory() / "scenes/cornell.scene") + " -o " +
+                 quoted(place.file("swapped.exr"))),
+      "expected them the other way round: render SCENE PIPELINE");
 }
 
 TEST_CASE("render accumulates frames at each time; without anything that does, the image stays to the bit") {

@@ -170,7 +170,7 @@ TEST_CASE("a small table is measured: ratios to its first row, a verdict for eac
   const Json tables = Json::parse(result.output);
   REQUIRE(tables.size() == 1);
   const Json& table = tables[0];
-  REQUIRE(table["rows"].size() == 11);
+  REQUIRE(table["rows"].size() == 13);
   CHECK(table["scale"] == 0.5);
   // Half of 32 and of 64 voxels, 64 x 48 pixels, and another pipeline: three set-ups for all rows.
   REQUIRE(table["set_ups"].size() == 3);
@@ -190,6 +190,16 @@ TEST_CASE("a small table is measured: ratios to its first row, a verdict for eac
   CHECK(rowNamed(table, "voxels, 64")["verdict"] == "reproduced");
   CHECK(rowNamed(table, "voxels, 64")["ratio_low"] == rowNamed(table, "voxels, 64")["ratio_high"]);
   CHECK(rowNamed(table, "memory")["measured"]["median"] > 0.0);
+  // A grid of 16 voxels along its longest side with its mips in 16 bytes a voxel, and the words of its
+  // bricks; of its voxels the walls are about a quarter.
+  const double held = rowNamed(table, "finest grid")["measured"]["median"],
+               each = rowNamed(table, "bytes a voxel")["measured"]["median"];
+  CHECK(held > 1e-6 * 16 * 16 * 16 * 16);
+  CHECK(held < 1.3e-6 * 16 * 16 * 16 * 16);
+  const double voxels = 1e6 * held / each;
+  CHECK(voxels == Approx(std::round(voxels)).epsilon(1e-9));
+  CHECK(voxels > 5 * 14 * 14);
+  CHECK(voxels < 16 * 16 * 16 / 2);
   for (const auto& [name, why] :
        {std::pair("another machine", "it was sold"),
         std::pair("nothing to march", "pass 'march' was left out: "), std::pair("another room", "this one"),
@@ -220,7 +230,7 @@ TEST_CASE("a small table is measured: ratios to its first row, a verdict for eac
     CHECK(contains(run["command"].get<std::string>(), "reproduce"));
     CHECK(contains(run["command"].get<std::string>(), "--spp 16"));
   }
-  CHECK(runs[0]["identity"]["kept"] == Json::array({"voxels.fragments"}));
+  CHECK(runs[0]["identity"]["kept"] == Json::array({"light.radiance", "voxels.fragments"}));
   CHECK(runs[2]["identity"]["kept"].empty());
   checkRefused(runCommand("lumivox reproduce " + data("room.reproduction") + " --spp 16"), "--store");
 }

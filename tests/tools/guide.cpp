@@ -104,6 +104,8 @@ const std::vector<Omission>& omissions() {
   static const std::vector<Omission> list = {
       {"^tests/fuzz/nightly", "", "builds everything anew with a fuzzer and runs for minutes"},
       {"^\\./run reproduce --repeats 9", "", "measures for hours, and writes the project's own figures"},
+      {"^build/bin/bench_cone_stores --write", "",
+       "measures for minutes, and writes the project's own figures"},
       {"^lumivox stress (-o|voxel)", "", "a battery takes minutes; stress_tests run its quick part"},
       {"^lumivox stress --from", "", "shows what the command before it would have stored"},
       {"\\(cd build && cpack", "", "writes into build/; sdk_test packs in a folder of its own"},
@@ -119,7 +121,8 @@ const std::vector<Omission>& omissions() {
 const std::vector<Reduction>& reductions() {
   static const std::vector<Reduction> list = {
       {"^\\./run$", "./run report scenes/cornell.scene"},
-      {"\\b(render|reference|explain) (\\S*scenes/|docs/examples/)", "$1 --resolution 32x32 $2"},
+      {"^(?!.* --resolution )(.*?\\b(?:render|reference|explain)) (\\S*scenes/|docs/examples/)",
+       "$1 --resolution 32x32 $2"},
       {"--spp (64|1024)", "--spp 16"},
       // Texts of sweeps name scenes and pipelines; what they would measure is planned.
       {"\\bsweep (\\S+\\.sweep)", "sweep --plan --no-sweep $1"},

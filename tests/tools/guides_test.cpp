@@ -122,6 +122,12 @@ TEST_CASE("the first image comes out as its guide says") {
   CHECK(contains(guide.of("run explain").output, "same image: yes"));
 }
 
+TEST_CASE("the stores of cones are drawn and compared as their guide says") {
+  const FollowedGuide guide("docs/cones.md");
+  checkFollowed(guide);
+  for (const char* sheet : {"out/cone_stores.png", "out/coarse.png"}) CHECK(guide.has(sheet));
+}
+
 TEST_CASE("the report's guide tells what a report writes") {
   const FollowedGuide guide("docs/report.md");
   checkFollowed(guide);

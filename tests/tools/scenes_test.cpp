@@ -45,7 +45,7 @@ const std::set<std::string> kOwnScenes = {"cornell",  "cornell_glossy", "arcade"
                                           "corridor", "furnace",        "spinning_box"};
 bool isOwn(const fs::path& scene) {
   return kOwnScenes.count(scene.stem().string()) != 0 || scene.parent_path().filename() == "stress" ||
-         scene.parent_path().filename() == "examples";
+         scene.parent_path().filename() == "untuned" || scene.parent_path().filename() == "examples";
 }
 
 Scene load(const std::string& name) {

@@ -83,7 +83,8 @@ std::string asText(const PruningRecord& record) {
                   explanation.variantsCompiled, explanation.variantsNeeded);
   if (timed)
     text += fmt::format("{} of the time of a first frame saved, {} of the next ones with a moving camera\n",
-                        formatPercent(record.savedShare()), formatPercent(record.savedShareNext()));
+                        formatPercent(std::max(record.savedShare(), 0.0)),
+                        formatPercent(std::max(record.savedShareNext(), 0.0)));
   text += fmt::format("memory of the passes {} in place of {}; same image: {}\n",
                       formatBytes(record.prunedBytes), formatBytes(record.unprunedBytes),
                       record.sameImage ? painted(Paint::good, "yes") : painted(Paint::bad, "NO"));
@@ -236,6 +237,10 @@ int explain(const ExplainCommand& command, const GlobalOptions& global) {
 
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();
+  if (options.pipelines.empty() && !command.json)
+    logInformation(
+        "no pipeline is named: every committed one is rendered as it runs and with everything kept{}; name a pipeline for that one in full",
+        command.noTimes ? "" : ", and timed (--no-times is much faster)");
   Progress progress("explain", 0, "cells");
   const std::vector<NeededCell> cells = measureNeeded(
       *device, techniques, options, [&](const std::filesystem::path& file) { return global.loadScene(file); },

@@ -260,6 +260,10 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
   const std::optional<double> given = command.display.given();
   checkFiles(command, first, last);
 
+  if (command.scene.extension() == ".pipeline" && command.pipeline.extension() == ".scene")
+    throw Error(fmt::format(
+        "{} is a pipeline and {} a scene; expected them the other way round: render SCENE PIPELINE",
+        command.scene.string(), command.pipeline.string()));
   const Pipeline pipeline = Pipeline::load(command.pipeline);
   RenderOptions options = command.run.renderOptions(pipeline);
   options.keepEverything = command.keepEverything;

@@ -34,6 +34,14 @@ std::string leftOutText(const std::vector<std::string>& leftOut) {
   return text.empty() ? text : text + "a longer --budget measures them too\n";
 }
 
+/// "12.5 % (1.0 of 8.0 ms)", or "nothing" where leaving out does not make a frame shorter.
+std::string savingText(double share, const TimingStatistics& pruned, const TimingStatistics& unpruned) {
+  if (!(share > 0.0)) return "nothing";
+  return fmt::format("{} ({} of {} ms)", formatPercent(share),
+                     formatMilliseconds(unpruned.median - pruned.median),
+                     formatMilliseconds(unpruned.median));
+}
+
 struct ReportCommand {
   MeasureOptions measure;
   std::vector<std::string> equalTimes, equalErrors;
@@ -66,15 +74,13 @@ void printSummary(const ReportSummary& summary) {
   std::string table = groupedTable(rows, 2), text = kErrorNote;
   for (const PruningRecord& pruning : summary.pruning)
     text += fmt::format(
-        "{}, {}: leaving out what the scene does not need saves {} of a first frame ({} of {} ms) and "
-        "{} of "
-        "the next ones with a moving camera ({} of {} ms); same image: {}\n",
+        "{}, {}: leaving out what the scene does not need saves {} of a first frame and {} of the next ones with a "
+        "moving camera; same image: {}\n",
         std::filesystem::path(pruning.scene).stem().string(),
-        std::filesystem::path(pruning.pipeline).stem().string(), formatPercent(pruning.savedShare()),
-        formatMilliseconds(pruning.unprunedMs.median - pruning.prunedMs.median),
-        formatMilliseconds(pruning.unprunedMs.median), formatPercent(pruning.savedShareNext()),
-        formatMilliseconds(pruning.nextUnprunedMs.median - pruning.nextPrunedMs.median),
-        formatMilliseconds(pruning.nextUnprunedMs.median), pruning.sameImage ? "yes" : "NO");
+        std::filesystem::path(pruning.pipeline).stem().string(),
+        savingText(pruning.savedShare(), pruning.prunedMs, pruning.unprunedMs),
+        savingText(pruning.savedShareNext(), pruning.nextPrunedMs, pruning.nextUnprunedMs),
+        pruning.sameImage ? "yes" : "NO");
   for (const auto& [scene, display] : summary.displays)
     text += fmt::format("{}: images, SSIM and LDR-FLIP at {}, tone {}\n",
                         std::filesystem::path(scene).stem().string(), exposureText(display.exposure),

@@ -18,6 +18,7 @@ int main(int argumentCount, char** arguments) {
     lumivox::models::writeFurnace(directory);
     lumivox::models::writeSkylight(directory);
     lumivox::models::writeQuad(directory);
+    lumivox::models::writeBlock(directory);
     lumivox::models::writeArcade(directory);
     lumivox::models::writeArcadeTextures(directory / "textures");
     lumivox::models::writeStressModels(directory);

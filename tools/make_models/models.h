@@ -10,6 +10,7 @@ void writeCorridor(const std::filesystem::path& directory);
 void writeFurnace(const std::filesystem::path& directory);
 void writeSkylight(const std::filesystem::path& directory);
 void writeQuad(const std::filesystem::path& directory);
+void writeBlock(const std::filesystem::path& directory);
 void writeArcade(const std::filesystem::path& directory);
 void writeArcadeTextures(const std::filesystem::path& directory);
 void writeStressModels(const std::filesystem::path& directory);

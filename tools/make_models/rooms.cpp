@@ -147,6 +147,14 @@ void writeQuad(const std::filesystem::path& directory) {
   model.write(directory);
 }
 
+void writeBlock(const std::filesystem::path& directory) {
+  ObjModel model("block", "A block of side 1 with its low corner at the origin, to be scaled into walls");
+  model.material({.name = "white", .diffuse = glm::dvec3(0.75)});
+  model.object("block", "white");
+  model.box(glm::dvec3(0), glm::dvec3(1));
+  model.write(directory);
+}
+
 void writeStressModels(const std::filesystem::path& directory) {
   const auto stress = [](const char* name, const char* comment) {
     ObjModel model(name, comment);

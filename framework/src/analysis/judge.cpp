@@ -130,6 +130,8 @@ const char* name(PublishedQuantity quantity) {
       return "fragments";
     case PublishedQuantity::memory:
       return "memory";
+    case PublishedQuantity::voxelBytes:
+      return "voxel_bytes";
   }
   return "";
 }
@@ -144,6 +146,8 @@ const char* unit(PublishedQuantity quantity) {
       return "";
     case PublishedQuantity::memory:
       return "MB";
+    case PublishedQuantity::voxelBytes:
+      return "B";
   }
   return "";
 }

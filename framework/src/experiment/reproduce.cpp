@@ -342,9 +342,21 @@ class Reproduction {
         return;
       case PublishedQuantity::memory: {
         constexpr double kMegabyte = 1e6;
-        double bytes = row.passes.empty() ? static_cast<double>(point.peakBytes) : 0.0;
+        double bytes = 0.0;
+        if (row.passes.empty())
+          bytes =
+              static_cast<double>(row.pass.empty() ? point.peakBytes : heldBytes(outputOf(executor, row)));
         for (const std::string& pass : row.passes) bytes += static_cast<double>(point.passBytes.at(pass));
         measured.measured = exactly(bytes / kMegabyte);
+        return;
+      }
+      case PublishedQuantity::voxelBytes: {
+        const OutBase& output = outputOf(executor, row);
+        const std::optional<std::uint64_t> voxels = opaqueVoxels(output);
+        if (!voxels || *voxels == 0)
+          throw Error(fmt::format("{}: output {}.{} has no voxels with an opacity", row.place.text(),
+                                  row.pass, row.port));
+        measured.measured = exactly(static_cast<double>(heldBytes(output)) / static_cast<double>(*voxels));
         return;
       }
     }
@@ -365,6 +377,14 @@ class Reproduction {
       sum.repeats = one.repeats;
     }
     return sum;
+  }
+
+  static const OutBase& outputOf(const PipelineExecutor& executor, const PublishedSetUp& row) {
+    const OutBase* output = row.pass.empty() ? nullptr : executor.output(row.pass, row.port);
+    if (output == nullptr)
+      throw Error(fmt::format("{}: no output whose bytes could be counted; expected 'output PASS.PORT'",
+                              row.place.text()));
+    return *output;
   }
 
   static double fragmentsOf(const PipelineExecutor& executor, const PublishedSetUp& row) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <set>
 
 #include "lumivox/base/error.h"
 #include "lumivox/experiment/voxelizers.h"
@@ -22,6 +23,7 @@ class Reader {
   void operator()(const VoxelsRead& source);
 
  private:
+  void read(const gpu::Texture& texture, int level, int component);
   OccupiedVoxels& result_;
 };
 
@@ -74,20 +76,24 @@ bool isPositive(gpu::Format format, const std::byte* texel, int channel) {
   }
 }
 
-/// Voxels whose value in the one channel is above 0; read through a small buffer.
+/// Voxels with a value above 0 in one of the channels; read through a small buffer.
 void Reader::operator()(const VoxelTexels& source) {
-  const gpu::Texture& texture = *source.textures.at(0);
+  for (const VoxelTexels::Channel& channel : source.channels)
+    read(*source.textures.at(static_cast<std::size_t>(channel.texture)), source.level, channel.component);
+}
+
+void Reader::read(const gpu::Texture& texture, int level, int component) {
   const gpu::Format format = texture.description().format;
   const glm::ivec3& size = result_.grid.resolution;
   const std::size_t texelBytes = gpu::bytesPerTexel(format);
   std::vector<std::byte> slice(texelBytes * static_cast<std::size_t>(size.x) *
                                static_cast<std::size_t>(size.y));
   for (int z = 0; z < size.z; ++z) {
-    texture.downloadSlices(source.level, z, 1, slice);
+    texture.downloadSlices(level, z, 1, slice);
     const std::byte* texel = slice.data();
     for (int y = 0; y < size.y; ++y)
       for (int x = 0; x < size.x; ++x, texel += texelBytes)
-        if (isPositive(format, texel, source.channels.at(0).component)) result_.voxels.insert({x, y, z});
+        if (isPositive(format, texel, component)) result_.voxels.insert({x, y, z});
   }
 }
 
@@ -136,9 +142,34 @@ std::optional<OccupiedVoxels> occupiedVoxels(const OutBase& output) {
   OccupiedVoxels result{occupancy->grid, VoxelSet(occupancy->grid.resolution), 0, 0};
   std::visit(Reader(result), occupancy->source);
   if (std::holds_alternative<VoxelList>(occupancy->source)) return result;
-  for (const PortContents::Resource& resource : contents.resources())
-    result.bytes += resource.texture ? resource.texture->sizeBytes() : resource.buffer->sizeBytes();
+  result.bytes = heldBytes(output);
   return result;
+}
+
+std::uint64_t heldBytes(const OutBase& output) {
+  const PortContents contents = output.contents();
+  std::uint64_t bytes = 0;
+  std::set<const void*> counted;  // a resource may have two names
+  for (const PortContents::Resource& resource : contents.resources()) {
+    const void* which =
+        resource.texture ? static_cast<const void*>(resource.texture.get()) : resource.buffer.get();
+    if (!counted.insert(which).second) continue;
+    bytes += resource.texture ? resource.texture->sizeBytes() : resource.buffer->sizeBytes();
+  }
+  return bytes;
+}
+
+std::optional<std::uint64_t> opaqueVoxels(const OutBase& output) {
+  const PortContents contents = output.contents();
+  for (const PortContents::Field& field : contents.fields()) {
+    if (field.name != "opacity" || field.level != 0) continue;
+    GridPlacement grid;
+    grid.resolution = field.box.resolution;
+    OccupiedVoxels found{grid, VoxelSet(grid.resolution), 0, 0};
+    std::visit(Reader(found), field.source);
+    return found.voxels.count();
+  }
+  return std::nullopt;
 }
 
 }  // namespace lumivox

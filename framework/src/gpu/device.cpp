@@ -140,6 +140,7 @@ void DeviceState::readLimits() {
   glGetIntegerv(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, &limits.storageUnits);
   glGetIntegerv(GL_MAX_UNIFORM_BUFFER_BINDINGS, &limits.uniformUnits);
   glGetIntegerv(GL_MAX_FRAMEBUFFER_SAMPLES, &info.maxSamples);
+  glGetIntegerv(GL_MAX_VERTEX_IMAGE_UNIFORMS, &info.vertexImages);
   info.maxSamples = std::max(info.maxSamples, 1);
   info.maxTextureSize3d = limits.textureSize3d;
   info.maxStorageBytes = static_cast<std::uint64_t>(limits.storageBlockBytes);

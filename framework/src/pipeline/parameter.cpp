@@ -1,11 +1,15 @@
 // Parameters of a pass: values with a range, set from numbers and words.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cctype>
 #include <cmath>
 
+#include "lumivox/base/error.h"
+#include "lumivox/dsl/document.h"
 #include "lumivox/pipeline/pass.h"
+#include "pipeline/text_values.h"
 
 namespace lumivox {
 
@@ -61,6 +65,14 @@ Param<float>::Param(Pass* pass, std::string name, float value, ParamRange<float>
                     std::string meaning)
     : ParamBase(pass, std::move(name), Type::number, std::move(meaning)), value_(value), default_(value) {
   assert(range.low <= value && value <= range.high);
+  const auto& units = dsl::knownUnits();
+  // Its range and its value are in base units.
+  std::vector<std::string> names;
+  for (const dsl::Unit& one : units)
+    if (one.toBase == 1.0) names.emplace_back(one.name);
+  if (!unit.empty() && std::find(names.begin(), names.end(), unit) == names.end())
+    throw Error(fmt::format("parameter '{}' in '{}', which is no base unit of the texts; expected {}",
+                            this->name(), unit, oneOf(names, "none")));
   low_ = range.low;
   high_ = range.high;
   unit_ = std::move(unit);

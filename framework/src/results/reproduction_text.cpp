@@ -46,7 +46,8 @@ std::vector<PropertySpecification> setUpProperties() {
   PropertySpecification measures = property(
       "measures", PropertyType::word,
       "what the published numbers are: time in ms, frame_rate in 1/s, fragments (voxel fragments of `output`), "
-      "memory in MB of 10^6 bytes");
+      "memory in MB of 10^6 bytes (of `passes`, of what `output` holds, or of the whole frame at its peak), "
+      "voxel_bytes (of what `output` holds, for each of its finest voxels that has an opacity)");
   for (const PublishedQuantity quantity : kPublishedQuantities) measures.choices.push_back(name(quantity));
   measures.defaultText = name(PublishedQuantity::time);
   PropertySpecification time = property("time", PropertyType::number, "of the scene");
@@ -70,7 +71,7 @@ std::vector<PropertySpecification> setUpProperties() {
                "whose times or bytes are added up; without them the whole frame"),
       property(
           "output", PropertyType::output,
-          "an output that is kept, for passes that no image needs; whose fragments are counted; whose image "
+          "an output that is kept, for passes that no image needs; whose fragments or bytes are counted; whose image "
           "a panel shows, in place of the pipeline's whole image"),
       property("absent", PropertyType::text, "why nothing can be measured or shown here: not comparable"),
       property("substitute", PropertyType::text,
@@ -394,6 +395,9 @@ class ResultReader : TextFindings {
     }
     if (target.quantity == PublishedQuantity::fragments && target.pass.empty())
       report(block.place, block.word, fmt::format("{} does not say whose fragments are counted", what),
+             "output pass.port");
+    if (target.quantity == PublishedQuantity::voxelBytes && target.pass.empty())
+      report(block.place, block.word, fmt::format("{} does not say whose bytes are counted", what),
              "output pass.port");
   }
 

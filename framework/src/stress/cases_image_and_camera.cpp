@@ -168,6 +168,7 @@ std::optional<Finding> looksAway(Bench& bench) {
   camera.target = camera.eye + 10.0 * (camera.eye - camera.target);
   if (!makesImages(bench)) return spuriousBeyond(bench, suitableScene(bench), scene, {});
   const ImageBuffer image = bench.render(scene).whole;
+  if (image.empty()) return std::nullopt;  // outputs that are no light
   const float largest = *std::max_element(image.values().begin(), image.values().end());
   return judged("largest radiance where nothing is", {largest, 0.0}, 0.0);
 }

@@ -29,6 +29,12 @@ struct OccupiedVoxels {
 std::optional<OccupiedVoxels> occupiedVoxels(const OutBase& output);
 bool holdsVoxels(const PortKind& kind);
 
+/// Of all textures and buffers that an output refers to.
+std::uint64_t heldBytes(const OutBase& output);
+/// The voxels of an output's finest level whose field `opacity` is above 0 in some component; nothing without
+/// such a field. Downloads from the device.
+std::optional<std::uint64_t> opaqueVoxels(const OutBase& output);
+
 struct VoxelizerOptions {
   std::vector<std::filesystem::path> pipelines;  ///< files, or folders of them; none: the committed ones
   std::vector<int> resolutions{64};

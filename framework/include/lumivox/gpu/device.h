@@ -289,7 +289,8 @@ struct DeviceInfo {
   std::string timerNote;                  ///< what that check found
   int maxTextureSize3d = 0;
   std::uint64_t maxStorageBytes = 0;
-  int maxSamples = 1;  ///< of an empty framebuffer
+  int maxSamples = 1;    ///< of an empty framebuffer
+  int vertexImages = 0;  ///< that a vertex shader may store to
 };
 
 struct DeviceOptions {

@@ -21,11 +21,12 @@ enum class PublishedQuantity {
   time,       ///< of passes or of the frame, ms
   frameRate,  ///< of the frame, 1/s; compared as the frame's time
   fragments,  ///< voxel fragments of an output, a number
-  memory      ///< of passes, or of the whole frame at its peak, MB (10^6 bytes)
+  memory,     ///< of passes, of all that an output holds, or of the whole frame at its peak, MB (10^6 bytes)
+  voxelBytes  ///< of all that an output holds, for each of its finest voxels that has an opacity, B
 };
 inline constexpr PublishedQuantity kPublishedQuantities[] = {
     PublishedQuantity::time, PublishedQuantity::frameRate, PublishedQuantity::fragments,
-    PublishedQuantity::memory};
+    PublishedQuantity::memory, PublishedQuantity::voxelBytes};
 const char* name(PublishedQuantity quantity);  ///< "frame_rate"
 const char* unit(PublishedQuantity quantity);  ///< "1/s"
 

@@ -26,6 +26,7 @@ struct RadianceGrid {
   /// The meaning of a coarser voxel's opacity: that of the whole voxel, as seen through; or of a path of one
   /// finest voxel's length in it, which is what the plain mean of the children gives for a uniform medium.
   enum class Opacity { ofVoxel, ofFinestVoxel } opacity = Opacity::ofVoxel;
+  int bounces = 1;          ///< times that the light was reflected
   bool holdsMedia = false;  ///< participating media are in the voxels beside the surfaces
   /// Outside of these bricks the finest level is 0; null members: not known.
   OccupiedBricks occupied;

@@ -16,6 +16,10 @@ struct VoxelFragments {
   /// behind the end of the buffer are not known either.
   gpu::BufferRef reflected;
   static constexpr std::uint32_t kNotKnown = 0xffffffffu;
+  /// Where some of the scene moves and some stands still: the first fragments are those of what stands still,
+  /// as `count`, and `moving` counts those behind them. While `still` is the same buffer, its fragments are
+  /// the same, in the same places; who holds it holds the proof. Null: not known apart.
+  gpu::BufferRef still, moving;
   std::uint64_t capacity = 0;
   int workGroupSize = 64;  ///< that the indirect dispatch assumes
   /// How the coverages of the fragments in one voxel make its opacity: their mean (each triangle is judged by
@@ -34,7 +38,9 @@ struct PortTraits<VoxelFragments> {
             "an unordered list of surface samples, one per triangle and voxel that it touches",
             {{"fragments", "buffer", "array of VoxelFragment in shaders/common/voxel.glsl"},
              {"count", "buffer", "words: fragments written; then x, y, z of an indirect dispatch over them"},
-             {"reflected", "buffer", "a word a fragment: direct light that it is known to reflect; or null"}},
+             {"reflected", "buffer", "a word a fragment: direct light that it is known to reflect; or null"},
+             {"still", "buffer", "as count, of the first fragments, those of what does not move; or null"},
+             {"moving", "buffer", "as count, of those behind them; or null"}},
             {{"occupancy", "whether a surface touches the voxel", "1"},
              {"fragments", "surface samples in the voxel", "1"}},
             "voxels with a fragment that covers anything of them"};
@@ -43,6 +49,8 @@ struct PortTraits<VoxelFragments> {
     contents.buffer("fragments", port.fragments);
     contents.buffer("count", port.count);
     contents.buffer("reflected", port.reflected);
+    contents.buffer("still", port.still);
+    contents.buffer("moving", port.moving);
     VoxelList list{port.fragments, port.count, VoxelFragments::kFragmentBytes, port.capacity};
     const VoxelBox box = VoxelBox::of(port.grid);
     contents.field("occupancy", box, list);

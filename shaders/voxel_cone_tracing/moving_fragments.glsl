@@ -1,0 +1,16 @@
+// An invocation for each fragment of a list, or (MOVING) for each of those that move, which lie behind the others. Included after the local
+// size, which is along x alone. C++ side: VoxelFragments::still, movingOf() in techniques/voxel_cone_tracing/changed_cells.h.
+#pragma lumivox axis MOVING 0 1
+#include "common/fragments.glsl"
+#if MOVING
+layout(std430, binding = 8) readonly buffer StillFragments { uint stillFragments; };
+#endif
+
+bool fragmentOf(out uint index) {
+  index = listIndex();
+  bool isOne = index < fragmentCount;
+#if MOVING
+  index += stillFragments;
+#endif
+  return isOne;
+}

@@ -1,0 +1,11 @@
+// The voxels of an octree of static geometry, bricks of their own voxels, beside another one.
+#include "octree_ranks.glsl"
+
+layout(std430, binding = 13) readonly buffer StillRanks { RankedTags stillRanks[]; };
+layout(binding = 1) uniform sampler3D stillPool;
+
+// A voxel of a node by its place along the curve of its depth; one at least of the node's is there.
+vec4 stillVoxel(uint morton, int depth, ivec3 own) {
+  uint brick = rankIn(stillRanks[firstWord(depth) + (morton >> 5)], morton);
+  return brick == kNone ? vec4(0.0) : texelFetch(stillPool, texelIn(stillShift, brick) + own, 0);
+}
