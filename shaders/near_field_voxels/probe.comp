@@ -1,14 +1,9 @@
 #version 450
 // One ray a pixel through the bits, for tests and measurements.
-#include "common/bit_grid.glsl"
+#include "grid.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(std140, binding = 0) uniform Grid {
-  vec3 gridLow;     // m
-  float voxelSize;  // m
-  ivec3 resolution;
-};
 layout(binding = 0) uniform sampler2D origins;     // xyz posWorld, w reach, m; below 0: no ray
 layout(binding = 1) uniform sampler2D directions;  // xyz unit
 layout(binding = 0, rgba32f) uniform writeonly image2D voxelImage;   // xyz the voxel, -1 where there is none; w way to it, m
