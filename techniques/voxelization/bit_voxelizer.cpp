@@ -23,9 +23,21 @@ gpu::TextureRef bitWords(PassContext& frame, const GridPlacement& grid, const ch
   return frame.emptyVolume(wordCount(grid), gpu::Format::r32ui, label);
 }
 
-gpu::TextureRef bitsOf(PassContext& frame, const VoxelFragments& fragments, const char* label) {
+gpu::TextureRef bitsOf(PassContext& frame, const VoxelFragments& fragments, const char* label, Masks masks) {
   gpu::TextureRef words = bitWords(frame, fragments.grid, label);
-  forEachFragment(frame, frame.program(bits_mark::kProgram), {bits_mark::words(words)}, fragments);
+  forEachFragment(frame, frame.program(bits_mark::kProgram),
+                  {bits_mark::words(words), bits_mark::maskRule({static_cast<int>(masks), seedWords(frame)})},
+                  fragments);
+  return words;
+}
+
+gpu::TextureRef bitsOf(PassContext& frame, const OccupancyGrid& opacity, const char* label, Masks masks) {
+  const glm::ivec3 count = wordCount(opacity.grid);
+  gpu::TextureRef words = frame.volume(count, gpu::Format::r32ui, label);
+  frame.dispatch(frame.program(bits_cover::kProgram),
+                 {bits_cover::words(words), bits_cover::opacity(opacity.opacity, gpu::Sampling::nearest),
+                  bits_cover::maskRule({static_cast<int>(masks), seedWords(frame)})},
+                 count);
   return words;
 }
 
