@@ -100,7 +100,8 @@ inline Scene underSky(float radiance) {
 }
 
 /// Form factor from a point with a normal to a polygon in front of it (Lambert).
-inline double formFactor(const glm::dvec3& point, const glm::dvec3& normal, const std::vector<glm::dvec3>& corners) {
+inline double formFactor(const glm::dvec3& point, const glm::dvec3& normal,
+                         const std::vector<glm::dvec3>& corners) {
   double sum = 0.0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const glm::dvec3 a = glm::normalize(corners[i] - point),
@@ -112,8 +113,8 @@ inline double formFactor(const glm::dvec3& point, const glm::dvec3& normal, cons
 }
 
 /// Lights of a scene as samples, and a map of their layers in which all texels are alike.
-inline ReflectiveShadowMap mapOf(const Scene& scene, int side, const glm::vec4& position, const glm::vec4& normal,
-                          const glm::vec4& flux) {
+inline ReflectiveShadowMap mapOf(const Scene& scene, int side, const glm::vec4& position,
+                                 const glm::vec4& normal, const glm::vec4& flux) {
   const LightSet set = sampleLights(scene, snapshotOf(scene, 0.0), 1, side);
   ReflectiveShadowMap map;
   map.lightCount = static_cast<int>(set.samples.size());

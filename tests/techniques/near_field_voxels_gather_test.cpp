@@ -242,8 +242,8 @@ TEST_CASE("without a cap a slanted texel reaches further, and with the largest t
   const double width = sampleLights(scene, snapshotOf(scene, 0.0), 1, 32).samples.front().texelWidth;
   for (const double distance : {0.99 * width / 0.05, 1.01 * width / 0.05}) {
     const ReflectiveShadowMap map =
-        mapOf(scene, 32, glm::vec4(voxel.centre - static_cast<float>(distance) * way, 1), glm::vec4(normal, 1),
-              fluxOf(5.0f));
+        mapOf(scene, 32, glm::vec4(voxel.centre - static_cast<float>(distance) * way, 1),
+              glm::vec4(normal, 1), fluxOf(5.0f));
     CHECK(voxel.gatherer(map).run()[0] == 0.0f);
     CHECK(voxel.gatherer(map).with({{"cap", 0}}).run()[0] == Approx(distance < width / 0.05 ? 5.0 : 0.0));
     CHECK(voxel.gatherer(map).with({{"tolerance", 1000}}).run()[0] == Approx(5.0));
