@@ -2,7 +2,8 @@
 // Mueller 2011, Sec. 4; thesis 004, Sec. 3.2.2 and 4.4.6. Which voxel is the first is decided by the rule of lumivox/measure/voxel_walk.h,
 // to the bit, whichever way it is found:
 //   BIT_RULE hierarchy: a texel of a level is a block of columns; the part of the ray in it is a run of bits along z, ANDed with the stack.
-//     Empty: on to where the ray leaves the block, and one level up; else one level down, and in a single column the first common bit.
+//     Empty: on to where the ray leaves the block, and, where that leaves the block of the next level too, one level up; else one level down,
+//     and in a single column the first common bit.
 //   BIT_RULE stacks: the same at level 0 alone.
 //   BIT_RULE plain: one voxel after another (Amanatides & Woo 1987).
 //   BIT_RULE printed: thesis 004, Listings 4.39, 4.40 and 4.47, for what they find: see there.
@@ -208,7 +209,8 @@ BitHit firstBit(vec3 origin, vec3 direction, float reach, ivec3 voxels) {
 #else
   const int coarsest = 0;
 #endif
-  int level = coarsest;
+  const int kFirst = 3;  // as published: what surrounds a surface is hardly ever empty
+  int level = min(kFirst, coarsest);
   while (t <= reach) {
     ivec2 size = max(voxels.xy >> level, 1), texel = min(voxel.xy >> level, size - 1);
     ivec2 low = texel << level, high = mix((texel + 1) << level, voxels.xy, equal(texel, size - 1));
@@ -235,7 +237,8 @@ BitHit firstBit(vec3 origin, vec3 direction, float reach, ivec3 voxels) {
     voxel[axis] = bitDirection[axis] > 0.0 ? high[axis] : low[axis] - 1;
     voxel.z = next;
     if (voxel[axis] < 0 || voxel[axis] >= voxels[axis]) break;
-    level = min(level + 1, coarsest);
+    // Within the next level's block there was something before.
+    if (any(notEqual(voxel.xy >> (level + 1), texel >> 1))) level = min(level + 1, coarsest);
   }
   return hit;
 }
