@@ -5,17 +5,14 @@
 #include "lumivox/measure/metrics.h"
 #include "lumivox/pipeline/pass.h"
 #include "lumivox/reference/path_tracer.h"
+#include "support/near_field_scene.h"
 #include "support/scene_builder.h"
-#include "support/techniques.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
+using namespace lumivox::test::near_field;
 
 namespace {
-
-Scene committed(const std::string& name) {
-  return loadScene(sourceDirectory() / "scenes" / (name + ".scene"));
-}
 
 /// RMSE, without the reference's own noise, over that of nothing; and the mean over the reference's.
 struct Against {
@@ -42,28 +39,6 @@ Against against(const Scene& scene, const std::string& name, const std::string& 
   const double squared = error.rmse.value * error.rmse.value - error.noiseFloor * error.noiseFloor;
   return {std::sqrt(std::max(0.0, squared)) / ofNone.rmse.value, error.meanRatio.value};
 }
-
-/// A scene as bits and as what its camera sees.
-struct Seen {
-  Scene scene;
-  SceneSnapshot snapshot;
-  BinaryGrid bits;
-  GBuffer gbuffer;
-  Seen(const std::string& name, int resolution, int side) : scene(committed(name)) {
-    scene.cameras.front().width = scene.cameras.front().height = side;
-    snapshot = snapshotOf(scene, 0.0);
-    PassHarness voxels(device(), techniques(), "voxelization", "conservative", scene, snapshot),
-        average(device(), techniques(), "voxelization", "average", scene, snapshot),
-        view(device(), techniques(), "direct_lighting", "gbuffer", scene, snapshot);
-    voxels.setParameter("resolution", resolution);
-    voxels.run();
-    average.setInput("fragments", voxels.output<VoxelFragments>("fragments"));
-    average.run();
-    view.run();
-    bits = average.output<BinaryGrid>("bits");
-    gbuffer = view.output<GBuffer>("gbuffer");
-  }
-};
 
 /// Texels that all rays of the image read.
 double fetchesOf(const Seen& seen, const char* method) {
