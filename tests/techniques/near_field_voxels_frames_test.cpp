@@ -96,6 +96,45 @@ TEST_CASE("half and quarter of the pixels send rays, also of an image of one") {
     }
 }
 
+TEST_CASE("between samples light is blended along a plane, and not across the depth of another") {
+  // The left half of the image is a plane at z = 0, the right half one a metre behind, both in a line to the
+  // eye.
+  constexpr int kWidth = 32;
+  SceneBuilder builder;
+  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, kWidth, kWidth);
+  GBuffer gbuffer = pointsAt({0, 0, 0}, {0, 0, 1}, kWidth, kWidth);
+  std::vector<float> places, light, ramp;
+  for (int y = 0; y < kWidth; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      for (const float value : {(x - 15.5f) * 0.05f, (15.5f - y) * 0.05f, x < 16 ? 0.0f : -1.0f, 1.0f})
+        places.push_back(value);
+  gbuffer.position->uploadFloats(0, places);
+  for (int y = 0; y < kWidth / 4; ++y)
+    for (int x = 0; x < kWidth / 4; ++x)
+      for (int c = 0; c < 4; ++c) {
+        light.push_back(x < 4 ? 1.0f : 1000.0f);
+        ramp.push_back(static_cast<float>(y));
+      }
+  const auto reflected = [&](const std::vector<float>& samples) {
+    const GBuffer small = pointsAt({0, 0, 0}, {0, 0, 1}, kWidth / 4, kWidth / 4);
+    small.diffuse->uploadFloats(0, samples);
+    PassHarness reflect(device(), techniques(), "near_field_voxels", "reflect", builder.scene,
+                        snapshotOf(builder.scene, 0.0));
+    reflect.setInput("gbuffer", gbuffer);
+    reflect.setInput("diffuse", Image{small.diffuse});
+    reflect.run();
+    return imageOf(*reflect.output<Image>("diffuse").texture);
+  };
+  const ImageBuffer apart = reflected(light), along = reflected(ramp);
+  for (int y = 0; y < kWidth; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      // Albedo 0.5; a thousandth of the other side's light is allowed.
+      CHECK(apart.at(x, y, 0) == Approx(x < 16 ? 0.5 : 500.0).margin(0.5));
+      // Samples lie at the pixels 2, 6, 10 ...
+      CHECK(along.at(x, y, 0) == Approx(0.5 * std::clamp((y - 2) / 4.0, 0.0, kWidth / 4 - 1.0)).margin(2e-3));
+    }
+}
+
 TEST_CASE("samples of no part of the image are refused") {
   SceneBuilder builder;
   builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, 16, 16);

@@ -27,14 +27,20 @@ struct Found {
   float t, fetches;
 };
 
-std::vector<Found> probed(const BinaryGrid& grid, const Rays& rays, const char* method) {
+/// Origins in voxels of the grid, as the hits' ways.
+std::vector<Found> probed(const BinaryGrid& bits, const Rays& rays, const char* method,
+                          const GridPlacement& placed) {
+  BinaryGrid grid = bits;
+  grid.grid.low = placed.low;
+  grid.grid.voxelSize = placed.voxelSize;
   constexpr int kWidth = 256;
   const int height = (static_cast<int>(rays.origins.size()) + kWidth - 1) / kWidth;
   std::vector<float> origins(static_cast<std::size_t>(4 * kWidth * height), -1.0f), directions(origins);
   for (std::size_t i = 0; i < rays.origins.size(); ++i)
     for (int c = 0; c < 4; ++c) {
       const auto at = 4 * i + static_cast<std::size_t>(c);
-      origins[at] = c < 3 ? rays.origins[i][c] : rays.reaches[i];
+      origins[at] =
+          placed.voxelSize * (c < 3 ? rays.origins[i][c] : rays.reaches[i]) + (c < 3 ? placed.low[c] : 0.0f);
       directions[at] = c < 3 ? rays.directions[i][c] : 0.0f;
     }
   const auto image = [&](const std::vector<float>& values) {
@@ -59,7 +65,7 @@ std::vector<Found> probed(const BinaryGrid& grid, const Rays& rays, const char* 
   for (std::size_t i = 0; i < rays.origins.size(); ++i)
     result.push_back({{static_cast<int>(hits[4 * i]), static_cast<int>(hits[4 * i + 1]),
                        static_cast<int>(hits[4 * i + 2])},
-                      hits[4 * i + 3],
+                      hits[4 * i + 3] < 0.0f ? -1.0f : hits[4 * i + 3] / placed.voxelSize,
                       fetches[4 * i]});
   return result;
 }
@@ -164,7 +170,7 @@ void compareMethods(const Grid& one, int count) {
   REQUIRE(hits > 1000);
   REQUIRE(hits < static_cast<int>(rays.origins.size()));
   for (const char* method : {"hierarchy", "stacks", "plain"}) {
-    const std::vector<Found> found = probed(grid, rays, method);
+    const std::vector<Found> found = probed(grid, rays, method, {});
     int other = 0;
     std::size_t first = 0;
     for (std::size_t i = 0; i < found.size(); ++i)
@@ -291,13 +297,32 @@ TEST_CASE(
   rays.add({4.0f, 4.5f, 5.5f}, {1, 0, 0});
   rays.add({-2.0f, 4.5f, 5.5f}, {1, 0, 0}, 4.5f);
   rays.add({-2.0f, 4.5f, 5.5f}, {1, 0, 0}, 5.0f);
-  const float way[] = {0, 0, 0, -1, -1, 5};
-  for (const char* method : {"hierarchy", "stacks", "plain"}) {
-    const std::vector<Found> found = probed(gridOf(set), rays, method);
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      CAPTURE(method, i);
-      CHECK(found[i].t == way[i]);
-      CHECK(found[i].voxel == (way[i] < 0 ? glm::ivec3(-1) : glm::ivec3(3, 4, 5)));
+  const float way[] = {0, 0, 0, -1, -1, 5, 0};
+  rays.add({3.5f, 4.5f, 5.5f}, {0, 0, 1}, 0.0f);
+  // Also where voxels are a quarter of a metre, and begin elsewhere: in numbers that are exact.
+  for (const GridPlacement& placed : {GridPlacement{}, {glm::vec3(-4, 8, 2), 0.25f, {}}})
+    for (const char* method : {"hierarchy", "stacks", "plain"}) {
+      const std::vector<Found> found = probed(gridOf(set), rays, method, placed);
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        CAPTURE(method, i);
+        CHECK(found[i].t == way[i]);
+        CHECK(found[i].voxel == (way[i] < 0 ? glm::ivec3(-1) : glm::ivec3(3, 4, 5)));
+      }
     }
+}
+
+TEST_CASE("of every step one texel is read, and of one that begins in a set voxel the first alone") {
+  VoxelSet set({8, 8, 8});
+  set.insert({6, 4, 5});
+  Rays rays;
+  rays.add({1.5f, 4.5f, 5.5f}, {1, 0, 0});
+  rays.add({6.5f, 4.5f, 5.5f}, {1, 0, 0});
+  rays.add({-3.0f, -4.0f, 5.5f}, {-1, 0, 0});
+  const std::vector<Found> plain = probed(gridOf(set), rays, "plain", {}),
+                           stacks = probed(gridOf(set), rays, "stacks", {});
+  const float read[] = {6, 1, 0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(plain[i].fetches == read[i]);
+    CHECK(stacks[i].fetches == read[i]);
   }
 }
