@@ -153,3 +153,71 @@ TEST_CASE("the printed walk misses voxels and finds others, as its card says") {
   CHECK(missed < 0.02 * all);
   CHECK(other < 0.1 * all);
 }
+
+namespace {
+
+/// The floor beside the hidden sender: mean light in red, its standard error over the pixels' noise, and
+/// pixels.
+struct Patch {
+  double mean = 0.0, error = 0.0;
+  int pixels = 0;
+};
+Patch litFloor(const Seen& seen, const ImageBuffer& image) {
+  const std::vector<float> places = seen.gbuffer.position->downloadFloats(0),
+                           normals = seen.gbuffer.normal->downloadFloats(0);
+  const glm::vec3 low = glm::vec3(glm::dvec3(0.2, -0.01, -1.1) - seen.snapshot.origin),
+                  high = glm::vec3(glm::dvec3(0.8, 0.01, -0.5) - seen.snapshot.origin);
+  Patch patch;
+  double squares = 0.0;
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) {
+      const auto i = static_cast<std::size_t>(4 * (y * image.width() + x));
+      const glm::vec3 place(places[i], places[i + 1], places[i + 2]);
+      const bool inside = places[i + 3] > 0.0f && normals[i + 1] > 0.9f &&
+                          glm::all(glm::greaterThan(place, low)) && glm::all(glm::lessThan(place, high));
+      if (!inside) continue;
+      ++patch.pixels;
+      patch.mean += image.at(x, y, 0);
+      squares += image.at(x, y, 0) * image.at(x, y, 0);
+    }
+  patch.mean /= patch.pixels;
+  // From the differences between the pixels, light's own among them: an upper bound of the noise.
+  patch.error = std::sqrt((squares / patch.pixels - patch.mean * patch.mean) / patch.pixels);
+  return patch;
+}
+
+}  // namespace
+
+TEST_CASE("a sender that the camera does not see lights the floor, as from any other view") {
+  const auto ofView = [](double degrees, ImageBuffer* reference) {
+    Seen seen("hidden_sender", 8, 64);
+    Camera& camera = seen.scene.cameras.front();
+    const glm::dvec3 way = camera.target - camera.eye;
+    const double turn = degrees * kPi / 180.0;
+    camera.target = camera.eye + glm::dvec3(std::cos(turn) * way.x + std::sin(turn) * way.z, way.y,
+                                            std::cos(turn) * way.z - std::sin(turn) * way.x);
+    seen.snapshot = snapshotOf(seen.scene, 0.0);
+    PassHarness view(device(), techniques(), "direct_lighting", "gbuffer", seen.scene, seen.snapshot);
+    view.run();
+    seen.gbuffer = view.output<GBuffer>("gbuffer");
+    // Nothing red is in the picture.
+    const std::vector<float> albedo = seen.gbuffer.diffuse->downloadFloats(0);
+    for (std::size_t i = 0; i < albedo.size(); i += 4) REQUIRE(albedo[i] == albedo[i + 1]);
+    const Pipeline text = pipeline("near_field_voxels");
+    RenderOptions options;
+    options.parameters = text.settings({"rays=256", "resolution=128"});
+    const ImageBuffer image = renderOnce(seen.scene, text, options).outputs.at("indirect_diffuse");
+    if (reference != nullptr)
+      *reference = renderReference(seen.scene, quietly(256, 1)).layers.at("one_bounce_diffuse");
+    return std::pair(litFloor(seen, image), reference != nullptr ? litFloor(seen, *reference) : Patch{});
+  };
+  ImageBuffer reference;
+  const auto [ahead, truth] = ofView(0.0, &reference);
+  const Patch turned = ofView(10.0, nullptr).first;
+  REQUIRE(ahead.pixels > 30);
+  REQUIRE(turned.pixels > 30);
+  REQUIRE(truth.mean > 0.01);
+  CAPTURE(ahead.mean, truth.mean, turned.mean, ahead.error, turned.error);
+  CHECK(ahead.mean == Approx(truth.mean).epsilon(0.15));
+  CHECK(std::abs(turned.mean - ahead.mean) < std::hypot(ahead.error, turned.error));
+}
