@@ -215,12 +215,13 @@ BitHit firstBit(vec3 origin, vec3 direction, float reach, ivec3 voxels) {
     ivec2 size = max(voxels.xy >> level, 1), texel = min(voxel.xy >> level, size - 1);
     ivec2 low = texel << level, high = mix((texel + 1) << level, voxels.xy, equal(texel, size - 1));
     // Where the ray leaves the block, over its sides.
-    float leaving[2] = float[2](kNever, kNever);
-    for (int i = 0; i < 2; ++i)
-      if (bitMoves[i]) leaving[i] = crossingAt(i, bitDirection[i] > 0.0 ? high[i] : low[i]);
-    int axis = leaving[0] <= leaving[1] ? 0 : 1;
-    bool leaves = !isinf(leaving[axis]);
-    int next = !bitMoves.z ? voxel.z : leaves ? cellBehind(2, leaving[axis], axis) : bitDirection.z > 0.0 ? voxels.z : -1;
+    ivec2 planes = mix(low, high, greaterThan(bitDirection.xy, vec2(0.0)));
+    float overX = bitMoves.x ? crossingAt(0, planes.x) : kNever, overY = bitMoves.y ? crossingAt(1, planes.y) : kNever;
+    bool alongX = overX <= overY;
+    float leaving = alongX ? overX : overY;
+    int axis = alongX ? 0 : 1;
+    bool leaves = !isinf(leaving);
+    int next = !bitMoves.z ? voxel.z : leaves ? cellBehind(2, leaving, axis) : bitDirection.z > 0.0 ? voxels.z : -1;
     int found = firstOfRun(texel, level, voxel.z, clamp(next, 0, voxels.z - 1), hit.fetches);
     if (found >= 0) {
       if (level > 0) {
@@ -232,11 +233,11 @@ BitHit firstBit(vec3 origin, vec3 direction, float reach, ivec3 voxels) {
       return BitHit(ivec3(voxel.xy, found), t, true, hit.fetches);
     }
     if (!leaves || next < 0 || next >= voxels.z) break;
-    t = leaving[axis];
-    voxel[1 - axis] = cellBehind(1 - axis, t, axis);
-    voxel[axis] = bitDirection[axis] > 0.0 ? high[axis] : low[axis] - 1;
-    voxel.z = next;
-    if (voxel[axis] < 0 || voxel[axis] >= voxels[axis]) break;
+    t = leaving;
+    int other = cellBehind(1 - axis, t, axis);
+    ivec2 behind = mix(low - 1, high, greaterThan(bitDirection.xy, vec2(0.0)));
+    voxel = alongX ? ivec3(behind.x, other, next) : ivec3(other, behind.y, next);
+    if (any(lessThan(voxel.xy, ivec2(0))) || any(greaterThanEqual(voxel.xy, voxels.xy))) break;
     // Within the next level's block there was something before.
     if (any(notEqual(voxel.xy >> (level + 1), texel >> 1))) level = min(level + 1, coarsest);
   }
