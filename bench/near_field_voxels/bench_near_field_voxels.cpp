@@ -17,6 +17,7 @@
 #include "lumivox/measure/metrics.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/plugin/loader.h"
+#include "lumivox/scene/builder.h"
 
 namespace {
 
@@ -150,6 +151,53 @@ void compareFrames(gpu::Device& device, TechniqueSet& techniques, const Scene& s
   fmt::print("a frame that accumulates over a single one: {}\n", inWords(spreadOf(ratios)));
 }
 
+/// A row of blocks of which the first fifth turns, or all of them.
+Scene blocksThatTurn(bool all) {
+  SceneBuilder builder;
+  const int grey = builder.lambert(0.5f);
+  constexpr int kSide = 10, kBlocks = kSide * kSide * kSide;
+  for (int i = 0; i < kBlocks; ++i) {
+    const glm::vec3 low(i / (kSide * kSide), i / kSide % kSide, i % kSide);
+    const std::size_t first = builder.scene.objects.size();
+    builder.box(low + 0.2f, low + 0.8f, grey, false);
+    if (all || i < kBlocks / 5)
+      for (std::size_t o = first; o < builder.scene.objects.size(); ++o)
+        builder.scene.objects[o].motion = RigidMotion{{0, 1, 0.2}, 0.7, glm::dvec3(low) + 0.5, {0, 0, 0}};
+  }
+  builder.look({5, 5, 25}, {5, 5, 5}, {0, 1, 0}, 0.6, 16, 16);
+  return builder.scene;
+}
+
+/// Bits with their hierarchy in a frame in which a fifth of the triangles move, over those of the same list
+/// of which nothing is known to stand still.
+void compareMotion(gpu::Device& device, TechniqueSet& techniques, int repeats, int resolution) {
+  const Scene part = blocksThatTurn(false), all = blocksThatTurn(true);
+  std::string text = kBegin;
+  text +=
+      "  pass gather near_field_voxels.gather { gbuffer gbuffer  bits bits.bits  rays 1 }\n  output open gather.occlusion\n}\n";
+  const Pipeline pipeline = Pipeline::parse(text, "bench.pipeline");
+  RenderOptions options;
+  options.parameters = pipeline.settings({fmt::format("resolution={}", resolution)});
+  PipelineExecutor followed(device, techniques, part, pipeline, options),
+      anew(device, techniques, all, pipeline, options);
+  const auto bitsMs = [&](PipelineExecutor& executor, int frame) {
+    executor.render(0.04 * frame, frame, PipelineExecutor::Images::no, PipelineExecutor::Timing::passes);
+    double ms = 0.0;
+    for (const std::vector<PassRecord>& one : executor.timedPasses())
+      for (const PassRecord& pass : one)
+        if (pass.name == "bits") ms = pass.deviceMs;
+    return ms;
+  };
+  std::vector<double> ratios;
+  for (int frame = 0; frame < repeats + 2; ++frame) {
+    const double incremental = bitsMs(followed, frame), full = bitsMs(anew, frame);
+    if (frame >= 2) ratios.push_back(incremental / full);
+  }
+  fmt::print(
+      "bits and hierarchy of a frame in which a fifth of the triangles move, over all of them anew, {} voxels: {}\n",
+      resolution, inWords(spreadOf(ratios)));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -171,6 +219,7 @@ int main(int argc, char** argv) {
     fmt::print("{0} x {0} pixels, {1} voxels:\n", side, voxels);
     comparePixels(device, techniques, cornell, "cornell", side, repeats, voxels);
     comparePixels(device, techniques, arcade, "arcade", side, repeats, voxels);
+    compareMotion(device, techniques, 3 * repeats, quick ? 16 : 128);
     compareFrames(device, techniques, cornell, size, repeats, voxels);
   } catch (const std::exception& error) {
     fmt::print(stderr, "bench_near_field_voxels: {}\n", error.what());

@@ -109,7 +109,10 @@ class AveragePass : public Pass {
 
   void run(PassContext& frame) override {
     if (attributes.wanted() || opacity.wanted() || judgesSums()) sumAndResolve(frame);
-    if (bits.wanted() && !judgesSums())
+    if (!bits.wanted() || judgesSums()) return;
+    if (fragments->still && fragments->moving)
+      bits = followedGridOf(frame, *fragments, masks);
+    else
       bits = binaryGridOf(frame, fragments->grid, {bitsOf(frame, *fragments, "bits", masks), nullptr});
   }
 };

@@ -28,6 +28,11 @@ struct BitWords {
 /// The stacks, with their hierarchy, of all of these voxels.
 BinaryGrid binaryGridOf(PassContext& frame, const GridPlacement& grid, const BitWords& words);
 
+/// The stacks of a list that tells what moves from what stands still (VoxelFragments::still): the latter is
+/// kept, and only columns in which something moves or moved are made anew, where they lie. The same bits as
+/// without.
+BinaryGrid followedGridOf(PassContext& frame, const VoxelFragments& fragments, Masks masks);
+
 /// The bits of static geometry are kept, and in every frame those of what moves are added to a copy of
 /// them.
 class BitVoxelizer : public GridPass {
