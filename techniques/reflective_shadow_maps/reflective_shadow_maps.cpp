@@ -6,6 +6,7 @@
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/light_views.h"
+#include "lumivox/toolkit/loop_limit.h"
 #include "reflective_shadow_maps_shaders.h"
 
 namespace lumivox::reflective_shadow_maps {
@@ -13,8 +14,6 @@ namespace {
 
 using namespace shaders::reflective_shadow_maps;
 
-// Turns of all loops of an invocation together: software drivers cut them off, without a word, at 65535.
-constexpr int kLoopLimit = 60000;
 constexpr std::uint32_t kFan = 16;  // kFan in sum_tree.glsl
 
 class RenderPass : public LightViewPass {
@@ -115,11 +114,11 @@ class GatherPass : public Pass {
     };
     if (method != Method::all) return add();
     diffuse->texture->clear(glm::vec4(0.0f));
-    const int rows = parameters.width * map->layerCount, atOnce = kLoopLimit / (parameters.width + 1);
-    for (parameters.firstRow = 0; parameters.firstRow < rows; parameters.firstRow += atOnce) {
-      parameters.rows = std::min(atOnce, rows - parameters.firstRow);
+    forEachPortion(parameters.width * map->layerCount, parameters.width, [&](int first, int count) {
+      parameters.firstRow = first;
+      parameters.rows = count;
       add();
-    }
+    });
   }
 
   /// Texels in proportion to their flux, as SurfaceLight, by a tree of sums (sum_tree.glsl).

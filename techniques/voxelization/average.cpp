@@ -12,6 +12,9 @@ namespace {
 
 class AveragePass : public Pass {
   In<VoxelFragments> fragments{this, "fragments", "surface samples"};
+  Param<Masks> masks{
+      this, "masks", Masks::any,
+      "which voxels with holes have a bit: all; those that are covered by half; or by chance, as often as they are covered, so that a lattice keeps its mean opacity"};
   Out<AttributeGrid> attributes{this, "attributes",
                                 "albedo, normal and emission, averaged with the coverage as weight"};
   Out<OccupancyGrid> opacity{this, "opacity", "mean or sum of the coverages, as the list says"};
@@ -75,7 +78,8 @@ class AveragePass : public Pass {
                       {average_brightest::brightest(brightest), average_brightest::slots(slots.numbers)},
                       *fragments);
     }
-    if (opacity.wanted()) covered.opacity = frame.emptyVolume(grid.resolution, gpu::Format::r8, "opacity");
+    if (opacity.wanted() || judgesSums())
+      covered.opacity = frame.emptyVolume(grid.resolution, gpu::Format::r8, "opacity");
     const shader::BindingSet sums{
         averaging({grid.resolution, fragments->coverage == VoxelFragments::Coverage::sum}),
         fragmentsOfSlot(slots.fragments),
@@ -86,7 +90,7 @@ class AveragePass : public Pass {
         average_add::brightest(brightest)};
     forEachFragment(frame, frame.program(average_add::Variant{withAttributes, withEmission}),
                     {sums, average_add::slots(slots.numbers)}, *fragments);
-    const average_resolve::Variant resolving{withAttributes, withEmission, opacity.wanted()};
+    const average_resolve::Variant resolving{withAttributes, withEmission, covered.opacity != nullptr};
     frame.dispatchIndirect(
         frame.program(resolving),
         {sums, average_resolve::slotCount(slots.count), average_resolve::slotVoxels(slots.voxels),
@@ -95,12 +99,21 @@ class AveragePass : public Pass {
         *slots.count, kGroupsOffset);
     if (withAttributes) attributes = averages;
     if (opacity.wanted()) opacity = covered;
+    if (judgesSums()) bits = binaryGridOf(frame, grid, {bitsOf(frame, covered, "bits", masks), nullptr});
+  }
+
+  /// Whether bits depend on what the fragments of a voxel cover together.
+  bool judgesSums() const {
+    return bits.wanted() && masks != Masks::any && fragments->coverage == VoxelFragments::Coverage::sum;
   }
 
   void run(PassContext& frame) override {
-    if (attributes.wanted() || opacity.wanted()) sumAndResolve(frame);
-    if (bits.wanted())
-      bits = binaryGridOf(frame, fragments->grid, {bitsOf(frame, *fragments, "bits"), nullptr});
+    if (attributes.wanted() || opacity.wanted() || judgesSums()) sumAndResolve(frame);
+    if (!bits.wanted() || judgesSums()) return;
+    if (fragments->still && fragments->moving)
+      bits = followedGridOf(frame, *fragments, masks);
+    else
+      bits = binaryGridOf(frame, fragments->grid, {bitsOf(frame, *fragments, "bits", masks), nullptr});
   }
 };
 

@@ -23,9 +23,21 @@ gpu::TextureRef bitWords(PassContext& frame, const GridPlacement& grid, const ch
   return frame.emptyVolume(wordCount(grid), gpu::Format::r32ui, label);
 }
 
-gpu::TextureRef bitsOf(PassContext& frame, const VoxelFragments& fragments, const char* label) {
+gpu::TextureRef bitsOf(PassContext& frame, const VoxelFragments& fragments, const char* label, Masks masks) {
   gpu::TextureRef words = bitWords(frame, fragments.grid, label);
-  forEachFragment(frame, frame.program(bits_mark::kProgram), {bits_mark::words(words)}, fragments);
+  forEachFragment(frame, frame.program(bits_mark::Variant{}),
+                  {bits_mark::words(words), bits_mark::maskRule({static_cast<int>(masks), seedWords(frame)})},
+                  fragments);
+  return words;
+}
+
+gpu::TextureRef bitsOf(PassContext& frame, const OccupancyGrid& opacity, const char* label, Masks masks) {
+  const glm::ivec3 count = wordCount(opacity.grid);
+  gpu::TextureRef words = frame.volume(count, gpu::Format::r32ui, label);
+  frame.dispatch(frame.program(bits_cover::kProgram),
+                 {bits_cover::words(words), bits_cover::opacity(opacity.opacity, gpu::Sampling::nearest),
+                  bits_cover::maskRule({static_cast<int>(masks), seedWords(frame)})},
+                 count);
   return words;
 }
 
@@ -53,13 +65,81 @@ BinaryGrid binaryGridOf(PassContext& frame, const GridPlacement& grid, const Bit
   result.grid = grid;
   result.stacks = frame.texture(
       {gpu::TextureKind::d2Array, gpu::Format::rgba32ui, width, height, layers, levels}, "voxel stacks");
-  frame.dispatch(frame.program(bits_stack::Variant{words.surface != nullptr}),
+  frame.dispatch(frame.program(bits_stack::Variant{.surface = words.surface != nullptr}),
                  {words.bindings(), bits_stack::stacks(result.stacks)}, {width, height, layers});
   for (int level = 1; level < levels; ++level)
-    frame.dispatch(frame.program(bits_mip::kProgram),
+    frame.dispatch(frame.program(bits_mip::Variant{}),
                    {bits_mip::finer(result.stacks, level - 1), bits_mip::coarser(result.stacks, level)},
                    {std::max(width >> level, 1), std::max(height >> level, 1), layers});
   return result;
+}
+
+namespace {
+
+/// What is kept of a list while its fragments that stand still are the same.
+struct FollowedBits {
+  gpu::TextureRef still, words;  ///< of what stands still, and of all
+  BinaryGrid grid;
+  /// d2 r32ui with the levels of the stacks: 1 where something moves, 2 where something moved the frame
+  /// before.
+  gpu::TextureRef touched;
+};
+struct FollowedKey {
+  gpu::BufferRef still;
+  GridPlacement grid;
+  Masks masks;
+  bool operator==(const FollowedKey&) const = default;
+};
+
+FollowedBits stillBitsOf(PassContext& frame, const VoxelFragments& fragments, Masks masks) {
+  VoxelFragments still = fragments;
+  still.count = fragments.still;
+  FollowedBits bits;
+  bits.still = bitsOf(frame, still, "bits of what stands still", masks);
+  const glm::ivec3 count = wordCount(fragments.grid);
+  bits.words = frame.volume(count, gpu::Format::r32ui, "bits");
+  frame.dispatch(frame.program(bits_copy::kProgram),
+                 {bits_copy::source(bits.still), bits_copy::target(bits.words)}, count);
+  bits.grid = binaryGridOf(frame, fragments.grid, {bits.words, nullptr});
+  bits.touched = frame.texture({.format = gpu::Format::r32ui,
+                                .width = count.x,
+                                .height = count.y,
+                                .levels = bits.grid.stacks->description().levels},
+                               "columns with something that moves");
+  bits.touched->clear(glm::vec4(0.0f));
+  return bits;
+}
+
+}  // namespace
+
+BinaryGrid followedGridOf(PassContext& frame, const VoxelFragments& fragments, Masks masks) {
+  const FollowedBits& bits =
+      frame.kept("bits of what stands still", FollowedKey{fragments.still, fragments.grid, masks},
+                 [&] { return stillBitsOf(frame, fragments, masks); });
+  const gpu::TextureDescription& size = bits.grid.stacks->description();
+  const glm::ivec3 columns(size.width, size.height, 1);
+  frame.dispatch(
+      frame.program(bits_restore::kProgram),
+      {bits_restore::still(bits.still), bits_restore::words(bits.words), bits_restore::touched(bits.touched)},
+      columns);
+  VoxelFragments moving = fragments;
+  moving.count = fragments.moving;
+  forEachFragment(frame, frame.program(bits_mark::Variant{.moving = 1}),
+                  {bits_mark::words(bits.words), bits_mark::touched(bits.touched),
+                   bits_mark::stillFragments(fragments.still),
+                   bits_mark::maskRule({static_cast<int>(masks), seedWords(frame)})},
+                  moving);
+  frame.dispatch(frame.program(bits_stack::Variant{.touched = 1}),
+                 {bits_stack::words(bits.words), bits_stack::stacks(bits.grid.stacks),
+                  bits_stack::touched(bits.touched)},
+                 {size.width, size.height, size.depth});
+  for (int level = 1; level < size.levels; ++level)
+    frame.dispatch(
+        frame.program(bits_mip::Variant{.touched = 1}),
+        {bits_mip::finer(bits.grid.stacks, level - 1), bits_mip::coarser(bits.grid.stacks, level),
+         bits_mip::touchedFiner(bits.touched, level - 1), bits_mip::touchedCoarser(bits.touched, level)},
+        {std::max(size.width >> level, 1), std::max(size.height >> level, 1), size.depth});
+  return bits.grid;
 }
 
 VoxelFragments BitVoxelizer::fragmentsOf(PassContext& frame, const GridPlacement& grid,

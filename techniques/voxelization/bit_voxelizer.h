@@ -9,8 +9,15 @@ namespace lumivox::voxelization {
 /// is voxel (i, j, 32 w + b). d3 r32ui.
 gpu::TextureRef bitWords(PassContext& frame, const GridPlacement& grid, const char* label);
 
-/// The bits of the voxels of a list.
-gpu::TextureRef bitsOf(PassContext& frame, const VoxelFragments& fragments, const char* label);
+/// Whether a voxel with holes is set: always; from half its cover on; or with the probability of its cover.
+/// In the order of masks.glsl.
+enum class Masks { any, half, random };
+
+/// The bits of the voxels of a list. Fragments are judged one by one, also in a list whose coverages add up.
+gpu::TextureRef bitsOf(PassContext& frame, const VoxelFragments& fragments, const char* label,
+                       Masks masks = Masks::any);
+/// By what the fragments of a voxel cover together; voxels of no cover are not set.
+gpu::TextureRef bitsOf(PassContext& frame, const OccupancyGrid& opacity, const char* label, Masks masks);
 
 /// Words of voxels and, where there are surface samples beside them, of theirs (null: none); bits.glsl.
 struct BitWords {
@@ -20,6 +27,11 @@ struct BitWords {
 
 /// The stacks, with their hierarchy, of all of these voxels.
 BinaryGrid binaryGridOf(PassContext& frame, const GridPlacement& grid, const BitWords& words);
+
+/// The stacks of a list that tells what moves from what stands still (VoxelFragments::still): the latter is
+/// kept, and only columns in which something moves or moved are made anew, where they lie. The same bits as
+/// without.
+BinaryGrid followedGridOf(PassContext& frame, const VoxelFragments& fragments, Masks masks);
 
 /// The bits of static geometry are kept, and in every frame those of what moves are added to a copy of
 /// them.

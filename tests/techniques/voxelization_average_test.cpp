@@ -368,3 +368,60 @@ TEST_CASE("the grid of cone tracing takes coverages by the rule of the list") {
     CHECK(voxel.x == Approx(1.2 * opacity).epsilon(2e-3));
   }
 }
+
+namespace {
+
+std::set<Cell> bitsOf(const std::vector<FragmentData>& fragments, VoxelFragments::Coverage rule,
+                      const char* masks, std::uint64_t seed = 1) {
+  SceneBuilder builder;
+  PassHarness harness(device(), techniques(), "voxelization", "average", builder.scene,
+                      snapshotOf(builder.scene, 0.0));
+  harness.setInput("fragments", listOf(fragments, rule));
+  harness.setParameter("masks", std::string(masks));
+  harness.run(seed);
+  return cellsOf(harness.output<BinaryGrid>("bits"));
+}
+
+}  // namespace
+
+TEST_CASE("voxels with holes are set always, from half their cover on, or by chance") {
+  const std::vector<FragmentData> fragments{
+      fragment({1, 1, 1}, glm::vec3(0.5f), 0.4f, kUp), fragment({2, 1, 1}, glm::vec3(0.5f), 0.5f, kUp),
+      fragment({3, 1, 1}, glm::vec3(0.5f), 1.0f, kUp), fragment({4, 1, 1}, glm::vec3(0.5f), 0.0f, kUp),
+      fragment({5, 1, 1}, glm::vec3(0.5f), 0.3f, kUp), fragment({5, 1, 1}, glm::vec3(0.5f), 0.3f, kUp)};
+  using Coverage = VoxelFragments::Coverage;
+  const std::set<Cell> all{{1, 1, 1}, {2, 1, 1}, {3, 1, 1}, {4, 1, 1}, {5, 1, 1}};
+  CHECK(bitsOf(fragments, Coverage::mean, "any") == all);
+  CHECK(bitsOf(fragments, Coverage::sum, "any") == all);
+  // Of a list whose fragments are judged one by one the two in the last voxel cover 0.3; else 0.6.
+  CHECK(bitsOf(fragments, Coverage::mean, "half") == std::set<Cell>{{2, 1, 1}, {3, 1, 1}});
+  CHECK(bitsOf(fragments, Coverage::sum, "half") == std::set<Cell>{{2, 1, 1}, {3, 1, 1}, {5, 1, 1}});
+  for (std::uint64_t seed = 1; seed < 20; ++seed)
+    for (const Coverage rule : {Coverage::mean, Coverage::sum}) {
+      const std::set<Cell> chosen = bitsOf(fragments, rule, "random", seed);
+      CHECK(chosen.contains({3, 1, 1}));
+      CHECK_FALSE(chosen.contains({4, 1, 1}));
+    }
+}
+
+TEST_CASE("by chance as many voxels of a lattice are set as it covers, others with another seed") {
+  for (const float cover : {0.25f, 0.7f})
+    for (const auto rule : {VoxelFragments::Coverage::mean, VoxelFragments::Coverage::sum}) {
+      std::vector<FragmentData> lattice;
+      for (int i = 0; i < kSide * (kSide - 1) * (kSide - 2); ++i)
+        lattice.push_back(fragment({i % kSide, i / kSide % (kSide - 1), i / kSide / (kSide - 1)},
+                                   glm::vec3(0.5f), cover, kUp));
+      double set = 0.0;
+      std::set<Cell> before;
+      for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const std::set<Cell> chosen = bitsOf(lattice, rule, "random", seed);
+        set += static_cast<double>(chosen.size()) / static_cast<double>(lattice.size()) / 10.0;
+        CHECK(chosen != before);
+        before = chosen;
+        std::reverse(lattice.begin(), lattice.end());
+        CHECK(bitsOf(lattice, rule, "random", seed) == chosen);  // whatever their order
+      }
+      // 3360 voxels: four standard deviations are 0.03; of the sums coverage has eight bits.
+      CHECK(set == Approx(cover).margin(0.035));
+    }
+}

@@ -252,3 +252,51 @@ TEST_CASE("a still object that is moved by hand is voxelized where it stands") {
   Run fresh(scene, "resolution 16", options);
   checkSame(moved, fresh.now(fresh.executor.render(snapshot, 0)));
 }
+
+TEST_CASE(
+    "bits are made anew only where something moves or moved, and are those of a fresh run at every level") {
+  const Scene scene = movingRoom({0.3, 0.2, 0.1});
+  const auto bitsOf = [](const PipelineExecutor& executor) {
+    return static_cast<const Out<BinaryGrid>*>(executor.output("bits", "bits"))->value();
+  };
+  const auto texelsOf = [](const BinaryGrid& grid) {
+    std::vector<std::vector<std::byte>> levels;
+    for (int level = 0; level < grid.stacks->description().levels; ++level)
+      levels.push_back(grid.stacks->download(level));
+    return levels;
+  };
+  for (const char* masks : {"any", "random"}) {
+    const Pipeline text = Pipeline::parse(
+        std::string("pipeline \"bits\" {\n  pass gbuffer direct_lighting.gbuffer { }\n"
+                    "  pass voxels voxelization.conservative { resolution 37 }\n"
+                    "  pass bits voxelization.average { fragments voxels.fragments  masks ") +
+            masks +
+            " }\n  pass gather near_field_voxels.gather { gbuffer gbuffer  bits bits.bits  rays 1 }\n"
+            "  output open gather.occlusion\n}\n",
+        "made_by_a_test.pipeline");
+    const auto start = [&] {
+      auto executor = std::make_unique<PipelineExecutor>(device(), techniques(), scene, text, small());
+      executor->keepOutput("bits", "bits");
+      return executor;
+    };
+    const auto sequence = start();
+    const gpu::Texture* kept = nullptr;
+    std::vector<std::vector<std::byte>> before;
+    int frame = 0, changed = 0;
+    for (const double time : {0.0, 0.3, 0.35, 1.0, 0.0, 0.0, 0.6}) {
+      sequence->render(time, frame++);
+      const auto fresh = start();
+      fresh->render(time);
+      const BinaryGrid grid = bitsOf(*sequence);
+      const auto texels = texelsOf(grid);
+      CAPTURE(masks, frame);
+      CHECK(texels == texelsOf(bitsOf(*fresh)));
+      // The same texture from the second frame on: nothing of what stands still was made again.
+      if (frame > 2) CHECK(grid.stacks.get() == kept);
+      kept = grid.stacks.get();
+      changed += texels != before;
+      before = texels;
+    }
+    CHECK(changed >= 5);
+  }
+}

@@ -257,6 +257,28 @@ TEST_CASE("a scene pays for what it uses and nothing else: reflective shadow map
              });
 }
 
+TEST_CASE("a scene pays for what it uses and nothing else: near-field voxels") {
+  checkCosts(
+      "near_field_voxels",
+      {
+          {"cut-out mask",
+           {"conservative MASKS=1", "gbuffer MASKS=1", "render MASKS=1", "shadow_map MASKS=1"}},
+          {"emission",
+           {"bytes gbuffer", "bytes lights", "bytes shadow", "gbuffer EMISSION=1", "shade EMISSION=1"}},
+          {"glossy material", {"bytes gbuffer", "gbuffer GLOSSY=1", "shade GLOSSY=1"}},
+          {"moving camera",
+           {"again compose", "again direct", "again gather", "again gbuffer", "again reflect"}},
+          {"moving object",
+           {"again bits", "again compose", "again direct", "again gather", "again gbuffer", "again lights",
+            "again reflect", "again shadow", "again voxels", "bytes voxels", "program count_behind",
+            "bits_mark MOVING=1", "bits_mip TOUCHED=1", "bits_stack TOUCHED=1", "bytes bits",
+            "program bits_copy", "program bits_restore"}},
+          {"spot", {"bytes lights", "bytes shadow"}},
+          {"sun", {"bytes lights", "bytes shadow"}},
+          {"texture", {"conservative TEXTURES=1", "gbuffer TEXTURES=1", "render TEXTURES=1"}},
+      });
+}
+
 TEST_CASE("a scene pays for what it uses and nothing else: smoke") {
   checkCosts("volumetric_smoke",
              {

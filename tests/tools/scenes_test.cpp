@@ -41,8 +41,8 @@ std::vector<fs::path> committedScenes() {
 }
 
 /// Scenes whose models are committed; all others need the asset path.
-const std::set<std::string> kOwnScenes = {"cornell",  "cornell_glossy", "arcade",
-                                          "corridor", "furnace",        "spinning_box"};
+const std::set<std::string> kOwnScenes = {"cornell", "cornell_glossy", "arcade",       "corridor",
+                                          "furnace", "spinning_box",   "hidden_sender"};
 bool isOwn(const fs::path& scene) {
   return kOwnScenes.count(scene.stem().string()) != 0 || scene.parent_path().filename() == "stress" ||
          scene.parent_path().filename() == "untuned" || scene.parent_path().filename() == "examples";

@@ -7,6 +7,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "lumivox/base/low_discrepancy.h"
+#include "lumivox/measure/voxel_walk.h"
 #include "lumivox/measure/voxels.h"
 #include "measure/voxel_resolution.h"
 
@@ -18,23 +19,6 @@ struct Ray {
 };
 
 using Closers = RayCrossings::Closers;
-
-/// The part of a ray within the grid; empty when first >= last.
-std::pair<double, double> withinGrid(const Ray& ray, const glm::ivec3& resolution) {
-  double first = -1e300, last = 1e300;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double side = resolution[axis];
-    if (ray.direction[axis] == 0.0) {
-      if (ray.origin[axis] < 0.0 || ray.origin[axis] >= side) return {0.0, 0.0};
-      continue;
-    }
-    const double low = -ray.origin[axis] / ray.direction[axis],
-                 high = (side - ray.origin[axis]) / ray.direction[axis];
-    first = std::max(first, std::min(low, high));
-    last = std::min(last, std::max(low, high));
-  }
-  return {first, last};
-}
 
 /// A voxel that a ray meets: its part of the ray from `enter` to `leave`.
 struct MetVoxel {
@@ -66,38 +50,20 @@ void addCrossings(const std::vector<MetVoxel>& met, Closers& closers) {
   }
 }
 
-/// Amanatides & Woo 1987, "A fast voxel traversal algorithm for ray tracing".
 void walk(const Ray& ray, const VoxelReference& reference, std::vector<MetVoxel>& met, Closers& closers) {
   const VoxelSet& possible = reference.possible;
   met.clear();
-  const auto [first, last] = withinGrid(ray, possible.resolution());
-  if (!(first < last)) return;
-  const glm::ivec3 most = possible.resolution() - 1;
-  glm::ivec3 voxel, step(0);
-  glm::dvec3 next(1e300), stride(1e300);
-  const glm::dvec3 start = ray.origin + first * ray.direction;
-  for (int axis = 0; axis < 3; ++axis) {
-    voxel[axis] = std::clamp(static_cast<int>(std::floor(start[axis])), 0, most[axis]);
-    if (ray.direction[axis] == 0.0) continue;
-    step[axis] = ray.direction[axis] > 0.0 ? 1 : -1;
-    stride[axis] = 1.0 / std::abs(ray.direction[axis]);
-    next[axis] = (voxel[axis] + (step[axis] > 0 ? 1 : 0) - ray.origin[axis]) / ray.direction[axis];
-  }
-  double enter = first;
-  while (possible.inside(voxel)) {
-    const int axis = next.x <= next.y && next.x <= next.z ? 0 : next.y <= next.z ? 1 : 2;
-    const double leave = std::min(next[axis], last);
-    const std::uint64_t bit = possible.bitOf(voxel);
-    met.push_back({enter, leave, bit, possible.containsBit(bit), reference.certain.containsBit(bit)});
-    enter = leave;
-    voxel[axis] += step[axis];
-    next[axis] += stride[axis];
+  for (VoxelWalk<double> steps(ray.origin, ray.direction, possible.resolution()); steps.inside();
+       steps.advance()) {
+    const std::uint64_t bit = possible.bitOf(steps.voxel());
+    met.push_back(
+        {steps.enter(), steps.leave(), bit, possible.containsBit(bit), reference.certain.containsBit(bit)});
   }
   addCrossings(met, closers);
 }
 
 /// Evenly over the lines that meet the grid's bounding sphere: directions over the sphere, places over the
-/// disc across them.
+/// disc across them, from outside of the sphere on.
 Ray obliqueRay(int index, const glm::ivec3& resolution) {
   const auto [u, v, s, t] = r4Point(index);
   const double cosine = 1.0 - 2.0 * u, sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine)),
@@ -107,8 +73,11 @@ Ray obliqueRay(int index, const glm::ivec3& resolution) {
   const glm::dvec3 across = glm::normalize(glm::cross(direction, helper)),
                    other = glm::cross(direction, across);
   const glm::dvec3 side(resolution);
-  const double radius = 0.5 * glm::length(side) * std::sqrt(s), angle = glm::two_pi<double>() * t;
-  return {0.5 * side + radius * (std::cos(angle) * across + std::sin(angle) * other), direction};
+  const double sphere = 0.5 * glm::length(side), radius = sphere * std::sqrt(s),
+               angle = glm::two_pi<double>() * t;
+  return {
+      0.5 * side - 2.0 * sphere * direction + radius * (std::cos(angle) * across + std::sin(angle) * other),
+      direction};
 }
 
 template <class RayOf>

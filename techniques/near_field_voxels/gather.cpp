@@ -1,0 +1,262 @@
+// One bounce near the visible surfaces: Thiedemann et al. 2011, Sec. 5; thesis Gomes 2015, Sec. 3.2.3 and
+// 4.4.6. Bits say where a ray ends, reflective shadow maps how bright it is there.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "lumivox/base/error.h"
+#include "lumivox/toolkit/light_samples.h"
+#include "lumivox/toolkit/loop_limit.h"
+#include "near_field_voxels_shaders.h"
+#include "rays.h"
+
+namespace lumivox::near_field_voxels {
+
+namespace {
+
+namespace gather = shaders::near_field_voxels::gather;
+
+// In the order of their numbers in gather.comp.
+enum class HitPoint { middle, entry, centre, printed };
+enum class Rotation { hash, tile, none };
+
+constexpr float kLargestTolerance = 1000.0f;
+// Smallest cosine between a surface and the light: that of the map's areas, and the printed one.
+constexpr float kLeastCosine = 0.02f, kPrintedLeastCosine = 0.001f;
+
+std::string inWords(const GridPlacement& grid) {
+  return fmt::format("{} x {} x {} voxels of {:g} m from ({:g}, {:g}, {:g}) on", grid.resolution.x,
+                     grid.resolution.y, grid.resolution.z, grid.voxelSize, grid.low.x, grid.low.y,
+                     grid.low.z);
+}
+
+class GatherPass : public Pass {
+  enum class Sequence { r2, hammersley };
+  enum class OffsetUnit { plane, diagonal };
+  enum class Beyond { grid, radius };
+  enum class Radiance { map, voxels };
+  // In the order of their halvings.
+  enum class Pixels { full, half, quarter };
+
+  In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
+  In<BinaryGrid> bits{this, "bits", "where rays end: one bit a voxel"};
+  In<ReflectiveShadowMap> map{
+      this, "map", Presence::optional,
+      "what the lights see: the light where rays end; without it only the environment "
+      "shines",
+      Needs::anyLight};
+  In<RadianceGrid> voxels{this, "voxels", Presence::optional,
+                          "with 'radiance voxels': the light where rays end, of the grid of 'bits'"};
+  Param<int> rays{this, "rays", 32, within(1, 1 << 20), "per pixel, distributed as the cosine"};
+  Param<Pixels> pixelsOf{this, "pixels", Pixels::full,
+                         "which of them send rays: all, or one of 2 x 2 or of 4 x 4"};
+  RayMethod method{this};
+  Param<Sequence> sequence{this, "sequence", Sequence::r2,
+                           "of directions: the R2 sequence, which frames that accumulate go on with, or, as "
+                           "published, Hammersley's points"};
+  Param<Rotation> rotation{
+      this, "rotation", Rotation::hash,
+      "of the sequence: for each pixel by a hash; as published by a small tile of random numbers; or the same for all"};
+  Param<float> spread{this, "spread", 1.0f, within(0.0f, 1.0f),
+                      "largest sine of a ray's angle to the normal, squared: below 1 the lobe narrows"};
+  Param<float> offset{this, "offset", 1.0f, within(0.0f, 100.0f),
+                      "start of a ray along the geometric normal, in 'offset_unit'"};
+  Param<OffsetUnit> offsetUnit{
+      this, "offset_unit", OffsetUnit::plane,
+      "the distance beyond which no voxel lies that the surface's plane touches, and a sixteenth of a voxel; or, as published, the diagonal of a voxel"};
+  Param<float> start{this, "start", 0.0f, within(0.0f, 1000.0f),
+                     "of a ray along its direction, in voxels behind the offset"};
+  Param<float> radius{
+      this, "radius", 0.0f, within(0.0f, 1e9f), "m", "how far light comes from; 0: from all of the grid"};
+  Param<Beyond> beyond{
+      this, "beyond", Beyond::grid,
+      "what sees the environment: rays that leave the grid within the radius; or, as published, all that meet nothing within the radius"};
+  Param<float> occlusionDistance{
+      this,
+      "occlusion_distance",
+      0.0f,
+      within(0.0f, 1e9f),
+      "m",
+      "within which voxels occlude; 0: a tenth of the diagonal of the scene's bounds, as in the reference"};
+  Param<Radiance> radiance{this, "radiance", Radiance::map,
+                           "of what a ray meets: projected back into 'map', or of its voxel in 'voxels'"};
+  Param<HitPoint> hit{
+      this, "hit", HitPoint::middle,
+      "the point that is projected back: the middle of the ray's way through the voxel, where it enters it, the voxel's centre, or, as published, x and y where it enters and the centre in z"};
+  Param<int> taps{this, "taps", 1, within(1, 4), "texels of the map for each hit: 1, or 4 bilinearly"};
+  Param<float> tolerance{
+      this, "tolerance", 1.0f, within(0.0f, kLargestTolerance),
+      "factor on the distance of a texel's surface from the hit at which it still counts; the largest value: at any"};
+  Param<float> cap{
+      this, "cap", 4.0f, within(0.0f, 1000.0f),
+      "most that this distance may be, in diagonals of a voxel (Listing 4.49; Sec. 3.2.3 has no bound, as 0 here)"};
+  Param<bool> front{this, "front", true, "surfaces that look away from the receiver bring nothing"};
+  Param<bool> asPublished{
+      this, "as_published", false,
+      "Sec. 3.2.3 and Listings 4.45 to 4.49 with their slips: the estimator with one more 1 / pi, cosines to the light down to 0.001, and the printed choices of method, sequence, rotation, offset_unit, beyond and hit"};
+  Out<Image> arriving{this, "arriving", Contributes::nothing, Needs::anyLight,
+                      "E / pi at the pixels that send rays: mean radiance that arrives, W/(sr m^2)"};
+  Out<Image> occlusion{this, "occlusion", Contributes::nothing, Needs::triangles,
+                       "unoccluded share of their rays, in the first channel"};
+  Out<Image> fetches{this, "fetches", Contributes::nothing, Needs::nothing,
+                     "in r: texels of the stacks that the rays of a pixel read"};
+
+  Reads readsFrom() const override {
+    return Reads::camera | Reads::environment | Reads::geometry | Reads::history;
+  }
+  bool uses(const InBase& input) const override {
+    return (&input != &map || radiance == Radiance::map) &&
+           (&input != &voxels || radiance == Radiance::voxels);
+  }
+  std::string checkParameters() const override {
+    return taps == 1 || taps == 4 ? std::string() : fmt::format("'taps' is {}; expected 1 or 4", int(taps));
+  }
+
+  bool readsMap() const { return radiance == Radiance::map && map.present() && map->lightCount > 0; }
+
+  /// Error where what is connected does not belong together.
+  void checkInputs() const {
+    if (radiance == Radiance::voxels) {
+      if (!voxels.present())
+        throw Error(
+            "near_field_voxels.gather: 'radiance voxels' reads 'voxels'; expected it to be connected");
+      if (!(voxels->grid == bits->grid))
+        throw Error(fmt::format(
+            "near_field_voxels.gather: 'bits' have {}, and 'voxels' {}; expected one grid for both",
+            inWords(bits->grid), inWords(voxels->grid)));
+    }
+    if (!readsMap()) return;
+    const auto lights = map->lights->sizeBytes() / sizeof(LightSampleData),
+               views = map->views->sizeBytes() / sizeof(glm::mat4);
+    const auto layers = static_cast<std::uint64_t>(map->position->description().depth);
+    const auto wanted = static_cast<std::uint64_t>(map->layerCount);
+    if (lights < static_cast<std::uint64_t>(map->lightCount) || views < wanted || layers < wanted)
+      throw Error(fmt::format(
+          "near_field_voxels.gather: 'map' tells of {} lights in {} layers, and holds {} lights, {} views and {} layers; expected those of one reflective shadow map",
+          map->lightCount, map->layerCount, lights, views, layers));
+  }
+
+  float reachOf(PassContext& frame) const {
+    return occlusionDistance > 0.0f ? float(occlusionDistance)
+                                    : static_cast<float>(ambientOcclusionDistance(frame.snapshot().bounds));
+  }
+
+  gather::Rays parametersOf(PassContext& frame, int framesBefore) const {
+    const float voxel = bits->grid.voxelSize, never = -1.0f;
+    const bool light = arriving.wanted() || !occlusion.wanted();
+    return {.environment = frame.sceneDescription().environment,
+            .spread = spread,
+            .seed = seedWords(frame),
+            .every = every(),
+            .rays = rays,
+            .framesBefore = framesBefore,
+            .offset = offset,
+            .start = start,
+            .reach = !light          ? never
+                     : radius > 0.0f ? radius / voxel
+                                     : std::numeric_limits<float>::infinity(),
+            .occlusionReach = occlusion.wanted() ? reachOf(frame) / voxel : never,
+            .beyondRadius = asPublished || beyond == Beyond::radius,
+            .scale = asPublished ? std::numbers::inv_pi_v<float> : 1.0f};
+  }
+  int every() const { return 1 << static_cast<int>(static_cast<Pixels>(pixelsOf)); }
+
+  gather::Constants constantsOf() const {
+    const bool printed = asPublished;
+    const HitPoint point = printed ? HitPoint::printed : hit;
+    const Rotation turned = printed ? Rotation::tile : rotation;
+    return {.taps = taps,
+            .frontTest = front,
+            .hitPoint = static_cast<int>(point),
+            .rotation = static_cast<int>(turned),
+            .hammersley = printed || sequence == Sequence::hammersley,
+            .offsetByDiagonal = printed || offsetUnit == OffsetUnit::diagonal};
+  }
+
+  void run(PassContext& frame) override {
+    checkInputs();
+    const int apart = every();
+    const glm::ivec3 samples = (pixels(frame) + (apart - 1)) / glm::ivec3(apart, apart, 1);
+    const gpu::TextureDescription ofSamples{
+        .format = gpu::Format::rgba32f, .width = samples.x, .height = samples.y};
+    const History<gpu::TextureRef> light = arriving.wanted() ? frame.history(ofSamples, "arriving radiance")
+                                                             : History<gpu::TextureRef>{},
+                                   open = occlusion.wanted() ? frame.history(ofSamples, "unoccluded share")
+                                                             : History<gpu::TextureRef>{};
+    gpu::TextureRef counted;
+    if (fetches.wanted()) counted = frame.texture(ofSamples, "texels that rays read");
+    const bool goesOn = (!arriving.wanted() || light.previous) && (!occlusion.wanted() || open.previous);
+    gather::Rays parameters = parametersOf(frame, goesOn ? frame.accumulated() : 0);
+    const bool fromMap = arriving.wanted() && readsMap();
+    const gather::Variant variant{.arriving = arriving.wanted(),
+                                  .radiance = fromMap ? gather::Variant::radianceMap
+                                              : arriving.wanted() && radiance == Radiance::voxels
+                                                  ? gather::Variant::radianceVoxels
+                                                  : gather::Variant::radianceNone,
+                                  .occlusion = occlusion.wanted(),
+                                  .fetches = fetches.wanted(),
+                                  .bitRule = method.axis(asPublished)};
+    const shader::BoundProgram& program = frame.program(variant, constantsOf());
+    // Heeded only where there are frames before; something must be bound.
+    const gpu::TextureRef &earlierLight = light.previous ? light.previous : gbuffer->position,
+                          &earlierOpen = open.previous ? open.previous : gbuffer->position;
+    shader::BindingSet bound{GBufferBinding(*gbuffer),
+                             method.binding(frame, *bits, asPublished),
+                             gather::arrivingImage(light.current),
+                             gather::occlusionImage(open.current),
+                             gather::fetchImage(counted),
+                             gather::earlierArriving(earlierLight, gpu::Sampling::nearest),
+                             gather::earlierOcclusion(earlierOpen, gpu::Sampling::nearest)};
+    if (fromMap) bound.add(ReflectiveShadowMapBinding(*map));
+    if (voxels.present() && radiance == Radiance::voxels) {
+      bound.add(gather::radianceGrid(voxels->radiance, gpu::Sampling::nearest));
+      bound.add(gather::radiance({.radianceUnit = voxels->unit}));
+    }
+    dispatchAll(frame, program, bound, parameters, fromMap ? map->lightCount : 0, samples);
+    if (arriving.wanted()) arriving = Image{light.current};
+    if (occlusion.wanted()) occlusion = Image{open.current};
+    if (fetches.wanted()) fetches = Image{counted};
+  }
+
+  /// In as many dispatches as keep the loops within what drivers run: portions of the rays, and, where there
+  /// are very many, of the lights.
+  void dispatchAll(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bound,
+                   gather::Rays& parameters, int lights, glm::ivec3 samples) const {
+    const float diagonal = std::sqrt(3.0f) * bits->grid.voxelSize;
+    const std::int64_t ofRay = method.turns(*bits, asPublished), ofLight = 1 + 4;
+    // Half of the limit at most, so that a ray has room beside them.
+    const int lightsAtOnce = portionOf(lights, 2 * ofLight);
+    forEachPortion(rays, ofRay + lightsAtOnce * ofLight, [&](int firstRay, int raysAtOnce) {
+      for (int light = 0; light == 0 || light < lights; light += lightsAtOnce) {
+        const int count = std::min(lightsAtOnce, lights - light);
+        parameters.firstRay = firstRay;
+        parameters.raysAtOnce = raysAtOnce;
+        parameters.first = firstRay == 0 && light == 0;
+        parameters.last = firstRay + raysAtOnce == rays && light + count == lights;
+        parameters.addsRest = light == 0;
+        frame.dispatch(
+            program,
+            {bound, gather::rays(parameters),
+             gather::backProjection({.voxelDiagonal = diagonal,
+                                     .tolerance = tolerance < kLargestTolerance ? float(tolerance) : -1.0f,
+                                     .cap = cap > 0.0f ? cap * diagonal : -1.0f,
+                                     .leastCosine = asPublished ? kPrintedLeastCosine : kLeastCosine,
+                                     .firstLight = light,
+                                     .lightsAtOnce = count})},
+            samples);
+      }
+    });
+  }
+};
+
+}  // namespace
+
+void addGather(TechniqueRegistry& registry) {
+  registry.add<GatherPass>(
+      "gather",
+      "One bounce by rays through bits, bright as reflective shadow maps know (Thiedemann et al. 2011)");
+}
+
+}  // namespace lumivox::near_field_voxels

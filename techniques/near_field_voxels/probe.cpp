@@ -1,0 +1,42 @@
+// Rays that are given, for tests and measurements.
+#include "near_field_voxels_shaders.h"
+#include "rays.h"
+
+namespace lumivox::near_field_voxels {
+
+namespace {
+
+namespace probe = shaders::near_field_voxels::probe;
+
+class ProbePass : public Pass {
+  In<BinaryGrid> bits{this, "bits", "one bit a voxel"};
+  In<Image> origins{this, "origins",
+                    "start of a ray in world space, and in w how far it goes, m; below 0: none"};
+  In<Image> directions{this, "directions", "its direction, of unit length"};
+  RayMethod method{this};
+  Out<Image> hits{this, "hits", Contributes::nothing, Needs::nothing,
+                  "the voxel that a ray meets first, -1 where it meets none; in w the way to it, m"};
+  Out<Image> fetches{this, "fetches", Contributes::nothing, Needs::nothing,
+                     "in r: texels of the stacks that were read"};
+
+  void run(PassContext& frame) override {
+    const gpu::TextureDescription& rays = origins->texture->description();
+    const gpu::TextureDescription images{
+        .format = gpu::Format::rgba32f, .width = rays.width, .height = rays.height};
+    hits = Image{frame.texture(images, "voxels that rays meet")};
+    fetches = Image{frame.texture(images, "texels that rays read")};
+    frame.dispatch(frame.program(probe::Variant{.bitRule = method.axis()}),
+                   {method.binding(frame, *bits), probe::origins(origins->texture, gpu::Sampling::nearest),
+                    probe::directions(directions->texture, gpu::Sampling::nearest),
+                    probe::voxelImage(hits->texture), probe::fetchImage(fetches->texture)},
+                   {rays.width, rays.height, 1});
+  }
+};
+
+}  // namespace
+
+void addProbe(TechniqueRegistry& registry) {
+  registry.add<ProbePass>("probe", "Rays that are given through bits (thesis Gomes 2015, Sec. 3.2.2)");
+}
+
+}  // namespace lumivox::near_field_voxels

@@ -1,0 +1,283 @@
+// What gathering makes of many rays, many lights, several frames and some of the pixels; what it leaves out
+// and what it refuses.
+#include <array>
+
+#include "support/near_field.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+using namespace lumivox::test::near_field;
+
+namespace {
+
+VoxelSet clutter() {
+  VoxelSet set({40, 41, 130});
+  for (int i = 0; i < 900; ++i) set.insert({i * 7 % 40, (i * 13 + i / 40) % 41, (i * 29 + i / 7) % 130});
+  return set;
+}
+
+const glm::vec3 kPlace(20.3f, 20.6f, 64.4f);
+
+std::vector<float> everyFourth(const std::vector<float>& values) {
+  std::vector<float> result;
+  for (std::size_t i = 0; i < values.size(); i += 4) result.push_back(values[i]);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("thousands of rays, in portions of another size for each method, find the same") {
+  // Shares of hits are sums of whole numbers: they are the same to the bit.
+  std::vector<std::vector<float>> found;
+  for (const char* method : {"hierarchy", "stacks", "plain"}) {
+    Gatherer gatherer(gridOf(clutter()), underSky(1.0f));
+    gatherer.at(kPlace, kUp).with({{"rays", 3001}, {"occlusion_distance", 15}, {"method", 0, method}});
+    found.push_back(everyFourth(gatherer.run("occlusion")));
+  }
+  CHECK(found[1] == found[0]);
+  CHECK(found[2] == found[0]);
+  CHECK(found[0].front() > 0.1f);
+  CHECK(found[0].front() < 0.99f);
+}
+
+TEST_CASE("rays of many portions are those of one: twice as many halve into the frames that they come from") {
+  Gatherer once(gridOf(clutter()), underSky(2.0f)), often(gridOf(clutter()), underSky(2.0f));
+  once.at(kPlace, kUp).with({{"rays", 96}, {"occlusion_distance", 15}});
+  often.at(kPlace, kUp).with({{"rays", 24}, {"occlusion_distance", 15}});
+  often.harness().accumulate();
+  for (int i = 0; i < 3; ++i) often.run();
+  const std::vector<float> light = once.run(), accumulated = often.run();
+  const std::vector<float> open = once.run("occlusion"),
+                           openOfFrames =
+                               often.harness().output<Image>("occlusion").texture->downloadFloats(0);
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    CHECK(accumulated[i] == Approx(light[i]).epsilon(1e-5));
+    CHECK(openOfFrames[i] == Approx(open[i]).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("more lights than a dispatch can take add up") {
+  const OneVoxel voxel;
+  ReflectiveShadowMap map =
+      mapOf(lightOf("directional"), 4, glm::vec4(voxel.centre, 1), {0, -1, 0, 1}, fluxOf(0.25f));
+  const std::vector<LightSampleData> lights(20000, map.lights->downloadValues<LightSampleData>().front());
+  map.lights = std::make_shared<gpu::Buffer>(device(), lights.size() * sizeof(LightSampleData), "lights");
+  map.lights->uploadValues(std::span<const LightSampleData>(lights));
+  map.lightCount = static_cast<int>(lights.size());
+  Gatherer gatherer = voxel.gatherer(map);
+  gatherer.with({{"rays", 3}, {"occlusion_distance", 100}});
+  CHECK(gatherer.run()[0] == Approx(5000.0).epsilon(1e-5));
+  CHECK(gatherer.harness().output<Image>("occlusion").texture->downloadFloats(0)[0] == 0.0f);
+}
+
+TEST_CASE("half and quarter of the pixels send rays, also of an image of one") {
+  for (const glm::ivec2 size : {glm::ivec2(13, 6), glm::ivec2(1, 1)})
+    for (const auto& [word, every] : {std::pair("full", 1), std::pair("half", 2), std::pair("quarter", 4)}) {
+      Gatherer gatherer(gridOf(VoxelSet({8, 8, 8})), underSky(3.0f), size.x, size.y);
+      gatherer.at({4, 4, 4}, kUp, size.x, size.y).with({{"pixels", 0, word}, {"rays", 4}});
+      gatherer.run();
+      const gpu::TextureRef arriving = gatherer.harness().output<Image>("arriving").texture;
+      CHECK(arriving->description().width == (size.x + every - 1) / every);
+      CHECK(arriving->description().height == (size.y + every - 1) / every);
+      // What reflects them fills the image: albedo 0.5.
+      SceneBuilder builder;
+      builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, size.x, size.y);
+      PassHarness reflect(device(), techniques(), "near_field_voxels", "reflect", builder.scene,
+                          snapshotOf(builder.scene, 0.0));
+      reflect.setInput("gbuffer", pointsAt({4, 4, 4}, kUp, size.x, size.y));
+      reflect.setInput("diffuse", Image{arriving});
+      reflect.setInput("occlusion", gatherer.harness().output<Image>("occlusion"));
+      reflect.run();
+      const ImageBuffer diffuse = imageOf(*reflect.output<Image>("diffuse").texture);
+      CHECK(diffuse.width() == size.x);
+      for (const float value : diffuse.values()) CHECK(value == Approx(1.5).epsilon(1e-6));
+      const ImageBuffer open = imageOf(*reflect.output<Image>("occlusion").texture, 1);
+      for (const float value : open.values()) CHECK(value == 1.0f);
+    }
+}
+
+TEST_CASE("between samples light is blended along a plane, and not across the depth of another") {
+  // The left half of the image is a plane at z = 0, the right half one a metre behind, both in a line to the
+  // eye.
+  constexpr int kWidth = 32;
+  SceneBuilder builder;
+  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, kWidth, kWidth);
+  GBuffer gbuffer = pointsAt({0, 0, 0}, {0, 0, 1}, kWidth, kWidth);
+  std::vector<float> places, light, ramp;
+  for (int y = 0; y < kWidth; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      for (const float value : {(x - 15.5f) * 0.05f, (15.5f - y) * 0.05f, x < 16 ? 0.0f : -1.0f, 1.0f})
+        places.push_back(value);
+  gbuffer.position->uploadFloats(0, places);
+  for (int y = 0; y < kWidth / 4; ++y)
+    for (int x = 0; x < kWidth / 4; ++x)
+      for (int c = 0; c < 4; ++c) {
+        light.push_back(x < 4 ? 1.0f : 1000.0f);
+        ramp.push_back(static_cast<float>(y));
+      }
+  const auto reflected = [&](const std::vector<float>& samples) {
+    const GBuffer small = pointsAt({0, 0, 0}, {0, 0, 1}, kWidth / 4, kWidth / 4);
+    small.diffuse->uploadFloats(0, samples);
+    PassHarness reflect(device(), techniques(), "near_field_voxels", "reflect", builder.scene,
+                        snapshotOf(builder.scene, 0.0));
+    reflect.setInput("gbuffer", gbuffer);
+    reflect.setInput("diffuse", Image{small.diffuse});
+    reflect.run();
+    return imageOf(*reflect.output<Image>("diffuse").texture);
+  };
+  const ImageBuffer apart = reflected(light), along = reflected(ramp);
+  for (int y = 0; y < kWidth; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      // Albedo 0.5; a thousandth of the other side's light is allowed.
+      CHECK(apart.at(x, y, 0) == Approx(x < 16 ? 0.5 : 500.0).margin(0.5));
+      // Samples lie at the pixels 2, 6, 10 ...
+      CHECK(along.at(x, y, 0) == Approx(0.5 * std::clamp((y - 2) / 4.0, 0.0, kWidth / 4 - 1.0)).margin(2e-3));
+    }
+}
+
+TEST_CASE("samples of no part of the image are refused") {
+  SceneBuilder builder;
+  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, 16, 16);
+  PassHarness reflect(device(), techniques(), "near_field_voxels", "reflect", builder.scene,
+                      snapshotOf(builder.scene, 0.0));
+  reflect.setInput("gbuffer", pointsAt({4, 4, 4}, kUp, 16, 16));
+  reflect.setInput("diffuse", Image{pointsAt({0, 0, 0}, kUp, 5, 16).diffuse});
+  CHECK_THAT(messageOf<Error>([&] { reflect.run(); }),
+             Catch::Contains("samples of 5 x 16 for an image of 16 x 16; expected one for each pixel"));
+}
+
+TEST_CASE("rotations are of the pixel, of a tile of four by four, or none") {
+  const BinaryGrid grid = gridOf(clutter());
+  const auto open = [&](const char* rotation) {
+    Gatherer gatherer(grid);
+    gatherer.at(kPlace, kUp).with({{"rays", 16}, {"occlusion_distance", 15}, {"rotation", 0, rotation}});
+    return everyFourth(gatherer.run("occlusion"));
+  };
+  const std::vector<float> none = open("none"), tile = open("tile"), hash = open("hash");
+  int other = 0, otherInTile = 0, otherOfHash = 0;
+  for (std::size_t i = 0; i < 64; ++i) {
+    other += none[i] != none[0];
+    const std::size_t first = i / 8 % 4 * 8 + i % 8 % 4;
+    otherInTile += tile[i] != tile[first];
+    otherOfHash += hash[i] != hash[first];
+  }
+  CHECK(other == 0);
+  CHECK(otherInTile == 0);
+  CHECK(otherOfHash > 20);
+}
+
+TEST_CASE("each sequence is distributed as the cosine, and narrows with the spread") {
+  // A disc of voxels overhead, seen from its middle: of directions whose squared sine is uniform up to s the
+  // share min(1, r^2 / (r^2 + h^2) / s) meets a disc of radius r at height h.
+  VoxelSet set({64, 16, 64});
+  for (int x = 0; x < 64; ++x)
+    for (int z = 0; z < 64; ++z)
+      if (glm::length(glm::vec2(x + 0.5f, z + 0.5f) - 32.0f) < 20.0f) set.insert({x, 10, z});
+  for (const char* sequence : {"r2", "hammersley"})
+    for (const double spread : {1.0, 0.9}) {
+      Gatherer gatherer(gridOf(set));
+      // Ten below, but for the half that the height of the offset takes.
+      gatherer.at({32, 0.5f, 32}, kUp)
+          .with({{"rays", 512},
+                 {"sequence", 0, sequence},
+                 {"spread", spread},
+                 {"offset", 0},
+                 {"occlusion_distance", 1000}});
+      CAPTURE(sequence, spread);
+      // The rim is in steps of a voxel.
+      CHECK(1.0 - gatherer.mean("occlusion") == Approx(400.0 / (400.0 + 9.5 * 9.5) / spread).epsilon(0.01));
+    }
+}
+
+TEST_CASE("as published the estimator has one more 1 / pi, and the environment begins at the radius") {
+  VoxelSet set({16, 16, 16});
+  for (int x = 0; x < 16; ++x)
+    for (int z = 0; z < 16; ++z) set.insert({x, 14, z});
+  const BinaryGrid grid = gridOf(set);
+  const auto arriving = [&](const char* published) {
+    Gatherer gatherer(grid, underSky(3.0f));
+    gatherer.at({8, 2, 8}, kUp).with({{"rays", 64}, {"radius", 1}, {"as_published", 0, published}});
+    return gatherer.run()[0];
+  };
+  CHECK(arriving("on") == Approx(3.0 / kPi));
+  CHECK(arriving("off") == 0.0f);
+}
+
+TEST_CASE("light of voxels is that of the finest level, whatever their opacity") {
+  VoxelSet set({16, 16, 16});
+  for (int x = 0; x < 16; ++x)
+    for (int z = 0; z < 16; ++z) set.insert({x, 10, z});
+  const BinaryGrid bits = gridOf(set);
+  RadianceGrid radiance;
+  radiance.grid = bits.grid;
+  radiance.unit = 4.0f;
+  radiance.radiance = std::make_shared<gpu::Texture>(
+      device(), gpu::TextureDescription{gpu::TextureKind::d3, gpu::Format::rgba32f, 16, 16, 16, 1},
+      "radiance");
+  radiance.radiance->clear({0.5f, 0.25f, 1.0f, 0.5f});  // pre-multiplied, in units
+  Gatherer gatherer(bits);
+  gatherer.harness().setInput("voxels", radiance);
+  gatherer.at({8.5f, 5, 8.5f}, kUp).with({{"rays", 1}, {"spread", 0}, {"radiance", 0, "voxels"}});
+  const std::vector<float> arriving = gatherer.run();
+  CHECK(arriving[0] == Approx(4.0));
+  CHECK(arriving[1] == Approx(2.0));
+  CHECK(arriving[2] == Approx(8.0));
+}
+
+TEST_CASE("what does not belong together is refused by name") {
+  const BinaryGrid bits = gridOf(VoxelSet({16, 16, 16}));
+  const auto told = [&](const std::function<void(Gatherer&)>& change, const BinaryGrid& grid) {
+    Gatherer gatherer(grid);
+    gatherer.at({8, 8, 8}, kUp);
+    change(gatherer);
+    return messageOf<Error>([&] { gatherer.run(); });
+  };
+  RadianceGrid radiance;
+  radiance.grid = {glm::vec3(0.5f), 2.0f, glm::ivec3(8)};
+  radiance.radiance = std::make_shared<gpu::Texture>(
+      device(), gpu::TextureDescription{gpu::TextureKind::d3, gpu::Format::rgba32f, 8, 8, 8, 1}, "radiance");
+  CHECK_THAT(told(
+                 [&](Gatherer& one) {
+                   one.with({{"radiance", 0, "voxels"}}).harness().setInput("voxels", radiance);
+                 },
+                 bits),
+             Catch::Contains(
+                 "'bits' have 16 x 16 x 16 voxels of 1 m from (0, 0, 0) on, and 'voxels' 8 x 8 x 8 voxels "
+                 "of 2 m from (0.5, 0.5, 0.5) on; expected one grid for both"));
+  CHECK_THAT(told(
+                 [](Gatherer& one) {
+                   one.with({{"radiance", 0, "voxels"}});
+                 },
+                 bits),
+             Catch::Contains("'radiance voxels' reads 'voxels'; expected it to be connected"));
+  ReflectiveShadowMap map = mapOf(lightOf("point"), 4, glm::vec4(0), glm::vec4(0), glm::vec4(0));
+  map.lightCount = 3;
+  CHECK_THAT(
+      told([&](Gatherer& one) { one.map(map); }, bits),
+      Catch::Contains("'map' tells of 3 lights in 6 layers, and holds 1 lights, 6 views and 6 layers"));
+  CHECK_THAT(told(
+                 [](Gatherer& one) {
+                   one.with({{"method", 0, "printed"}});
+                 },
+                 gridOf(VoxelSet({4, 4, 130}))),
+             Catch::Contains("one texel of 128 bits along z, and the grid of 'bits' is 130 voxels deep"));
+}
+
+TEST_CASE("parameters out of their range are refused, and taps that are neither one nor four") {
+  const auto told = [](const std::string& settings) {
+    return messageOf<Error>([&] {
+      const Pipeline text = Pipeline::parse(
+          "pipeline \"p\" {\npass gbuffer direct_lighting.gbuffer { }\n"
+          "pass voxels voxelization.conservative { }\n"
+          "pass bits voxelization.average { fragments voxels.fragments }\n"
+          "pass gather near_field_voxels.gather {\ngbuffer gbuffer\nbits bits.bits\n" +
+              settings + "\n}\noutput o gather.arriving\n}\n",
+          "test.pipeline");
+      const Scene scene = litRoom(8, 8);
+      PipelineExecutor(device(), techniques(), scene, text, {}).render(0.0);
+    });
+  };
+  CHECK_THAT(told("radius -1 m"), Catch::Contains("radius"));
+  CHECK_THAT(told("rays 2000000"), Catch::Contains("rays"));
+  CHECK_THAT(told("taps 3"), Catch::Contains("'taps' is 3; expected 1 or 4"));
+}
