@@ -8,7 +8,7 @@
 using namespace lumivox;
 
 TEST_CASE("portions hold every item once, in order, and keep to the limit of turns") {
-  for (const int items : {0, 1, 7, 999, 60000, 1 << 20})
+  for (const int items : {0, 1, 7, 999, 60000, 100000})
     for (const std::int64_t turns :
          {std::int64_t{0}, std::int64_t{1}, std::int64_t{58}, std::int64_t{29999}, std::int64_t{59999}}) {
       CAPTURE(items, turns);
