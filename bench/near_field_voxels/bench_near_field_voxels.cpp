@@ -114,8 +114,8 @@ void comparePixels(gpu::Device& device, TechniqueSet& techniques, const Scene& s
   for (const char* pixels : {"full", "quarter"})
     text += fmt::format(
         "  pass {0} near_field_voxels.gather {{ gbuffer gbuffer  bits bits.bits  map lights.map  rays 16  pixels {0} }}\n"
-        "  pass {0}_reflect near_field_voxels.reflect {{ gbuffer gbuffer  diffuse {0}.arriving }}\n"
-        "  output {0} {0}_reflect.diffuse\n",
+        "  pass {0}_smooth image_filters.smooth {{ gbuffer gbuffer  diffuse {0}.arriving }}\n"
+        "  output {0} {0}_smooth.diffuse\n",
         pixels);
   const Pipeline pipeline = Pipeline::parse(text + "}\n", "bench.pipeline");
   RenderOptions options;
@@ -124,8 +124,8 @@ void comparePixels(gpu::Device& device, TechniqueSet& techniques, const Scene& s
   PipelineExecutor executor(device, techniques, scene, pipeline, options);
   std::vector<double> ratios;
   const FrameResult last = measure(executor, repeats, true, [&](const Times& times) {
-    ratios.push_back((times.at("quarter") + times.at("quarter_reflect")) /
-                     (times.at("full") + times.at("full_reflect")));
+    ratios.push_back((times.at("quarter") + times.at("quarter_smooth")) /
+                     (times.at("full") + times.at("full_smooth")));
   });
   fmt::print("{}: quarter over full {}, FLIP between them {:.4f}\n", name, inWords(spreadOf(ratios)),
              compare(last.outputs.at("quarter"), last.outputs.at("full")).flip);

@@ -8,6 +8,5 @@ LUMIVOX_TECHNIQUE(registry) {
       "Near-field voxels: rays through one bit a voxel, which end at the light of reflective shadow maps",
       "Thiedemann et al. 2011; thesis Gomes 2015, Sec. 3.2");
   addGather(registry);
-  addReflect(registry);
   addProbe(registry);
 }

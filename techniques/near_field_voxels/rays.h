@@ -33,6 +33,5 @@ class RayMethod {
 
 void addProbe(TechniqueRegistry& registry);
 void addGather(TechniqueRegistry& registry);
-void addReflect(TechniqueRegistry& registry);
 
 }  // namespace lumivox::near_field_voxels

@@ -79,71 +79,21 @@ TEST_CASE("half and quarter of the pixels send rays, also of an image of one") {
       const gpu::TextureRef arriving = gatherer.harness().output<Image>("arriving").texture;
       CHECK(arriving->description().width == (size.x + every - 1) / every);
       CHECK(arriving->description().height == (size.y + every - 1) / every);
-      // What reflects them fills the image: albedo 0.5.
+      // What smooths them fills the image: albedo 0.5.
       SceneBuilder builder;
       builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, size.x, size.y);
-      PassHarness reflect(device(), techniques(), "near_field_voxels", "reflect", builder.scene,
-                          snapshotOf(builder.scene, 0.0));
-      reflect.setInput("gbuffer", pointsAt({4, 4, 4}, kUp, size.x, size.y));
-      reflect.setInput("diffuse", Image{arriving});
-      reflect.setInput("occlusion", gatherer.harness().output<Image>("occlusion"));
-      reflect.run();
-      const ImageBuffer diffuse = imageOf(*reflect.output<Image>("diffuse").texture);
+      PassHarness smooth(device(), techniques(), "image_filters", "smooth", builder.scene,
+                         snapshotOf(builder.scene, 0.0));
+      smooth.setInput("gbuffer", pointsAt({4, 4, 4}, kUp, size.x, size.y));
+      smooth.setInput("diffuse", Image{arriving});
+      smooth.setInput("occlusion", gatherer.harness().output<Image>("occlusion"));
+      smooth.run();
+      const ImageBuffer diffuse = imageOf(*smooth.output<Image>("diffuse").texture);
       CHECK(diffuse.width() == size.x);
       for (const float value : diffuse.values()) CHECK(value == Approx(1.5).epsilon(1e-6));
-      const ImageBuffer open = imageOf(*reflect.output<Image>("occlusion").texture, 1);
+      const ImageBuffer open = imageOf(*smooth.output<Image>("occlusion").texture, 1);
       for (const float value : open.values()) CHECK(value == 1.0f);
     }
-}
-
-TEST_CASE("between samples light is blended along a plane, and not across the depth of another") {
-  // The left half of the image is a plane at z = 0, the right half one a metre behind, both in a line to the
-  // eye.
-  constexpr int kWidth = 32;
-  SceneBuilder builder;
-  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, kWidth, kWidth);
-  GBuffer gbuffer = pointsAt({0, 0, 0}, {0, 0, 1}, kWidth, kWidth);
-  std::vector<float> places, light, ramp;
-  for (int y = 0; y < kWidth; ++y)
-    for (int x = 0; x < kWidth; ++x)
-      for (const float value : {(x - 15.5f) * 0.05f, (15.5f - y) * 0.05f, x < 16 ? 0.0f : -1.0f, 1.0f})
-        places.push_back(value);
-  gbuffer.position->uploadFloats(0, places);
-  for (int y = 0; y < kWidth / 4; ++y)
-    for (int x = 0; x < kWidth / 4; ++x)
-      for (int c = 0; c < 4; ++c) {
-        light.push_back(x < 4 ? 1.0f : 1000.0f);
-        ramp.push_back(static_cast<float>(y));
-      }
-  const auto reflected = [&](const std::vector<float>& samples) {
-    const GBuffer small = pointsAt({0, 0, 0}, {0, 0, 1}, kWidth / 4, kWidth / 4);
-    small.diffuse->uploadFloats(0, samples);
-    PassHarness reflect(device(), techniques(), "near_field_voxels", "reflect", builder.scene,
-                        snapshotOf(builder.scene, 0.0));
-    reflect.setInput("gbuffer", gbuffer);
-    reflect.setInput("diffuse", Image{small.diffuse});
-    reflect.run();
-    return imageOf(*reflect.output<Image>("diffuse").texture);
-  };
-  const ImageBuffer apart = reflected(light), along = reflected(ramp);
-  for (int y = 0; y < kWidth; ++y)
-    for (int x = 0; x < kWidth; ++x) {
-      // Albedo 0.5; a thousandth of the other side's light is allowed.
-      CHECK(apart.at(x, y, 0) == Approx(x < 16 ? 0.5 : 500.0).margin(0.5));
-      // Samples lie at the pixels 2, 6, 10 ...
-      CHECK(along.at(x, y, 0) == Approx(0.5 * std::clamp((y - 2) / 4.0, 0.0, kWidth / 4 - 1.0)).margin(2e-3));
-    }
-}
-
-TEST_CASE("samples of no part of the image are refused") {
-  SceneBuilder builder;
-  builder.look({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 0.7, 16, 16);
-  PassHarness reflect(device(), techniques(), "near_field_voxels", "reflect", builder.scene,
-                      snapshotOf(builder.scene, 0.0));
-  reflect.setInput("gbuffer", pointsAt({4, 4, 4}, kUp, 16, 16));
-  reflect.setInput("diffuse", Image{pointsAt({0, 0, 0}, kUp, 5, 16).diffuse});
-  CHECK_THAT(messageOf<Error>([&] { reflect.run(); }),
-             Catch::Contains("samples of 5 x 16 for an image of 16 x 16; expected one for each pixel"));
 }
 
 TEST_CASE("rotations are of the pixel, of a tile of four by four, or none") {
