@@ -1,0 +1,46 @@
+#version 450
+// Screen-space ambient occlusion (Mittring 2007): the share of points around a surface that lie before what the camera sees.
+#include "screen.glsl"
+
+const int kSphere = 0, kHemisphere = 1;
+layout(constant_id = 1) const int directions = kSphere;
+
+layout(std140, binding = 0) uniform Occlusion {
+  float range;  // how far before the surface point something may lie and occlude it, m
+};
+
+// The i-th point, evenly distributed over the ball's radius by volume, relative to its centre. Over the sphere in pairs opposite to each
+// other, of which a plane through the centre blocks one.
+vec3 offsetOf(int i, vec3 normal, vec4 random) {
+  bool sphere = directions == kSphere;
+  int stratum = sphere ? i / 2 : i, strata = sphere ? (samples + 1) / 2 : samples;
+  float height = (float(stratum) + random.x) / float(strata);
+  vec2 place = evenly(stratum, random.yz);
+  float distance = radius * pow(place.y, 1.0 / 3.0);
+  vec3 direction = around(normal, sphere ? height : sqrt(height), place.x);
+  return distance * (sphere && (i & 1) == 1 ? -direction : direction);
+}
+
+float unoccluded(ivec2 pixel, vec3 posWorld) {
+  vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
+  vec4 random = randomOf(pixel);
+  int open = 0;
+  for (int i = 0; i < samples; ++i) {
+    ivec2 other;
+    bool blocked = isBehindVisible(posWorld + offsetOf(i, normal, random), other);
+    if (blocked) blocked = depthOf(posWorld) - depthOf(texelFetch(gPosition, other, 0).xyz) <= range;
+    open += blocked ? 0 : 1;
+  }
+  return (directions == kSphere ? 2.0 : 1.0) * float(open) / float(samples);
+}
+
+void main() {
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(texel, imageSize(resultImage)))) return;
+  ivec2 pixel = sampledPixel(texel, ivec2(every), textureSize(gPosition, 0));
+  vec4 position = texelFetch(gPosition, pixel, 0);
+  float open = 1.0;
+  if (position.w > 0.0) open = unoccluded(pixel, position.xyz);
+  // At most 1 last, so that what convex edges have above it is not lost from the mean over frames.
+  imageStore(resultImage, texel, vec4(vec3(min(accumulate(texel, vec3(open)).r, 1.0)), 1.0));
+}
