@@ -6,7 +6,7 @@ const int kSphere = 0, kHemisphere = 1;
 layout(constant_id = 1) const int directions = kSphere;
 
 layout(std140, binding = 0) uniform Occlusion {
-  float range;  // how far before the surface point something may lie and occlude it, m
+  float range;  // how far before the surface point the plane of something may lie that occludes it, m
 };
 
 // The i-th point, evenly distributed over the ball's radius by volume, relative to its centre. Over the sphere in pairs opposite to each
@@ -28,7 +28,9 @@ float unoccluded(ivec2 pixel, vec3 posWorld) {
   for (int i = 0; i < samples; ++i) {
     ivec2 other;
     bool blocked = isBehindVisible(posWorld + offsetOf(i, normal, random), other);
-    if (blocked) blocked = depthOf(posWorld) - depthOf(texelFetch(gPosition, other, 0).xyz) <= range;
+    // Not along the view: a floor at a slant hides what is below it from far before.
+    if (blocked)
+      blocked = dot(texelFetch(gPosition, other, 0).xyz - posWorld, texelFetch(gGeometricNormal, other, 0).xyz) <= range;
     open += blocked ? 0 : 1;
   }
   return (directions == kSphere ? 2.0 : 1.0) * float(open) / float(samples);
