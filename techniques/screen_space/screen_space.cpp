@@ -1,6 +1,6 @@
 // Ambient occlusion and one bounce of light from what the camera sees: Mittring 2007, "Finding next gen:
-// CryEngine 2"; Ritschel, Grosch & Seidel 2009, "Approximating dynamic global illumination in image space". The
-// baselines that voxels are compared with.
+// CryEngine 2"; Ritschel, Grosch & Seidel 2009, "Approximating dynamic global illumination in image space".
+// The baselines that voxels are compared with.
 #include <fmt/format.h>
 
 #include <limits>
@@ -25,7 +25,11 @@ class ScreenPass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   Param<int> samples{this, "samples", 16, within(1, 4096), "points around each surface point"};
   Param<float> radius{
-      this, "radius", 0.0f, within(0.0f, 1e6f), "m",
+      this,
+      "radius",
+      0.0f,
+      within(0.0f, 1e6f),
+      "m",
       "how far from it they lie; 0: as far as the reference looks for what occludes, a tenth of the scene's diagonal"};
   Param<Surface> surface{
       this, "surface", Surface::plane,
@@ -56,23 +60,23 @@ class ScreenPass : public Pass {
     variant.accumulated = accumulated > 0;
     constants.surface = static_cast<int>(Surface(surface));
     // The two programs include one text, so that their blocks and names are the same.
-    frame.dispatch(frame.program(variant, constants),
-                   {own, GBufferBinding(*gbuffer),
-                    code::ssao::screen({.eye = camera.eye,
-                                        .tanHalfFov = camera.tanHalfFov,
-                                        .right = camera.right,
-                                        .radius = radiusOf(frame),
-                                        .up = camera.up,
-                                        .samples = samples,
-                                        .forward = camera.forward,
-                                        .every = every,
-                                        .shift = camera.shift,
-                                        .accumulated = accumulated,
-                                        .seed = seedWords(frame)}),
-                    code::ssao::before(accumulated > 0 ? mean.previous : gpu::TextureRef(),
-                                       gpu::Sampling::nearest),
-                    code::ssao::meanImage(mean.current), code::ssao::resultImage(result.texture)},
-                   {size.width, size.height, 1});
+    frame.dispatch(
+        frame.program(variant, constants),
+        {own, GBufferBinding(*gbuffer),
+         code::ssao::screen({.eye = camera.eye,
+                             .tanHalfFov = camera.tanHalfFov,
+                             .right = camera.right,
+                             .radius = radiusOf(frame),
+                             .up = camera.up,
+                             .samples = samples,
+                             .forward = camera.forward,
+                             .every = every,
+                             .shift = camera.shift,
+                             .accumulated = accumulated,
+                             .seed = seedWords(frame)}),
+         code::ssao::before(accumulated > 0 ? mean.previous : gpu::TextureRef(), gpu::Sampling::nearest),
+         code::ssao::meanImage(mean.current), code::ssao::resultImage(result.texture)},
+        {size.width, size.height, 1});
     return result;
   }
 };
@@ -84,8 +88,9 @@ class SsaoPass : public ScreenPass {
   Param<Directions> directions{
       this, "directions", Directions::sphere,
       "points in the whole ball, of which a plane blocks half, or in its upper half, by the cosine"};
-  Param<bool> range{this, "range", true,
-                    "leave out what lies farther before the surface point than the radius; as published: off"};
+  Param<bool> range{
+      this, "range", true,
+      "leave out what lies farther before the surface point than the radius; as published: off"};
   Out<Image> occlusion{this, "occlusion", Contributes::nothing, Needs::triangles,
                        "unoccluded share of the directions, at the sampled pixels"};
 
@@ -119,9 +124,9 @@ class SsdoPass : public ScreenPass {
     const gpu::TextureDescription &surfaces = gbuffer->position->description(),
                                   &light = direct->texture->description();
     if (surfaces.width != light.width || surfaces.height != light.height)
-      throw Error(fmt::format(
-          "screen_space.ssdo: 'direct' has {} x {} pixels; expected the {} x {} of 'gbuffer'", light.width,
-          light.height, surfaces.width, surfaces.height));
+      throw Error(
+          fmt::format("screen_space.ssdo: 'direct' has {} x {} pixels; expected the {} x {} of 'gbuffer'",
+                      light.width, light.height, surfaces.width, surfaces.height));
     const gpu::TextureRef& emission = gbuffer->emission;
     arriving = sampled(frame, code::ssdo::Variant{.emission = emission != nullptr},
                        code::ssdo::Constants{.area = static_cast<int>(Area(area))},
@@ -140,6 +145,5 @@ LUMIVOX_TECHNIQUE(registry) {
                     "Mittring 2007; Ritschel, Grosch & Seidel 2009");
   registry.add<SsaoPass>("ssao", "Share of points around a surface that nothing hides (Mittring 2007)");
   registry.add<SsdoPass>(
-      "ssdo",
-      "One bounce and the environment by directions in the image (Ritschel, Grosch & Seidel 2009)");
+      "ssdo", "One bounce and the environment by directions in the image (Ritschel, Grosch & Seidel 2009)");
 }
