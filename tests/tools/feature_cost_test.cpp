@@ -256,6 +256,26 @@ TEST_CASE("a scene pays for what it uses and nothing else: reflective shadow map
              });
 }
 
+TEST_CASE("a scene pays for what it uses and nothing else: screen space") {
+  checkCosts("screen_space",
+             {
+                 {"cut-out mask", {"gbuffer MASKS=1", "shadow_map MASKS=1"}},
+                 {"emission",
+                  {"bytes gbuffer", "bytes shadow", "gbuffer EMISSION=1", "shade EMISSION=1",
+                   "ssdo EMISSION=1"}},
+                 {"glossy material", {"bytes gbuffer", "gbuffer GLOSSY=1", "shade GLOSSY=1"}},
+                 {"moving camera",
+                  {"again bounce", "again compose", "again direct", "again gbuffer", "again occlusion",
+                   "again smooth"}},
+                 {"moving object",
+                  {"again bounce", "again compose", "again direct", "again gbuffer", "again occlusion",
+                   "again shadow", "again smooth"}},
+                 {"spot", {"bytes shadow"}},
+                 {"sun", {"bytes shadow"}},
+                 {"texture", {"gbuffer TEXTURES=1"}},
+             });
+}
+
 TEST_CASE("a scene pays for what it uses and nothing else: smoke") {
   checkCosts("volumetric_smoke",
              {
