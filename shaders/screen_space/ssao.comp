@@ -27,10 +27,12 @@ float unoccluded(ivec2 pixel, vec3 posWorld) {
   int open = 0;
   for (int i = 0; i < samples; ++i) {
     ivec2 other;
-    bool blocked = isBehindVisible(posWorld + offsetOf(i, normal, random), other);
-    // Not along the view: a floor at a slant hides what is below it from far before.
-    if (blocked)
-      blocked = dot(texelFetch(gPosition, other, 0).xyz - posWorld, texelFetch(gGeometricNormal, other, 0).xyz) <= range;
+    vec3 offset = offsetOf(i, normal, random);
+    bool blocked = isBehindVisible(posWorld + offset, other);
+    // Not along the view: a floor at a slant hides what is below it from far before. Without what is left out the surface itself is what
+    // hides: the points below it.
+    if (blocked && dot(texelFetch(gPosition, other, 0).xyz - posWorld, texelFetch(gGeometricNormal, other, 0).xyz) > range)
+      blocked = dot(offset, texelFetch(gGeometricNormal, pixel, 0).xyz) < 0.0;
     open += blocked ? 0 : 1;
   }
   return (directions == kSphere ? 2.0 : 1.0) * float(open) / float(samples);

@@ -216,11 +216,13 @@ TEST_CASE("something farther before the point than the radius hides it only wher
     OneSurface column;  // faces the camera, across the whole view
     column.position = {0, 0, before};
     column.normal = {0, 0, 1};
-    const Settings settings{{"directions", "hemisphere"}, {"samples", "64"}};
-    CHECK(received(column, "ssao", settings).x == (before > 1.0f ? 1.0f : 0.0f));
-    Settings off = settings;
-    off.emplace_back("range", "off");
-    CHECK(received(column, "ssao", off).x == 0.0f);
+    for (const char* directions : {"sphere", "hemisphere"}) {
+      Settings settings{{"directions", directions}, {"samples", "64"}};
+      // The points below the surface, half of the sphere's, stay hidden by the surface itself.
+      CHECK(received(column, "ssao", settings).x == (before > 1.0f ? 1.0f : 0.0f));
+      settings.emplace_back("range", "off");
+      CHECK(received(column, "ssao", settings).x == 0.0f);
+    }
   }
 }
 
