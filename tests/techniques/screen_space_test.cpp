@@ -384,6 +384,19 @@ TEST_CASE("frames that accumulate have other points, and their mean goes to the 
   CHECK(received(wallAt(0.4f), "ssdo", {}, 1, 5) != received(wallAt(0.4f), "ssdo", {}, 1, 5ull << 32));
 }
 
+TEST_CASE("a scene of millimetres has the occlusion of the same scene in metres") {
+  SceneBuilder small = floorAndWall();
+  for (glm::vec3& position : small.scene.positions) position *= 1e-3f;
+  small.scene.cameras.front().eye *= 1e-3;
+  small.scene.cameras.front().target *= 1e-3;
+  const Seen metres = occlusionOf(floorAndWall().scene, {{"radius", "1"}}),
+             millimetres = occlusionOf(small.scene, {{"radius", "0.001"}});
+  int different = 0;  // where rounding decides for one of a pixel's points
+  for (std::size_t i = 0; i < metres.occlusion.values().size(); ++i)
+    different += metres.occlusion.values()[i] != millimetres.occlusion.values()[i];
+  CHECK(different < 10);
+}
+
 TEST_CASE("screen space refuses what it cannot take, and says what it expected") {
   const auto refused = [](const char* pass, const char* name, const char* value) {
     try {
@@ -418,8 +431,11 @@ TEST_CASE("screen space errs on the Cornell box and the arcade by what its card 
   };
   for (const Claim& claim :
        {Claim{"cornell", "indirect_diffuse", "one_bounce_diffuse", 0.97, {}},
-        {"cornell", "ambient_occlusion", "ambient_occlusion", 0.68, {}},
-        {"cornell", "ambient_occlusion", "ambient_occlusion", 0.48, {"directions=hemisphere"}}}) {
+        {"cornell", "ambient_occlusion", "ambient_occlusion", 0.66, {}},
+        {"cornell", "ambient_occlusion", "ambient_occlusion", 0.48, {"directions=hemisphere"}},
+        {"arcade", "indirect_diffuse", "one_bounce_diffuse", 1.65, {}},
+        {"arcade", "ambient_occlusion", "ambient_occlusion", 0.91, {}},
+        {"arcade", "ambient_occlusion", "ambient_occlusion", 0.67, {"directions=hemisphere"}}}) {
     const Scene scene = loadScene(sourceDirectory() / "scenes" / (std::string(claim.scene) + ".scene"));
     ReferenceOptions referenceOptions = quietly(64, 1);
     referenceOptions.width = 64;
@@ -441,6 +457,7 @@ TEST_CASE("screen space errs on the Cornell box and the arcade by what its card 
     const double rmse =
         std::sqrt(std::max(0.0, error.rmse.value * error.rmse.value - error.noiseFloor * error.noiseFloor));
     CAPTURE(claim.scene, claim.output, rmse / nothing.rmse.value);
-    CHECK(rmse < std::min(1.1 * claim.rmse, 1.0) * nothing.rmse.value);
+    CHECK(rmse <
+          (claim.rmse < 1.0 ? std::min(1.1 * claim.rmse, 1.0) : 1.1 * claim.rmse) * nothing.rmse.value);
   }
 }
