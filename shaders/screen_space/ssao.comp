@@ -9,11 +9,11 @@ layout(std140, binding = 0) uniform Occlusion {
   float range;  // how far before the surface point the plane of something may lie that occludes it, m
 };
 
-// The i-th point, evenly distributed over the ball's radius by volume, relative to its centre. Over the sphere in pairs opposite to each
-// other, of which a plane through the centre blocks one.
-vec3 offsetOf(int i, vec3 normal, vec4 random) {
+// The i-th point, evenly distributed over the ball's radius by volume, relative to its centre. Over the sphere a stratum has a pair
+// opposite to each other, of which a plane through the centre blocks one; of an odd number the last has only the point above.
+vec3 offsetOf(int i, int strata, vec3 normal, vec4 random) {
   bool sphere = directions == kSphere;
-  int stratum = sphere ? i / 2 : i, strata = sphere ? (samples + 1) / 2 : samples;
+  int stratum = sphere ? i / 2 : i;
   float height = (float(stratum) + random.x) / float(strata);
   vec2 place = evenly(stratum, random.yz);
   float distance = radius * pow(place.y, 1.0 / 3.0);
@@ -24,10 +24,10 @@ vec3 offsetOf(int i, vec3 normal, vec4 random) {
 float unoccluded(ivec2 pixel, vec3 posWorld) {
   vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
   vec4 random = randomOf(pixel);
-  int open = 0;
+  int open = 0, strata = directions == kSphere ? (samples + 1) / 2 : samples;
   for (int i = 0; i < samples; ++i) {
     ivec2 other;
-    vec3 offset = offsetOf(i, normal, random);
+    vec3 offset = offsetOf(i, strata, normal, random);
     bool blocked = isBehindVisible(posWorld + offset, other);
     // Not along the view: a floor at a slant hides what is below it from far before. Without what is left out the surface itself is what
     // hides: the points below it.
@@ -35,7 +35,7 @@ float unoccluded(ivec2 pixel, vec3 posWorld) {
       blocked = dot(offset, texelFetch(gGeometricNormal, pixel, 0).xyz) < 0.0;
     open += blocked ? 0 : 1;
   }
-  return (directions == kSphere ? 2.0 : 1.0) * float(open) / float(samples);
+  return float(open) / float(strata);
 }
 
 void main() {
