@@ -252,11 +252,11 @@ TEST_CASE("what lies outside of the view or behind the camera hides nothing and 
 
 TEST_CASE("where the image plane is shifted, points are looked up as far beside") {
   // The right half sees a screen before everything. A ball that is small against a pixel lies between both.
-  const auto open = [](float shift) {
+  const auto open = [](float shift, int firstColumn = kSide / 2) {
     OneSurface made;
     made.position = {0, 0, 1};
     made.normal = {0, 0, 1};
-    made.seen = [](int x, int) { return x >= kSide / 2; };
+    made.seen = [firstColumn](int x, int) { return x >= firstColumn; };
     made.shift = {shift, 0};
     return received(made, "ssao",
                     {{"directions", "hemisphere"}, {"samples", "1024"}, {"radius", "0.01"}, {"range", "off"}})
@@ -265,6 +265,11 @@ TEST_CASE("where the image plane is shifted, points are looked up as far beside"
   CHECK(open(0.0f) == Approx(0.5).margin(0.01));
   CHECK(open(3.0f) == 1.0f);
   CHECK(open(-3.0f) == 0.0f);
+  // Just inside of the image's edges and just outside.
+  CHECK(open(7.9f, 0) == 0.0f);
+  CHECK(open(8.1f, 0) == 1.0f);
+  CHECK(open(-7.9f, 0) == 0.0f);
+  CHECK(open(-8.1f, 0) == 1.0f);
 }
 
 TEST_CASE("a radius of 0 is the distance at which the reference looks for what occludes") {
