@@ -4,6 +4,7 @@
 // every pixel along x and for every sample along y.
 #pragma lumivox axis REFLECTS 0 1  // arriving radiance is multiplied by the diffuse albedo, last, so that textures stay sharp
 #include "common/joint_bilateral.glsl"
+#include "common/sampled_pixels.glsl"
 
 const int kTent = 0, kGaussian = 1, kBilinear = 2;
 layout(constant_id = 0) const int kernel = kTent;
@@ -30,8 +31,7 @@ layout(binding = 3) uniform sampler2D gDiffuse;
 layout(binding = 4) uniform sampler2D inputImage;
 layout(binding = 0, rgba32f) uniform writeonly image2D outputImage;
 
-// The pixel that a texel stands for, one in the middle of its block.
-ivec2 pixelOf(ivec2 texel, ivec2 apart) { return min(apart * texel + apart / 2, textureSize(gPosition, 0) - 1); }
+ivec2 pixelOf(ivec2 texel, ivec2 apart) { return sampledPixel(texel, apart, textureSize(gPosition, 0)); }
 
 // The first and last texels along an axis, and the reach of the kernel.
 void windowOf(ivec2 at, ivec2 pixel, out ivec2 first, out ivec2 last, out vec2 reach) {

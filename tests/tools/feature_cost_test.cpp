@@ -267,15 +267,35 @@ TEST_CASE("a scene pays for what it uses and nothing else: near-field voxels") {
            {"bytes gbuffer", "bytes lights", "bytes shadow", "gbuffer EMISSION=1", "shade EMISSION=1"}},
           {"glossy material", {"bytes gbuffer", "gbuffer GLOSSY=1", "shade GLOSSY=1"}},
           {"moving camera",
-           {"again compose", "again direct", "again gather", "again gbuffer", "again reflect"}},
+           {"again compose", "again direct", "again gather", "again gbuffer", "again smooth"}},
           {"moving object",
            {"again bits", "again compose", "again direct", "again gather", "again gbuffer", "again lights",
-            "again reflect", "again shadow", "again voxels", "bytes voxels", "program count_behind",
+            "again shadow", "again smooth", "again voxels", "bytes voxels", "program count_behind",
             "bits_mark MOVING=1", "bits_mip TOUCHED=1", "bits_stack TOUCHED=1", "bytes bits",
             "program bits_copy", "program bits_restore"}},
           {"spot", {"bytes lights", "bytes shadow"}},
           {"sun", {"bytes lights", "bytes shadow"}},
           {"texture", {"conservative TEXTURES=1", "gbuffer TEXTURES=1", "render TEXTURES=1"}},
+      });
+}
+
+TEST_CASE("a scene pays for what it uses and nothing else: screen space") {
+  checkCosts(
+      "screen_space",
+      {
+          {"cut-out mask", {"gbuffer MASKS=1", "shadow_map MASKS=1"}},
+          {"emission",
+           {"bytes gbuffer", "bytes shadow", "gbuffer EMISSION=1", "shade EMISSION=1", "ssdo EMISSION=1"}},
+          {"glossy material", {"bytes gbuffer", "gbuffer GLOSSY=1", "shade GLOSSY=1"}},
+          {"moving camera",
+           {"again bounce", "again compose", "again direct", "again gbuffer", "again occlusion",
+            "again smooth"}},
+          {"moving object",
+           {"again bounce", "again compose", "again direct", "again gbuffer", "again occlusion",
+            "again shadow", "again smooth"}},
+          {"spot", {"bytes shadow"}},
+          {"sun", {"bytes shadow"}},
+          {"texture", {"gbuffer TEXTURES=1"}},
       });
 }
 
