@@ -178,7 +178,8 @@ class GatherPass : public Pass {
   void run(PassContext& frame) override {
     checkInputs();
     const int apart = every();
-    const glm::ivec3 samples = (pixels(frame) + (apart - 1)) / glm::ivec3(apart, apart, 1);
+    const glm::ivec3 samples =
+        (pixels(frame) + glm::ivec3(apart - 1, apart - 1, 0)) / glm::ivec3(apart, apart, 1);
     const gpu::TextureDescription ofSamples{
         .format = gpu::Format::rgba32f, .width = samples.x, .height = samples.y};
     const History<gpu::TextureRef> light = arriving.wanted() ? frame.history(ofSamples, "arriving radiance")

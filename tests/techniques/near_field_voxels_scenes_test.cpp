@@ -221,3 +221,37 @@ TEST_CASE("a sender that the camera does not see lights the floor, as from any o
   CHECK(ahead.mean == Approx(truth.mean).epsilon(0.15));
   CHECK(std::abs(turned.mean - ahead.mean) < std::hypot(ahead.error, turned.error));
 }
+
+TEST_CASE("samples of some pixels are those of the same pixels among all, for any number of rays") {
+  constexpr int kSide = 64;
+  const Scene scene = committed("cornell");
+  const auto arriving = [&](const char* pixels, int rays) {
+    Pipeline text = pipeline("near_field_voxels");
+    std::string source = text.document->source;
+    const std::string head = "near_field_voxels.gather {\n";
+    source.insert(source.find(head) + head.size(),
+                  std::string("    rotation none\n    pixels ") + pixels + "\n");
+    RenderOptions options;
+    options.width = options.height = kSide;
+    const Pipeline changed = Pipeline::parse(source, text.file);
+    options.parameters = changed.settings({"rays=" + std::to_string(rays)});
+    PipelineExecutor executor(device(), techniques(), scene, changed, options);
+    executor.keepOutput("gather", "arriving");
+    executor.render(0.0);
+    const auto* output = dynamic_cast<const Out<Image>*>(executor.output("gather", "arriving"));
+    REQUIRE(output != nullptr);
+    return imageOf(*(*output)->texture);
+  };
+  for (const int rays : {16, 24, 64, 200}) {
+    const ImageBuffer all = arriving("full", rays);
+    for (const auto& [word, every] : {std::pair("half", 2), std::pair("quarter", 4)}) {
+      const ImageBuffer some = arriving(word, rays);
+      int other = 0;
+      for (int y = 0; y < kSide / every; ++y)
+        for (int x = 0; x < kSide / every; ++x)
+          other += some.at(x, y, 0) != all.at(every * x + every / 2, every * y + every / 2, 0);
+      CAPTURE(rays, word);
+      CHECK(other == 0);
+    }
+  }
+}
