@@ -87,7 +87,8 @@ class GatherPass : public Pass {
                                       .publishedLobes = coneLobe == ConeLobe::cosine};
     const int every = asPublished ? 1 : 1 << static_cast<int>(static_cast<Resolution>(resolution)),
               side = asPublished ? 1 : pattern;
-    const glm::ivec3 gathered = (pixels(frame) + glm::ivec3(every - 1, every - 1, 0)) / glm::ivec3(every, every, 1);
+    const glm::ivec3 gathered =
+        (pixels(frame) + glm::ivec3(every - 1, every - 1, 0)) / glm::ivec3(every, every, 1);
     if (variant.diffuse) diffuse = Image{frame.image("indirect diffuse radiance")};
     if (variant.glossy) glossy = Image{frame.image("indirect glossy radiance")};
     const gpu::TextureDescription ofSamples{
