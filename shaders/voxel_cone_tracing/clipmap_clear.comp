@@ -19,7 +19,7 @@ void main() {
   ivec3 voxel = first + ivec3(gl_GlobalInvocationID);
   if (any(greaterThanEqual(voxel, end))) return;
 #if CHANGED
-  if ((clipmapCells[cellIndex(level, voxel - ownFirst[level].xyz, ownFirst[level].w)] & kVoxelized) == 0u) return;
+  if (clipmapCells[cellIndex(level, voxel - ownFirst[level].xyz, ownFirst[level].w)] == 0u) return;
 #endif
   ClipmapPlace place = ownPlace(level, voxel);
   if (!isOccupied(place)) return;

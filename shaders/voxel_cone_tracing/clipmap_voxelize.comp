@@ -65,7 +65,7 @@ int level;
 bool onlyChanges;  // of the box
 
 bool isTaken(ivec3 voxel, int axis) {
-  return !onlyChanges || (clipmapCells[cellIndex(level, unpermute(voxel, axis) - stackFirst[level].xyz, stackSide)] & kVoxelized) != 0u;
+  return !onlyChanges || clipmapCells[cellIndex(level, unpermute(voxel, axis) - stackFirst[level].xyz, stackSide)] != 0u;
 }
 // False where no voxel of these is taken; not all are looked at where they are many.
 bool isAnyTaken(ivec3 low, ivec3 high, int axis) {
@@ -75,7 +75,7 @@ bool isAnyTaken(ivec3 low, ivec3 high, int axis) {
   for (int z = first.z >> 2; z <= last.z >> 2; ++z)
     for (int y = first.y >> 2; y <= last.y >> 2; ++y)
       for (int x = first.x >> 2; x <= last.x >> 2; ++x)
-        if ((clipmapCells[cellIndex(level, 4 * ivec3(x, y, z), stackSide)] & kVoxelized) != 0u) return true;
+        if (clipmapCells[cellIndex(level, 4 * ivec3(x, y, z), stackSide)] != 0u) return true;
   return false;
 }
 #else

@@ -215,31 +215,20 @@ class ClipmapPass : public Pass {
   /// Which cells differ from the frame before, a word each (clipmap_cells.glsl): those that something moving
   /// has left or come to, and those that lie behind it in the shadow map.
   gpu::BufferRef changedCells(PassContext& frame, const RadianceClipmap& clipmap,
-                              const ClipmapPlacement& before, const ClipmapPlacement& placement,
-                              const std::vector<Bounds>& moving) const {
+                              const ClipmapPlacement& placement, const std::vector<Bounds>& moving) const {
     const std::uint64_t along = (static_cast<std::uint64_t>(placement.resolution) + 3) / 4,
                         cells = along * along * along,
                         levelCount = static_cast<std::uint64_t>(placement.levels());
     const gpu::BufferRef result =
         frame.elements(clipmap_changed::clipmapCells, cells * levelCount, "changed cells of levels");
     const BoxesInViews boxes(frame, light.shadow, moving);
-    clipmap_changed::Moved moved{
+    const clipmap_changed::Moved moved{
         .boxCount = boxes.count, .lightCount = boxes.lightCount, .texel = boxes.texel};
-    for (int level = 0; level < placement.levels(); ++level) {
-      const auto i = static_cast<std::size_t>(level);
-      const VoxelRange stays = before.rangeOf(level).within(placement.rangeOf(level));
-      moved.stayFirst[i] = {stays.first, 0};
-      moved.stayEnd[i] = {stays.end, 0};
-    }
-    const shader::BindingSet bindings{clipmapBinding(clipmap), clipmap_changed::clipmapCells(result)};
-    frame.dispatchList(
-        frame.program(clipmap_changed::Variant{.lights = light.shadow.present()}),
-        {bindings, boxes.bindings(), clipmap_changed::moved(moved), clipmap_changed::moving(boxes.bounds),
-         clipmap_changed::clipmapOccupied(clipmap.occupied)},
-        cells * levelCount);
-    for (int level = 1; level < placement.levels(); ++level)
-      frame.dispatchList(frame.program(clipmap_changed::Variant{.finer = 1}),
-                         {bindings, clipmap_changed::level({level})}, cells);
+    frame.dispatchList(frame.program(clipmap_changed::Variant{.lights = light.shadow.present()}),
+                       {clipmapBinding(clipmap), clipmap_changed::clipmapCells(result), boxes.bindings(),
+                        clipmap_changed::moved(moved), clipmap_changed::moving(boxes.bounds),
+                        clipmap_changed::clipmapOccupied(clipmap.occupied)},
+                       cells * levelCount);
     return result;
   }
 
@@ -255,10 +244,9 @@ class ClipmapPass : public Pass {
     std::vector<RadianceClipmap::Level> before = state.clipmap.levels;
     place(frame, state.clipmap, placement);
     tellChange(state.clipmap.change, std::move(before), placement.levels(), all, ranges);
-    state.clipmap.change.cells = moves && !all
-                                     ? changedCells(frame, state.clipmap, state.placement, placement,
-                                                    Changes::atEither(*moving, *state.moving))
-                                     : nullptr;
+    state.clipmap.change.cells = moves && !all ? changedCells(frame, state.clipmap, placement,
+                                                              Changes::atEither(*moving, *state.moving))
+                                               : nullptr;
     if (all) {
       for (const gpu::TextureRef& face : state.clipmap.faces) face->clear(glm::vec4(0.0f));
       state.clipmap.occupied->clear();
@@ -448,9 +436,8 @@ class ClipmapFilterPass : public Pass {
     });
     const bool all = result.change.all || made->number + 1 != result.change.number;
     made->number = result.change.number;
-    // Ramps that move with their levels change more than the cells say.
-    const bool onlyChanges = !all && result.change.cells != nullptr && stays(result);
-    // What differs from before, as it is read, level by level.
+    const Lists lists(frame, result);
+    // What differs from before, as it is read, lies in these, level by level.
     VoxelRange changed = result.change.voxelized.front();
     const int count = static_cast<int>(result.levels.size());
     for (int level = 1; level < count; ++level) {
@@ -459,54 +446,79 @@ class ClipmapFilterPass : public Pass {
       const bool above = level >= result.around;
       const RadianceClipmap::Block& block = above ? there.own : there.inner;
       const VoxelRange addresses{block.voxels.first, block.voxels.first + block.period};
-      const std::size_t moving = std::min(i, static_cast<std::size_t>(result.around)) - 1;
-      // Where the finer level has moved its border has, and with it the ramp.
-      const bool anew = all || movedBy(result, moving) > 0;
       VoxelRange touched = coarserTouching(changed);
       if (!above) touched = touched.around(result.change.voxelized[i]);
-      const VoxelRange part = (anew ? addresses : touched).within(addresses);
-      changed = touched;
-      if (anew) changed = changed.around(block.voxels);
+      // Where the finer level has moved its border has, and with it the ramp.
+      const bool anew = all || hasMoved(result, std::min(i, static_cast<std::size_t>(result.around)) - 1);
+      changed = anew ? touched.around(block.voxels) : touched;
       if (anew && !all && !above) changed = changed.around(result.change.before[i].inner.voxels);
-      if (part.empty()) continue;
-      // Behind the ramp, and everywhere where it has not moved, only what has changed differs.
-      float settled = RadianceClipmap::kEndless;
-      if (!anew) {
-        settled = -RadianceClipmap::kEndless;
-      } else if (!all && !above && sameSides(result, moving)) {
-        settled = result.ramp + 2.0f + static_cast<float>(movedBy(result, moving));
-      }
-      frame.dispatch(
-          frame.program(
-              clipmap_filter::Variant{.above = above, .changed = onlyChanges && level <= result.around}),
-          {clipmap_filter::level({part.first, level, part.end, settled, touched.first, 0, touched.end}),
-           facesOf(result.faces, gpu::Sampling::nearest), writing(result),
-           clipmap_filter::clipmapCells(result.change.cells)},
-          part.size());
+      make(frame, result, lists, level, (anew ? addresses : touched).within(addresses), all);
     }
     result.filledLevels = count;
     mips = result;
   }
 
-  static bool stays(const RadianceClipmap& clipmap) {
-    for (std::size_t level = 0; level < static_cast<std::size_t>(clipmap.around); ++level)
-      if (movedBy(clipmap, level) > 0) return false;
-    return true;
+  /// What is made anew: a list for each level, one after another in the same memory, and a bit for each
+  /// voxel.
+  struct Lists {
+    gpu::BufferRef heads, items, madeAnew;
+
+    Lists(PassContext& frame, const RadianceClipmap& clipmap)
+        : madeAnew(frame.buffer(clipmap.occupied->sizeBytes(), "voxels of levels made anew")) {
+      madeAnew->clear();
+      const std::vector<std::array<std::uint32_t, 4>> none(clipmap.levels.size(), {0, 0, 1, 1});
+      heads = frame.uploaded(none, "how many voxels of levels to make");
+      std::uint64_t most = 0;
+      for (std::size_t level = 1; level < clipmap.levels.size(); ++level)
+        for (const RadianceClipmap::Block* block :
+             {&clipmap.levels[level].own, &clipmap.levels[level].inner}) {
+          if (static_cast<int>(level) < clipmap.around && block == &clipmap.levels[level].own) continue;
+          const auto along = static_cast<std::uint64_t>(block->period);
+          most = std::max(most, along * along * along);
+        }
+      items = frame.elements(clipmap_anew::listItems, most, "voxels of a level to make");
+    }
+  };
+
+  /// Of a level what differs in these voxels.
+  static void make(PassContext& frame, const RadianceClipmap& clipmap, const Lists& lists, int level,
+                   const VoxelRange& part, bool all) {
+    if (part.empty()) return;
+    const auto i = static_cast<std::size_t>(level);
+    const bool above = level >= clipmap.around;
+    clipmap_anew::Level differing{.firstMade = part.first, .level = level, .endMade = part.end};
+    if (!all) {
+      differing.had = hadOf(clipmap.change.before[i]);
+      differing.finerHad = hadOf(clipmap.change.before[i - 1]);
+    }
+    frame.dispatch(
+        frame.program(
+            clipmap_anew::Variant{.above = above, .cells = !all && clipmap.change.cells != nullptr}),
+        {clipmapBinding(clipmap), clipmap_anew::level(differing), clipmap_anew::listHeads(lists.heads),
+         clipmap_anew::listItems(lists.items), clipmap_anew::madeAnew(lists.madeAnew),
+         clipmap_anew::clipmapOccupied(clipmap.occupied), clipmap_anew::clipmapCells(clipmap.change.cells)},
+        part.size());
+    frame.dispatchIndirect(
+        frame.program(clipmap_filter::Variant{.above = above}),
+        {clipmap_filter::level({part.first, level}), facesOf(clipmap.faces, gpu::Sampling::nearest),
+         writing(clipmap), clipmap_filter::listHeads(lists.heads), clipmap_filter::listItems(lists.items)},
+        *lists.heads, i * clipmap_anew::listHeads.elementBytes + sizeof(std::uint32_t));
   }
-  /// Voxels by which a level has moved, along the axis along which it is the most.
-  static int movedBy(const RadianceClipmap& clipmap, std::size_t level) {
-    if (clipmap.change.before.empty()) return 0;
-    const glm::ivec3 way =
-        glm::abs(clipmap.levels[level].own.voxels.first - clipmap.change.before[level].own.voxels.first);
-    return std::max({way.x, way.y, way.z});
+
+  /// What a level had.
+  static clipmap_anew::Had hadOf(const RadianceClipmap::Level& level) {
+    int endless = 0;  // LevelEnds::endless
+    for (int axis = 0; axis < 3; ++axis) {
+      if (level.reachFirst[axis] <= -RadianceClipmap::kEndless) endless |= 1 << axis;
+      if (level.reachEnd[axis] >= RadianceClipmap::kEndless) endless |= 8 << axis;
+    }
+    return {.ownFirst = {level.own.voxels.first, endless},
+            .ownEnd = {level.own.voxels.end, 0},
+            .innerFirst = {level.inner.voxels.first, 0},
+            .innerEnd = {level.inner.voxels.end, 0}};
   }
-  /// Whether the store ends at the same sides of a level as before.
-  static bool sameSides(const RadianceClipmap& clipmap, std::size_t level) {
-    const RadianceClipmap::Level &a = clipmap.levels[level], &b = clipmap.change.before[level];
-    const auto ends = [](const glm::vec3& reach) {
-      return glm::greaterThan(glm::abs(reach), glm::vec3(0.5f * RadianceClipmap::kEndless));
-    };
-    return ends(a.reachFirst) == ends(b.reachFirst) && ends(a.reachEnd) == ends(b.reachEnd);
+  static bool hasMoved(const RadianceClipmap& clipmap, std::size_t level) {
+    return clipmap.levels[level].own.voxels != clipmap.change.before[level].own.voxels;
   }
 };
 
