@@ -33,26 +33,26 @@ layout(std140, binding = 0) uniform Level {
 // By places, as the bits of what is occupied.
 layout(std430, binding = 5) buffer MadeAnew { uint madeAnew[]; };
 
-bool isMadeAnew(ClipmapPlace place) { return (madeAnew[place.word] & place.bit) != 0u; }
-bool isIn(ivec4 first, ivec4 end, ivec3 voxel) {
-  return all(greaterThanEqual(voxel, first.xyz)) && all(lessThan(voxel, end.xyz));
-}
-
-// Whether what was voxelized differs, of a level around the camera.
-bool differsAsVoxelized(int of, Had before, ivec3 voxel) {
-  if (!isIn(before.ownFirst, before.ownEnd, voxel)) return true;
+// Whether what was voxelized differs, of a level around the camera that begins there.
+bool differsAsVoxelized(int of, ivec4 first, Had before, ivec3 voxel) {
+  bool differs = !isIn(before.ownFirst, before.ownEnd, voxel);
 #if CELLS
-  return clipmapCells[cellIndex(of, voxel - ownFirst[of].xyz, ownFirst[of].w)] != 0u;
-#else
-  return false;
+  differs = differs || clipmapCells[cellIndex(of, voxel - first.xyz, first.w)] != 0u;
 #endif
+  return differs;
 }
-// Whether a child differs as it is read.
-bool differsAsRead(int finer, ivec3 voxel, ClipmapPlace place) {
-  if (finer >= clipmapLevels) return !isIn(finerHad.ownFirst, finerHad.ownEnd, voxel) || isMadeAnew(place);
-  bool wasInner = isIn(finerHad.innerFirst, finerHad.innerEnd, voxel);
-  if (isInner(finer, voxel)) return !wasInner || isMadeAnew(place);
-  return wasInner || differsAsVoxelized(finer, finerHad, voxel);
+// Whether a child differs as it is read. (Without branches: most of what children are asked for is the same for all of them.)
+bool differsAsRead(int finer, LevelBlocks blocks, ivec3 voxel, bool isAnew) {
+  bool wasOwn = isIn(finerHad.ownFirst, finerHad.ownEnd, voxel), wasInner = isIn(finerHad.innerFirst, finerHad.innerEnd, voxel);
+  bool inner = isIn(blocks.innerFirst, blocks.innerEnd, voxel);
+  bool whereMade = isAnew || !(inner ? wasInner : wasOwn);
+  bool isMade = inner || finer >= clipmapLevels;
+#if CELLS
+  if (isMade) return whereMade;
+  return wasInner || differsAsVoxelized(finer, blocks.ownFirst, finerHad, voxel);
+#else
+  return isMade ? whereMade : wasInner || !wasOwn;
+#endif
 }
 
 void main() {
@@ -70,22 +70,23 @@ void main() {
 #endif
   bool differs = !isVoxel || !was || share != shareBefore, occupied = isOccupied(place);
 #if !ABOVE
-  if (isVoxel && share < 1.0) {
-    occupied = occupied || isOccupied(ownPlace(level, voxel));
-    differs = differs || differsAsVoxelized(level, had, voxel);
-  }
+  bool takesOwn = isVoxel && share < 1.0;
+  occupied = occupied || (takesOwn && isOccupied(ownPlace(level, voxel)));
+  differs = differs || (takesOwn && differsAsVoxelized(level, ownFirst[level], had, voxel));
 #endif
-  if (isVoxel && share > 0.0)
-    for (int i = 0; i < 8; ++i) {
-      ivec3 child = childOf(voxel, i);
-      if (isOfLevel(level - 1, child)) {
-        ClipmapPlace of = readPlace(level - 1, child);
-        occupied = occupied || isOccupied(of);
-        differs = differs || differsAsRead(level - 1, child, of);
-      } else {
-        differs = differs || isIn(finerHad.ownFirst, finerHad.ownEnd, child);
-      }
-    }
+  bool takesChildren = isVoxel && share > 0.0;
+  LevelBlocks finer = blocksOf(level - 1);
+  uint found = 0u;
+  for (int i = 0; i < 8; ++i) {
+    ivec3 child = childOf(voxel, i);
+    bool there = isOfLevel(finer, child);
+    ClipmapPlace of = readPlace(finer, child);
+    uint word = there ? of.word : 0u, bit = there ? of.bit : 0u;
+    found |= clipmapOccupied[word] & bit;
+    bool anew = there ? differsAsRead(level - 1, finer, child, (madeAnew[word] & bit) != 0u) : isIn(finerHad.ownFirst, finerHad.ownEnd, child);
+    differs = differs || (takesChildren && anew);
+  }
+  occupied = occupied || (takesChildren && found != 0u);
   if (!differs || !occupied) return;
   putItem(level, packVoxel(voxel - firstMade));
   atomicOr(madeAnew[place.word], place.bit);

@@ -1,11 +1,22 @@
-// The place of a voxel of a clipmap as the coarser level reads it: of what the level shares with the finer one, as that one makes it.
-ClipmapPlace readPlace(int level, ivec3 voxel) {
-  bool inner = isInner(level, voxel);
-  return placeIn(inner ? innerFirst[level] : ownFirst[level], inner ? innerEnd[level] : ownEnd[level], inner ? innerTexel[level] : ownTexel[level],
-                 inner ? innerStart[level] : ownStart[level], voxel);
+// The children of a voxel of a clipmap, in the next finer level as it is read: of what that one shares with its finer one, as the latter makes it.
+
+// What is known of a level, read once.
+struct LevelBlocks {
+  ivec4 ownFirst, ownEnd, ownTexel, ownStart;
+  ivec4 innerFirst, innerEnd, innerTexel, innerStart;
+};
+LevelBlocks blocksOf(int level) {
+  return LevelBlocks(ownFirst[level], ownEnd[level], ownTexel[level], ownStart[level], innerFirst[level], innerEnd[level], innerTexel[level],
+                     innerStart[level]);
+}
+bool isIn(ivec4 first, ivec4 end, ivec3 voxel) {
+  return all(greaterThanEqual(voxel, first.xyz)) && all(lessThan(voxel, end.xyz));
+}
+ClipmapPlace readPlace(LevelBlocks blocks, ivec3 voxel) {
+  bool inner = isIn(blocks.innerFirst, blocks.innerEnd, voxel);
+  return placeIn(inner ? blocks.innerFirst : blocks.ownFirst, inner ? blocks.innerEnd : blocks.ownEnd,
+                 inner ? blocks.innerTexel : blocks.ownTexel, inner ? blocks.innerStart : blocks.ownStart, voxel);
 }
 ivec3 childOf(ivec3 voxel, int i) { return 2 * voxel + ivec3(i & 1, i >> 1 & 1, i >> 2); }
 // A voxel at the border of the coarsest level may reach beyond it.
-bool isOfLevel(int level, ivec3 voxel) {
-  return all(greaterThanEqual(voxel, ownFirst[level].xyz)) && all(lessThan(voxel, ownEnd[level].xyz));
-}
+bool isOfLevel(LevelBlocks blocks, ivec3 voxel) { return isIn(blocks.ownFirst, blocks.ownEnd, voxel); }

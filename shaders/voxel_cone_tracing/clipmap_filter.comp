@@ -29,13 +29,14 @@ struct Children {
   uint occupied;
 };
 Children childrenOf(int finer, ivec3 voxel) {
+  LevelBlocks blocks = blocksOf(finer);
   Children result;
   result.occupied = 0u;
   for (int i = 0; i < 8; ++i) {
     ivec3 child = childOf(voxel, i);
     result.texels[i] = ivec3(0);
-    if (!isOfLevel(finer, child)) continue;
-    ClipmapPlace place = readPlace(finer, child);
+    if (!isOfLevel(blocks, child)) continue;
+    ClipmapPlace place = readPlace(blocks, child);
     if (!isOccupied(place)) continue;
     result.occupied |= 1u << i;
     result.texels[i] = place.texel;
