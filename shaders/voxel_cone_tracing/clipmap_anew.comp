@@ -88,6 +88,6 @@ void main() {
   }
   occupied = occupied || (takesChildren && found != 0u);
   if (!differs || !occupied) return;
-  putItem(level, packVoxel(voxel - firstMade));
+  putItem(level, packVoxel(voxel - firstMade), 1u);
   atomicOr(madeAnew[place.word], place.bit);
 }

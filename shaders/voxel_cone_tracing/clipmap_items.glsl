@@ -11,17 +11,18 @@ struct ListHead {
   uint groupsX, groupsY, groupsZ;
 };
 #ifdef ITEMS_BUILD
-layout(std430, binding = 6) buffer ListHeads { ListHead heads[]; };
-layout(std430, binding = 7) writeonly buffer ListItems { uint items[]; };
+layout(std430, binding = 11) buffer ListHeads { ListHead heads[]; };
+layout(std430, binding = 12) writeonly buffer ListItems { uint items[]; };
 
-void putItem(int list, uint item) {
+// `each`: invocations for an item.
+void putItem(int list, uint item, uint each) {
   uint place = atomicAdd(heads[list].count, 1u);
   items[place] = item;
-  atomicMax(heads[list].groupsX, min(place / kItemGroup + 1u, kMostGroups));
+  atomicMax(heads[list].groupsX, min(place * each / kItemGroup + 1u, kMostGroups));
 }
 #else
-layout(std430, binding = 6) readonly buffer ListHeads { ListHead heads[]; };
-layout(std430, binding = 7) readonly buffer ListItems { uint items[]; };
+layout(std430, binding = 11) readonly buffer ListHeads { ListHead heads[]; };
+layout(std430, binding = 12) readonly buffer ListItems { uint items[]; };
 #endif
 
 #endif

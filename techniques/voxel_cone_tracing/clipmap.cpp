@@ -51,6 +51,24 @@ struct ClipmapStack {
   glm::ivec3 size() const { return {side, side * rows, side * row}; }
 };
 
+/// Lists of what needs work, one after another in the same memory (clipmap_items.glsl).
+struct ItemLists {
+  gpu::BufferRef heads, items;
+
+  ItemLists(PassContext& frame, std::size_t lists, std::uint64_t most) {
+    const std::vector<std::array<std::uint32_t, 4>> none(lists, {0, 0, 1, 1});
+    heads = frame.uploaded(none, "how many voxels of levels need work");
+    items = frame.elements(clipmap_anew::listItems, most, "voxels of levels that need work");
+  }
+  shader::BindingSet bindings() const {
+    return {clipmap_anew::listHeads(heads), clipmap_anew::listItems(items)};
+  }
+  /// Where the arguments of the dispatch over a list lie in `heads`.
+  static std::uint64_t argumentsBytes(std::size_t list) {
+    return list * clipmap_anew::listHeads.elementBytes + sizeof(std::uint32_t);
+  }
+};
+
 /// What the voxels were lit by: resources that are held, so that no others can take their place unseen.
 struct LitBy {
   LightPlacement lights;
@@ -106,6 +124,8 @@ class ClipmapPass : public Pass {
   std::uint64_t roomForAll_ = 0, roomForParts_ = 0;
   /// Rows of tiles of large triangles that a draw may put aside; what does not fit is done without.
   static constexpr std::uint32_t kRowCapacity = 1u << 16;
+  /// Triangles that are looked at before what is found of them is voxelized: bounds the list of it.
+  static constexpr std::uint32_t kTrianglesAtOnce = 1u << 16;
   static constexpr std::uint64_t kRowHeadBytes = 4 * sizeof(std::uint32_t);
   static constexpr int kGroup = 64;  ///< invocations of passes over the list
 
@@ -213,22 +233,26 @@ class ClipmapPass : public Pass {
   }
 
   /// Which cells differ from the frame before, a word each (clipmap_cells.glsl): those that something moving
-  /// has left or come to, and those that lie behind it in the shadow map.
-  gpu::BufferRef changedCells(PassContext& frame, const RadianceClipmap& clipmap,
-                              const ClipmapPlacement& placement, const std::vector<Bounds>& moving) const {
+  /// has left or come to, and those that lie behind it in the shadow map. Empties them.
+  gpu::BufferRef emptyChangedCells(PassContext& frame, const RadianceClipmap& clipmap,
+                                   const ClipmapPlacement& placement,
+                                   const std::vector<Bounds>& moving) const {
     const std::uint64_t along = (static_cast<std::uint64_t>(placement.resolution) + 3) / 4,
                         cells = along * along * along,
                         levelCount = static_cast<std::uint64_t>(placement.levels());
     const gpu::BufferRef result =
         frame.elements(clipmap_changed::clipmapCells, cells * levelCount, "changed cells of levels");
+    const ItemLists full(frame, 1, cells * levelCount);
     const BoxesInViews boxes(frame, light.shadow, moving);
     const clipmap_changed::Moved moved{
         .boxCount = boxes.count, .lightCount = boxes.lightCount, .texel = boxes.texel};
     frame.dispatchList(frame.program(clipmap_changed::Variant{.lights = light.shadow.present()}),
                        {clipmapBinding(clipmap), clipmap_changed::clipmapCells(result), boxes.bindings(),
-                        clipmap_changed::moved(moved), clipmap_changed::moving(boxes.bounds),
+                        full.bindings(), clipmap_changed::moved(moved), clipmap_changed::moving(boxes.bounds),
                         clipmap_changed::clipmapOccupied(clipmap.occupied)},
                        cells * levelCount);
+    frame.dispatchIndirect(frame.program(clipmap_clear::Variant{.changed = 1}),
+                           {writing(clipmap), full.bindings()}, *full.heads, ItemLists::argumentsBytes(0));
     return result;
   }
 
@@ -244,18 +268,19 @@ class ClipmapPass : public Pass {
     std::vector<RadianceClipmap::Level> before = state.clipmap.levels;
     place(frame, state.clipmap, placement);
     tellChange(state.clipmap.change, std::move(before), placement.levels(), all, ranges);
-    state.clipmap.change.cells = moves && !all ? changedCells(frame, state.clipmap, placement,
-                                                              Changes::atEither(*moving, *state.moving))
+    state.clipmap.change.cells = moves && !all ? emptyChangedCells(frame, state.clipmap, placement,
+                                                                   Changes::atEither(*moving, *state.moving))
                                                : nullptr;
     if (all) {
       for (const gpu::TextureRef& face : state.clipmap.faces) face->clear(glm::vec4(0.0f));
       state.clipmap.occupied->clear();
     } else {
       for (const LevelRange& range : ranges)
-        frame.dispatch(frame.program(clipmap_clear::Variant{.changed = range.onlyChanges}),
-                       {clipmap_clear::box({range.voxels.first, range.level, range.voxels.end}),
-                        writing(state.clipmap), clipmap_clear::clipmapCells(state.clipmap.change.cells)},
-                       range.voxels.size());
+        if (!range.onlyChanges)
+          frame.dispatch(frame.program(clipmap_clear::Variant{}),
+                         {clipmap_clear::box({range.voxels.first, range.level, range.voxels.end}),
+                          writing(state.clipmap)},
+                         range.voxels.size());
     }
     if (!ranges.empty()) fill(frame, state.clipmap, placement, ranges, all ? roomForAll_ : roomForParts_);
     state.placement = placement;
@@ -365,32 +390,45 @@ class ClipmapPass : public Pass {
     while (2 * mostScale <= supersampling) mostScale *= 2;
     const gpu::BufferRef rows = frame.buffer(
         kRowHeadBytes + kRowCapacity * clipmap_voxelize::rows.elementBytes, "rows of large triangles");
-    for (const SceneDraw& draw : frame.scene().draws()) {
-      const std::array<std::uint32_t, 4> noRows{0, 0, 1, 1};
-      rows->uploadValues(std::span<const std::uint32_t>(noRows));
-      const int triangles = static_cast<int>(draw.indexCount / 3);
-      const SceneBinding scene(frame, draw);
-      auto variant =
-          scene.in(clipmap_voxelize::Variant{.sampled = isSampled(), .changed = changedCells != nullptr});
-      const shader::BindingSet bindings{
-          scene,
-          stack,
-          clipmap_voxelize::part({.firstIndex = static_cast<int>(draw.firstIndex),
-                                  .triangleCount = triangles,
-                                  .capacity = static_cast<int>(list.capacity),
-                                  .rowCapacity = static_cast<int>(kRowCapacity),
-                                  .mostScale = mostScale,
-                                  .thickness = thickness}),
-          clipmap_voxelize::boxes(boxes),
-          clipmap_voxelize::count(list.count),
-          clipmap_voxelize::fragments(list.fragments),
-          clipmap_voxelize::sideMasks(sideMasks),
-          clipmap_voxelize::rows(rows),
-          clipmap_voxelize::clipmapCells(changedCells)};
-      frame.dispatch(frame.program(variant), bindings, {triangles, static_cast<int>(ranges.size()), 1});
-      variant.large = 1;
-      frame.dispatchIndirect(frame.program(variant), bindings, *rows, sizeof(std::uint32_t));
-    }
+    const auto boxCount = static_cast<std::uint32_t>(ranges.size());
+    std::uint32_t most = 0;
+    for (const SceneDraw& draw : frame.scene().draws()) most = std::max(most, draw.indexCount / 3);
+    const gpu::BufferRef few =
+        frame.buffer(kRowHeadBytes + std::uint64_t{boxCount} * std::min(most, kTrianglesAtOnce) *
+                                         clipmap_voxelize::few.elementBytes,
+                     "triangles of few voxels");
+    const shader::BindingSet lists{stack,
+                                   clipmap_voxelize::boxes(boxes),
+                                   clipmap_voxelize::count(list.count),
+                                   clipmap_voxelize::fragments(list.fragments),
+                                   clipmap_voxelize::sideMasks(sideMasks),
+                                   clipmap_voxelize::rows(rows),
+                                   clipmap_voxelize::few(few),
+                                   clipmap_voxelize::clipmapCells(changedCells)};
+    for (const SceneDraw& draw : frame.scene().draws())
+      for (std::uint32_t first = 0; first < draw.indexCount; first += 3 * kTrianglesAtOnce) {
+        const std::array<std::uint32_t, 4> none{0, 0, 1, 1};
+        rows->uploadValues(std::span<const std::uint32_t>(none));
+        few->uploadValues(std::span<const std::uint32_t>(none));
+        const std::uint32_t triangles = std::min((draw.indexCount - first) / 3, kTrianglesAtOnce);
+        const SceneBinding scene(frame, draw);
+        auto variant =
+            scene.in(clipmap_voxelize::Variant{.sampled = isSampled(), .changed = changedCells != nullptr});
+        const shader::BindingSet bindings{
+            scene, lists,
+            clipmap_voxelize::part({.firstIndex = static_cast<int>(draw.firstIndex + first),
+                                    .triangleCount = static_cast<int>(triangles),
+                                    .capacity = static_cast<int>(list.capacity),
+                                    .rowCapacity = static_cast<int>(kRowCapacity),
+                                    .mostScale = mostScale,
+                                    .thickness = thickness})};
+        frame.dispatch(frame.program(variant), bindings,
+                       {static_cast<int>(triangles), static_cast<int>(boxCount), 1});
+        variant.stage = clipmap_voxelize::Variant::stageSmall;
+        frame.dispatchIndirect(frame.program(variant), bindings, *few, sizeof(std::uint32_t));
+        variant.stage = clipmap_voxelize::Variant::stageLarge;
+        frame.dispatchIndirect(frame.program(variant), bindings, *rows, sizeof(std::uint32_t));
+      }
   }
 
   /// Where a frame wanted more than there was room for, it is rendered again with an eighth more than that.
@@ -436,7 +474,9 @@ class ClipmapFilterPass : public Pass {
     });
     const bool all = result.change.all || made->number + 1 != result.change.number;
     made->number = result.change.number;
-    const Lists lists(frame, result);
+    const ItemLists lists(frame, result.levels.size(), largestMade(result));
+    const gpu::BufferRef madeAnew = frame.buffer(result.occupied->sizeBytes(), "voxels of levels made anew");
+    madeAnew->clear();
     // What differs from before, as it is read, lies in these, level by level.
     VoxelRange changed = result.change.voxelized.front();
     const int count = static_cast<int>(result.levels.size());
@@ -452,37 +492,27 @@ class ClipmapFilterPass : public Pass {
       const bool anew = all || hasMoved(result, std::min(i, static_cast<std::size_t>(result.around)) - 1);
       changed = anew ? touched.around(block.voxels) : touched;
       if (anew && !all && !above) changed = changed.around(result.change.before[i].inner.voxels);
-      make(frame, result, lists, level, (anew ? addresses : touched).within(addresses), all);
+      make(frame, result, lists, madeAnew, level, (anew ? addresses : touched).within(addresses), all);
     }
     result.filledLevels = count;
     mips = result;
   }
 
-  /// What is made anew: a list for each level, one after another in the same memory, and a bit for each
-  /// voxel.
-  struct Lists {
-    gpu::BufferRef heads, items, madeAnew;
-
-    Lists(PassContext& frame, const RadianceClipmap& clipmap)
-        : madeAnew(frame.buffer(clipmap.occupied->sizeBytes(), "voxels of levels made anew")) {
-      madeAnew->clear();
-      const std::vector<std::array<std::uint32_t, 4>> none(clipmap.levels.size(), {0, 0, 1, 1});
-      heads = frame.uploaded(none, "how many voxels of levels to make");
-      std::uint64_t most = 0;
-      for (std::size_t level = 1; level < clipmap.levels.size(); ++level)
-        for (const RadianceClipmap::Block* block :
-             {&clipmap.levels[level].own, &clipmap.levels[level].inner}) {
-          if (static_cast<int>(level) < clipmap.around && block == &clipmap.levels[level].own) continue;
-          const auto along = static_cast<std::uint64_t>(block->period);
-          most = std::max(most, along * along * along);
-        }
-      items = frame.elements(clipmap_anew::listItems, most, "voxels of a level to make");
+  /// Voxels of the largest block that is made.
+  static std::uint64_t largestMade(const RadianceClipmap& clipmap) {
+    std::uint64_t result = 0;
+    for (std::size_t level = 1; level < clipmap.levels.size(); ++level) {
+      const RadianceClipmap::Level& there = clipmap.levels[level];
+      const bool above = static_cast<int>(level) >= clipmap.around;
+      const auto along = static_cast<std::uint64_t>((above ? there.own : there.inner).period);
+      result = std::max(result, along * along * along);
     }
-  };
+    return result;
+  }
 
   /// Of a level what differs in these voxels.
-  static void make(PassContext& frame, const RadianceClipmap& clipmap, const Lists& lists, int level,
-                   const VoxelRange& part, bool all) {
+  static void make(PassContext& frame, const RadianceClipmap& clipmap, const ItemLists& lists,
+                   const gpu::BufferRef& madeAnew, int level, const VoxelRange& part, bool all) {
     if (part.empty()) return;
     const auto i = static_cast<std::size_t>(level);
     const bool above = level >= clipmap.around;
@@ -491,18 +521,17 @@ class ClipmapFilterPass : public Pass {
       differing.had = hadOf(clipmap.change.before[i]);
       differing.finerHad = hadOf(clipmap.change.before[i - 1]);
     }
-    frame.dispatch(
-        frame.program(
-            clipmap_anew::Variant{.above = above, .cells = !all && clipmap.change.cells != nullptr}),
-        {clipmapBinding(clipmap), clipmap_anew::level(differing), clipmap_anew::listHeads(lists.heads),
-         clipmap_anew::listItems(lists.items), clipmap_anew::madeAnew(lists.madeAnew),
-         clipmap_anew::clipmapOccupied(clipmap.occupied), clipmap_anew::clipmapCells(clipmap.change.cells)},
-        part.size());
+    frame.dispatch(frame.program(clipmap_anew::Variant{.above = above,
+                                                       .cells = !all && clipmap.change.cells != nullptr}),
+                   {clipmapBinding(clipmap), clipmap_anew::level(differing), lists.bindings(),
+                    clipmap_anew::madeAnew(madeAnew), clipmap_anew::clipmapOccupied(clipmap.occupied),
+                    clipmap_anew::clipmapCells(clipmap.change.cells)},
+                   part.size());
     frame.dispatchIndirect(
         frame.program(clipmap_filter::Variant{.above = above}),
         {clipmap_filter::level({part.first, level}), facesOf(clipmap.faces, gpu::Sampling::nearest),
-         writing(clipmap), clipmap_filter::listHeads(lists.heads), clipmap_filter::listItems(lists.items)},
-        *lists.heads, i * clipmap_anew::listHeads.elementBytes + sizeof(std::uint32_t));
+         writing(clipmap), lists.bindings()},
+        *lists.heads, ItemLists::argumentsBytes(i));
   }
 
   /// What a level had.
