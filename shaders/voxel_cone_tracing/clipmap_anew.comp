@@ -4,9 +4,16 @@
 // them for the next coarser level.
 //
 // CELLS: what was voxelized differs in changed cells as well, and not only where the level has come to.
+// LISTED: nothing else does: only the voxels of cells are looked at that clipmap_coarser.comp has listed.
 #pragma lumivox axis ABOVE 0 1
 #pragma lumivox axis CELLS 0 1
+#pragma lumivox axis LISTED 0 1
+#pragma lumivox require !LISTED || CELLS
+#if LISTED
+layout(local_size_x = 64) in;
+#else
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+#endif
 #include "common/voxel.glsl"
 #include "clipmap.glsl"
 #include "clipmap_occupied.glsl"
@@ -16,6 +23,11 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #include "clipmap_items.glsl"
 #if CELLS
 #include "clipmap_cells.glsl"
+#endif
+#if LISTED
+#include "clipmap_cell_voxels.glsl"
+layout(std430, binding = 9) readonly buffer CellHeads { ListHead cellHeads[]; };
+layout(std430, binding = 10) readonly buffer CellItems { uint cellItems[]; };
 #endif
 
 // What a level had in the frame before: nothing where all is made anew.
@@ -55,9 +67,7 @@ bool differsAsRead(int finer, LevelBlocks blocks, ivec3 voxel, bool isAnew) {
 #endif
 }
 
-void main() {
-  ivec3 voxel = firstMade + ivec3(gl_GlobalInvocationID);
-  if (any(greaterThanEqual(voxel, endMade))) return;
+void look(ivec3 voxel) {
 #if ABOVE
   bool isVoxel = all(lessThan(voxel, ownEnd[level].xyz)), was = isIn(had.ownFirst, had.ownEnd, voxel);
   ClipmapPlace place = ownPlace(level, voxel);
@@ -91,3 +101,21 @@ void main() {
   putItem(level, packVoxel(voxel - firstMade), 1u);
   atomicOr(madeAnew[place.word], place.bit);
 }
+
+#if LISTED
+void main() {
+  int lane = int(gl_LocalInvocationID.x);
+  uint count = cellHeads[level].count;
+  for (uint i = gl_WorkGroupID.x; i < count; i += gl_NumWorkGroups.x) {
+    ivec3 first, end;
+    voxelsOfCell(level, int(cellItems[i]), first, end);
+    ivec3 voxel = first + ivec3(lane & 3, lane >> 2 & 3, lane >> 4);
+    if (all(greaterThanEqual(voxel, firstMade)) && all(lessThan(voxel, min(end, endMade)))) look(voxel);
+  }
+}
+#else
+void main() {
+  ivec3 voxel = firstMade + ivec3(gl_GlobalInvocationID);
+  if (all(lessThan(voxel, endMade))) look(voxel);
+}
+#endif

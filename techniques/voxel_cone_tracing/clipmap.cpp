@@ -11,6 +11,7 @@
 #include <span>
 
 #include "changed_cells.h"
+#include "clipmap_items.h"
 #include "direct_light.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -49,24 +50,6 @@ struct ClipmapStack {
           levels, resolution, row * row));
   }
   glm::ivec3 size() const { return {side, side * rows, side * row}; }
-};
-
-/// Lists of what needs work, one after another in the same memory (clipmap_items.glsl).
-struct ItemLists {
-  gpu::BufferRef heads, items;
-
-  ItemLists(PassContext& frame, std::size_t lists, std::uint64_t most) {
-    const std::vector<std::array<std::uint32_t, 4>> none(lists, {0, 0, 1, 1});
-    heads = frame.uploaded(none, "how many voxels of levels need work");
-    items = frame.elements(clipmap_anew::listItems, most, "voxels of levels that need work");
-  }
-  shader::BindingSet bindings() const {
-    return {clipmap_anew::listHeads(heads), clipmap_anew::listItems(items)};
-  }
-  /// Where the arguments of the dispatch over a list lie in `heads`.
-  static std::uint64_t argumentsBytes(std::size_t list) {
-    return list * clipmap_anew::listHeads.elementBytes + sizeof(std::uint32_t);
-  }
 };
 
 /// What the voxels were lit by: resources that are held, so that no others can take their place unseen.
@@ -237,8 +220,7 @@ class ClipmapPass : public Pass {
   gpu::BufferRef emptyChangedCells(PassContext& frame, const RadianceClipmap& clipmap,
                                    const ClipmapPlacement& placement,
                                    const std::vector<Bounds>& moving) const {
-    const std::uint64_t along = (static_cast<std::uint64_t>(placement.resolution) + 3) / 4,
-                        cells = along * along * along,
+    const std::uint64_t cells = cellsOfLevel(placement.resolution),
                         levelCount = static_cast<std::uint64_t>(placement.levels());
     const gpu::BufferRef result =
         frame.elements(clipmap_changed::clipmapCells, cells * levelCount, "changed cells of levels");
@@ -477,6 +459,8 @@ class ClipmapFilterPass : public Pass {
     const ItemLists lists(frame, result.levels.size(), largestMade(result));
     const gpu::BufferRef madeAnew = frame.buffer(result.occupied->sizeBytes(), "voxels of levels made anew");
     madeAnew->clear();
+    std::optional<ReadCells> read;
+    if (!all && result.change.cells != nullptr && stays(result)) read.emplace(frame, result);
     // What differs from before, as it is read, lies in these, level by level.
     VoxelRange changed = result.change.voxelized.front();
     const int count = static_cast<int>(result.levels.size());
@@ -492,7 +476,11 @@ class ClipmapFilterPass : public Pass {
       const bool anew = all || hasMoved(result, std::min(i, static_cast<std::size_t>(result.around)) - 1);
       changed = anew ? touched.around(block.voxels) : touched;
       if (anew && !all && !above) changed = changed.around(result.change.before[i].inner.voxels);
-      make(frame, result, lists, madeAnew, level, (anew ? addresses : touched).within(addresses), all);
+      // Of the first level above those around the camera it is known, too.
+      const bool listed = read && level <= result.around;
+      if (listed) read->find(frame, result, level);
+      make(frame, result, lists, madeAnew, listed ? &read->lists : nullptr, level,
+           (anew ? addresses : touched).within(addresses), all);
     }
     result.filledLevels = count;
     mips = result;
@@ -510,9 +498,31 @@ class ClipmapFilterPass : public Pass {
     return result;
   }
 
+  /// While no level moves, the cells in which what is read differs from before, listed level by level.
+  struct ReadCells {
+    std::uint64_t cells;
+    gpu::BufferRef flags;
+    ItemLists lists;
+
+    ReadCells(PassContext& frame, const RadianceClipmap& clipmap)
+        : cells(cellsOfLevel(clipmap.levels.front().own.period)),
+          flags(frame.elements(clipmap_coarser::readCells,
+                               cells * (static_cast<std::uint64_t>(clipmap.around) + 1),
+                               "cells of levels that are read otherwise")),
+          lists(frame, clipmap.levels.size(), cells) {}
+    void find(PassContext& frame, const RadianceClipmap& clipmap, int level) const {
+      frame.dispatchList(
+          frame.program(clipmap_coarser::kProgram),
+          {clipmapBinding(clipmap), clipmap_coarser::level({level}), clipmap_coarser::readCells(flags),
+           clipmap_coarser::clipmapCells(clipmap.change.cells), lists.bindings()},
+          cells);
+    }
+  };
+
   /// Of a level what differs in these voxels.
   static void make(PassContext& frame, const RadianceClipmap& clipmap, const ItemLists& lists,
-                   const gpu::BufferRef& madeAnew, int level, const VoxelRange& part, bool all) {
+                   const gpu::BufferRef& madeAnew, const ItemLists* cells, int level, const VoxelRange& part,
+                   bool all) {
     if (part.empty()) return;
     const auto i = static_cast<std::size_t>(level);
     const bool above = level >= clipmap.around;
@@ -521,12 +531,22 @@ class ClipmapFilterPass : public Pass {
       differing.had = hadOf(clipmap.change.before[i]);
       differing.finerHad = hadOf(clipmap.change.before[i - 1]);
     }
-    frame.dispatch(frame.program(clipmap_anew::Variant{.above = above,
-                                                       .cells = !all && clipmap.change.cells != nullptr}),
-                   {clipmapBinding(clipmap), clipmap_anew::level(differing), lists.bindings(),
-                    clipmap_anew::madeAnew(madeAnew), clipmap_anew::clipmapOccupied(clipmap.occupied),
-                    clipmap_anew::clipmapCells(clipmap.change.cells)},
-                   part.size());
+    const shader::BindingSet bindings{clipmapBinding(clipmap),
+                                      clipmap_anew::level(differing),
+                                      lists.bindings(),
+                                      clipmap_anew::madeAnew(madeAnew),
+                                      clipmap_anew::clipmapOccupied(clipmap.occupied),
+                                      clipmap_anew::clipmapCells(clipmap.change.cells)};
+    clipmap_anew::Variant variant{.above = above, .cells = !all && clipmap.change.cells != nullptr};
+    if (cells != nullptr) {
+      variant.listed = 1;
+      frame.dispatchIndirect(
+          frame.program(variant),
+          {bindings, clipmap_anew::cellHeads(cells->heads), clipmap_anew::cellItems(cells->items)},
+          *cells->heads, ItemLists::argumentsBytes(i));
+    } else {
+      frame.dispatch(frame.program(variant), bindings, part.size());
+    }
     frame.dispatchIndirect(
         frame.program(clipmap_filter::Variant{.above = above}),
         {clipmap_filter::level({part.first, level}), facesOf(clipmap.faces, gpu::Sampling::nearest),
@@ -545,6 +565,11 @@ class ClipmapFilterPass : public Pass {
             .ownEnd = {level.own.voxels.end, 0},
             .innerFirst = {level.inner.voxels.first, 0},
             .innerEnd = {level.inner.voxels.end, 0}};
+  }
+  static bool stays(const RadianceClipmap& clipmap) {
+    for (std::size_t level = 0; level < static_cast<std::size_t>(clipmap.around); ++level)
+      if (hasMoved(clipmap, level)) return false;
+    return true;
   }
   static bool hasMoved(const RadianceClipmap& clipmap, std::size_t level) {
     return clipmap.levels[level].own.voxels != clipmap.change.before[level].own.voxels;
