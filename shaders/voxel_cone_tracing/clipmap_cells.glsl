@@ -1,11 +1,8 @@
-// Which cells of 4 x 4 x 4 voxels of the levels of a clipmap have changed while the levels stayed where they are: a word for each cell, level
-// after level, counted from the first voxel of the level.
+// In which cells of 4 x 4 x 4 voxels of the levels of a clipmap what is voxelized differs from the frame before: a word for each cell, 0 where
+// nothing does, level after level, counted from the first voxel of the level.
 // C++ side: RadianceClipmap::Change in techniques/voxel_cone_tracing/radiance_clipmap.h.
 #ifndef LUMIVOX_CLIPMAP_CELLS
 #define LUMIVOX_CLIPMAP_CELLS
-
-const uint kVoxelized = 1u;  // what was voxelized differs
-const uint kRead = 2u;       // what is read does: that, or what finer levels make of it
 
 #ifdef CELLS_BUILD
 #define CELLS_ACCESS

@@ -1,27 +1,19 @@
 #version 450
 // The voxels of a level of a clipmap that the finer one has too, as filter_directional.comp makes coarser levels: those of a level around the
 // camera, blended with what was voxelized by a ramp of the distance from the border of the finer level (thesis 004 Sec. 3.5.2), so that a
-// thing that comes into the finer level does not change by a leap; or all of a level above those.
-//
-// CHANGED: in the box of what differs from before only changed cells do.
+// thing that comes into the finer level does not change by a leap; or those of a level above those. Of those that clipmap_anew.comp has listed.
 #pragma lumivox axis ABOVE 0 1
-#pragma lumivox axis CHANGED 0 1
-layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-#include "clipmap_write.glsl"
-
+layout(local_size_x = 64) in;
 #include "common/cones.glsl"
-#if CHANGED
-#include "clipmap_cells.glsl"
-#endif
+#include "common/voxel.glsl"
+#include "clipmap_write.glsl"
+#include "clipmap_children.glsl"
+#include "clipmap_ramp.glsl"
+#include "clipmap_items.glsl"
 
 layout(std140, binding = 0) uniform Level {
-  ivec3 firstMade;  // voxels of the level that are made anew, and all addresses of the block that hold none
+  ivec3 firstMade;  // from which items count
   int level;
-  ivec3 endMade;
-  float settled;       // behind so many voxels from the finer level's border nothing differs from before but in these:
-  ivec3 firstTouched;
-  int unused;
-  ivec3 endTouched;
 };
 // By the outward normals of the faces.
 layout(binding = 0) uniform sampler3D positiveX;
@@ -37,35 +29,20 @@ struct Children {
   uint occupied;
 };
 Children childrenOf(int finer, ivec3 voxel) {
+  LevelBlocks blocks = blocksOf(finer);
   Children result;
   result.occupied = 0u;
   for (int i = 0; i < 8; ++i) {
-    ivec3 child = 2 * voxel + ivec3(i & 1, i >> 1 & 1, i >> 2);
+    ivec3 child = childOf(voxel, i);
     result.texels[i] = ivec3(0);
-    // A voxel at the border of the coarsest level may reach beyond it.
-    if (any(lessThan(child, ownFirst[finer].xyz)) || any(greaterThanEqual(child, ownEnd[finer].xyz))) continue;
-    bool inner = isInner(finer, child);
-    ClipmapPlace place = placeIn(inner ? innerFirst[finer] : ownFirst[finer], inner ? innerEnd[finer] : ownEnd[finer],
-                                 inner ? innerTexel[finer] : ownTexel[finer], inner ? innerStart[finer] : ownStart[finer], child);
+    if (!isOfLevel(blocks, child)) continue;
+    ClipmapPlace place = readPlace(blocks, child);
     if (!isOccupied(place)) continue;
     result.occupied |= 1u << i;
     result.texels[i] = place.texel;
   }
   return result;
 }
-
-#if CHANGED && ABOVE
-// Of the first level above those around the camera, whose finer one has cells.
-bool isChildRead(ivec3 voxel) {
-  int finer = level - 1;
-  ivec3 last = ownEnd[finer].xyz - 1 - ownFirst[finer].xyz;
-  for (int i = 0; i < 8; ++i) {
-    ivec3 child = clamp(2 * voxel + ivec3(i & 1, i >> 1 & 1, i >> 2) - ownFirst[finer].xyz, ivec3(0), last);
-    if ((clipmapCells[cellIndex(finer, child, ownFirst[finer].w)] & kRead) != 0u) return true;
-  }
-  return false;
-}
-#endif
 
 // A face of a coarse voxel as columns.glsl makes it, of eight whole children without loops: the columns of two along an axis, where the
 // second child lies `along` behind the first one, in front of it from the higher side, and their mean over the two other axes in turn.
@@ -83,46 +60,28 @@ vec4 seenThrough(sampler3D face, Children children, int along, int side, int up,
   return sum / 4.0;
 }
 
-void main() {
-  ivec3 voxel = firstMade + ivec3(gl_GlobalInvocationID);
-  if (any(greaterThanEqual(voxel, endMade))) return;
+void make(ivec3 voxel) {
 #if ABOVE
   bool isVoxel = all(lessThan(voxel, ownEnd[level].xyz));
   ClipmapPlace place = ownPlace(level, voxel);
+  float share = 1.0;
 #else
   bool isVoxel = all(lessThan(voxel, innerEnd[level].xyz));
   ClipmapPlace place = innerPlace(level, voxel), own = ownPlace(level, voxel);
+  float share = shareOfFiner(endsOf(level - 1), voxel);
 #endif
   Children children;
   children.occupied = 0u;
-#if ABOVE
-#if CHANGED
-  if (isVoxel && !isChildRead(voxel)) return;
-#endif
-  if (isVoxel) children = childrenOf(level - 1, voxel);
-#else
-  // Where the finer level begins, nothing is of it: reading goes on there without a leap.
-  float fromBorder = 0.5 * withinReach(level - 1, 2.0 * (vec3(voxel) + 0.5));
-  bool touched = all(greaterThanEqual(voxel, firstTouched)) && all(lessThan(voxel, endTouched));
-#if CHANGED
-  touched = touched && (!isVoxel || (clipmapCells[cellIndex(level, voxel - ownFirst[level].xyz, ownFirst[level].w)] & kRead) != 0u);
-#endif
-  if (fromBorder >= settled && !touched) return;
-  float share = clamp((fromBorder - 1.0) / max(clipmapRamp, 1e-6), 0.0, 1.0);
   if (isVoxel && share > 0.0) children = childrenOf(level - 1, voxel);
-#endif
   bool occupied = children.occupied != 0u;
-#if !ABOVE
-  bool voxelized = isVoxel && share < 1.0 && isOccupied(own);
-  occupied = occupied || voxelized;
-#endif
-  if (!occupied && !isOccupied(place)) return;
   vec4 faces[6] = vec4[6](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
-  if (children.occupied != 0u)
+  if (occupied)
     faces = vec4[6](seenThrough(positiveX, children, 1, 2, 4, true), seenThrough(negativeX, children, 1, 2, 4, false),
                     seenThrough(positiveY, children, 2, 4, 1, true), seenThrough(negativeY, children, 2, 4, 1, false),
                     seenThrough(positiveZ, children, 4, 1, 2, true), seenThrough(negativeZ, children, 4, 1, 2, false));
 #if !ABOVE
+  bool voxelized = isVoxel && share < 1.0 && isOccupied(own);
+  occupied = occupied || voxelized;
   vec4 before[6] = vec4[6](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
   if (voxelized)
     before = vec4[6](texelFetch(positiveX, own.texel, 0), texelFetch(negativeX, own.texel, 0), texelFetch(positiveY, own.texel, 0),
@@ -130,4 +89,10 @@ void main() {
   for (int face = 0; face < 6; ++face) faces[face] = mix(before[face], faces[face], share);
 #endif
   writeVoxel(place, faces, occupied);
+}
+
+void main() {
+  uint count = heads[level].count;
+  for (uint i = gl_WorkGroupID.x * kItemGroup + gl_LocalInvocationID.x; i < count; i += gl_NumWorkGroups.x * kItemGroup)
+    make(firstMade + unpackVoxel(items[i]));
 }

@@ -8,10 +8,11 @@
 // voxel are its opacity, seen along each axis (covered_samples.glsl); emittance is that of the covered share of the voxel's side, by more
 // samples where the triangle is small, so that nothing shines by leaps as it moves (Fig. 56).
 // CHANGED: of some boxes only the voxels in changed cells are filled.
-// LARGE: as in voxelization: a triangle of many voxels is put aside in rows of tiles of 8 x 8 columns, and a work group takes a row.
+// STAGE: first it is found which triangles touch what is filled, in most cases a few of them, and these are listed. As in voxelization, one of
+// many voxels is put aside in rows of tiles of 8 x 8 columns, and a work group takes a row; of the others each invocation takes one.
 #pragma lumivox axis TEXTURES 0 1
 #pragma lumivox axis MASKS 0 1
-#pragma lumivox axis LARGE 0 1
+#pragma lumivox axis STAGE find small large
 #pragma lumivox axis SAMPLED 0 1
 #pragma lumivox axis CHANGED 0 1
 #define SCENE_GEOMETRY
@@ -48,6 +49,11 @@ layout(std430, binding = 9) buffer Rows {
   uint rowGroupsX, rowGroupsY, rowGroupsZ;  // of the dispatch over them
   TileRow rows[];
 };
+layout(std430, binding = 11) buffer Few {
+  uint fewCount;
+  uint fewGroupsX, fewGroupsY, fewGroupsZ;
+  TileRow few[];  // triangles of few voxels; of others from their y on, where there is no room for more rows
+};
 #if SAMPLED
 layout(std430, binding = 10) writeonly buffer SideMasks { uint sideMasksOf[]; };  // a word a fragment
 #endif
@@ -65,7 +71,7 @@ int level;
 bool onlyChanges;  // of the box
 
 bool isTaken(ivec3 voxel, int axis) {
-  return !onlyChanges || (clipmapCells[cellIndex(level, unpermute(voxel, axis) - stackFirst[level].xyz, stackSide)] & kVoxelized) != 0u;
+  return !onlyChanges || clipmapCells[cellIndex(level, unpermute(voxel, axis) - stackFirst[level].xyz, stackSide)] != 0u;
 }
 // False where no voxel of these is taken; not all are looked at where they are many.
 bool isAnyTaken(ivec3 low, ivec3 high, int axis) {
@@ -75,7 +81,7 @@ bool isAnyTaken(ivec3 low, ivec3 high, int axis) {
   for (int z = first.z >> 2; z <= last.z >> 2; ++z)
     for (int y = first.y >> 2; y <= last.y >> 2; ++y)
       for (int x = first.x >> 2; x <= last.x >> 2; ++x)
-        if ((clipmapCells[cellIndex(level, 4 * ivec3(x, y, z), stackSide)] & kVoxelized) != 0u) return true;
+        if (clipmapCells[cellIndex(level, 4 * ivec3(x, y, z), stackSide)] != 0u) return true;
   return false;
 }
 #else
@@ -184,7 +190,44 @@ TriangleCorners cornersIn(uint triangle, uint box, out Overlap o) {
   return t;
 }
 
-#if LARGE
+#if STAGE == STAGE_FIND
+
+void main() {
+  uint triangle = gl_GlobalInvocationID.x, box = gl_WorkGroupID.y;
+  if (triangle >= uint(triangleCount)) return;
+  Overlap o;
+  TriangleCorners t = cornersIn(triangle, box, o);
+  ivec3 size = o.high - o.low + 1;
+  if (any(lessThan(size, ivec3(1))) || !isAnyTaken(o.low, o.high, t.axis)) return;
+  int first = o.low.y;
+  if (size.x > kFewVoxels || size.y > kFewVoxels || size.x * size.y > kFewVoxels || size.x * size.y * size.z > kFewVoxels) {
+    uint count = uint((size.y - 1) / kTile + 1), place = atomicAdd(rowCount, count), fits = min(count, uint(rowCapacity) - min(place, uint(rowCapacity)));
+    if (fits > 0u) atomicMax(rowGroupsX, min(place + fits, kMostGroups));
+    for (uint i = 0u; i < fits; ++i) rows[place + i] = TileRow(triangle, box, o.low.y + kTile * int(i));
+    first += kTile * int(fits);  // what has no room is slow, but nothing is lost
+    if (first > o.high.y) return;
+  }
+  uint place = atomicAdd(fewCount, 1u);
+  few[place] = TileRow(triangle, box, first);
+  atomicMax(fewGroupsX, min(place / gl_WorkGroupSize.x + 1u, kMostGroups));
+}
+
+#elif STAGE == STAGE_SMALL
+
+void main() {
+  MaterialData material = materials[materialIndex];
+  VoxelFragment base = fragmentOf(material);
+  uint count = fewCount;
+  for (uint i = gl_WorkGroupID.x * gl_WorkGroupSize.x + gl_LocalInvocationID.x; i < count; i += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
+    TileRow one = few[i];
+    Overlap o;
+    TriangleCorners t = cornersIn(one.triangle, one.box, o);
+    for (int y = one.y; y <= o.high.y; ++y)
+      for (int x = o.low.x; x <= o.high.x; ++x) appendColumn(t, o, material, base, ivec2(x, y));
+  }
+}
+
+#else
 
 void main() {
   ivec2 lane = ivec2(gl_LocalInvocationID.x % uint(kTile), gl_LocalInvocationID.x / uint(kTile));
@@ -199,28 +242,6 @@ void main() {
     if (y > o.high.y) continue;
     for (int x = o.low.x + lane.x; x <= o.high.x; x += kTile) appendColumn(t, o, material, base, ivec2(x, y));
   }
-}
-
-#else
-
-void main() {
-  uint triangle = gl_GlobalInvocationID.x, box = gl_WorkGroupID.y;
-  if (triangle >= uint(triangleCount)) return;
-  Overlap o;
-  TriangleCorners t = cornersIn(triangle, box, o);
-  ivec3 size = o.high - o.low + 1;
-  if (any(lessThan(size, ivec3(1))) || !isAnyTaken(o.low, o.high, t.axis)) return;
-  MaterialData material = materials[materialIndex];
-  VoxelFragment base = fragmentOf(material);
-  int first = o.low.y;
-  if (size.x > kFewVoxels || size.y > kFewVoxels || size.x * size.y > kFewVoxels || size.x * size.y * size.z > kFewVoxels) {
-    uint count = uint((size.y - 1) / kTile + 1), place = atomicAdd(rowCount, count), fits = min(count, uint(rowCapacity) - min(place, uint(rowCapacity)));
-    if (fits > 0u) atomicMax(rowGroupsX, min(place + fits, kMostGroups));
-    for (uint i = 0u; i < fits; ++i) rows[place + i] = TileRow(triangle, box, o.low.y + kTile * int(i));
-    first += kTile * int(fits);  // without room for its row a column is done here: slow, but nothing is lost
-  }
-  for (int y = first; y <= o.high.y; ++y)
-    for (int x = o.low.x; x <= o.high.x; ++x) appendColumn(t, o, material, base, ivec2(x, y));
 }
 
 #endif

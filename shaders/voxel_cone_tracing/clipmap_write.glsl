@@ -1,11 +1,9 @@
 // Writes voxels of a clipmap.
 #include "clipmap.glsl"
 
-// A bit for each voxel that is not empty.
-layout(std430, binding = 13) buffer ClipmapOccupied { uint clipmapOccupied[]; };
+#define OCCUPIED_ACCESS
+#include "clipmap_occupied.glsl"
 #include "face_images.glsl"
-
-bool isOccupied(ClipmapPlace place) { return (clipmapOccupied[place.word] & place.bit) != 0u; }
 
 // The voxel, and its copies beyond the other ends of its block.
 void writeVoxel(ClipmapPlace place, vec4 faces[6], bool occupied) {

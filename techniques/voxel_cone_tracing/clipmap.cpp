@@ -11,6 +11,7 @@
 #include <span>
 
 #include "changed_cells.h"
+#include "clipmap_items.h"
 #include "direct_light.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -106,6 +107,8 @@ class ClipmapPass : public Pass {
   std::uint64_t roomForAll_ = 0, roomForParts_ = 0;
   /// Rows of tiles of large triangles that a draw may put aside; what does not fit is done without.
   static constexpr std::uint32_t kRowCapacity = 1u << 16;
+  /// Triangles that are looked at before what is found of them is voxelized: bounds the list of it.
+  static constexpr std::uint32_t kTrianglesAtOnce = 1u << 16;
   static constexpr std::uint64_t kRowHeadBytes = 4 * sizeof(std::uint32_t);
   static constexpr int kGroup = 64;  ///< invocations of passes over the list
 
@@ -213,33 +216,25 @@ class ClipmapPass : public Pass {
   }
 
   /// Which cells differ from the frame before, a word each (clipmap_cells.glsl): those that something moving
-  /// has left or come to, and those that lie behind it in the shadow map.
-  gpu::BufferRef changedCells(PassContext& frame, const RadianceClipmap& clipmap,
-                              const ClipmapPlacement& before, const ClipmapPlacement& placement,
-                              const std::vector<Bounds>& moving) const {
-    const std::uint64_t along = (static_cast<std::uint64_t>(placement.resolution) + 3) / 4,
-                        cells = along * along * along,
+  /// has left or come to, and those that lie behind it in the shadow map. Empties them.
+  gpu::BufferRef emptyChangedCells(PassContext& frame, const RadianceClipmap& clipmap,
+                                   const ClipmapPlacement& placement,
+                                   const std::vector<Bounds>& moving) const {
+    const std::uint64_t cells = cellsOfLevel(placement.resolution),
                         levelCount = static_cast<std::uint64_t>(placement.levels());
     const gpu::BufferRef result =
         frame.elements(clipmap_changed::clipmapCells, cells * levelCount, "changed cells of levels");
+    const ItemLists full(frame, 1, cells * levelCount);
     const BoxesInViews boxes(frame, light.shadow, moving);
-    clipmap_changed::Moved moved{
+    const clipmap_changed::Moved moved{
         .boxCount = boxes.count, .lightCount = boxes.lightCount, .texel = boxes.texel};
-    for (int level = 0; level < placement.levels(); ++level) {
-      const auto i = static_cast<std::size_t>(level);
-      const VoxelRange stays = before.rangeOf(level).within(placement.rangeOf(level));
-      moved.stayFirst[i] = {stays.first, 0};
-      moved.stayEnd[i] = {stays.end, 0};
-    }
-    const shader::BindingSet bindings{clipmapBinding(clipmap), clipmap_changed::clipmapCells(result)};
-    frame.dispatchList(
-        frame.program(clipmap_changed::Variant{.lights = light.shadow.present()}),
-        {bindings, boxes.bindings(), clipmap_changed::moved(moved), clipmap_changed::moving(boxes.bounds),
-         clipmap_changed::clipmapOccupied(clipmap.occupied)},
-        cells * levelCount);
-    for (int level = 1; level < placement.levels(); ++level)
-      frame.dispatchList(frame.program(clipmap_changed::Variant{.finer = 1}),
-                         {bindings, clipmap_changed::level({level})}, cells);
+    frame.dispatchList(frame.program(clipmap_changed::Variant{.lights = light.shadow.present()}),
+                       {clipmapBinding(clipmap), clipmap_changed::clipmapCells(result), boxes.bindings(),
+                        full.bindings(), clipmap_changed::moved(moved), clipmap_changed::moving(boxes.bounds),
+                        clipmap_changed::clipmapOccupied(clipmap.occupied)},
+                       cells * levelCount);
+    frame.dispatchIndirect(frame.program(clipmap_clear::Variant{.changed = 1}),
+                           {writing(clipmap), full.bindings()}, *full.heads, ItemLists::argumentsBytes(0));
     return result;
   }
 
@@ -255,19 +250,19 @@ class ClipmapPass : public Pass {
     std::vector<RadianceClipmap::Level> before = state.clipmap.levels;
     place(frame, state.clipmap, placement);
     tellChange(state.clipmap.change, std::move(before), placement.levels(), all, ranges);
-    state.clipmap.change.cells = moves && !all
-                                     ? changedCells(frame, state.clipmap, state.placement, placement,
-                                                    Changes::atEither(*moving, *state.moving))
-                                     : nullptr;
+    state.clipmap.change.cells = moves && !all ? emptyChangedCells(frame, state.clipmap, placement,
+                                                                   Changes::atEither(*moving, *state.moving))
+                                               : nullptr;
     if (all) {
       for (const gpu::TextureRef& face : state.clipmap.faces) face->clear(glm::vec4(0.0f));
       state.clipmap.occupied->clear();
     } else {
       for (const LevelRange& range : ranges)
-        frame.dispatch(frame.program(clipmap_clear::Variant{.changed = range.onlyChanges}),
-                       {clipmap_clear::box({range.voxels.first, range.level, range.voxels.end}),
-                        writing(state.clipmap), clipmap_clear::clipmapCells(state.clipmap.change.cells)},
-                       range.voxels.size());
+        if (!range.onlyChanges)
+          frame.dispatch(frame.program(clipmap_clear::Variant{}),
+                         {clipmap_clear::box({range.voxels.first, range.level, range.voxels.end}),
+                          writing(state.clipmap)},
+                         range.voxels.size());
     }
     if (!ranges.empty()) fill(frame, state.clipmap, placement, ranges, all ? roomForAll_ : roomForParts_);
     state.placement = placement;
@@ -377,32 +372,45 @@ class ClipmapPass : public Pass {
     while (2 * mostScale <= supersampling) mostScale *= 2;
     const gpu::BufferRef rows = frame.buffer(
         kRowHeadBytes + kRowCapacity * clipmap_voxelize::rows.elementBytes, "rows of large triangles");
-    for (const SceneDraw& draw : frame.scene().draws()) {
-      const std::array<std::uint32_t, 4> noRows{0, 0, 1, 1};
-      rows->uploadValues(std::span<const std::uint32_t>(noRows));
-      const int triangles = static_cast<int>(draw.indexCount / 3);
-      const SceneBinding scene(frame, draw);
-      auto variant =
-          scene.in(clipmap_voxelize::Variant{.sampled = isSampled(), .changed = changedCells != nullptr});
-      const shader::BindingSet bindings{
-          scene,
-          stack,
-          clipmap_voxelize::part({.firstIndex = static_cast<int>(draw.firstIndex),
-                                  .triangleCount = triangles,
-                                  .capacity = static_cast<int>(list.capacity),
-                                  .rowCapacity = static_cast<int>(kRowCapacity),
-                                  .mostScale = mostScale,
-                                  .thickness = thickness}),
-          clipmap_voxelize::boxes(boxes),
-          clipmap_voxelize::count(list.count),
-          clipmap_voxelize::fragments(list.fragments),
-          clipmap_voxelize::sideMasks(sideMasks),
-          clipmap_voxelize::rows(rows),
-          clipmap_voxelize::clipmapCells(changedCells)};
-      frame.dispatch(frame.program(variant), bindings, {triangles, static_cast<int>(ranges.size()), 1});
-      variant.large = 1;
-      frame.dispatchIndirect(frame.program(variant), bindings, *rows, sizeof(std::uint32_t));
-    }
+    const auto boxCount = static_cast<std::uint32_t>(ranges.size());
+    std::uint32_t most = 0;
+    for (const SceneDraw& draw : frame.scene().draws()) most = std::max(most, draw.indexCount / 3);
+    const gpu::BufferRef few =
+        frame.buffer(kRowHeadBytes + std::uint64_t{boxCount} * std::min(most, kTrianglesAtOnce) *
+                                         clipmap_voxelize::few.elementBytes,
+                     "triangles of few voxels");
+    const shader::BindingSet lists{stack,
+                                   clipmap_voxelize::boxes(boxes),
+                                   clipmap_voxelize::count(list.count),
+                                   clipmap_voxelize::fragments(list.fragments),
+                                   clipmap_voxelize::sideMasks(sideMasks),
+                                   clipmap_voxelize::rows(rows),
+                                   clipmap_voxelize::few(few),
+                                   clipmap_voxelize::clipmapCells(changedCells)};
+    for (const SceneDraw& draw : frame.scene().draws())
+      for (std::uint32_t first = 0; first < draw.indexCount; first += 3 * kTrianglesAtOnce) {
+        const std::array<std::uint32_t, 4> none{0, 0, 1, 1};
+        rows->uploadValues(std::span<const std::uint32_t>(none));
+        few->uploadValues(std::span<const std::uint32_t>(none));
+        const std::uint32_t triangles = std::min((draw.indexCount - first) / 3, kTrianglesAtOnce);
+        const SceneBinding scene(frame, draw);
+        auto variant =
+            scene.in(clipmap_voxelize::Variant{.sampled = isSampled(), .changed = changedCells != nullptr});
+        const shader::BindingSet bindings{
+            scene, lists,
+            clipmap_voxelize::part({.firstIndex = static_cast<int>(draw.firstIndex + first),
+                                    .triangleCount = static_cast<int>(triangles),
+                                    .capacity = static_cast<int>(list.capacity),
+                                    .rowCapacity = static_cast<int>(kRowCapacity),
+                                    .mostScale = mostScale,
+                                    .thickness = thickness})};
+        frame.dispatch(frame.program(variant), bindings,
+                       {static_cast<int>(triangles), static_cast<int>(boxCount), 1});
+        variant.stage = clipmap_voxelize::Variant::stageSmall;
+        frame.dispatchIndirect(frame.program(variant), bindings, *few, sizeof(std::uint32_t));
+        variant.stage = clipmap_voxelize::Variant::stageLarge;
+        frame.dispatchIndirect(frame.program(variant), bindings, *rows, sizeof(std::uint32_t));
+      }
   }
 
   /// Where a frame wanted more than there was room for, it is rendered again with an eighth more than that.
@@ -448,9 +456,12 @@ class ClipmapFilterPass : public Pass {
     });
     const bool all = result.change.all || made->number + 1 != result.change.number;
     made->number = result.change.number;
-    // Ramps that move with their levels change more than the cells say.
-    const bool onlyChanges = !all && result.change.cells != nullptr && stays(result);
-    // What differs from before, as it is read, level by level.
+    const ItemLists lists(frame, result.levels.size(), largestMade(result));
+    const gpu::BufferRef madeAnew = frame.buffer(result.occupied->sizeBytes(), "voxels of levels made anew");
+    madeAnew->clear();
+    std::optional<ReadCells> read;
+    if (!all && result.change.cells != nullptr && stays(result)) read.emplace(frame, result);
+    // What differs from before, as it is read, lies in these, level by level.
     VoxelRange changed = result.change.voxelized.front();
     const int count = static_cast<int>(result.levels.size());
     for (int level = 1; level < count; ++level) {
@@ -459,54 +470,109 @@ class ClipmapFilterPass : public Pass {
       const bool above = level >= result.around;
       const RadianceClipmap::Block& block = above ? there.own : there.inner;
       const VoxelRange addresses{block.voxels.first, block.voxels.first + block.period};
-      const std::size_t moving = std::min(i, static_cast<std::size_t>(result.around)) - 1;
-      // Where the finer level has moved its border has, and with it the ramp.
-      const bool anew = all || movedBy(result, moving) > 0;
       VoxelRange touched = coarserTouching(changed);
       if (!above) touched = touched.around(result.change.voxelized[i]);
-      const VoxelRange part = (anew ? addresses : touched).within(addresses);
-      changed = touched;
-      if (anew) changed = changed.around(block.voxels);
+      // Where the finer level has moved its border has, and with it the ramp.
+      const bool anew = all || hasMoved(result, std::min(i, static_cast<std::size_t>(result.around)) - 1);
+      changed = anew ? touched.around(block.voxels) : touched;
       if (anew && !all && !above) changed = changed.around(result.change.before[i].inner.voxels);
-      if (part.empty()) continue;
-      // Behind the ramp, and everywhere where it has not moved, only what has changed differs.
-      float settled = RadianceClipmap::kEndless;
-      if (!anew) {
-        settled = -RadianceClipmap::kEndless;
-      } else if (!all && !above && sameSides(result, moving)) {
-        settled = result.ramp + 2.0f + static_cast<float>(movedBy(result, moving));
-      }
-      frame.dispatch(
-          frame.program(
-              clipmap_filter::Variant{.above = above, .changed = onlyChanges && level <= result.around}),
-          {clipmap_filter::level({part.first, level, part.end, settled, touched.first, 0, touched.end}),
-           facesOf(result.faces, gpu::Sampling::nearest), writing(result),
-           clipmap_filter::clipmapCells(result.change.cells)},
-          part.size());
+      // Of the first level above those around the camera it is known, too.
+      const bool listed = read && level <= result.around;
+      if (listed) read->find(frame, result, level);
+      make(frame, result, lists, madeAnew, listed ? &read->lists : nullptr, level,
+           (anew ? addresses : touched).within(addresses), all);
     }
     result.filledLevels = count;
     mips = result;
   }
 
+  /// Voxels of the largest block that is made.
+  static std::uint64_t largestMade(const RadianceClipmap& clipmap) {
+    std::uint64_t result = 0;
+    for (std::size_t level = 1; level < clipmap.levels.size(); ++level) {
+      const RadianceClipmap::Level& there = clipmap.levels[level];
+      const bool above = static_cast<int>(level) >= clipmap.around;
+      const auto along = static_cast<std::uint64_t>((above ? there.own : there.inner).period);
+      result = std::max(result, along * along * along);
+    }
+    return result;
+  }
+
+  /// While no level moves, the cells in which what is read differs from before, listed level by level.
+  struct ReadCells {
+    std::uint64_t cells;
+    gpu::BufferRef flags;
+    ItemLists lists;
+
+    ReadCells(PassContext& frame, const RadianceClipmap& clipmap)
+        : cells(cellsOfLevel(clipmap.levels.front().own.period)),
+          flags(frame.elements(clipmap_coarser::readCells,
+                               cells * (static_cast<std::uint64_t>(clipmap.around) + 1),
+                               "cells of levels that are read otherwise")),
+          lists(frame, clipmap.levels.size(), cells) {}
+    void find(PassContext& frame, const RadianceClipmap& clipmap, int level) const {
+      frame.dispatchList(
+          frame.program(clipmap_coarser::kProgram),
+          {clipmapBinding(clipmap), clipmap_coarser::level({level}), clipmap_coarser::readCells(flags),
+           clipmap_coarser::clipmapCells(clipmap.change.cells), lists.bindings()},
+          cells);
+    }
+  };
+
+  /// Of a level what differs in these voxels.
+  static void make(PassContext& frame, const RadianceClipmap& clipmap, const ItemLists& lists,
+                   const gpu::BufferRef& madeAnew, const ItemLists* cells, int level, const VoxelRange& part,
+                   bool all) {
+    if (part.empty()) return;
+    const auto i = static_cast<std::size_t>(level);
+    const bool above = level >= clipmap.around;
+    clipmap_anew::Level differing{.firstMade = part.first, .level = level, .endMade = part.end};
+    if (!all) {
+      differing.had = hadOf(clipmap.change.before[i]);
+      differing.finerHad = hadOf(clipmap.change.before[i - 1]);
+    }
+    const shader::BindingSet bindings{clipmapBinding(clipmap),
+                                      clipmap_anew::level(differing),
+                                      lists.bindings(),
+                                      clipmap_anew::madeAnew(madeAnew),
+                                      clipmap_anew::clipmapOccupied(clipmap.occupied),
+                                      clipmap_anew::clipmapCells(clipmap.change.cells)};
+    clipmap_anew::Variant variant{.above = above, .cells = !all && clipmap.change.cells != nullptr};
+    if (cells != nullptr) {
+      variant.listed = 1;
+      frame.dispatchIndirect(
+          frame.program(variant),
+          {bindings, clipmap_anew::cellHeads(cells->heads), clipmap_anew::cellItems(cells->items)},
+          *cells->heads, ItemLists::argumentsBytes(i));
+    } else {
+      frame.dispatch(frame.program(variant), bindings, part.size());
+    }
+    frame.dispatchIndirect(
+        frame.program(clipmap_filter::Variant{.above = above}),
+        {clipmap_filter::level({part.first, level}), facesOf(clipmap.faces, gpu::Sampling::nearest),
+         writing(clipmap), lists.bindings()},
+        *lists.heads, ItemLists::argumentsBytes(i));
+  }
+
+  /// What a level had.
+  static clipmap_anew::Had hadOf(const RadianceClipmap::Level& level) {
+    int endless = 0;  // LevelEnds::endless
+    for (int axis = 0; axis < 3; ++axis) {
+      if (level.reachFirst[axis] <= -RadianceClipmap::kEndless) endless |= 1 << axis;
+      if (level.reachEnd[axis] >= RadianceClipmap::kEndless) endless |= 8 << axis;
+    }
+    return {.ownFirst = {level.own.voxels.first, endless},
+            .ownEnd = {level.own.voxels.end, 0},
+            .innerFirst = {level.inner.voxels.first, 0},
+            .innerEnd = {level.inner.voxels.end, 0}};
+  }
   static bool stays(const RadianceClipmap& clipmap) {
     for (std::size_t level = 0; level < static_cast<std::size_t>(clipmap.around); ++level)
-      if (movedBy(clipmap, level) > 0) return false;
+      if (hasMoved(clipmap, level)) return false;
     return true;
   }
-  /// Voxels by which a level has moved, along the axis along which it is the most.
-  static int movedBy(const RadianceClipmap& clipmap, std::size_t level) {
-    if (clipmap.change.before.empty()) return 0;
-    const glm::ivec3 way =
-        glm::abs(clipmap.levels[level].own.voxels.first - clipmap.change.before[level].own.voxels.first);
-    return std::max({way.x, way.y, way.z});
-  }
-  /// Whether the store ends at the same sides of a level as before.
-  static bool sameSides(const RadianceClipmap& clipmap, std::size_t level) {
-    const RadianceClipmap::Level &a = clipmap.levels[level], &b = clipmap.change.before[level];
-    const auto ends = [](const glm::vec3& reach) {
-      return glm::greaterThan(glm::abs(reach), glm::vec3(0.5f * RadianceClipmap::kEndless));
-    };
-    return ends(a.reachFirst) == ends(b.reachFirst) && ends(a.reachEnd) == ends(b.reachEnd);
+  static bool hasMoved(const RadianceClipmap& clipmap, std::size_t level) {
+    return clipmap.levels[level].own.voxels != clipmap.change.before[level].own.voxels;
   }
 };
 

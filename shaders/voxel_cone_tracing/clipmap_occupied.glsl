@@ -1,0 +1,11 @@
+// A bit for each voxel of a clipmap that is not empty.
+#ifndef LUMIVOX_CLIPMAP_OCCUPIED
+#define LUMIVOX_CLIPMAP_OCCUPIED
+#ifndef OCCUPIED_ACCESS
+#define OCCUPIED_ACCESS readonly
+#endif
+layout(std430, binding = 13) OCCUPIED_ACCESS buffer ClipmapOccupied { uint clipmapOccupied[]; };
+
+bool isOccupied(ClipmapPlace place) { return (clipmapOccupied[place.word] & place.bit) != 0u; }
+
+#endif
