@@ -9,7 +9,8 @@ struct LevelEnds {
 };
 LevelEnds endsOf(int level) {
   uvec3 bits = uvec3(1u, 2u, 4u), none = uvec3(0u);
-  uvec3 low = mix(none, bits, lessThan(reachFirst[level].xyz, vec3(-kFarAway))), high = mix(none, bits, greaterThan(reachEnd[level].xyz, vec3(kFarAway)));
+  uvec3 low = mix(none, bits, lessThan(reachFirst[level].xyz, vec3(-kFarAway)));
+  uvec3 high = mix(none, bits, greaterThan(reachEnd[level].xyz, vec3(kFarAway)));
   return LevelEnds(ownFirst[level].xyz, ownEnd[level].xyz, low.x | low.y | low.z | (high.x | high.y | high.z) << 3);
 }
 

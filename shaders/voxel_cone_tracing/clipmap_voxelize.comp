@@ -1,6 +1,6 @@
 #version 450
-// Fragments of triangles in all levels of a clipmap, by one dispatch for a draw (thesis 004 Sec. 3.5.2, where a geometry shader makes an
-// instance of each triangle for each level): an invocation for each triangle and each box of voxels that is filled anew, of whatever level.
+// Fragments of triangles in all levels of a clipmap at once, draw by draw (thesis 004 Sec. 3.5.2, where a geometry shader makes an
+// instance of each triangle for each level): an invocation looks at each triangle and each box of voxels that is filled anew, of whatever level.
 // A level that only moved has such boxes where it reaches anew.
 //
 // SAMPLED 0: a fragment for each voxel that a triangle touches.
