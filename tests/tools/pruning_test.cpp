@@ -28,8 +28,9 @@ RenderOptions smallOptions(const Pipeline& pipeline) {
   RenderOptions options;
   options.width = 48;
   options.height = 32;
-  const std::map<std::string, double> small{
-      {"resolution", 32}, {"area_samples", 4}, {"surfaces", 16}, {"iterations", 8}, {"samples", 25}};
+  const std::map<std::string, double> small{{"resolution", 32}, {"area_samples", 4}, {"surfaces", 16},
+                                            {"iterations", 8},  {"samples", 25},     {"cones", 2},
+                                            {"rays", 4}};
   for (const PipelineParameter& parameter : pipeline.parameters)
     if (const auto value = small.find(parameter.name); value != small.end())
       options.parameters[parameter.name].number = value->second;
