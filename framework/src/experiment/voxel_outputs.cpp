@@ -162,7 +162,8 @@ std::uint64_t heldBytes(const OutBase& output) {
 std::optional<std::uint64_t> opaqueVoxels(const OutBase& output) {
   const PortContents contents = output.contents();
   for (const PortContents::Field& field : contents.fields()) {
-    if (field.name != "opacity" || field.level != 0) continue;
+    // Of voxels with faces each axis has its own.
+    if ((field.name != "opacity" && field.name != "opacity_along") || field.level != 0) continue;
     GridPlacement grid;
     grid.resolution = field.box.resolution;
     OccupiedVoxels found{grid, VoxelSet(grid.resolution), 0, 0};
