@@ -82,7 +82,7 @@ ImageBuffer directLight(const Scene& scene, const std::string& tracing, const st
 TEST_CASE("narrow cones all around a single lit voxel bring its solid angle, in every dense store") {
   // Through the points of a plane in the middle of the voxel: each stands for the solid angle of its part of
   // the plane. A face of s^2 at a distance d subtends s^2 / d^2.
-  constexpr int kResolution = 64, kSide = 7;
+  constexpr int kResolution = 64, kSide = 11;
   const double size = 2.0 / kResolution, reach = 2.5 * size;
   const glm::dvec3 middle = (glm::dvec3(52, 32, 32) + 0.5) * size - 1.0;
   const Value value = [](const glm::ivec3& at) {
