@@ -171,7 +171,7 @@ void main() {
   if (addsRest != 0) {
     vec4 open = vec4(sums.open);
     if (firstRay > 0) open += imageLoad(occlusionImage, at);
-    if (firstRay + raysAtOnce == rays) open = vec4(surface ? finished(open, 1.0, texelFetch(earlierOcclusion, at, 0)).xxx : vec3(1.0), surface ? 1.0 : 0.0);
+    if (firstRay + raysAtOnce == rays) open = vec4(vec3(surface ? finished(open, 1.0, texelFetch(earlierOcclusion, at, 0)).x : 1.0), surface ? 1.0 : 0.0);
     imageStore(occlusionImage, at, open);
   }
 #endif
