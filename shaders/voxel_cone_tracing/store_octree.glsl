@@ -56,7 +56,7 @@ vec4 voxelIn(uint brick, ivec3 voxel) { return texelFetch(brickPool, texelOf(bri
 // Voxels are filtered here and not by a sampler, whose coordinates are rounded by where in which pool the brick lies: a frame would differ
 // from the same frame alone.
 #if LOOK_UP == LOOK_UP_OWN
-// No loops: of all turns of all loops of a shader some drivers allow 65535, which many cones come to.
+// No loops but the published reading of six faces: of all turns of all loops of a shader some drivers allow 65535, which many cones come to.
 // Those of a level around a point, `from` voxels from the middle of its voxel 0. Outside of the grid there is nothing.
 struct Around {
   uint corners;  // kNone: there is nothing
@@ -88,9 +88,10 @@ vec4 amongVoxels(vec3 from, int depth) {
   vec4 value = vec4(0.0);
   for (uint which = 0u; which < 8u; ++which) value += shareOfVoxel(around, which);
   return value;
-#endif
+#else
   return shareOfVoxel(around, 0u) + shareOfVoxel(around, 1u) + shareOfVoxel(around, 2u) + shareOfVoxel(around, 3u) +
          shareOfVoxel(around, 4u) + shareOfVoxel(around, 5u) + shareOfVoxel(around, 6u) + shareOfVoxel(around, 7u);
+#endif
 }
 
 // Of those whose place along an axis is a whole number: the four across it.
