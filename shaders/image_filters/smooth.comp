@@ -17,7 +17,7 @@ layout(std140, binding = 0) uniform Parameters {
   ivec2 every;       // pixels from one texel of the input to the next
   ivec2 everyOut;    // and of the output
   ivec2 along;       // 1: blended along that axis
-  int radius;        // texels on either side where `every` is 1
+  int radius;        // pixels on either side that are blended, as far as there are samples; two samples at least where `every` is not 1
   int spacing;       // pixels from one sample to the next, before any pass
   float tolerance;   // off a pixel's plane, in widths of a sample there, at which a sample counts 1/e
   float power;       // of the cosine between the normals
@@ -44,10 +44,10 @@ void windowOf(ivec2 at, ivec2 pixel, out ivec2 first, out ivec2 last, out vec2 r
       last[axis] = pixel[axis] + radius;
       reach[axis] = float(radius + 1);
     } else {
-      int low = firstOfFour(pixel, every)[axis];
-      first[axis] = kernel == kBilinear ? low + 1 : low;
-      last[axis] = kernel == kBilinear ? low + 2 : low + 3;
-      reach[axis] = kernel == kBilinear ? 1.0 : 2.0;
+      int beside = firstOfFour(pixel, every)[axis] + 1, sides = kernel == kBilinear ? 1 : max(2, radius / every[axis]);
+      first[axis] = beside + 1 - sides;
+      last[axis] = beside + sides;
+      reach[axis] = float(sides);
     }
   }
 }

@@ -38,8 +38,10 @@ class SmoothPass : public Pass {
   Param<Kernel> kernel{
       this, "kernel", Kernel::tent,
       "4 x 4 samples weighted by tents, in one pass; a Gaussian along the rows, then along the columns; or, for comparison, the nearest samples without regard to surfaces"};
-  Param<int> radius{this, "radius", 0, within(0, 64),
-                    "pixels on either side that are blended where every pixel has a sample; 0: none"};
+  Param<int> radius{
+      this, "radius", 0, within(0, 64),
+      "pixels on either side that are blended; 0: none where every pixel has a sample, else the two "
+      "samples next to it"};
   Param<float> tolerance{
       this, "tolerance", 1.0f, within(1e-3f, 1e3f),
       "distance off a pixel's tangent plane, in widths of a sample there, at which a sample counts 1/e"};

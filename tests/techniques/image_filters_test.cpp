@@ -88,7 +88,7 @@ ImageBuffer smoothed(const Surfaces& surfaces, const Values& values, const Setti
 
 const Settings kAll[] = {{1, "tent", 0},     {1, "tent", 3},  {2, "tent"},     {4, "tent"},
                          {1, "gaussian", 3}, {2, "gaussian"}, {4, "gaussian"}, {1, "bilinear", 2},
-                         {2, "bilinear"},    {4, "bilinear"}};
+                         {2, "bilinear"},    {4, "bilinear"}, {4, "tent", 16}, {2, "gaussian", 9}};
 
 }  // namespace
 
@@ -255,6 +255,30 @@ TEST_CASE("noise keeps the share of its variance that the squared weights add up
   for (int y = kRadius; y < kWide - kRadius; ++y)
     for (int x = kRadius; x < kWide - kRadius; ++x, ++count) squares += std::pow(image.at(x, y, 0), 2);
   CHECK(squares / count == Approx(std::pow(squaredSum / (sum * sum), 2)).epsilon(0.10));
+}
+
+TEST_CASE(
+    "a wider radius takes more of the samples that lie apart, and a narrow one the two next to a pixel") {
+  // An impulse at one sample reaches as far as the kernel.
+  constexpr int kLarge = 81, kAt = 40;
+  const auto reachOf = [&](const char* kernel, int radius) {
+    const ImageBuffer image =
+        smoothed([](int x, int y) { return Surface{onPlane(x, y, 2.0f, kLarge)}; },
+                 [](int x, int y) { return x == kAt + 2 && y == kAt + 2 ? 1.0f : 0.0f; },
+                 {.every = 4, .kernel = kernel, .radius = radius, .size = kLarge});
+    int reach = 0;
+    for (int x = kAt + 2; x < kLarge; ++x)
+      if (image.at(x, kAt + 2, 0) > 0.0f) reach = x - kAt - 2;
+    return reach;
+  };
+  for (const char* kernel : {"tent", "gaussian"}) {
+    INFO(kernel);
+    // A tent is 0 at its reach.
+    for (const int radius : {0, 5, 8}) CHECK(std::abs(reachOf(kernel, radius) - 7) <= 1);
+    CHECK(std::abs(reachOf(kernel, 16) - 15) <= 1);
+    CHECK(std::abs(reachOf(kernel, 24) - 23) <= 1);
+  }
+  CHECK(reachOf("bilinear", 24) <= 4);
 }
 
 TEST_CASE("an image of no such size is refused with its size and with what was expected") {
