@@ -63,6 +63,17 @@ void requireSeen(const Scene& scene) {
   }
 }
 
+/// Triangles of objects that are sequences of so many frames.
+std::size_t trianglesThatDeform(const Scene& scene, std::size_t frames) {
+  std::size_t triangles = 0;
+  for (const Object& object : scene.objects) {
+    if (!object.sequence) continue;
+    CHECK(object.sequence->positions.size() == frames);
+    for (const Part& part : object.parts) triangles += part.indexCount / 3;
+  }
+  return triangles;
+}
+
 }  // namespace
 
 TEST_CASE("Crytek's Sponza has its 262266 triangles with area, 25 materials, images and masks") {
@@ -136,4 +147,26 @@ TEST_CASE("the horse gallops in a loop of one second") {
                       again = snapshotOf(*scene, 1.0);
   CHECK_FALSE(start.objects[0].positions == half.objects[0].positions);
   CHECK(start.objects[0].positions == again.objects[0].positions);
+}
+
+TEST_CASE("in an arena the horse gallops between walls of other colours under two spots") {
+  const auto scene = load("horse_arena");
+  if (!scene) return;
+  requireSound(*scene);
+  const SceneTraits traits = SceneTraits::of(*scene);
+  CHECK(traits.spotLights == 2);
+  CHECK(traits.areaLights + traits.directionalLights + traits.pointLights == 0);
+  CHECK(trianglesThatDeform(*scene, 24) > 16000);
+  CHECK(scene->cameras.front().width == 1024);
+  CHECK(scene->cameras.front().height == 768);
+}
+
+TEST_CASE("in Sponza a fifth of the triangles is the horse's, which gallops") {
+  const auto scene = load("horse_sponza");
+  if (!scene) return;
+  requireSound(*scene);
+  const auto moving = static_cast<double>(trianglesThatDeform(*scene, 24)),
+             all = static_cast<double>(scene->triangleCount());
+  CAPTURE(moving, all);
+  CHECK(moving / all == Approx(0.2).margin(0.01));
 }
