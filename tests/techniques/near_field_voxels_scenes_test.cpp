@@ -15,30 +15,35 @@ using namespace lumivox::test::near_field;
 
 namespace {
 
-/// RMSE, without the reference's own noise, over that of nothing; and the mean over the reference's.
+/// RMSE over that of nothing, both without the reference's own noise; and the mean over the reference's.
 struct Against {
   double rmse, ratio;
 };
-Against against(const Scene& scene, const std::string& name, const std::string& output,
-                const std::string& layer, float nothing, const std::vector<std::string>& settings, int height,
-                int width = 64) {
-  ReferenceOptions referenceOptions = quietly(64, 1);
-  referenceOptions.width = width;
-  referenceOptions.height = height;
+struct Picture {
+  int width, height, referenceSamples = 64;
+};
+Against against(const Scene& scene, const Picture& picture, const std::string& name,
+                const std::string& output, const std::string& layer, float nothing,
+                const std::vector<std::string>& settings) {
+  ReferenceOptions referenceOptions = quietly(picture.referenceSamples, 1);
+  referenceOptions.width = picture.width;
+  referenceOptions.height = picture.height;
   referenceOptions.useCache = true;
   const LayeredImage reference = cachedReference(scene, referenceOptions);
   const ImageBuffer &right = reference.layers.at(layer), &variance = reference.layers.at(layer + ".variance");
   const Pipeline text = pipeline(name);
   RenderOptions options;
-  options.width = width;
-  options.height = height;
+  options.width = picture.width;
+  options.height = picture.height;
   options.parameters = text.settings(settings);
   const ImageBuffer image = renderOnce(scene, text, options).outputs.at(output);
-  ImageBuffer none(width, height, right.channels());
+  ImageBuffer none(picture.width, picture.height, right.channels());
   for (float& value : none.values()) value = nothing;
+  const auto squared = [](const ImageError& error) {
+    return std::max(0.0, error.rmse.value * error.rmse.value - error.noiseFloor * error.noiseFloor);
+  };
   const ImageError error = compare(image, right, variance), ofNone = compare(none, right, variance);
-  const double squared = error.rmse.value * error.rmse.value - error.noiseFloor * error.noiseFloor;
-  return {std::sqrt(std::max(0.0, squared)) / ofNone.rmse.value, error.meanRatio.value};
+  return {std::sqrt(squared(error) / squared(ofNone)), error.meanRatio.value};
 }
 
 /// Texels that all rays of the image read.
@@ -60,35 +65,31 @@ double fetchesOf(const Seen& seen, const char* method) {
 
 namespace {
 
-Against ofLight(const Scene& scene, const std::vector<std::string>& settings, int height, int width = 64) {
-  return against(scene, "near_field_voxels", "indirect_diffuse", "one_bounce_diffuse", 0.0f, settings, height,
-                 width);
+Against ofLight(const Scene& scene, const Picture& picture, const std::vector<std::string>& settings) {
+  return against(scene, picture, "near_field_voxels", "indirect_diffuse", "one_bounce_diffuse", 0.0f,
+                 settings);
 }
-Against ofOcclusion(const Scene& scene, const std::vector<std::string>& settings, int height,
-                    int width = 64) {
-  return against(scene, "near_field_voxels_occlusion", "ambient_occlusion", "ambient_occlusion", 1.0f,
-                 settings, height, width);
+Against ofOcclusion(const Scene& scene, const Picture& picture, const std::vector<std::string>& settings) {
+  return against(scene, picture, "near_field_voxels_occlusion", "ambient_occlusion", "ambient_occlusion",
+                 1.0f, settings);
 }
 
 }  // namespace
 
 TEST_CASE("near-field voxels err on the Cornell box and the arcade by less than what is asked of them") {
   const Scene cornell = committed("cornell");
-  const Against few = ofLight(cornell, {"rays=64", "resolution=64"}, 64);
-  CHECK(few.rmse < 0.25);
-  CHECK(few.ratio == Approx(1.0).epsilon(0.1));
-  CHECK(ofLight(committed("arcade"), {"rays=64", "resolution=64"}, 36).rmse < 0.45);
-  const Against open = ofOcclusion(cornell, {"rays=64", "resolution=128"}, 64);
-  CHECK(open.rmse < 0.45);
+  const Against light = ofLight(cornell, {64, 64}, {"rays=64", "resolution=64"});
+  CHECK(light.rmse < 0.25);
+  CHECK(light.ratio == Approx(1.0).epsilon(0.1));
+  CHECK(ofOcclusion(cornell, {64, 64}, {"rays=64", "resolution=128"}).rmse < 0.45);
+  CHECK(ofLight(committed("arcade"), {80, 45}, {"rays=64", "resolution=64"}).rmse < 0.45);
 }
 
 TEST_CASE("with a thousand rays what is left of the error is bias, which falls from 32 voxels to 128") {
   const Scene cornell = committed("cornell");
-  constexpr int kSide = 40;
   std::map<int, Against> found;
   for (const int resolution : {32, 64, 128}) {
-    found[resolution] =
-        ofLight(cornell, {"rays=1024", "resolution=" + std::to_string(resolution)}, kSide, kSide);
+    found[resolution] = ofLight(cornell, {40, 40}, {"rays=1024", "resolution=" + std::to_string(resolution)});
     CAPTURE(resolution, found[resolution].rmse, found[resolution].ratio);
     CHECK(found[resolution].ratio > 0.9);
     CHECK(found[resolution].ratio < 1.1);
@@ -102,18 +103,18 @@ TEST_CASE("with a thousand rays what is left of the error is bias, which falls f
 
 // The numbers of the card; minutes.
 TEST_CASE("errors of light and of occlusion by voxels and rays", "[.]") {
-  const auto tell = [](const char* what, const std::string& scene, const std::vector<std::string>& settings,
-                       const Against& found) {
-    WARN(what << " on " << scene << " with " << settings[0] << " " << settings[1] << ": RMSE " << found.rmse
-              << " of none, ratio " << found.ratio);
-  };
-  for (const auto& [name, height] : {std::pair<std::string, int>("cornell", 64), {"arcade", 36}}) {
+  for (const auto& [name, picture] :
+       {std::pair<const char*, Picture>("cornell", {64, 64, 1024}), {"arcade", {80, 45, 1024}}}) {
     const Scene scene = committed(name);
+    const auto tell = [&](const char* what, const char* resolution, const char* rays, const Against& found) {
+      WARN(name << ", " << what << ", " << resolution << " " << rays << ": " << found.rmse << ", ratio "
+                << found.ratio);
+    };
     for (const char* resolution : {"resolution=32", "resolution=64", "resolution=128"})
       for (const char* rays : {"rays=64", "rays=1024"})
-        tell("light", name, {resolution, rays}, ofLight(scene, {resolution, rays}, height));
+        tell("light", resolution, rays, ofLight(scene, picture, {resolution, rays}));
     for (const char* resolution : {"resolution=64", "resolution=128"})
-      tell("occlusion", name, {resolution, "rays=256"}, ofOcclusion(scene, {resolution, "rays=256"}, height));
+      tell("occlusion", resolution, "rays=256", ofOcclusion(scene, picture, {resolution, "rays=256"}));
   }
 }
 
