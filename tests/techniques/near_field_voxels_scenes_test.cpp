@@ -306,12 +306,11 @@ TEST_CASE("samples of some pixels are those of the same pixels among all, for an
     Pipeline text = pipeline("near_field_voxels");
     std::string source = text.document->source;
     const std::string head = "near_field_voxels.gather {\n";
-    source.insert(source.find(head) + head.size(),
-                  std::string("    rotation none\n    pixels ") + pixels + "\n");
+    source.insert(source.find(head) + head.size(), "    rotation none\n");
     RenderOptions options;
     options.width = options.height = kSide;
     const Pipeline changed = Pipeline::parse(source, text.file);
-    options.parameters = changed.settings({"rays=" + std::to_string(rays)});
+    options.parameters = changed.settings({"rays=" + std::to_string(rays), std::string("pixels=") + pixels});
     PipelineExecutor executor(device(), techniques(), scene, changed, options);
     executor.keepOutput("gather", "arriving");
     executor.render(0.0);
