@@ -2,6 +2,7 @@
 // what the printed walk finds otherwise.
 #include <map>
 #include <random>
+#include <set>
 
 #include "lumivox/measure/metrics.h"
 #include "lumivox/pipeline/pass.h"
@@ -330,4 +331,50 @@ TEST_CASE("samples of some pixels are those of the same pixels among all, for an
       CHECK(other == 0);
     }
   }
+}
+
+TEST_CASE(
+    "light or occlusion that nobody wants is left out, with its maps, and the other is the same to the bit") {
+  const Pipeline text = pipeline("near_field_voxels_occlusion");
+  RenderOptions options;
+  options.width = options.height = 32;
+  options.parameters = text.settings({"resolution=32", "rays=16"});
+  const auto passesOf = [](const FrameResult& frame) {
+    std::set<std::string> names;
+    for (const PassRecord& pass : frame.passes) names.insert(pass.name);
+    return names;
+  };
+  for (const char* name : {"cornell", "arcade"}) {
+    const Scene scene = committed(name);
+    options.wanted = {};
+    const FrameResult all = renderOnce(scene, text, options);
+    for (const char* wanted : {"indirect_diffuse", "ambient_occlusion"}) {
+      options.wanted = {wanted};
+      const FrameResult one = renderOnce(scene, text, options);
+      CAPTURE(name, wanted);
+      CHECK(one.outputs.size() == 1);
+      CHECK(one.outputs.at(wanted).values() == all.outputs.at(wanted).values());
+      CHECK(passesOf(one).contains("gather"));
+      CHECK(passesOf(one).contains("lights") == (std::string(wanted) == "indirect_diffuse"));
+      CHECK_FALSE(passesOf(one).contains("direct"));
+    }
+  }
+  // So in screen space.
+  options.parameters = {};
+  const Pipeline screen = pipeline("screen_space");
+  for (const char* wanted : {"indirect_diffuse", "ambient_occlusion"}) {
+    options.wanted = {wanted};
+    const std::set<std::string> passes = passesOf(renderOnce(committed("cornell"), screen, options));
+    CHECK(passes.contains("bounce") == (std::string(wanted) == "indirect_diffuse"));
+    CHECK(passes.contains("occlusion") == (std::string(wanted) == "ambient_occlusion"));
+  }
+  options.parameters = text.settings({"resolution=32", "rays=16"});
+  // Without lights there is no map, and what the sky brings is what a map without light leaves of it.
+  Scene unlit = committed("arcade");
+  unlit.lights.clear();
+  options.wanted = {"indirect_diffuse"};
+  const FrameResult left = renderOnce(unlit, text, options);
+  options.keepEverything = true;
+  const FrameResult kept = renderOnce(unlit, text, options);
+  CHECK(left.outputs.at("indirect_diffuse").values() == kept.outputs.at("indirect_diffuse").values());
 }
