@@ -1,4 +1,4 @@
-// Where the bits lie. C++ side: bitBinding() in techniques/near_field_voxels/rays.h.
+// Where the bits lie. C++ side: RayMethod::binding() in techniques/near_field_voxels/rays.cpp.
 #include "common/bit_grid.glsl"
 
 layout(std140, binding = 0) uniform Grid {

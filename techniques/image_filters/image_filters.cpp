@@ -55,6 +55,11 @@ class SmoothPass : public Pass {
                        "unoccluded share of the directions"};
 
   Reads readsFrom() const override { return Reads::camera; }
+  bool uses(const InBase& input) const override {
+    if (&input == &arriving) return diffuse.wanted();
+    if (&input == &mirrored) return glossy.wanted();
+    return &input != &open || occlusion.wanted();
+  }
 
   /// Pixels from one sample to the next.
   int everyOf(PassContext& frame, const In<Image>& samples, const char* name) const {

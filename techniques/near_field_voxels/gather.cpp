@@ -107,8 +107,8 @@ class GatherPass : public Pass {
     return Reads::camera | Reads::environment | Reads::geometry | Reads::history;
   }
   bool uses(const InBase& input) const override {
-    return (&input != &map || radiance == Radiance::map) &&
-           (&input != &voxels || radiance == Radiance::voxels);
+    if (&input == &map) return arriving.wanted() && radiance == Radiance::map;
+    return &input != &voxels || (arriving.wanted() && radiance == Radiance::voxels);
   }
   std::string checkParameters() const override {
     return taps == 1 || taps == 4 ? std::string() : fmt::format("'taps' is {}; expected 1 or 4", int(taps));
@@ -118,6 +118,7 @@ class GatherPass : public Pass {
 
   /// Error where what is connected does not belong together.
   void checkInputs() const {
+    if (!arriving.wanted()) return;
     if (radiance == Radiance::voxels) {
       if (!voxels.present())
         throw Error(

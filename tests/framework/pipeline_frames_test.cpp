@@ -289,6 +289,63 @@ TEST_CASE("an input that the parameters make useless is left out like one that t
 
 namespace {
 
+/// Hands two images on, each for the sake of one of its outputs alone.
+class Pair : public Toy {
+ public:
+  using Toy::Toy;
+  In<Image> left{this, "left", "one"};
+  In<Image> right{this, "right", "the other"};
+  Out<Image> ofLeft{this, "of_left"};
+  Out<Image> ofRight{this, "of_right"};
+  bool uses(const InBase& input) const override {
+    return &input == &left ? ofLeft.wanted() : ofRight.wanted();
+  }
+  void run(PassContext& frame) override {
+    note();
+    if (ofLeft.wanted()) ofLeft = paint(frame, valueOf(*left));
+    if (ofRight.wanted()) ofRight = paint(frame, valueOf(*right));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("an input that only unwanted outputs read is left out, through as many passes as there are") {
+  FramesFixture f;
+  if (!f) return;
+  f.techniques.add<Pair>("toy", "pair");
+  const std::string text =
+      "pass one toy.paint { value 2 }\npass two toy.paint_camera { value 4 }\n"
+      "pass near toy.pair { left one  right two }\n"
+      "pass far toy.pair { left near.of_left  right near.of_right }\n"
+      "output l far.of_left\noutput r far.of_right";
+  const auto ranFor = [&](const std::vector<std::string>& wanted, bool keepEverything, bool accumulate) {
+    RenderOptions options;
+    options.wanted = wanted;
+    options.keepEverything = keepEverything;
+    options.accumulate = accumulate;
+    PipelineExecutor executor = f.executor(text, options);
+    const FrameResult frame = executor.render(0.0);
+    for (const std::string& name : wanted) CHECK(first(frame, name) == (name == "l" ? 2.0f : 4.0f));
+    return f.techniques.takeRan();
+  };
+  for (const bool accumulate : {false, true}) {
+    CHECK(ranFor({"l"}, false, accumulate) == Ran{"paint", "pair", "pair"});
+    CHECK(ranFor({"r"}, false, accumulate) == Ran{"paint_camera", "pair", "pair"});
+    CHECK(ranFor({"l", "r"}, false, accumulate).size() == 4);
+    CHECK(ranFor({"l"}, true, accumulate).size() == 4);
+  }
+  RenderOptions options;
+  options.wanted = {"l"};
+  PipelineExecutor executor = f.executor(text, options);
+  executor.render(0.0);
+  const Explanation explanation = executor.explain();
+  const LeftOut* two = find(explanation, LeftOut::Level::pass, "two");
+  REQUIRE(two != nullptr);
+  CHECK(two->why == "the parameters of 'near' and what is wanted of it make its input 'right' useless");
+}
+
+namespace {
+
 /// Needs a medium unless it is told not to.
 class Gated : public Paint {
  public:

@@ -63,6 +63,50 @@ void requireSeen(const Scene& scene) {
   }
 }
 
+/// Triangles of objects that are sequences of so many frames.
+std::size_t trianglesThatDeform(const Scene& scene, std::size_t frames) {
+  std::size_t triangles = 0;
+  for (const Object& object : scene.objects) {
+    if (!object.sequence) continue;
+    CHECK(object.sequence->positions.size() == frames);
+    for (const Part& part : object.parts) triangles += part.indexCount / 3;
+  }
+  return triangles;
+}
+
+/// How far above what stands below it the lowest vertex of any frame of what deforms is, m.
+double leastHeight(const Scene& scene, int frames) {
+  double least = 1e30;
+  for (int frame = 0; frame < frames; ++frame) {
+    const SceneSnapshot snapshot = snapshotOf(scene, frame / 24.0);
+    glm::vec3 lowest(1e30f);
+    for (const ObjectState& object : snapshot.objects)
+      for (const glm::vec3& position : object.positions) {
+        const glm::vec3 place(object.toWorld * glm::vec4(position, 1.0f));
+        if (place.y < lowest.y) lowest = place;
+      }
+    double floor = -1e30;
+    for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+      if (scene.objects[o].sequence) continue;
+      const auto vertex = [&](std::uint32_t index) {
+        return glm::dvec3(snapshot.objects[o].toWorld *
+                          glm::vec4(scene.positions[scene.indices[index]], 1.0f));
+      };
+      for (const Part& part : scene.objects[o].parts)
+        for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; i += 3) {
+          const glm::dvec3 a = vertex(i), b = vertex(i + 1) - a, c = vertex(i + 2) - a,
+                           p = glm::dvec3(lowest) - a;
+          const double area = b.x * c.z - c.x * b.z, u = (p.x * c.z - c.x * p.z) / area,
+                       v = (b.x * p.z - p.x * b.z) / area, height = u * b.y + v * c.y;
+          if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && height < p.y + 0.5)
+            floor = std::max(floor, a.y + height);
+        }
+    }
+    least = std::min(least, lowest.y - floor);
+  }
+  return least;
+}
+
 }  // namespace
 
 TEST_CASE("Crytek's Sponza has its 262266 triangles with area, 25 materials, images and masks") {
@@ -136,4 +180,28 @@ TEST_CASE("the horse gallops in a loop of one second") {
                       again = snapshotOf(*scene, 1.0);
   CHECK_FALSE(start.objects[0].positions == half.objects[0].positions);
   CHECK(start.objects[0].positions == again.objects[0].positions);
+}
+
+TEST_CASE("in an arena the horse gallops between walls of other colours under two spots, on its floor") {
+  const auto scene = load("horse_arena");
+  if (!scene) return;
+  requireSound(*scene);
+  const SceneTraits traits = SceneTraits::of(*scene);
+  CHECK(traits.spotLights == 2);
+  CHECK(traits.areaLights + traits.directionalLights + traits.pointLights == 0);
+  CHECK(trianglesThatDeform(*scene, 24) > 16000);
+  CHECK(leastHeight(*scene, 24) == Approx(0.005).margin(0.01));
+  CHECK(scene->cameras.front().width == 1024);
+  CHECK(scene->cameras.front().height == 768);
+}
+
+TEST_CASE("in Sponza a fifth of the triangles is the horse's, which gallops on the floor") {
+  const auto scene = load("horse_sponza");
+  if (!scene) return;
+  requireSound(*scene);
+  const auto moving = static_cast<double>(trianglesThatDeform(*scene, 24)),
+             all = static_cast<double>(scene->triangleCount());
+  CAPTURE(moving, all);
+  CHECK(moving / all == Approx(0.2).margin(0.01));
+  CHECK(leastHeight(*scene, 24) == Approx(0.005).margin(0.01));
 }

@@ -265,7 +265,7 @@ TEST_CASE(
       levels.push_back(grid.stacks->download(level));
     return levels;
   };
-  for (const char* masks : {"any", "random"}) {
+  for (const char* masks : {"any", "half", "random"}) {
     const Pipeline text = Pipeline::parse(
         std::string("pipeline \"bits\" {\n  pass gbuffer direct_lighting.gbuffer { }\n"
                     "  pass voxels voxelization.conservative { resolution 37 }\n"

@@ -41,8 +41,8 @@ std::vector<fs::path> committedScenes() {
 }
 
 /// Scenes whose models are committed; all others need the asset path.
-const std::set<std::string> kOwnScenes = {"cornell", "cornell_glossy", "arcade",       "corridor",
-                                          "furnace", "spinning_box",   "hidden_sender"};
+const std::set<std::string> kOwnScenes = {"cornell", "cornell_glossy", "arcade",        "corridor",
+                                          "furnace", "spinning_box",   "hidden_sender", "waving_cloth"};
 bool isOwn(const fs::path& scene) {
   return kOwnScenes.count(scene.stem().string()) != 0 || scene.parent_path().filename() == "stress" ||
          scene.parent_path().filename() == "untuned" || scene.parent_path().filename() == "examples";
@@ -233,6 +233,23 @@ TEST_CASE("the spinning box turns by 45 degrees a second about its own centre an
     }
   }
   CHECK(moved >= 8);
+}
+
+TEST_CASE("the cloth deforms in a loop of one second of six frames, and all else stands") {
+  const Scene scene = load("waving_cloth");
+  std::size_t deforming = 0;
+  const SceneSnapshot start = snapshotOf(scene, 0.0), third = snapshotOf(scene, 1.0 / 3.0),
+                      whole = snapshotOf(scene, 1.0);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    INFO(scene.objects[i].name);
+    CHECK(start.objects[i].positions == whole.objects[i].positions);
+    CHECK((start.objects[i].positions == third.objects[i].positions) == !scene.objects[i].sequence);
+    CHECK(start.objects[i].toWorld == third.objects[i].toWorld);
+    if (!scene.objects[i].sequence) continue;
+    CHECK(scene.objects[i].sequence->positions.size() == 6);
+    ++deforming;
+  }
+  CHECK(deforming == 1);
 }
 
 TEST_CASE(

@@ -102,15 +102,34 @@ bool plannedOtherwise(const BoundPass& bound, std::size_t pass, const PrunePlan&
 
 }  // namespace
 
+/// Passes say by what is wanted of them which inputs they use, and those say what is wanted of others:
+/// planned again until nothing more falls away.
+PrunePlan PipelineExecutor::State::planFor(const PruneRequest& run) {
+  for (const BoundPass& pass : graph.passes)
+    for (OutBase* output : pass.object->outputs()) output->wanted_ = true;
+  for (;;) {
+    PrunePlan result = prune(graph, run);
+    bool fewer = false;
+    for (std::size_t pass = 0; pass < graph.passes.size(); ++pass) {
+      const auto& outputs = graph.passes[pass].object->outputs();
+      for (std::size_t port = 0; port < outputs.size(); ++port) {
+        if (!outputs[port]->wanted_ || result.passes[pass].outputs[port].wanted) continue;
+        outputs[port]->wanted_ = false;
+        fewer = true;
+      }
+    }
+    if (!fewer) return result;
+  }
+}
+
 const PrunePlan& PipelineExecutor::State::planned() {
   if (plan) return *plan;
-  plan = prune(graph, request);
+  plan = planFor(request);
   mustRun.resize(graph.passes.size(), false);
   for (std::size_t pass = 0; pass < graph.passes.size(); ++pass) {
     const auto& outputs = graph.passes[pass].object->outputs();
     for (std::size_t port = 0; port < outputs.size(); ++port) {
       OutputPlan& output = plan->passes[pass].outputs[port];
-      outputs[port]->wanted_ = output.wanted;
       if (!output.wanted) outputs[port]->reset();
       output.keep = output.keep || (keepsOutputs && output.wanted);
     }

@@ -12,7 +12,7 @@ std::vector<std::vector<OutputIndex>> PipelineExecutor::State::sourcesThatCount(
   PruneRequest lean = request;
   lean.keepEverything = false;
   lean.traits = sceneTraits;
-  const PrunePlan leanPlan = prune(graph, lean);
+  const PrunePlan leanPlan = planFor(lean);
   std::vector<std::vector<OutputIndex>> result;
   for (const BoundPass& pass : graph.passes) {
     std::vector<OutputIndex> sources = sourcesRead(pass, lean);
@@ -20,6 +20,11 @@ std::vector<std::vector<OutputIndex>> PipelineExecutor::State::sourcesThatCount(
     sources.insert(sources.end(), before.begin(), before.end());
     std::erase_if(sources, [&](const OutputIndex source) { return !leanPlan.output(source).wanted; });
     result.push_back(std::move(sources));
+  }
+  for (std::size_t pass = 0; pass < graph.passes.size(); ++pass) {
+    const auto& outputs = graph.passes[pass].object->outputs();
+    for (std::size_t port = 0; port < outputs.size(); ++port)
+      outputs[port]->wanted_ = plan->passes[pass].outputs[port].wanted;
   }
   return result;
 }

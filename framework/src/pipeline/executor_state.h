@@ -56,6 +56,8 @@ struct PipelineExecutor::State {
 
   // ---- what runs
   const PrunePlan& planned();
+  /// What a run needs; outputs know from now on whether they are wanted by it.
+  PrunePlan planFor(const PruneRequest& run);
   /// The next plan is made from nothing: every pass runs, and histories are empty.
   void forgetPlan();
   Reads changesSince(const SceneSnapshot& snapshot, int frameIndex) const;

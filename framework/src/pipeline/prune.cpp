@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace lumivox {
 
 namespace {
@@ -83,16 +85,20 @@ std::vector<OutputIndex> inputsRead(const BoundPass& pass, const PruneRequest& r
   return result;
 }
 
-/// Why an output is not wanted: a reader that is kept and whose parameters make it useless, or nobody.
+/// Why an output is not wanted: a reader that is kept and has no use for it, by its parameters or by what is
+/// wanted of it, or nobody.
 std::string whyUnwanted(const BoundGraph& graph, const PrunePlan& plan, std::size_t pass, int port) {
   for (std::size_t reader = 0; reader < graph.passes.size(); ++reader) {
     const BoundPass& bound = graph.passes[reader];
     for (std::size_t i = 0; i < bound.sources.size(); ++i) {
       const OutputIndex source = bound.sources[i];
       if (source.pass != static_cast<int>(pass) || (port >= 0 && source.port != port)) continue;
-      if (plan.passes[reader].kept && !bound.object->uses(*bound.object->inputs()[i]))
-        return fmt::format("the parameters of '{}' make its input '{}' useless", bound.name,
-                           bound.object->inputs()[i]->name());
+      const PassPlan& read = plan.passes[reader];
+      if (!read.kept || bound.object->uses(*bound.object->inputs()[i])) continue;
+      const bool wantsAll = std::all_of(read.outputs.begin(), read.outputs.end(),
+                                        [](const OutputPlan& output) { return output.wanted; });
+      return fmt::format("the parameters of '{}'{} make its input '{}' useless", bound.name,
+                         wantsAll ? "" : " and what is wanted of it", bound.object->inputs()[i]->name());
     }
   }
   return "nothing that is wanted depends on it";
