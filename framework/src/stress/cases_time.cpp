@@ -164,7 +164,7 @@ std::optional<Finding> accumulatingTeleport(Bench& bench) {
   };
   Shot shot;
   shot.accumulate = true;
-  if (bench.quick()) shot.width = shot.height = 32;
+  shot.width = shot.height = bench.quick() ? 32 : 48;
   constexpr double kTime = 0.4;
   const std::vector<View> views{View::home,     View::home,    View::home, View::otherEnd, View::otherEnd,
                                 View::otherEnd, View::faraway, View::home, View::home,     View::home};

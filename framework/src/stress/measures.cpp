@@ -101,17 +101,24 @@ ReferenceLayer referenceOf(Bench& bench, const Scene& scene, const Frame& frame,
   return *layer;
 }
 
-double indirectReference(Bench& bench, const Scene& scene, const Frame& frame, const Shot& shot) {
-  const LayeredImage reference = bench.reference(scene, shot, referenceSamples(bench));
-  double sum = 0.0;
+ReferenceLayer indirectLayer(Bench& bench, const Scene& scene, const Frame& frame, const Shot& shot,
+                             int samples) {
+  const LayeredImage reference =
+      bench.reference(scene, shot, samples > 0 ? samples : referenceSamples(bench));
+  ReferenceLayer sum;
   for (const auto& [name, component] : frame.result.components) {
     if (!isIndirect(component)) continue;
     const std::optional<ReferenceLayer> layer = referenceLayer(reference, ownLayer(frame.result, name));
     if (!layer)
       throw Error(fmt::format("the reference of scene '{}' lacks a layer for '{}'", scene.name, name));
-    sum += meanOf(layer->mean);
+    add(sum.mean, layer->mean);
+    add(sum.variance, layer->variance);
   }
   return sum;
+}
+
+double indirectReference(Bench& bench, const Scene& scene, const Frame& frame, const Shot& shot) {
+  return meanOf(indirectLayer(bench, scene, frame, shot).mean);
 }
 
 std::optional<Finding> againstReference(Bench& bench, const Scene& scene, double limit, const Shot& shot) {
