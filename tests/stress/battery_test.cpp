@@ -216,17 +216,19 @@ TEST_CASE("what an old view left in frames that accumulate is found, and a mean 
 
 TEST_CASE("a pipeline without light is judged by what it shows, and told what says nothing about it") {
   const Workplace place;
-  place.write("open.pipeline",
-              "pipeline \"Open\" {\n  pass gbuffer direct_lighting.gbuffer { }\n"
-              "  pass open screen_space.ssao {\n    gbuffer gbuffer\n    samples 4\n  }\n\n"
-              "  output ambient_occlusion open.occlusion\n}\n");
+  place.write(
+      "open.pipeline",
+      "pipeline \"Open\" {\n  pass gbuffer direct_lighting.gbuffer { }\n"
+      "  pass open screen_space.ssao {\n    gbuffer gbuffer\n    samples 4\n  }\n"
+      "  pass smooth image_filters.smooth {\n    gbuffer gbuffer\n    occlusion open.occlusion\n  }\n\n"
+      "  output ambient_occlusion smooth.occlusion\n}\n");
   const Battery run = battery("--quick --pipeline '" + place.file("open.pipeline") +
                               "' --case image_33x17 --case camera_looks_away --case no_light --case light_1e8"
                               " --case thin_wall_leak --case moved_1000_km --case frame_of_a_sequence"
                               " --case closed_box_one_bounce --case hidden_sender --case environment_only"
-                              " --case fov_1_deg --case no_triangles --case turned_30");
+                              " --case fov_1_deg --case no_triangles --case turned_30 --case battery_values");
   CHECK(run.result.exitCode == 0);
-  REQUIRE(run.cells.size() == 13);
+  REQUIRE(run.cells.size() == 14);
   const std::set<std::string> judged{"image_33x17", "moved_1000_km", "turned_30", "frame_of_a_sequence",
                                      "fov_1_deg"};
   for (const Json& cell : run.cells) {

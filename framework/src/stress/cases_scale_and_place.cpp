@@ -107,6 +107,10 @@ Shot atResolution(int resolution) {
   return shot;
 }
 
+Finding withoutResolution() {
+  return notApplicable("it has no parameter 'resolution'");
+}
+
 /// Voxels, against those of the exact test, beside the same at 64.
 std::optional<Finding> gridOfVoxels(Bench& bench, const Scene& scene, int resolution) {
   const auto fine = bench.voxelError(scene, atResolution(64)),
@@ -119,7 +123,7 @@ std::optional<Finding> gridOfVoxels(Bench& bench, const Scene& scene, int resolu
 
 /// A grid too coarse to show anything, or very fine, still knows how much light there is.
 std::optional<Finding> gridAgainstReference(Bench& bench, int resolution) {
-  if (bench.parameter("resolution") == nullptr) return std::nullopt;
+  if (bench.parameter("resolution") == nullptr) return withoutResolution();
   if (!makesImages(bench)) return gridOfVoxels(bench, bench.committedScene("cornell"), resolution);
   const Scene scene = room(bench, false);
   const Shot shot = atResolution(resolution);
@@ -132,7 +136,7 @@ std::optional<Finding> gridAgainstReference(Bench& bench, int resolution) {
 
 /// One voxel more or less changes little.
 std::optional<Finding> gridBeside64(Bench& bench, int resolution) {
-  if (bench.parameter("resolution") == nullptr) return std::nullopt;
+  if (bench.parameter("resolution") == nullptr) return withoutResolution();
   if (!makesImages(bench)) return gridOfVoxels(bench, bench.committedScene("cornell"), resolution);
   const Scene scene = room(bench, false);
   const Frame at64 = bench.render(scene, atResolution(64)),
@@ -236,10 +240,14 @@ std::optional<Finding> wallsInFaces(Bench& bench) {
   }
   bench.show(got.compared);
   std::string detail = fmt::format("{} voxels from wall to wall", count);
-  if (makesIndirect(got))
-    detail += fmt::format("; of the indirect light alone {:.3g}, its mean {:.4g} of that half a voxel off",
-                          relativeDifference(indirectOf(got), indirectOf(wanted)),
-                          meanOf(indirectOf(got)) / meanOf(indirectOf(wanted)));
+  if (makesIndirect(got)) {
+    constexpr int kSamples = 64;  // of all pixels together a hundred thousand and more
+    const double reference = meanOf(indirectLayer(bench, roomInBounds(halfOff), wanted, shot, kSamples).mean);
+    detail += fmt::format(
+        "; indirect light {:.3g} of the reference's, half a voxel off {:.3g}, RMS difference {:.3g}",
+        meanOf(indirectOf(got)) / reference, meanOf(indirectOf(wanted)) / reference,
+        relativeDifference(indirectOf(got), indirectOf(wanted)));
+  }
   return judged(fmt::format("RMS difference from {}, of its mean", kWhat),
                 {relativeDifference(got.compared, wanted.compared), 0.0}, 0.05, detail);
 }
