@@ -15,7 +15,7 @@ int movedSteps(ivec3 face, int axis, bool above) {
 ivec3 besideWalls(ivec3 cell, vec3 position, int dominant) {
   for (int i = 1; i <= 2; ++i) {
     int axis = (dominant + i) % 3;
-    int plane = int(floor(position[axis] + 0.5));
+    int plane = planeOf(position[axis]);
     float beyond = position[axis] - float(plane);
     ivec3 face = cell;
     face[axis] = plane;
@@ -31,7 +31,6 @@ ivec3 besideWalls(ivec3 cell, vec3 position, int dominant) {
 // Of a place on a surface: in front of it, and of the walls beside it.
 ivec3 cellBeside(vec3 position, vec3 normal) {
   const float kFragment = 0.25;  // cells from the middle of a fragment to its side
-  const float kRounding = 0.02;  // cells: half-way between two planes the fragment may have gone to the other one
   int dominant = dominantAxis(normal);
   ivec3 cell = cellInFront(position, normal);
   // A fragment is moved as a whole. One at a slant may have gone on to the next plane with all that it covers, and this cell is behind it.
@@ -40,6 +39,6 @@ ivec3 cellBeside(vec3 position, vec3 normal) {
   if (isUp) ++face[dominant];
   float ahead = abs(float(face[dominant]) - position[dominant]);
   float slope = (abs(normal.x) + abs(normal.y) + abs(normal.z)) / abs(normal[dominant]) - 1.0;
-  if ((ahead - kFragment * slope - kRounding) * kMovedSteps < float(movedSteps(face, dominant, !isUp))) cell[dominant] += isUp ? 1 : -1;
+  if ((ahead - kFragment * slope) * kMovedSteps < float(movedSteps(face, dominant, !isUp))) cell[dominant] += isUp ? 1 : -1;
   return besideWalls(cell, position, dominant);
 }
