@@ -229,8 +229,8 @@ TEST_CASE("a pipeline without light is judged by what it shows, and told what sa
                               " --case fov_1_deg --case no_triangles --case turned_30 --case battery_values");
   CHECK(run.result.exitCode == 0);
   REQUIRE(run.cells.size() == 14);
-  const std::set<std::string> judged{"image_33x17", "moved_1000_km", "turned_30", "frame_of_a_sequence",
-                                     "fov_1_deg"};
+  const std::set<std::string> judged{"image_33x17",         "moved_1000_km", "turned_30",
+                                     "frame_of_a_sequence", "fov_1_deg",     "battery_values"};
   for (const Json& cell : run.cells) {
     INFO(cell.dump(1));
     const std::string outcome = cell.at("outcome");
