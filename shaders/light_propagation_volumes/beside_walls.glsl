@@ -15,7 +15,7 @@ int movedSteps(ivec3 face, int axis, bool above) {
 ivec3 besideWalls(ivec3 cell, vec3 position, int dominant) {
   for (int i = 1; i <= 2; ++i) {
     int axis = (dominant + i) % 3;
-    int plane = int(floor(position[axis] + 0.5));
+    int plane = planeOf(position[axis]);
     float beyond = position[axis] - float(plane);
     ivec3 face = cell;
     face[axis] = plane;

@@ -49,7 +49,7 @@ void main() {
     ivec2 first, last;
     if (!partRange(vec2(position[u], position[v]), size, first, last)) continue;
     ivec3 face;
-    face[axis] = int(floor(position[axis] + 0.5));
+    face[axis] = planeOf(position[axis]);
     for (int cellV = cellOfPart(first.y); cellV <= cellOfPart(last.y); ++cellV)
       for (int cellU = cellOfPart(first.x); cellU <= cellOfPart(last.x); ++cellU) {
         face[u] = cellU;

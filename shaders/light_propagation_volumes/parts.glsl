@@ -16,9 +16,16 @@ const int kMovedDown = 16, kMovedUp = 23;  // the first bits
 const uint kMovedMask = 0x7fu, kFacing = 1u << 30;
 const float kMovedSteps = 14.0;  // a cell
 
+// The plane of faces that a surface at this place along an axis is moved to, the nearest one. Half-way between two of them rounding would
+// decide for every fragment, virtual light and receiver apart: they all go up.
+int planeOf(float position) {
+  const float kRounding = 0.01;  // cells
+  return int(floor(position + 0.5 + kRounding));
+}
+
 // The bits above the parts, of a surface whose place along the axis that it mostly faces varies by `slant` to both sides.
 uint facingBits(float position, float normal, float slant) {
-  float beyond = position - floor(position + 0.5);
+  float beyond = position - float(planeOf(position));
   float moved = (normal < 0.0 ? beyond : -beyond) + slant;
   if (moved <= 0.0) return kFacing;  // away from what is in front of it
   int step = min(int(moved * kMovedSteps), 6);
@@ -35,7 +42,7 @@ int dominantAxis(vec3 normal) {
 ivec3 cellInFront(vec3 position, vec3 normal) {
   int dominant = dominantAxis(normal);
   ivec3 cell = ivec3(floor(position));
-  int plane = int(floor(position[dominant] + 0.5));
+  int plane = planeOf(position[dominant]);
   cell[dominant] = normal[dominant] >= 0.0 ? plane : plane - 1;
   return cell;
 }

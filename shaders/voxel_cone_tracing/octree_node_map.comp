@@ -30,11 +30,12 @@ void main() {
   vec4 position = texelFetch(photonPosition, texel, 0);
   uint code = 0u;
   if (position.w > 0.0) {
-    // A surface on the face between two voxels lies in one of them to the voxelizer, and by rounding perhaps in the other to the photon.
+    // A surface on the face between two voxels lies in both of them or in one to the voxelizer, and by rounding in any to the photon: the one
+    // before the surface is what others see of it.
     const float kRounding = 0.01;  // voxels
     vec3 at = (position.xyz - gridLow) / voxelSize, aside = kRounding * texelFetch(photonNormal, texel, 0).xyz;
-    code = voxelAt(at);
-    if (code == 0u) code = voxelAt(at + aside);
+    code = voxelAt(at + aside);
+    if (code == 0u) code = voxelAt(at);
     if (code == 0u) code = voxelAt(at - aside);
   }
   imageStore(nodeMap, texel, uvec4(code));

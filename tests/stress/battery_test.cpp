@@ -1,6 +1,7 @@
 // The quick stress battery, family by family, and the battery itself on a technique that does what none may
 // do.
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "lumivox/base/file.h"
 #include "lumivox/results/store.h"
@@ -191,6 +192,56 @@ TEST_CASE("images of one scene have one exposure, whichever pipeline made them")
   REQUIRE(place.has("page/images/faint__camera_on_surface.png"));
   CHECK(place.read("page/images/faint__camera_on_surface.png") !=
         place.read("page/images/paint__camera_on_surface.png"));
+}
+
+TEST_CASE("what an old view left in frames that accumulate is found, and a mean that begins anew is not") {
+  const HostilePlace place;
+  const auto outcomeOf = [&](const char* pass) {
+    place.write("jump.pipeline", "pipeline \"jump\" {\n  pass a hostile." + std::string(pass) +
+                                     "\n\n  output direct a.radiance\n}\n");
+    return battery("--techniques '" + (binaryDirectory() / "tests/plugins/hostile").string() +
+                   "' --quick --case accumulation_teleport --pipeline '" + place.file("jump.pipeline") + "'")
+        .cells.at(0);
+  };
+  const Json right = outcomeOf("mean { }"), wrong = outcomeOf("mean { trail on }"),
+             none = outcomeOf("paint { }");
+  INFO(right.dump(1) << wrong.dump(1) << none.dump(1));
+  CHECK(right.at("outcome") == "stable");
+  CHECK(wrong.at("outcome") == "biased");
+  CHECK(wrong.at("value") == 1.0);
+  CHECK(contains(wrong.at("detail"), "back again"));
+  CHECK(none.at("outcome") == "not_applicable");
+  CHECK(contains(none.at("detail"), "goes on from earlier frames"));
+}
+
+TEST_CASE("a pipeline without light is judged by what it shows, and told what says nothing about it") {
+  const Workplace place;
+  place.write(
+      "open.pipeline",
+      "pipeline \"Open\" {\n  pass gbuffer direct_lighting.gbuffer { }\n"
+      "  pass open screen_space.ssao {\n    gbuffer gbuffer\n    samples 4\n  }\n"
+      "  pass smooth image_filters.smooth {\n    gbuffer gbuffer\n    occlusion open.occlusion\n  }\n\n"
+      "  output ambient_occlusion smooth.occlusion\n}\n");
+  const Battery run = battery("--quick --pipeline '" + place.file("open.pipeline") +
+                              "' --case image_33x17 --case camera_looks_away --case no_light --case light_1e8"
+                              " --case thin_wall_leak --case moved_1000_km --case frame_of_a_sequence"
+                              " --case closed_box_one_bounce --case hidden_sender --case environment_only"
+                              " --case fov_1_deg --case no_triangles --case turned_30 --case battery_values");
+  CHECK(run.result.exitCode == 0);
+  REQUIRE(run.cells.size() == 14);
+  const std::set<std::string> judged{"image_33x17",         "moved_1000_km", "turned_30",
+                                     "frame_of_a_sequence", "fov_1_deg",     "battery_values"};
+  for (const Json& cell : run.cells) {
+    INFO(cell.dump(1));
+    const std::string outcome = cell.at("outcome");
+    if (judged.count(cell.at("case")) != 0) {
+      CHECK((outcome == "stable" || outcome == "biased"));
+      CHECK(cell.at("measure") != "");
+    } else {
+      CHECK(outcome == "not_applicable");
+      CHECK(contains(cell.at("detail"), "none of its outputs is radiance"));
+    }
+  }
 }
 
 TEST_CASE("unknown cases, families and techniques are refused before anything runs") {

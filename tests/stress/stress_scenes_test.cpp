@@ -93,6 +93,25 @@ TEST_CASE("the reference of the dark one of two rooms is black, whatever the wal
   }
 }
 
+TEST_CASE("a room in bounds leaves the scene's grid where it is, and its reference as it is") {
+  const auto gridOf = [](const Scene& scene) { return placeGrid(snapshotOf(scene, 0.0).gridBounds, 16); };
+  const Scene middle = stress::roomInBounds({glm::dvec3(-0.4), 0.8}),
+              aside = stress::roomInBounds({glm::dvec3(-0.32, -0.45, -0.37), 0.8});
+  CHECK(gridOf(middle) == gridOf(aside));
+  CHECK(gridOf(middle).low.x == Approx(-0.75f).margin(2.0 * gridOf(middle).voxelSize));
+  CHECK(snapshotOf(aside, 0.0).origin == glm::dvec3(0.0));
+  CHECK(meanOfReference(middle) == Approx(meanOfReference(stress::closedRoom(0.7f).scene)).epsilon(0.001));
+  CHECK(meanOfReference(aside) == Approx(meanOfReference(middle)).epsilon(0.001));
+}
+
+TEST_CASE("the tunnel has 1024 voxels from end to end in a grid of as many, and light all along it") {
+  const Scene scene = stress::tunnel();
+  const GridPlacement grid = placeGrid(snapshotOf(scene, 0.0).gridBounds, 1024);
+  CHECK(grid.resolution.z == 1024);
+  CHECK(grid.resolution.x < 80);
+  CHECK(meanOfReference(scene) > 0.1);
+}
+
 TEST_CASE("a grid of triangles has the area of its parallelogram and faces one way") {
   const std::vector<glm::vec3> corners = stress::gridOfTriangles({1, 2, 3}, {2, 0, 0}, {0, 0, -3}, 7, 5);
   REQUIRE(corners.size() == 3 * 2 * 7 * 5);

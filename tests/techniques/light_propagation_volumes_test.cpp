@@ -377,22 +377,17 @@ TEST_CASE("light on a grid moved by parts of a cell changes as far as its card s
   const double base = meanOf(0.0);
   REQUIRE(base > 0.0);
   // As measured and told in the card: walls, boxes and area light are moved to the nearest planes of faces,
-  // each by its own part of a cell, and jump to the next ones half-way.
+  // each by its own part of a cell, and jump to the next ones half-way; there all pieces of a wall together.
   struct Shift {
     double cells, light;
   };
-  for (const Shift& shift : {Shift{0.125, 1.07}, Shift{0.25, 1.13}, Shift{0.375, 1.16}, Shift{0.625, 0.87},
-                             Shift{0.75, 0.93}, Shift{0.875, 0.99}}) {
+  for (const Shift& shift : {Shift{0.125, 1.03}, Shift{0.25, 1.08}, Shift{0.375, 1.11}, Shift{0.5, 1.18},
+                             Shift{0.625, 0.83}, Shift{0.75, 0.90}, Shift{0.875, 0.95}}) {
     const double there = meanOf(shift.cells);
     INFO(shift.cells << " cells: " << there / base);
     CHECK(there != base);  // a grid that did not move would give the same bits
     CHECK(there / base == Approx(shift.light).margin(0.03));
   }
-  // Walls half-way between two planes: rounding decides for every piece of them apart, and light is lost.
-  const double halfWay = meanOf(0.5);
-  INFO("half-way: " << halfWay / base);
-  CHECK(halfWay > 0.6 * base);
-  CHECK(halfWay < 1.2 * base);
 }
 
 TEST_CASE("no negative radiance reaches an image, and what two bands made negative is told") {

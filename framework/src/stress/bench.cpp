@@ -69,6 +69,36 @@ void addContent(Hasher& hasher, const OutBase& output) {
     for (int level = 0; level < texture->description().levels; ++level) hasher.add(texture->download(level));
 }
 
+/// One image with the channels of all, in the order of their names.
+ImageBuffer besideEachOther(const std::map<std::string, ImageBuffer>& images) {
+  int channels = 0;
+  for (const auto& [name, image] : images) channels += image.channels();
+  if (channels == 0) return {};
+  const ImageBuffer& first = images.begin()->second;
+  ImageBuffer all(first.width(), first.height(), channels);
+  int channel = 0;
+  for (const auto& [name, image] : images)
+    for (int own = 0; own < image.channels(); ++own, ++channel)
+      for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) all.at(x, y, channel) = image.at(x, y, own);
+  return all;
+}
+
+/// Where the passes' outputs have voxels, the finest ones of each.
+std::vector<VoxelBox> gridsOf(const PipelineExecutor& executor, const Pipeline& text) {
+  std::vector<VoxelBox> grids;
+  for (const PassText& pass : text.passes)
+    for (const OutBase* port : executor.pass(pass.name).outputs()) {
+      const OutBase* output = executor.output(pass.name, port->name());
+      if (output == nullptr) continue;
+      const PortContents contents = output->contents();
+      if (contents.occupancy() != nullptr) grids.push_back(VoxelBox::of(contents.occupancy()->grid));
+      for (const PortContents::Field& field : contents.fields())
+        if (field.level == 0) grids.push_back(field.box);
+    }
+  return grids;
+}
+
 /// Voxels seen along z: the nearer the first one, the brighter.
 ImageBuffer imageOf(const VoxelSet& voxels) {
   const glm::ivec3 size = voxels.resolution();
@@ -113,7 +143,8 @@ struct PipelineBench::State {
     return snapshotOf(scene, time, ready.options.camera, ready.options.width, ready.options.height);
   }
   Frame frame(PipelineExecutor& executor, const SceneSnapshot& snapshot, const Shot& shot, int index);
-  void lookAtVoxels(const std::vector<const OutBase*>& outputs);
+  /// Of the first output that has some; the image shows them from now on.
+  std::optional<OccupiedVoxels> lookAtVoxels(const std::vector<const OutBase*>& outputs);
   std::vector<const OutBase*> lastOutputs(const PipelineExecutor& executor, const Pipeline& text) const;
   std::vector<Frame> sequence(PipelineExecutor& executor, const Scene& scene, const Ready& ready,
                               const std::vector<double>& times, const Shot& shot, const Edit& edit);
@@ -132,6 +163,7 @@ Ready PipelineBench::State::ready(const Shot& shot) const {
   ready.options.seed = shot.seed;
   ready.options.camera = shot.camera;
   ready.options.keepEverything = shot.keepEverything;
+  ready.options.accumulate = shot.accumulate;
   ready.options.health = true;
   return ready;
 }
@@ -151,12 +183,13 @@ void PipelineBench::State::keepVoxels(PipelineExecutor& executor, const Pipeline
   for (const OutBase* port : executor.pass(lastPass).outputs()) executor.keepOutput(lastPass, port->name());
 }
 
-void PipelineBench::State::lookAtVoxels(const std::vector<const OutBase*>& outputs) {
+std::optional<OccupiedVoxels> PipelineBench::State::lookAtVoxels(const std::vector<const OutBase*>& outputs) {
   for (const OutBase* output : outputs)
-    if (const auto voxels = occupiedVoxels(*output)) {
+    if (auto voxels = occupiedVoxels(*output)) {
       last = imageOf(voxels->voxels);
-      return;
+      return voxels;
     }
+  return std::nullopt;
 }
 
 Frame PipelineBench::State::frame(PipelineExecutor& executor, const SceneSnapshot& snapshot, const Shot& shot,
@@ -164,13 +197,20 @@ Frame PipelineBench::State::frame(PipelineExecutor& executor, const SceneSnapsho
   Frame frame;
   if (pipeline.outputs.empty()) {
     frame.result = executor.render(snapshot, index, PipelineExecutor::Images::no);
-    lookAtVoxels(lastOutputs(executor, pipeline));
+    frame.voxels = lookAtVoxels(lastOutputs(executor, pipeline));
   } else {
     frame.result = shot.subpixels > 1 ? experiment::renderFiltered(executor, snapshot, shot.subpixels, index)
                                       : executor.render(snapshot, index);
     frame.whole = compositeImage(frame.result);
-    if (!frame.whole.empty()) last = frame.whole;
+    frame.compared = frame.whole.empty() ? besideEachOther(frame.result.outputs) : frame.whole;
+    if (!frame.whole.empty())
+      last = frame.whole;
+    else if (!frame.result.outputs.empty())
+      last = frame.result.outputs.begin()->second;
   }
+  // What is no light is drawn as fractions, like voxels.
+  if (frame.whole.empty()) exposure.reset();
+  if (shot.keepEverything) frame.grids = gridsOf(executor, pipeline);
   // After the image, which shows where it is bad.
   requireHealthy(frame.result);
   return frame;
@@ -303,12 +343,9 @@ std::optional<VoxelError> PipelineBench::voxelError(const Scene& scene, const Sh
   s.keepVoxels(executor, ready.pipeline);
   const SceneSnapshot snapshot = s.snapshot(scene, ready, shot.time);
   requireHealthy(executor.render(snapshot, 0, PipelineExecutor::Images::no));
-  for (const OutBase* output : s.lastOutputs(executor, ready.pipeline))
-    if (const auto voxels = occupiedVoxels(*output)) {
-      s.last = imageOf(voxels->voxels);
-      return compareVoxels(voxels->voxels, trueVoxels(scene, snapshot, voxels->grid));
-    }
-  return std::nullopt;
+  const auto voxels = s.lookAtVoxels(s.lastOutputs(executor, ready.pipeline));
+  if (!voxels) return std::nullopt;
+  return compareVoxels(voxels->voxels, trueVoxels(scene, snapshot, voxels->grid));
 }
 
 LayeredImage PipelineBench::reference(const Scene& scene, const Shot& shot, int samplesPerPixel,
@@ -333,7 +370,8 @@ LayeredImage PipelineBench::reference(const Scene& scene, const Shot& shot, int 
 }
 
 void PipelineBench::show(const ImageBuffer& image) {
-  state_->given = image;
+  // The channels of several images beside each other are none to look at.
+  if (image.channels() == 1 || image.channels() == 3) state_->given = image;
 }
 
 void PipelineBench::meterScenes() {

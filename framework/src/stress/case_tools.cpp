@@ -91,6 +91,10 @@ Finding notApplicable(std::string why) {
   return finding;
 }
 
+Finding withoutLight() {
+  return notApplicable("none of its outputs is radiance, which the case is about");
+}
+
 std::map<std::string, Measured> ratiosToNothing(Bench& bench, const Scene& scene, const Shot& shot,
                                                 int referenceSamples) {
   const Frame frame = bench.render(scene, shot);

@@ -31,6 +31,8 @@ Measured differenceFromReference(const ImageBuffer& image, const ReferenceLayer&
 
 /// The case says nothing about this pipeline, and why.
 Finding notApplicable(std::string why);
+/// The same where the case is about light, and none of the pipeline's outputs is.
+Finding withoutLight();
 
 /// RMSE of every output as a share of the RMSE of leaving it out, by its name; outputs that the reference is
 /// black in are passed over.

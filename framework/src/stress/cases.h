@@ -13,9 +13,11 @@
 #include <vector>
 
 #include "lumivox/base/image.h"
+#include "lumivox/experiment/voxelizers.h"
 #include "lumivox/measure/metrics.h"
 #include "lumivox/measure/voxels.h"
 #include "lumivox/pipeline/pipeline.h"
+#include "lumivox/pipeline/port.h"
 #include "lumivox/reference/path_tracer.h"
 #include "lumivox/results/store.h"
 #include "lumivox/scene/scene.h"
@@ -51,11 +53,18 @@ struct Shot {
   int subpixels = 1;  ///< the image is the mean over this many positions in the pixel (for comparisons with
                       ///< the reference)
   bool keepEverything = false;
+  bool accumulate = false;  ///< frames of a sequence go on from those before them
 };
 
 struct Frame {
   FrameResult result;
-  ImageBuffer whole;  ///< composite (report.h compositeImage); for a pipeline without outputs an empty image
+  ImageBuffer whole;  ///< composite (report.h compositeImage); empty where no output is radiance
+  /// By which frames are compared: `whole`, or where no output is radiance the channels of all outputs beside
+  /// each other. Empty for a pipeline without outputs.
+  ImageBuffer compared;
+  std::vector<VoxelBox> grids;  ///< of the passes' outputs, only with Shot::keepEverything
+  /// What the last pass of a pipeline without outputs occupies.
+  std::optional<OccupiedVoxels> voxels;
 };
 
 /// A case's hands: the pipeline under test on a device. Throws Unhealthy (with the first finding of the first

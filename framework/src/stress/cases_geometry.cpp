@@ -26,7 +26,7 @@ std::optional<Finding> noTriangles(Bench& bench) {
     return judged("voxels set", {static_cast<double>(error->falsePositive), 0.0}, 0.0);
   }
   const Frame sky = bench.render(scene);
-  if (sky.whole.empty()) return std::nullopt;
+  if (sky.whole.empty()) return withoutLight();
   ImageBuffer wanted = sky.whole;
   for (int y = 0; y < wanted.height(); ++y)
     for (int x = 0; x < wanted.width(); ++x)
@@ -47,7 +47,7 @@ std::optional<Finding> oneTriangle(Bench& bench) {
     return judged("share of wrong voxels", {wrongShare(*error), 0.0}, 0.01);
   }
   const Frame frame = bench.render(scene);
-  if (frame.whole.empty()) return std::nullopt;
+  if (frame.whole.empty()) return withoutLight();
   if (!makesIndirect(frame)) return againstReference(bench, scene, 0.05);
   // A flat surface cannot light itself.
   const double direct = meanOf(frame.whole) - meanOf(indirectOf(frame));
@@ -175,7 +175,7 @@ std::optional<Finding> openAgainstClosed(Bench& bench) {
   open.objects.erase(open.objects.begin() + 5);
   open.objects.erase(open.objects.begin() + 1);
   const Frame closedFrame = bench.render(closed), openFrame = bench.render(open);
-  if (openFrame.whole.empty()) return std::nullopt;
+  if (openFrame.whole.empty()) return withoutLight();
   if (!makesIndirect(closedFrame))
     return judged("change of the direct light, which does not know the walls, of it",
                   {relativeDifference(openFrame.whole, closedFrame.whole), 0.0}, 1e-3);
@@ -209,7 +209,8 @@ std::optional<Finding> outsideTheGrid(Bench& bench) {
     return judged("voxels set", {static_cast<double>(error->falsePositive), 0.0}, 0.0);
   }
   const Frame frame = bench.render(scene, shot);
-  if (frame.whole.empty() || !makesIndirect(frame)) return std::nullopt;
+  if (frame.whole.empty()) return withoutLight();
+  if (!makesIndirect(frame)) return std::nullopt;
   return judged("indirect light from a grid that nothing lies in, of all light",
                 {meanOf(indirectOf(frame)) / meanOf(frame.whole), 0.0}, 0.0);
 }

@@ -41,7 +41,7 @@ std::optional<Finding> everyThird(Bench& bench, int width, int height) {
                   {std::max(0.0, few->recall() - many->recall()), 0.0}, 0.0,
                   fmt::format("recall {:.3g}, and {:.3g} with all rays", few->recall(), many->recall()));
   }
-  const ImageBuffer whole = bench.render(scene, large).whole, image = bench.render(scene, small).whole;
+  const ImageBuffer whole = bench.render(scene, large).compared, image = bench.render(scene, small).compared;
   ImageBuffer wanted(width, height, whole.channels());
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
@@ -78,13 +78,13 @@ std::optional<Finding> raysAgree(Bench& bench, const Scene& scene, const Scene& 
                                                            const auto [x, y] = kPixels[frame - 1];
                                                            snapshot.camera = along(snapshot.camera, x, y);
                                                          });
-  const ImageBuffer& whole = frames.front().whole;
+  const ImageBuffer& whole = frames.front().compared;
   const auto count = static_cast<int>(kCount);
   ImageBuffer seen(count, 1, whole.channels()), wanted(count, 1, whole.channels());
   for (int i = 0; i < count; ++i)
     for (int channel = 0; channel < whole.channels(); ++channel) {
       seen.at(i, 0, channel) = whole.at(kPixels[i][0], kPixels[i][1], channel);
-      wanted.at(i, 0, channel) = frames[static_cast<std::size_t>(i) + 1].whole.at(0, 0, channel);
+      wanted.at(i, 0, channel) = frames[static_cast<std::size_t>(i) + 1].compared.at(0, 0, channel);
     }
   bench.show(whole);
   return judged(
@@ -153,7 +153,7 @@ std::optional<Finding> onSurface(Bench& bench) {
   lifted.cameras.front().eye.y += kLift;
   lifted.cameras.front().target.y += kLift;
   if (!makesImages(bench)) return spuriousBeyond(bench, ordinary, scene, {});
-  const ImageBuffer wanted = bench.render(lifted).whole, image = bench.render(scene).whole;
+  const ImageBuffer wanted = bench.render(lifted).compared, image = bench.render(scene).compared;
   bench.show(image);
   return judged("RMSE against the view from 0.1 mm above the surface, of its mean",
                 {relativeDifference(image, wanted), 0.0}, 0.05);
@@ -168,7 +168,7 @@ std::optional<Finding> looksAway(Bench& bench) {
   camera.target = camera.eye + 10.0 * (camera.eye - camera.target);
   if (!makesImages(bench)) return spuriousBeyond(bench, suitableScene(bench), scene, {});
   const ImageBuffer image = bench.render(scene).whole;
-  if (image.empty()) return std::nullopt;  // outputs that are no light
+  if (image.empty()) return withoutLight();
   const float largest = *std::max_element(image.values().begin(), image.values().end());
   return judged("largest radiance where nothing is", {largest, 0.0}, 0.0);
 }

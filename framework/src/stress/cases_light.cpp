@@ -19,7 +19,7 @@ constexpr double kFairBias = 0.1;
 std::optional<Finding> exactlyBlack(Bench& bench, const Scene& scene) {
   if (!makesImages(bench)) return std::nullopt;
   const Frame frame = bench.render(scene);
-  if (frame.whole.empty()) return std::nullopt;
+  if (frame.whole.empty()) return withoutLight();
   return judged("largest radiance", {largestOf(frame.whole), 0.0}, 0.0);
 }
 
@@ -46,7 +46,7 @@ std::optional<Finding> powersOfLight(Bench& bench) {
   if (!makesImages(bench)) return std::nullopt;
   const Scene scene = allLights(bench);
   const Frame wanted = bench.render(scene);
-  if (wanted.whole.empty()) return std::nullopt;
+  if (wanted.whole.empty()) return withoutLight();
   double largest = 0.0;
   std::string detail;
   for (const float factor : {1e-8f, 1e8f}) {
@@ -139,6 +139,38 @@ std::optional<Finding> environmentOnly(Bench& bench) {
   return againstReference(bench, builder.scene, kFairBias);
 }
 
+/// Light of a wall that no view from there shows: ahead, and with the camera turned.
+std::optional<Finding> hiddenSender(Bench& bench) {
+  if (!makesImages(bench)) return std::nullopt;
+  constexpr double kTurn = 10.0;  // degrees
+  // Few paths meet so small a wall.
+  constexpr int kSamples = 1024;
+  Finding worst;
+  std::string detail;
+  for (const double turn : {0.0, kTurn}) {
+    Scene scene = bench.committedScene("hidden_sender");
+    scene.hash = {};
+    Camera& camera = scene.cameras.front();
+    camera.target = camera.eye + turnAboutY(glm::radians(turn)) * (camera.target - camera.eye);
+    Shot shot;
+    shot.subpixels = bench.quick() ? 1 : 4;
+    const Frame frame = bench.render(scene, shot);
+    if (frame.whole.empty()) return withoutLight();
+    if (!makesIndirect(frame)) return notApplicable("it makes no indirect light");
+    const ReferenceLayer reference = indirectLayer(bench, scene, frame, shot, kSamples);
+    const Measured ratio = compare(indirectOf(frame), reference.mean, reference.variance).meanRatio;
+    detail += turn == 0.0 ? fmt::format("{:.3g} of the reference's", ratio.value)
+                          : fmt::format(", {:.3g} with the camera turned by {} degrees", ratio.value, turn);
+    const Measured distance{std::abs(ratio.value - 1.0), ratio.uncertainty};
+    if (turn == 0.0 || distance.value > worst.value.value)
+      worst =
+          judged("distance of the indirect light's mean from the reference's, of it, the worse of two views",
+                 distance, 0.25);
+  }
+  worst.detail = detail;
+  return worst;
+}
+
 }  // namespace
 
 std::vector<Case> lightCases() {
@@ -165,6 +197,11 @@ std::vector<Case> lightCases() {
       {info("spot_179.9", "a spot of 179.9 degrees to every side is a point light but for a needle behind it",
             false),
        spotOfAllAngles},
+      {info("hidden_sender",
+            "a lit wall behind a column, which no view from there shows, shines on the floor: the reference, "
+            "ahead and with the camera turned by 10 degrees",
+            true),
+       hiddenSender},
       {info("environment_only", "a box on a floor under the sky alone: the reference", true),
        environmentOnly},
   };

@@ -43,7 +43,7 @@ std::optional<Finding> judgedBy(Bench& bench, const Shot& shot, bool isOrdinary)
   const bool images = makesImages(bench);
   const double bound = images ? 1.0 : kMissed;
   const std::map<std::string, Measured> found = badnessOf(bench, scene, shot);
-  if (found.empty()) return std::nullopt;
+  if (found.empty()) return notApplicable("neither an output of it has a reference nor does it make voxels");
   std::map<std::string, Measured> ordinary;
   const auto isBad = [&](const auto& one) { return one.second.value > bound; };
   if (!isOrdinary && std::any_of(found.begin(), found.end(), isBad))

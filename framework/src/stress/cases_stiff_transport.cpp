@@ -70,6 +70,7 @@ std::optional<Finding> missingOfClosedBox(Bench& bench, double albedo) {
   if (!makesImages(bench)) return notApplicable("it makes no image");
   const Scene scene = closedBox(bench, albedo);
   const Frame frame = bench.render(scene);
+  if (frame.whole.empty()) return withoutLight();
   bench.show(frame.whole);
   const double whole = 1.0 / (1.0 - albedo), found = meanOf(frame.whole);
   const ReferenceSeries series = referenceSeries(scene, albedo, bench.quick());
@@ -94,6 +95,7 @@ std::optional<Finding> bounceOfClosedBox(Bench& bench) {
   Shot shot;
   shot.parameters["area_samples"].number = 64;
   const Frame frame = bench.render(closedBox(bench, kAlbedo), shot);
+  if (frame.whole.empty()) return withoutLight();
   bench.show(frame.whole);
   const bool indirect = hasComponent(frame.result, Contributes::indirectDiffuse);
   const double wanted = 1.0 + kAlbedo + (indirect ? kAlbedo * kAlbedo : 0.0);
@@ -142,6 +144,7 @@ std::optional<Finding> thousandIterations(Bench& bench) {
     Shot shot;
     shot.parameters[parameter->name].number = count;
     const Frame frame = bench.render(scene, shot);
+    if (frame.whole.empty()) return withoutLight();
     means.push_back(meanOf(frame.whole));
     detail += fmt::format(" {} {:.5g}", count, means.back());
     if (count == counts.back()) bench.show(frame.whole);
@@ -365,7 +368,7 @@ std::optional<Finding> brightAndDark(Bench& bench, double gap, double limit) {
   if (!makesImages(bench)) return notApplicable("it makes no image");
   const Frame alone = bench.render(twoRooms(bench, gap, 0.0));
   const Frame both = bench.render(twoRooms(bench, gap, 1e6));
-  bench.show(both.whole);
+  bench.show(both.compared);
   std::string detail;
   for (const auto& [name, image] : both.result.outputs) {
     const double difference = relativeDifference(image, alone.result.outputs.at(name));
@@ -373,7 +376,7 @@ std::optional<Finding> brightAndDark(Bench& bench, double gap, double limit) {
                           difference, meanOf(image), meanOf(alone.result.outputs.at(name)));
   }
   return judged("change of a room's image by a light 10^6 times as bright in the other room, of its mean",
-                {relativeDifference(both.whole, alone.whole), 0.0}, limit, detail);
+                {relativeDifference(both.compared, alone.compared), 0.0}, limit, detail);
 }
 
 Case albedoCase(const char* name, double albedo, bool quick) {

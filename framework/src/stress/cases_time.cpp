@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "experiment/measure.h"
 #include "lumivox/base/error.h"
 #include "stress/case_tools.h"
 
@@ -87,10 +88,10 @@ Finding lastAgainstAlone(Bench& bench, const Scene& scene, const std::vector<dou
   const std::vector<Frame> frames = bench.renderSequence(scene, times, shot, edit);
   const Frame& sequence = frames.back();
   // Without a change before it the last frame would prove nothing.
-  if (kind == Step::moves && frames[last - 1].whole.values() == sequence.whole.values())
+  if (kind == Step::moves && frames[last - 1].compared.values() == sequence.compared.values())
     throw Error("the last two frames are the same: the case shows nothing");
   const Frame fresh = bench.renderSequence(scene, {times[last]}, alone, edit ? editLast : Edit{}).back();
-  bench.show(sequence.whole);
+  bench.show(sequence.compared);
   Difference difference;
   std::string detail;
   for (const auto& [name, image] : sequence.result.outputs) {
@@ -142,6 +143,59 @@ std::optional<Finding> teleportedCamera(Bench& bench) {
   });
 }
 
+/// A camera that stands, jumps and comes back while frames go on from those before: what it sees then must
+/// be what a fresh start at that view has after as many frames.
+std::optional<Finding> accumulatingTeleport(Bench& bench) {
+  if (!experiment::isProgressive(bench.pipeline(), bench.techniques()))
+    return notApplicable("no pass of it goes on from earlier frames");
+  const Scene scene = everythingMoves(bench);
+  enum class View { home, otherEnd, faraway };
+  const auto editOf = [](const std::vector<View>& views) {
+    return [views](std::size_t frame, SceneSnapshot& snapshot) {
+      CameraView& camera = snapshot.camera;
+      const View view = views.at(frame);
+      if (view == View::otherEnd) {
+        camera.eye = glm::vec3(-0.6f, 0.6f, -0.7f);
+        camera.right = -camera.right;
+        camera.forward = -camera.forward;
+      }
+      if (view == View::faraway) camera.eye -= 100.0f * camera.forward;
+    };
+  };
+  Shot shot;
+  shot.accumulate = true;
+  shot.width = shot.height = bench.quick() ? 32 : 48;
+  constexpr double kTime = 0.4;
+  const std::vector<View> views{View::home,     View::home,    View::home, View::otherEnd, View::otherEnd,
+                                View::otherEnd, View::faraway, View::home, View::home,     View::home};
+  const std::vector<Frame> frames =
+      bench.renderSequence(scene, std::vector<double>(views.size(), kTime), shot, editOf(views));
+  const auto same = [](const Frame& a, const Frame& b) { return a.compared.values() == b.compared.values(); };
+  if (same(frames[0], frames[2])) throw Error("frames in a row are the same: the case shows nothing");
+  if (same(frames[2], frames[5])) throw Error("both views are the same: the case shows nothing");
+  Difference difference;
+  std::string detail;
+  for (const auto& [last, where] :
+       {std::pair<std::size_t, const char*>{5, "at the other end"}, {9, "back again"}}) {
+    const std::vector<View> stay(3, views[last]);
+    Shot fresh = shot;
+    fresh.firstFrame = static_cast<int>(last) - 2;
+    const std::vector<Frame> alone =
+        bench.renderSequence(scene, std::vector<double>(stay.size(), kTime), fresh, editOf(stay));
+    Difference of;
+    of.add(frames[last].compared, alone.back().compared);
+    difference.count += of.count;
+    difference.total += of.total;
+    detail += fmt::format("{}{}: {} of {}, by {:.3g} at most", detail.empty() ? "" : "; ", where, of.count,
+                          of.total, of.largest);
+  }
+  bench.show(frames.back().compared);
+  return judged(
+      "share of the numbers three frames after a jump that differ from a fresh start's three frames",
+      {static_cast<double>(difference.count) / static_cast<double>(difference.total), 0.0}, 0.0,
+      difference.count == 0 ? "" : detail);
+}
+
 constexpr float kAway = 1e4f;  // m
 
 }  // namespace
@@ -163,6 +217,11 @@ std::vector<Case> timeCases() {
         "The camera jumps to the other end of the room and a hundred metres away, and back: no trace stays",
         false},
        teleportedCamera},
+      {{family, "accumulation_teleport",
+        "The camera jumps to the other end of the room, far away and back while frames accumulate: after each "
+        "jump the image of a fresh start",
+        true},
+       accumulatingTeleport},
       {{family, "teleporting_object",
         "A box jumps through the room within one instant, in every frame: no trace stays where it was",
         false},

@@ -75,13 +75,12 @@ std::optional<Finding> sameAs(Bench& bench, const Scene& scene, const Scene& cha
                               const std::string& what, const Shot& shot) {
   if (makesImages(bench)) {
     const Frame wanted = bench.render(scene, shot), got = bench.render(changed, shot);
-    if (wanted.whole.empty() || got.whole.empty()) return std::nullopt;
     std::string detail;
     if (makesIndirect(wanted))
       detail = fmt::format("of the indirect light alone {:.3g}",
                            relativeDifference(indirectOf(got), indirectOf(wanted)));
     return judged("RMS difference from " + what + ", of its mean",
-                  {relativeDifference(got.whole, wanted.whole), 0.0}, limit, detail);
+                  {relativeDifference(got.compared, wanted.compared), 0.0}, limit, detail);
   }
   const std::optional<VoxelError> wanted = bench.voxelError(scene, shot),
                                   got = bench.voxelError(changed, shot);
@@ -102,17 +101,24 @@ ReferenceLayer referenceOf(Bench& bench, const Scene& scene, const Frame& frame,
   return *layer;
 }
 
-double indirectReference(Bench& bench, const Scene& scene, const Frame& frame, const Shot& shot) {
-  const LayeredImage reference = bench.reference(scene, shot, referenceSamples(bench));
-  double sum = 0.0;
+ReferenceLayer indirectLayer(Bench& bench, const Scene& scene, const Frame& frame, const Shot& shot,
+                             int samples) {
+  const LayeredImage reference =
+      bench.reference(scene, shot, samples > 0 ? samples : referenceSamples(bench));
+  ReferenceLayer sum;
   for (const auto& [name, component] : frame.result.components) {
     if (!isIndirect(component)) continue;
     const std::optional<ReferenceLayer> layer = referenceLayer(reference, ownLayer(frame.result, name));
     if (!layer)
       throw Error(fmt::format("the reference of scene '{}' lacks a layer for '{}'", scene.name, name));
-    sum += meanOf(layer->mean);
+    add(sum.mean, layer->mean);
+    add(sum.variance, layer->variance);
   }
   return sum;
+}
+
+double indirectReference(Bench& bench, const Scene& scene, const Frame& frame, const Shot& shot) {
+  return meanOf(indirectLayer(bench, scene, frame, shot).mean);
 }
 
 std::optional<Finding> againstReference(Bench& bench, const Scene& scene, double limit, const Shot& shot) {
@@ -120,7 +126,7 @@ std::optional<Finding> againstReference(Bench& bench, const Scene& scene, double
   Shot filtered = shot;
   filtered.subpixels = bench.quick() ? 4 : 16;
   const Frame frame = bench.render(scene, filtered);
-  if (frame.whole.empty()) return std::nullopt;
+  if (frame.whole.empty()) return withoutLight();
   const ReferenceLayer reference = referenceOf(bench, scene, frame, shot);
   const ImageError error = compare(frame.whole, reference.mean, reference.variance);
   const double mean = meanOf(reference.mean);
@@ -136,7 +142,7 @@ std::optional<Finding> leak(Bench& bench, const Scene& dark, const Shot& darkSho
                             const Shot& litShot, const std::string& what, double limit) {
   if (!makesImages(bench)) return std::nullopt;
   const Frame light = bench.render(lit, litShot), shade = bench.render(dark, darkShot);
-  if (light.whole.empty() || shade.whole.empty()) return std::nullopt;
+  if (light.whole.empty() || shade.whole.empty()) return withoutLight();
   const double mean = meanOf(light.whole);
   if (!(mean > 0.0)) throw Error(fmt::format("scene '{}' has no light to leak", lit.name));
   std::string detail = fmt::format("all light {:.3g} against {:.3g}", meanOf(shade.whole), mean);

@@ -31,7 +31,10 @@ std::string ownLayer(const FrameResult& frame, const std::string& output);
 /// The reference of what the pipeline's outputs hold together (bias: as many bounces as they model).
 ReferenceLayer referenceOf(Bench& bench, const Scene& scene, const Frame& frame, const Shot& shot);
 
-/// Mean of the reference (of their own bounces) of those outputs that hold indirect light.
+/// Sum of the references (of their own bounces) of those outputs that hold indirect light, and its mean.
+/// `samples` 0: the battery's own.
+ReferenceLayer indirectLayer(Bench& bench, const Scene& scene, const Frame& frame, const Shot& shot = {},
+                             int samples = 0);
 double indirectReference(Bench& bench, const Scene& scene, const Frame& frame, const Shot& shot = {});
 
 /// How far the mean of the whole image is from the reference's, as a share of it, with the reference's noise

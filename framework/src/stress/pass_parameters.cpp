@@ -27,8 +27,8 @@ dsl::Block* passBlock(std::vector<dsl::Item>& items, const std::string& name) {
 
 }  // namespace
 
-std::vector<PassParameter> freePassParameters(const Pipeline& pipeline, TechniqueSource& techniques) {
-  std::vector<PassParameter> free;
+std::vector<PassParameter> allPassParameters(const Pipeline& pipeline, TechniqueSource& techniques) {
+  std::vector<PassParameter> all;
   for (const PassText& text : pipeline.passes) {
     const Technique* technique = techniques.technique(text.technique);
     const PassEntry* entry = technique == nullptr ? nullptr : technique->find(text.pass);
@@ -36,8 +36,6 @@ std::vector<PassParameter> freePassParameters(const Pipeline& pipeline, Techniqu
     const std::unique_ptr<Pass> pass = entry->make();
     for (const ParamBase* parameter : pass->parameters()) {
       const dsl::Property* set = propertyOf(*text.block, parameter->name());
-      if (set != nullptr && !set->values.empty() && set->values[0].kind == dsl::ValueKind::parameter)
-        continue;
       PassParameter one{text.name + "." + parameter->name(),
                         parameter->type(),
                         parameter->low(),
@@ -45,10 +43,19 @@ std::vector<PassParameter> freePassParameters(const Pipeline& pipeline, Techniqu
                         parameter->choices(),
                         parameter->defaultText()};
       if (parameter->type() == ParamBase::Type::flag) one.words = {"off", "on"};
-      if (set != nullptr && !set->values.empty()) one.value = set->values[0].written();
-      free.push_back(std::move(one));
+      if (set != nullptr && !set->values.empty()) {
+        one.value = set->values[0].written();
+        one.bound = set->values[0].kind == dsl::ValueKind::parameter;
+      }
+      all.push_back(std::move(one));
     }
   }
+  return all;
+}
+
+std::vector<PassParameter> freePassParameters(const Pipeline& pipeline, TechniqueSource& techniques) {
+  std::vector<PassParameter> free = allPassParameters(pipeline, techniques);
+  std::erase_if(free, [](const PassParameter& one) { return one.bound; });
   return free;
 }
 

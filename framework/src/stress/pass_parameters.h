@@ -9,14 +9,17 @@
 
 namespace lumivox::stress {
 
-/// A parameter of a pass that no parameter of the pipeline stands for.
+/// A parameter of a pass.
 struct PassParameter {
   std::string name;  ///< "gather.cones"
   ParamBase::Type type;
   double low = 0.0, high = 0.0;  ///< of numbers
   std::vector<std::string> words;
-  std::string value;  ///< as the text sets it, or the default
+  std::string value;   ///< as the text sets it, or the default
+  bool bound = false;  ///< a parameter of the pipeline stands for it
 };
+std::vector<PassParameter> allPassParameters(const Pipeline& pipeline, TechniqueSource& techniques);
+/// Those that no parameter of the pipeline stands for.
 std::vector<PassParameter> freePassParameters(const Pipeline& pipeline, TechniqueSource& techniques);
 
 /// The same text with these parameters of passes set, by "pass.parameter". Error for an unknown pass.

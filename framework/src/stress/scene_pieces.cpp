@@ -147,6 +147,28 @@ SceneBuilder closedRoom(float albedo) {
   return builder;
 }
 
+Scene roomInBounds(const WallRoom& room) {
+  constexpr float kHalf = 0.75f, kSpeck = 1e-3f;
+  Similarity by;
+  by.scale = room.size;
+  by.translation = room.low;
+  SceneBuilder builder;
+  builder.scene = moved(closedRoom(0.7f).scene, by);
+  for (const float end : {-1.0f, 1.0f}) {
+    const float corner = end * kHalf, beside = end * (kHalf - kSpeck);
+    builder.mesh({{corner, corner, corner}, {corner, corner, beside}, {corner, beside, corner}}, 0);
+  }
+  return builder.scene;
+}
+
+Scene tunnel() {
+  SceneBuilder builder;
+  builder.box({0, 0, 0}, {1, 1, 15}, builder.lambert(0.7f), true);
+  for (const double z : {2.5, 7.5, 12.5}) builder.light(LightKind::point, glm::vec3(1.0f), {0.4, 0.8, z});
+  builder.look({0.6, 0.5, 0.4}, {0.5, 0.45, 15.0}, {0, 1, 0}, 1.0, 64, 64);
+  return builder.scene;
+}
+
 Scene twoRooms(float wall) {
   SceneBuilder builder;
   const int white = builder.lambert(0.7f);

@@ -39,6 +39,19 @@ std::vector<glm::vec3> gridOfTriangles(const glm::vec3& corner, const glm::vec3&
 /// middle; the camera looks at a corner, so that floor and two walls fill the image.
 SceneBuilder closedRoom(float albedo);
 
+/// A closed cube of a room, axis-aligned.
+struct WallRoom {
+  glm::dvec3 low{0.0};
+  double size = 1.0;  ///< m
+};
+/// closedRoom() of albedo 0.7 with its light and its camera at such a place, and two specks outside of it
+/// that give the scene the bounds of a cube of 1.5 m around the origin, wherever the room is.
+Scene roomInBounds(const WallRoom& room);
+
+/// A closed tunnel along z, 1 m wide and high and 15 m long, with three lights; the camera looks along it
+/// from one end.
+Scene tunnel();
+
 /// Two closed rooms of 1 m beside each other along x with a wall between them, `wall` m thick (0: one sheet).
 /// A point light shines in the middle of the one at lower x. Cameras "lit" and "dark" look at the same corner
 /// of either, as mirror images in the wall.

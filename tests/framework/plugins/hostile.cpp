@@ -1,6 +1,7 @@
 // A technique whose passes do what no pass may do, for the tests of the stress battery.
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <thread>
@@ -47,9 +48,30 @@ class Paint : public Pass {
   }
 };
 
+/// The mean over frames of a value that the camera's place tells; with a trail what earlier views left is not
+/// forgotten.
+class Mean : public Pass {
+ public:
+  Param<bool> trail{this, "trail", false, "whether frames go on when the camera has jumped"};
+  Out<Image> radiance{this, "radiance", Contributes::direct};
+  Reads readsFrom() const override { return Reads::camera | Reads::history; }
+  void run(PassContext& frame) override {
+    const int before = frame.accumulated();
+    const History<gpu::TextureRef> sums =
+        frame.history({.format = gpu::Format::rgba32f, .width = 1, .height = 1}, "sum");
+    float sum = 1.0f + std::abs(frame.snapshot().camera.eye.x) + static_cast<float>(before);
+    if (sums.previous && (before > 0 || trail)) sum += sums.previous->downloadFloats().front();
+    sums.current->clear(glm::vec4(sum));
+    Image image{frame.image("image")};
+    image.texture->clear(glm::vec4(sum / static_cast<float>(before + 1)));
+    radiance = image;
+  }
+};
+
 }  // namespace
 
 LUMIVOX_TECHNIQUE(registry) {
   registry.describe("does what no pass may do", "no paper");
   registry.add<Paint>("paint", "paints one value everywhere, or worse");
+  registry.add<Mean>("mean", "goes on from frame to frame, as it should or not");
 }
