@@ -63,10 +63,11 @@ std::vector<Found> probed(const BinaryGrid& bits, const Rays& rays, const char* 
                            fetches = probe.output<Image>("fetches").texture->downloadFloats(0);
   std::vector<Found> result;
   for (std::size_t i = 0; i < rays.origins.size(); ++i)
-    result.push_back({{static_cast<int>(hits[4 * i]), static_cast<int>(hits[4 * i + 1]),
-                       static_cast<int>(hits[4 * i + 2])},
-                      hits[4 * i + 3] < 0.0f ? -1.0f : hits[4 * i + 3] / placed.voxelSize,
-                      fetches[4 * i]});
+    result.push_back(
+        {{static_cast<int>(std::floor(hits[4 * i])), static_cast<int>(std::floor(hits[4 * i + 1])),
+          static_cast<int>(std::floor(hits[4 * i + 2]))},
+         hits[4 * i + 3] < 0.0f ? -1.0f : hits[4 * i + 3] / placed.voxelSize,
+         fetches[4 * i]});
   return result;
 }
 
