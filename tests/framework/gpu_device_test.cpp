@@ -192,6 +192,47 @@ TEST_CASE("a shader that the driver refuses is an error with its name and log") 
              Catch::Contains("broken") && Catch::Contains("undeclared") && Catch::Contains("compute stage"));
 }
 
+namespace {
+
+Program writing(float value, const std::string& name = "write") {
+  return computeProgram(name,
+                        "layout(local_size_x = 1) in;\n"
+                        "layout(std430, binding = 0) buffer Data { float data[]; };\n"
+                        "void main() { data[0] = " +
+                            std::to_string(value) + "; }");
+}
+
+float written(const Program& program) {
+  Buffer data(device(), sizeof(float), "data");
+  device().dispatch(program, Bindings{storage(0, data)}, {1, 1, 1});
+  return data.downloadValues<float>().front();
+}
+
+}  // namespace
+
+TEST_CASE("programs of the same name and code are linked once, also when the first is gone") {
+  const Program other = writing(2.0f);
+  std::uint32_t handle = 0;
+  {
+    const Program one = writing(1.0f), same = writing(1.0f);
+    handle = one.handle();
+    CHECK(same.handle() == handle);
+    CHECK(same.groupSize() == glm::ivec3(1));
+    CHECK(other.handle() != handle);
+    CHECK(writing(1.0f, "elsewhere").handle() != handle);  // messages tell the name
+  }
+  const Program between = writing(2.5f);  // takes the name, were it free
+  const Program again = writing(1.0f);
+  CHECK(again.handle() == handle);
+  CHECK(written(again) == 1.0f);
+  CHECK(written(other) == 2.0f);
+  // What is held stays as it is, however many come and go, and what had to go is linked again.
+  for (int i = 0; i < 600; ++i) writing(3.0f + static_cast<float>(i));
+  CHECK(written(again) == 1.0f);
+  CHECK(written(writing(3.0f)) == 3.0f);
+  CHECK(written(writing(602.0f)) == 602.0f);
+}
+
 TEST_CASE("too many work groups are an error with the limit") {
   const Program idle = computeProgram("idle", "layout(local_size_x = 1) in; void main() {}");
   CHECK_THAT(test::messageOf<Error>([&] {

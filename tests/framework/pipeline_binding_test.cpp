@@ -71,7 +71,7 @@ std::string findings(const std::string& body, const std::string& after = {}) {
   return messageOf<DiagnosticsError>([&] { checkPipeline(pipeline, techniques); });
 }
 
-void accept(const std::string& body) {
+void checkAccepted(const std::string& body) {
   TestTechniques techniques;
   addToys(techniques).add<Echo>("toy", "echo");
   CHECK_NOTHROW(checkPipeline(pipelineOf(body), techniques));
@@ -86,7 +86,7 @@ const char* const kGood =
 }  // namespace
 
 TEST_CASE("a pipeline whose ports and parameters fit is accepted") {
-  accept(kGood);
+  checkAccepted(kGood);
 }
 
 TEST_CASE("the words of a parameter are its enumerators in snake case, without an underscore at the end") {
@@ -101,7 +101,8 @@ TEST_CASE("the words of a parameter are its enumerators in snake case, without a
 }
 
 TEST_CASE("a pass's name alone means its only output of the wanted kind") {
-  accept("pass voxels toy.voxels { }\npass gather toy.gather { grid voxels }\noutput o gather.diffuse");
+  checkAccepted(
+      "pass voxels toy.voxels { }\npass gather toy.gather { grid voxels }\noutput o gather.diffuse");
   CHECK_THAT(findings("pass voxels toy.voxels { }\npass gather toy.gather { grid voxels }\npass s toy.add { "
                       "first gather }\noutput o s.sum"),
              Contains("test.pipeline:4:24: pass 'gather' has 2 outputs of kind Image; expected gather.PORT, "
@@ -157,7 +158,7 @@ TEST_CASE("a missing required input is refused, with the output that would fit")
 }
 
 TEST_CASE("an optional input may stay unconnected") {
-  accept("pass a toy.paint { }\npass s toy.add { first a }\noutput o s.sum");
+  checkAccepted("pass a toy.paint { }\npass s toy.add { first a }\noutput o s.sum");
 }
 
 TEST_CASE("a connection that fits by its kind but gives wrong light is a warning with the output that fits") {
@@ -213,8 +214,8 @@ TEST_CASE("a cycle between passes is refused, naming its passes in the order of 
 
 TEST_CASE("a cycle is accepted where it leads through the frame before, and nowhere else") {
   const std::string output = "output o b.sum";
-  accept("pass a toy.echo { before b.sum }\npass b toy.add { first a.sum }\n" + output);
-  accept("pass a toy.echo { before a.sum }\npass b toy.add { first a.sum }\n" + output);
+  checkAccepted("pass a toy.echo { before b.sum }\npass b toy.add { first a.sum }\n" + output);
+  checkAccepted("pass a toy.echo { before a.sum }\npass b toy.add { first a.sum }\n" + output);
   CHECK_THAT(
       findings("pass a toy.echo { first b.sum  before b.sum }\npass b toy.add { first a.sum }\n" + output),
       Contains("test.pipeline:2:6: cyclic dependency: a -> b -> a; expected an order in "
@@ -340,7 +341,7 @@ TEST_CASE("a setting given to a pipeline must exist and fit") {
 }
 
 TEST_CASE("a pipeline that makes no part of an image needs no output, and one that makes some does") {
-  accept("pass voxels toy.voxels { }");
+  checkAccepted("pass voxels toy.voxels { }");
   CHECK_THAT(findings("pass voxels toy.voxels { }\npass gather toy.gather { grid voxels }"),
              Contains("test.pipeline:3:6: the pipeline has no output, so 'gather.diffuse' is "
                       "never shown; expected output NAME gather.diffuse"));

@@ -12,7 +12,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-void near(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-6f) {
+void checkNear(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-6f) {
   INFO(a.x << ' ' << a.y << ' ' << a.z << " against " << b.x << ' ' << b.y << ' ' << b.z);
   CHECK(glm::length(a - b) <= tolerance);
 }
@@ -48,9 +48,9 @@ TEST_CASE("directions of the image's corners follow the vertical angle and squar
   const SceneSnapshot snapshot = snapshotOf(triangle(), 0.0);
   const CameraView& view = snapshot.camera;
   // tan(90 deg / 2) = 1 up and down, twice that to the sides of an image of 200 x 100.
-  near(view.direction(100, 50), {0, 0, -1});
-  near(view.direction(0, 0), {-2, 1, -1});
-  near(view.direction(200, 100), {2, -1, -1});
+  checkNear(view.direction(100, 50), {0, 0, -1});
+  checkNear(view.direction(0, 0), {-2, 1, -1});
+  checkNear(view.direction(200, 100), {2, -1, -1});
 }
 
 TEST_CASE("another resolution replaces the camera's own") {
@@ -71,9 +71,9 @@ TEST_CASE("the origin is the centre of static geometry, and positions are relati
   Scene scene = triangle();
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
   CHECK(snapshot.origin == glm::dvec3(1, 1, 0));
-  near(snapshot.camera.eye, {0, 0, 4});
-  near(snapshot.bounds.low, {-1, -1, 0});
-  near(snapshot.bounds.high, {1, 1, 0});
+  checkNear(snapshot.camera.eye, {0, 0, 4});
+  checkNear(snapshot.bounds.low, {-1, -1, 0});
+  checkNear(snapshot.bounds.high, {1, 1, 0});
 }
 
 TEST_CASE("a scene ten thousand kilometres away has the same snapshot as at the origin, bit for bit") {
@@ -95,11 +95,11 @@ TEST_CASE("rigid motion turns about its pivot and moves along its velocity") {
   scene.objects[0].motion = RigidMotion{{0, 0, 1}, std::numbers::pi / 6, {1, 1, 0}, {2, 0, 0}};
   const SceneSnapshot snapshot = snapshotOf(scene, 3.0);
   const glm::vec3 moved(snapshot.objects[0].toWorld * glm::vec4(2, 0, 0, 1));
-  near(moved + glm::vec3(snapshot.origin), {8, 2, 0}, 1e-5f);
-  near(snapshot.objects[0].normalToWorld * glm::vec3(1, 0, 0), {0, 1, 0}, 1e-6f);
+  checkNear(moved + glm::vec3(snapshot.origin), {8, 2, 0}, 1e-5f);
+  checkNear(snapshot.objects[0].normalToWorld * glm::vec3(1, 0, 0), {0, 1, 0}, 1e-6f);
   // The bounds follow: corners (0,0), (2,0), (0,2) turn to (2,0), (2,2), (0,0), shifted by 6.
-  near(snapshot.bounds.low + glm::vec3(snapshot.origin), {6, 0, 0}, 1e-5f);
-  near(snapshot.bounds.high + glm::vec3(snapshot.origin), {8, 2, 0}, 1e-5f);
+  checkNear(snapshot.bounds.low + glm::vec3(snapshot.origin), {6, 0, 0}, 1e-5f);
+  checkNear(snapshot.bounds.high + glm::vec3(snapshot.origin), {8, 2, 0}, 1e-5f);
 }
 
 TEST_CASE("the bounds of what moves are those of all its vertices, bit for bit") {
@@ -173,8 +173,8 @@ TEST_CASE("the bounds of a whole turn about an axis are those of the circle") {
   scene.objects[0].motion = RigidMotion{{0, 0, 1}, 1.0, {0, 0, 0}, {0, 0, 0}};
   // The farthest corners are 2 m from the axis, in the plane z = 0.
   const auto [low, high] = sweptBoundsOf(scene, scene.objects[0]);
-  near(glm::vec3(low), {-2, -2, 0});
-  near(glm::vec3(high), {2, 2, 0});
+  checkNear(glm::vec3(low), {-2, -2, 0});
+  checkNear(glm::vec3(high), {2, 2, 0});
 }
 
 TEST_CASE("a tilted axis narrows the circle's bounds along it") {
@@ -183,8 +183,8 @@ TEST_CASE("a tilted axis narrows the circle's bounds along it") {
   // Perpendicular to the axis (1, 0, 1) / sqrt 2, sqrt 2 m away: reach sqrt 2 sqrt(1 - a_i^2) per axis.
   scene.objects[0].motion = RigidMotion{{1, 0, 1}, 1.0, {0, 0, 0}, {0, 0, 0}};
   const auto [low, high] = sweptBoundsOf(scene, scene.objects[0]);
-  near(glm::vec3(low), {-1, -std::sqrt(2.0f), -1});
-  near(glm::vec3(high), {1, std::sqrt(2.0f), 1});
+  checkNear(glm::vec3(low), {-1, -std::sqrt(2.0f), -1});
+  checkNear(glm::vec3(high), {1, std::sqrt(2.0f), 1});
 }
 
 TEST_CASE("the bounds for grids hold every frame of a deforming object") {
@@ -197,12 +197,12 @@ TEST_CASE("the bounds for grids hold every frame of a deforming object") {
   }
   scene.objects[0].sequence = sequence;
   const auto [low, high] = sweptBoundsOf(scene, scene.objects[0]);
-  near(glm::vec3(low), {0, 0, -3});
-  near(glm::vec3(high), {2, 2, 5});
+  checkNear(glm::vec3(low), {0, 0, -3});
+  checkNear(glm::vec3(high), {2, 2, 5});
   for (const double time : {0.0, 0.4, 1.0, 1.7, 2.5, 100.25}) {
     const SceneSnapshot now = snapshotOf(scene, time);
-    near(now.gridBounds.low + glm::vec3(now.origin), {0, 0, -3});
-    near(now.gridBounds.high + glm::vec3(now.origin), {2, 2, 5});
+    checkNear(now.gridBounds.low + glm::vec3(now.origin), {0, 0, -3});
+    checkNear(now.gridBounds.high + glm::vec3(now.origin), {2, 2, 5});
   }
 }
 
@@ -229,8 +229,8 @@ TEST_CASE("the bounds for grids follow a travelling object in steps of an eighth
 TEST_CASE("without motion the bounds for grids are the bounds, and without triangles they are empty") {
   Scene scene = triangle();
   const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
-  near(snapshot.gridBounds.low, snapshot.bounds.low);
-  near(snapshot.gridBounds.high, snapshot.bounds.high);
+  checkNear(snapshot.gridBounds.low, snapshot.bounds.low);
+  checkNear(snapshot.gridBounds.high, snapshot.bounds.high);
   scene.objects.clear();
   CHECK(snapshotOf(scene, 0.0).gridBounds.empty);
 }
@@ -240,7 +240,7 @@ TEST_CASE("normals of a stretched object stay perpendicular to its surface") {
   scene.objects[0].placement = glm::scale(glm::dmat4(1.0), {4, 1, 1});
   // The plane x + y = const, stretched by 4 along X, has the normal (1/4, 1): the inverse transpose.
   const glm::vec3 normal = glm::normalize(snapshotOf(scene, 0).objects[0].normalToWorld * glm::vec3(1, 1, 0));
-  near(normal, glm::normalize(glm::vec3(0.25f, 1, 0)));
+  checkNear(normal, glm::normalize(glm::vec3(0.25f, 1, 0)));
 }
 
 TEST_CASE("deforming vertices are interpolated linearly and a loop returns to its first frame") {
@@ -297,8 +297,8 @@ TEST_CASE("lights are given relative to the origin with unit directions") {
   light.power = {1, 2, 3};
   scene.lights.push_back(light);
   const LightState state = snapshotOf(scene, 0).lights.at(0);
-  near(state.position, {0, 4, 0});
-  near(state.direction, {0, -1, 0});
+  checkNear(state.position, {0, 4, 0});
+  checkNear(state.direction, {0, -1, 0});
 }
 
 TEST_CASE("an unknown camera is refused with the names that there are") {

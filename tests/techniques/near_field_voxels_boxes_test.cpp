@@ -124,6 +124,9 @@ TEST_CASE("the differences between technique, boxes and triangles", "[.]") {
       };
       const auto [noise, boxes] = errors(1);
       const double withLargeMaps = errors(4).second;
+      // Voxels make the error, neither noise nor the maps.
+      CHECK(noise < boxes);
+      CHECK(withLargeMaps == Approx(boxes).epsilon(0.1));
       WARN(name << " " << resolution << ": technique against boxes " << noise << ", boxes against triangles "
                 << boxes << ", with maps of four times the resolution " << withLargeMaps);
     }

@@ -274,6 +274,30 @@ TEST_CASE("where a light sees nothing, behind a spot and beside its view there i
   CHECK(voxel.gatherer(mapOf(lightOf("spot"), 8, place, normal, fluxOf(5.0f))).run()[0] == Approx(5.0));
 }
 
+TEST_CASE("a light that has no view brings nothing") {
+  const OneVoxel voxel;
+  ReflectiveShadowMap map =
+      mapOf(lightOf("directional"), 4, glm::vec4(voxel.centre, 1), {0, -1, 0, 1}, fluxOf(5.0f));
+  CHECK(voxel.gatherer(map).run()[0] == Approx(5.0));
+  std::vector<LightSampleData> lights = map.lights->downloadValues<LightSampleData>();
+  for (LightSampleData& light : lights) light.firstView = -1;
+  map.lights = std::make_shared<gpu::Buffer>(device(), lights.size() * sizeof(LightSampleData), "lights");
+  map.lights->uploadValues(std::span<const LightSampleData>(lights));
+  CHECK(voxel.gatherer(map).run()[0] == 0.0f);
+}
+
+TEST_CASE("the texels that rays read are counted for each of them") {
+  // From the offset of 17/16 above y = 2 straight up: the voxels 3, 4 and 5, and 6, which is set.
+  VoxelSet set({16, 16, 16});
+  set.insert({8, 6, 8});
+  for (const int rays : {1, 3}) {
+    Gatherer gatherer(gridOf(set));
+    gatherer.at({8.5f, 2.0f, 8.5f}, kUp)
+        .with({{"rays", double(rays)}, {"spread", 0}, {"occlusion_distance", 100}, {"method", 0, "plain"}});
+    CHECK(gatherer.run("fetches")[0] == 4.0f * static_cast<float>(rays));
+  }
+}
+
 TEST_CASE("lights of several kinds add up") {
   const OneVoxel voxel;
   Scene scene = lightOf("point");

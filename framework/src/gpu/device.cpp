@@ -101,6 +101,7 @@ DeviceState::~DeviceState() {
   use();
   if (debug) glDebugMessageCallback(nullptr, nullptr);
   framebuffers.clear();
+  programs.clear();
   glDeleteQueries(2, timestampQueries.data());
   uniforms.destroy();
   glDeleteSamplers(static_cast<GLsizei>(samplers.size()), samplers.data());

@@ -128,12 +128,66 @@ void compileText(GLuint shader, const StageCode& code, std::span<const Specialis
   glCompileShader(shader);
 }
 
+/// The name is part of it, since messages tell it.
+ContentHash contentsOf(const std::string& name, std::span<const StageCode> stages,
+                       std::span<const SpecialisationValue> constants) {
+  Hasher hasher;
+  hasher.add(name);
+  for (const StageCode& code : stages) {
+    hasher.add(code.stage).add(std::uint64_t{code.spirv.size()});
+    hasher.bytes(code.spirv.data(), code.spirv.size_bytes()).add(code.glsl);
+  }
+  for (const SpecialisationValue& constant : constants) hasher.add(constant.id).add(constant.bits);
+  return hasher.finish();
+}
+
 }  // namespace
+
+std::optional<ProgramCache::Linked> ProgramCache::hold(const ContentHash& contents) {
+  const auto found = handles_.find(contents);
+  if (found == handles_.end()) return std::nullopt;
+  Entry& entry = entries_.at(found->second);
+  if (entry.holders++ == 0) waiting_.erase(entry.waitsSince);
+  return entry.linked;
+}
+
+void ProgramCache::keep(const ContentHash& contents, const Linked& linked) {
+  handles_.emplace(contents, linked.handle);
+  entries_.emplace(linked.handle, Entry{contents, linked, 1, 0});
+}
+
+bool ProgramCache::release(GLuint handle) {
+  constexpr std::size_t kMostWaiting = 512;  // all pipelines of the tree together need fewer
+  Entry& entry = entries_.at(handle);
+  if (--entry.holders > 0) return false;
+  entry.waitsSince = ++releases_;
+  waiting_.emplace(entry.waitsSince, handle);
+  if (waiting_.size() <= kMostWaiting) return false;
+  const auto oldest = waiting_.begin();
+  glDeleteProgram(oldest->second);
+  handles_.erase(entries_.at(oldest->second).contents);
+  entries_.erase(oldest->second);
+  waiting_.erase(oldest);
+  return true;
+}
+
+void ProgramCache::clear() {
+  for (const auto& [handle, entry] : entries_) glDeleteProgram(handle);
+  handles_.clear();
+  entries_.clear();
+  waiting_.clear();
+}
 
 Program::Program(Device& device, std::string name, std::span<const StageCode> stages,
                  std::span<const SpecialisationValue> constants)
     : device_(device.state()), name_(std::move(name)) {
   device_->use();
+  const ContentHash contents = contentsOf(name_, stages, constants);
+  if (const auto linked = device_->programs.hold(contents)) {
+    handle_ = linked->handle;
+    groupSize_ = linked->groupSize;
+    return;
+  }
   const bool spirv = device_->shaderInput == ShaderInput::spirv;
   const char* route = spirv ? "SPIR-V" : "GLSL";
   std::vector<GLuint> shaders;
@@ -169,12 +223,12 @@ Program::Program(Device& device, std::string name, std::span<const StageCode> st
     glGetProgramiv(handle_, GL_COMPUTE_WORK_GROUP_SIZE, &groupSize_[0]);
   glObjectLabel(GL_PROGRAM, handle_, static_cast<GLsizei>(std::min<std::size_t>(name_.size(), 200)),
                 name_.c_str());
+  device_->programs.keep(contents, {handle_, groupSize_});
 }
 
 Program::~Program() {
   device_->use();
-  glDeleteProgram(handle_);
-  device_->forgetBindings();
+  if (device_->programs.release(handle_)) device_->forgetBindings();
 }
 
 }  // namespace lumivox::gpu

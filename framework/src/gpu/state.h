@@ -94,6 +94,37 @@ class FramebufferCache {
   std::map<FramebufferKey, GLuint> framebuffers_;
 };
 
+/// Linked programs by what they were made of. Who asks for the same again, beside the first or after it, gets
+/// the linked one: each executor has passes of its own, and a driver takes longer to link than to run many of
+/// them.
+class ProgramCache {
+ public:
+  struct Linked {
+    GLuint handle = 0;
+    glm::ivec3 groupSize{0};
+  };
+  /// With one more holder; none when it is not there.
+  std::optional<Linked> hold(const ContentHash& contents);
+  /// A new one, with its first holder.
+  void keep(const ContentHash& contents, const Linked& linked);
+  /// One holder less. What nobody holds waits for the next who asks, and goes when too many wait: the one
+  /// that has waited longest. Whether one went, whose name may then be another's.
+  bool release(GLuint handle);
+  void clear();
+
+ private:
+  struct Entry {
+    ContentHash contents;
+    Linked linked;
+    std::size_t holders = 0;
+    std::uint64_t waitsSince = 0;  ///< in releases
+  };
+  std::map<ContentHash, GLuint> handles_;
+  std::unordered_map<GLuint, Entry> entries_;
+  std::map<std::uint64_t, GLuint> waiting_;  ///< by waitsSince
+  std::uint64_t releases_ = 0;
+};
+
 /// The current bindings, so that a draw binds only what differs from the one before.
 struct BindingCache {
   struct Sampled {
@@ -180,6 +211,7 @@ struct DeviceState {
   bool drawing = false;
   bool unordered = false;  ///< shaders ran since the last barrier, and may have written
   FramebufferCache framebuffers;
+  ProgramCache programs;
   FramebufferKey framebufferKey;  ///< of the last drawing; a member for its memory
   UniformBuffer uniforms;
   BindingCache cache;
