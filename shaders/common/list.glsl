@@ -1,9 +1,9 @@
-// Items of a list longer than a row of work groups may be. C++ side: framework/include/lumivox/toolkit/list_dispatch.h. Included after
-// the local size, which is along x alone.
+// Items of a list longer than a row of work groups may be. Included after the local size, which is along x alone.
+// C++ side: PassContext::dispatchList() in framework/include/lumivox/pipeline/pass.h.
 #ifndef LUMIVOX_LIST
 #define LUMIVOX_LIST
 
-// Most work groups along an axis that OpenGL promises (4.5, table 23.72); kMostGroupsAlong of the C++ side.
+// Most work groups along an axis that OpenGL promises (4.5, table 23.72).
 const uint kMostGroups = 65535u;
 
 // Work groups along x and y for so many of them: full rows, the last of which may be too long; one at least.

@@ -18,6 +18,9 @@
 #if MEDIUM != MEDIUM_NONE
 #include "common/media.glsl"
 #endif
+#if LIGHTS
+#include "common/two_sided_light.glsl"
+#endif
 #include "common/fragments.glsl"
 
 layout(std140, binding = 0) uniform Grid {
@@ -71,27 +74,8 @@ bool isKnown(uint index, out vec3 radiance) {
 vec3 emittedBy(VoxelFragment fragment) { return emissive != 0 ? unpackShared(fragment.emission) : vec3(0.0); }
 
 #if LIGHTS
-// Adds the irradiance of a point by the lights, W/m^2.
 void lightPoint(vec3 posWorld, vec3 normal, inout vec3 front, inout vec3 back) {
-  for (int i = 0; i < lightCount; ++i) {
-    LightSample light = lights[i];
-    vec3 toLight;
-    vec3 perpendicular = arrivingIrradiance(light, posWorld, toLight);
-    float cosSurface = dot(normal, toLight);
-    bool behind = cosSurface < 0.0;
-    if (behind && twoSided == 0) continue;
-    cosSurface = abs(cosSurface);
-    if (!(cosSurface > 0.0)) continue;  // also where a light lies on the surface and has no direction
-    vec3 arriving = perpendicular * cosSurface;
-#if SHADOWS
-    arriving *= visibility(light, posWorld, behind ? -normal : normal, toLight);
-#endif
-#if MEDIUM != MEDIUM_NONE
-    if (any(greaterThan(arriving, vec3(0.0)))) arriving *= transmittanceToLight(light, posWorld, mediumSteps);
-#endif
-    if (behind) back += arriving;
-    else front += arriving;
-  }
+  addArriving(lightCount, posWorld, normal, twoSided != 0, mediumSteps, front, back);
 }
 #endif
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "lumivox/base/error.h"
+#include "lumivox/toolkit/grid_placement.h"
 #include "lumivox/toolkit/light_samples.h"
 #include "lumivox/toolkit/loop_limit.h"
 #include "near_field_voxels_shaders.h"
@@ -25,12 +26,6 @@ enum class Rotation { hash, tile, none };
 constexpr float kLargestTolerance = 1000.0f;
 // Smallest cosine between a surface and the light: that of the map's areas, and the printed one.
 constexpr float kLeastCosine = 0.02f, kPrintedLeastCosine = 0.001f;
-
-std::string inWords(const GridPlacement& grid) {
-  return fmt::format("{} x {} x {} voxels of {:g} m from ({:g}, {:g}, {:g}) on", grid.resolution.x,
-                     grid.resolution.y, grid.resolution.z, grid.voxelSize, grid.low.x, grid.low.y,
-                     grid.low.z);
-}
 
 class GatherPass : public Pass {
   enum class Sequence { r2, hammersley };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lumivox/base/error.h"
+#include "lumivox/toolkit/bit_grid.h"
 #include "near_field_voxels_shaders.h"
 
 namespace lumivox::near_field_voxels {
@@ -74,16 +75,11 @@ shader::BindingSet RayMethod::binding(PassContext& frame, const BinaryGrid& bits
 
 std::int64_t RayMethod::turns(const BinaryGrid& bits, bool asPublished) const {
   const glm::i64vec3 size(bits.grid.resolution);
-  const std::int64_t layers = (size.z + kBits - 1) / kBits;
-  // Of a step: over the layers of a texel and their end; twice two loops that set a cell right, each by one
-  // voxel, and their ends.
-  const std::int64_t ofStep = layers + 1 + 2 * 2 * 2;
   switch (static_cast<Method>(axis(asPublished))) {
     case Method::hierarchy:
-      // A ray goes down once for each time that it went up, and goes up only as it leaves a block of columns.
-      return ofStep * (2 * (size.x + size.y) + 16);
+      return hierarchyTurns(bits);
     case Method::stacks:
-      return ofStep * (size.x + size.y + 1);
+      return turnsOfBitStep(bits) * (size.x + size.y + 1);
     case Method::plain:
       return 4 * (size.x + size.y + size.z + 1);
     case Method::printed:

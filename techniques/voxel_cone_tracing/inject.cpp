@@ -14,6 +14,7 @@
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/media.h"
+#include "lumivox/toolkit/volume_room.h"
 #include "march.h"
 #include "octree.h"
 #include "voxel_sums.h"
@@ -56,35 +57,8 @@ class Injection {
   /// fit, nothing of it is taken, and the Error says what would.
   std::vector<gpu::TextureRef> rooms(PassContext& frame, int count, const char* label,
                                      bool coarserLevels) const {
-    const auto levelsOf = [&](const glm::ivec3& size) {
-      return coarserLevels ? gpu::fullLevelCount(size.x, size.y, size.z) : 1;
-    };
-    const auto made = [&](const glm::ivec3& size) {
-      std::vector<gpu::TextureRef> textures;
-      for (int i = 0; i < count; ++i) textures.push_back(frame.volume(size, format(), label, levelsOf(size)));
-      return textures;
-    };
-    const GridPlacement grid = placement();
-    try {
-      return made(grid.resolution);
-    } catch (const Error& error) {
-      std::uint64_t voxels = 0;
-      for (int level = 0; level < levelsOf(grid.resolution); ++level)
-        voxels += GridPlacement{.resolution = levelResolution(grid.resolution, level)}.voxelCount();
-      const std::uint64_t bytes = static_cast<std::uint64_t>(count) * voxels * gpu::bytesPerTexel(format());
-      for (int halvings = 1; grid.longest() >> halvings > 0; ++halvings) {
-        try {
-          made(levelResolution(grid.resolution, halvings));
-        } catch (const Error&) {
-          continue;
-        }
-        throw Error(fmt::format(
-            "room for {} of {} voxels along the longest side takes {}; of sizes halved from it the largest that fits is {} ({})",
-            count == 1 ? "a grid" : "six directional grids", grid.longest(), formatBytes(bytes),
-            grid.longest() >> halvings, error.what()));
-      }
-      throw;
-    }
+    return roomFor(frame, placement().resolution, count, format(), label, coarserLevels,
+                   count == 1 ? "a grid" : "six directional grids");
   }
 
   /// A grid that is changed where it lies, and what it was made of.

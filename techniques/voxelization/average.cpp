@@ -22,38 +22,14 @@ class AveragePass : public Pass {
 
   Reads readsFrom() const override { return Reads::materials; }
 
-  struct Slots {
-    gpu::TextureRef numbers;  ///< per voxel: its slot from 1 on, or 0
-    gpu::BufferRef count, voxels, fragments;
-    std::uint64_t room = 0;
-  };
-
   std::uint64_t room_ = 0;  ///< slots that there is room for: a guess, or what earlier frames needed
 
-  Slots claimSlots(PassContext& frame) {
-    Slots slots;
-    slots.numbers = frame.emptyVolume(fragments->grid.resolution, gpu::Format::r32ui, "slots of voxels");
-    slots.count = countBuffer(frame, "slot count");
-    slots.voxels = frame.elements(average_claim::slotVoxels, fragments->capacity, "voxels of slots");
-    const shader::BindingSet claimed{average_claim::slotVoxels(slots.voxels),
-                                     average_claim::slotCount(slots.count),
-                                     average_claim::slots(slots.numbers)};
-    forEachFragment(frame, frame.program(average_claim::kProgram), claimed, *fragments);
-    // A first guess: surfaces fill about as many voxels as six sides of the grid, some in two layers; never
-    // more than there are fragments.
-    const auto side = static_cast<std::uint64_t>(fragments->grid.longest());
-    if (room_ == 0) room_ = std::min(8 * side * side, fragments->capacity);
-    slots.room = room_;
-    finishGuessed(frame, slots.count, slots.room, 0, room_);
-    slots.fragments = frame.elements(average_number::fragmentsOfSlot, slots.room, "fragments of slots");
-    frame.dispatchIndirect(frame.program(average_number::kProgram),
-                           {claimed, average_number::fragmentsOfSlot(slots.fragments)}, *slots.count,
-                           kGroupsOffset);
-    return slots;
-  }
-
   void sumAndResolve(PassContext& frame) {
-    const Slots slots = claimSlots(frame);
+    const VoxelSlots slots =
+        claimSlots(frame, *fragments,
+                   {frame.program(average_claim::kProgram), frame.program(average_number::kProgram),
+                    frame.program(finish::kProgram)},
+                   room_);
     const GridPlacement& grid = fragments->grid;
     const int withAttributes = attributes.wanted(), withEmission = withAttributes && frame.traits().emission;
     using namespace average_add;
@@ -91,12 +67,12 @@ class AveragePass : public Pass {
     forEachFragment(frame, frame.program(average_add::Variant{withAttributes, withEmission}),
                     {sums, average_add::slots(slots.numbers)}, *fragments);
     const average_resolve::Variant resolving{withAttributes, withEmission, covered.opacity != nullptr};
-    frame.dispatchIndirect(
-        frame.program(resolving),
+    forEachSlot(
+        frame, frame.program(resolving),
         {sums, average_resolve::slotCount(slots.count), average_resolve::slotVoxels(slots.voxels),
          average_resolve::albedoImage(averages.albedo), average_resolve::normalImage(averages.normal),
          average_resolve::emissionImage(averages.emission), average_resolve::opacityImage(covered.opacity)},
-        *slots.count, kGroupsOffset);
+        slots);
     if (withAttributes) attributes = averages;
     if (opacity.wanted()) opacity = covered;
     if (judgesSums()) bits = binaryGridOf(frame, grid, {bitsOf(frame, covered, "bits", masks), nullptr});

@@ -11,16 +11,6 @@ namespace lumivox::voxelization {
 
 using namespace shaders::voxelization;
 
-namespace {
-
-constexpr std::uint64_t kWantedOffset = 4 * sizeof(std::uint32_t);  // in the words of countBuffer()
-
-void requireListable(std::uint64_t fragments) {
-  if (fragments > 0x7fffffffu) throw Error(fmt::format("{} fragments do not fit into one list", fragments));
-}
-
-}  // namespace
-
 Bounds boundsInGrid(const Bounds& bounds, const glm::mat4& toWorld, const GridPlacement& grid) {
   Bounds inGrid;
   for (int corner = 0; corner < 8; ++corner) {
@@ -32,29 +22,13 @@ Bounds boundsInGrid(const Bounds& bounds, const glm::mat4& toWorld, const GridPl
   return inGrid;
 }
 
-gpu::BufferRef countBuffer(PassContext& frame, const char* label) {
-  gpu::BufferRef count = frame.buffer(kWantedOffset + sizeof(std::uint32_t), label);
-  count->clear();
-  return count;
-}
-
 void finishCount(PassContext& frame, const gpu::BufferRef& count, std::uint64_t capacity) {
-  frame.dispatch(frame.program(finish::kProgram),
-                 {finish::count(count), finish::parameters({static_cast<int>(capacity), kWorkGroupSize})},
-                 {1, 1, 1});
+  lumivox::finishCount(frame, frame.program(finish::kProgram), count, capacity);
 }
 
 void finishGuessed(PassContext& frame, const gpu::BufferRef& count, std::uint64_t capacity,
                    std::uint64_t base, std::uint64_t& room, bool repeats) {
-  finishCount(frame, count, capacity);
-  frame.judgeLater(count, kWantedOffset, [=, &room](PassContext&, std::uint32_t wanted) {
-    const bool fits = wanted <= capacity;
-    if (fits && !repeats) return true;
-    requireListable(wanted);
-    const std::uint64_t needed = std::max<std::uint64_t>(wanted, base + 1) - base;
-    room = repeats ? needed : needed + needed / 8;
-    return fits;
-  });
+  lumivox::finishGuessed(frame, frame.program(finish::kProgram), count, capacity, base, room, repeats);
 }
 
 VoxelFragments listBehind(PassContext& frame, const GridPlacement& grid, const VoxelFragments* base,

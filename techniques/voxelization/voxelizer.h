@@ -10,11 +10,12 @@
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/grid_placement.h"
+#include "lumivox/toolkit/voxel_slots.h"
 #include "voxelization_shaders.h"
 
 namespace lumivox::voxelization {
 
-inline constexpr int kWorkGroupSize = 64;  // of the passes that read a list of fragments
+inline constexpr int kWorkGroupSize = kCountedGroupSize;  // of the passes that read a list of fragments
 
 /// Where the grid lies: around the whole scene, or around the camera, moving with it by whole voxels.
 enum class Around { scene, camera };
@@ -23,17 +24,8 @@ enum class Around { scene, camera };
 /// device's arithmetic may round otherwise.
 Bounds boundsInGrid(const Bounds& bounds, const glm::mat4& toWorld, const GridPlacement& grid);
 
-/// Words that count something on the device: how many there are, the groups of a dispatch over them, and how
-/// many were wanted, whether there was room for them or not. All but the first are set by finishCount().
-gpu::BufferRef countBuffer(PassContext& frame, const char* label);
-inline constexpr std::uint64_t kGroupsOffset = sizeof(std::uint32_t);
-
-/// Turns a number of items into the arguments of a dispatch over them, in groups of kWorkGroupSize. What
-/// there is no room for is cut off, and can be told from the number that was wanted.
+/// finishCount() and finishGuessed() of lumivox/toolkit/voxel_slots.h.
 void finishCount(PassContext& frame, const gpu::BufferRef& count, std::uint64_t capacity);
-/// The same where `room` behind the first `base` items was a guess: a frame that wanted more is made anew
-/// with an eighth more than it needs. With `repeats`, where later frames will need as much as this one, the
-/// room becomes as much as that. Error for more than a list can hold.
 void finishGuessed(PassContext& frame, const gpu::BufferRef& count, std::uint64_t capacity,
                    std::uint64_t base, std::uint64_t& room, bool repeats = false);
 

@@ -1,5 +1,7 @@
 #include "lumivox/toolkit/grid_placement.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -47,6 +49,12 @@ GridPlacement placeGridAround(const glm::vec3& centre, float extent, int resolut
 
 GridPlacement placeNestedGrid(const glm::vec3& centre, float finestExtent, int resolution, int level) {
   return placeGridAround(centre, std::ldexp(finestExtent, level), resolution);
+}
+
+std::string inWords(const GridPlacement& grid) {
+  return fmt::format("{} x {} x {} voxels of {:g} m from ({:g}, {:g}, {:g}) on", grid.resolution.x,
+                     grid.resolution.y, grid.resolution.z, grid.voxelSize, grid.low.x, grid.low.y,
+                     grid.low.z);
 }
 
 }  // namespace lumivox

@@ -1,6 +1,8 @@
 // Where voxel grids go: around the scene, or around the camera.
 #pragma once
 
+#include <string>
+
 #include "lumivox/scene/grid.h"
 #include "lumivox/scene/scene.h"
 
@@ -24,5 +26,8 @@ GridPlacement placeGridAround(const glm::vec3& centre, float extent, int resolut
 /// The same for nested grids: level 0 is the finest, each next one has voxels of twice the size and its
 /// middle on a whole multiple of its own.
 GridPlacement placeNestedGrid(const glm::vec3& centre, float finestExtent, int resolution, int level);
+
+/// "64 x 64 x 32 voxels of 0.1 m from (0, 0, 0) on".
+std::string inWords(const GridPlacement& grid);
 
 }  // namespace lumivox

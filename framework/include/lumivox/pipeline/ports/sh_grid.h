@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "lumivox/pipeline/port.h"
 
@@ -22,6 +23,9 @@ struct ShGrid {
   std::vector<Level> levels;  ///< finest and smallest first
   Quantity quantity = Quantity::flux;
   float unit = 1.0f;  ///< that the number 1 stands for, in W/sr or W/(sr m^2)
+  /// Whose reading was known before, where only the voxels that it touches hold their values and the others
+  /// are 0: in words of the technique, which whoever reads otherwise must refuse. Empty: all voxels do.
+  std::string readFor;
 };
 
 /// "flux" or "radiance".

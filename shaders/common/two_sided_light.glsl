@@ -1,0 +1,32 @@
+// The light that arrives at both sides of a surface without a viewer. Included behind common/lights.glsl, with SHADOW_VIEWS if anything is
+// to cast shadows, and, with an axis MEDIUM, behind common/media.glsl.
+#ifndef LUMIVOX_TWO_SIDED_LIGHT
+#define LUMIVOX_TWO_SIDED_LIGHT
+
+// Adds the irradiance of a point by each of the first lights, W/m^2: on the side of the normal, and, if that counts, behind it.
+// mediumSteps: most steps through a medium that varies, towards a light.
+void addArriving(int lightCount, vec3 posWorld, vec3 normal, bool twoSided, int mediumSteps, inout vec3 front, inout vec3 back) {
+  for (int i = 0; i < lightCount; ++i) {
+    LightSample light = lights[i];
+    vec3 toLight;
+    vec3 perpendicular = arrivingIrradiance(light, posWorld, toLight);
+    float cosSurface = dot(normal, toLight);
+    bool behind = cosSurface < 0.0;
+    if (behind && !twoSided) continue;
+    cosSurface = abs(cosSurface);
+    if (!(cosSurface > 0.0)) continue;  // also where a light lies on the surface and has no direction
+    vec3 arriving = perpendicular * cosSurface;
+#ifdef SHADOW_VIEWS
+    arriving *= visibility(light, posWorld, behind ? -normal : normal, toLight);
+#endif
+#ifdef MEDIUM
+#if MEDIUM != MEDIUM_NONE
+    if (any(greaterThan(arriving, vec3(0.0)))) arriving *= transmittanceToLight(light, posWorld, mediumSteps);
+#endif
+#endif
+    if (behind) back += arriving;
+    else front += arriving;
+  }
+}
+
+#endif
