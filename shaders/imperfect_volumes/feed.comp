@@ -1,0 +1,37 @@
+#version 450
+// Between two bounces: what arrives at occupied voxels leaves them again. Mavridis & Papaioannou 2011, end of Sec. 3.3, alternate two buffers
+// and do not say how. Here both sides of a voxel's surface take their irradiance and send it, times albedo / pi, into their half spaces.
+#define VOLUMES 3
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+#include "reconstruct.glsl"
+#include "feeding.glsl"
+layout(binding = 0) uniform sampler3D opacity;
+layout(binding = 1) uniform sampler3D meanNormals;
+layout(binding = 2) uniform sampler3D albedo;
+layout(binding = 0, rgba32f) uniform writeonly image3D redImage;
+layout(binding = 1, rgba32f) uniform writeonly image3D greenImage;
+layout(binding = 2, rgba32f) uniform writeonly image3D blueImage;
+
+// Radiance that the side of a normal sends, W/(sr m^2).
+vec3 sentInto(ivec3 voxel, vec3 normal, vec3 reflects) {
+  Arriving arriving;
+  if (feedsOwn != 0) arriving.volumes = vec4[3](texelFetch(red, voxel, 0), texelFetch(green, voxel, 0), texelFetch(blue, voxel, 0));
+  else arriving = arrivingAt(vec3(voxel) + 0.5, normal);
+  vec4 cosine = shClampedCosine(normal);
+  vec3 irradiance = vec3(dot(arriving.volumes[0], cosine), dot(arriving.volumes[1], cosine), dot(arriving.volumes[2], cosine));
+  return reflects / kPi * max(irradiance, 0.0);
+}
+
+void main() {
+  ivec3 voxel = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(voxel, resolution)) || texelFetch(opacity, voxel, 0).r <= occupied) return;
+  vec3 normal = surfaceNormal(texelFetch(meanNormals, voxel, 0).xyz, texelFetch(red, voxel, 0), texelFetch(green, voxel, 0),
+                              texelFetch(blue, voxel, 0));
+  if (normal == vec3(0.0)) normal = vec3(0.0, 0.0, 1.0);
+  vec3 reflects = texelFetch(albedo, voxel, 0).rgb;
+  vec3 front = sentInto(voxel, normal, reflects), back = sentInto(voxel, -normal, reflects);
+  vec3 both = 2.0 * kPi * kY0 * (front + back), difference = kPi * kY1 * (front - back);
+  imageStore(redImage, voxel, vec4(both.r, difference.r * normal.yzx));
+  imageStore(greenImage, voxel, vec4(both.g, difference.g * normal.yzx));
+  imageStore(blueImage, voxel, vec4(both.b, difference.b * normal.yzx));
+}

@@ -1,0 +1,39 @@
+#version 450
+// Mavridis & Papaioannou 2011, Sec. 3.1: the direct light that each fragment reflects diffusely, on both sides; and of each voxel the
+// brightest of it, in which inject_add.comp counts, so that a dark voxel beside a very bright one keeps its light.
+layout(local_size_x = 64) in;
+#include "common/constants.glsl"
+#define SHADOW_VIEWS
+#include "common/lights.glsl"
+#include "common/two_sided_light.glsl"
+#include "common/fragments.glsl"
+
+layout(std140, binding = 0) uniform Lighting {
+  vec3 gridLow;        // m
+  float voxelSize;     // m
+  int lightCount;
+  float mostRadiance;  // W/(sr m^2): what no voxel of this size can reflect, however near a light is
+};
+layout(std430, binding = 2) writeonly buffer Radiances { float radiances[]; };  // W/(sr m^2): front, back, three channels each
+layout(std430, binding = 3) buffer Brightest { uint brightest[]; };  // bits of a float: for numbers from 0 on their order is that of the numbers
+layout(binding = 0, r32ui) uniform readonly uimage3D slots;
+
+void main() {
+  uint index = listIndex();
+  if (index >= fragmentCount) return;
+  VoxelFragment fragment = fragments[index];
+  ivec3 voxel = unpackVoxel(fragment.voxel);
+  vec3 posWorld = gridLow + (vec3(voxel) + unpackOffset(fragment.offset)) * voxelSize;
+  vec3 sides[2] = vec3[2](vec3(0.0), vec3(0.0));
+  addArriving(lightCount, posWorld, unpackNormal(fragment.normal), true, 0, sides[0], sides[1]);
+  vec3 albedo = clamp(vec3(unpackHalf2x16(fragment.albedoRg), unpackHalf2x16(fragment.albedoBCoverage).x), 0.0, 1.0);
+  float most = 0.0;
+  for (int side = 0; side < 2; ++side)
+    for (int channel = 0; channel < 3; ++channel) {
+      float radiance = min(albedo[channel] / kPi * sides[side][channel], mostRadiance);
+      radiances[6 * index + 3 * side + channel] = radiance;
+      most = max(most, radiance);
+    }
+  uint slot = imageLoad(slots, voxel).r - 1u;
+  if (slot < uint(brightest.length())) atomicMax(brightest[slot], floatBitsToUint(most));
+}

@@ -1,0 +1,43 @@
+#version 450
+// The means of each occupied voxel as spherical harmonics of the radiance that it sends (Mavridis & Papaioannou 2011, Sec. 3.1 and Eq. 1).
+// A side that shines L alike over its half space has the coefficients L (2 pi Y0, pi Y1 n); one whose radiance falls as the cosine and that
+// sends as much, 3/2 L cos, has 3/2 L (pi Y0, 2/3 pi Y1 n): the same in the second band.
+#pragma lumivox axis PRECISION float half
+#include "common/spherical_harmonics.glsl"
+layout(local_size_x = 64) in;
+#include "volume_sums.glsl"
+#include "common/list.glsl"
+
+layout(constant_id = 0) const int cosineLobe = 0;
+
+layout(std140, binding = 0) uniform Resolving { float unit; };  // W/(sr m^2) that the number 1 stands for
+layout(std430, binding = 0) readonly buffer SlotCount { uint slotCount; };
+layout(std430, binding = 1) readonly buffer SlotVoxels { uint slotVoxels[]; };
+layout(std430, binding = 3) readonly buffer Brightest { uint brightest[]; };
+#if PRECISION == PRECISION_HALF
+layout(binding = 0, rgba16f) uniform writeonly image3D redImage;
+layout(binding = 1, rgba16f) uniform writeonly image3D greenImage;
+layout(binding = 2, rgba16f) uniform writeonly image3D blueImage;
+#else
+layout(binding = 0, rgba32f) uniform writeonly image3D redImage;
+layout(binding = 1, rgba32f) uniform writeonly image3D greenImage;
+layout(binding = 2, rgba32f) uniform writeonly image3D blueImage;
+#endif
+
+vec4 coefficientsOf(uint slot, int channel, float scale) {
+  float both = 2.0 * float(sums[slot].both[channel]) / kFixedPoint;
+  vec3 difference = signedMeanOf(sums[slot].difference[3 * channel], sums[slot].difference[3 * channel + 1],
+                                 sums[slot].difference[3 * channel + 2]);
+  return scale * vec4((cosineLobe != 0 ? 1.5 : 2.0) * kPi * kY0 * both, kPi * kY1 * difference.yzx);
+}
+
+void main() {
+  uint slot = listIndex();
+  if (slot >= slotCount) return;
+  ivec3 voxel = unpackVoxel(slotVoxels[slot]);
+  // Coverages of nothing at all leave no average.
+  float scale = sums[slot].coverage > 0u ? kFixedPoint / float(sums[slot].coverage) * uintBitsToFloat(brightest[slot]) / unit : 0.0;
+  imageStore(redImage, voxel, coefficientsOf(slot, 0, scale));
+  imageStore(greenImage, voxel, coefficientsOf(slot, 1, scale));
+  imageStore(blueImage, voxel, coefficientsOf(slot, 2, scale));
+}

@@ -1,0 +1,22 @@
+#version 450
+// The voxels that occupied ones read, for what they pass on to the next bounce: on both sides.
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+#include "mark.glsl"
+#include "feeding.glsl"
+layout(binding = 0) uniform sampler3D opacity;
+layout(binding = 1) uniform sampler3D meanNormals;
+
+void main() {
+  ivec3 voxel = ivec3(gl_GlobalInvocationID);
+  if (any(greaterThanEqual(voxel, resolution)) || texelFetch(opacity, voxel, 0).r <= occupied) return;
+  // Where the normals cancel out the light decides which way the surface looks: all around then.
+  vec3 mean = texelFetch(meanNormals, voxel, 0).xyz;
+  if (feedsOwn != 0) {
+    imageStore(marks, voxel, uvec4(1u));
+  } else if (dot(mean, mean) > kLeastNormal * kLeastNormal) {
+    markReads(vec3(voxel) + 0.5, normalize(mean));
+    markReads(vec3(voxel) + 0.5, -normalize(mean));
+  } else {
+    for (int i = 0; i < 125; ++i) imageStore(marks, inVolume(voxel + ivec3(i % 5, i / 5 % 5, i / 25) - 2), uvec4(1u));
+  }
+}

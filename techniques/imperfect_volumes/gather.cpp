@@ -1,0 +1,98 @@
+// Light and openness at the visible surfaces: Mavridis & Papaioannou 2011, Sec. 3.4 and 3.5.
+#include <fmt/format.h>
+
+#include "lumivox/base/error.h"
+#include "volume.h"
+
+namespace lumivox::imperfect_volumes {
+
+using namespace shaders::imperfect_volumes;
+
+namespace {
+
+class GatherPass : public Pass {
+  enum class Negative { clip, closure };
+
+  In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
+  In<ShGrid> incoming{this, "incoming", Presence::optional, "light that arrives in each voxel, of 'march'",
+                      Needs::anyLight};
+  In<ShGrid> visibility{this, "visibility", Presence::optional, "how open each voxel is, of 'occlude'"};
+  In<OccupancyGrid> opacity{this, "opacity", Presence::optional,
+                            "with 'blend free': which voxels are occupied"};
+  In<AttributeGrid> attributes{this, "attributes", Presence::optional,
+                               "with 'blend free': mean normals of the voxels, which tell along an edge what "
+                               "lies before both walls"};
+  Neighbours neighbours{this};
+  Param<float> occupied{this, "occupied", 0.0f, within(0.0f, 1.0f),
+                        "with 'blend free': coverage above which a voxel is occupied"};
+  Param<Negative> negative{
+      this, "negative", Negative::clip,
+      "two bands can make irradiance negative: cut off; or keep what the two sides of a surface differ by, and neither below 0"};
+  Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::anyLight,
+                     "indirect light reflected by the diffuse lobe, W/(sr m^2)"};
+  Out<Image> occlusion{this, "occlusion", Contributes::ambientOcclusion, Needs::triangles,
+                       "irradiance of the openness over pi, within 0 and 1"};
+  Out<Image> clipped{
+      this, "clipped", Contributes::nothing, Needs::anyLight,
+      "radiance that two bands made negative, before its correction, as positive values, W/(sr m^2)"};
+
+  Reads readsFrom() const override { return Reads::environment; }
+  bool uses(const InBase& input) const override {
+    return (&input != &opacity && &input != &attributes) || neighbours.onlyFree();
+  }
+
+  void run(PassContext& frame) override {
+    if (diffuse.wanted() || clipped.wanted()) {
+      if (!incoming.present())
+        throw Error("'diffuse' is made of the light in 'incoming'; expected it to be connected");
+      const gpu::TextureRef light = frame.image("indirect diffuse radiance"),
+                            cut = frame.image("clipped radiance");
+      gather(frame, *incoming, "incoming", gather::Variant::ofLight,
+             {gather::diffuseImage(light), gather::clippedImage(cut)});
+      diffuse = Image{light};
+      clipped = Image{cut};
+    }
+    if (occlusion.wanted()) {
+      if (!visibility.present())
+        throw Error("'occlusion' is made of 'visibility'; expected it to be connected");
+      const gpu::TextureRef open = frame.image("ambient occlusion");
+      gather(frame, *visibility, "visibility", gather::Variant::ofOpenness, {gather::occlusionImage(open)});
+      occlusion = Image{open};
+    }
+  }
+
+  void gather(PassContext& frame, const ShGrid& light, const char* input, int of,
+              const shader::BindingSet& to) const {
+    const ShGrid::Level& volume = volumeOf(light, input);
+    if (!light.readFor.empty() && light.readFor != neighbours.inWords())
+      throw Error(fmt::format(
+          "'{}' holds the voxels that are read with {}, and here there are {}; expected the same, or 'cover all' where it is made",
+          input, light.readFor, neighbours.inWords()));
+    const bool free = neighbours.onlyFree();
+    if (free && !opacity.present()) throw Error("'blend free' reads 'opacity'; expected it to be connected");
+    if (free && !attributes.present())
+      throw Error("'blend free' reads 'attributes'; expected it to be connected");
+    if (free) requireSameGrid("opacity", opacity->grid, input, volume.grid);
+    if (free) requireSameGrid("attributes", attributes->grid, input, volume.grid);
+    // Something must be bound where nothing is read.
+    const gpu::TextureRef &around = free ? opacity->opacity : volume.coefficients[0],
+                          &normals = free ? attributes->normal : volume.coefficients[0];
+    frame.dispatch(
+        frame.program(gather::Variant{of},
+                      neighbours.in(gather::Constants{.closure = negative == Negative::closure})),
+        {gather::gathering({.environment = frame.sceneDescription().environment, .unit = light.unit}),
+         volumeBinding(volume.grid, occupied), neighbours.binding(), GBufferBinding(*gbuffer),
+         sampled(volume, gpu::Sampling::linear), gather::opacityAround(around, gpu::Sampling::nearest),
+         gather::normalsAround(normals, gpu::Sampling::nearest), to},
+        pixels(frame));
+  }
+};
+
+}  // namespace
+
+void addGather(TechniqueRegistry& registry) {
+  registry.add<GatherPass>(
+      "gather", "Light and openness at the visible surfaces (Mavridis & Papaioannou 2011, Sec. 3.4)");
+}
+
+}  // namespace lumivox::imperfect_volumes

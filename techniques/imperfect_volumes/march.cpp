@@ -1,0 +1,303 @@
+// Rays from the middle of every voxel through the volume: light from all sides (Mavridis & Papaioannou 2011,
+// Sec. 3.3), over several bounces, and openness (Sec. 3.5).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/toolkit/bit_grid.h"
+#include "lumivox/toolkit/loop_limit.h"
+#include "lumivox/toolkit/volume_room.h"
+#include "volume.h"
+
+namespace lumivox::imperfect_volumes {
+
+using namespace shaders::imperfect_volumes;
+
+namespace {
+
+constexpr int kTogether = 8;  // invocations that share the rays of a voxel, as in march.comp
+// sqrt(3) / 2, the distance of a voxel's corners, and a little: rounding leads no ray back into its voxel.
+constexpr float kPublishedGuard = 0.8660255f;
+
+/// What `march` and `occlude` share.
+class Marching : public Pass {
+ protected:
+  enum class Reading { nearest, linear };
+  enum class Walk { steps, exact };
+  enum class Exit { early, branchless };
+  enum class Directions { voxel, shared };
+  enum class Cover { read, all };
+
+  In<OccupancyGrid> opacity{this, "opacity", "coverage of each voxel: which are occupied"};
+  In<BinaryGrid> bits{this, "bits", Presence::optional,
+                      "with 'walk exact': which voxels are occupied, one bit each"};
+  In<GBuffer> gbuffer{
+      this, "gbuffer", Presence::optional,
+      "visible surfaces: rays begin only in the voxels that they read; without them in all voxels"};
+  Param<int> rays{this, "rays", 100, within(2, 1 << 20),
+                  "from each voxel over the sphere, in opposite pairs: an odd number counts as the next one"};
+  Param<float> step{this, "step", 1.0f, within(0.01f, 64.0f), "along a ray, in voxels"};
+  Param<float> guard{
+      this, "guard", kPublishedGuard, within(0.0f, 2048.0f),
+      "first part of a ray, which meets nothing, in voxels: as published the distance of a voxel's corners"};
+  Param<Reading> reading{
+      this, "reading", Reading::nearest,
+      "of the volume at a step: the voxel there; or all eight around, of which half must be occupied"};
+  Param<Walk> walk{this, "walk", Walk::steps,
+                   "a look at every step, as published; or every voxel on the way, by 'bits'"};
+  Param<Exit> exit{
+      this, "exit", Exit::early,
+      "at the first voxel that is met; or, as published (Sec. 4.1), at the end of the volume, and what lies behind is discarded: the same bits"};
+  Param<Directions> directions{this, "directions", Directions::voxel,
+                               "a set of its own for each voxel: noise; or one for all: no noise but bands"};
+  Param<float> occupied{this, "occupied", 0.0f, within(0.0f, 1.0f),
+                        "coverage above which a voxel is occupied"};
+  Param<Cover> cover{this, "cover", Cover::read,
+                     "voxels that rays begin in: with 'gbuffer' those that are read; or all, for who looks "
+                     "at the volume itself"};
+  Neighbours neighbours{this};
+
+  bool uses(const InBase& input) const override {
+    return (&input != &bits || walk == Walk::exact) && (&input != &gbuffer || cover == Cover::read) &&
+           (&input != &opacity || readsOpacity());
+  }
+  virtual bool readsOpacity() const { return walk == Walk::steps; }
+  const GridPlacement& grid() const { return walk == Walk::exact ? bits->grid : opacity->grid; }
+
+  void checkGrids() const {
+    if (walk == Walk::exact && !bits.present())
+      throw Error("'walk exact' goes through 'bits'; expected it to be connected");
+    if (walk == Walk::exact && opacity.present())
+      requireSameGrid("bits", bits->grid, "opacity", opacity->grid);
+    const glm::vec3 size(grid().resolution);
+    if (guard >= glm::length(size))
+      throw Error(fmt::format(
+          "'guard' is {:g} voxels, and no ray through {} x {} x {} voxels is longer than "
+          "{:g}; expected less",
+          float(guard), grid().resolution.x, grid().resolution.y, grid().resolution.z, glm::length(size)));
+    if (grid().voxelCount() > std::uint64_t{1} << 29)
+      throw Error(fmt::format(
+          "rays from {} x {} x {} voxels take {} of coefficients for each colour; expected at most 2^29 voxels",
+          grid().resolution.x, grid().resolution.y, grid().resolution.z,
+          formatBytes(16 * grid().voxelCount())));
+  }
+
+  /// Voxels in which rays begin; null members: all.
+  struct Begins {
+    gpu::BufferRef count, voxels;
+    std::string readFor;  ///< ShGrid::readFor
+  };
+  virtual void markMore(PassContext&, const shader::BindingSet& /*marks*/) {}
+  Begins begins(PassContext& frame) {
+    if (cover == Cover::all || !gbuffer.present() || frame.keepsEverything()) return {};
+    const glm::ivec3& size = grid().resolution;
+    const gpu::TextureRef marks = frame.emptyVolume(size, gpu::Format::r32ui, "voxels that are read");
+    const shader::BindingSet marking{volumeBinding(grid(), occupied), neighbours.binding(),
+                                     mark_surfaces::marks(marks)};
+    frame.dispatch(frame.program(mark_surfaces::Variant{}, neighbours.in(mark_surfaces::Constants{})),
+                   {marking, GBufferBinding(*gbuffer)}, pixels(frame));
+    markMore(frame, marking);
+    Begins result{countBuffer(frame, "count of voxels that are read"),
+                  frame.elements(list_marked::list, grid().voxelCount(), "list of voxels that are read"),
+                  neighbours.inWords()};
+    frame.dispatch(frame.program(list_marked::kProgram),
+                   {volumeBinding(grid(), occupied), list_marked::marks(marks),
+                    list_marked::listCount(result.count), list_marked::list(result.voxels)},
+                   size);
+    finishCount(frame, frame.program(finish::kProgram), result.count, grid().voxelCount(),
+                kCountedGroupSize / kTogether);
+    return result;
+  }
+
+  march::Constants constants() const {
+    return {.branchless = exit == Exit::branchless,
+            .linear = reading == Reading::linear,
+            .harmonics = 0,
+            .sharedSet = directions == Directions::shared};
+  }
+  march::Variant variant(const Begins& from, int of) const {
+    return {.of = of,
+            .walk = walk == Walk::exact ? march::Variant::walkExact : march::Variant::walkSteps,
+            .listed = from.voxels != nullptr,
+            .bitRule = march::Variant::bitRuleHierarchy};
+  }
+
+  /// All rays of all voxels, in as many dispatches as keep the loops within what drivers run.
+  void sendRays(PassContext& frame, const shader::BoundProgram& program, const shader::BindingSet& bound,
+                march::Rays parameters, const Begins& from) const {
+    const int pairs = (rays + 1) / 2, rounds = (pairs + kTogether - 1) / kTogether;
+    // Light is seen from one end of the volume to the other; openness within its reach.
+    const float way = std::min(parameters.reach, glm::length(glm::vec3(grid().resolution)));
+    parameters.seed = seedWords(frame);
+    parameters.guard = guard;
+    parameters.step = step;
+    parameters.pairs = pairs;
+    parameters.mostSteps = static_cast<int>(std::max(std::ceil((way - guard) / step), 0.0f)) + 2;
+    const std::int64_t ofRay = walk == Walk::exact
+                                   ? hierarchyTurns(*bits)
+                                   : parameters.mostSteps * (reading == Reading::linear ? 9 : 1);
+    shader::BindingSet all{bound, volumeBinding(grid(), occupied)};
+    if (walk == Walk::exact) all.add(shader::SampledSlot{"bitStacks"}(bits->stacks, gpu::Sampling::nearest));
+    if (opacity.present()) all.add(march::opacity(opacity->opacity, gpu::Sampling::nearest));
+    if (from.voxels) all.add(shader::BindingSet{march::listCount(from.count), march::list(from.voxels)});
+    forEachPortion(rounds, 2 * (ofRay + 1), [&](int first, int count) {
+      parameters.firstPair = first * kTogether;
+      parameters.pairsAtOnce = count * kTogether;
+      const shader::BindingSet dispatched{all, march::rays(parameters)};
+      if (from.voxels)
+        frame.dispatchIndirect(program, dispatched, *from.count, kGroupsOffset);
+      else
+        frame.dispatchList(program, dispatched, grid().voxelCount() * kTogether);
+    });
+  }
+
+  /// In bounds of floats: light comes from all of the volume.
+  static constexpr float kNoEnd = std::numeric_limits<float>::infinity();
+};
+
+class MarchPass : public Marching {
+  enum class Source { surface, harmonics };
+  enum class Feed { front, own };
+
+  In<ShGrid> reflected{this, "reflected", "radiance that the voxels send, of 'inject'"};
+  In<AttributeGrid> attributes{this, "attributes", Presence::optional,
+                               "mean normals and albedos of the voxels; needed but for 'source harmonics' "
+                               "and one bounce"};
+  Param<Source> source{
+      this, "source", Source::surface,
+      "what a ray finds in a voxel: the side of the surface that it sees, exact for a Lambert wall; or, as published, two bands, 1/2 + 3/4 cos in place of 1"};
+  Param<int> bounces{this, "bounces", 1, within(1, 1024), "times that light was reflected"};
+  Param<Feed> feed{
+      this, "feed", Feed::front,
+      "between two bounces a voxel takes what arrives in front of both of its sides, as a surface in its middle; or its own coefficients"};
+  Out<ShGrid> incoming{this, "incoming", Contributes::nothing, Needs::anyLight,
+                       "radiance that arrives in each voxel from all sides, of all bounces"};
+
+  Reads readsFrom() const override { return Reads::environment; }
+  int indirectBounces() const override { return bounces; }
+  bool uses(const InBase& input) const override {
+    return Marching::uses(input) && (&input != &attributes || readsAttributes());
+  }
+  bool readsAttributes() const { return source == Source::surface || bounces > 1; }
+  bool readsOpacity() const override { return Marching::readsOpacity() || bounces > 1; }
+
+  void markMore(PassContext& frame, const shader::BindingSet& marks) override {
+    if (bounces == 1) return;
+    frame.dispatch(frame.program(mark_voxels::Variant{},
+                                 neighbours.in(mark_voxels::Constants{.feedsOwn = feed == Feed::own})),
+                   {marks, mark_voxels::opacity(opacity->opacity, gpu::Sampling::nearest),
+                    mark_voxels::meanNormals(attributes->normal, gpu::Sampling::nearest)},
+                   grid().resolution);
+  }
+
+  void run(PassContext& frame) override {
+    checkGrids();
+    const ShGrid::Level& sent = volumeOf(*reflected, "reflected");
+    requireSameGrid("reflected", sent.grid, walk == Walk::exact ? "bits" : "opacity", grid());
+    if (readsAttributes() && !attributes.present())
+      throw Error("'source surface' and further bounces read 'attributes'; expected it to be connected");
+    if (readsAttributes()) requireSameGrid("attributes", attributes->grid, "reflected", sent.grid);
+    if (!frame.sceneDescription().media.empty())
+      frame.warn("the scene has participating media, which do not dim the light between voxels");
+    const Begins from = begins(frame);
+    ShGrid result;
+    result.quantity = ShGrid::Quantity::radiance;
+    result.readFor = from.readFor;
+    result.levels.push_back({grid(), arriving(frame, sent, reflected->unit, from, 0)});
+    const auto& sum = result.levels.front().coefficients;
+    ShGrid::Level before = result.levels.front();
+    std::array<gpu::TextureRef, 3> passedOn;
+    for (int bounce = 1; bounce < bounces; ++bounce) {
+      if (!passedOn[0]) passedOn = emptyVolumes(frame, "radiance that is reflected again");
+      reflectAgain(frame, before, passedOn);
+      before.coefficients = arriving(frame, {grid(), passedOn}, 1.0f, from, bounce);
+      for (std::size_t i = 0; i < 3; ++i)
+        frame.dispatch(frame.program(add::kProgram),
+                       {add::bounceImage(before.coefficients[i]), add::sumImage(sum[i])}, grid().resolution);
+    }
+    incoming = result;
+  }
+
+  std::array<gpu::TextureRef, 3> emptyVolumes(PassContext& frame, const char* label) const {
+    auto volumes = coefficientVolumes(frame, grid().resolution, label);
+    for (const gpu::TextureRef& volume : volumes) volume->clear(glm::vec4(0.0f));
+    return volumes;
+  }
+
+  /// One bounce: what arrives of what the voxels send.
+  std::array<gpu::TextureRef, 3> arriving(PassContext& frame, const ShGrid::Level& sent, float unit,
+                                          const Begins& from, int bounce) const {
+    auto volumes = emptyVolumes(frame, "radiance that arrives");
+    march::Constants choices = constants();
+    choices.harmonics = source == Source::harmonics;
+    const shader::BoundProgram& program = frame.program(variant(from, march::Variant::ofLight), choices);
+    // Something must be bound where no normals are read.
+    const gpu::TextureRef& normals = readsAttributes() ? attributes->normal : sent.coefficients[0];
+    // The sky was seen with the first bounce.
+    const glm::vec3 sky = bounce == 0 ? frame.sceneDescription().environment : glm::vec3(0.0f);
+    sendRays(frame, program,
+             {images(volumes), march::meanNormals(normals, gpu::Sampling::nearest),
+              sampled(sent, gpu::Sampling::nearest)},
+             {.environment = sky, .reach = kNoEnd, .reflectedUnit = unit, .bounce = bounce}, from);
+    return volumes;
+  }
+
+  void reflectAgain(PassContext& frame, const ShGrid::Level& light,
+                    const std::array<gpu::TextureRef, 3>& passedOn) const {
+    frame.dispatch(
+        frame.program(feed::Variant{}, neighbours.in(feed::Constants{.feedsOwn = feed == Feed::own})),
+        {volumeBinding(grid(), occupied), neighbours.binding(), sampled(light, gpu::Sampling::linear),
+         feed::opacityAround(opacity->opacity, gpu::Sampling::nearest),
+         feed::normalsAround(attributes->normal, gpu::Sampling::nearest),
+         feed::opacity(opacity->opacity, gpu::Sampling::nearest),
+         feed::meanNormals(attributes->normal, gpu::Sampling::nearest),
+         feed::albedo(attributes->albedo, gpu::Sampling::nearest), images(passedOn)},
+        grid().resolution);
+  }
+};
+
+class OccludePass : public Marching {
+  Param<float> distance{
+      this,
+      "distance",
+      0.0f,
+      within(0.0f, 1e9f),
+      "m",
+      "within which voxels occlude; 0: a tenth of the diagonal of the scene's bounds, as in the reference"};
+  Out<ShGrid> visibility{this, "visibility", Contributes::nothing, Needs::triangles,
+                         "whether each voxel sees anything within the distance, from all sides: 0, else 1"};
+
+  Reads readsFrom() const override { return Reads::geometry; }
+
+  void run(PassContext& frame) override {
+    checkGrids();
+    const Begins from = begins(frame);
+    ShGrid result;
+    result.quantity = ShGrid::Quantity::radiance;
+    result.readFor = from.readFor;
+    const gpu::TextureRef open =
+        roomFor(frame, grid().resolution, 1, gpu::Format::rgba32f, "openness", false, "a volume").front();
+    open->clear(glm::vec4(0.0f));
+    result.levels.push_back({grid(), {open, nullptr, nullptr}});
+    const float reach = distance > 0.0f
+                            ? float(distance)
+                            : static_cast<float>(ambientOcclusionDistance(frame.snapshot().bounds));
+    sendRays(frame, frame.program(variant(from, march::Variant::ofOpenness), constants()),
+             {march::openImage(open)}, {.reach = reach / grid().voxelSize}, from);
+    visibility = result;
+  }
+};
+
+}  // namespace
+
+void addMarch(TechniqueRegistry& registry) {
+  registry.add<MarchPass>(
+      "march", "Light that arrives in each voxel, by rays (Mavridis & Papaioannou 2011, Sec. 3.3)");
+  registry.add<OccludePass>("occlude", "How open each voxel is (Mavridis & Papaioannou 2011, Sec. 3.5)");
+}
+
+}  // namespace lumivox::imperfect_volumes

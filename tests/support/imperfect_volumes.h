@@ -1,0 +1,280 @@
+// Volumes made by hand for imperfect volumes, where metres are voxels, and the passes over them.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lumivox/measure/voxels.h"
+#include "lumivox/pipeline/pass.h"
+#include "support/bit_grids.h"
+#include "support/scene_builder.h"
+#include "support/techniques.h"
+
+namespace lumivox::test::volumes {
+
+inline const double kY0 = 0.5 / std::sqrt(kPi), kY1 = std::sqrt(0.75 / kPi);
+
+/// Coefficients of a surface that sends `front` into the half space of its normal and `back` into the other.
+inline glm::dvec4 bothSides(double front, double back, const glm::dvec3& normal) {
+  const double difference = (front - back) * kPi * kY1;
+  return {(front + back) * 2.0 * kPi * kY0, difference * normal.y, difference * normal.z,
+          difference * normal.x};
+}
+/// Of constant radiance.
+inline glm::vec4 constant(double radiance) {
+  return {radiance * 4.0 * kPi * kY0, 0.0, 0.0, 0.0};
+}
+/// Irradiance of two bands.
+inline double irradiance(const glm::dvec4& coefficients, const glm::dvec3& normal) {
+  return kPi * kY0 * coefficients.x +
+         2.0 * kPi / 3.0 * kY1 *
+             (coefficients.y * normal.y + coefficients.z * normal.z + coefficients.w * normal.x);
+}
+
+inline gpu::TextureRef volumeTexture(const glm::ivec3& size, gpu::Format format,
+                                     const std::vector<float>& values) {
+  auto texture = std::make_shared<gpu::Texture>(
+      device(), gpu::TextureDescription{gpu::TextureKind::d3, format, size.x, size.y, size.z, 1},
+      "test volume");
+  texture->uploadFloats(0, values);
+  return texture;
+}
+
+/// A volume of voxels of a metre from the origin on.
+class Volume {
+ public:
+  explicit Volume(const glm::ivec3& size)
+      : size_(size),
+        set_(size),
+        opacity_(count()),
+        albedo_(4 * count()),
+        normal_(4 * count()),
+        sent_{std::vector<float>(4 * count()), std::vector<float>(4 * count()),
+              std::vector<float>(4 * count())} {}
+
+  const glm::ivec3& size() const { return size_; }
+  const VoxelSet& set() const { return set_; }
+  GridPlacement grid() const { return {glm::vec3(0.0f), 1.0f, size_}; }
+  std::size_t at(const glm::ivec3& voxel) const {
+    return static_cast<std::size_t>((voxel.z * size_.y + voxel.y) * size_.x + voxel.x);
+  }
+  template <class Work>
+  void forEach(const Work& work) const {
+    for (int z = 0; z < size_.z; ++z)
+      for (int y = 0; y < size_.y; ++y)
+        for (int x = 0; x < size_.x; ++x) work(glm::ivec3(x, y, z));
+  }
+
+  /// A surface with a normal, or none of its own (length 0), that sends so much on both sides.
+  Volume& occupy(const glm::ivec3& voxel, const glm::dvec3& normal, double front = 0.0, double back = 0.0,
+                 double albedo = 0.5) {
+    set_.insert(voxel);
+    const std::size_t i = at(voxel);
+    opacity_[i] = 1.0f;
+    const glm::dvec4 sent = bothSides(front, back, normal);
+    for (int c = 0; c < 4; ++c) {
+      const auto k = 4 * i + static_cast<std::size_t>(c);
+      albedo_[k] = c < 3 ? static_cast<float>(albedo) : 1.0f;
+      normal_[k] = c < 3 ? static_cast<float>(normal[c]) : 0.0f;
+      for (auto& channel : sent_) channel[k] = static_cast<float>(sent[c]);
+    }
+    return *this;
+  }
+  /// All voxels of a kind, with the normal that the caller says.
+  Volume& occupyWhere(const std::function<bool(const glm::ivec3&)>& is,
+                      const std::function<glm::dvec3(const glm::ivec3&)>& normal, double front,
+                      double back = 0.0, double albedo = 0.5) {
+    forEach([&](const glm::ivec3& voxel) {
+      if (is(voxel)) occupy(voxel, normal(voxel), front, back, albedo);
+    });
+    return *this;
+  }
+
+  OccupancyGrid opacity() const { return {grid(), volumeTexture(size_, gpu::Format::r8, opacity_)}; }
+  AttributeGrid attributes() const {
+    return {grid(), volumeTexture(size_, gpu::Format::rgba16f, albedo_),
+            volumeTexture(size_, gpu::Format::rgba16f, normal_), nullptr};
+  }
+  BinaryGrid bits() const { return gridOf(set_); }
+  ShGrid reflected() const {
+    ShGrid result;
+    result.quantity = ShGrid::Quantity::radiance;
+    ShGrid::Level level{grid(), {}};
+    for (std::size_t c = 0; c < 3; ++c)
+      level.coefficients[c] = volumeTexture(size_, gpu::Format::rgba32f, sent_[c]);
+    result.levels.push_back(level);
+    return result;
+  }
+
+ private:
+  std::size_t count() const { return grid().voxelCount(); }
+  glm::ivec3 size_;
+  VoxelSet set_;
+  std::vector<float> opacity_, albedo_, normal_;
+  std::array<std::vector<float>, 3> sent_;
+};
+
+/// A closed room of so many voxels a side in a shell of one voxel, whose walls shine inwards.
+inline Volume closedRoom(int inside, double radiance, double albedo = 0.5) {
+  const int last = inside + 1;
+  Volume volume(glm::ivec3(inside + 2));
+  const auto inwards = [=](const glm::ivec3& voxel) {
+    glm::dvec3 normal(0.0);
+    for (int axis = 0; axis < 3; ++axis)
+      normal[axis] = voxel[axis] == 0 ? 1.0 : voxel[axis] == last ? -1.0 : 0.0;
+    return normal;
+  };
+  return volume.occupyWhere([&](const glm::ivec3& voxel) { return inwards(voxel) != glm::dvec3(0.0); },
+                            [&](const glm::ivec3& voxel) { return glm::normalize(inwards(voxel)); }, radiance,
+                            0.0, albedo);
+}
+
+struct SurfacePoint {
+  glm::vec3 place, normal;
+};
+
+/// One row of pixels, one for each point; white.
+inline GBuffer seen(const std::vector<SurfacePoint>& points) {
+  std::vector<float> positions, normals, geometric, diffuse;
+  for (const SurfacePoint& point : points) {
+    for (int c = 0; c < 3; ++c) {
+      positions.push_back(point.place[c]);
+      normals.push_back(point.normal[c]);
+      geometric.push_back(point.normal[c]);
+      diffuse.push_back(1.0f);
+    }
+    positions.push_back(1.0f);
+    normals.push_back(1.0f);
+    geometric.push_back(0.0f);
+    diffuse.push_back(1.0f);
+  }
+  const auto image = [&](const std::vector<float>& values) {
+    auto texture = std::make_shared<gpu::Texture>(
+        device(),
+        gpu::TextureDescription{.format = gpu::Format::rgba32f, .width = static_cast<int>(points.size())},
+        "test g-buffer");
+    texture->uploadFloats(0, values);
+    return texture;
+  };
+  return {image(positions), image(normals), image(geometric), image(diffuse), nullptr, nullptr};
+}
+
+/// Every voxel of the walls of a closed room, without the edges, as a surface point so far before its middle.
+inline std::vector<SurfacePoint> wallsOf(const Volume& room, float before = 0.0f) {
+  std::vector<SurfacePoint> points;
+  const int last = room.size().x - 1;
+  room.forEach([&](const glm::ivec3& voxel) {
+    int walls = 0;
+    glm::vec3 normal(0.0f);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (voxel[axis] != 0 && voxel[axis] != last) continue;
+      ++walls;
+      normal[axis] = voxel[axis] == 0 ? 1.0f : -1.0f;
+    }
+    if (walls == 1) points.push_back({glm::vec3(voxel) + 0.5f + before * normal, normal});
+  });
+  return points;
+}
+
+struct Setting {
+  const char* name;
+  double number = 0;
+  const char* word = nullptr;
+};
+
+/// A pass of the technique over a volume.
+class Runner {
+ public:
+  Runner(const char* pass, const Scene& scene, int width = 1)
+      : scene_(withImage(scene, width)),
+        harness_(std::make_unique<PassHarness>(device(), techniques(), "imperfect_volumes", pass, *scene_,
+                                               snapshotOf(*scene_, 0.0))) {}
+  PassHarness& harness() { return *harness_; }
+  template <class Port>
+  Runner& in(const char* name, Port port) {
+    harness_->setInput(name, std::move(port));
+    return *this;
+  }
+  Runner& with(const std::vector<Setting>& settings) {
+    for (const Setting& one : settings)
+      one.word != nullptr ? harness_->setParameter(one.name, std::string(one.word))
+                          : harness_->setParameter(one.name, one.number);
+    return *this;
+  }
+  template <class Port>
+  Port run(const char* output, std::uint64_t seed = 1) {
+    harness_->run(seed);
+    return harness_->output<Port>(output);
+  }
+
+ private:
+  static std::unique_ptr<Scene> withImage(Scene scene, int width) {
+    scene.cameras.front().width = width;
+    scene.cameras.front().height = 1;
+    return std::make_unique<Scene>(std::move(scene));
+  }
+  std::unique_ptr<Scene> scene_;  // which the harness refers to
+  std::unique_ptr<PassHarness> harness_;
+};
+
+inline Scene underSky(double radiance) {
+  SceneBuilder builder;
+  builder.scene.environment = glm::vec3(static_cast<float>(radiance));
+  return builder.scene;
+}
+
+/// `march` over a volume, with all that it may read.
+inline Runner marching(const Volume& volume, const std::vector<Setting>& settings, double sky = 0.0) {
+  Runner runner("march", underSky(sky));
+  runner.in("opacity", volume.opacity())
+      .in("reflected", volume.reflected())
+      .in("attributes", volume.attributes())
+      .in("bits", volume.bits())
+      .with(settings);
+  return runner;
+}
+inline ShGrid arriving(const Volume& volume, const std::vector<Setting>& settings, double sky = 0.0) {
+  return marching(volume, settings, sky).run<ShGrid>("incoming");
+}
+
+/// The first channel of a voxel.
+inline glm::dvec4 coefficientsIn(const ShGrid& light, const glm::ivec3& voxel) {
+  const ShGrid::Level& level = light.levels.front();
+  const std::vector<float> values = level.coefficients[0]->downloadFloats(0);
+  const glm::ivec3 size = level.grid.resolution;
+  const auto i = static_cast<std::size_t>(4 * ((voxel.z * size.y + voxel.y) * size.x + voxel.x));
+  return glm::dvec4(values[i], values[i + 1], values[i + 2], values[i + 3]) * double{light.unit};
+}
+
+/// E / pi of each point, of the first channel.
+inline std::vector<double> gathered(const Volume& volume, const ShGrid& light,
+                                    const std::vector<SurfacePoint>& points,
+                                    const std::vector<Setting>& settings = {}, double sky = 0.0,
+                                    const char* output = "diffuse") {
+  Runner runner("gather", underSky(sky), static_cast<int>(points.size()));
+  runner.in("gbuffer", seen(points))
+      .in("incoming", light)
+      .in("visibility", light)
+      .in("opacity", volume.opacity())
+      .in("attributes", volume.attributes())
+      .with(settings);
+  const std::vector<float> values = runner.run<Image>(output).texture->downloadFloats(0);
+  std::vector<double> result;
+  for (std::size_t i = 0; i < points.size(); ++i) result.push_back(values[4 * i]);
+  return result;
+}
+inline double gatheredAt(const Volume& volume, const ShGrid& light, const SurfacePoint& point,
+                         const std::vector<Setting>& settings = {}, const char* output = "diffuse") {
+  return gathered(volume, light, {point}, settings, 0.0, output).front();
+}
+inline double meanOf(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+}  // namespace lumivox::test::volumes

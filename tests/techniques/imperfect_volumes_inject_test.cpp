@@ -1,0 +1,130 @@
+// Direct light into the volume: what fragments made by hand leave in their voxels.
+#include <cmath>
+
+#include "lumivox/toolkit/light_samples.h"
+#include "support/imperfect_volumes.h"
+#include "support/made_fragments.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+using namespace lumivox::test::volumes;
+
+namespace {
+
+/// A light of 1 W/m^2 that travels along a direction and casts no shadows.
+Scene sunAlong(const std::vector<glm::dvec3>& directions, const std::vector<float>& irradiances = {1.0f}) {
+  SceneBuilder builder;
+  builder.quad({-2, -2, -2}, {4, 0, 0}, {0, 4, 0}, builder.lambert(0.5f));
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    builder.light(LightKind::directional, glm::vec3(irradiances[i % irradiances.size()]), {}, directions[i]);
+  return builder.scene;
+}
+ShadowMap unshadowed(const Scene& scene) {
+  LightSet set = sampleLights(scene, snapshotOf(scene, 0.0), 1, 4);
+  for (LightSampleData& sample : set.samples) sample.firstView = -1;
+  ShadowMap map;
+  map.lightCount = static_cast<int>(set.samples.size());
+  map.lights =
+      std::make_shared<gpu::Buffer>(device(), set.samples.size() * sizeof(LightSampleData), "lights");
+  map.lights->uploadValues(std::span<const LightSampleData>(set.samples));
+  map.views = std::make_shared<gpu::Buffer>(device(), 64, "views");
+  map.depth = std::make_shared<gpu::Texture>(
+      device(), gpu::TextureDescription{gpu::TextureKind::d2Array, gpu::Format::depth32f, 1, 1, 1, 1},
+      "depth");
+  return map;
+}
+
+ShGrid injected(const Scene& scene, const std::vector<FragmentData>& fragments,
+                const std::vector<Setting>& settings = {}, const glm::vec3& low = glm::vec3(0.0f)) {
+  Runner inject("inject", scene);
+  // A list over cells of a metre has voxels of half of one.
+  inject.in("fragments", listOver({low, 1.0f, glm::ivec3(4)}, fragments))
+      .in("shadow", unshadowed(scene))
+      .with(settings);
+  return inject.run<ShGrid>("reflected");
+}
+
+/// Flux of two bands through a side, over pi.
+double sent(const ShGrid& light, const glm::ivec3& voxel, const glm::dvec3& normal) {
+  return irradiance(coefficientsIn(light, voxel), normal) / kPi;
+}
+
+}  // namespace
+
+TEST_CASE("a lit surface sends albedo E cos / pi from its lit side and none from the other, by either lobe") {
+  const glm::dvec3 direction = glm::normalize(glm::dvec3(0.3, -0.2, -1.0)), normal(0, 0, 1);
+  const double radiance = 0.5 * glm::dot(normal, -direction) / kPi;
+  for (const bool fromBehind : {false, true}) {
+    const glm::dvec3 lit = fromBehind ? -normal : normal;
+    const Scene scene =
+        sunAlong({fromBehind ? glm::dvec3(direction.x, direction.y, -direction.z) : direction});
+    const std::vector<FragmentData> list{squareAt({1.25, 1.25, 1.25}, normal)};
+    INFO((fromBehind ? "from behind" : "from the front"));
+    for (const char* precision : {"float", "half"}) {
+      const ShGrid light = injected(scene, list, {{"precision", 0, precision}});
+      CHECK(light.quantity == ShGrid::Quantity::radiance);
+      CHECK(sent(light, {2, 2, 2}, lit) == Approx(radiance).epsilon(0.005));
+      CHECK(std::abs(sent(light, {2, 2, 2}, -lit)) < 0.005 * radiance);
+    }
+    // A clamped cosine of the same flux: two bands let a sixteenth of it out backwards.
+    const ShGrid light = injected(scene, list, {{"lobe", 0, "cosine"}});
+    CHECK(sent(light, {2, 2, 2}, lit) == Approx(radiance * 7.0 / 8.0).epsilon(0.005));
+    CHECK(sent(light, {2, 2, 2}, -lit) == Approx(-radiance / 8.0).epsilon(0.005));
+    CHECK(sent(light, {2, 2, 2}, lit) - sent(light, {2, 2, 2}, -lit) == Approx(radiance).epsilon(0.005));
+    for (const float value : light.levels[0].coefficients[0]->downloadFloats(0)) CHECK(std::isfinite(value));
+    CHECK(coefficientsIn(light, {3, 2, 2}) == glm::dvec4(0.0));
+  }
+}
+
+TEST_CASE("two sheets back to back keep two lights apart") {
+  const Scene scene = sunAlong({{0, 0, -1}, {0, 0, 1}}, {1.0f, 100.0f});
+  const ShGrid light =
+      injected(scene, {squareAt({1.25, 1.25, 1.25}, {0, 0, 1}), squareAt({1.25, 1.25, 1.25}, {0, 0, -1})});
+  CHECK(sent(light, {2, 2, 2}, {0, 0, 1}) == Approx(0.5 / kPi).epsilon(0.005));
+  CHECK(sent(light, {2, 2, 2}, {0, 0, -1}) == Approx(50.0 / kPi).epsilon(0.005));
+}
+
+TEST_CASE(
+    "a thousand equal fragments count as one, holes do not dim what is left, and twice gives the same bits") {
+  const Scene scene = sunAlong({glm::normalize(glm::dvec3(-0.2, 0.5, -1.0))});
+  const FragmentData one = squareAt({1.3, 1.1, 1.4}, {0.2f, 0.1f, 1.0f}, {0.9f, 0.5f, 0.1f});
+  FragmentData holed = one;
+  holed.albedoBCoverage = glm::packHalf2x16({0.1f, 0.25f});
+  const ShGrid single = injected(scene, {one}), many = injected(scene, std::vector<FragmentData>(1000, one)),
+               partly = injected(scene, {holed});
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    const auto values = [&](const ShGrid& light) {
+      return light.levels[0].coefficients[channel]->downloadFloats(0);
+    };
+    const std::vector<float> expected = values(single);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      CHECK(values(many)[i] == Approx(expected[i]).epsilon(1e-5).margin(1e-7));
+      CHECK(values(partly)[i] == Approx(expected[i]).epsilon(1e-5).margin(1e-7));
+      if (i == 300) break;
+    }
+    // In any order: integers add up to the same.
+    std::vector<FragmentData> list;
+    for (int i = 0; i < 400; ++i)
+      list.push_back(
+          squareAt({0.1 + 0.0087 * i, 1.2, 1.3 + 0.003 * i}, {0.1f * static_cast<float>(i % 7), 1.0f, 0.3f}));
+    const std::vector<float> forwards = values(injected(scene, list));
+    std::reverse(list.begin(), list.end());
+    CHECK(values(injected(scene, list)) == forwards);
+  }
+}
+
+TEST_CASE("a dark voxel keeps its light beside one that is a million times brighter, in half floats too") {
+  // Two spots half a metre above the floor, at x -0.6 and 0.6.
+  const Scene scene = floorUnderTwoSpots(1e6f).scene;
+  const glm::vec3 low(-1.0f, 0.0f, -1.0f);
+  for (const char* precision : {"float", "half"}) {
+    const ShGrid light =
+        injected(scene, {squareAt({0.4, 0.001, 1.01}, {0, 1, 0}), squareAt({1.6, 0.001, 1.01}, {0, 1, 0})},
+                 {{"precision", 0, precision}}, low);
+    INFO(precision << ", unit " << light.unit);
+    CHECK((std::string(precision) == "half") == (light.unit != 1.0f));
+    const double dark = sent(light, {0, 0, 2}, {0, 1, 0}), bright = sent(light, {3, 0, 2}, {0, 1, 0});
+    CHECK(dark == Approx(0.5 / kPi / 0.25).epsilon(0.02));
+    CHECK(bright == Approx(1e6 * dark).epsilon(0.01));
+  }
+}
