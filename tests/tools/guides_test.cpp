@@ -128,6 +128,15 @@ TEST_CASE("the stores of cones are drawn and compared as their guide says") {
   for (const char* sheet : {"out/cone_stores.png", "out/coarse.png"}) CHECK(guide.has(sheet));
 }
 
+TEST_CASE("imperfect volumes with and without holes are drawn and exported as their guide says") {
+  const FollowedGuide guide("docs/imperfect_volumes.md");
+  checkFollowed(guide);
+  for (const char* image : {"out/holes.png", "out/whole.png"}) CHECK(guide.has(image));
+  const CommandResult exported = guide.run("vdbexport --list out/incoming.vdb");
+  for (const char* field : {"march.incoming.Y00", "march.incoming.Y11"})
+    CHECK(contains(exported.output, field));
+}
+
 TEST_CASE("the report's guide tells what a report writes") {
   const FollowedGuide guide("docs/report.md");
   checkFollowed(guide);
