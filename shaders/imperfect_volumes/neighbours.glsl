@@ -19,7 +19,7 @@ bool isFiltered() { return voxels == kTrilinear || (filtered != 0 && voxels != k
 
 // The weight of neighbour i, and its place.
 float neighbour(int i, vec3 surface, vec3 normal, out vec3 place) {
-  vec3 shifted = surface + shift * normal;
+  precise vec3 shifted = surface + shift * normal;  // the same where voxels are marked and where they are read
   if (voxels == kTrilinear) {
     place = shifted;
     return 1.0;
