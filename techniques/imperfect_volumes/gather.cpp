@@ -43,22 +43,31 @@ class GatherPass : public Pass {
 
   void run(PassContext& frame) override {
     if (diffuse.wanted() || clipped.wanted()) {
-      if (!incoming.present())
-        throw Error("'diffuse' is made of the light in 'incoming'; expected it to be connected");
       const gpu::TextureRef light = frame.image("indirect diffuse radiance"),
                             cut = frame.image("clipped radiance");
-      gather(frame, *incoming, "incoming", gather::Variant::ofLight,
-             {gather::diffuseImage(light), gather::clippedImage(cut)});
+      if (isThere(frame, incoming, "diffuse"))
+        gather(frame, *incoming, "incoming", gather::Variant::ofLight,
+               {gather::diffuseImage(light), gather::clippedImage(cut)});
+      else
+        for (const gpu::TextureRef& image : {light, cut}) image->clear(glm::vec4(0.0f));
       diffuse = Image{light};
       clipped = Image{cut};
     }
     if (occlusion.wanted()) {
-      if (!visibility.present())
-        throw Error("'occlusion' is made of 'visibility'; expected it to be connected");
       const gpu::TextureRef open = frame.image("ambient occlusion");
-      gather(frame, *visibility, "visibility", gather::Variant::ofOpenness, {gather::occlusionImage(open)});
+      if (isThere(frame, visibility, "occlusion"))
+        gather(frame, *visibility, "visibility", gather::Variant::ofOpenness, {gather::occlusionImage(open)});
+      else
+        open->clear(glm::vec4(neutralElement(Contributes::ambientOcclusion)));
       occlusion = Image{open};
     }
+  }
+
+  /// Where everything is kept, outputs are asked for that nobody connected anything for.
+  static bool isThere(PassContext& frame, const In<ShGrid>& light, const char* output) {
+    if (!light.present() && !frame.keepsEverything())
+      throw Error(fmt::format("'{}' is made of '{}'; expected it to be connected", output, light.name()));
+    return light.present();
   }
 
   void gather(PassContext& frame, const ShGrid& light, const char* input, int of,
