@@ -123,6 +123,8 @@ class VolumeOnHost {
 /// What the volume is made of.
 struct Made {
   bool points = true, reprojected = true;
+  /// Further lines of the passes that send rays, of all that read neighbours, and of the rays of light alone.
+  std::string ofRays = {}, ofReading = {}, ofLight = {};
 };
 
 /// The committed pipeline of light and occlusion with a volume made so.
@@ -149,6 +151,10 @@ inline Pipeline volumePipeline(const Made& made) {
     replace("fragments points.fragments", "resolution $resolution");
     for (const char* name : {"  param points", "  param adaptive", "  param density"}) cut(name, "\n");
   }
+  for (const char* pass : {"imperfect_volumes.march {\n", "imperfect_volumes.occlude {\n"})
+    replace(pass, pass + made.ofRays + made.ofReading);
+  replace("imperfect_volumes.march {\n", "imperfect_volumes.march {\n" + made.ofLight);
+  replace("imperfect_volumes.gather {\n", "imperfect_volumes.gather {\n" + made.ofReading);
   return Pipeline::parse(text, committedText.file);
 }
 
