@@ -30,6 +30,9 @@ void addVoxel(inout Arriving sum, ivec3 voxel, float weight) {
 
 bool isFree(ivec3 voxel) { return texelFetch(opacityAround, inVolume(voxel), 0).r <= occupied; }
 
+// Of ways that differ from the normal by the same angle but for rounding the first counts, in any unit of length.
+const float kTie = 1e-3;
+
 // The free voxel before a surface point: its own, or that of the 26 around towards which its normal and the mean normal of all surfaces in
 // its voxel look together, so that along an edge it lies before both walls. False where there is none.
 bool voxelBefore(vec3 surface, vec3 normal, out ivec3 before) {
@@ -43,7 +46,7 @@ bool voxelBefore(vec3 surface, vec3 normal, out ivec3 before) {
   for (int i = 0; i < 27; ++i) {
     ivec3 way = ivec3(i % 3, i / 3 % 3, i / 9) - 1;
     float along = i != 13 ? dot(normal, normalize(vec3(way))) : 0.0;
-    if (along <= most || inVolume(own + way) != own + way || !isFree(own + way)) continue;
+    if (along <= most + kTie || inVolume(own + way) != own + way || !isFree(own + way)) continue;
     most = along;
     before = own + way;
   }

@@ -4,48 +4,16 @@
 #include <random>
 #include <set>
 
-#include "lumivox/measure/metrics.h"
 #include "lumivox/pipeline/pass.h"
-#include "lumivox/reference/path_tracer.h"
+#include "support/against_reference.h"
+#include "support/floor_patch.h"
 #include "support/near_field_scene.h"
-#include "support/scene_builder.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
 using namespace lumivox::test::near_field;
 
 namespace {
-
-/// RMSE over that of nothing, both without the reference's own noise; and the mean over the reference's.
-struct Against {
-  double rmse, ratio;
-};
-struct Picture {
-  int width, height, referenceSamples = 64;
-};
-Against against(const Scene& scene, const Picture& picture, const std::string& name,
-                const std::string& output, const std::string& layer, float nothing,
-                const std::vector<std::string>& settings) {
-  ReferenceOptions referenceOptions = quietly(picture.referenceSamples, 1);
-  referenceOptions.width = picture.width;
-  referenceOptions.height = picture.height;
-  referenceOptions.useCache = true;
-  const LayeredImage reference = cachedReference(scene, referenceOptions);
-  const ImageBuffer &right = reference.layers.at(layer), &variance = reference.layers.at(layer + ".variance");
-  const Pipeline text = pipeline(name);
-  RenderOptions options;
-  options.width = picture.width;
-  options.height = picture.height;
-  options.parameters = text.settings(settings);
-  const ImageBuffer image = renderOnce(scene, text, options).outputs.at(output);
-  ImageBuffer none(picture.width, picture.height, right.channels());
-  for (float& value : none.values()) value = nothing;
-  const auto squared = [](const ImageError& error) {
-    return std::max(0.0, error.rmse.value * error.rmse.value - error.noiseFloor * error.noiseFloor);
-  };
-  const ImageError error = compare(image, right, variance), ofNone = compare(none, right, variance);
-  return {std::sqrt(squared(error) / squared(ofNone)), error.meanRatio.value};
-}
 
 /// Texels that all rays of the image read.
 double fetchesOf(const Seen& seen, const char* method) {
@@ -67,12 +35,14 @@ double fetchesOf(const Seen& seen, const char* method) {
 namespace {
 
 Against ofLight(const Scene& scene, const Picture& picture, const std::vector<std::string>& settings) {
-  return against(scene, picture, "near_field_voxels", "indirect_diffuse", "one_bounce_diffuse", 0.0f,
-                 settings);
+  return lightAgainst(
+      referenceOf(scene, picture),
+      pictured(scene, picture, pipeline("near_field_voxels"), settings).outputs.at("indirect_diffuse"));
 }
 Against ofOcclusion(const Scene& scene, const Picture& picture, const std::vector<std::string>& settings) {
-  return against(scene, picture, "near_field_voxels_occlusion", "ambient_occlusion", "ambient_occlusion",
-                 1.0f, settings);
+  return occlusionAgainst(referenceOf(scene, picture),
+                          pictured(scene, picture, pipeline("near_field_voxels_occlusion"), settings)
+                              .outputs.at("ambient_occlusion"));
 }
 
 }  // namespace
@@ -200,47 +170,15 @@ TEST_CASE("the printed walk misses voxels and finds others, as its card says") {
 
 namespace {
 
-/// Mean light in red of a patch of the floor beside the hidden sender. A pixel weighs as much as the floor
-/// that it sees, and less towards the patch's border, so that the same patch has the same mean in any view.
-struct Patch {
-  double mean = 0.0;
-  int pixels = 0;
-};
+/// Mean light in red beside the hidden sender.
 Patch litFloor(const Seen& seen, const ImageBuffer& image) {
-  const std::vector<float> places = seen.gbuffer.position->downloadFloats(0),
-                           normals = seen.gbuffer.normal->downloadFloats(0);
-  const glm::vec3 centre = glm::vec3(glm::dvec3(0.5, 0.0, -0.8) - seen.snapshot.origin);
-  constexpr float kHalf = 0.3f;
-  const CameraView& camera = seen.snapshot.camera;
-  Patch patch;
-  double weights = 0.0;
-  for (int y = 0; y < image.height(); ++y)
-    for (int x = 0; x < image.width(); ++x) {
-      const auto i = static_cast<std::size_t>(4 * (y * image.width() + x));
-      const glm::vec3 place(places[i], places[i + 1], places[i + 2]), off = glm::abs(place - centre);
-      if (places[i + 3] == 0.0f || normals[i + 1] < 0.9f || off.y > 0.01f || std::max(off.x, off.z) >= kHalf)
-        continue;
-      // The area that a pixel sees: its solid angle, which falls with the cosine to the view axis cubed,
-      // times the squared distance, over the cosine to the floor; and a tent.
-      const glm::vec3 way = place - camera.eye;
-      const double depth = glm::dot(way, camera.forward),
-                   weight = depth * depth * depth / -way.y * (1.0 - off.x / kHalf) * (1.0 - off.z / kHalf);
-      patch.mean += weight * image.at(x, y, 0);
-      weights += weight;
-      ++patch.pixels;
-    }
-  patch.mean /= weights;
-  return patch;
+  return patchOf(seen.gbuffer, seen.snapshot, image, {{0.5, 0.0, -0.8}, 0.3f});
 }
 
 /// `hidden_sender` as its camera sees it when it is turned by so many degrees. Nothing red is in the picture.
 Seen senderSeen(double degrees) {
   Seen seen("hidden_sender", 8, 64);
-  Camera& camera = seen.scene.cameras.front();
-  const glm::dvec3 way = camera.target - camera.eye;
-  const double turn = degrees * kPi / 180.0;
-  camera.target = camera.eye + glm::dvec3(std::cos(turn) * way.x + std::sin(turn) * way.z, way.y,
-                                          std::cos(turn) * way.z - std::sin(turn) * way.x);
+  turnCamera(seen.scene, degrees);
   seen.snapshot = snapshotOf(seen.scene, 0.0);
   PassHarness view(device(), techniques(), "direct_lighting", "gbuffer", seen.scene, seen.snapshot);
   view.run();

@@ -41,8 +41,9 @@ std::vector<fs::path> committedScenes() {
 }
 
 /// Scenes whose models are committed; all others need the asset path.
-const std::set<std::string> kOwnScenes = {"cornell", "cornell_glossy", "arcade",        "corridor",
-                                          "furnace", "spinning_box",   "hidden_sender", "waving_cloth"};
+const std::set<std::string> kOwnScenes = {"cornell",       "cornell_glossy", "arcade",
+                                          "corridor",      "furnace",        "spinning_box",
+                                          "hidden_sender", "waving_cloth",   "vase"};
 bool isOwn(const fs::path& scene) {
   return kOwnScenes.count(scene.stem().string()) != 0 || scene.parent_path().filename() == "stress" ||
          scene.parent_path().filename() == "untuned" || scene.parent_path().filename() == "examples";
@@ -250,6 +251,27 @@ TEST_CASE("the cloth deforms in a loop of one second of six frames, and all else
     ++deforming;
   }
   CHECK(deforming == 1);
+}
+
+TEST_CASE("no light of its lamp reaches the inside of the vase, whose walls are two surfaces 6 mm apart") {
+  const Scene scene = load("vase");
+  CHECK(scene.triangleCount() == 12 + 2 * (2 * 14 * 32 + 32) + 2 * 32);
+  const Light& lamp = scene.lights.at(0);
+  const auto radii = [&](const std::string& name, float height) {
+    const Object& object = objectNamed(scene, name);
+    float least = 1.0f, most = 0.0f;
+    for (std::uint32_t v = 0; v < object.vertexCount; ++v) {
+      const glm::vec3 place = scene.positions[object.firstVertex + v];
+      if (std::abs(place.y - height) > 0.004f) continue;
+      least = std::min(least, std::hypot(place.x, place.z));
+      most = std::max(most, std::hypot(place.x, place.z));
+    }
+    return std::pair(least, most);
+  };
+  // The lamp is below the rim: what comes in over it goes up, and nothing inside is higher than the rim.
+  CHECK(lamp.position.y < 0.44);
+  CHECK(radii("vase/outside", 0.45f).first - radii("vase/inside", 0.45f).second ==
+        Approx(0.006).margin(2e-4));
 }
 
 TEST_CASE(

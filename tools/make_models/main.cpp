@@ -20,6 +20,7 @@ int main(int argumentCount, char** arguments) {
     lumivox::models::writeQuad(directory);
     lumivox::models::writeBlock(directory);
     lumivox::models::writeWavingCloth(directory);
+    lumivox::models::writeVase(directory);
     lumivox::models::writeArcade(directory);
     lumivox::models::writeArcadeTextures(directory / "textures");
     lumivox::models::writeStressModels(directory);

@@ -12,6 +12,7 @@ void writeSkylight(const std::filesystem::path& directory);
 void writeQuad(const std::filesystem::path& directory);
 void writeBlock(const std::filesystem::path& directory);
 void writeWavingCloth(const std::filesystem::path& directory);
+void writeVase(const std::filesystem::path& directory);
 void writeArcade(const std::filesystem::path& directory);
 void writeArcadeTextures(const std::filesystem::path& directory);
 void writeStressModels(const std::filesystem::path& directory);

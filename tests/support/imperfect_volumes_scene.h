@@ -1,0 +1,161 @@
+// Committed scenes as imperfect volumes, on the device and on the host; and the committed pipeline with other
+// voxelizers in it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "lumivox/measure/voxel_walk.h"
+#include "support/imperfect_volumes.h"
+#include "support/near_field_scene.h"
+
+namespace lumivox::test::volumes {
+
+using near_field::committed;
+
+/// A scene as an imperfect volume that is lit.
+struct Lit {
+  Scene scene;
+  SceneSnapshot snapshot;
+  OccupancyGrid opacity;
+  AttributeGrid attributes;
+  BinaryGrid bits;
+  ShGrid reflected;
+  Lit(const std::string& name, int resolution) : Lit(committed(name), resolution) {}
+  Lit(Scene made, int resolution) : scene(std::move(made)), snapshot(snapshotOf(scene, 0.0)) {
+    const auto pass = [&](const char* technique, const char* which) {
+      return PassHarness(device(), techniques(), technique, which, scene, snapshot);
+    };
+    PassHarness points = pass("voxelization", "points"), average = pass("voxelization", "average"),
+                shadow = pass("direct_lighting", "shadow_map"), inject = pass("imperfect_volumes", "inject");
+    points.setParameter("resolution", resolution);
+    points.setParameter("adaptive", std::string("on"));
+    points.run();
+    average.setInput("fragments", points.output<VoxelFragments>("fragments"));
+    average.run();
+    shadow.run();
+    inject.setInput("fragments", points.output<VoxelFragments>("fragments"));
+    inject.setInput("shadow", shadow.output<ShadowMap>("depth"));
+    inject.run();
+    opacity = average.output<OccupancyGrid>("opacity");
+    attributes = average.output<AttributeGrid>("attributes");
+    bits = average.output<BinaryGrid>("bits");
+    reflected = inject.output<ShGrid>("reflected");
+  }
+  const GridPlacement& grid() const { return opacity.grid; }
+  glm::vec3 middleOf(const glm::ivec3& voxel) const {
+    return grid().low + (glm::vec3(voxel) + 0.5f) * grid().voxelSize;
+  }
+};
+
+/// The volume read back, and what arrives in a voxel by plain Monte Carlo in double precision.
+class VolumeOnHost {
+ public:
+  explicit VolumeOnHost(const Lit& lit)
+      : set_(lit.grid().resolution), normals_(lit.attributes.normal->downloadFloats(0)) {
+    const std::vector<float> opacity = lit.opacity.opacity->downloadFloats(0);
+    for (std::size_t i = 0; i < opacity.size(); ++i)
+      if (opacity[i] > 0.0f) set_.insert(set_.voxelOf(i));
+    for (std::size_t c = 0; c < 3; ++c) sent_[c] = lit.reflected.levels[0].coefficients[c]->downloadFloats(0);
+  }
+  const VoxelSet& set() const { return set_; }
+
+  struct Arriving {
+    std::array<double, 12> mean{}, deviation{};  ///< of one sample
+  };
+  Arriving arrivingIn(const glm::ivec3& voxel, int samples, std::mt19937& random) const {
+    std::uniform_real_distribution<double> unit;
+    std::array<double, 12> sum{}, squares{};
+    for (int i = 0; i < samples; ++i) {
+      const double z = 2.0 * unit(random) - 1.0, angle = 2.0 * kPi * unit(random),
+                   sine = std::sqrt(1.0 - z * z);
+      const glm::dvec3 way(sine * std::cos(angle), sine * std::sin(angle), z),
+          radiance = seenFrom(voxel, way);
+      const std::array<double, 4> basis{kY0, kY1 * way.y, kY1 * way.z, kY1 * way.x};
+      for (std::size_t k = 0; k < 12; ++k) {
+        const double value = 4.0 * kPi * radiance[static_cast<int>(k / 4)] * basis[k % 4];
+        sum[k] += value;
+        squares[k] += value * value;
+      }
+    }
+    Arriving result;
+    for (std::size_t k = 0; k < 12; ++k) {
+      result.mean[k] = sum[k] / samples;
+      result.deviation[k] = std::sqrt(std::max(squares[k] / samples - result.mean[k] * result.mean[k], 0.0));
+    }
+    return result;
+  }
+
+  /// Radiance of the side of a voxel that a ray in the direction of `way` meets.
+  glm::dvec3 sentBy(const glm::ivec3& voxel, const glm::dvec3& way) const {
+    const std::size_t i = 4 * set_.bitOf(voxel);
+    glm::dvec3 normal(normals_[i], normals_[i + 1], normals_[i + 2]), along(0.0);
+    for (const auto& channel : sent_) along += glm::dvec3(channel[i + 3], channel[i + 1], channel[i + 2]);
+    normal = glm::length(normal) > 1.0 / 64.0 ? glm::normalize(normal)
+             : glm::length(along) > 0.0       ? glm::normalize(along)
+                                              : glm::dvec3(0.0);
+    if (glm::dot(normal, -way) < 0.0) normal = -normal;
+    glm::dvec3 radiance;
+    for (int c = 0; c < 3; ++c) {
+      const auto& sent = sent_[static_cast<std::size_t>(c)];
+      const glm::dvec3 band(sent[i + 3], sent[i + 1], sent[i + 2]);
+      radiance[c] = std::max(0.5 * (sent[i] / (2.0 * kPi * kY0) + glm::dot(band, normal) / (kPi * kY1)), 0.0);
+    }
+    return radiance;
+  }
+
+ private:
+  VoxelSet set_;
+  std::vector<float> normals_;
+  std::array<std::vector<float>, 3> sent_;
+
+  glm::dvec3 seenFrom(const glm::ivec3& voxel, const glm::dvec3& way) const {
+    const glm::vec3 direction(way), origin = glm::vec3(voxel) + 0.5f + 0.8660255f * direction;
+    const auto hit = firstVoxel(set_, origin, direction);
+    return hit ? sentBy(hit->voxel, way) : glm::dvec3(0.0);
+  }
+};
+
+/// What the volume is made of.
+struct Made {
+  bool points = true, reprojected = true;
+  /// Further lines of the passes that send rays, of all that read neighbours, and of the rays of light alone.
+  std::string ofRays = {}, ofReading = {}, ofLight = {};
+};
+
+/// The committed pipeline of light and occlusion with a volume made so.
+inline Pipeline volumePipeline(const Made& made) {
+  const Pipeline committedText = pipeline("imperfect_volumes_occlusion");
+  std::string text = committedText.document->source;
+  const auto cut = [&](const std::string& from, const std::string& to) {
+    const std::size_t first = text.find(from), last = text.find(to, first);
+    REQUIRE(first != std::string::npos);
+    REQUIRE(last != std::string::npos);
+    text.erase(first, last + to.size() - first);
+  };
+  const auto replace = [&](const std::string& old, const std::string& by) {
+    REQUIRE(text.find(old) != std::string::npos);
+    for (std::size_t at = text.find(old); at != std::string::npos; at = text.find(old, at + by.size()))
+      text.replace(at, old.size(), by);
+  };
+  if (!made.reprojected) {
+    cut("  pass voxels voxelization.reproject", "}\n");
+    replace("voxels.fragments", "points.fragments");
+  }
+  if (!made.points) {
+    cut("  pass points voxelization.points", "}\n");
+    replace("fragments points.fragments", "resolution $resolution");
+    for (const char* name : {"  param points", "  param adaptive", "  param density"}) cut(name, "\n");
+  }
+  for (const char* pass : {"imperfect_volumes.march {\n", "imperfect_volumes.occlude {\n"})
+    replace(pass, pass + made.ofRays + made.ofReading);
+  replace("imperfect_volumes.march {\n", "imperfect_volumes.march {\n" + made.ofLight);
+  replace("imperfect_volumes.gather {\n", "imperfect_volumes.gather {\n" + made.ofReading);
+  return Pipeline::parse(text, committedText.file);
+}
+
+}  // namespace lumivox::test::volumes

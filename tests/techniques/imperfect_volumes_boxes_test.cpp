@@ -1,0 +1,172 @@
+// Four errors apart: what voxels make of triangles, two bands of light in voxels of light from all sides,
+// steps of whole voxels, and noise.
+#include <fmt/format.h>
+
+#include "lumivox/reference/voxel_transport.h"
+#include "support/against_reference.h"
+#include "support/imperfect_volumes_scene.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+using namespace lumivox::test::volumes;
+
+namespace {
+
+using Pixels = std::vector<glm::dvec3>;  ///< E / pi
+
+/// A scene as a volume, as its camera sees it, and what arrives at the pixels by one way or another.
+class Transported {
+ public:
+  Transported(const std::string& name, int resolution, const Picture& picture)
+      : lit_(sized(name, picture), resolution), host_(lit_) {
+    PassHarness view(device(), techniques(), "direct_lighting", "gbuffer", lit_.scene, lit_.snapshot);
+    view.run();
+    gbuffer_ = view.output<GBuffer>("gbuffer");
+    positions_ = gbuffer_.position->downloadFloats(0);
+    albedo_ = gbuffer_.diffuse->downloadFloats(0);
+  }
+
+  const Scene& scene() const { return lit_.scene; }
+
+  /// Through boxes that shine as the voxels do, without bands and without a cache.
+  Pixels boxes(int samples) const {
+    const GridPlacement& grid = lit_.grid();
+    std::vector<glm::ivec3> voxels;
+    for (const Cell& cell : cellsOf(lit_.bits)) voxels.push_back({cell[0], cell[1], cell[2]});
+    const std::vector<float> normals = gbuffer_.normal->downloadFloats(0),
+                             geometric = gbuffer_.geometricNormal->downloadFloats(0);
+    std::vector<BoxStart> starts(positions_.size() / 4);
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      if (positions_[4 * i + 3] == 0.0f) continue;
+      const auto at = [&](const std::vector<float>& values) {
+        return glm::dvec3(values[4 * i], values[4 * i + 1], values[4 * i + 2]);
+      };
+      // Beyond all voxels that a plane there can touch.
+      const glm::dvec3 normal = at(geometric), sides = glm::abs(normal);
+      starts[i].place = at(positions_) + grid.voxelSize * (sides.x + sides.y + sides.z + 1.0 / 16.0) * normal;
+      starts[i].normal = glm::normalize(at(normals));
+    }
+    BoxTransport transport;
+    transport.environment = lit_.scene.environment;
+    transport.samples = samples;
+    transport.radiance = [&](const BoxHit& hit) { return host_.sentBy(hit.voxel, hit.direction); };
+    Pixels result;
+    for (const BoxLight& light : transportThroughBoxes(VoxelBoxes(voxels, grid), starts, transport))
+      result.push_back(light.arriving);
+    return result;
+  }
+
+  /// By the passes.
+  Pixels passes(const char* walk, const char* source, int rays, std::uint64_t seed = 1) const {
+    PassHarness march(device(), techniques(), "imperfect_volumes", "march", lit_.scene, lit_.snapshot);
+    march.setInput("opacity", lit_.opacity);
+    march.setInput("reflected", lit_.reflected);
+    march.setInput("attributes", lit_.attributes);
+    march.setInput("bits", lit_.bits);
+    march.setInput("gbuffer", gbuffer_);
+    march.setParameter("rays", rays);
+    march.setParameter("walk", std::string(walk));
+    march.setParameter("source", std::string(source));
+    march.run(seed);
+    PassHarness gather(device(), techniques(), "imperfect_volumes", "gather", lit_.scene, lit_.snapshot);
+    gather.setInput("gbuffer", gbuffer_);
+    gather.setInput("incoming", march.output<ShGrid>("incoming"));
+    gather.setInput("visibility", march.output<ShGrid>("incoming"));  // which nobody looks at
+    gather.setInput("opacity", lit_.opacity);
+    gather.setInput("attributes", lit_.attributes);
+    gather.run();
+    const std::vector<float> reflected = gather.output<Image>("diffuse").texture->downloadFloats(0);
+    Pixels result(positions_.size() / 4);
+    for (std::size_t i = 0; i < result.size(); ++i)
+      for (int c = 0; c < 3; ++c) {
+        const std::size_t k = 4 * i + static_cast<std::size_t>(c);
+        result[i][c] = albedo_[k] > 0.0f ? reflected[k] / albedo_[k] : 0.0;
+      }
+    return result;
+  }
+
+  /// Root mean square of the difference of what is reflected.
+  double difference(const Pixels& one, const Pixels& other) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < one.size(); ++i)
+      for (int c = 0; c < 3; ++c) {
+        const double apart = albedo_[4 * i + static_cast<std::size_t>(c)] * (one[i][c] - other[i][c]);
+        sum += apart * apart;
+      }
+    return std::sqrt(sum / (3.0 * static_cast<double>(one.size())));
+  }
+  /// The same against a picture; and that of the picture itself.
+  std::pair<double, double> differenceFrom(const Pixels& one, const ImageBuffer& picture) const {
+    double sum = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < one.size(); ++i)
+      for (int c = 0; c < 3; ++c) {
+        const double right = picture.values()[3 * i + static_cast<std::size_t>(c)],
+                     apart = albedo_[4 * i + static_cast<std::size_t>(c)] * one[i][c] - right;
+        sum += apart * apart;
+        all += right * right;
+      }
+    const double count = 3.0 * static_cast<double>(one.size());
+    return {std::sqrt(sum / count), std::sqrt(all / count)};
+  }
+
+ private:
+  Lit lit_;
+  VolumeOnHost host_;
+  GBuffer gbuffer_;
+  std::vector<float> positions_, albedo_;
+
+  static Scene sized(const std::string& name, const Picture& picture) {
+    Scene scene = committed(name);
+    scene.cameras.front().width = picture.width;
+    scene.cameras.front().height = picture.height;
+    return scene;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("steps and noise of a hundred rays are small beside what voxels and two bands make of light") {
+  const Picture picture{24, 24, 256};
+  const Transported volume("cornell", 32, picture);
+  const Pixels boxes = volume.boxes(1024), exact = volume.passes("exact", "surface", 2000),
+               steps = volume.passes("steps", "surface", 2000), few = volume.passes("steps", "surface", 100);
+  const auto [voxels, none] =
+      volume.differenceFrom(boxes, referenceOf(volume.scene(), picture).layers.at("one_bounce_diffuse"));
+  const double bands = volume.difference(exact, boxes) / none, walk = volume.difference(steps, exact) / none,
+               noise = volume.difference(few, steps) / none;
+  CAPTURE(voxels / none, bands, walk, noise);
+  CHECK(voxels / none < 0.35);
+  CHECK(bands < 0.35);
+  CHECK(walk < 0.3 * bands);
+  CHECK(noise < 0.5 * bands);
+  // Noise falls as the root of the rays.
+  CHECK(volume.difference(volume.passes("steps", "surface", 400), steps) < 0.75 * noise * none);
+}
+
+// The table of the card; minutes.
+TEST_CASE("the four differences between triangles and a hundred rays", "[.]") {
+  // Steps and exact walks have the same directions, so that their difference has little noise.
+  constexpr int kMany = 2500, kSeeds = 4;
+  for (const int resolution : {16, 32, 64, 128})
+    for (const auto& [name, picture] :
+         {std::pair<const char*, Picture>("cornell", {24, 24, 1024}), {"arcade", {32, 18, 1024}}}) {
+      const Transported volume(name, resolution, picture);
+      const Pixels boxes = volume.boxes(4096), exact = volume.passes("exact", "surface", kMany),
+                   harmonics = volume.passes("exact", "harmonics", kMany),
+                   steps = volume.passes("steps", "surface", kMany);
+      const ImageBuffer truth = referenceOf(volume.scene(), picture).layers.at("one_bounce_diffuse");
+      const auto [voxels, none] = volume.differenceFrom(boxes, truth);
+      double noise = 0.0;
+      for (int seed = 1; seed <= kSeeds; ++seed) {
+        const double one = volume.difference(
+            volume.passes("steps", "surface", 100, static_cast<std::uint64_t>(seed)), steps);
+        noise += one * one / kSeeds;
+      }
+      WARN(fmt::format(
+          "{} {}: voxels {:.3f}, bands {:.3f} (harmonics {:.3f}), steps {:.3f}, noise {:.3f}, all {:.3f}",
+          name, resolution, voxels / none, volume.difference(exact, boxes) / none,
+          volume.difference(harmonics, boxes) / none, volume.difference(steps, exact) / none,
+          std::sqrt(noise) / none,
+          volume.differenceFrom(volume.passes("steps", "surface", 100), truth).first / none));
+    }
+}
