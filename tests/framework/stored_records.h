@@ -30,6 +30,20 @@ inline ComponentError errorOf(double rmse) {
   return error;
 }
 
+/// Of 100 certain voxels 80 are occupied, and 20 more besides.
+inline GatheredVoxels someVoxels() {
+  GatheredVoxels voxels;
+  voxels.output = "voxels.fragments";
+  voxels.kind = "VoxelFragments";
+  voxels.resolution = {32, 16, 8};
+  voxels.occupied = 103;
+  voxels.reference = 100;
+  voxels.undecided = 7;
+  voxels.error = {80, 20, 20};
+  voxels.holes = {400, 10, 300, 3};
+  return voxels;
+}
+
 /// Runs with other `number`s are other points.
 inline StoredRun runNumber(int number) {
   StoredRun run;
@@ -72,6 +86,7 @@ inline StoredRun runNumber(int number) {
   run.point.frameworkShare = kNan;
   run.point.peakBytes = std::uint64_t{5} << 32;
   run.point.errors = {errorOf(0.02 + number)};
+  run.point.voxels = someVoxels();
   run.point.healthFindings = {"pass gather, port diffuse: 3 NaN, first at pixel (12, 40)"};
   run.point.command = "lumivox report scenes/cornell.scene";
   return run;

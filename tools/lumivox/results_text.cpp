@@ -7,6 +7,7 @@
 
 #include "command.h"
 #include "lumivox/base/file.h"
+#include "lumivox/results/json.h"
 #include "measure_options.h"
 
 namespace lumivox::command {
@@ -139,6 +140,7 @@ Json runsJson(const std::vector<StoredRun>& runs) {
                     {"peak_bytes", point.peakBytes},
                     {"passes", passes},
                     {"errors", errors},
+                    {"voxels", toJson(point.voxels)},
                     {"health", point.healthFindings},
                     {"failure", point.failure},
                     {"command", point.command}});

@@ -24,19 +24,6 @@ struct Judged {
   std::vector<ImageBuffer> seeds;
 };
 
-RenderOptions renderOptions(const TimingContext& context, const ReportPoint& point) {
-  RenderOptions options;
-  options.parameters = point.parameters;
-  options.parameters.erase(kAccumulatedFrames);
-  options.accumulate = framesOf(point.parameters) > 1;
-  options.seed = context.options.seed;
-  options.camera = context.options.camera;
-  options.width = context.width;
-  options.height = context.height;
-  options.transientMemory = context.transientMemory;
-  return options;
-}
-
 void collect(std::vector<Judged>& judged, const std::string& output, Contributes component,
              ImageBuffer image) {
   if (image.empty() || referenceLayers(component).first.empty()) return;
@@ -101,6 +88,19 @@ SceneSnapshot snapshotAt(const MeasureContext& context, const RenderOptions& opt
 }
 
 }  // namespace
+
+RenderOptions renderOptionsOf(const TimingContext& context, const ReportPoint& point) {
+  RenderOptions options;
+  options.parameters = point.parameters;
+  options.parameters.erase(kAccumulatedFrames);
+  options.accumulate = framesOf(point.parameters) > 1;
+  options.seed = context.options.seed;
+  options.camera = context.options.camera;
+  options.width = context.width;
+  options.height = context.height;
+  options.transientMemory = context.transientMemory;
+  return options;
+}
 
 void fail(ReportPoint& point, const std::string& why) {
   ReportPoint empty;
@@ -194,7 +194,7 @@ bool isProgressive(const Pipeline& pipeline, TechniqueSource& techniques) {
 }
 
 void measureErrors(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
-  RenderOptions options = renderOptions(context, record.point);
+  RenderOptions options = renderOptionsOf(context, record.point);
   std::vector<Judged> judged;
   std::map<std::string, int> bounces;
   for (int seed = 0; seed < std::max(1, context.options.seeds); ++seed) {
@@ -247,7 +247,7 @@ namespace {
 /// The frames of an animation with one seed, in place of seeds.
 std::vector<Judged> sequenceOf(const MeasureContext& context, const Pipeline& pipeline,
                                const ReportPoint& point, int seed) {
-  RenderOptions options = renderOptions(context, point);
+  RenderOptions options = renderOptionsOf(context, point);
   options.seed += static_cast<std::uint64_t>(seed);
   options.interactive = true;
   PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
@@ -300,7 +300,7 @@ void measureFlicker(const MeasureContext& context, const Pipeline& pipeline, Poi
 
 void countWork(const TimingContext& context, const Pipeline& pipeline, ReportPoint& point,
                const KeptOutputs& kept) {
-  RenderOptions options = renderOptions(context, point);
+  RenderOptions options = renderOptionsOf(context, point);
   options.countWork = true;
   try {
     PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
@@ -336,7 +336,7 @@ struct TimedPoint::State {
         techniques(context.techniques),
         scene(context.scene),
         pipeline(pipelineToTime),
-        options(renderOptions(context, pointToTime)),
+        options(renderOptionsOf(context, pointToTime)),
         kept(std::move(keptOutputs)),
         time(context.options.time),
         frames(framesOf(pointToTime.parameters)),

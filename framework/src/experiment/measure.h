@@ -67,6 +67,9 @@ struct MeasureContext : TimingContext {
   SceneReference& reference;
 };
 
+/// The options of frames that measure a point.
+RenderOptions renderOptionsOf(const TimingContext& context, const ReportPoint& point);
+
 /// The image that a pipeline converges to under sub-pixel motion of the camera (temporal anti-aliasing):
 /// the mean of the outputs over so many positions inside the pixel, the centre when there is one. The rest of
 /// the result is the first frame's; health findings are those of the first frame that has some. At each

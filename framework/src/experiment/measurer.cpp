@@ -289,6 +289,8 @@ void Measurer::measureUntimed(Entry& entry) {
     measureErrors(context, entry.loaded->pipeline, record);
     measureFlicker(context, entry.loaded->pipeline, record);
     countWork(context, entry.loaded->pipeline, record.point);
+    if (!voxelReferences_) voxelReferences_.emplace(scene_, options_.time, options_.camera, width_, height_);
+    judgeVoxels(context, entry.loaded->pipeline, *voxelReferences_, record.point);
     entry.run.point = std::move(record.point);
     if (images_ == Images::kept) entry.images = storedImages(record.images);
   });

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "experiment/choice.h"
+#include "experiment/gathered_voxels.h"
 #include "experiment/measure.h"
 #include "lumivox/base/interruption.h"
 #include "lumivox/results/store.h"
@@ -102,7 +103,8 @@ class Measurer {
   int width_ = 0, height_ = 0;
   ReferenceOptions referenceOptions_;
   std::optional<SceneReference> reference_;
-  std::map<std::string, double> seconds_;  ///< by key
+  std::optional<VoxelReferences> voxelReferences_;  ///< once a point needs them
+  std::map<std::string, double> seconds_;           ///< by key
   InterruptionNote note_;
 };
 

@@ -12,6 +12,7 @@
 
 #include "base/process.h"
 #include "experiment/choice.h"
+#include "experiment/gathered_voxels.h"
 #include "experiment/measure.h"
 #include "experiment/plan.h"
 #include "experiment/turns.h"
@@ -170,6 +171,9 @@ class Reproduction {
         const MeasureContext context{timingOf(setUp), referenceOf(setUp)};
         measureErrors(context, setUp.loaded.pipeline, record);
         measureFlicker(context, setUp.loaded.pipeline, record);
+        VoxelReferences references(*setUp.scene, setUp.options.time, setUp.options.camera, setUp.width,
+                                   setUp.height);
+        judgeVoxels(context, setUp.loaded.pipeline, references, record.point);
       }
       countWork(timingOf(setUp), setUp.loaded.pipeline, record.point, setUp.kept);
       run.point = std::move(record.point);

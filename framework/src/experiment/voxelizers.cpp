@@ -11,6 +11,7 @@
 #include <set>
 
 #include "base/process.h"
+#include "experiment/gathered_voxels.h"
 #include "experiment/plan.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
@@ -106,7 +107,7 @@ class Measurement {
   void run(const Scene& scene, const std::vector<Pipeline>& pipelines, int resolution, int subdivisions,
            std::vector<VoxelizerRecord>& records) {
     std::vector<Candidate> candidates;
-    references_.clear();
+    references_.emplace(scene, options_.time, options_.camera, options_.width, options_.height);
     pipelinesHeld_ = 0;
     for (const Pipeline& pipeline : pipelines) {
       VoxelizerRecord blank;
@@ -215,7 +216,7 @@ class Measurement {
         candidates.push_back({blank, nullptr, pass.name, output->name(), {}});
         candidates.back().record.output = pass.name + "." + output->name();
         candidates.back().record.kind = output->kind().name;
-        start(scene, executor, candidates.back());
+        start(executor, candidates.back());
       }
     return any;
   }
@@ -228,7 +229,7 @@ class Measurement {
   }
 
   /// Renders the warm-up frame and judges its voxels.
-  void start(const Scene& scene, const std::shared_ptr<PipelineExecutor>& executor, Candidate& candidate) {
+  void start(const std::shared_ptr<PipelineExecutor>& executor, Candidate& candidate) {
     VoxelizerRecord& record = candidate.record;
     const auto giveUp = [&](const std::string& why) {
       logWarning("{}: {}: {}", record.pipeline, record.output, why);
@@ -247,7 +248,7 @@ class Measurement {
       record.bytes = found->bytes;
       record.occupied = found->voxels.count();
       record.allocatedBytes = executor->explain().poolBytes;
-      const Reference& reference = referenceFor(scene, found->grid);
+      const VoxelReferences::InGrid& reference = references_->in(found->grid);
       record.reference = reference.voxels.certain.count();
       record.undecided = reference.voxels.possible.count() - record.reference;
       record.error = compareVoxels(found->voxels, reference.voxels);
@@ -260,29 +261,11 @@ class Measurement {
     }
   }
 
-  /// The reference in one grid.
-  struct Reference {
-    GridPlacement grid;
-    VoxelReference voxels;
-    RayCrossings crossings;
-  };
-
-  const Reference& referenceFor(const Scene& scene, const GridPlacement& grid) {
-    for (const Reference& one : references_)
-      if (one.grid == grid) return one;
-    const SceneSnapshot snapshot =
-        snapshotOf(scene, options_.time, options_.camera, options_.width, options_.height);
-    VoxelReference voxels = trueVoxels(scene, snapshot, grid);
-    RayCrossings crossings(voxels);
-    references_.push_back({grid, std::move(voxels), std::move(crossings)});
-    return references_.back();
-  }
-
   gpu::Device& device_;
   TechniqueSource& techniques_;
   const VoxelizerOptions& options_;
-  std::vector<Reference> references_;         ///< of the scene and time at hand
-  std::size_t done_ = 0, pipelinesHeld_ = 0;  ///< steps; pipelines whose repeats are still to come
+  std::optional<VoxelReferences> references_;  ///< of the scene and time at hand
+  std::size_t done_ = 0, pipelinesHeld_ = 0;   ///< steps; pipelines whose repeats are still to come
   const std::size_t total_;
 };
 

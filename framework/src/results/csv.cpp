@@ -41,6 +41,9 @@ void addRow(CsvTable& table, const StoredRun& run, const ComponentError& error) 
   table.add("every_frame_ms", parts.everyFrameMs);
   table.add("framework_share", point.frameworkShare);
   table.add("peak_bytes", std::uint64_t{point.peakBytes});
+  table.add("voxels", point.voxels ? point.voxels->output : std::string());
+  table.add("voxels_not_judged", point.voxels ? point.voxels->whyNot : std::string());
+  for (const auto& [name, value] : metricsOf(point.voxels)) table.add(name, value);
   table.add("health_findings", std::uint64_t{point.healthFindings.size()});
   table.add("failure", point.failure);
   table.add("output", error.output);

@@ -92,6 +92,19 @@ Json toJson(const ComponentError& record) {
           {"ratio_to_nothing", numberJson(record.ratioToNothing())}};
 }
 
+Json toJson(const std::optional<GatheredVoxels>& voxels) {
+  if (!voxels) return nullptr;
+  Json json = {{"output", voxels->output}, {"kind", voxels->kind}};
+  if (!voxels->whyNot.empty()) json["why_not"] = voxels->whyNot;
+  json["resolution"] = {voxels->resolution.x, voxels->resolution.y, voxels->resolution.z};
+  for (const auto& [name, value] : metricsOf(voxels)) json[name] = numberJson(value);
+  if (!voxels->whyNot.empty()) return json;
+  json["occupied"] = voxels->occupied;
+  json["reference"] = voxels->reference;
+  json["undecided"] = voxels->undecided;
+  return json;
+}
+
 Json toJson(const ReportPoint& point, bool isDefault) {
   Json json = {{"scene", point.scene},
                {"pipeline", point.pipeline},
@@ -127,6 +140,7 @@ Json toJson(const ReportPoint& point, bool isDefault) {
   Json errors = Json::array();
   for (const ComponentError& error : point.errors) errors.push_back(toJson(error));
   json["errors"] = std::move(errors);
+  json["voxels"] = toJson(point.voxels);
   if (!point.whyNotCounted.empty()) json["why_not_counted"] = point.whyNotCounted;
   json["health_findings"] = point.healthFindings;
   json["notes"] = point.notes;

@@ -47,6 +47,16 @@ std::vector<NamedMetric> metricsOf(const ComponentError& error) {
   return metrics;
 }
 
+std::vector<std::pair<std::string, double>> metricsOf(const std::optional<GatheredVoxels>& voxels) {
+  const bool judged = voxels && voxels->whyNot.empty();
+  const auto number = [&](double value) { return judged ? value : std::numeric_limits<double>::quiet_NaN(); };
+  const GatheredVoxels& of = judged ? *voxels : GatheredVoxels();
+  return {{"recall", number(of.error.recall())},
+          {"precision", number(of.error.precision())},
+          {"axis_holes", number(of.holes.axisShare())},
+          {"oblique_holes", number(of.holes.obliqueShare())}};
+}
+
 bool setMetric(ComponentError& error, const NamedMetric& metric) {
   bool known = false;
   visitMetrics(error, [&](const char* name, double& value, double* uncertainty, double& ofNothing) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <optional>
 #include <tuple>
 
@@ -105,6 +106,7 @@ void ResultsStore::State::requireSchema() {
       database.execute(results::kSchema4);
       database.execute(results::kSchema5);
       database.execute(results::kSchema6);
+      database.execute(results::kSchema7);
       database.execute(fmt::format("PRAGMA user_version = {}", results::kSchemaVersion).c_str());
       database.execute(fmt::format("PRAGMA application_id = {}", results::kApplicationId).c_str());
     }
@@ -122,6 +124,7 @@ void ResultsStore::State::requireSchema() {
     if (schema < 4) database.execute(results::kSchema4);
     if (schema < 5) database.execute(results::kSchema5);
     if (schema < 6) database.execute(results::kSchema6);
+    if (schema < 7) database.execute(results::kSchema7);
     if (schema < results::kSchemaVersion)
       database.execute(fmt::format("PRAGMA user_version = {}", results::kSchemaVersion).c_str());
     transaction.commit();
@@ -218,6 +221,18 @@ void ResultsStore::State::insertErrors(std::int64_t id, const ReportPoint& point
   }
 }
 
+void ResultsStore::State::insertVoxels(std::int64_t id, const ReportPoint& point) {
+  if (!point.voxels) return;
+  const GatheredVoxels& v = *point.voxels;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const bool judged = v.whyNot.empty();
+  Statement(database, "INSERT INTO voxels VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")
+      .run(id, v.output, v.kind, v.whyNot, v.resolution.x, v.resolution.y, v.resolution.z, v.occupied,
+           v.reference, v.undecided, v.error.truePositive, v.error.falsePositive, v.error.falseNegative,
+           v.holes.axisCrossings, v.holes.axisHoles, v.holes.obliqueCrossings, v.holes.obliqueHoles,
+           judged ? v.error.recall() : kNone, judged ? v.error.precision() : kNone);
+}
+
 /// Inside a transaction.
 bool ResultsStore::State::add(const StoredRun& run, const std::vector<StoredImage>& images, bool complete) {
   if (complete) Statement(database, "DELETE FROM claims WHERE key = ?").run(run.identity.key());
@@ -241,6 +256,7 @@ bool ResultsStore::State::add(const StoredRun& run, const std::vector<StoredImag
   insertTimes(id, run.point);
   insertWork(id, run.point);
   insertErrors(id, run.point);
+  insertVoxels(id, run.point);
   Statement insert(database, "INSERT INTO images VALUES (?,?,?,?,?,?,?)");
   int position = 0;
   for (const StoredImage& image : images)
@@ -385,10 +401,32 @@ void ResultsStore::State::readErrors(StoredRun& run) const {
   }
 }
 
+void ResultsStore::State::readVoxels(StoredRun& run) const {
+  if (schema < 7) return;
+  Statement row(database,
+                "SELECT output, kind, why_not, width, height, depth, occupied, reference, undecided, "
+                "true_positive, false_positive, false_negative, axis_crossings, axis_holes, "
+                "oblique_crossings, oblique_holes FROM voxels WHERE run = ?");
+  if (!row.bind(run.id).step()) return;
+  const auto count = [&](int column) { return static_cast<std::uint64_t>(row.integer(column)); };
+  GatheredVoxels v;
+  v.output = row.text(0);
+  v.kind = row.text(1);
+  v.whyNot = row.text(2);
+  for (int axis = 0; axis < 3; ++axis) v.resolution[axis] = static_cast<int>(row.integer(3 + axis));
+  v.occupied = count(6);
+  v.reference = count(7);
+  v.undecided = count(8);
+  v.error = {count(9), count(10), count(11)};
+  v.holes = {count(12), count(13), count(14), count(15)};
+  run.point.voxels = std::move(v);
+}
+
 void ResultsStore::State::readAll(StoredRun& run) const {
   readTimes(run);
   readWork(run);
   readErrors(run);
+  readVoxels(run);
 }
 
 std::optional<StoredRun> ResultsStore::State::find(const std::string& key, bool complete) const {

@@ -5,7 +5,7 @@
 
 namespace lumivox::results {
 
-inline constexpr std::int64_t kSchemaVersion = 6;           // PRAGMA user_version
+inline constexpr std::int64_t kSchemaVersion = 7;           // PRAGMA user_version
 inline constexpr std::int64_t kApplicationId = 0x4c4d5658;  // PRAGMA application_id: "LMVX"
 
 inline constexpr const char* kSchema = R"sql(
@@ -227,6 +227,31 @@ UPDATE metrics SET name = 'non_finite_image' WHERE name = 'non_finite_picture';
 /// What schema 6 adds to schema 5: runs that lack their times.
 inline constexpr const char* kSchema6 = R"sql(
 ALTER TABLE runs ADD COLUMN complete INTEGER NOT NULL DEFAULT 1;
+)sql";
+
+/// What schema 7 adds to schema 6: the voxels that a run's indirect light is gathered from.
+inline constexpr const char* kSchema7 = R"sql(
+CREATE TABLE voxels (
+  run INTEGER PRIMARY KEY REFERENCES runs ON DELETE CASCADE,
+  output TEXT NOT NULL,
+  kind TEXT NOT NULL,
+  why_not TEXT NOT NULL,
+  width INTEGER NOT NULL,
+  height INTEGER NOT NULL,
+  depth INTEGER NOT NULL,
+  occupied INTEGER NOT NULL,
+  reference INTEGER NOT NULL,
+  undecided INTEGER NOT NULL,
+  true_positive INTEGER NOT NULL,
+  false_positive INTEGER NOT NULL,
+  false_negative INTEGER NOT NULL,
+  axis_crossings INTEGER NOT NULL,
+  axis_holes INTEGER NOT NULL,
+  oblique_crossings INTEGER NOT NULL,
+  oblique_holes INTEGER NOT NULL,
+  recall REAL,
+  precision REAL
+) STRICT;
 )sql";
 
 /// Shows the names of the last schema where an older store is only read: views of this connection, before

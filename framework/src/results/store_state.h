@@ -27,6 +27,7 @@ struct ResultsStore::State {
   void insertTimes(std::int64_t id, const ReportPoint& point);
   void insertWork(std::int64_t id, const ReportPoint& point);
   void insertErrors(std::int64_t id, const ReportPoint& point);
+  void insertVoxels(std::int64_t id, const ReportPoint& point);
   void insertNames(std::int64_t id, const StoredRun& run);
   bool add(const StoredRun& run, const std::vector<StoredImage>& images, bool complete);
   std::optional<StoredRun> find(const std::string& key, bool complete) const;
@@ -38,6 +39,7 @@ struct ResultsStore::State {
   void readTimes(StoredRun& run) const;
   void readWork(StoredRun& run) const;
   void readErrors(StoredRun& run) const;
+  void readVoxels(StoredRun& run) const;
   void readAll(StoredRun& run) const;  ///< all but what runAt() and readNames() give
   void readNames(StoredRun& run) const;
 };

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,8 @@ nlohmann::ordered_json toJson(const Measured& measured);
 nlohmann::ordered_json toJson(const TimingStatistics& statistics);
 nlohmann::ordered_json toJson(const ParameterValues& values);
 nlohmann::ordered_json toJson(const ComponentError& error);
+/// Null: there are none.
+nlohmann::ordered_json toJson(const std::optional<GatheredVoxels>& voxels);
 nlohmann::ordered_json toJson(const ReportPoint& point, bool isDefault);
 nlohmann::ordered_json toJson(const PruningRecord& record);
 nlohmann::ordered_json toJson(const std::vector<PeakRate>& peakRates);

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "lumivox/measure/metrics.h"
+#include "lumivox/measure/voxels.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/shader/work.h"
 
@@ -53,6 +55,25 @@ struct WorkBound {
 /// one); 1 without the axis.
 int framesOf(const ParameterValues& parameters);
 
+/// The voxels that the indirect light of a point is gathered from, against those that the scene's triangles
+/// touch, of the first seed. Of lists of fragments the one nearest to the output; without a list the nearest
+/// grid of bits or opacities.
+struct GatheredVoxels {
+  std::string output;        ///< "voxels.fragments"
+  std::string kind;          ///< of the port
+  std::string whyNot;        ///< why they were not judged; empty when they were
+  glm::ivec3 resolution{0};  ///< of their grid
+  std::uint64_t occupied = 0;
+  std::uint64_t reference = 0;  ///< voxels that the exact test is certain of
+  std::uint64_t undecided = 0;  ///< touched or missed by no more than kContactTolerance
+  VoxelError error;
+  RayHoles holes;
+};
+
+/// The numbers of them by name: recall, precision, axis_holes and oblique_holes (shares of the crossings of
+/// rays). NaN where there are none.
+std::vector<std::pair<std::string, double>> metricsOf(const std::optional<GatheredVoxels>& voxels);
+
 /// One sweep point: both error and time, in one record.
 struct ReportPoint {
   std::string scene, pipeline, sweep;  ///< scene and pipeline as given files; sweep empty: the default point
@@ -73,6 +94,7 @@ struct ReportPoint {
   double frameworkShare = 0.0;         ///< time between passes / frame
   std::uint64_t peakBytes = 0;
   std::vector<ComponentError> errors;
+  std::optional<GatheredVoxels> voxels;  ///< none: its indirect light is gathered from no voxels
   std::vector<std::string> healthFindings;
   std::vector<std::string> notes;  ///< what passes measured about themselves; not kept in the results store
   std::string failure;  ///< why it has no numbers (it did not fit into memory, ...); empty when it has
