@@ -53,9 +53,11 @@ bool voxelBefore(vec3 surface, vec3 normal, out ivec3 before) {
   return most > 0.0;
 }
 
-// Whether a voxel at most two away along each axis is free and seen from there.
+// Whether a voxel at most two away along each axis is free and seen from there. Next to each other there is nothing between them.
 bool isOpen(ivec3 voxel, ivec3 before) {
   if (!isFree(voxel)) return false;
+  ivec3 apart = abs(voxel - before);
+  if (max(max(apart.x, apart.y), apart.z) < 2) return true;
   vec3 from = vec3(before) + 0.5, way = vec3(voxel - before);
   return isFree(ivec3(floor(from + 0.4 * way))) && isFree(ivec3(floor(from + 0.6 * way)));
 }
