@@ -113,6 +113,26 @@ ReportRecord badlyNamedReport() {
   return record;
 }
 
+/// The same with voxels that light is gathered from: of "one" all are judged, of "two" one point has too
+/// many.
+ReportRecord reportWithVoxels() {
+  ReportRecord record = badlyNamedReport();
+  for (PointRecord& one : record.scenes[0].points) {
+    if (!one.point.failure.empty()) continue;
+    GatheredVoxels voxels;
+    voxels.output = "points<b>.fragments";
+    voxels.kind = "VoxelFragments";
+    voxels.resolution = {32, 16, 8};
+    const auto samples = static_cast<std::uint64_t>(one.point.parameters.at("samples").number);
+    voxels.occupied = 20 * samples;
+    voxels.error = {20 * samples, samples, 100 - 20 * samples};
+    voxels.holes = {100, 40 - 10 * samples, 100, 8 - 2 * samples};
+    if (one.point.pipeline[0] == 't' && samples == 4) voxels.whyNot = "there are <too> many";
+    one.point.voxels = voxels;
+  }
+  return record;
+}
+
 /// Writes a report's page and draws it.
 Json drawn(const ReportRecord& record, const TemporaryDirectory& place) {
   const ReportFiles files = reportFiles(place.path() / "page.html");
@@ -139,11 +159,11 @@ TEST_CASE(
   CHECK(page.at("problems").empty());
   const std::string headings = texts(page.at("headings"));
   for (const char* heading :
-       {"Lumivox report", "Little room", "Fronts, equal time, equal error", "Images, reference and FLIP maps",
-        "Error numbers", "Bias and noise apart", "Convergence", "Time and memory per pass", "What was needed",
-        "What was left out, and why", "Health", "Parameters and commands", "The reference and its noise",
-        "All scenes and points", "Voxels", "Recall against time", "Growth, published and here",
-        "Device, driver and contents"}) {
+       {"Lumivox report", "Little room", "Fronts, equal time, equal error", "Error against recall",
+        "Images, reference and FLIP maps", "Error numbers", "Bias and noise apart", "Convergence",
+        "Time and memory per pass", "What was needed", "What was left out, and why", "Health",
+        "Parameters and commands", "The reference and its noise", "All scenes and points", "Voxels",
+        "Recall against time", "Growth, published and here", "Device, driver and contents"}) {
     INFO(heading);
     CHECK(contains(headings, heading));
   }
@@ -168,9 +188,9 @@ TEST_CASE(
         Approx(first.at("flip_hdr").get<double>()).epsilon(0.06));
   CHECK(std::stod(table.at(1).at(6).get<std::string>()) ==
         Approx(first.at("rmse").at("value").get<double>()).epsilon(0.06));
-  // Errors against time, the voxelizers; sliders and choices between images; the choices of the fronts; boxes
-  // and choices of tables.
-  CHECK(page.at("charts").size() == 2);
+  // Errors against time; against recall beside time; the voxelizers; sliders and choices between images; the
+  // choices of the fronts; boxes and choices of tables.
+  CHECK(page.at("charts").size() == 4);
   CHECK(page.at("images").size() > 8);
   CHECK(page.at("controls").size() >= 8);
   for (const Json& control : page.at("controls")) CHECK(control.at("changed").get<int>() >= 1);
@@ -266,6 +286,45 @@ TEST_CASE("the first screen, the fronts and the table of what was needed say wha
   REQUIRE(passes.size() == 7);
   CHECK(passes[1][2] == "paint");
   CHECK(passes[1][5] == "3.0 MiB");
+}
+
+TEST_CASE(
+    "errors are drawn against the recall of the voxels that light is gathered from, beside their times") {
+  if (lacksNode()) return;
+  const TemporaryDirectory place;
+  const Json page = drawn(reportWithVoxels(), place);
+  INFO(texts(page.at("problems")));
+  CHECK(page.at("problems").empty());
+  CHECK(contains(texts(page.at("headings")), "Error against recall"));
+  // On the first screen, and in the section both side by side.
+  std::map<std::string, std::size_t> points;
+  for (const Json& chart : page.at("charts"))
+    points[chart.at("data-chart")] += chart.at("points").get<std::size_t>();
+  REQUIRE(points.size() == 3);
+  CHECK(points.at("recall") == 5);
+  CHECK(points.at("time") == points.at("error"));
+  const Json table = tableWith(page, {"Pipeline", "Parameters", "Voxels", "Grid"});
+  REQUIRE(table.size() == 6);
+  const auto& first = table[1];
+  CHECK(first[0] == "one&<i>");
+  CHECK(first[1] == "samples 1");
+  CHECK(first[2] == "points<b>.fragments");
+  CHECK(first[3] == "32 × 16 × 8");
+  CHECK(first[5] == "0.2000");
+  CHECK(first[6] == "0.9524");
+  CHECK(first[7] == "30.0 %");
+  CHECK(first[8] == "6.0 %");
+  CHECK(contains(page.at("text"), "points<b>.fragments, there are <too> many"));
+  // Without voxels there is no such section.
+  const Json without = drawn(badlyNamedReport(), place);
+  CHECK_FALSE(contains(texts(without.at("headings")), "Error against recall"));
+  CHECK(without.at("charts").size() == 1);
+  // The brief page does without.
+  const ReportFiles brief = reportFiles(place.path() / "brief.html");
+  writeReport(brief, reportWithVoxels(), ReportDetail::brief);
+  const Json small = drawnPage(brief.page);
+  CHECK(small.at("problems").empty());
+  CHECK(small.at("charts").size() == 1);
 }
 
 TEST_CASE("pipelines that come to the same passes share a row, and light that all make alike is a sentence") {

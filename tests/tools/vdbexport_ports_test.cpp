@@ -466,6 +466,31 @@ TEST_CASE("a grid says what it is, its unit, who made it with which parameters, 
   CHECK(smoke.metaValue<float>("lumivox.anisotropy") == 0.6f);
 }
 
+TEST_CASE(
+    "coefficients of light say whether they are of flux or of radiance, and one volume is all three colours") {
+  const TemporaryDirectory directory;
+  makeContent();
+  Content& made = content();
+  for (const ShGrid::Quantity quantity : {ShGrid::Quantity::flux, ShGrid::Quantity::radiance}) {
+    made.harmonics.quantity = quantity;
+    const Grids grids =
+        exportKinds(directory.path() / "light.vdb", {{"all.harmonics"}, {0}, false}, farScene());
+    REQUIRE(grids.count("all.harmonics.Y00") == 1);
+    CHECK(metaText(*grids.at("all.harmonics.Y00"), "lumivox.coefficients_of") == name(quantity));
+    CHECK(metaText(*grids.at("all.harmonics.Y00"), "lumivox.unit") ==
+          (quantity == ShGrid::Quantity::flux ? "W/sr" : "W/(sr m^2)"));
+  }
+  made.harmonics.levels.resize(1);
+  auto& coefficients = made.harmonics.levels[0].coefficients;
+  coefficients[1] = coefficients[2] = nullptr;
+  const Grids grids = exportKinds(directory.path() / "one.vdb", {{"all.harmonics"}, {0}, false}, farScene());
+  const DeviceVolume volume(coefficients[0], 0);
+  checkVoxels<openvdb::Vec3SGrid>(grids, "all.harmonics.Y10", volume.size(), [&](const glm::ivec3& voxel) {
+    return std::pair(openvdb::Vec3f(volume.at(voxel, 2)), volume.any(voxel));
+  });
+  makeContent();
+}
+
 TEST_CASE("the only density of a medium is called as viewers expect it") {
   const TemporaryDirectory directory;
   makeContent();

@@ -52,6 +52,17 @@ const comparisonOf = (function () {
                + (by === null ? "; on the Pareto front" : "; beaten by " + shortName(by.file) + " (" + parametersText(by.parameters) + ")") };
   }
 
+  // A tenth of the span on both sides. What spans little is shown as it is, else ticks would be missing.
+  const fitted = values => {
+    const low = Math.min(...values), high = Math.max(...values);
+    if (high < 3 * low) {
+      const space = Math.max(0.1 * (high - low), 0.01 * high);
+      return { type: "linear", min: Math.max(0, low - space), max: high + space };
+    }
+    const space = Math.pow(high / low, 0.1);
+    return { type: "logarithmic", min: low / space, max: high * space };
+  };
+
   function configuration(comparison) {
     const { paper, band } = theme();
     const datasets = comparison.pipelines.map((pipeline, index) => {
@@ -67,40 +78,98 @@ const comparisonOf = (function () {
     const all = datasets.flatMap(set => set.data);
     const times = all.flatMap(point => [point.low, point.high]).filter(value => value > 0);
     const errors = all.flatMap(point => [point.y, point.y + point.uncertainty, point.y - point.uncertainty]).filter(value => value > 0);
-    // A tenth of the span on both sides. What spans little is shown as it is, else ticks would be missing.
-    const fitted = values => {
-      const low = Math.min(...values), high = Math.max(...values);
-      if (high < 3 * low) {
-        const space = Math.max(0.1 * (high - low), 0.01 * high);
-        return { type: "linear", min: Math.max(0, low - space), max: high + space };
-      }
-      const space = Math.pow(high / low, 0.1);
-      return { type: "logarithmic", min: low / space, max: high * space };
-    };
     const x = fitted(times), y = fitted(errors);
     const steps = comparison.front.map(at => ({ x: comparison.points[at].frame_ms.median, y: comparison.points[at].error.value }));
     datasets.push({ label: "least error within a time", data: steps.concat([{ x: x.max, y: steps[steps.length - 1].y }]),
                     showLine: true, stepped: "before", pointRadius: 0, pointHitRadius: 0, borderWidth: 5, borderColor: band,
                     backgroundColor: band, pointStyle: "line" });
-    const unit = units[comparison.metric];
     return {
       type: "scatter", data: { datasets }, plugins: [errorBars],
       options: {
         animation: false, maintainAspectRatio: false,
         scales: {
           x: { title: { display: true, text: "frame time, ms" }, ...x, ticks: { maxRotation: 0, autoSkipPadding: 16, callback: tickOf(x) } },
-          y: { title: { display: true, text: metrics[comparison.metric] + (unit && ", " + unit) }, ...y,
+          y: { title: { display: true, text: errorTitle(comparison) }, ...y,
                ticks: { autoSkipPadding: 10, callback: tickOf(y) } } },
         plugins: {
           legend: { display: false },
           tooltip: { filter: item => item.raw.text !== undefined,
                      callbacks: { label: item => item.dataset.label + ", " + item.raw.text } } } } };
   }
+  const errorTitle = ({ metric }) => metrics[metric] + (units[metric] && ", " + units[metric]);
   // Of an axis that begins and ends anywhere the ends have no numbers of their own.
   const tickOf = axis => value => {
     const nice = axis.type === "linear" ? value !== axis.min && value !== axis.max : [1, 2, 5].includes(Number(value.toExponential().split("e")[0]));
     return nice ? number(value) : null;
   };
+
+  // ---- error against how well the voxels hold the surface
+
+  const shares = { recall: "recall", precision: "precision", axis_holes: "holes, rays along the axes", oblique_holes: "holes, oblique rays" };
+  const judgedVoxels = (scene, point) => {
+    const { voxels } = scene.points[point.source];
+    return voxels && isNumber(voxels.recall) ? voxels : null;
+  };
+
+  function shareConfiguration(scene, comparison, share) {
+    const datasets = comparison.pipelines.map((pipeline, index) => {
+      const data = comparison.points.filter(point => point.pipeline === index && point.error.value > 0 && judgedVoxels(scene, point)).map(point => {
+        const x = judgedVoxels(scene, point)[share];
+        return { x, y: point.error.value, low: x, high: x, uncertainty: point.error.uncertainty || 0,
+                 text: parametersText(point.parameters) + ": " + shares[share] + " " + number(x) + ", " + plain(point.error) };
+      }).sort((a, b) => a.x - b.x);
+      const { colour, shape } = style(pipeline.file);
+      return { label: shortName(pipeline.file), data, bars: true, showLine: false, pointRadius: 5, pointHoverRadius: 8,
+               borderColor: colour, backgroundColor: colour, pointStyle: shape };
+    }).filter(set => set.data.length > 0);
+    const all = datasets.flatMap(set => set.data), low = Math.min(...all.map(point => point.x)), high = Math.max(...all.map(point => point.x));
+    const space = Math.max(0.1 * (high - low), 0.01);
+    const y = fitted(all.flatMap(point => [point.y, point.y + point.uncertainty, point.y - point.uncertainty]).filter(value => value > 0));
+    return {
+      type: "scatter", data: { datasets }, plugins: [errorBars],
+      options: {
+        animation: false, maintainAspectRatio: false,
+        scales: {
+          x: { type: "linear", min: Math.max(0, low - space), max: high + space, title: { display: true, text: shares[share] },
+               ticks: { maxRotation: 0, autoSkipPadding: 16, callback: tickOf({ type: "linear", min: low - space, max: high + space }) } },
+          y: { title: { display: true, text: errorTitle(comparison) }, ...y, ticks: { autoSkipPadding: 10, callback: tickOf(y) } } },
+        plugins: { legend: { display: false }, tooltip: { callbacks: { label: item => item.dataset.label + ", " + item.raw.text } } } } };
+  }
+
+  /** Error against recall beside error against time; null: no point has voxels that were judged. */
+  function voxelsSection(scene, comparisons, chosen, follow, following) {
+    const drawable = comparison => comparison.points.some(point => point.error.value > 0 && judgedVoxels(scene, point));
+    const all = comparisons.filter(drawable);
+    const notJudged = scene.points.filter(point => point.voxels && point.voxels.why_not);
+    const missing = notJudged.length > 0 && [h("p", null, "Not judged:"), list(notJudged.map(point =>
+      shortName(point.pipeline) + ", " + parametersText(point.parameters) + ": " + point.voxels.output + ", " + point.voxels.why_not))];
+    if (all.length === 0) return missing ? [missing] : null;
+    let share = "recall", last = all[0];
+    const shown = () => last = drawable(chosen()) ? chosen() : last;
+    const byShare = chart(() => shareConfiguration(scene, shown(), share), { "data-chart": "recall" }, "Error against the recall of the voxels");
+    const byTime = chart(() => configuration(shown()), { "data-chart": "time" }, "Error against frame time of the same comparison");
+    follow(byShare.redraw);
+    follow(byTime.redraw);
+    return [
+      caption("The voxels that indirect light is gathered from, against the exact test of triangles and boxes. Of lists of fragments it is the "
+        + "one nearest to the output; without a list the nearest grid that says which voxels are occupied. Recall: share of the touched voxels "
+        + "that are occupied. Precision: share of the occupied voxels that are touched. Holes: share of the crossings of straight rays with the "
+        + "surface at which the ray meets no occupied voxel within a voxel and a half. First seed."),
+      h("p", { class: "choices" }, chooser("Over", "share", shares, share, value => { share = value; byShare.redraw(); })),
+      following(() => caption(h("b", null, titleOf(shown())), ", ", metrics[shown().metric], ".")),
+      h("div", { class: "charts" }, h("figure", null, byShare.frame), h("figure", null, byTime.frame)),
+      following(() => table(
+        columns("Pipeline", "Parameters", "Voxels", ...["Grid", "Occupied", "Recall", "Precision", "Holes, axis rays", "Holes, oblique rays", "Error"]
+          .map(title => [title, "number"])),
+        shown().points.filter(point => judgedVoxels(scene, point)).map(point => {
+          const voxels = judgedVoxels(scene, point), source = scene.points[point.source];
+          return { pipeline: point.file, isDefault: source.default, kind: source.default ? "default" : "", cells: [
+            named(point.file), differingParameters(shown(), point), lumivox.broken(voxels.output), voxels.resolution.join(" × "), voxels.occupied,
+            voxels.recall.toFixed(4), voxels.precision.toFixed(4), percent(voxels.axis_holes), percent(voxels.oblique_holes),
+            sortedBy(point.error.value, measured(point.error))] };
+        }))),
+      missing];
+  }
 
   // ---- tables
 
@@ -257,7 +326,7 @@ const comparisonOf = (function () {
     `For ${scene.left_out_points.length} points of the sweeps there was no time within the budget of ${data.budget_s} s`,
     list(scene.left_out_points.map(point => shortName(point.pipeline) + ": " + parametersText(point.parameters))));
 
-  /** Of a scene: { plot, defaults, follow, chosen, sections }; null plot: there is nothing to compare. `follow` is told whenever
+  /** Of a scene: { plot, defaults, follow, chosen, sections, voxels }, the last made when it is asked for; null plot: there is nothing to compare. `follow` is told whenever
    *  something else is chosen. */
   return function (scene) {
     const comparisons = scene.comparisons.filter(one => one.front.length > 0);
@@ -265,7 +334,7 @@ const comparisonOf = (function () {
     const followers = [];
     const nothing = scene.components.filter(component => !comparisons.some(one => one.component === component));
     if (!led || led.front.length === 0)
-      return { plot: h("p", null, "No pipeline has an error to compare by."), defaults: null, equal: null, sections: leftOut(scene),
+      return { plot: h("p", null, "No pipeline has an error to compare by."), defaults: null, equal: null, sections: leftOut(scene), voxels: () => null,
                chosen: () => null, follow: () => {} };
     const keyOf = one => one.component + "/" + one.against;
     let key = keyOf(led), metric = led.metric;
@@ -307,6 +376,7 @@ const comparisonOf = (function () {
           + "pipeline; nothing is extrapolated. ≤: the slowest (fastest) point measured has that much within the budget (the error) "
           + "already. ±: one standard uncertainty, from those of both points through the interpolation. Bold: the least, and what cannot "
           + "be told apart from it."),
-        following(() => tables(scene, chosen()))] };
+        following(() => tables(scene, chosen()))],
+      voxels: () => voxelsSection(scene, comparisons, chosen, follow, following) };
   };
 })();

@@ -294,6 +294,7 @@
     const compared = comparisonOf(scene);
     const sections = images.brief ? [] : [
       ["fronts", "Fronts", "Fronts, equal time, equal error", compared.sections],
+      ["recall", "Recall", "Error against recall", compared.voxels()],
       ["images", "Images", "Images, reference and FLIP maps", imagesOf.all(scene, index)],
       ["errors", "Errors", "Error numbers", errors(scene)], ["noise", "Noise", "Bias and noise apart", noise(scene)],
       ["slopes", "Convergence", "Convergence", slopes(scene)], ["times", "Time and memory", "Time and memory per pass", times(scene)],

@@ -59,8 +59,10 @@ struct PortTraits<ShGrid> {
         const VoxelTexels texels{
             {level.channel(0), level.channel(1), level.channel(2)}, {{0, k}, {1, k}, {2, k}}, 0, port.unit};
         const std::string& harmonic = contents.kind().fields[static_cast<std::size_t>(k)].name;
-        contents.field(harmonic, VoxelBox::of(level.grid), texels, static_cast<int>(i)).unit =
-            port.quantity == ShGrid::Quantity::flux ? "W/sr" : "W/(sr m^2)";
+        PortContents::Field& field =
+            contents.field(harmonic, VoxelBox::of(level.grid), texels, static_cast<int>(i));
+        field.unit = port.quantity == ShGrid::Quantity::flux ? "W/sr" : "W/(sr m^2)";
+        field.constants = {{"coefficients_of", std::string(name(port.quantity))}};
       }
     }
   }
