@@ -38,7 +38,9 @@ class GatherPass : public Pass {
 
   Reads readsFrom() const override { return Reads::environment; }
   bool uses(const InBase& input) const override {
-    return (&input != &opacity && &input != &attributes) || neighbours.onlyFree();
+    return ((&input != &opacity && &input != &attributes) || neighbours.onlyFree()) &&
+           (&input != &incoming || diffuse.wanted() || clipped.wanted()) &&
+           (&input != &visibility || occlusion.wanted());
   }
 
   void run(PassContext& frame) override {
