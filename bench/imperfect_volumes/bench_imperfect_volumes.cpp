@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "../spread.h"
 #include "lumivox/base/error.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/plugin/loader.h"
@@ -24,14 +25,6 @@ namespace {
 
 using namespace lumivox;
 
-struct Spread {
-  double lower, median, upper;
-};
-Spread spreadOf(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return {values[n / 4], values[n / 2], values[(3 * n) / 4]};
-}
 std::string inWords(const Spread& spread) {
   return fmt::format("{:.3g} [{:.3g}, {:.3g}]", spread.median, spread.lower, spread.upper);
 }

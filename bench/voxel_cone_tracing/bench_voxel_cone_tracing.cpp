@@ -17,6 +17,7 @@
 #include <string_view>
 #include <vector>
 
+#include "../spread.h"
 #include "lumivox/base/error.h"
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/plugin/loader.h"
@@ -25,15 +26,6 @@
 namespace {
 
 using namespace lumivox;
-
-struct Spread {
-  double lower, median, upper;
-};
-Spread spreadOf(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return {values[n / 4], values[n / 2], values[(3 * n) / 4]};
-}
 
 /// Ours with some settings; the printed gather has none, and is timed beside each of them.
 struct Row {

@@ -22,7 +22,7 @@ std::optional<Scene> whereItsModelsAre(const std::string& name) {
 
 /// Both at four times, the last of which goes back; how many texels of the indirect light change from time to
 /// time.
-void compareSequence(const Scene& scene) {
+void checkSequence(const Scene& scene) {
   const Pipeline text = pipeline("near_field_voxels");
   RenderOptions options;
   options.width = 48;
@@ -62,10 +62,10 @@ void compareSequence(const Scene& scene) {
 }  // namespace
 
 TEST_CASE("a frame of a cloth that deforms is the same alone and in a sequence") {
-  compareSequence(committed("waving_cloth"));
+  checkSequence(committed("waving_cloth"));
 }
 
 TEST_CASE("a frame of a horse that gallops in an arena and in Sponza is the same alone and in a sequence") {
   for (const char* name : {"horse_arena", "horse_sponza"})
-    if (const std::optional<Scene> scene = whereItsModelsAre(name)) compareSequence(*scene);
+    if (const std::optional<Scene> scene = whereItsModelsAre(name)) checkSequence(*scene);
 }
