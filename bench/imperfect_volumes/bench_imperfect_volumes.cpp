@@ -1,7 +1,8 @@
 // What each choice of imperfect volumes costs, on `cornell` and `arcade`: voxels that are read over all,
 // march without branches over early exit, every voxel of a ray over steps, openness over a bounce, six
-// neighbours over eight, half floats over floats; and how the time of a frame is shared by picture and
-// volume. Times in turns within each frame, medians and quartiles of ratios. usage: bench_imperfect_volumes
+// neighbours over eight, half floats over floats; how the time of a frame is shared by picture and volume;
+// and light that propagates from cell to cell over light that rays gather. Times in turns within each frame,
+// medians and quartiles of ratios. usage: bench_imperfect_volumes
 // [--quick | SIZE [REPEATS [RAYS [VOXELS]...]]] (default: 256 5 100 32 64 128), from the project's folder.
 // --quick: seconds of work, whose figures mean nothing, for the tests
 #include <fmt/format.h>
@@ -173,6 +174,29 @@ void comparePictures(gpu::Device& device, TechniqueSet& techniques, const Scene&
   }
 }
 
+/// The same points, propagated and marched (Sec. 4.1), both committed pipelines with their own settings: time
+/// of what is not the same in both.
+void comparePropagation(gpu::Device& device, TechniqueSet& techniques, const Scene& scene, const char* name,
+                        int size, int repeats, const std::vector<std::string>& settings) {
+  RenderOptions options;
+  options.width = options.height = size;
+  std::vector<std::unique_ptr<PipelineExecutor>> executors;
+  for (const char* file : {"imperfect_volumes", "imperfect_volumes_propagation"}) {
+    const Pipeline pipeline = Pipeline::load(fmt::format("scenes/pipelines/{}.pipeline", file));
+    options.parameters = pipeline.settings(settings);
+    executors.push_back(std::make_unique<PipelineExecutor>(device, techniques, scene, pipeline, options));
+  }
+  std::vector<double> ratios;
+  for (int repeat = 0; repeat < repeats; ++repeat) {
+    const Times marched = timesOf(*executors[0], 1).front(), propagated = timesOf(*executors[1], 1).front();
+    ratios.push_back(
+        (propagated.at("inject") + propagated.at("propagate") + propagated.at("gather")) /
+        (marched.at("average") + marched.at("inject") + marched.at("march") + marched.at("gather")));
+  }
+  fmt::print("{}, {}^2 pixels, pipelines as committed: propagated over marched {}\n", name, size,
+             inWords(spreadOf(ratios)));
+}
+
 int numberOf(const char* text) {
   const std::string_view word = text;
   int number = 0;
@@ -213,6 +237,10 @@ int main(int argc, char** argv) {
       comparePictures(device, techniques, cornell, "cornell", sizes, repeats, rays, resolution);
       comparePictures(device, techniques, arcade, "arcade", sizes, repeats, rays, resolution);
     }
+    const std::vector<std::string> smallest =
+        quick ? std::vector<std::string>{"resolution=16"} : std::vector<std::string>{};
+    comparePropagation(device, techniques, cornell, "cornell", size, repeats, smallest);
+    comparePropagation(device, techniques, arcade, "arcade", size, repeats, smallest);
   } catch (const std::exception& error) {
     fmt::print(stderr, "bench_imperfect_volumes: {}\n", error.what());
     return 2;

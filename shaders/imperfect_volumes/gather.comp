@@ -39,7 +39,8 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, textureSize(gPosition, 0)))) return;
   vec4 posWorld = texelFetch(gPosition, pixel, 0);
-  vec3 surface = (posWorld.xyz - gridLow) / voxelSize, normal = texelFetch(gNormal, pixel, 0).xyz;
+  precise vec3 surface = (posWorld.xyz - gridLow) / voxelSize;  // the same as where voxels are marked
+  vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
   bool isSurface = posWorld.w > 0.0, isInside = isInVolume(surface);
   Arriving arriving;
   if (isSurface && isInside) arriving = arrivingAt(surface, texelFetch(gGeometricNormal, pixel, 0).xyz);

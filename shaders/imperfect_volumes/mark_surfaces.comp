@@ -14,7 +14,7 @@ struct SurfacePoint {
 SurfacePoint seenAt(ivec2 pixel) {
   if (any(lessThan(pixel, ivec2(0)))) return SurfacePoint(false, vec3(0.0), vec3(0.0));
   vec4 posWorld = texelFetch(gPosition, pixel, 0);
-  vec3 place = (posWorld.xyz - gridLow) / voxelSize;
+  precise vec3 place = (posWorld.xyz - gridLow) / voxelSize;  // the same as in gather.comp
   return SurfacePoint(posWorld.w > 0.0 && isInVolume(place), place, texelFetch(gGeometricNormal, pixel, 0).xyz);
 }
 

@@ -17,6 +17,8 @@ void main() {
     markReads(vec3(voxel) + 0.5, normalize(mean));
     markReads(vec3(voxel) + 0.5, -normalize(mean));
   } else {
-    for (int i = 0; i < 125; ++i) imageStore(marks, inVolume(voxel + ivec3(i % 5, i / 5 % 5, i / 25) - 2), uvec4(1u));
+    int most = int(shift) + 2, side = 2 * most + 1;
+    for (int i = 0; i < side * side * side; ++i)
+      imageStore(marks, inVolume(voxel + ivec3(i % side, i / side % side, i / (side * side)) - most), uvec4(1u));
   }
 }

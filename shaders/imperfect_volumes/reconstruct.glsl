@@ -53,7 +53,8 @@ bool voxelBefore(vec3 surface, vec3 normal, out ivec3 before) {
   return most > 0.0;
 }
 
-// Whether a voxel at most two away along each axis is free and seen from there. Next to each other there is nothing between them.
+// Whether a voxel is free and seen from there, where it is at most three away along each axis, as with a shift of one voxel at most. Next to
+// each other there is nothing between them.
 bool isOpen(ivec3 voxel, ivec3 before) {
   if (!isFree(voxel)) return false;
   ivec3 apart = abs(voxel - before);

@@ -54,8 +54,9 @@ class Marching : public Pass {
       "at the first voxel that is met; or, as published (Sec. 4.1), at the end of the volume, and what lies behind is discarded: the same bits"};
   Param<Directions> directions{this, "directions", Directions::voxel,
                                "a set of its own for each voxel: noise; or one for all: no noise but bands"};
-  Param<float> occupied{this, "occupied", 0.0f, within(0.0f, 1.0f),
-                        "coverage above which a voxel is occupied"};
+  Param<float> occupied{
+      this, "occupied", 0.0f, within(0.0f, 1.0f),
+      "coverage above which a voxel is occupied; 0 with 'walk exact', whose bits have none"};
   Param<Cover> cover{this, "cover", Cover::read,
                      "voxels that rays begin in: with 'gbuffer' those that are read; or all, for who looks "
                      "at the volume itself"};
@@ -71,6 +72,10 @@ class Marching : public Pass {
   void checkGrids() const {
     if (walk == Walk::exact && !bits.present())
       throw Error("'walk exact' goes through 'bits'; expected it to be connected");
+    if (walk == Walk::exact && occupied > 0.0f)
+      throw Error(fmt::format(
+          "'walk exact' meets every voxel that has a bit, and 'occupied' is {:g}; expected 0, or 'walk steps'",
+          float(occupied)));
     if (walk == Walk::exact && opacity.present())
       requireSameGrid("bits", bits->grid, "opacity", opacity->grid);
     const glm::vec3 size(grid().resolution);

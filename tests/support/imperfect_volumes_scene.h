@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -63,6 +64,36 @@ class VolumeOnHost {
     for (std::size_t c = 0; c < 3; ++c) sent_[c] = lit.reflected.levels[0].coefficients[c]->downloadFloats(0);
   }
   const VoxelSet& set() const { return set_; }
+  /// Mean normals of the voxels, rgba.
+  const std::vector<float>& normals() const { return normals_; }
+
+  /// What arrives in a voxel, of what voxels send by the side that is seen, and by their two bands.
+  struct Coefficients {
+    std::array<glm::dvec4, 3> surface{}, harmonics{};
+  };
+  /// By jittered strata of the sphere, so many in z and twice as many around it.
+  Coefficients quadratureIn(const glm::ivec3& voxel, int strata, unsigned seed,
+                            const glm::dvec3& environment) const {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit;
+    Coefficients sum;
+    const double weight = 4.0 * kPi / (2.0 * strata * strata);
+    for (int i = 0; i < strata; ++i)
+      for (int j = 0; j < 2 * strata; ++j) {
+        const double z = 2.0 * (i + unit(random)) / strata - 1.0, angle = kPi * (j + unit(random)) / strata,
+                     sine = std::sqrt(std::max(1.0 - z * z, 0.0));
+        const glm::dvec3 way(sine * std::cos(angle), sine * std::sin(angle), z);
+        const auto met = meets(voxel, way);
+        const glm::dvec3 surface = met ? sentBy(*met, way) : environment,
+                         harmonics = met ? bandsOf(*met, way) : environment;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const glm::dvec4 basis = weight * basisAlong(way);
+          sum.surface[c] += surface[static_cast<int>(c)] * basis;
+          sum.harmonics[c] += harmonics[static_cast<int>(c)] * basis;
+        }
+      }
+    return sum;
+  }
 
   struct Arriving {
     std::array<double, 12> mean{}, deviation{};  ///< of one sample
@@ -75,9 +106,9 @@ class VolumeOnHost {
                    sine = std::sqrt(1.0 - z * z);
       const glm::dvec3 way(sine * std::cos(angle), sine * std::sin(angle), z),
           radiance = seenFrom(voxel, way);
-      const std::array<double, 4> basis{kY0, kY1 * way.y, kY1 * way.z, kY1 * way.x};
+      const glm::dvec4 basis = basisAlong(way);
       for (std::size_t k = 0; k < 12; ++k) {
-        const double value = 4.0 * kPi * radiance[static_cast<int>(k / 4)] * basis[k % 4];
+        const double value = 4.0 * kPi * radiance[static_cast<int>(k / 4)] * basis[static_cast<int>(k % 4)];
         sum[k] += value;
         squares[k] += value * value;
       }
@@ -113,10 +144,26 @@ class VolumeOnHost {
   std::vector<float> normals_;
   std::array<std::vector<float>, 3> sent_;
 
-  glm::dvec3 seenFrom(const glm::ivec3& voxel, const glm::dvec3& way) const {
+  static glm::dvec4 basisAlong(const glm::dvec3& way) { return {kY0, kY1 * way.y, kY1 * way.z, kY1 * way.x}; }
+  std::optional<glm::ivec3> meets(const glm::ivec3& voxel, const glm::dvec3& way) const {
     const glm::vec3 direction(way), origin = glm::vec3(voxel) + 0.5f + 0.8660255f * direction;
     const auto hit = firstVoxel(set_, origin, direction);
-    return hit ? sentBy(hit->voxel, way) : glm::dvec3(0.0);
+    return hit ? std::optional(hit->voxel) : std::nullopt;
+  }
+  glm::dvec3 seenFrom(const glm::ivec3& voxel, const glm::dvec3& way) const {
+    const auto met = meets(voxel, way);
+    return met ? sentBy(*met, way) : glm::dvec3(0.0);
+  }
+  /// What the two bands of a voxel say of the direction towards a ray that meets it along `way`.
+  glm::dvec3 bandsOf(const glm::ivec3& voxel, const glm::dvec3& way) const {
+    const std::size_t i = 4 * set_.bitOf(voxel);
+    glm::dvec3 radiance;
+    for (int c = 0; c < 3; ++c) {
+      const auto& sent = sent_[static_cast<std::size_t>(c)];
+      radiance[c] = std::max(
+          glm::dot(glm::dvec4(sent[i], sent[i + 1], sent[i + 2], sent[i + 3]), basisAlong(-way)), 0.0);
+    }
+    return radiance;
   }
 };
 

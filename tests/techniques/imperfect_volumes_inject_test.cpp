@@ -128,3 +128,37 @@ TEST_CASE("a dark voxel keeps its light beside one that is a million times brigh
     CHECK(bright == Approx(1e6 * dark).epsilon(0.01));
   }
 }
+
+TEST_CASE(
+    "lights that touch both sides of a surface are no brighter than half a voxel away, in half floats too") {
+  SceneBuilder builder;
+  builder.quad({-2, -2, -2}, {4, 0, 0}, {0, 4, 0}, builder.lambert(0.5f));
+  for (const double z : {1.2, 1.3}) builder.light(LightKind::point, glm::vec3(10.0f), {1.25, 1.25, z});
+  // Voxels of half a metre: both lights together a quarter of a metre away.
+  const double most = 2.0 * 10.0 / (0.25 * 0.25) / kPi;
+  const glm::vec3 low = -glm::vec3(snapshotOf(builder.scene, 0.0).origin);
+  for (const char* precision : {"float", "half"}) {
+    const ShGrid light = injected(builder.scene, {squareAt({1.25, 1.25, 1.25}, {0, 0, 1})},
+                                  {{"precision", 0, precision}}, low);
+    CAPTURE(precision);
+    for (const double side : {-1.0, 1.0})
+      CHECK(sent(light, {2, 2, 2}, {0, 0, side}) == Approx(most).epsilon(0.002));
+  }
+}
+
+TEST_CASE("each colour of a surface leaves its lit side in the volume of that colour") {
+  const glm::dvec3 direction = glm::normalize(glm::dvec3(0.3, -0.2, -1.0)), normal(0.0, 0.6, 0.8);
+  const glm::vec3 albedo(0.9f, 0.5f, 0.1f);
+  const ShGrid light = injected(sunAlong({direction}), {squareAt({1.25, 1.25, 1.25}, normal, albedo)});
+  const glm::ivec3 size = light.levels[0].grid.resolution;
+  for (int c = 0; c < 3; ++c) {
+    const std::vector<float> values =
+        light.levels[0].coefficients[static_cast<std::size_t>(c)]->downloadFloats(0);
+    const auto i = static_cast<std::size_t>(4 * ((2 * size.y + 2) * size.x + 2));
+    const glm::dvec4 found(values[i], values[i + 1], values[i + 2], values[i + 3]);
+    const double radiance = double{albedo[c]} * glm::dot(normal, -direction) / kPi;
+    CAPTURE(c);
+    CHECK(irradiance(found, normal) / kPi == Approx(radiance).epsilon(0.01));
+    CHECK(std::abs(irradiance(found, -normal)) / kPi < 0.01 * radiance);
+  }
+}

@@ -39,9 +39,7 @@ std::vector<glm::ivec3> someOfEachKind(const VoxelSet& set, int ofEach, std::mt1
   return result;
 }
 
-}  // namespace
-
-TEST_CASE("what arrives in a voxel is what quadrature on the host finds, in all twelve coefficients") {
+void checkAgainstQuadrature(int samples) {
   for (const char* name : {"cornell", "arcade"}) {
     const Lit lit(name, 32);
     const VolumeOnHost host(lit);
@@ -53,7 +51,7 @@ TEST_CASE("what arrives in a voxel is what quadrature on the host finds, in all 
     Scene dark = lit.scene;
     dark.environment = glm::vec3(0.0f);
     Runner march("march", dark, static_cast<int>(points.size()));
-    constexpr int kRays = 4096, kSamples = 30000;
+    constexpr int kRays = 4096;
     march.in("opacity", lit.opacity)
         .in("reflected", lit.reflected)
         .in("attributes", lit.attributes)
@@ -66,10 +64,10 @@ TEST_CASE("what arrives in a voxel is what quadrature on the host finds, in all 
     int outside = 0, all = 0;
     double largest = 0.0;
     for (const glm::ivec3& voxel : voxels) {
-      const VolumeOnHost::Arriving expected = host.arrivingIn(voxel, kSamples, random);
+      const VolumeOnHost::Arriving expected = host.arrivingIn(voxel, samples, random);
       for (std::size_t k = 0; k < 12; ++k, ++all) {
         const double value = values[k / 4][4 * host.set().bitOf(voxel) + k % 4],
-                     error = expected.deviation[k] * std::sqrt(1.0 / kRays + 1.0 / kSamples) + 1e-7;
+                     error = expected.deviation[k] * std::sqrt(1.0 / kRays + 1.0 / samples) + 1e-7;
         outside += std::abs(value - expected.mean[k]) > 3.0 * error;
         largest = std::max(largest, std::abs(value - expected.mean[k]) / error);
       }
@@ -79,6 +77,33 @@ TEST_CASE("what arrives in a voxel is what quadrature on the host finds, in all 
     CHECK(outside <= all / 300);
     CHECK(largest < 5.0);
   }
+}
+
+}  // namespace
+
+TEST_CASE("what arrives in a voxel is what quadrature on the host finds, in all twelve coefficients") {
+  checkAgainstQuadrature(30000);
+}
+
+// A minute.
+TEST_CASE("what arrives in a voxel is what quadrature over a hundred thousand directions finds", "[.]") {
+  checkAgainstQuadrature(100000);
+}
+
+TEST_CASE("openness is by default that of a tenth of the scene's diagonal, as the reference's") {
+  const Lit lit("cornell", 16);
+  const glm::dvec3 diagonal(lit.snapshot.bounds.high - lit.snapshot.bounds.low);
+  const auto open = [&](double distance) {
+    PassHarness occlude(device(), techniques(), "imperfect_volumes", "occlude", lit.scene, lit.snapshot);
+    occlude.setInput("opacity", lit.opacity);
+    occlude.setParameter("rays", 64);
+    occlude.setParameter("distance", distance);
+    occlude.run();
+    return occlude.output<ShGrid>("visibility").levels[0].coefficients[0]->downloadFloats(0);
+  };
+  const std::vector<float> byDefault = open(0.0);
+  CHECK(byDefault == open(0.1 * glm::length(diagonal)));
+  CHECK(byDefault != open(0.2 * glm::length(diagonal)));
 }
 
 TEST_CASE("a scene a thousand times as small has the same picture, where free voxels are equally near too") {
