@@ -17,16 +17,18 @@
 namespace lumivox::test {
 
 /// A command in a process of its own that can be sent a signal. What it says on standard error goes to a file
-/// where one is named.
+/// where one is named; at a value that is named the pipeline `slow` stays until a signal comes.
 class Started {
  public:
-  explicit Started(std::vector<std::string> arguments, const std::string& errors = {}) {
+  explicit Started(std::vector<std::string> arguments, const std::string& errors = {},
+                   const std::string& holdAt = {}) {
     const std::string program = (binaryDirectory() / "bin/lumivox").string();
     pid_ = fork();
     if (pid_ != 0) return;
     const int nowhere = open("/dev/null", O_RDWR);
     for (const int descriptor : {0, 1, 2}) dup2(nowhere, descriptor);
     if (!errors.empty()) dup2(open(errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), 2);
+    if (!holdAt.empty()) setenv("LUMIVOX_TEST_HOLD_AT", holdAt.c_str(), 1);
     std::vector<char*> pointers{const_cast<char*>(program.c_str())};
     for (std::string& argument : arguments) pointers.push_back(argument.data());
     pointers.push_back(nullptr);
@@ -107,9 +109,9 @@ class Place : public Workplace {
 /// Waits until something holds, at most a minute, which is far more than any step of a test takes.
 template <class Condition>
 bool becomes(const Condition& condition) {
-  for (int i = 0; i < 600; ++i) {
+  for (int i = 0; i < 3000; ++i) {
     if (condition()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   return false;
 }
