@@ -107,6 +107,8 @@ class ShadePass : public Pass {
   Param<int> mediumSteps{this, "medium_steps", 32, within(1, 1024),
                          "most steps through a medium that varies, towards a light"};
   Param<bool> shadows{this, "shadows", true, "test visibility; off: lights shine through everything"};
+  Param<bool> areaLights{this, "area_lights", true,
+                         "light of emissive surfaces; off: another pass brings it, and they alone are seen"};
   Out<Image> radiance{this, "radiance", Contributes::direct, Needs::nothing,
                       "emission and light that is reflected once, W/(sr m^2)"};
 
@@ -120,10 +122,12 @@ class ShadePass : public Pass {
                                  .glossy = gbuffer->specular != nullptr,
                                  .emission = frame.traits().emission,
                                  .medium = bound.axis};
+    const auto withoutExtent = static_cast<int>(frame.snapshot().lights.size());  // they come first
+    const int lightCount = areaLights ? lights.count : std::min(lights.count, withoutExtent);
     radiance = Image{frame.image("direct radiance")};
     frame.dispatch(frame.program(variant),
                    {shade::directLight({.eyeWorld = frame.snapshot().camera.eye,
-                                        .lightCount = lights.count,
+                                        .lightCount = lightCount,
                                         .environment = frame.sceneDescription().environment,
                                         .mediumSteps = mediumSteps}),
                     GBufferBinding(*gbuffer), shade::emissionImage(gbuffer->emission), lights, bound,

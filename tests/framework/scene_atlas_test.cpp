@@ -222,3 +222,40 @@ TEST_CASE("an atlas of nothing is empty, and one without bounds is refused befor
   CHECK(messageOf<Error>([&] { makeSurfaceAtlas(room, 0.0); }).find("above 0") != std::string::npos);
   CHECK(messageOf<Error>([&] { makeSurfaceAtlas(room, 1e-9); }).find("texels") != std::string::npos);
 }
+
+TEST_CASE("the areas of texels sum to that of the surface, and every texel's chart is its triangle's") {
+  const auto wave = [](double u, double v) {
+    return glm::vec3(u, 0.2 * std::sin(9.0 * u) * std::cos(7.0 * v), v);
+  };
+  for (const int n : {1, 7, 60})
+    for (const AtlasPlaces places : {AtlasPlaces::centres, AtlasPlaces::middles}) {
+      const Scene scene = gridOf(n, wave);
+      double surface = 0.0, texels = 0.0;
+      for (std::uint32_t t = 0; t < scene.triangleCount(); ++t)
+        surface += 0.5 * glm::length(glm::cross(corner(scene, t, 1) - corner(scene, t, 0),
+                                                corner(scene, t, 2) - corner(scene, t, 0)));
+      const SurfaceAtlas atlas = makeSurfaceAtlas(scene, {0.043}, places);
+      for (const AtlasTexel& texel : atlas.texels) {
+        texels += static_cast<double>(texel.area);
+        CHECK(texel.chart < atlas.chartCount);
+        CHECK(texel.chart == atlas.chartOfTriangle[texel.triangle]);
+      }
+      CHECK(texels == Approx(surface).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("an object has texels of its own size; placed at middles they fill a rectangle evenly") {
+  Scene scene = gridOf(1, [](double u, double v) { return glm::vec3(u, 0, v); });
+  addTriangles(scene, {{3, 0, 0}, {3, 0, 1}, {4, 0, 1}, {4, 0, 0}}, {0, 1, 2, 0, 2, 3});
+  const SurfaceAtlas atlas = makeSurfaceAtlas(scene, {0.21, 0.07}, AtlasPlaces::middles);
+  // 4.8 texels a side are made 4, and 14.3 are made 16 or 12: the nearest multiple of 2 or 4.
+  CHECK(atlas.parts[0].texelCount == 16);
+  CHECK(atlas.parts[1].texelCount == 256);
+  for (std::uint32_t i = 0; i < 16; ++i) {
+    const AtlasTexel& texel = atlas.texels[i];
+    CHECK(static_cast<double>(texel.area) == Approx(1.0 / 16.0).epsilon(1e-6));
+    const glm::dvec3 at = place(scene, texel);
+    for (const double along : {4.0 * at.x, 4.0 * at.z})
+      CHECK(along - std::floor(along) == Approx(0.5).margin(1e-5));
+  }
+}

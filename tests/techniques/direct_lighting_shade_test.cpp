@@ -70,3 +70,35 @@ TEST_CASE(
   for (int c = 0; c < 3; ++c) CHECK(valueOf(image, 0, c) == scene.environment[c]);
   for (const int pixel : {0, 1}) CHECK(valueOf(image, pixel, 3) == 1.0f);
 }
+
+TEST_CASE(
+    "shading that leaves out emissive surfaces as lights keeps all other lights, and what shines is still seen") {
+  Scene scene = emptyScene();
+  scene.lights.emplace_back();  // the sun below: lights without extent come first
+  PassHarness shade(device(), techniques(), "direct_lighting", "shade", scene, snapshotOf(scene, 0.0));
+  shade.setInput("gbuffer", floorSeen());
+  ShadowMap lights = darkSquare();
+  LightSampleData sun{};
+  sun.direction = {0, -1, 0};
+  sun.power = glm::vec3(static_cast<float>(kPi));
+  sun.firstView = -1;
+  LightSampleData patch{};  // 1 W/sr from a metre above the middle, downwards
+  patch.kind = LightSampleKind::area;
+  patch.position = {0, 1, 0};
+  patch.direction = {0, -1, 0};
+  patch.power = glm::vec3(1.0f);
+  patch.firstView = -1;
+  lights.lightCount = 2;
+  lights.lights = std::make_shared<gpu::Buffer>(device(), 2 * sizeof(sun), "lights");
+  lights.lights->uploadValues(std::span<const LightSampleData>(std::array{sun, patch}));
+  shade.setInput("shadow", lights);
+  const auto radianceAt = [&](int pixel, const char* areaLights) {
+    shade.setParameter("area_lights", std::string(areaLights));
+    shade.run();
+    return valueOf(imageOf(*shade.output<Image>("radiance").texture, 4), pixel);
+  };
+  const int middle = kPixels / 2 * kPixels + kPixels / 2;
+  CHECK(radianceAt(middle, "off") == Approx(0.5).epsilon(1e-4));
+  // Albedo over pi times the intensity, at a distance of a metre.
+  CHECK(radianceAt(middle, "on") == Approx(0.5 + 0.5 / kPi).epsilon(2e-3));
+}

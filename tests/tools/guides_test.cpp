@@ -131,10 +131,19 @@ TEST_CASE("the stores of cones are drawn and compared as their guide says") {
 TEST_CASE("imperfect volumes with and without holes are drawn and exported as their guide says") {
   const FollowedGuide guide("docs/imperfect_volumes.md");
   checkFollowed(guide);
-  for (const char* image : {"out/holes.png", "out/whole.png"}) CHECK(guide.has(image));
-  const CommandResult exported = guide.run("vdbexport --list out/incoming.vdb");
-  for (const char* field : {"march.incoming.Y00", "march.incoming.Y11"})
-    CHECK(contains(exported.output, field));
+  for (const char* image : {"out/points_few.png", "out/points_many.png", "out/holes.png", "out/whole.png"})
+    CHECK(guide.has(image));
+  CHECK(readFile(guide.file("out/points_few.png")) != readFile(guide.file("out/points_many.png")));
+  const CommandResult light = guide.run("vdbexport --list out/light.vdb");
+  for (const char* field : {"inject.reflected.Y00", "march.incoming.Y00", "march.incoming.Y11"})
+    CHECK(contains(light.output, field));
+  CHECK(contains(guide.run("vdbexport --list out/openness.vdb").output, "occlude.visibility.Y00"));
+}
+
+TEST_CASE("segments of elements are drawn as their guide says") {
+  const FollowedGuide guide("docs/surface_elements.md");
+  checkFollowed(guide);
+  CHECK(readFile(guide.file("out/segments.png")) != readFile(guide.file("out/vertices.png")));
 }
 
 TEST_CASE("the report's guide tells what a report writes") {

@@ -40,7 +40,7 @@ RenderOptions smallOptions(const Pipeline& pipeline) {
   options.height = 32;
   const std::map<std::string, double> small{{"resolution", 32}, {"area_samples", 4}, {"surfaces", 16},
                                             {"iterations", 8},  {"samples", 25},     {"cones", 2},
-                                            {"rays", 4}};
+                                            {"rays", 4},        {"elements", 512},   {"bins", 4}};
   for (const PipelineParameter& parameter : pipeline.parameters)
     if (const auto value = small.find(parameter.name); value != small.end())
       options.parameters[parameter.name].number = value->second;
@@ -120,7 +120,12 @@ TEST_CASE("leaving out passes and variants gives the bit-identical image on ever
 }
 
 TEST_CASE("leaving out passes and variants gives the bit-identical image on the well-known models") {
-  for (const auto& file : scenes(false)) checkSameImage(file);
+  // Of the scenes of published figures that differ in materials and media alone, the one with all of them.
+  std::vector<std::filesystem::path> files = scenes(false);
+  std::erase_if(files, [](const auto& file) {
+    return file.parent_path().filename() == "reproductions" && file.stem() != "sponza_thesis";
+  });
+  for (const auto& file : files) checkSameImage(file);
 }
 
 namespace {

@@ -10,9 +10,9 @@
 namespace lumivox::models {
 
 // A cloth of 1 m x 1 m that hangs from its upper edge, y = 0, and waves: its points move along z by a wave
-// that runs down and grows towards the free edge. Six frames are one period.
+// that runs down and grows towards the free edge. Eight frames are one period.
 void writeWavingCloth(const std::filesystem::path& directory) {
-  constexpr int kFrames = 6, kSide = 16;  // quads along both sides
+  constexpr int kFrames = 8, kSide = 16;  // quads along both sides
   constexpr double kAmplitude = 0.15, kWaves = 1.5, kSlant = 0.3, kPi = std::numbers::pi;
   for (int frame = 0; frame < kFrames; ++frame) {
     const double phase = 2.0 * kPi * frame / kFrames;

@@ -21,6 +21,9 @@ int main(int argumentCount, char** arguments) {
     lumivox::models::writeBlock(directory);
     lumivox::models::writeWavingCloth(directory);
     lumivox::models::writeVase(directory);
+    lumivox::models::writeTurned(directory);
+    lumivox::models::writeTables(directory);
+    lumivox::models::writeTableTextures(directory / "textures");
     lumivox::models::writeArcade(directory);
     lumivox::models::writeArcadeTextures(directory / "textures");
     lumivox::models::writeStressModels(directory);

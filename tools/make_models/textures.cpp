@@ -1,4 +1,5 @@
-// The arcade's textures: small, made of a few lines of arithmetic, and repeating without a seam.
+// Textures of the arcade and of tables: small, made of a few lines of arithmetic, and repeating without a
+// seam.
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -92,6 +93,21 @@ void writeArcadeTextures(const std::filesystem::path& directory) {
          }
          return glm::dvec3(0);
        }));
+}
+
+void writeTableTextures(const std::filesystem::path& directory) {
+  writePng(directory / "chequer.png", paint(64, 3, [](double u, double v) {  // a chess board
+             const bool light = (static_cast<int>(u * 8) + static_cast<int>(v * 8)) % 2 == 0;
+             return light ? glm::dvec3(0.75, 0.7, 0.6) : glm::dvec3(0.3, 0.18, 0.1);
+           }));
+  writePng(directory / "pattern.png", paint(128, 3, [](double u, double v) {  // rings in a lattice of stripes
+             const double x = u * 6 - std::floor(u * 6) - 0.5, y = v * 6 - std::floor(v * 6) - 0.5,
+                          r = std::hypot(x, y);
+             if (r < 0.16) return glm::dvec3(0.75, 0.2, 0.12);
+             if (r > 0.24 && r < 0.34) return glm::dvec3(0.15, 0.3, 0.55);
+             if (std::abs(x) > 0.44 || std::abs(y) > 0.44) return glm::dvec3(0.2, 0.4, 0.25);
+             return glm::dvec3(0.8, 0.76, 0.66);
+           }));
 }
 
 }  // namespace lumivox::models

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -16,7 +17,7 @@ namespace lumivox {
 namespace {
 
 constexpr double kLongestSide = 65535.0;  // that AtlasTexel::x and y can count
-constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNobody = SurfaceAtlas::kNoChart;
 
 [[noreturn]] void tooLarge(double texels) {
   throw Error(fmt::format("the atlas would have {:.3g} texels; at most {} are made: larger texels need fewer",
@@ -28,6 +29,7 @@ struct Patch {
   WeldedObject welded;
   std::vector<glm::dvec3> places;                    ///< m
   std::vector<glm::dvec3> normals;                   ///< of triangles; zero without area
+  std::vector<double> areas;                         ///< of triangles, m^2
   std::vector<std::array<std::uint32_t, 3>> beyond;  ///< neighbour across each side, kNobody: none
 
   Patch(const Scene& scene, const Object& object) : welded(weld(scene, object)) {
@@ -37,6 +39,7 @@ struct Patch {
       const glm::dvec3 normal = glm::cross(at(t, 1) - at(t, 0), at(t, 2) - at(t, 0));
       const double size = glm::length(normal);
       normals.push_back(size > 0.0 ? normal / size : glm::dvec3(0.0));
+      areas.push_back(0.5 * size);
     }
     connect();
   }
@@ -159,6 +162,42 @@ glm::dvec2 nearestIn(const Triangle2d& t, const glm::dvec2& point) {
   return result;
 }
 
+/// The part of a triangle within a unit square.
+struct Piece {
+  double area = 0.0;
+  glm::dvec2 middle{0.0};
+};
+Piece pieceOf(const Triangle2d& t, const glm::dvec2& centre) {
+  std::array<glm::dvec2, 8> corners{t[0], t[1], t[2]}, kept;
+  std::size_t count = 3;
+  for (const int axis : {0, 1})
+    for (const double side : {-1.0, 1.0}) {
+      const double border = centre[axis] + 0.5 * side;
+      std::size_t keptCount = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const glm::dvec2 &a = corners[i], &b = corners[(i + 1) % count];
+        const double ha = side * (border - a[axis]), hb = side * (border - b[axis]);
+        if (ha >= 0.0) kept[keptCount++] = a;
+        if ((ha > 0.0 && hb < 0.0) || (ha < 0.0 && hb > 0.0))
+          kept[keptCount++] = a + ha / (ha - hb) * (b - a);
+      }
+      corners = kept;
+      count = keptCount;
+      if (count < 3) return {};
+    }
+  Piece piece;
+  glm::dvec2 moment(0.0);
+  for (std::size_t i = 1; i + 1 < count; ++i) {
+    const glm::dvec2 a = corners[i] - corners[0], b = corners[i + 1] - corners[0];
+    const double area = 0.5 * (a.x * b.y - a.y * b.x);
+    piece.area += area;
+    moment += area / 3.0 * (a + b);
+  }
+  if (piece.area != 0.0) piece.middle = corners[0] + moment / piece.area;
+  piece.area = std::abs(piece.area);
+  return piece;
+}
+
 /// Calls `visit(texel, its centre)` for the texels in the bounds of a triangle.
 template <class Visit>
 void forEachTexel(const Triangle2d& t, int width, int height, Visit&& visit) {
@@ -178,17 +217,24 @@ struct PackedChart {
 
 class AtlasMaker {
  public:
-  AtlasMaker(const Scene& scene, double texelSize) : scene_(scene), texelSize_(texelSize) {}
+  AtlasMaker(const Scene& scene, const std::vector<double>& texelSizes, AtlasPlaces places)
+      : scene_(scene),
+        texelSizes_(texelSizes),
+        places_(places),
+        chartOfTriangle_(scene.triangleCount(), kNobody) {}
 
   SurfaceAtlas make() {
     std::uint32_t firstPart = 0;
-    for (const Object& object : scene_.objects) {
+    for (std::size_t i = 0; i < scene_.objects.size(); ++i) {
+      const Object& object = scene_.objects[i];
+      texelSize_ = texelSizes_[i];
       addObject(object, firstPart);
       firstPart += static_cast<std::uint32_t>(object.parts.size());
     }
     SurfaceAtlas atlas;
     atlas.side = pack();
     atlas.chartCount = charts_.size();
+    atlas.chartOfTriangle = std::move(chartOfTriangle_);
     sortByParts(atlas, firstPart);
     return atlas;
   }
@@ -224,10 +270,7 @@ class AtlasMaker {
 
   /// Before memory is taken.
   void checkArea(const Patch& patch) {
-    for (std::size_t t = 0; t < patch.welded.triangleCount(); ++t)
-      area_ += 0.5 *
-               glm::length(glm::cross(patch.at(t, 1) - patch.at(t, 0), patch.at(t, 2) - patch.at(t, 0))) /
-               (texelSize_ * texelSize_);
+    for (const double area : patch.areas) area_ += area / (texelSize_ * texelSize_);
     if (!(area_ <= static_cast<double>(kMostAtlasTexels))) tooLarge(area_);
   }
 
@@ -273,12 +316,31 @@ class AtlasMaker {
           std::max(bestSize.x, bestSize.y) < kLongestSide))
       tooLarge(smallest);
     Chart chart{std::move(triangles), {}, static_cast<int>(bestSize.x) + 1, static_cast<int>(bestSize.y) + 1};
+    glm::dvec2 texels(1.0 / texelSize_);  // a metre, along both axes
+    if (places_ == AtlasPlaces::middles) {
+      chart.width = divide(bestSize.x, texels.x);
+      chart.height = divide(bestSize.y, texels.y);
+      bestLow *= texelSize_ * texels;
+    }
     for (const std::uint32_t t : chart.triangles) {
       Triangle2d& corners = chart.corners.emplace_back();
       for (std::size_t k = 0; k < 3; ++k)
-        corners[k] = glm::max(best(patch.at(t, k)) / texelSize_ - bestLow, glm::dvec2(0.0));
+        corners[k] = glm::max(best(patch.at(t, k)) * texels - bestLow, glm::dvec2(0.0));
     }
     return chart;
+  }
+
+  /// Changes the texels along a side so that a whole number fits: where there are many a multiple of four, so
+  /// that squares of two and of four texels a side fill the chart. Returns it.
+  static int divide(double size, double& texels) {
+    constexpr double kRounding = 1e-6;
+    double whole = std::max(std::ceil(size - kRounding), 1.0);
+    if (whole > 10.0)
+      whole = 4.0 * std::round(0.25 * size);
+    else if (whole > 3.0)
+      whole = 2.0 * std::round(0.5 * size);
+    if (size > kRounding) texels *= whole / size;
+    return static_cast<int>(whole);
   }
 
   /// Who owns the texels of a chart's rectangle.
@@ -286,7 +348,10 @@ class AtlasMaker {
     std::vector<std::uint32_t> owners;  ///< numbers in the chart, kNobody: nobody
     std::vector<glm::dvec3> places;     ///< of the owner, m
     std::vector<double> gaps;           ///< from the texel's centre to its owner, 0 inside
-    explicit Ownership(std::size_t size) : owners(size, kNobody), places(size), gaps(size, kUntouched) {}
+    std::vector<double> areas;          ///< of the surface within the texel, m^2
+    std::vector<glm::dvec2> middles;    ///< of that surface, in the chart, times its area
+    explicit Ownership(std::size_t size)
+        : owners(size, kNobody), places(size), gaps(size, kUntouched), areas(size), middles(size) {}
     static constexpr double kUntouched = std::numeric_limits<double>::infinity();
   };
 
@@ -296,8 +361,11 @@ class AtlasMaker {
       std::size_t at;
       double gap;
       glm::dvec3 place;
+      Piece piece;
     };
     const Triangle2d& t = chart.corners[i];
+    const glm::dvec2 e1 = t[1] - t[0], e2 = t[2] - t[0];
+    const double flat = 0.5 * std::abs(e1.x * e2.y - e1.y * e2.x), area = patch.areas[chart.triangles[i]];
     std::vector<Claim> claims;
     bool free = true;
     forEachTexel(t, chart.width, chart.height, [&](std::size_t at, const glm::dvec2& centre) {
@@ -313,10 +381,13 @@ class AtlasMaker {
       free = !(gap == 0.0 && ownership.gaps[at] == 0.0) &&
              (ownership.owners[at] == kNobody ||
               glm::length(point - ownership.places[at]) <= kSheet * texelSize_);
-      claims.push_back({at, gap, point});
+      claims.push_back({at, gap, point, pieceOf(t, centre)});
     });
     if (!free) return false;
     for (const Claim& claim : claims) {
+      const double share = flat > 0.0 ? claim.piece.area / flat * area : 0.0;
+      ownership.areas[claim.at] += share;
+      ownership.middles[claim.at] += share * claim.piece.middle;
       if (claim.gap >= ownership.gaps[claim.at]) continue;
       ownership.owners[claim.at] = i;
       ownership.places[claim.at] = claim.place;
@@ -331,23 +402,52 @@ class AtlasMaker {
     const std::size_t size = static_cast<std::size_t>(chart.width) * static_cast<std::size_t>(chart.height);
     Ownership ownership(size);
     std::vector<std::uint32_t> rejected;
+    const auto number = static_cast<std::uint32_t>(charts_.size());
     for (std::uint32_t i = 0; i < chart.triangles.size(); ++i)
-      if (!take(patch, chart, i, ownership)) rejected.push_back(chart.triangles[i]);
+      if (take(patch, chart, i, ownership))
+        chartOfTriangle_[patch.welded.firstIndices[chart.triangles[i]] / 3] = number;
+      else
+        rejected.push_back(chart.triangles[i]);
+    if (places_ == AtlasPlaces::middles) findMiddles(chart, rejected, ownership);
     const std::size_t first = texels_.size();
     for (std::size_t at = 0; at < size; ++at) {
       const std::uint32_t owner = ownership.owners[at];
       if (owner == kNobody) continue;
       const auto x = static_cast<std::uint16_t>(at % static_cast<std::size_t>(chart.width)),
                  y = static_cast<std::uint16_t>(at / static_cast<std::size_t>(chart.width));
-      const glm::dvec2 weights = nearestIn(chart.corners[owner], {x + 0.5, y + 0.5});
+      const glm::dvec2 place =
+          places_ == AtlasPlaces::middles ? ownership.middles[at] : glm::dvec2(x + 0.5, y + 0.5);
+      const glm::dvec2 weights = nearestIn(chart.corners[owner], place);
       const std::uint32_t t = chart.triangles[owner];
       texels_.push_back({{x, y, patch.welded.firstIndices[t] / 3, static_cast<float>(weights.x),
-                          static_cast<float>(weights.y)},
+                          static_cast<float>(weights.y), static_cast<float>(ownership.areas[at]), number},
                          parts[t]});
     }
     if (texels_.size() > kMostAtlasTexels) tooLarge(static_cast<double>(texels_.size()));
     charts_.push_back({chart.width, chart.height, first, texels_.size() - first});
     return rejected;
+  }
+
+  /// Places texels at the middle of their surface, and gives each to the triangle there.
+  void findMiddles(const Chart& chart, const std::vector<std::uint32_t>& rejected,
+                   Ownership& ownership) const {
+    constexpr double kLeast = 1e-6;  // of a texel
+    for (std::size_t at = 0; at < ownership.owners.size(); ++at)
+      if (ownership.areas[at] > kLeast * texelSize_ * texelSize_)
+        ownership.middles[at] /= ownership.areas[at];
+      else
+        ownership.owners[at] = kNobody;
+    std::size_t passed = 0;
+    for (std::uint32_t i = 0; i < chart.triangles.size(); ++i) {
+      if (passed < rejected.size() && rejected[passed] == chart.triangles[i]) {
+        ++passed;
+        continue;
+      }
+      forEachTexel(chart.corners[i], chart.width, chart.height, [&](std::size_t at, const glm::dvec2&) {
+        if (ownership.owners[at] != kNobody && inside(chart.corners[i], ownership.middles[at]))
+          ownership.owners[at] = i;
+      });
+    }
   }
 
   /// Rectangles on shelves, the highest first, in the smallest square that takes them. Returns its side.
@@ -399,8 +499,11 @@ class AtlasMaker {
   }
 
   const Scene& scene_;
-  double texelSize_;
-  double area_ = 0.0;  ///< of all triangles so far, in texels
+  const std::vector<double>& texelSizes_;  ///< m, of each object
+  AtlasPlaces places_;
+  double texelSize_ = 0.0;                      ///< m, of the object at work
+  std::vector<std::uint32_t> chartOfTriangle_;  ///< of Scene::indices
+  double area_ = 0.0;                           ///< of all triangles so far, in texels
   std::vector<PlacedTexel> texels_;
   std::vector<PackedChart> charts_;
 };
@@ -408,8 +511,14 @@ class AtlasMaker {
 }  // namespace
 
 SurfaceAtlas makeSurfaceAtlas(const Scene& scene, double texelSize) {
-  if (!(texelSize > 0.0)) throw Error(fmt::format("a texel of {} m; its size must be above 0", texelSize));
-  return AtlasMaker(scene, texelSize).make();
+  return makeSurfaceAtlas(scene, std::vector<double>(scene.objects.size(), texelSize));
+}
+
+SurfaceAtlas makeSurfaceAtlas(const Scene& scene, const std::vector<double>& texelSizes, AtlasPlaces places) {
+  assert(texelSizes.size() == scene.objects.size());
+  for (const double size : texelSizes)
+    if (!(size > 0.0)) throw Error(fmt::format("a texel of {} m; its size must be above 0", size));
+  return AtlasMaker(scene, texelSizes, places).make();
 }
 
 }  // namespace lumivox

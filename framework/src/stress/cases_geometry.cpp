@@ -143,6 +143,59 @@ std::optional<Finding> millionTriangles(Bench& bench) {
   return sameAs(bench, floorOf(1), floorOf(kCells), 0.01, "the floor of two triangles");
 }
 
+/// Two squares of 1 m that meet at an angle of 1 degree, lit by a sun that shines straight into the gap, so
+/// that both have the same irradiance everywhere: pi. The camera looks into the gap from its mouth.
+Scene wedge(float albedo) {
+  constexpr double kHalf = 0.5 * std::numbers::pi / 180.0;
+  const glm::vec3 lower(std::cos(kHalf), -std::sin(kHalf), 0.0), upper(std::cos(kHalf), std::sin(kHalf), 0.0);
+  SceneBuilder builder;
+  const int grey = builder.lambert(albedo);
+  builder.quad({0, 0, -0.5}, {0, 0, 1}, lower, grey);
+  builder.quad({0, 0, -0.5}, upper, {0, 0, 1}, grey);
+  builder.light(LightKind::directional, glm::vec3(std::numbers::pi / std::sin(kHalf)), {}, {-1, 0, 0});
+  builder.look({1.5, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0, 1, 0}, 0.03, 64, 64);
+  return builder.scene;
+}
+
+std::optional<Finding> acuteWedge(Bench& bench) {
+  if (!makesImages(bench)) return std::nullopt;
+  constexpr float kAlbedo = 0.7f;
+  const Scene scene = wedge(kAlbedo);
+  const Frame frame = bench.render(scene);
+  if (frame.whole.empty()) return withoutLight();
+  // Everything reflects `kAlbedo` at first, and a bounce passes on no more than that share of what was there.
+  double bound = kAlbedo, bounce = kAlbedo;
+  int bounces = 0;
+  if (makesIndirect(frame))
+    for (const auto& [output, modelled] : frame.result.indirectBounces) bounces = std::max(bounces, modelled);
+  for (int i = 0; i < bounces; ++i) bound += bounce *= kAlbedo;
+  std::string detail;
+  if (makesIndirect(frame))
+    detail = fmt::format("mean of the indirect light, of that of an endless wedge: {:.3g}",
+                         meanOf(indirectOf(frame)) / (bound - kAlbedo));
+  // Half a percent of rounding of textures of half floats.
+  return judged("largest radiance, of the most that so many bounces can bring",
+                {largestOf(frame.whole) / bound, 0.0}, 1.005, detail);
+}
+
+std::optional<Finding> manyObjects(Bench& bench) {
+  constexpr int kSide = 128;
+  static_assert(kSide * kSide == 16384);
+  const glm::vec3 corner(-1.5f, -0.2f, -1.5f), edge1(0, 0, 3), edge2(3, 0, 0);
+  const auto floorOf = [&](bool separate) {
+    SceneBuilder builder = openFloor();
+    builder.light(LightKind::directional, glm::vec3(3.0f), {}, {-0.3, -1.0, -0.4});
+    const int grey = builder.lambert(0.5f);
+    if (!separate) builder.mesh(gridOfTriangles(corner, edge1, edge2, kSide, kSide), grey);
+    for (int i = 0; separate && i < kSide * kSide; ++i)
+      builder.quad(corner + (static_cast<float>(i % kSide) * edge1 + static_cast<float>(i / kSide) * edge2) /
+                                static_cast<float>(kSide),
+                   edge1 / static_cast<float>(kSide), edge2 / static_cast<float>(kSide), grey);
+    return builder.scene;
+  };
+  return sameAs(bench, floorOf(false), floorOf(true), 0.01, "the squares as one mesh");
+}
+
 Scene sunlitFloor() {
   SceneBuilder builder = openFloor();
   builder.light(LightKind::directional, glm::vec3(3.0f), {}, {-0.3, -1.0, -0.4});
@@ -250,6 +303,12 @@ std::vector<Case> geometryCases() {
        sealedCamera},
       {info("million_triangles", "a floor of a million tiny triangles: the image of two large ones", false),
        millionTriangles},
+      {info("acute_wedge", "two planes at an angle of 1 degree: no more light than so many bounces can bring",
+            true),
+       acuteWedge},
+      {info("many_objects", "16,384 squares, each an object of its own: the image of one mesh of them",
+            false),
+       manyObjects},
       {info("far_speck", "a speck a kilometre away makes voxels huge, and changes nothing that could be seen",
             false),
        farSpeck},

@@ -6,6 +6,8 @@
 
 #include "lumivox/pipeline/ports/attribute_grid.h"
 #include "lumivox/pipeline/ports/binary_grid.h"
+#include "lumivox/pipeline/ports/element_light.h"
+#include "lumivox/pipeline/ports/element_links.h"
 #include "lumivox/pipeline/ports/g_buffer.h"
 #include "lumivox/pipeline/ports/image.h"
 #include "lumivox/pipeline/ports/occupancy_grid.h"
@@ -15,6 +17,7 @@
 #include "lumivox/pipeline/ports/scattering_grid.h"
 #include "lumivox/pipeline/ports/sh_grid.h"
 #include "lumivox/pipeline/ports/shadow_map.h"
+#include "lumivox/pipeline/ports/surface_elements.h"
 #include "lumivox/pipeline/ports/voxel_fragments.h"
 
 namespace lumivox {
@@ -26,6 +29,7 @@ struct PortList {
   static std::vector<const PortKind*> kinds() { return {&portKind<Ports>()...}; }
 };
 using FrameworkPorts = PortList<Image, GBuffer, ShadowMap, ReflectiveShadowMap, VoxelFragments, OccupancyGrid,
-                                BinaryGrid, AttributeGrid, RadianceGrid, ShGrid, Particles, ScatteringGrid>;
+                                BinaryGrid, AttributeGrid, RadianceGrid, ShGrid, Particles, ScatteringGrid,
+                                SurfaceElements, ElementLinks, ElementLight>;
 
 }  // namespace lumivox

@@ -15,6 +15,8 @@ struct AtlasTexel {
   std::uint16_t x = 0, y = 0;         ///< in the square
   std::uint32_t triangle = 0;         ///< of Scene::indices: its first index divided by three
   float second = 0.0f, third = 0.0f;  ///< barycentric coordinates of its second and third corner
+  float area = 0.0f;  ///< of the surface within the texel, m^2 at rest; those of all sum to the surface's
+  std::uint32_t chart = 0;  ///< 0 .. SurfaceAtlas::chartCount - 1
   bool operator==(const AtlasTexel&) const = default;
 };
 
@@ -28,7 +30,16 @@ struct SurfaceAtlas {
   std::size_t chartCount = 0;
   std::vector<AtlasTexel> texels;  ///< those that lie on the surface, by parts; at most one for each place
   std::vector<AtlasPart> parts;    ///< of all objects, in their order
+  /// The chart of each triangle of Scene::indices; kNoChart for one that no object has.
+  std::vector<std::uint32_t> chartOfTriangle;
+  static constexpr std::uint32_t kNoChart = 0xffffffffu;
 };
+
+/// Where the place of a texel is. centres: at the texel's centre, as makeSurfaceAtlas says. middles: at the
+/// middle of the surface within the texel; the texels of a chart are then changed so that they divide its
+/// rectangle evenly, by 2 or 4 where there are several, and texels that the surface hardly enters (10^-6 of
+/// their area) are left out.
+enum class AtlasPlaces { centres, middles };
 
 /// Charts are clusters of triangles that share edges and lie within kLargestChartTilt of their first one;
 /// each is projected along that one's normal onto square texels of `texelSize` metres at rest, so that
@@ -38,6 +49,9 @@ struct SurfaceAtlas {
 /// surface is farther than 3.5 texels from the place of one. The same scene always gives the same atlas.
 /// Error when the texels would be more than kMostAtlasTexels.
 SurfaceAtlas makeSurfaceAtlas(const Scene& scene, double texelSize);
+/// The same with a texel size of its own for each of Scene::objects.
+SurfaceAtlas makeSurfaceAtlas(const Scene& scene, const std::vector<double>& texelSizes,
+                              AtlasPlaces places = AtlasPlaces::centres);
 
 inline constexpr double kLargestChartTilt = 0.7853981633974483;  ///< 45 degrees, rad
 inline constexpr std::uint64_t kMostAtlasTexels = std::uint64_t{1} << 25;

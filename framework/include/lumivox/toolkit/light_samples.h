@@ -50,11 +50,12 @@ struct LightSet {
   std::vector<LightDisc> discs;  ///< one for each light, in the order of their samples
 };
 
-/// Lights without extent become one sample each. Emissive triangles together become `areaSamples` samples:
-/// one for each emissive part of an object and the others by emitted power, chosen with stratified numbers
-/// and placed by the R2 sequence, so that the same scene always gives the same samples. They lie where alpha
-/// masks leave the triangles, and the samples of a part carry all of its light: no hole shines. Of more parts
-/// than samples the dimmest may have none; each sample then is a disc of its own.
+/// Lights without extent become one sample each, and come first. Emissive triangles together become
+/// `areaSamples` samples: one for each emissive part of an object and the others by emitted power, chosen
+/// with stratified numbers and placed by the R2 sequence, so that the same scene always gives the same
+/// samples. They lie where alpha masks leave the triangles, and the samples of a part carry all of its light:
+/// no hole shines. Of more parts than samples the dimmest may have none; each sample then is a disc of its
+/// own.
 LightSet sampleLights(const Scene& scene, const SceneSnapshot& snapshot, int areaSamples, int shadowSize);
 
 }  // namespace lumivox

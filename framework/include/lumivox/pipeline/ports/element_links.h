@@ -1,0 +1,79 @@
+#pragma once
+
+#include <bit>
+#include <memory>
+#include <span>
+
+#include "lumivox/pipeline/port.h"
+#include "lumivox/scene/direction_bins.h"
+#include "lumivox/scene/element_tree.h"
+
+namespace lumivox {
+
+/// What an element sees in a bin: another element, and how far away it is. Two words of the device.
+struct ElementLink {
+  std::uint32_t binAndDistance =
+      0;                   ///< bin in the lower half; upper half of the bits of the distance as a float
+  std::uint32_t node = 0;  ///< of ElementTree
+
+  ElementLink() = default;
+  ElementLink(std::uint32_t bin, float distance, std::uint32_t seen)
+      : binAndDistance(bin | (std::bit_cast<std::uint32_t>(distance) & 0xffff0000u)), node(seen) {}
+  std::uint32_t bin() const { return binAndDistance & 0xffffu; }
+  /// m, too small by at most 2^-7 of it.
+  float distance() const { return std::bit_cast<float>(binAndDistance & 0xffff0000u); }
+  bool operator==(const ElementLink&) const = default;
+};
+
+/// Lists of different lengths, one behind the other: list i is values[first[i]] .. values[first[i + 1] - 1].
+template <class Value>
+struct ElementLists {
+  std::vector<std::uint64_t> first{0};
+  std::vector<Value> values;
+  std::size_t size() const { return first.size() - 1; }
+  std::span<const Value> operator[](std::size_t i) const {
+    return std::span(values).subspan(first[i], first[i + 1] - first[i]);
+  }
+  bool operator==(const ElementLists&) const = default;
+};
+
+/// Which elements see which (Dong, Kautz, Theobalt and Seidel 2007, Sec. 4.2). Behind create_links: the pairs
+/// of nodes that may exchange light, at both ends of each. Behind push_links: `seen`, what leaves see, and
+/// its buffers.
+struct ElementLinks {
+  int bins = 0;  ///< along a side of a face of the cube of directions
+  BinMapping mapping = BinMapping::even;
+  /// The partners of each node of which some leaf moves, or it itself; and those of nodes that stand still
+  /// among themselves. Null where every leaf is a partner of every other one.
+  std::shared_ptr<const ElementLists<std::uint32_t>> movingPartners, stillPartners;
+  std::shared_ptr<const ElementLists<ElementLink>>
+      seen;  ///< of each leaf, by growing bins, a bin at most once
+  gpu::BufferRef directions, first, links;
+  gpu::BufferRef lights;  ///< null where nothing emits
+};
+
+template <>
+struct PortTraits<ElementLinks> {
+  static PortKind kind() {
+    return {
+        "ElementLinks",
+        "which surface elements see which, by bins of directions",
+        {{"directions", "buffer", "vec4 a bin: xyz direction of its centre; w solid angle, sr",
+          PortResource::Sign::any},
+         {"first", "buffer",
+          "uvec4 a leaf: where its links begin, and how many there are, by growing bins; bits of the float "
+          "projectionScale() of its normal; 0"},
+         {"links", "buffer",
+          "uvec2 a link: bin (lower half) and upper half of the distance as a float, m; node that is seen"},
+         {"lights", "buffer",
+          "uvec2 a leaf: where its list begins, counted in words of this buffer, and its length; then the lists: "
+          "numbers of links to nodes that emit, growing"}}};
+  }
+  static void contents(const ElementLinks& port, PortContents& contents) {
+    contents.buffer("first", port.first);
+    contents.buffer("links", port.links);
+    contents.buffer("lights", port.lights);
+  }
+};
+
+}  // namespace lumivox

@@ -1,0 +1,54 @@
+#version 450
+// Dong et al. 2007, Sec. 4.3.1, on pixels in place of vertices: values of elements around what the camera sees. OF irradiance: reflected by the
+// diffuse lobe. value: as it is (openness, or light that the elements' own lobe reflects). segments: a colour for each (Fig. 3a).
+#pragma lumivox axis OF irradiance value segments
+#pragma lumivox axis ADDED 0 1
+#pragma lumivox require !ADDED || OF != segments
+#if OF != OF_SEGMENTS
+#define LEAF_VALUES
+#endif
+#if OF == OF_SEGMENTS
+#define KEEPS_NEAREST
+#endif
+#include "neighbours.glsl"
+#include "common/constants.glsl"
+#include "common/random.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const float empty = 0.0;  // where nothing is seen
+
+layout(binding = 5) uniform sampler2D gPosition;
+layout(binding = 6) uniform sampler2D gNormal;
+layout(binding = 7) uniform sampler2D gDiffuse;
+#if ADDED
+layout(binding = 3) uniform sampler2D added;  // another image, of which this one is the sum
+#endif
+#if OF == OF_SEGMENTS
+layout(std430, binding = 0) readonly buffer Segments { uint segments[]; };  // of leaves
+#endif
+layout(binding = 0, rgba32f) uniform writeonly image2D shownImage;
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, imageSize(shownImage)))) return;
+  vec4 position = texelFetch(gPosition, pixel, 0);
+  vec3 shown = vec3(empty);
+  if (position.w != 0.0) {
+    vec4 normal = texelFetch(gNormal, pixel, 0);
+    Around around = findAround(SurfacePoint(position.xyz, normal.xyz, normal.w > 0.5));
+    if (around.weights > 0.0) {
+      shown = around.sum / around.weights;
+#if OF == OF_IRRADIANCE
+      shown *= texelFetch(gDiffuse, pixel, 0).rgb / kPi;
+#elif OF == OF_SEGMENTS
+      uvec4 hash = hash4(uvec4(segments[around.leaves[0]], 1u, 2u, 3u));
+      shown = 0.1 + 0.9 * vec3(unitInterval(hash.xy), unitInterval(hash.zw).x);
+#endif
+    }
+  }
+#if ADDED
+  shown += texelFetch(added, pixel, 0).rgb;
+#endif
+  imageStore(shownImage, pixel, vec4(shown, 1.0));
+}

@@ -1,0 +1,115 @@
+#version 450
+// Dong et al. 2007, Sec. 4.3, steps 8 and 9: what arrives at leaves over their links, and what they reflect of it. LISTED: over the links to
+// what shines alone (4.3.1). ENVIRONMENT: bins without a link bring the environment (4.4).
+#pragma lumivox axis LISTED 0 1
+#pragma lumivox axis ENVIRONMENT 0 1
+#pragma lumivox axis WEIGHT bin element
+#pragma lumivox require !LISTED || !ENVIRONMENT
+#include "links.glsl"
+#include "sent.glsl"
+#include "common/constants.glsl"
+
+// Eight invocations share the links of a leaf, and the first of them adds up what they found, always in the same order.
+layout(local_size_x = 64) in;
+#include "common/list.glsl"
+const uint kTogether = 8u;
+
+layout(constant_id = 0) const bool adds = false;     // to the irradiance of earlier bounces
+layout(constant_id = 1) const bool reflects = true;  // what is reflected is passed on
+
+layout(std140, binding = 1) uniform Illumination {
+  vec3 environment;  // W/(sr m^2)
+};
+
+#if LISTED
+layout(std430, binding = 3) readonly buffer Lights { uint lights[]; };
+#endif
+#if WEIGHT == WEIGHT_ELEMENT
+layout(std430, binding = 4) readonly buffer Counts { uint counts[]; };  // of links: how many of the leaf's are to the same node
+#endif
+layout(binding = 3) uniform sampler2D albedos;
+layout(binding = 0, rgba32f) uniform image2D irradianceImage;
+layout(binding = 1, rgba32f) uniform writeonly image2D reflectedImage;
+layout(binding = 2, rgba32f) uniform image2D radianceImage;
+
+shared vec3 found[2u * gl_WorkGroupSize.x];
+
+struct Leaf {
+  vec3 position, normal;
+  float scale;
+};
+
+// Adds what comes over a link to the side that it arrives at.
+void add(uint number, Leaf leaf, inout vec3 front, inout vec3 back) {
+  uvec2 link = links[number];
+  vec4 seen = texelFetch(elementPosition, texelOf(link.y), 0);
+  vec3 path = seen.xyz - leaf.position;
+  float squared = dot(path, path);
+  if (squared == 0.0) return;
+  vec3 toSeen = path * inversesqrt(squared);
+#if WEIGHT == WEIGHT_BIN
+  float weight = binWeight(linkBin(link), leaf.normal, leaf.scale);
+#else
+  vec3 normal = texelFetch(elementNormal, texelOf(link.y), 0).xyz;
+  // Of groups the normal is the area shown along each axis.
+  float shown = link.y < uint(firstGroup) ? seen.w * abs(dot(normal, toSeen)) : dot(normal, abs(toSeen));
+  float weight = dot(leaf.normal, toSeen) * shown / (squared * float(counts[number]));
+#endif
+  vec3 arriving = abs(weight) * sentTowards(link.y, -toSeen);
+  if (weight > 0.0) front += arriving;
+  else back += arriving;
+}
+
+void main() {
+  uint item = listIndex() / kTogether, lane = gl_LocalInvocationID.x % kTogether;
+  bool isLeaf = item < uint(leafCount);
+  vec3 front = vec3(0.0), back = vec3(0.0);
+  if (isLeaf) {
+    uvec4 entry = first[item];
+    Leaf leaf = Leaf(texelFetch(elementPosition, texelOf(item), 0).xyz, texelFetch(elementNormal, texelOf(item), 0).xyz,
+                     uintBitsToFloat(entry.z));
+    // Each invocation takes a part of the bins, so that sums are the same whatever else is left out.
+    uint share = (uint(binCount) + kTogether - 1u) / kTogether, begin = lane * share, end = min(begin + share, uint(binCount));
+#if LISTED
+    uint listFirst = lights[2u * item], listEnd = listFirst + lights[2u * item + 1u];
+    for (uint i = listFirst; i < listEnd; ++i) {
+      uint bin = linkBin(links[lights[i]]);
+      if (bin >= begin && bin < end) add(lights[i], leaf, front, back);
+    }
+#else
+    uint next = linkFrom(entry.xy, begin);
+#if ENVIRONMENT
+    for (uint bin = begin; bin < end; ++bin) {
+      if (next < entry.y && linkBin(links[entry.x + next]) == bin) {
+        add(entry.x + next, leaf, front, back);
+        ++next;
+      } else {
+        float weight = binWeight(bin, leaf.normal, leaf.scale);
+        if (weight > 0.0) front += weight * environment;
+        else back -= weight * environment;
+      }
+    }
+#else
+    for (; next < entry.y && linkBin(links[entry.x + next]) < end; ++next) add(entry.x + next, leaf, front, back);
+#endif
+#endif
+  }
+  found[2u * gl_LocalInvocationID.x] = front;
+  found[2u * gl_LocalInvocationID.x + 1u] = back;
+  barrier();
+  if (!isLeaf || lane != 0u) return;
+  for (uint other = 1u; other < kTogether; ++other) {
+    front += found[2u * (gl_LocalInvocationID.x + other)];
+    back += found[2u * (gl_LocalInvocationID.x + other) + 1u];
+  }
+  vec3 albedo = texelFetch(albedos, texelOf(item), 0).rgb;
+  for (uint side = 0u; side < 2u; ++side) {
+    ivec2 texel = texelOf(2u * item + side);
+    vec3 arriving = side == 0u ? front : back;
+    imageStore(irradianceImage, texel, vec4(arriving + (adds ? imageLoad(irradianceImage, texel).rgb : vec3(0.0)), 1.0));
+    if (!reflects) continue;
+    vec3 reflected = albedo / kPi * arriving;
+    imageStore(reflectedImage, texel, vec4(reflected, 1.0));
+    imageStore(radianceImage, texel, vec4(imageLoad(radianceImage, texel).rgb + reflected, 1.0));
+  }
+}

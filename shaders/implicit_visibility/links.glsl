@@ -1,0 +1,25 @@
+// What leaves see, bin by bin. Port ElementLinks.
+#ifndef LUMIVOX_LINKS
+#define LUMIVOX_LINKS
+
+layout(std430, binding = 0) readonly buffer Directions { vec4 directions[]; };  // of bins: xyz centre; w solid angle, sr
+layout(std430, binding = 1) readonly buffer First { uvec4 first[]; };           // of leaves: first link, number of links, scale
+layout(std430, binding = 2) readonly buffer Links { uvec2 links[]; };           // bin and distance; node
+
+uint linkBin(uvec2 link) { return link.x & 0xffffu; }
+float linkDistance(uvec2 link) { return uintBitsToFloat(link.x & 0xffff0000u); }  // m
+
+// Projected solid angle of a bin above a plane, with the sign of the side that it is on, sr: those of a side sum to pi.
+float binWeight(uint bin, vec3 normal, float scale) { return directions[bin].w * scale * dot(directions[bin].xyz, normal); }
+
+// The first link of a leaf whose bin is not below `bin`, counted from the leaf's first one.
+uint linkFrom(uvec2 range, uint bin) {
+  uint low = 0u, high = range.y;
+  while (low < high) {
+    uint middle = (low + high) / 2u;
+    if (linkBin(links[range.x + middle]) < bin) low = middle + 1u;
+    else high = middle;
+  }
+  return low;
+}
+#endif

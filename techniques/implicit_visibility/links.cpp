@@ -1,0 +1,169 @@
+// Links among elements (Dong et al. 2007, Sec. 4.2; steps 5 to 7 of Algorithm 1).
+#include <fmt/format.h>
+
+#include <bit>
+#include <utility>
+
+#include "looking.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/base/log.h"
+#include "pairs.h"
+#include "passes.h"
+
+namespace lumivox::implicit_visibility {
+namespace {
+
+/// hierarchy: pairs of nodes as large as a bin. all_pairs: every leaf with every other one (Sec. 3.1).
+enum class Method { hierarchy, allPairs };
+
+class CreateLinksPass : public Pass {
+  In<SurfaceElements> elements{this, "elements", "what is linked"};
+  Param<Method> method{
+      this, "method", Method::hierarchy,
+      "hierarchy: pairs of nodes, split until they are as small as a bin; all_pairs: every element with "
+      "every other one"};
+  Param<int> bins{this, "bins", 8, within(1, 64), "bins along a side of a face of the cube of directions"};
+  Param<BinMapping> mapping{
+      this, "mapping", BinMapping::even,
+      "even: bins of nearly equal solid angles; uniform: equal steps on the face (published)"};
+  // Which surface a bin holds is told by leaves, whatever the node: 2 costs 0.4 to 0.9 % of the light, and
+  // less time.
+  Param<float> split{
+      this, "split", 2.0f, within(0.0f, 64.0f),
+      "how many bins a node may cover before it is split (published: 1); 0: all are, down to the leaves"};
+  Out<ElementLinks> result{this, "links", "pairs of nodes that may exchange light"};
+
+  bool worksOnHost() const override { return true; }
+
+  void run(PassContext& frame) override {
+    ElementLinks links;
+    links.bins = bins;
+    links.mapping = mapping;
+    if (method == Method::hierarchy) {
+      const ElementTree& tree = *elements->tree;
+      const PairSettings settings{DirectionBins(bins, mapping), split};
+      const auto find = [&](bool moving) {
+        return std::make_shared<const ElementLists<std::uint32_t>>(
+            findPartners(tree, *elements->state, settings, moving));
+      };
+      links.stillPartners =
+          frame.kept("links among elements that stand still", elements->tree, [&] { return find(false); });
+      links.movingPartners = find(true);
+      logDetails("links: {} among nodes that stand still, {} of nodes that move",
+                 links.stillPartners->values.size() / 2, links.movingPartners->values.size() / 2);
+    }
+    result = links;
+  }
+};
+
+class PushLinksPass : public Pass {
+  In<SurfaceElements> elements{this, "elements", "what is linked"};
+  In<ElementLinks> pairs{this, "links", "pairs of nodes, of create_links"};
+  Param<Fill> fill{
+      this, "fill", Fill::centre,
+      "centre: an element takes the bins whose middle ray meets its disc; one: the one bin of its middle "
+      "(published)"};
+  Param<Push> push{
+      this, "push", Push::rebinned,
+      "rebinned: links of inner nodes are seen anew from the leaf; kept: in the bin and at the distance of "
+      "the node (published)"};
+  Out<ElementLinks> result{this, "links", "what each leaf sees, bin by bin"};
+
+  bool worksOnHost() const override { return true; }
+
+  void run(PassContext& frame) override {
+    const ElementTree& tree = *elements->tree;
+    const DirectionBins bins(pairs->bins, pairs->mapping);
+    requireRoom(tree.leafCount, bins);
+    const auto finder =
+        frame.kept("table of bins", 0, [&] { return std::make_shared<const BinFinder>(bins); });
+    const Lookout lookout(tree, *elements->state, *finder, fill, push);
+    using Lists = ElementLists<BinnedSight>;
+    const std::shared_ptr<const Lists> still = frame.kept(
+        "what elements see of what stands still", std::pair(elements->tree, pairs->stillPartners), [&] {
+          return std::make_shared<const Lists>(lookout.look({pairs->stillPartners.get(), false}, nullptr));
+        });
+    const bool moves = frame.traits().movingGeometry;
+    const Lists all = moves ? lookout.look({pairs->movingPartners.get(), true}, still.get()) : Lists();
+    ElementLinks links = *pairs;
+    upload(frame, moves ? all : *still, *finder, links);
+    result = links;
+    if (frame.inspects()) noteEmpty(frame, bins, *links.seen);
+  }
+
+  /// Before anything is taken.
+  static void requireRoom(std::uint32_t leaves, const DirectionBins& bins) {
+    // On this side twice while lists are joined, and as the device has them.
+    const std::uint64_t bytes =
+        leaves * std::uint64_t{bins.count()} * (2 * sizeof(BinnedSight) + sizeof(ElementLink));
+    const std::uint64_t available = availableMemory();
+    if (bytes <= available) return;
+    throw Error(fmt::format(
+        "links of {} elements with 6 x {} x {} bins need up to {}; available are {}, enough for {} elements",
+        leaves, bins.side(), bins.side(), formatBytes(bytes), formatBytes(available),
+        available / (bytes / leaves)));
+  }
+
+  void upload(PassContext& frame, const ElementLists<BinnedSight>& seen, const BinFinder& finder,
+              ElementLinks& links) const {
+    const ElementTree& tree = *elements->tree;
+    auto compact = std::make_shared<ElementLists<ElementLink>>();
+    compact->first = seen.first;
+    compact->values.reserve(seen.values.size());
+    for (const BinnedSight& link : seen.values)
+      compact->values.emplace_back(link.bin, link.sight.distance, link.sight.node);
+    const std::uint64_t bytes = compact->values.size() * sizeof(ElementLink),
+                        most = frame.device().info().maxStorageBytes;
+    if (bytes > most)
+      throw Error(fmt::format(
+          "{} links of {} elements with 6 x {} x {} bins need {} in one buffer; the device takes {}, "
+          "enough for about {} elements",
+          compact->values.size(), tree.leafCount, links.bins, links.bins, formatBytes(bytes),
+          formatBytes(most), most / (bytes / tree.leafCount)));
+    std::vector<glm::uvec4> first;
+    for (std::uint32_t leaf = 0; leaf < tree.leafCount; ++leaf)
+      first.emplace_back(
+          static_cast<std::uint32_t>(seen.first[leaf]),
+          static_cast<std::uint32_t>(seen.first[leaf + 1] - seen.first[leaf]),
+          std::bit_cast<std::uint32_t>(finder.table().projectionScale(elements->state->normal[leaf])), 0u);
+    links.directions = frame.uploaded(finder.table().bins, "directions of bins");
+    links.first = frame.uploaded(first, "where links of elements begin");
+    links.links = frame.uploaded(compact->values, "links of elements");
+    if (elements->emission != nullptr) uploadLights(frame, *compact, links);
+    links.seen = std::move(compact);
+  }
+
+  /// For each leaf its links to nodes that emit.
+  void uploadLights(PassContext& frame, const ElementLists<ElementLink>& seen, ElementLinks& links) const {
+    std::vector<std::uint32_t> words(2 * seen.size());
+    for (std::size_t leaf = 0; leaf < seen.size(); ++leaf) {
+      words[2 * leaf] = static_cast<std::uint32_t>(words.size());
+      for (std::uint64_t i = seen.first[leaf]; i < seen.first[leaf + 1]; ++i)
+        if (elements->tree->emits[seen.values[i].node]) words.push_back(static_cast<std::uint32_t>(i));
+      words[2 * leaf + 1] = static_cast<std::uint32_t>(words.size()) - words[2 * leaf];
+    }
+    links.lights = frame.uploaded(words, "links of elements to lights");
+  }
+
+  static void noteEmpty(PassContext& frame, const DirectionBins& bins,
+                        const ElementLists<ElementLink>& seen) {
+    if (seen.size() == 0) return;
+    const double all = static_cast<double>(seen.size()) * static_cast<double>(bins.count());
+    frame.note(
+        fmt::format("{:.1f} % of the bins of elements hold no link (of surfaces with one side that sees "
+                    "surfaces, half are)",
+                    100.0 * (1.0 - static_cast<double>(seen.values.size()) / all)));
+  }
+};
+
+}  // namespace
+
+void addLinks(TechniqueRegistry& registry) {
+  registry.add<CreateLinksPass>("create_links",
+                                "Pairs of elements that may exchange light (Dong et al. 2007, Sec. 4.2.2)");
+  registry.add<PushLinksPass>(
+      "push_links", "The nearest element in each bin of each leaf (Dong et al. 2007, Sec. 4.2.3, 4.2.4)");
+}
+
+}  // namespace lumivox::implicit_visibility

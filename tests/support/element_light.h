@@ -1,0 +1,78 @@
+// Light at surface elements, of the pipelines of implicit visibility.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lumivox/pipeline/pass.h"
+#include "support/scene_builder.h"
+#include "support/techniques.h"
+
+namespace lumivox::test {
+
+/// One frame of `implicit_visibility_lights`, or of `implicit_visibility` in place of it, and what its passes
+/// made.
+class LitElements {
+ public:
+  LitElements(const Scene& scene, const std::vector<std::string>& settings,
+              const std::string& text = "implicit_visibility_lights", bool keepEverything = false) {
+    const Pipeline loaded = withAllBounces(text);
+    RenderOptions options;
+    options.parameters = loaded.settings(settings);
+    options.keepEverything = keepEverything;
+    executor_ = std::make_unique<PipelineExecutor>(device(), techniques(), scene, loaded, options);
+    executor_->keepOutput("elements", "elements");
+    executor_->keepOutput("links", "links");
+    executor_->keepOutput("illuminate", "light");
+    frame = executor_->render(0.0);
+  }
+  const SurfaceElements& elements() const { return made<SurfaceElements>("elements", "elements"); }
+  const ElementLinks& links() const { return made<ElementLinks>("links", "links"); }
+  const ElementLight& light() const { return made<ElementLight>("illuminate", "light"); }
+
+  /// Red of a texture with two texels a leaf.
+  static double leafValue(const std::vector<float>& floats, std::size_t leaf, int side) {
+    return floats[4 * (2 * leaf + static_cast<std::size_t>(side))];
+  }
+  /// Irradiance of the fronts of all leaves, W/m^2.
+  std::vector<double> irradiance() const { return fronts(*light().irradiance); }
+  std::vector<double> directIrradiance() const { return fronts(*light().directIrradiance); }
+  std::vector<double> fronts(const gpu::Texture& texture) const {
+    const std::vector<float> floats = texture.downloadFloats(0);
+    std::vector<double> result;
+    for (int leaf = 0; leaf < elements().leafCount; ++leaf)
+      result.push_back(leafValue(floats, static_cast<std::size_t>(leaf), 0));
+    return result;
+  }
+  /// Mean by area over the leaves.
+  double mean(const std::vector<double>& ofLeaves) const {
+    double sum = 0.0, area = 0.0;
+    for (std::size_t leaf = 0; leaf < ofLeaves.size(); ++leaf) {
+      sum += ofLeaves[leaf] * elements().state->area[leaf];
+      area += elements().state->area[leaf];
+    }
+    return sum / area;
+  }
+
+  FrameResult frame;
+
+ private:
+  /// The committed text names fewer bounces than the pass takes.
+  static Pipeline withAllBounces(const std::string& name) {
+    const Pipeline committed = pipeline(name);
+    std::string text = committed.document->source;
+    const std::string range = "param bounces 1 in 1..64";
+    const std::size_t at = text.find(range);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, range.size(), "param bounces 1 in 1..4096");
+    return Pipeline::parse(text, committed.file);
+  }
+  template <class Port>
+  const Port& made(const char* pass, const char* port) const {
+    return static_cast<const Out<Port>*>(executor_->output(pass, port))->value();
+  }
+  std::unique_ptr<PipelineExecutor> executor_;
+};
+
+}  // namespace lumivox::test

@@ -1,0 +1,108 @@
+// Links of a scene that moves: what stands still is kept, and no bit differs from a fresh run.
+#include <algorithm>
+
+#include "lumivox/base/error.h"
+#include "support/closed_room.h"
+#include "support/surface_elements.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+/// The three passes, and an image so that there is something to render.
+Pipeline linksAlone(const std::string& settings) {
+  return Pipeline::parse(
+      "pipeline \"links alone\" {\n"
+      "  pass gbuffer direct_lighting.gbuffer { }\n"
+      "  pass shadow direct_lighting.shadow_map { }\n"
+      "  pass direct direct_lighting.shade {\n    gbuffer gbuffer\n    shadow shadow.depth\n  }\n"
+      "  pass elements implicit_visibility.elements {\n    elements 400\n  }\n"
+      "  pass create implicit_visibility.create_links {\n    elements elements\n" +
+          settings +
+          "  }\n"
+          "  pass push implicit_visibility.push_links {\n    elements elements\n    links create.links\n  }\n"
+          "  output direct direct.radiance\n"
+          "}\n",
+      "links_alone.pipeline");
+}
+
+RenderOptions small() {
+  RenderOptions options;
+  options.width = 16;
+  options.height = 12;
+  return options;
+}
+
+const ElementLinks& linksOf(const PipelineExecutor& executor) {
+  return static_cast<const Out<ElementLinks>*>(executor.output("push", "links"))->value();
+}
+
+}  // namespace
+
+TEST_CASE(
+    "after any sequence of times links are those of a fresh run, bit for bit, and what stands still is kept") {
+  const Scene scene = furnishedCube(true);
+  for (const std::string settings : {"", "    method all_pairs\n"}) {
+    const Pipeline text = linksAlone(settings);
+    PipelineExecutor sequence(device(), techniques(), scene, text, small());
+    sequence.keepOutput("push", "links");
+    const ElementLists<std::uint32_t>* kept = nullptr;
+    std::vector<ElementLink> before;
+    int frame = 0;
+    for (const double time : {0.0, 0.5, 0.5, 3.0, 0.5, 0.0, 1e6}) {
+      sequence.render(time, frame);
+      PipelineExecutor fresh(device(), techniques(), scene, text, small());
+      fresh.keepOutput("push", "links");
+      fresh.render(time);
+      CAPTURE(time, frame, settings);
+      const ElementLinks &a = linksOf(sequence), &b = linksOf(fresh);
+      CHECK(*a.seen == *b.seen);
+      CHECK(a.links->download() == b.links->download());
+      if (frame == 1 || frame == 3) CHECK(a.seen->values != before);
+      before = a.seen->values;
+      if (settings.empty()) {
+        if (frame > 0) CHECK(a.stillPartners.get() == kept);
+        kept = a.stillPartners.get();
+      }
+      ++frame;
+    }
+    // What was kept is told.
+    const Explanation explanation = sequence.explain();
+    const auto tells = [&](const std::string& what) {
+      return std::any_of(explanation.leftOut.begin(), explanation.leftOut.end(),
+                         [&](const LeftOut& left) { return left.what.find(what) != std::string::npos; });
+    };
+    CHECK(tells("hierarchy of elements"));
+    CHECK(tells("what elements see of what stands still"));
+    CHECK(tells("links among elements that stand still") == settings.empty());
+  }
+}
+
+TEST_CASE("a full update and one that keeps what stands still make the same links") {
+  const Scene scene = furnishedCube(true);
+  const Pipeline text = linksAlone("");
+  RenderOptions everything = small();
+  everything.keepEverything = true;
+  PipelineExecutor partly(device(), techniques(), scene, text, small()),
+      fully(device(), techniques(), scene, text, everything);
+  for (PipelineExecutor* executor : {&partly, &fully}) {
+    executor->keepOutput("push", "links");
+    executor->render(0.0, 0);
+    executor->render(1.0, 1);
+  }
+  CHECK(*linksOf(partly).seen == *linksOf(fully).seen);
+}
+
+TEST_CASE("in a scene that stands still links are made once, whatever the camera does") {
+  Scene scene = furnishedCube(false);
+  scene.cameras.front().keys = {{0.0, {0.5, 0.5, 0.95}, {0.5, 0.5, 0}},
+                                {1.0, {0.3, 0.5, 0.9}, {0.5, 0.4, 0}}};
+  const Pipeline text = linksAlone("");
+  PipelineExecutor executor(device(), techniques(), scene, text, small());
+  executor.keepOutput("push", "links");
+  executor.render(0.0, 0);
+  const ElementLists<ElementLink>* first = linksOf(executor).seen.get();
+  const FrameResult second = executor.render(1.0, 1);
+  CHECK(linksOf(executor).seen.get() == first);
+}

@@ -1,0 +1,234 @@
+// Form factors over links against closed forms, and what elements see against rays.
+#include <cmath>
+#include <limits>
+
+#include "support/closed_room.h"
+#include "support/surface_elements.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+/// The share of what object `from` sends out from its front that arrives at object `to`.
+double formFactor(const LinkedScene& scene, std::uint32_t from, std::uint32_t to) {
+  const BinWeights weights(scene.links);
+  const ElementTree& tree = scene.tree();
+  double sum = 0.0, area = 0.0;
+  for (std::uint32_t leaf = 0; leaf < tree.leafCount; ++leaf) {
+    if (tree.objectOfNode[leaf] != from) continue;
+    const glm::vec3 normal = scene.state().normal[leaf];
+    double seen = 0.0;
+    for (const ElementLink& link : scene.seenBy(leaf))
+      if (tree.objectOfNode[link.node] == to) seen += std::max(weights(normal, link.bin()), 0.0);
+    const double leafArea = static_cast<double>(scene.state().area[leaf]);
+    sum += leafArea * seen * weights.scale(normal) / kPi;
+    area += leafArea;
+  }
+  return sum / area;
+}
+
+struct Arrangement {
+  std::string name;
+  Scene scene;
+  double factor;
+};
+
+std::vector<glm::vec3> discCorners(float height, bool up) {
+  constexpr int kSectors = 64;
+  std::vector<glm::vec3> corners;
+  const auto at = [&](int i) {
+    const double angle = 2.0 * kPi * i / kSectors;
+    return glm::vec3(std::cos(angle), height, -std::sin(angle));
+  };
+  for (int i = 0; i < kSectors; ++i) {
+    const glm::vec3 middle(0, height, 0), a = at(i), b = at(i + 1);
+    if (up)
+      corners.insert(corners.end(), {middle, a, b});
+    else
+      corners.insert(corners.end(), {middle, b, a});
+  }
+  return corners;
+}
+
+/// Unit squares and discs whose form factors are known (Howell's catalogue C-11, C-14, C-41).
+std::vector<Arrangement> arrangements() {
+  SceneBuilder facing, upright, screened, discs;
+  const int grey = facing.lambert(0.5f);
+  for (SceneBuilder* builder : {&upright, &screened, &discs}) builder->lambert(0.5f);
+  for (SceneBuilder* builder : {&facing, &upright, &screened})
+    builder->quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, grey);
+  for (SceneBuilder* builder : {&facing, &screened}) builder->quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, grey);
+  upright.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, grey);
+  // Half a centimetre below the upper square it hides the half of it.
+  screened.quad({0.5f, 0.995f, 0}, {0.5f, 0, 0}, {0, 0, 1}, grey);
+  discs.mesh(discCorners(0.0f, true), grey);
+  discs.mesh(discCorners(1.0f, false), grey);
+  const double facingFactor = 0.19982;
+  return {{"facing squares", facing.scene, facingFactor},
+          {"adjoining squares", upright.scene, 0.20004},
+          {"a square behind a screen that hides half", screened.scene, 0.5 * facingFactor},
+          {"coaxial discs", discs.scene, 0.5 * (3.0 - std::sqrt(5.0))}};
+}
+
+Scene turned(Scene scene) {
+  const glm::dmat4 turn = glm::mat4_cast(glm::angleAxis(1.1, glm::normalize(glm::dvec3(1, 2, -0.7))));
+  for (Object& object : scene.objects) object.placement = turn * object.placement;
+  return scene;
+}
+
+LinkedScene linkedWith(const Scene& scene, int side, int bins, const std::string& fill) {
+  const double leaves = static_cast<double>(side * side) * static_cast<double>(scene.objects.size());
+  return linked(
+      scene,
+      {{{"elements", leaves}, {"share", 0.0}}, {{"bins", static_cast<double>(bins)}}, {{"fill", fill}}});
+}
+
+/// The first triangle that a ray meets, in double precision.
+struct Hit {
+  double distance = std::numeric_limits<double>::infinity();
+  std::uint32_t triangle = 0;
+};
+Hit firstHit(const Scene& scene, const glm::dvec3& origin, const glm::dvec3& direction, double from) {
+  Hit hit;
+  for (std::uint32_t t = 0; t < scene.triangleCount(); ++t) {
+    const auto at = [&](std::uint32_t k) { return glm::dvec3(scene.positions[scene.indices[3 * t + k]]); };
+    const glm::dvec3 e1 = at(1) - at(0), e2 = at(2) - at(0), p = glm::cross(direction, e2);
+    const double determinant = glm::dot(e1, p);
+    if (std::abs(determinant) < 1e-14) continue;
+    const glm::dvec3 s = origin - at(0), q = glm::cross(s, e1);
+    const double u = glm::dot(s, p) / determinant, v = glm::dot(direction, q) / determinant,
+                 distance = glm::dot(e2, q) / determinant;
+    if (u < 0.0 || v < 0.0 || u + v > 1.0 || distance <= from || distance >= hit.distance) continue;
+    hit = {distance, t};
+  }
+  return hit;
+}
+
+}  // namespace
+
+TEST_CASE("form factors hold in closed form, whatever the sizes of elements and bins, aligned and turned") {
+  for (const Arrangement& arrangement : arrangements())
+    for (const bool isTurned : {false, true})
+      for (const auto& [side, bins] :
+           {std::pair(12, 8), std::pair(24, 12), std::pair(12, 32), std::pair(48, 8)}) {
+        const Scene scene = isTurned ? turned(arrangement.scene) : arrangement.scene;
+        const double factor = formFactor(linkedWith(scene, side, bins, "centre"), 0, 1);
+        CAPTURE(arrangement.name, isTurned, side, bins, factor / arrangement.factor);
+        CHECK(factor == Approx(arrangement.factor).epsilon(0.06));
+      }
+}
+
+TEST_CASE(
+    "with one bin for each element, as published, form factors depend on the sizes of elements and bins") {
+  double least = 10.0, most = 0.0;
+  for (const Arrangement& arrangement : arrangements())
+    for (const auto& [side, bins] :
+         {std::pair(12, 8), std::pair(12, 32), std::pair(24, 12), std::pair(48, 8)}) {
+      const double ratio =
+          formFactor(linkedWith(arrangement.scene, side, bins, "one"), 0, 1) / arrangement.factor;
+      least = std::min(least, ratio), most = std::max(most, ratio);
+    }
+  CAPTURE(least, most);
+  CHECK(least < 0.5);
+  CHECK(most > 1.06);
+}
+
+TEST_CASE("what elements of the Cornell box see is what rays see") {
+  const Scene scene = loadScene(sourceDirectory() / "scenes/cornell.scene");
+  const LinkedScene made = linked(scene, {{{"elements", 4096.0}}, {{"bins", 12.0}}, {}});
+  const ElementTree& tree = made.tree();
+  const glm::dvec3 origin = snapshotOf(scene, 0.0).origin;
+  Scene placed = scene;  // everything in the world
+  for (const Object& object : placed.objects)
+    for (std::uint32_t v = object.firstVertex; v < object.firstVertex + object.vertexCount; ++v)
+      placed.positions[v] = glm::vec3(object.placement * glm::dvec4(glm::dvec3(placed.positions[v]), 1.0) -
+                                      glm::dvec4(origin, 0.0));
+  const DirectionBins bins(12, BinMapping::even);
+  double links = 0.0, open = 0.0, asRays = 0.0;
+  for (std::uint32_t leaf = 0; leaf < tree.leafCount; leaf += 41) {
+    const glm::dvec3 eye(made.state().position[leaf]), normal(made.state().normal[leaf]);
+    for (const ElementLink& link : made.seenBy(leaf)) {
+      const glm::dvec3 away = glm::dvec3(made.state().position[link.node]) - eye,
+                       ray(bins.centre(link.bin()));
+      if (glm::dot(normal, ray) <= 0.0) continue;  // into the wall
+      links += 1.0;
+      const double distance = glm::length(away),
+                   element = 2.0 * static_cast<double>(made.state().radius[link.node]);
+      const Hit middle = firstHit(placed, eye, away / distance, 1e-6),
+                along = firstHit(placed, eye, ray, 1e-6);
+      open += middle.distance > distance - std::max(1e-4, 0.5 * element);
+      asRays += std::abs(along.distance - static_cast<double>(link.distance())) <=
+                0.1 * along.distance + 1.5 * element;
+    }
+  }
+  CAPTURE(tree.leafCount, links, open / links, asRays / links);
+  CHECK(links > 10000.0);
+  CHECK(open / links >= 0.94);
+  CHECK(asRays / links >= 0.94);
+}
+
+TEST_CASE(
+    "a disc of elements is where triangles are: links agree with the sum over all elements and rays (Eq. 4)") {
+  // Irradiance of the floor in light of radiance 1 from one wall of the furnished cube: the sum of Eq. 4 over
+  // elements with traced visibility; the disc factor A cos cos / (pi r^2 + A) is bounded.
+  const Scene scene = furnishedCube();
+  const LinkedScene made = linked(scene, {{{"elements", 1500.0}}, {{"bins", 12.0}}, {}});
+  const ElementTree& tree = made.tree();
+  const glm::dvec3 origin = snapshotOf(scene, 0.0).origin;
+  Scene placed = scene;
+  for (glm::vec3& position : placed.positions) position = glm::vec3(glm::dvec3(position) - origin);
+  const BinWeights weights(made.links);
+  double square = 0.0, mean = 0.0, linkMean = 0.0, count = 0.0;
+  for (std::uint32_t leaf = 0; leaf < tree.leafCount; leaf += 7) {
+    if (tree.objectOfNode[leaf] != 2) continue;
+    const glm::dvec3 eye(made.state().position[leaf]), normal(made.state().normal[leaf]);
+    double exact = 0.0, byLinks = 0.0;
+    for (std::uint32_t other = 0; other < tree.leafCount; ++other) {
+      if (tree.objectOfNode[other] != 0) continue;
+      const glm::dvec3 away = glm::dvec3(made.state().position[other]) - eye;
+      const double r = glm::length(away), area = static_cast<double>(made.state().area[other]);
+      const double cosines = std::max(glm::dot(normal, away) / r, 0.0) *
+                             std::max(-glm::dot(glm::dvec3(made.state().normal[other]), away) / r, 0.0);
+      if (cosines > 0.0 && firstHit(placed, eye, away / r, 1e-6).distance > r - 1e-3)
+        exact += kPi * area * cosines / (kPi * r * r + area);
+    }
+    for (const ElementLink& link : made.seenBy(leaf))
+      if (tree.objectOfNode[link.node] == 0)
+        byLinks += std::max(weights(made.state().normal[leaf], link.bin()), 0.0) *
+                   weights.scale(made.state().normal[leaf]);
+    square += (byLinks - exact) * (byLinks - exact);
+    mean += exact;
+    linkMean += byLinks;
+    count += 1.0;
+  }
+  REQUIRE(count > 10.0);
+  CAPTURE(count, mean / count, linkMean / mean, std::sqrt(square / count));
+  CHECK(linkMean == Approx(mean).epsilon(0.05));
+  // A wall takes some ten bins: each is an all or nothing of it.
+  CHECK(std::sqrt(square / count) < 0.2 * mean / count);
+}
+
+TEST_CASE(
+    "as printed, the sum over elements makes light from nothing in a cube, with a bounded disc factor hardly any") {
+  const LinkedScene made = linked(closedCube(), {{{"elements", 600.0}}, {{"bins", 1.0}}, {{"fill", "one"}}});
+  const ElementState& state = made.state();
+  double printed = 0.0, bounded = 0.0;
+  for (std::uint32_t leaf = 0; leaf < made.tree().leafCount; ++leaf) {
+    double printedSum = 0.0, boundedSum = 0.0;
+    for (std::uint32_t other = 0; other < made.tree().leafCount; ++other) {
+      const glm::dvec3 away = state.position[other] - state.position[leaf];
+      const double squared = glm::dot(away, away), area = static_cast<double>(state.area[other]);
+      if (!(squared > 0.0)) continue;
+      const double cosines = std::max(glm::dot(glm::dvec3(state.normal[leaf]), away), 0.0) *
+                             std::max(-glm::dot(glm::dvec3(state.normal[other]), away), 0.0) / squared;
+      printedSum += area * cosines / (kPi * squared);
+      boundedSum += area * cosines / (kPi * squared + area);
+    }
+    printed = std::max(printed, printedSum);
+    bounded = std::max(bounded, boundedSum);
+  }
+  CAPTURE(printed, bounded);
+  CHECK(printed > 1.2);
+  CHECK(bounded < 1.06);
+}
