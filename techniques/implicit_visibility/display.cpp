@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "display_vertices.h"
 #include "element_cells.h"
 #include "light.h"
 #include "lumivox/toolkit/loop_limit.h"
@@ -23,6 +24,7 @@ struct CellBuffers {
 };
 
 class DisplayPass : public Pass {
+  enum class Interpolate { neighbours, vertices };
   enum class Lobe { pixel, element };
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
@@ -38,6 +40,11 @@ class DisplayPass : public Pass {
                         "direct light without what comes by links, for 'direct'",
                         Needs::nothing,
                         Contributes::direct};
+  Param<Interpolate> interpolate{
+      this, "interpolate", Interpolate::neighbours,
+      "which elements a pixel shows; neighbours: those around what is seen there; vertices: those at the "
+      "corners of its triangle, with 'source vertices' alone (published). What a lobe at pixels sees is always "
+      "that of neighbours"};
   Param<Lobe> lobe{
       this, "lobe", Lobe::pixel,
       "where the Phong lobe is held against the bins; pixel: with the normal and material of what is "
@@ -50,6 +57,7 @@ class DisplayPass : public Pass {
       "m",
       "of 'occlusion': within which elements occlude; 0: a tenth of the diagonal of the scene's "
       "bounds, as in the reference"};
+  Param<bool> asPublished{this, "as_published", false, "'interpolate vertices' and 'lobe element'"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::anyLight,
                      "indirect light reflected by the diffuse lobe, W/(sr m^2)"};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::anyLight | Needs::glossyMaterial,
@@ -70,10 +78,8 @@ class DisplayPass : public Pass {
   }
 
   void run(PassContext& frame) override {
-    const CellBuffers& cells = cellsOf(frame);
     const shader::BindingSet common{NodeBinding(*elements, links.present() ? links->bins : 0),
-                                    GBufferBinding(*gbuffer), binding(cells),
-                                    display::cellStarts(cells.starts), display::cellLeaves(cells.leaves)};
+                                    GBufferBinding(*gbuffer)};
     using Variant = display::Variant;
     if (diffuse.wanted())
       diffuse =
@@ -113,7 +119,12 @@ class DisplayPass : public Pass {
                          frame.uploaded(cells.leaves, "elements by cells")};
     });
   }
-  static gpu::ResourceBinding binding(const CellBuffers& cells) {
+  /// Leaves by where they are, for neighbours.glsl.
+  shader::BindingSet cellBinding(PassContext& frame) const {
+    const CellBuffers& cells = cellsOf(frame);
+    return {sizesOf(cells), display::cellStarts(cells.starts), display::cellLeaves(cells.leaves)};
+  }
+  static gpu::ResourceBinding sizesOf(const CellBuffers& cells) {
     display::Cells block{};
     for (std::size_t i = 0; i < cells.sizes.size(); ++i)
       block.cellSizes[i] = {cells.sizes[i], 1.0f / cells.sizes[i], 0.0f, 0.0f};
@@ -126,13 +137,25 @@ class DisplayPass : public Pass {
   /// Values of leaves where the camera sees them, and `added`, where there is one.
   Image show(PassContext& frame, const shader::BindingSet& common, int of, const gpu::TextureRef& values,
              const Image& added, float empty = 0.0f) const {
+    using display::Variant;
     Image result{frame.image("values of elements")};
+    const bool overTriangles =
+        of != Variant::ofSegments && (asPublished || interpolate == Interpolate::vertices);
+    shader::BindingSet bound{common, display::added(added.texture, gpu::Sampling::nearest),
+                             display::shownImage(result.texture)};
+    Image interpolated;
+    if (overTriangles) {
+      interpolated = interpolatedOverTriangles(frame, *elements, *gbuffer, values);
+      bound.add(display::interpolated(interpolated.texture, gpu::Sampling::nearest));
+    } else {
+      bound = {bound, cellBinding(frame), display::leafValues(values, gpu::Sampling::nearest)};
+    }
     frame.dispatch(
-        frame.program(display::Variant{.of = of, .added = added.texture != nullptr},
+        frame.program(Variant{.of = of,
+                              .from = overTriangles ? Variant::fromVertices : Variant::fromNeighbours,
+                              .added = added.texture != nullptr},
                       display::Constants{.empty = empty}),
-        {common, display::leafValues(values, gpu::Sampling::nearest),
-         display::added(added.texture, gpu::Sampling::nearest), display::shownImage(result.texture)},
-        pixels(frame));
+        bound, pixels(frame));
     return result;
   }
 
@@ -144,14 +167,15 @@ class DisplayPass : public Pass {
         common, LinkBinding(*links),
         display_glossy::lobe({frame.sceneDescription().environment, frame.snapshot().camera.eye}),
         sentRadiance(radiance, gpu::Sampling::nearest)};
-    if (lobe == Lobe::pixel) {
+    if (lobe == Lobe::pixel && !asPublished) {
       const int most = std::clamp(kLoopLimit / (12 * links->bins * links->bins), 1, 4);
       Image result{frame.image("glossy radiance")};
       frame.dispatch(
           frame.program(
               Variant{.at = Variant::atPixel, .environment = sky, .added = added.texture != nullptr},
               Constants{.mostLeaves = most}),
-          {bound, display_glossy::added(added.texture, gpu::Sampling::nearest), shownImage(result.texture)},
+          {bound, cellBinding(frame), display_glossy::added(added.texture, gpu::Sampling::nearest),
+           shownImage(result.texture)},
           pixels(frame));
       return result;
     }

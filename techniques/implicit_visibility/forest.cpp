@@ -89,6 +89,13 @@ void sortLeaves(Origins& origins, ElementTree& tree) {
   origins = std::move(sorted);
 }
 
+void findVertices(const Scene& scene, const Origins& origins, ElementTree& tree) {
+  if (origins.firstTriangle.empty()) return;
+  tree.leafOfVertex.assign(scene.positions.size(), kNoElement);
+  for (std::uint32_t leaf = 0; leaf < origins.leaves.size(); ++leaf)
+    tree.leafOfVertex[origins.leaves[leaf].vertex] = leaf;
+}
+
 /// Nodes of the segments above the leaves, level by level.
 void addSegmentNodes(ElementTree& tree) {
   tree.leafCount = static_cast<std::uint32_t>(tree.segmentOfLeaf.size());
@@ -262,6 +269,7 @@ Forest plantForest(const Scene& scene, Origins origins) {
   Forest forest;
   auto tree = std::make_shared<ElementTree>();
   sortLeaves(origins, *tree);
+  findVertices(scene, origins, *tree);
   addSegmentNodes(*tree);
   addGroups(scene, origins, *tree);
   forest.albedo = pulledUp(origins, *tree, [](const Leaf& leaf) { return glm::vec4(leaf.albedo, 1.0f); });

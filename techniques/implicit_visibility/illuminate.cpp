@@ -57,18 +57,23 @@ class IlluminatePass : public Pass {
       this, "light_lists", true,
       "with 'area_light links': only links to what shines are looked at; off: all: the same "
       "bits"};
+  Param<bool> asPublished{this, "as_published", false,
+                          "'weight element', 'area_light links' and 'light_samples 1'"};
   Out<ElementLight> light{this, "light", Contributes::nothing, Needs::anyLight,
                           "light at elements, on both sides"};
 
   Reads readsFrom() const override { return Reads::environment; }
   int indirectBounces() const override { return bounces; }
 
+  bool weighsElements() const { return asPublished || weight == Weight::element; }
+  bool linksToLights() const { return asPublished || areaLight == AreaLight::links; }
+
   void run(PassContext& frame) override {
     ElementLight result;
     const int texels = ElementLight::radianceTexels(*elements), leafTexels = 2 * elements->leafCount;
     result.irradiance = emptyTexels(frame, leafTexels, "irradiance of elements");
     result.radiance = emptyTexels(frame, texels, "radiance of elements");
-    if (areaLight == AreaLight::links && elements->emission != nullptr) {
+    if (linksToLights() && elements->emission != nullptr) {
       result.emission = emptyTexels(frame, texels, "emission of elements");
       result.directIrradiance = emptyTexels(frame, leafTexels, "irradiance of elements by what shines");
     }
@@ -111,12 +116,12 @@ class IlluminatePass : public Pass {
     const LightBinding lights(shadow);
     // Lights without extent come first; what shines comes by links or by its samples, never by both.
     const auto withoutExtent = static_cast<int>(frame.sceneDescription().lights.size());
-    const int count = areaLight == AreaLight::links ? std::min(lights.count, withoutExtent) : lights.count;
+    const int count = linksToLights() ? std::min(lights.count, withoutExtent) : lights.count;
     const bool lit = shadow.present() && count > 0;
     frame.dispatchList(frame.program(
                            light_leaves::Variant{
                                .lights = lit, .shadows = lit, .linked = result.directIrradiance != nullptr},
-                           light_leaves::Constants{.samplesPerSide = lightSamples}),
+                           light_leaves::Constants{.samplesPerSide = asPublished ? 1 : int(lightSamples)}),
                        {common, lights, light_leaves::directLight({count}),
                         light_leaves::albedos(elements->albedo, gpu::Sampling::nearest),
                         light_leaves::arrivingFromLights(result.directIrradiance, gpu::Sampling::nearest),
@@ -128,8 +133,7 @@ class IlluminatePass : public Pass {
               const illuminate::Constants& constants, const gpu::TextureRef& sent,
               const gpu::TextureRef& irradiance, const gpu::TextureRef& reflected,
               const gpu::TextureRef& radiance) {
-    variant.weight =
-        weight == Weight::bin ? illuminate::Variant::weightBin : illuminate::Variant::weightElement;
+    variant.weight = weighsElements() ? illuminate::Variant::weightElement : illuminate::Variant::weightBin;
     shader::BindingSet bound{common,
                              illuminate::illumination({frame.sceneDescription().environment}),
                              illuminate::lights(links->lights),
@@ -138,7 +142,7 @@ class IlluminatePass : public Pass {
                              illuminate::irradianceImage(irradiance),
                              illuminate::reflectedImage(reflected),
                              illuminate::radianceImage(radiance)};
-    if (weight == Weight::element) bound.add(illuminate::counts(linksToSameNode(frame)));
+    if (weighsElements()) bound.add(illuminate::counts(linksToSameNode(frame)));
     frame.dispatchList(frame.program(variant, constants), bound,
                        kTogether * static_cast<std::uint64_t>(elements->leafCount));
   }

@@ -32,6 +32,7 @@ class CreateLinksPass : public Pass {
   Param<float> split{
       this, "split", 2.0f, within(0.0f, 64.0f),
       "how many bins a node may cover before it is split (published: 1); 0: all are, down to the leaves"};
+  Param<bool> asPublished{this, "as_published", false, "'mapping uniform' and 'split 1'"};
   Out<ElementLinks> result{this, "links", "pairs of nodes that may exchange light"};
 
   bool worksOnHost() const override { return true; }
@@ -39,10 +40,10 @@ class CreateLinksPass : public Pass {
   void run(PassContext& frame) override {
     ElementLinks links;
     links.bins = bins;
-    links.mapping = mapping;
+    links.mapping = asPublished ? BinMapping::uniform : BinMapping(mapping);
     if (method == Method::hierarchy) {
       const ElementTree& tree = *elements->tree;
-      const PairSettings settings{DirectionBins(bins, mapping), split};
+      const PairSettings settings{DirectionBins(bins, links.mapping), asPublished ? 1.0f : float(split)};
       const auto find = [&](bool moving) {
         return std::make_shared<const ElementLists<std::uint32_t>>(
             findPartners(tree, *elements->state, settings, moving));
@@ -68,6 +69,7 @@ class PushLinksPass : public Pass {
       this, "push", Push::rebinned,
       "rebinned: links of inner nodes are seen anew from the leaf; kept: in the bin and at the distance of "
       "the node (published)"};
+  Param<bool> asPublished{this, "as_published", false, "'fill one' and 'push kept'"};
   Out<ElementLinks> result{this, "links", "what each leaf sees, bin by bin"};
 
   bool worksOnHost() const override { return true; }
@@ -78,7 +80,8 @@ class PushLinksPass : public Pass {
     requireRoom(tree.leafCount, bins);
     const auto finder =
         frame.kept("table of bins", 0, [&] { return std::make_shared<const BinFinder>(bins); });
-    const Lookout lookout(tree, *elements->state, *finder, fill, push);
+    const Lookout lookout(tree, *elements->state, *finder, asPublished ? Fill::one : Fill(fill),
+                          asPublished ? Push::kept : Push(push));
     using Lists = ElementLists<BinnedSight>;
     const std::shared_ptr<const Lists> still = frame.kept(
         "what elements see of what stands still", std::pair(elements->tree, pairs->stillPartners), [&] {
