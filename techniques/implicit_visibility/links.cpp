@@ -1,15 +1,17 @@
 // Links among elements (Dong et al. 2007, Sec. 4.2; steps 5 to 7 of Algorithm 1).
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
+#include <span>
 #include <utility>
 
 #include "looking.h"
-#include "lumivox/base/error.h"
-#include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
 #include "pairs.h"
 #include "passes.h"
+#include "room.h"
 
 namespace lumivox::implicit_visibility {
 namespace {
@@ -57,6 +59,39 @@ class CreateLinksPass : public Pass {
   }
 };
 
+/// What one side of an element sees, by bins. It is in a closed room when there is a link in every quarter of
+/// a face of the cube that is above its plane altogether.
+class Enclosure {
+ public:
+  Enclosure(const BinFinder& finder, const glm::vec3& normal, std::span<const ElementLink> seen) {
+    const auto side = static_cast<std::uint32_t>(finder.bins().side());
+    auto link = seen.begin();
+    for (std::uint32_t bin = 0; bin < finder.bins().count(); ++bin) {
+      const std::uint32_t row = bin / side % side, column = bin % side;
+      Part& quarter = quarters_[4 * (bin / (side * side)) + 2 * (2 * row / side) + 2 * column / side];
+      const bool isFilled = link != seen.end() && link->bin() == bin;
+      if (isFilled) ++link;
+      const bool isAbove = glm::dot(normal, finder.centre(bin)) > 0.0f;
+      for (Part* part : {&quarter, &all_})
+        ++part->bins, part->above += isAbove, part->filled += isAbove && isFilled;
+    }
+  }
+  bool isClosed() const {
+    return all_.filled > 0 && std::all_of(quarters_.begin(), quarters_.end(), [](const Part& quarter) {
+             return quarter.above < quarter.bins || quarter.bins == 0 || quarter.filled > 0;
+           });
+  }
+  std::uint32_t bins() const { return all_.above; }
+  std::uint32_t empty() const { return all_.above - all_.filled; }
+
+ private:
+  struct Part {
+    std::uint32_t bins = 0, above = 0, filled = 0;  ///< above: of the element's plane; filled: of these
+  };
+  std::array<Part, 24> quarters_;
+  Part all_;
+};
+
 class PushLinksPass : public Pass {
   In<SurfaceElements> elements{this, "elements", "what is linked"};
   In<ElementLinks> pairs{this, "links", "pairs of nodes, of create_links"};
@@ -75,7 +110,8 @@ class PushLinksPass : public Pass {
   void run(PassContext& frame) override {
     const ElementTree& tree = *elements->tree;
     const DirectionBins bins(pairs->bins, pairs->mapping);
-    requireRoom(tree.leafCount, bins);
+    const bool moves = frame.traits().movingGeometry;
+    requireRoomFor(tree.leafCount, bins, moves);
     const auto finder =
         frame.kept("table of bins", 0, [&] { return std::make_shared<const BinFinder>(bins); });
     const Lookout lookout(tree, *elements->state, *finder, fill, push);
@@ -84,43 +120,30 @@ class PushLinksPass : public Pass {
         "what elements see of what stands still", std::pair(elements->tree, pairs->stillPartners), [&] {
           return std::make_shared<const Lists>(lookout.look({pairs->stillPartners.get(), false}, nullptr));
         });
-    const bool moves = frame.traits().movingGeometry;
     const Lists all = moves ? lookout.look({pairs->movingPartners.get(), true}, still.get()) : Lists();
     ElementLinks links = *pairs;
     upload(frame, moves ? all : *still, *finder, links);
     result = links;
-    if (frame.inspects()) noteEmpty(frame, bins, *links.seen);
+    if (frame.inspects()) noteEmpty(frame, *finder, *links.seen);
   }
 
-  /// Before anything is taken.
-  static void requireRoom(std::uint32_t leaves, const DirectionBins& bins) {
-    // On this side twice while lists are joined, and as the device has them.
-    const std::uint64_t bytes =
-        leaves * std::uint64_t{bins.count()} * (2 * sizeof(BinnedSight) + sizeof(ElementLink));
-    const std::uint64_t available = availableMemory();
-    if (bytes <= available) return;
-    throw Error(fmt::format(
-        "links of {} elements with 6 x {} x {} bins need up to {}; available are {}, enough for {} elements",
-        leaves, bins.side(), bins.side(), formatBytes(bytes), formatBytes(available),
-        available / (bytes / leaves)));
+  /// Before anything is taken: on this side twice while lists are joined, once more for what stands still,
+  /// and as the device has them.
+  static void requireRoomFor(std::uint32_t leaves, const DirectionBins& bins, bool moves) {
+    const std::uint64_t bytes = (moves ? 3 : 2) * sizeof(BinnedSight) + sizeof(ElementLink);
+    requireRoom({"links", leaves, leaves * std::uint64_t{bins.count()} * bytes, bins.side()}, ofHost());
   }
 
   void upload(PassContext& frame, const ElementLists<BinnedSight>& seen, const BinFinder& finder,
               ElementLinks& links) const {
     const ElementTree& tree = *elements->tree;
+    requireRoom({"links", tree.leafCount, seen.values.size() * sizeof(ElementLink), links.bins},
+                {"a buffer of the device", frame.device().info().maxStorageBytes});
     auto compact = std::make_shared<ElementLists<ElementLink>>();
     compact->first = seen.first;
     compact->values.reserve(seen.values.size());
     for (const BinnedSight& link : seen.values)
       compact->values.emplace_back(link.bin, link.sight.distance, link.sight.node);
-    const std::uint64_t bytes = compact->values.size() * sizeof(ElementLink),
-                        most = frame.device().info().maxStorageBytes;
-    if (bytes > most)
-      throw Error(fmt::format(
-          "{} links of {} elements with 6 x {} x {} bins need {} in one buffer; the device takes {}, "
-          "enough for about {} elements",
-          compact->values.size(), tree.leafCount, links.bins, links.bins, formatBytes(bytes),
-          formatBytes(most), most / (bytes / tree.leafCount)));
     std::vector<glm::uvec4> first;
     for (std::uint32_t leaf = 0; leaf < tree.leafCount; ++leaf)
       first.emplace_back(
@@ -146,14 +169,19 @@ class PushLinksPass : public Pass {
     links.lights = frame.uploaded(words, "links of elements to lights");
   }
 
-  static void noteEmpty(PassContext& frame, const DirectionBins& bins,
-                        const ElementLists<ElementLink>& seen) {
-    if (seen.size() == 0) return;
-    const double all = static_cast<double>(seen.size()) * static_cast<double>(bins.count());
-    frame.note(
-        fmt::format("{:.1f} % of the bins of elements hold no link (of surfaces with one side that sees "
-                    "surfaces, half are)",
-                    100.0 * (1.0 - static_cast<double>(seen.values.size()) / all)));
+  void noteEmpty(PassContext& frame, const BinFinder& finder, const ElementLists<ElementLink>& seen) const {
+    const std::vector<glm::vec3>& normals = elements->state->normal;
+    std::uint64_t empty = 0, all = 0;
+    for (std::uint32_t leaf = 0; leaf < seen.size(); ++leaf)
+      for (const float side : {1.0f, -1.0f}) {
+        const Enclosure enclosure(finder, side * normals[leaf], seen[leaf]);
+        if (!enclosure.isClosed()) continue;
+        empty += enclosure.empty();
+        all += enclosure.bins();
+      }
+    if (all > 0)
+      frame.note(fmt::format("{:.1f} % of the bins of elements in closed rooms hold no link",
+                             100.0 * static_cast<double>(empty) / static_cast<double>(all)));
   }
 };
 

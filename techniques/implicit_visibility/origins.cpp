@@ -8,9 +8,9 @@
 #include <span>
 
 #include "leaf_materials.h"
-#include "lumivox/base/file.h"
 #include "lumivox/scene/atlas.h"
 #include "lumivox/scene/topology.h"
+#include "room.h"
 
 namespace lumivox::implicit_visibility {
 namespace {
@@ -53,18 +53,18 @@ struct TexelSizes {
     for (const Object& object : scene.objects) areas.push_back(areaOf(scene, object));
     const double largest = areas.empty() ? 0.0 : *std::max_element(areas.begin(), areas.end());
     for (const double area : areas) weights.push_back(area > 0.0 ? std::pow(area / largest, share) : 0.0);
-    std::vector<std::size_t> order(areas.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t i, std::size_t k) { return weights[i] < weights[k]; });
-    double total = std::accumulate(weights.begin(), weights.end(), 0.0), alone = 0.0;
-    for (const std::size_t i : order) {
-      if (!(areas[i] > 0.0)) continue;
-      double part = wanted * weights[i] / total;
-      if (part < 1.0) total -= weights[i], alone += 1.0, part = 1.0;
-      ofObjects[i] = std::sqrt(areas[i] / part);
-    }
-    elements = alone + (total > 0.0 ? wanted : 0.0);
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    const auto isAlone = [&](double weight) { return wanted * weight < total; };
+    double alone = 0.0, shared = 0.0;  // how many are; weight of the others
+    for (const double weight : weights)
+      if (!isAlone(weight))
+        shared += weight;
+      else if (weight > 0.0)
+        alone += 1.0;
+    for (std::size_t i = 0; i < areas.size(); ++i)
+      if (areas[i] > 0.0)
+        ofObjects[i] = std::sqrt(areas[i] / (isAlone(weights[i]) ? 1.0 : wanted * weights[i] / shared));
+    elements = alone + (shared > 0.0 ? wanted : 0.0);
   }
 };
 
@@ -233,7 +233,7 @@ Origins findOrigins(const Scene& scene, const OriginSettings& settings) {
   const auto leaves = atlasLeaves ? static_cast<std::uint64_t>(settings.elements) : scene.positions.size();
   // Of a leaf: itself, its texel twice, and its nodes with their states and textures.
   constexpr std::uint64_t kBytesPerLeaf = 512;
-  requireMemory(leaves * kBytesPerLeaf, std::to_string(leaves) + " surface elements");
+  requireRoom({"places and trees", leaves, leaves * kBytesPerLeaf}, ofHost());
   // With vertices the atlas gives charts alone: texels as large as the objects are enough.
   const SurfaceAtlas atlas =
       atlasLeaves ? atlasOf(scene, settings)

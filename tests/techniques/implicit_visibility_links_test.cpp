@@ -285,6 +285,17 @@ TEST_CASE("planes of one degree between them, needles and coplanar doubles have 
   CHECK(sums.mean > 0.1);
 }
 
+TEST_CASE("of two sheets on each other, hardly apart in their plane, none hides the other's sky") {
+  // Turned, so that places are rounded to above and below the plane.
+  SceneBuilder builder;
+  const int grey = builder.lambert(0.5f);
+  const glm::dmat4 turn = glm::mat4_cast(glm::angleAxis(1.1, glm::normalize(glm::dvec3(1, 2, -0.7))));
+  for (const float shift : {0.0f, 3e-4f})
+    builder.quad({shift, 0, shift}, {0, 0, 1}, {1, 0, 0}, grey).placement = turn;
+  const RowSums sums = rowSums(linked(builder.scene, {{{"elements", 2048.0}, {"share", 0.0}}, {}, {}}));
+  CHECK(sums.most == 0.0);
+}
+
 TEST_CASE("many small squares and one mesh of them need about as many pairs") {
   const auto squares = [](bool separate) {
     constexpr int kSide = 32;
