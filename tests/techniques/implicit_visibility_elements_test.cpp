@@ -174,8 +174,8 @@ TEST_CASE("objects too small for an element have one each, and leave a large one
   const int grey = builder.lambert(0.5f);
   constexpr int kObjects = 1000;
   for (int i = 0; i < kObjects; ++i)
-    builder.quad({static_cast<float>(i % 40), 5.0f, static_cast<float>(i / 40)}, {0, 0, 0.5f}, {0.5f, 0, 0},
-                 grey);
+    builder.quad({static_cast<float>(i % 40), 5.0f, static_cast<float>(i / 40)}, {0, 0, 0.7f},
+                 {i % 2 == 0 ? 0.7f : 0.2f, 0, 0}, grey);
   const Elements made = elementsOf(builder.scene, {{"elements", 400.0}});
   std::vector<int> counts(kObjects + 1, 0);
   for (std::uint32_t leaf = 0; leaf < made.tree().leafCount; ++leaf) ++counts[made.tree().objectOfNode[leaf]];
