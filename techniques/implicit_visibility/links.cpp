@@ -19,6 +19,15 @@ namespace {
 /// hierarchy: pairs of nodes as large as a bin. all_pairs: every leaf with every other one (Sec. 3.1).
 enum class Method { hierarchy, allPairs };
 
+/// On this side they are there twice while lists are joined, once more for what stands still, and as the
+/// device has them.
+void requireRoomForLinks(PassContext& frame, const ElementTree& tree, const DirectionBins& bins) {
+  const std::uint64_t bytes =
+      (frame.traits().movingGeometry ? 3 : 2) * sizeof(BinnedSight) + sizeof(ElementLink);
+  requireRoom({"links", tree.leafCount, tree.leafCount * std::uint64_t{bins.count()} * bytes, bins.side()},
+              ofHost());
+}
+
 class CreateLinksPass : public Pass {
   In<SurfaceElements> elements{this, "elements", "what is linked"};
   Param<Method> method{
@@ -42,8 +51,10 @@ class CreateLinksPass : public Pass {
     ElementLinks links;
     links.bins = bins;
     links.mapping = mapping;
+    const ElementTree& tree = *elements->tree;
+    // Finding pairs of so many takes minutes: what their links need is asked for at once.
+    requireRoomForLinks(frame, tree, DirectionBins(bins, mapping));
     if (method == Method::hierarchy) {
-      const ElementTree& tree = *elements->tree;
       const PairSettings settings{DirectionBins(bins, mapping), split};
       const auto find = [&](bool moving) {
         return std::make_shared<const ElementLists<std::uint32_t>>(
@@ -110,8 +121,7 @@ class PushLinksPass : public Pass {
   void run(PassContext& frame) override {
     const ElementTree& tree = *elements->tree;
     const DirectionBins bins(pairs->bins, pairs->mapping);
-    const bool moves = frame.traits().movingGeometry;
-    requireRoomFor(tree.leafCount, bins, moves);
+    requireRoomForLinks(frame, tree, bins);
     const auto finder =
         frame.kept("table of bins", 0, [&] { return std::make_shared<const BinFinder>(bins); });
     const Lookout lookout(tree, *elements->state, *finder, fill, push);
@@ -120,18 +130,12 @@ class PushLinksPass : public Pass {
         "what elements see of what stands still", std::pair(elements->tree, pairs->stillPartners), [&] {
           return std::make_shared<const Lists>(lookout.look({pairs->stillPartners.get(), false}, nullptr));
         });
+    const bool moves = frame.traits().movingGeometry;
     const Lists all = moves ? lookout.look({pairs->movingPartners.get(), true}, still.get()) : Lists();
     ElementLinks links = *pairs;
     upload(frame, moves ? all : *still, *finder, links);
     result = links;
     if (frame.inspects()) noteEmpty(frame, *finder, *links.seen);
-  }
-
-  /// Before anything is taken: on this side twice while lists are joined, once more for what stands still,
-  /// and as the device has them.
-  static void requireRoomFor(std::uint32_t leaves, const DirectionBins& bins, bool moves) {
-    const std::uint64_t bytes = (moves ? 3 : 2) * sizeof(BinnedSight) + sizeof(ElementLink);
-    requireRoom({"links", leaves, leaves * std::uint64_t{bins.count()} * bytes, bins.side()}, ofHost());
   }
 
   void upload(PassContext& frame, const ElementLists<BinnedSight>& seen, const BinFinder& finder,

@@ -128,3 +128,22 @@ TEST_CASE("table: errors of indirect light by elements and bins", "[.]") {
         CHECK(errors.diffuse.rmse < 0.9);
       }
 }
+
+TEST_CASE("table: errors of ambient occlusion by scene, elements and bins", "[.]") {
+  const Picture picture{64, 64, 128};
+  const auto text = pipeline("implicit_visibility");
+  for (const char* name : {"cornell", "corridor", "spinning_box", "chess", "teapot_sky", "vase", "arcade"}) {
+    const Scene scene = committed(name);
+    const LayeredImage reference = referenceOf(scene, picture);
+    for (const char* elements : {"elements=4096", "elements=16384"})
+      for (const char* bins : {"bins=8", "bins=16"}) {
+        if (std::string(elements) == "elements=16384" && std::string(bins) == "bins=16") continue;
+        const FrameResult frame = pictured(scene, picture, text, {elements, bins});
+        const ImageBuffer& openness = frame.outputs.at("ambient_occlusion");
+        std::printf("%-15s %-15s %-8s RMS %.3f mean ratio %.3f\n", name, elements, bins,
+                    opennessError(reference, openness), occlusionAgainst(reference, openness).ratio);
+        std::fflush(stdout);
+        CHECK(opennessError(reference, openness) < 0.3);
+      }
+  }
+}

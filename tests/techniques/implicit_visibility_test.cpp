@@ -36,16 +36,21 @@ TEST_CASE("too many links for the memory there is are refused before anything is
                        snapshotOf(scene, 0.0));
   elements.setParameter("elements", 200000.0);
   elements.run();
-  PassHarness push(device(), techniques(), "implicit_visibility", "push_links", scene,
-                   snapshotOf(scene, 0.0));
-  push.setInput("elements", elements.output<SurfaceElements>("elements"));
-  ElementLinks none;
-  none.bins = 64;
-  push.setInput("links", none);
-  const std::string message = messageOf<Error>([&] { push.run(); });
-  CHECK_THAT(message,
-             Catch::Matches(".*links of \\d+ elements with 6 x 64 x 64 bins need [0-9.]+ [KMGT]iB; memory has "
-                            "[0-9.]+ [KMGT]iB, enough for about \\d+ elements"));
+  for (const std::string name : {"create_links", "push_links"}) {
+    PassHarness pass(device(), techniques(), "implicit_visibility", name, scene, snapshotOf(scene, 0.0));
+    pass.setInput("elements", elements.output<SurfaceElements>("elements"));
+    if (name == "create_links") {
+      pass.setParameter("bins", 64.0);
+    } else {
+      ElementLinks none;
+      none.bins = 64;
+      pass.setInput("links", none);
+    }
+    CHECK_THAT(
+        messageOf<Error>([&] { pass.run(); }),
+        Catch::Matches(".*links of \\d+ elements with 6 x 64 x 64 bins need [0-9.]+ [KMGT]iB; memory has "
+                       "[0-9.]+ [KMGT]iB, enough for about \\d+ elements"));
+  }
 }
 
 TEST_CASE("more links than a buffer of the device takes are refused before it is made, with what would fit") {
