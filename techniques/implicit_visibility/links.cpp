@@ -28,6 +28,11 @@ void requireRoomForLinks(PassContext& frame, const ElementTree& tree, const Dire
               ofHost());
 }
 
+void requireRoomOnDevice(PassContext& frame, const ElementTree& tree, int bins, std::uint64_t links) {
+  requireRoom({"links", tree.leafCount, links * sizeof(ElementLink), bins},
+              {"a buffer of the device", frame.device().info().maxStorageBytes});
+}
+
 class CreateLinksPass : public Pass {
   In<SurfaceElements> elements{this, "elements", "what is linked"};
   Param<Method> method{
@@ -125,6 +130,13 @@ class PushLinksPass : public Pass {
     const auto finder =
         frame.kept("table of bins", 0, [&] { return std::make_shared<const BinFinder>(bins); });
     const Lookout lookout(tree, *elements->state, *finder, fill, push);
+    // What is clearly too much is refused before it is looked for, which takes minutes.
+    constexpr std::uint32_t kMany = 16384;
+    if (tree.leafCount > kMany) {
+      const std::uint64_t expected = lookout.estimate({pairs->stillPartners.get(), false});
+      if (expected / 2 * sizeof(ElementLink) > frame.device().info().maxStorageBytes)
+        requireRoomOnDevice(frame, tree, pairs->bins, expected);
+    }
     using Lists = ElementLists<BinnedSight>;
     const std::shared_ptr<const Lists> still = frame.kept(
         "what elements see of what stands still", std::pair(elements->tree, pairs->stillPartners), [&] {
@@ -141,8 +153,7 @@ class PushLinksPass : public Pass {
   void upload(PassContext& frame, const ElementLists<BinnedSight>& seen, const BinFinder& finder,
               ElementLinks& links) const {
     const ElementTree& tree = *elements->tree;
-    requireRoom({"links", tree.leafCount, seen.values.size() * sizeof(ElementLink), links.bins},
-                {"a buffer of the device", frame.device().info().maxStorageBytes});
+    requireRoomOnDevice(frame, tree, links.bins, seen.values.size());
     auto compact = std::make_shared<ElementLists<ElementLink>>();
     compact->first = seen.first;
     compact->values.reserve(seen.values.size());
