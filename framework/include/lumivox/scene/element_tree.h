@@ -59,6 +59,7 @@ struct ElementTree {
   std::vector<std::uint32_t> parents;  ///< of each node; kNoElement for those without
   std::vector<std::uint32_t> segmentOfLeaf;
   std::vector<bool> emits;                  ///< of each node: whether a leaf of it shines
+  std::vector<bool> glossy;                 ///< of each node: whether a leaf of it is glossy
   std::vector<std::uint32_t> objectOfNode;  ///< index into Scene::objects; kNoElement: a group of several
   std::uint32_t root = kNoElement;          ///< of everything; kNoElement without a leaf
 
