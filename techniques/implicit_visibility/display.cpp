@@ -2,13 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "display_vertices.h"
 #include "element_cells.h"
 #include "light.h"
 #include "lumivox/toolkit/loop_limit.h"
+#include "outgoing.h"
 #include "passes.h"
 
 namespace lumivox::implicit_visibility {
@@ -86,7 +85,7 @@ class DisplayPass : public Pass {
           light.present() ? show(frame, common, Variant::ofIrradiance, light->irradiance, {}) : black(frame);
     if (glossy.wanted())
       glossy = light.present() && links.present()
-                   ? showLobe(frame, common, light->radiance, frame.traits().environment, {})
+                   ? showLobe(frame, common, light->radiance, light->outgoing, frame.traits().environment, {})
                    : black(frame);
     if (glossy.wanted() && links.present() && frame.inspects())
       frame.note(fmt::format(
@@ -99,11 +98,6 @@ class DisplayPass : public Pass {
       segments =
           show(frame, {common, display::segments(ofLeaves)}, Variant::ofSegments, elements->position, {});
     }
-  }
-
-  /// Of the lobe that falls to a half within the width of a bin.
-  static double resolvedExponent(int bins) {
-    return std::log(0.5) / std::log(std::cos(0.5 * std::numbers::pi / bins));
   }
 
   static Image black(PassContext& frame) {
@@ -159,32 +153,38 @@ class DisplayPass : public Pass {
     return result;
   }
 
-  /// The Phong lobe over `radiance` of nodes and, with `sky`, over the environment where a bin has no link.
+  /// The Phong lobe over `radiance` of nodes, and `outgoing`, which may be null, and, with `sky`, over the
+  /// environment where a bin has no link.
   Image showLobe(PassContext& frame, const shader::BindingSet& common, const gpu::TextureRef& radiance,
-                 bool sky, const Image& added) const {
+                 const gpu::TextureRef& outgoing, bool sky, const Image& added) const {
     using namespace display_glossy;
     const shader::BindingSet bound{
         common, LinkBinding(*links),
         display_glossy::lobe({frame.sceneDescription().environment, frame.snapshot().camera.eye}),
-        sentRadiance(radiance, gpu::Sampling::nearest)};
+        sentRadiance(radiance, gpu::Sampling::nearest),
+        OutgoingBinding(outgoing, light->outgoingRows, light->directions)};
+    const bool passedOn = outgoing != nullptr;
     if (lobe == Lobe::pixel && !asPublished) {
       const int most = std::clamp(kLoopLimit / (12 * links->bins * links->bins), 1, 4);
       Image result{frame.image("glossy radiance")};
-      frame.dispatch(
-          frame.program(
-              Variant{.at = Variant::atPixel, .environment = sky, .added = added.texture != nullptr},
-              Constants{.mostLeaves = most}),
-          {bound, cellBinding(frame), display_glossy::added(added.texture, gpu::Sampling::nearest),
-           shownImage(result.texture)},
-          pixels(frame));
+      frame.dispatch(frame.program(Variant{.at = Variant::atPixel,
+                                           .environment = sky,
+                                           .added = added.texture != nullptr,
+                                           .outgoing = passedOn},
+                                   Constants{.mostLeaves = most}),
+                     {bound, cellBinding(frame), display_glossy::added(added.texture, gpu::Sampling::nearest),
+                      shownImage(result.texture)},
+                     pixels(frame));
       return result;
     }
     const gpu::TextureRef atLeaves =
         emptyTexels(frame, 2 * elements->leafCount, "glossy radiance of elements");
     if (elements->specular != nullptr && elements->leafCount > 0)
-      frame.dispatchList(frame.program(Variant{.at = Variant::atElement, .environment = sky}, Constants{}),
-                         {bound, speculars(elements->specular, gpu::Sampling::nearest), shownImage(atLeaves)},
-                         static_cast<std::uint64_t>(elements->leafCount));
+      frame.dispatchList(
+          frame.program(Variant{.at = Variant::atElement, .environment = sky, .outgoing = passedOn},
+                        Constants{}),
+          {bound, speculars(elements->specular, gpu::Sampling::nearest), shownImage(atLeaves)},
+          static_cast<std::uint64_t>(elements->leafCount));
     return show(frame, common, display::Variant::ofValue, atLeaves, added);
   }
 
@@ -193,7 +193,7 @@ class DisplayPass : public Pass {
     if (!light.present() || light->directIrradiance == nullptr) return base;
     const Image sum = show(frame, common, display::Variant::ofIrradiance, light->directIrradiance, base);
     if (gbuffer->specular == nullptr || !links.present()) return sum;
-    return showLobe(frame, common, light->emission, false, sum);
+    return showLobe(frame, common, light->emission, nullptr, false, sum);
   }
 
   Image showOpenness(PassContext& frame, const shader::BindingSet& common) const {

@@ -157,22 +157,36 @@ class PushLinksPass : public Pass {
               ElementLinks& links) const {
     const ElementTree& tree = *elements->tree;
     requireRoomOnDevice(frame, tree, links.bins, seen.values.size());
-    auto compact = std::make_shared<ElementLists<ElementLink>>();
-    compact->first = seen.first;
-    compact->values.reserve(seen.values.size());
-    for (const BinnedSight& link : seen.values)
-      compact->values.emplace_back(link.bin, link.sight.distance, link.sight.node);
+    auto compact = std::make_shared<ElementLists<ElementLink>>(compactLinks(seen));
     std::vector<glm::uvec4> first;
     for (std::uint32_t leaf = 0; leaf < tree.leafCount; ++leaf)
       first.emplace_back(
-          static_cast<std::uint32_t>(seen.first[leaf]),
-          static_cast<std::uint32_t>(seen.first[leaf + 1] - seen.first[leaf]),
+          static_cast<std::uint32_t>(compact->first[leaf]),
+          static_cast<std::uint32_t>(compact->first[leaf + 1] - compact->first[leaf]),
           std::bit_cast<std::uint32_t>(finder.table().projectionScale(elements->state->normal[leaf])), 0u);
     links.directions = frame.uploaded(finder.table().bins, "directions of bins");
     links.first = frame.uploaded(first, "where links of elements begin");
     links.links = frame.uploaded(compact->values, "links of elements");
     if (elements->emission != nullptr) uploadLights(frame, *compact, links);
     links.seen = std::move(compact);
+  }
+
+  /// With the sides that are seen. Nodes at one place exchange nothing.
+  ElementLists<ElementLink> compactLinks(const ElementLists<BinnedSight>& seen) const {
+    const ElementState& state = *elements->state;
+    ElementLists<ElementLink> compact;
+    compact.values.reserve(seen.values.size());
+    for (std::uint32_t leaf = 0; leaf < seen.size(); ++leaf) {
+      for (const BinnedSight& link : seen[leaf]) {
+        const std::uint32_t node = link.sight.node;
+        const glm::vec3 path = state.position[node] - state.position[leaf];
+        if (path == glm::vec3(0.0f)) continue;
+        const bool back = !elements->tree->isGroup(node) && glm::dot(state.normal[node], path) > 0.0f;
+        compact.values.emplace_back(link.bin, link.sight.distance, node, back);
+      }
+      compact.first.push_back(compact.values.size());
+    }
+    return compact;
   }
 
   /// For each leaf its links to nodes that emit.

@@ -235,9 +235,9 @@ TEST_CASE("'as_published' in every pass is the same image as the printed words s
     return renderOnce(scene, Pipeline::parse(text, "published.pipeline")).outputs;
   };
   const std::string on = "as_published on";
-  const auto words =
-      shown("source vertices segments uv areas rest", "mapping uniform split 1", "fill one push kept",
-            "weight element area_light links light_samples 1", "interpolate vertices lobe element");
+  const auto words = shown(
+      "source vertices segments uv areas rest", "mapping uniform split 1", "fill one push kept",
+      "weight element area_light links light_samples 1 directions 0", "interpolate vertices lobe element");
   const auto published = shown(on, on, on, on, on);
   const auto ours = shown("", "", "", "", "");
   const auto differ = [](const ImageBuffer& a, const ImageBuffer& b) {
