@@ -1,4 +1,5 @@
 // Committed scenes against the path tracer.
+#include <chrono>
 #include <cstdio>
 
 #include "support/against_reference.h"
@@ -113,4 +114,17 @@ TEST_CASE("table: errors of indirect light by elements and bins", "[.]") {
         std::fflush(stdout);
         CHECK(errors.diffuse.rmse < 0.9);
       }
+}
+
+TEST_CASE("table: errors with glossy elements by the directions in which they pass light on", "[.]") {
+  for (const char* directions : {"directions=0", "directions=2", "directions=4", "directions=8"}) {
+    const auto start = std::chrono::steady_clock::now();
+    const Errors errors = errorsOn("cornell_glossy", {directions});
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    std::printf("%s diffuse %.3f ratio %.3f  glossy %.3f ratio %.3f  %.2f s\n", directions,
+                errors.diffuse.rmse, errors.diffuse.ratio, errors.glossy.rmse, errors.glossy.ratio,
+                seconds.count());
+    std::fflush(stdout);
+    CHECK(errors.diffuse.rmse < 0.5);
+  }
 }
