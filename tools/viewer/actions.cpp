@@ -97,7 +97,7 @@ std::vector<PropertySpecification> keepProperties() {
 
 std::vector<PropertySpecification> windowProperties() {
   PropertySpecification wait = one("wait", PropertyType::any,
-                                   "for `frame`, `judged`, or `reference` and so many samples, at most a minute");
+                                   "for `frame`, `judged`, `problem`, `mended`, or `reference` and so many samples, at most a minute");
   return {
       std::move(wait),
       one("click", PropertyType::name, "a control, by its name"),

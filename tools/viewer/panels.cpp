@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/reasons.h"
 #include "lumivox/base/file.h"
 #include "lumivox/results/text.h"
 
@@ -171,6 +172,35 @@ Panel judgePanel(const Session& session) {
   return panel;
 }
 
+/// A bar of the passes' medians, a row for each, and what a frame costs once, while something moves, and always.
+void addPassTimes(std::vector<Row>& rows, const Session& session, std::size_t side, const std::string& prefix) {
+  const RenderedSide& rendered = session.rendered()->sides[side];
+  const std::vector<PassTimes> times = session.passTimes(side);
+  Row bars;
+  bars.kind = Kind::bars;
+  bars.name = prefix + "passes";
+  bars.label = "device time of passes, ms";
+  for (const PassTimes& pass : times) bars.marks.push_back({pass.name, pass.device.median, 0.0, {}});
+  rows.push_back(std::move(bars));
+  double host = 0.0, ofKind[3] = {0.0, 0.0, 0.0};
+  for (const PassTimes& pass : times) {
+    const auto record = std::find_if(rendered.times.begin(), rendered.times.end(),
+                                     [&](const PassRecord& one) { return one.name == pass.name; });
+    rows.push_back(text(prefix + "pass " + pass.name, "  " + pass.name + (pass.onHost ? " (host)" : ""),
+                        fmt::format("{:.3f} ms [{:.3f}, {:.3f}], host {:.3f} ms, {}", pass.device.median,
+                                    pass.device.lowerQuartile, pass.device.upperQuartile, pass.host.median,
+                                    formatBytes(record == rendered.times.end() ? 0 : record->bytes)),
+                        fmt::format("median and quartiles of {} frames; runs {}", pass.device.repeats,
+                                    wordOf(pass.when))));
+    host += pass.host.median;
+    ofKind[static_cast<std::size_t>(pass.when)] += pass.device.median;
+  }
+  for (const RunsWhen when : {RunsWhen::once, RunsWhen::somethingMoves, RunsWhen::everyFrame})
+    rows.push_back(text(prefix + "cost " + wordOf(when), std::string("cost ") + wordOf(when),
+                        fmt::format("{:.3f} ms", ofKind[static_cast<std::size_t>(when)])));
+  rows.push_back(text(prefix + "host", "host", fmt::format("{:.3f} ms in passes", host)));
+}
+
 Panel timePanel(const Session& session) {
   Panel panel{"time", "Time", {}};
   panel.rows.push_back(toggle("times", "time each pass", session.state().timesPasses, "times {}"));
@@ -183,21 +213,7 @@ Panel timePanel(const Session& session) {
     if (!side.error.empty()) continue;
     panel.rows.push_back(heading(prefix + rendered->wish.sides[i].pipeline->file.stem().string()));
     panel.rows.push_back(text(prefix + "frame", "whole frame", fmt::format("{:.2f} ms", side.frame.frameMs)));
-    Row bars;
-    bars.kind = Kind::bars;
-    bars.name = prefix + "passes";
-    bars.label = "device time of passes, ms";
-    for (const PassRecord& pass : side.times)
-      bars.marks.push_back({pass.name + (pass.onHost ? " (host)" : ""), pass.deviceMs, 0.0, {}});
-    panel.rows.push_back(std::move(bars));
-    double host = 0.0;
-    for (const PassRecord& pass : side.times) {
-      panel.rows.push_back(text(prefix + "pass " + pass.name, "  " + pass.name,
-                                fmt::format("{:.3f} ms, host {:.3f} ms, {}", pass.deviceMs, pass.hostMs,
-                                            formatBytes(pass.bytes))));
-      host += pass.hostMs;
-    }
-    panel.rows.push_back(text(prefix + "host", "host", fmt::format("{:.3f} ms in passes", host)));
+    addPassTimes(panel.rows, session, i, prefix);
     panel.rows.push_back(text(prefix + "bytes", "bytes on the device", formatBytes(side.bytes)));
     std::string kept;
     for (const PassRecord& pass : side.frame.passes)
@@ -222,11 +238,25 @@ Panel needPanel(const Session& session) {
   panel.rows.push_back(text("memory", "memory of passes",
                             fmt::format("{}, {} saved by sharing", formatBytes(explanation.poolBytes),
                                         formatBytes(explanation.sharedBytes))));
-  std::size_t count = 0;
-  for (const LeftOut& one : explanation.leftOut)
-    panel.rows.push_back(text(fmt::format("left out {}", ++count),
-                              fmt::format("{}: {}", name(one.level), one.what),
-                              one.why + (one.savedBytes > 0 ? ", " + formatBytes(one.savedBytes) : "")));
+  // Passes and resources first: of variants and libraries there are many.
+  std::vector<command::Reason> reasons = command::reasonsOf(explanation);
+  const auto order = [](const command::Reason& reason) {
+    return reason.level == LeftOut::Level::plugin ? 2 : reason.level == LeftOut::Level::variant ? 1 : 0;
+  };
+  std::stable_sort(reasons.begin(), reasons.end(), [&](const command::Reason& a, const command::Reason& b) {
+    return order(a) < order(b);
+  });
+  constexpr std::size_t kNamed = 4;
+  for (const command::Reason& reason : reasons) {
+    std::vector<std::string> what = reason.what;
+    if (what.size() > kNamed) {
+      what.resize(kNamed);
+      what.push_back(fmt::format("{} more", reason.what.size() - kNamed));
+    }
+    panel.rows.push_back(text(fmt::format("left out, {}: {}", name(reason.level), reason.why),
+                              fmt::format("{} {}", name(reason.level), fmt::join(what, ", ")),
+                              reason.why + (reason.bytes > 0 ? ", " + formatBytes(reason.bytes) : "")));
+  }
   return panel;
 }
 

@@ -36,6 +36,33 @@ PassContract contractOf(const PassText& text, const Pass& pass, TechniqueSource&
   return contract;
 }
 
+/// The passes before each, by the words of the text that connect its inputs.
+std::map<std::string, RunsWhen> whenPassesRun(const Pipeline& pipeline, const PipelineExecutor& executor) {
+  std::map<std::string, Reads> all;
+  for (const PassText& text : pipeline.passes) all[text.name] = executor.pass(text.name).readsFrom();
+  // As often as there are passes: then what the first reads has reached the last, in whatever order they stand.
+  for (std::size_t i = 0; i < pipeline.passes.size(); ++i)
+    for (const PassText& text : pipeline.passes)
+      for (const dsl::Item& item : text.block->items) {
+        if (!item.property || item.property->values.empty()) continue;
+        const std::string& value = item.property->values.front().text;
+        const auto source = all.find(value.substr(0, value.find('.')));
+        const std::vector<InBase*>& inputs = executor.pass(text.name).inputs();
+        const bool isInput = std::any_of(inputs.begin(), inputs.end(), [&](const InBase* input) {
+          return input->name() == item.property->word;
+        });
+        if (isInput && source != all.end()) all[text.name] = all[text.name] | source->second;
+      }
+  std::map<std::string, RunsWhen> runs;
+  for (const auto& [pass, read] : all) {
+    const auto any = [read = read](Reads set) { return (read & set) != Reads::nothing; };
+    runs[pass] = any(Reads::camera | Reads::partOfCamera | Reads::lens | Reads::history) ? RunsWhen::everyFrame
+                 : any(Reads::geometry | Reads::lights | Reads::media | Reads::time)      ? RunsWhen::somethingMoves
+                                                                                           : RunsWhen::once;
+  }
+  return runs;
+}
+
 /// One executor and what it was made for.
 class Executor {
  public:
@@ -80,6 +107,7 @@ class Executor {
     side.bounces = executor_->indirectBounces();
     side.bytes = executor_->memory().bytes;
     side.contracts = contracts_;
+    side.runs = runs_;
     return side;
   }
 
@@ -109,6 +137,7 @@ class Executor {
     contracts_.clear();
     for (const PassText& text : pipeline_->passes)
       contracts_.push_back(contractOf(text, executor_->pass(text.name), techniques));
+    runs_ = whenPassesRun(*pipeline_, *executor_);
   }
 
   std::shared_ptr<const Scene> scene_;
@@ -119,6 +148,7 @@ class Executor {
   std::optional<PortChoice> kept_;
   std::vector<PassRecord> times_;
   std::vector<PassContract> contracts_;
+  std::map<std::string, RunsWhen> runs_;
   std::unique_ptr<PipelineExecutor> executor_;
 };
 
@@ -198,6 +228,18 @@ class Renderer {
 };
 
 }  // namespace
+
+const char* wordOf(RunsWhen when) {
+  switch (when) {
+    case RunsWhen::once:
+      return "once";
+    case RunsWhen::somethingMoves:
+      return "when something moves";
+    case RunsWhen::everyFrame:
+      break;
+  }
+  return "when the camera moves";
+}
 
 RenderWorker::Work makeRenderWork(const gpu::DeviceOptions& options) {
   return [renderer = std::make_shared<Renderer>(options)](const RenderWish& wish, RenderWorker::Turn& turn) {

@@ -63,11 +63,17 @@ struct PassContract {
   std::vector<Port> outputs;
 };
 
+/// When a pass runs, by what it and the passes before it read: once; when time goes on, so that something may
+/// move; whenever the camera moves, too.
+enum class RunsWhen { once, somethingMoves, everyFrame };
+const char* wordOf(RunsWhen when);  ///< "once", "when something moves", "when the camera moves"
+
 struct RenderedSide {
   FrameResult frame;
   Explanation explanation;
   std::map<std::string, int> bounces;  ///< of the outputs
   std::vector<PassContract> contracts;
+  std::map<std::string, RunsWhen> runs;  ///< of passes
   std::uint64_t bytes = 0;
   std::vector<PassRecord> times;  ///< of the last frame whose passes were timed
   std::string error;              ///< why there is no frame; empty: there is one

@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 constexpr double kWatchSeconds = 0.25;    // between looks at the files
 constexpr double kFlickerSeconds = 0.5;   // a picture of two that flicker
 constexpr std::size_t kMostUndo = 1000;
+constexpr std::size_t kFramesKept = 64;   // of which times are told
 
 /// Statements that change what is made or how it is judged, and so can be undone; looking around cannot.
 bool isUndoable(const std::string& word) {
@@ -54,6 +55,14 @@ std::string valuesText(const Pipeline& pipeline, const ParameterValues& values) 
   std::string text = pipeline.file.stem().string();
   for (const auto& [name, value] : values) text += fmt::format(" {}={}", name, value.text());
   return text;
+}
+
+/// What is alike in everything that costs time.
+std::string keyOf(const Rendered& rendered, std::size_t side) {
+  const Side& what = rendered.wish.sides[side];
+  return fmt::format("{} {} {} {} {}x{}", what.pipeline->hash.text(), valuesText(*what.pipeline, what.values),
+                     rendered.wish.keepEverything, rendered.wish.scene->hash.text(), rendered.wish.width,
+                     rendered.wish.height);
 }
 
 template <class Word>
@@ -445,7 +454,7 @@ bool Session::step(double seconds) {
     state_.time += seconds * state_.speed;
     stateChanged_ = true;
   }
-  if (state_.layout == Layout::flicker) {
+  if (state_.layout == Layout::flicker || picture_.badPixels > 0) {
     const bool before = flicker_ < kFlickerSeconds;
     flicker_ = std::fmod(flicker_ + seconds, 2.0 * kFlickerSeconds);
     pictureChanged_ = pictureChanged_ || before != (flicker_ < kFlickerSeconds);
@@ -545,21 +554,51 @@ void Session::noteTried() {
     const RenderedSide& side = rendered_->sides[i];
     if (!side.error.empty()) continue;
     const Side& what = rendered_->wish.sides[i];
-    const std::string key = fmt::format("{} {} {} {}", what.pipeline->hash.text(),
-                                        valuesText(*what.pipeline, what.values), rendered_->wish.keepEverything,
-                                        rendered_->wish.scene->hash.text());
+    const std::string key = keyOf(*rendered_, i);
     auto known = std::find_if(tried_.begin(), tried_.end(), [&](const TriedPoint& one) { return one.key == key; });
     if (known == tried_.end())
-      known = tried_.insert(tried_.end(), {valuesText(*what.pipeline, what.values), key, what, 0.0, {}, {}});
+      known = tried_.insert(tried_.end(), {valuesText(*what.pipeline, what.values), key, what, 0.0, {}, {}, {}});
     // A frame that found its results kept says nothing of the cost.
     const bool whole = std::all_of(side.frame.passes.begin(), side.frame.passes.end(),
                                    [](const PassRecord& pass) { return pass.ran; });
     if (!judges && whole) known->times.push_back(side.frame.frameMs);
+    if (!judges && rendered_->wish.timesPasses)
+      for (const PassRecord& pass : side.times) {
+        std::vector<PassRecord>& last = known->passes[pass.name];
+        last.push_back(pass);
+        if (last.size() > kFramesKept) last.erase(last.begin());
+      }
     known->frameMs = known->times.empty() ? side.frame.frameMs : medianOfTimes(known->times);
     if (judges)
       for (const JudgedOutput& output : judged_->sides[i])
         if (output.output == kWholeImage) known->error = output.error.rmse;
   }
+}
+
+std::vector<PassTimes> Session::passTimes(std::size_t side) const {
+  std::vector<PassTimes> times;
+  if (rendered_ == nullptr || side >= rendered_->sides.size()) return times;
+  const RenderedSide& shown = rendered_->sides[side];
+  const std::string key = keyOf(*rendered_, side);
+  const auto tried = std::find_if(tried_.begin(), tried_.end(), [&](const TriedPoint& one) { return one.key == key; });
+  if (tried == tried_.end()) return times;
+  for (const PassRecord& pass : shown.times) {
+    PassTimes one;
+    one.name = pass.name;
+    one.onHost = pass.onHost;
+    std::vector<double> device, host;
+    if (const auto records = tried->passes.find(pass.name); records != tried->passes.end())
+      for (const PassRecord& record : records->second) {
+        device.push_back(record.deviceMs);
+        host.push_back(record.hostMs);
+      }
+    one.device = statisticsOf(std::move(device));
+    one.host = statisticsOf(std::move(host));
+    const auto when = shown.runs.find(pass.name);
+    if (when != shown.runs.end()) one.when = when->second;
+    times.push_back(std::move(one));
+  }
+  return times;
 }
 
 bool Session::settled() const {

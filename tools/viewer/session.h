@@ -34,12 +34,21 @@ struct SessionOptions {
   gpu::DeviceOptions device;
 };
 
+/// Times of a pass over the last frames that were timed.
+struct PassTimes {
+  std::string name;
+  TimingStatistics device, host;  ///< ms
+  bool onHost = false;
+  RunsWhen when = RunsWhen::everyFrame;
+};
+
 /// Something that was tried, with what it cost and how wrong it was: a point of the chart.
 struct TriedPoint {
   std::string label, key;
   Side side;
   double frameMs = 0.0;
   std::vector<double> times;          ///< of all frames, of which frameMs is the median
+  std::map<std::string, std::vector<PassRecord>> passes;  ///< of the last frames that were timed
   std::optional<Measured> error;      ///< RMSE of the whole image
 };
 
@@ -65,6 +74,8 @@ class Session {
   std::shared_ptr<const Judged> judged() const { return judged_; }
   const Picture& picture() const { return picture_; }
   const std::vector<TriedPoint>& tried() const { return tried_; }
+  /// Of the passes of one side as it is now, in their order.
+  std::vector<PassTimes> passTimes(std::size_t side) const;
   const std::map<std::string, std::string>& technicalErrors() const { return techniques_.errors(); }
   const std::string& message() const { return message_; }      ///< the last thing that went wrong or was done
   bool messageIsError() const { return messageIsError_; }

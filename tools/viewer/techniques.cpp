@@ -16,9 +16,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder of a technique's shaders, where its sources are at hand.
-fs::path shadersOf(const std::string& technique) {
-  const auto folder = programData(fs::path("shaders") / technique);
+/// The folder of a technique's shaders, in the tree that its library was built in; empty where that is not at
+/// hand.
+fs::path shadersOf(const std::string& technique, const fs::path& library) {
+  if (library.empty()) return {};
+  const auto folder = programData(fs::path("shaders") / technique, library);
   return folder ? *folder : fs::path();
 }
 
@@ -28,7 +30,7 @@ Compiled compiled(const CompileWish& wish) {
     const fs::path program = programBeside("shaderpack");
     const ProgramResult done =
         runProgram({program.string(), "--technique", wish.technique, "--source", wish.source.string(), "--include",
-                    wish.includes.string(), "--cache", (cacheDirectory() / "viewer_shaders").string(), "--pack",
+                    wish.includes.string(), wish.common.string(), "--cache", wish.cache.string(), "--pack",
                     wish.pack.string(), "--header", wish.header.string()});
     if (done.exitCode != 0) result.error = done.errors.empty() ? "shaderpack failed" : done.errors;
   } catch (const std::exception& error) {
@@ -74,7 +76,7 @@ void LiveTechniques::use(const std::set<std::string>& techniques) {
       files_[library] = {technique, false};
       files_[library.parent_path() / (technique + ".shaderpack")] = {technique, false};
     }
-    const fs::path shaders = shadersOf(technique);
+    const fs::path shaders = shadersOf(technique, libraryOf(technique));
     if (shaders.empty()) continue;
     std::error_code ignored;
     for (const fs::path& folder : {shaders, shaders.parent_path() / "common"})
@@ -100,10 +102,14 @@ void LiveTechniques::stage(const std::string& technique, const fs::path& pack) {
 }
 
 void LiveTechniques::compile(const std::string& technique) {
-  const fs::path source = shadersOf(technique);
+  const fs::path source = shadersOf(technique, libraryOf(technique));
+  const auto common = programData("shaders");
+  // What the build has compiled need not be compiled again.
+  const fs::path built = libraryOf(technique).parent_path().parent_path().parent_path() / "shadercache";
+  const fs::path cache = fs::is_directory(built) ? built : cacheDirectory() / "viewer_shaders";
   const fs::path folder = folder_ / "compiled";
   fs::create_directories(folder);
-  compiler_.want({technique, source, source.parent_path(), folder / (technique + ".shaderpack"),
+  compiler_.want({technique, source, source.parent_path(), common.value_or(source.parent_path()), cache, folder / (technique + ".shaderpack"),
                   folder / (technique + "_shaders.h")});
 }
 

@@ -16,7 +16,7 @@ namespace lumivox::viewer {
 
 struct CompileWish {
   std::string technique;
-  std::filesystem::path source, includes, pack, header;
+  std::filesystem::path source, includes, common, cache, pack, header;
 };
 struct Compiled {
   CompileWish wish;

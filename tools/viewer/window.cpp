@@ -83,7 +83,7 @@ const KeyStatement kKeys[] = {
     {GLFW_KEY_Y, true, "ctrl Y", "redo 1", "redo"},
     {GLFW_KEY_F5, false, "F5", "reload on", "read all texts and libraries again"},
     {GLFW_KEY_F2, false, "F2", "save_image \"out/view.exr\"", "keep all outputs"},
-    {GLFW_KEY_TAB, false, "tab", "panels", "show or hide the panels"},
+    {GLFW_KEY_H, false, "H", "panels", "show or hide the panels"},
     {GLFW_KEY_SLASH, false, "?", "help", "this help"},
 };
 
@@ -197,7 +197,7 @@ void Window::State::drawPicture(const ImVec2& low, const ImVec2& size) {
     ImGui::InvisibleButton("hand", shown, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemActive() && (io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f))
-      act(fmt::format("{} {} {} rad", ImGui::IsMouseDown(ImGuiMouseButton_Left) ? "turn" : "orbit",
+      act(fmt::format("{} {} rad {} rad", ImGui::IsMouseDown(ImGuiMouseButton_Left) ? "turn" : "orbit",
                       io.MouseDelta.x * kTurnPerPixel, -io.MouseDelta.y * kTurnPerPixel));
     if (ImGui::IsItemHovered()) {
       if (io.MouseWheel != 0.0f) act(fmt::format("zoom {}", std::pow(kZoomPerNotch, static_cast<double>(io.MouseWheel))));
@@ -299,7 +299,6 @@ void Window::State::drawRow(const Panel& panel, const Row& row) {
     case Row::Kind::heading:
       ImGui::Separator();
       ImGui::TextUnformatted(row.label.c_str());
-      place();
       break;
     case Row::Kind::text:
       ImGui::TextWrapped("%s%s%s", row.label.c_str(), row.label.empty() ? "" : ": ", row.value.c_str());
@@ -418,12 +417,13 @@ bool Window::State::waitIsOver(const Action& action) {
   if (what == "frame") return session->settled();
   if (what == "judged") return session->judgedNow();
   if (what == "problem") return !session->problem().empty();
+  if (what == "mended") return session->problem().empty();
   if (what == "reference") {
     const ReferenceResult reference = session->reference();
     const int wanted = action.property->values.size() > 1 ? static_cast<int>(action.number(1)) : 2;
     return session->settled() && reference != nullptr && reference->samples >= wanted;
   }
-  throw Error(fmt::format("{}: wait {}: expected frame, judged, problem or reference", action.place().text(), what));
+  throw Error(fmt::format("{}: wait {}: expected frame, judged, problem, mended or reference", action.place().text(), what));
 }
 
 void Window::State::resize(int width, int height) {
