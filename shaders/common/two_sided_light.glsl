@@ -3,30 +3,32 @@
 #ifndef LUMIVOX_TWO_SIDED_LIGHT
 #define LUMIVOX_TWO_SIDED_LIGHT
 
-// Adds the irradiance of a point by each of the first lights, W/m^2: on the side of the normal, and, if that counts, behind it.
+// Adds the irradiance of a point by a light, W/m^2: on the side of the normal, and, if that counts, behind it.
 // mediumSteps: most steps through a medium that varies, towards a light.
-void addArriving(int lightCount, vec3 posWorld, vec3 normal, bool twoSided, int mediumSteps, inout vec3 front, inout vec3 back) {
-  for (int i = 0; i < lightCount; ++i) {
-    LightSample light = lights[i];
-    vec3 toLight;
-    vec3 perpendicular = arrivingIrradiance(light, posWorld, toLight);
-    float cosSurface = dot(normal, toLight);
-    bool behind = cosSurface < 0.0;
-    if (behind && !twoSided) continue;
-    cosSurface = abs(cosSurface);
-    if (!(cosSurface > 0.0)) continue;  // also where a light lies on the surface and has no direction
-    vec3 arriving = perpendicular * cosSurface;
+void addArrivingFrom(LightSample light, vec3 posWorld, vec3 normal, bool twoSided, int mediumSteps, inout vec3 front, inout vec3 back) {
+  vec3 toLight;
+  vec3 perpendicular = arrivingIrradiance(light, posWorld, toLight);
+  float cosSurface = dot(normal, toLight);
+  bool behind = cosSurface < 0.0;
+  if (behind && !twoSided) return;
+  cosSurface = abs(cosSurface);
+  if (!(cosSurface > 0.0)) return;  // also where a light lies on the surface and has no direction
+  vec3 arriving = perpendicular * cosSurface;
 #ifdef SHADOW_VIEWS
-    arriving *= visibility(light, posWorld, behind ? -normal : normal, toLight);
+  arriving *= visibility(light, posWorld, behind ? -normal : normal, toLight);
 #endif
 #ifdef MEDIUM
 #if MEDIUM != MEDIUM_NONE
-    if (any(greaterThan(arriving, vec3(0.0)))) arriving *= transmittanceToLight(light, posWorld, mediumSteps);
+  if (any(greaterThan(arriving, vec3(0.0)))) arriving *= transmittanceToLight(light, posWorld, mediumSteps);
 #endif
 #endif
-    if (behind) back += arriving;
-    else front += arriving;
-  }
+  if (behind) back += arriving;
+  else front += arriving;
+}
+
+// The same by each of the first lights.
+void addArriving(int lightCount, vec3 posWorld, vec3 normal, bool twoSided, int mediumSteps, inout vec3 front, inout vec3 back) {
+  for (int i = 0; i < lightCount; ++i) addArrivingFrom(lights[i], posWorld, normal, twoSided, mediumSteps, front, back);
 }
 
 #endif

@@ -6,18 +6,10 @@
 #pragma lumivox axis EMISSION 0 1
 #define SCENE_MATERIALS
 #include "common/scene.glsl"
-
-layout(std140, binding = 1) uniform View { mat4 worldToClip; };
-layout(std140, binding = 2) uniform Eye {
-  vec3 eyeWorld;
-  vec2 imageSize;  // pixels
-};
+#include "common/visible_surface.glsl"
 
 #if TEXTURES
 layout(binding = 0) uniform sampler2D diffuseTexture;
-#endif
-#if MASKS
-layout(binding = 1) uniform sampler2D maskTexture;
 #endif
 
 layout(location = 0) in vec3 posWorld;
@@ -37,17 +29,6 @@ layout(location = 4) out vec4 outSpecular;
 layout(location = 5) out vec4 outEmission;
 #endif
 
-// Whether the surface is not what this pixel's ray meets. A triangle whose plane holds the eye has no extent in the image, but its
-// corners are rounded to steps of the rasteriser, and what it covers then lies anywhere in its plane.
-bool isElsewhere() {
-  const float kTolerance = 2.0;  // pixels: beyond what rounding moves a triangle that is seen
-  // Share of the coordinates below which their rounding leaves no direction.
-  const float kNearest = 1e-5;
-  vec4 clip = worldToClip * vec4(posWorld, 1.0);
-  vec2 pixel = (0.5 + vec2(0.5, -0.5) * clip.xy / clip.w) * imageSize;
-  return !(clip.w > kNearest * (length(posWorld) + length(eyeWorld)) && all(lessThan(abs(pixel - gl_FragCoord.xy), vec2(kTolerance))));
-}
-
 void main() {
   // Derivatives, and samples which choose their mip level by them, before any discard: they are undefined after it.
   vec3 geometricNormal = cross(dFdx(posWorld), dFdy(posWorld));
@@ -56,11 +37,12 @@ void main() {
 #if TEXTURES
   albedo *= texture(diffuseTexture, texcoord).rgb;
 #endif
-  bool isHole = false;
 #if MASKS
-  isHole = texture(maskTexture, texcoord).r < kMaskThreshold;
+  bool hidden = isHole(texcoord);
+#else
+  bool hidden = false;
 #endif
-  if (isHole || isElsewhere()) discard;
+  if (hidden || isElsewhere(posWorld)) discard;
   vec3 toEye = eyeWorld - posWorld;
   float size = length(geometricNormal);
   geometricNormal = size > 0.0 ? geometricNormal / size : normalize(normalWorld);

@@ -2,8 +2,7 @@
 // The visible surfaces: geometry stage.
 #define SCENE_VERTICES
 #include "common/scene.glsl"
-
-layout(std140, binding = 1) uniform View { mat4 worldToClip; };
+#include "common/visible_surface.glsl"
 
 layout(location = 0) out vec3 posWorld;
 layout(location = 1) out vec3 normalWorld;
@@ -17,5 +16,5 @@ void main() {
 #if TEXTURES || MASKS
   texcoord = vertexTexcoord();
 #endif
-  gl_Position = worldToClip * vec4(posWorld, 1.0);
+  placeVertex(posWorld);
 }

@@ -1,16 +1,22 @@
 #version 450
-// Dong et al. 2007, Sec. 4.3.1, on pixels in place of vertices: values of elements around what the camera sees. OF irradiance: reflected by the
-// diffuse lobe. value: as it is (openness, or light that the elements' own lobe reflects). segments: a colour for each (Fig. 3a).
+// Dong et al. 2007, Sec. 4.3.1, on pixels: values of elements where the camera sees them. OF irradiance: reflected by the diffuse lobe.
+// value: as it is (openness, or light that the elements' own lobe reflects). segments: a colour for each (Fig. 3a). FROM neighbours: those
+// around a pixel. vertices: as they were interpolated over triangles (display_vertices.vert).
 #pragma lumivox axis OF irradiance value segments
+#pragma lumivox axis FROM neighbours vertices
 #pragma lumivox axis ADDED 0 1
 #pragma lumivox require !ADDED || OF != segments
-#if OF != OF_SEGMENTS
-#define LEAF_VALUES
-#endif
+#pragma lumivox require FROM == neighbours || OF != segments
+#if FROM == FROM_NEIGHBOURS
 #if OF == OF_SEGMENTS
 #define KEEPS_NEAREST
+#else
+#define LEAF_VALUES
 #endif
 #include "neighbours.glsl"
+#else
+layout(binding = 4) uniform sampler2D interpolated;  // w: 1 where there is a value
+#endif
 #include "common/constants.glsl"
 #include "common/random.glsl"
 
@@ -19,7 +25,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const float empty = 0.0;  // where nothing is seen
 
 layout(binding = 5) uniform sampler2D gPosition;
+#if FROM == FROM_NEIGHBOURS
 layout(binding = 6) uniform sampler2D gNormal;
+#endif
 layout(binding = 7) uniform sampler2D gDiffuse;
 #if ADDED
 layout(binding = 3) uniform sampler2D added;  // another image, of which this one is the sum
@@ -35,10 +43,15 @@ void main() {
   vec4 position = texelFetch(gPosition, pixel, 0);
   vec3 shown = vec3(empty);
   if (position.w != 0.0) {
+#if FROM == FROM_NEIGHBOURS
     vec4 normal = texelFetch(gNormal, pixel, 0);
     Around around = findAround(SurfacePoint(position.xyz, normal.xyz, normal.w > 0.5));
-    if (around.weights > 0.0) {
-      shown = around.sum / around.weights;
+    vec4 found = vec4(around.sum, around.weights);
+#else
+    vec4 found = texelFetch(interpolated, pixel, 0);
+#endif
+    if (found.w > 0.0) {
+      shown = found.rgb / found.w;
 #if OF == OF_IRRADIANCE
       shown *= texelFetch(gDiffuse, pixel, 0).rgb / kPi;
 #elif OF == OF_SEGMENTS

@@ -4,6 +4,7 @@
 #pragma lumivox axis AT pixel element
 #pragma lumivox axis ENVIRONMENT 0 1
 #pragma lumivox axis ADDED 0 1
+#pragma lumivox axis OUTGOING 0 1
 #pragma lumivox require !ADDED || AT == pixel
 #include "lobe.glsl"
 #if AT == AT_PIXEL

@@ -1,11 +1,12 @@
 #version 450
 // Dong et al. 2007, Sec. 4.3, steps 8 and 9: what arrives at leaves over their links, and what they reflect of it. LISTED: over the links to
-// what shines alone (4.3.1). ENVIRONMENT: bins without a link bring the environment (4.4).
+// what shines alone (4.3.1). ENVIRONMENT: bins without a link bring the environment (4.4). OUTGOING: glossy
+// elements pass on what their lobes reflect.
 #pragma lumivox axis LISTED 0 1
 #pragma lumivox axis ENVIRONMENT 0 1
 #pragma lumivox axis WEIGHT bin element
-#pragma lumivox require !LISTED || !ENVIRONMENT
-#include "links.glsl"
+#pragma lumivox axis OUTGOING 0 1
+#pragma lumivox require !LISTED || (!ENVIRONMENT && !OUTGOING)
 #include "sent.glsl"
 #include "common/constants.glsl"
 
@@ -42,23 +43,31 @@ struct Leaf {
 // Adds what comes over a link to the side that it arrives at.
 void add(uint number, Leaf leaf, inout vec3 front, inout vec3 back) {
   uvec2 link = links[number];
-  vec4 seen = texelFetch(elementPosition, texelOf(link.y), 0);
-  vec3 path = seen.xyz - leaf.position;
-  float squared = dot(path, path);
-  if (squared == 0.0) return;
-  vec3 toSeen = path * inversesqrt(squared);
 #if WEIGHT == WEIGHT_BIN
   float weight = binWeight(linkBin(link), leaf.normal, leaf.scale);
 #else
+  vec4 seen = texelFetch(elementPosition, texelOf(link.y), 0);
+  vec3 path = seen.xyz - leaf.position, toSeen = normalize(path);
   vec3 normal = texelFetch(elementNormal, texelOf(link.y), 0).xyz;
   // Of groups the normal is the area shown along each axis.
   float shown = link.y < uint(firstGroup) ? seen.w * abs(dot(normal, toSeen)) : dot(normal, abs(toSeen));
-  float weight = dot(leaf.normal, toSeen) * shown / (squared * float(counts[number]));
+  float weight = dot(leaf.normal, toSeen) * shown / (dot(path, path) * float(counts[number]));
 #endif
-  vec3 arriving = abs(weight) * sentTowards(link.y, -toSeen);
+  vec3 arriving = abs(weight) * sentOver(link, leaf.position);
   if (weight > 0.0) front += arriving;
   else back += arriving;
 }
+
+#if ENVIRONMENT
+// The same for bins without a link.
+void addSky(uint begin, uint end, Leaf leaf, inout vec3 front, inout vec3 back) {
+  for (uint bin = begin; bin < end; ++bin) {
+    float weight = binWeight(bin, leaf.normal, leaf.scale);
+    if (weight > 0.0) front += weight * environment;
+    else back -= weight * environment;
+  }
+}
+#endif
 
 void main() {
   uint item = listIndex() / kTogether, lane = gl_LocalInvocationID.x % kTogether;
@@ -68,29 +77,21 @@ void main() {
     uvec4 entry = first[item];
     Leaf leaf = Leaf(texelFetch(elementPosition, texelOf(item), 0).xyz, texelFetch(elementNormal, texelOf(item), 0).xyz,
                      uintBitsToFloat(entry.z));
-    // Each invocation takes a part of the bins, so that sums are the same whatever else is left out.
-    uint share = (uint(binCount) + kTogether - 1u) / kTogether, begin = lane * share, end = min(begin + share, uint(binCount));
+    // Each invocation takes every eighth link, so that sums are the same whatever else is left out.
 #if LISTED
     uint listFirst = lights[2u * item], listEnd = listFirst + lights[2u * item + 1u];
-    for (uint i = listFirst; i < listEnd; ++i) {
-      uint bin = linkBin(links[lights[i]]);
-      if (bin >= begin && bin < end) add(lights[i], leaf, front, back);
-    }
+    for (uint i = listFirst; i < listEnd; ++i)
+      if ((lights[i] - entry.x) % kTogether == lane) add(lights[i], leaf, front, back);
 #else
-    uint next = linkFrom(entry.xy, begin);
+    for (uint i = lane; i < entry.y; i += kTogether) {
 #if ENVIRONMENT
-    for (uint bin = begin; bin < end; ++bin) {
-      if (next < entry.y && linkBin(links[entry.x + next]) == bin) {
-        add(entry.x + next, leaf, front, back);
-        ++next;
-      } else {
-        float weight = binWeight(bin, leaf.normal, leaf.scale);
-        if (weight > 0.0) front += weight * environment;
-        else back -= weight * environment;
-      }
+      addSky(i == 0u ? 0u : linkBin(links[entry.x + i - 1u]) + 1u, linkBin(links[entry.x + i]), leaf, front, back);
+#endif
+      add(entry.x + i, leaf, front, back);
     }
-#else
-    for (; next < entry.y && linkBin(links[entry.x + next]) < end; ++next) add(entry.x + next, leaf, front, back);
+#if ENVIRONMENT
+    if (lane == entry.y % kTogether)
+      addSky(entry.y == 0u ? 0u : linkBin(links[entry.x + entry.y - 1u]) + 1u, uint(binCount), leaf, front, back);
 #endif
 #endif
   }

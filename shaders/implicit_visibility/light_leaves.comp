@@ -15,6 +15,7 @@
 #endif
 #include "common/lights.glsl"
 #include "common/two_sided_light.glsl"
+#include "leaf_points.glsl"
 #endif
 
 layout(local_size_x = 64) in;
@@ -46,15 +47,9 @@ void main() {
 #if LIGHTS
   vec4 place = texelFetch(elementPosition, texelOf(leaf), 0);
   vec3 normal = texelFetch(elementNormal, texelOf(leaf), 0).xyz;
-  vec3 along = abs(normal.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
-  along = cross(normal, along);
-  if (place.w > 0.0) along *= sqrt(place.w) * inversesqrt(max(dot(along, along), 1e-12));
-  vec3 across = cross(normal, along);
-  // Even points of a square of the element's area.
-  for (int i = 0; i < samplesPerSide * samplesPerSide; ++i) {
-    vec2 offset = (vec2(i % samplesPerSide, i / samplesPerSide) + 0.5) / float(samplesPerSide) - 0.5;
-    addArriving(lightCount, place.xyz + offset.x * along + offset.y * across, normal, true, 0, sides[0], sides[1]);
-  }
+  LeafSquare square = squareOf(place, normal);
+  for (int i = 0; i < samplesPerSide * samplesPerSide; ++i)
+    addArriving(lightCount, pointOf(square, i, samplesPerSide), normal, true, 0, sides[0], sides[1]);
   sides[0] /= float(samplesPerSide * samplesPerSide);
   sides[1] /= float(samplesPerSide * samplesPerSide);
 #endif

@@ -4,9 +4,10 @@
 
 layout(std430, binding = 0) readonly buffer Directions { vec4 directions[]; };  // of bins: xyz centre; w solid angle, sr
 layout(std430, binding = 1) readonly buffer First { uvec4 first[]; };           // of leaves: first link, number of links, scale
-layout(std430, binding = 2) readonly buffer Links { uvec2 links[]; };           // bin and distance; node
+layout(std430, binding = 2) readonly buffer Links { uvec2 links[]; };           // bin, side and distance; node
 
-uint linkBin(uvec2 link) { return link.x & 0xffffu; }
+uint linkBin(uvec2 link) { return link.x & 0x7fffu; }
+uint linkSide(uvec2 link) { return link.x >> 15 & 1u; }                         // of a disc: 0 the front, 1 the back
 float linkDistance(uvec2 link) { return uintBitsToFloat(link.x & 0xffff0000u); }  // m
 
 // Projected solid angle of a bin above a plane, with the sign of the side that it is on, sr: those of a side sum to pi.

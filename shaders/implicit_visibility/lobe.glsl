@@ -32,8 +32,7 @@ vec3 glossyRadiance(uint leaf, vec3 normal, vec3 toEye, vec4 specular) {
 #endif
     vec3 weight = lobeWeight(bin, normal, scale, toEye, specular);
     if (all(lessThanEqual(weight, vec3(0.0)))) continue;
-    vec3 path = position - texelFetch(elementPosition, texelOf(link.y), 0).xyz;
-    if (dot(path, path) > 0.0) sum += weight * sentTowards(link.y, normalize(path));
+    sum += weight * sentOver(link, position);
   }
 #if ENVIRONMENT
   for (; expected < uint(binCount); ++expected) sum += environment * lobeWeight(expected, normal, scale, toEye, specular);

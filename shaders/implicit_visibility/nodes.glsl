@@ -1,8 +1,7 @@
 // Surface elements by their numbers: where nodes are, and what they send towards a point. Ports SurfaceElements and ElementLight.
 #ifndef LUMIVOX_NODES
 #define LUMIVOX_NODES
-
-const uint kWidth = 1024u;  // texels in a row
+#include "texels.glsl"
 
 layout(std140, binding = 0) uniform Nodes {
   int leafCount, firstGroup;  // leaves are nodes from 0 on; groups from firstGroup on
@@ -11,8 +10,6 @@ layout(std140, binding = 0) uniform Nodes {
 
 layout(binding = 0) uniform sampler2D elementPosition;  // xyz m; w area, m^2
 layout(binding = 1) uniform sampler2D elementNormal;    // xyz: shorter than 1 where bent; of groups the area shown along the axes, m^2
-
-ivec2 texelOf(uint number) { return ivec2(number % kWidth, number / kWidth); }
 
 // First texel of a node's radiance.
 uint radianceTexel(uint node) {

@@ -1,40 +1,18 @@
 // Direct light by rasterisation, the common ground of all techniques and the template for new ones: what the
 // camera sees, shadow maps for every kind of light, shading, and the sum of the components.
 #include <algorithm>
-#include <glm/gtc/matrix_transform.hpp>
 
 #include "direct_lighting_shaders.h"
 #include "lumivox/plugin/technique.h"
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/light_views.h"
 #include "lumivox/toolkit/media.h"
+#include "lumivox/toolkit/visible_surface.h"
 
 namespace lumivox::direct_lighting {
 namespace {
 
 using namespace shaders::direct_lighting;
-
-/// World to clip space of a camera, z in [0,1]. Depth is clamped when drawing, so that near only sets the
-/// precision. In single precision a depth that begins at a ten thousandth of the far end tells surfaces apart
-/// that are 6e-4 of it from each other: from outside of the scene it begins where the scene does.
-glm::mat4 worldToClip(const SceneSnapshot& snapshot) {
-  const CameraView& camera = snapshot.camera;
-  const glm::vec3 farCorner =
-      glm::max(glm::abs(snapshot.bounds.low - camera.eye), glm::abs(snapshot.bounds.high - camera.eye));
-  const float far = std::max(glm::length(farCorner), 1e-6f) * 1.01f;
-  const float aspect = static_cast<float>(camera.width) / static_cast<float>(camera.height);
-  // Along the axis, of what is seen in a corner of the image.
-  const glm::vec3 nearest = glm::clamp(camera.eye, snapshot.bounds.low, snapshot.bounds.high);
-  const float before = 0.99f * glm::length(nearest - camera.eye) /
-                       glm::length(glm::vec3(1.0f, camera.tanHalfFov, camera.tanHalfFov * aspect));
-  const float near = std::max(far * 1e-4f, before);
-  const float fov = 2.0f * std::atan(camera.tanHalfFov);
-  glm::mat4 projection = glm::perspectiveRH_ZO(fov, aspect, near, far);
-  // The image moves against the rays; clip space is 2 wide, and w is minus the depth's coordinate.
-  projection[2][0] += 2.0f * camera.shift.x / static_cast<float>(camera.width);
-  projection[2][1] -= 2.0f * camera.shift.y / static_cast<float>(camera.height);
-  return projection * glm::lookAtRH(camera.eye, camera.eye + camera.forward, camera.up);
-}
 
 class GBufferPass : public Pass {
   Out<GBuffer> gbuffer{this, "gbuffer",
@@ -61,8 +39,7 @@ class GBufferPass : public Pass {
       targets.colours.push_back({texture.get(), -1});
     }
     while (targets.colours.back().texture == nullptr) targets.colours.pop_back();
-    const gpu::Drawing drawing =
-        frame.device().drawTo(targets, {.depthTest = true, .depthWrite = true, .depthClamp = true});
+    const gpu::Drawing drawing = frame.device().drawTo(targets, kVisibleSurface);
     for (const SceneDraw& draw : frame.scene().draws())
       drawPart(frame, draw, gbuffer::Variant{.glossy = traits.glossy, .emission = traits.emission},
                {gbuffer::view({worldToClip(frame.snapshot())}),

@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
+#include "display_vertices.h"
 #include "element_cells.h"
 #include "light.h"
 #include "lumivox/toolkit/loop_limit.h"
+#include "outgoing.h"
 #include "passes.h"
 
 namespace lumivox::implicit_visibility {
@@ -23,6 +23,7 @@ struct CellBuffers {
 };
 
 class DisplayPass : public Pass {
+  enum class Interpolate { neighbours, vertices };
   enum class Lobe { pixel, element };
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
@@ -38,6 +39,11 @@ class DisplayPass : public Pass {
                         "direct light without what comes by links, for 'direct'",
                         Needs::nothing,
                         Contributes::direct};
+  Param<Interpolate> interpolate{
+      this, "interpolate", Interpolate::neighbours,
+      "which elements a pixel shows; neighbours: those around what is seen there; vertices: those at the "
+      "corners of its triangle, with 'source vertices' alone (published). What a lobe at pixels sees is always "
+      "that of neighbours"};
   Param<Lobe> lobe{
       this, "lobe", Lobe::pixel,
       "where the Phong lobe is held against the bins; pixel: with the normal and material of what is "
@@ -50,6 +56,7 @@ class DisplayPass : public Pass {
       "m",
       "of 'occlusion': within which elements occlude; 0: a tenth of the diagonal of the scene's "
       "bounds, as in the reference"};
+  Param<bool> asPublished{this, "as_published", false, "'interpolate vertices' and 'lobe element'"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::anyLight,
                      "indirect light reflected by the diffuse lobe, W/(sr m^2)"};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::anyLight | Needs::glossyMaterial,
@@ -70,17 +77,15 @@ class DisplayPass : public Pass {
   }
 
   void run(PassContext& frame) override {
-    const CellBuffers& cells = cellsOf(frame);
     const shader::BindingSet common{NodeBinding(*elements, links.present() ? links->bins : 0),
-                                    GBufferBinding(*gbuffer), binding(cells),
-                                    display::cellStarts(cells.starts), display::cellLeaves(cells.leaves)};
+                                    GBufferBinding(*gbuffer)};
     using Variant = display::Variant;
     if (diffuse.wanted())
       diffuse =
           light.present() ? show(frame, common, Variant::ofIrradiance, light->irradiance, {}) : black(frame);
     if (glossy.wanted())
       glossy = light.present() && links.present()
-                   ? showLobe(frame, common, light->radiance, frame.traits().environment, {})
+                   ? showLobe(frame, common, light->radiance, light->outgoing, frame.traits().environment, {})
                    : black(frame);
     if (glossy.wanted() && links.present() && frame.inspects())
       frame.note(fmt::format(
@@ -93,11 +98,6 @@ class DisplayPass : public Pass {
       segments =
           show(frame, {common, display::segments(ofLeaves)}, Variant::ofSegments, elements->position, {});
     }
-  }
-
-  /// Of the lobe that falls to a half within the width of a bin.
-  static double resolvedExponent(int bins) {
-    return std::log(0.5) / std::log(std::cos(0.5 * std::numbers::pi / bins));
   }
 
   static Image black(PassContext& frame) {
@@ -113,7 +113,12 @@ class DisplayPass : public Pass {
                          frame.uploaded(cells.leaves, "elements by cells")};
     });
   }
-  static gpu::ResourceBinding binding(const CellBuffers& cells) {
+  /// Leaves by where they are, for neighbours.glsl.
+  shader::BindingSet cellBinding(PassContext& frame) const {
+    const CellBuffers& cells = cellsOf(frame);
+    return {sizesOf(cells), display::cellStarts(cells.starts), display::cellLeaves(cells.leaves)};
+  }
+  static gpu::ResourceBinding sizesOf(const CellBuffers& cells) {
     display::Cells block{};
     for (std::size_t i = 0; i < cells.sizes.size(); ++i)
       block.cellSizes[i] = {cells.sizes[i], 1.0f / cells.sizes[i], 0.0f, 0.0f};
@@ -126,41 +131,60 @@ class DisplayPass : public Pass {
   /// Values of leaves where the camera sees them, and `added`, where there is one.
   Image show(PassContext& frame, const shader::BindingSet& common, int of, const gpu::TextureRef& values,
              const Image& added, float empty = 0.0f) const {
+    using display::Variant;
     Image result{frame.image("values of elements")};
+    const bool overTriangles =
+        of != Variant::ofSegments && (asPublished || interpolate == Interpolate::vertices);
+    shader::BindingSet bound{common, display::added(added.texture, gpu::Sampling::nearest),
+                             display::shownImage(result.texture)};
+    Image interpolated;
+    if (overTriangles) {
+      interpolated = interpolatedOverTriangles(frame, *elements, *gbuffer, values);
+      bound.add(display::interpolated(interpolated.texture, gpu::Sampling::nearest));
+    } else {
+      bound = {bound, cellBinding(frame), display::leafValues(values, gpu::Sampling::nearest)};
+    }
     frame.dispatch(
-        frame.program(display::Variant{.of = of, .added = added.texture != nullptr},
+        frame.program(Variant{.of = of,
+                              .from = overTriangles ? Variant::fromVertices : Variant::fromNeighbours,
+                              .added = added.texture != nullptr},
                       display::Constants{.empty = empty}),
-        {common, display::leafValues(values, gpu::Sampling::nearest),
-         display::added(added.texture, gpu::Sampling::nearest), display::shownImage(result.texture)},
-        pixels(frame));
+        bound, pixels(frame));
     return result;
   }
 
-  /// The Phong lobe over `radiance` of nodes and, with `sky`, over the environment where a bin has no link.
+  /// The Phong lobe over `radiance` of nodes, and `outgoing`, which may be null, and, with `sky`, over the
+  /// environment where a bin has no link.
   Image showLobe(PassContext& frame, const shader::BindingSet& common, const gpu::TextureRef& radiance,
-                 bool sky, const Image& added) const {
+                 const gpu::TextureRef& outgoing, bool sky, const Image& added) const {
     using namespace display_glossy;
     const shader::BindingSet bound{
         common, LinkBinding(*links),
         display_glossy::lobe({frame.sceneDescription().environment, frame.snapshot().camera.eye}),
-        sentRadiance(radiance, gpu::Sampling::nearest)};
-    if (lobe == Lobe::pixel) {
+        sentRadiance(radiance, gpu::Sampling::nearest),
+        OutgoingBinding(outgoing, light->outgoingRows, light->directions)};
+    const bool passedOn = outgoing != nullptr;
+    if (lobe == Lobe::pixel && !asPublished) {
       const int most = std::clamp(kLoopLimit / (12 * links->bins * links->bins), 1, 4);
       Image result{frame.image("glossy radiance")};
-      frame.dispatch(
-          frame.program(
-              Variant{.at = Variant::atPixel, .environment = sky, .added = added.texture != nullptr},
-              Constants{.mostLeaves = most}),
-          {bound, display_glossy::added(added.texture, gpu::Sampling::nearest), shownImage(result.texture)},
-          pixels(frame));
+      frame.dispatch(frame.program(Variant{.at = Variant::atPixel,
+                                           .environment = sky,
+                                           .added = added.texture != nullptr,
+                                           .outgoing = passedOn},
+                                   Constants{.mostLeaves = most}),
+                     {bound, cellBinding(frame), display_glossy::added(added.texture, gpu::Sampling::nearest),
+                      shownImage(result.texture)},
+                     pixels(frame));
       return result;
     }
     const gpu::TextureRef atLeaves =
         emptyTexels(frame, 2 * elements->leafCount, "glossy radiance of elements");
     if (elements->specular != nullptr && elements->leafCount > 0)
-      frame.dispatchList(frame.program(Variant{.at = Variant::atElement, .environment = sky}, Constants{}),
-                         {bound, speculars(elements->specular, gpu::Sampling::nearest), shownImage(atLeaves)},
-                         static_cast<std::uint64_t>(elements->leafCount));
+      frame.dispatchList(
+          frame.program(Variant{.at = Variant::atElement, .environment = sky, .outgoing = passedOn},
+                        Constants{}),
+          {bound, speculars(elements->specular, gpu::Sampling::nearest), shownImage(atLeaves)},
+          static_cast<std::uint64_t>(elements->leafCount));
     return show(frame, common, display::Variant::ofValue, atLeaves, added);
   }
 
@@ -169,7 +193,7 @@ class DisplayPass : public Pass {
     if (!light.present() || light->directIrradiance == nullptr) return base;
     const Image sum = show(frame, common, display::Variant::ofIrradiance, light->directIrradiance, base);
     if (gbuffer->specular == nullptr || !links.present()) return sum;
-    return showLobe(frame, common, light->emission, false, sum);
+    return showLobe(frame, common, light->emission, nullptr, false, sum);
   }
 
   Image showOpenness(PassContext& frame, const shader::BindingSet& common) const {

@@ -24,6 +24,7 @@ class ElementsPass : public Pass {
                      "an object's part of the elements goes by this power of its area"};
   Param<Areas> areas{this, "areas", Areas::now,
                      "now: areas follow stretching; rest: they stay those of the scene at rest (published)"};
+  Param<bool> asPublished{this, "as_published", false, "'source vertices', 'segments uv' and 'areas rest'"};
   Out<SurfaceElements> result{this, "elements", "the surface as discs, and trees of them"};
 
   Reads readsFrom() const override { return Reads::geometry | Reads::materials; }
@@ -34,8 +35,8 @@ class ElementsPass : public Pass {
     const SurfaceElements fixed =
         frame.kept("reflectance of elements", forest, [&] { return upload(frame, *forest); });
     SurfaceElements elementsNow = fixed;
-    elementsNow.state = std::make_shared<const ElementState>(
-        stateOf(*forest, frame.sceneDescription(), frame.snapshot(), areas));
+    elementsNow.state = std::make_shared<const ElementState>(stateOf(
+        *forest, frame.sceneDescription(), frame.snapshot(), asPublished ? Areas::rest : Areas(areas)));
     const ElementState& state = *elementsNow.state;
     std::vector<glm::vec4> positions, normals;
     for (std::size_t node = 0; node < state.position.size(); ++node) {
@@ -50,7 +51,8 @@ class ElementsPass : public Pass {
   std::shared_ptr<const Forest> plant(PassContext& frame) const {
     const Scene& scene = frame.sceneDescription();
     OriginSettings settings;
-    settings.source = source, settings.segments = segments;
+    settings.source = asPublished ? Source::vertices : Source(source);
+    settings.segments = asPublished ? Segments::uv : Segments(segments);
     settings.elements = static_cast<double>(static_cast<int>(elements));
     settings.share = static_cast<double>(static_cast<float>(share));
     Origins origins = findOrigins(scene, settings);

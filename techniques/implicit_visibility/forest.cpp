@@ -89,6 +89,13 @@ void sortLeaves(Origins& origins, ElementTree& tree) {
   origins = std::move(sorted);
 }
 
+void findVertices(const Scene& scene, const Origins& origins, ElementTree& tree) {
+  if (origins.firstTriangle.empty()) return;
+  tree.leafOfVertex.assign(scene.positions.size(), kNoElement);
+  for (std::uint32_t leaf = 0; leaf < origins.leaves.size(); ++leaf)
+    tree.leafOfVertex[origins.leaves[leaf].vertex] = leaf;
+}
+
 /// Nodes of the segments above the leaves, level by level.
 void addSegmentNodes(ElementTree& tree) {
   tree.leafCount = static_cast<std::uint32_t>(tree.segmentOfLeaf.size());
@@ -262,22 +269,27 @@ Forest plantForest(const Scene& scene, Origins origins) {
   Forest forest;
   auto tree = std::make_shared<ElementTree>();
   sortLeaves(origins, *tree);
+  findVertices(scene, origins, *tree);
   addSegmentNodes(*tree);
   addGroups(scene, origins, *tree);
   forest.albedo = pulledUp(origins, *tree, [](const Leaf& leaf) { return glm::vec4(leaf.albedo, 1.0f); });
   forest.specular = pulledUp(origins, *tree, [](const Leaf& leaf) { return leaf.specular; });
   forest.emission = pulledUp(origins, *tree, [](const Leaf& leaf) { return glm::vec4(leaf.emission, 0.0f); });
   for (const Leaf& leaf : origins.leaves) {
-    forest.glossy = forest.glossy || glm::vec3(leaf.specular) != glm::vec3(0.0f);
+    tree->glossy.push_back(glm::vec3(leaf.specular) != glm::vec3(0.0f));
     tree->emits.push_back(leaf.emission != glm::vec3(0.0f));
+    forest.glossy = forest.glossy || tree->glossy.back();
     forest.emissive = forest.emissive || tree->emits.back();
     forest.restTriangleArea.push_back(restArea(scene, origins, forest.restTriangleArea.size()));
   }
   for (std::uint32_t node = tree->leafCount; node < tree->nodeCount; ++node) {
     const std::array<std::uint32_t, 4>& children = tree->childrenOf(node);
-    tree->emits.push_back(std::any_of(children.begin(), children.end(), [&](std::uint32_t child) {
-      return child != kNoElement && tree->emits[child];
-    }));
+    const auto any = [&](const std::vector<bool>& nodes) {
+      return std::any_of(children.begin(), children.end(),
+                         [&](std::uint32_t child) { return child != kNoElement && nodes[child]; });
+    };
+    tree->emits.push_back(any(tree->emits));
+    tree->glossy.push_back(any(tree->glossy));
   }
   forest.origins = std::move(origins);
   forest.tree = std::move(tree);

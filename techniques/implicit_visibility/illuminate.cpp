@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "light.h"
+#include "outgoing.h"
 #include "passes.h"
 
 namespace lumivox::implicit_visibility {
@@ -33,6 +34,8 @@ gpu::TextureRef emptyTexels(PassContext& frame, int texels, const std::string& l
 namespace {
 
 constexpr std::uint64_t kTogether = 8;  // invocations that share the links of a leaf, as in illuminate.comp
+constexpr std::uint64_t kDirectionsTogether =
+    32;  // directions of a leaf in a group, as in reflect_glossy.comp
 
 class IlluminatePass : public Pass {
   enum class Weight { bin, element };
@@ -57,41 +60,78 @@ class IlluminatePass : public Pass {
       this, "light_lists", true,
       "with 'area_light links': only links to what shines are looked at; off: all: the same "
       "bits"};
+  Param<bool> asPublished{this, "as_published", false,
+                          "'weight element', 'area_light links', 'light_samples 1' and 'directions 0'"};
+  Param<int> directions{
+      this, "directions", 4, within(0, 16),
+      "along a side of a face of the cube of directions in which glossy elements pass on what "
+      "their Phong lobes reflect; 0: they pass on diffuse light alone"};
   Out<ElementLight> light{this, "light", Contributes::nothing, Needs::anyLight,
                           "light at elements, on both sides"};
 
   Reads readsFrom() const override { return Reads::environment; }
   int indirectBounces() const override { return bounces; }
 
+  bool weighsElements() const { return asPublished || weight == Weight::element; }
+  bool linksToLights() const { return asPublished || areaLight == AreaLight::links; }
+  /// Published results have diffuse light between surfaces alone (Sec. 5).
+  int directionsPassedOn() const { return asPublished ? 0 : int(directions); }
+
   void run(PassContext& frame) override {
     ElementLight result;
     const int texels = ElementLight::radianceTexels(*elements), leafTexels = 2 * elements->leafCount;
     result.irradiance = emptyTexels(frame, leafTexels, "irradiance of elements");
     result.radiance = emptyTexels(frame, texels, "radiance of elements");
-    if (areaLight == AreaLight::links && elements->emission != nullptr) {
+    if (linksToLights() && elements->emission != nullptr) {
       result.emission = emptyTexels(frame, texels, "emission of elements");
       result.directIrradiance = emptyTexels(frame, leafTexels, "irradiance of elements by what shines");
     }
-    if (elements->leafCount > 0) illuminate(frame, result);
+    std::shared_ptr<const OutgoingRows> rows;
+    if (directionsPassedOn() > 0 && elements->specular != nullptr) {
+      rows = frame.kept("rows of glossy elements", elements->tree,
+                        [&] { return outgoingRows(frame, *elements->tree); });
+      result.outgoing = emptyTexels(frame, outgoingTexels(*rows, directionsPassedOn()),
+                                    "radiance of glossy elements by direction");
+      result.outgoingRows = rows->ofNodes;
+      result.directions = directionsPassedOn();
+    }
+    if (elements->leafCount > 0) illuminate(frame, result, rows.get());
     light = result;
   }
 
-  void illuminate(PassContext& frame, const ElementLight& result) {
+  /// What nodes send in a bounce: `outgoing` is null where nothing glossy passes anything on.
+  struct Sent {
+    gpu::TextureRef radiance, outgoing;
+  };
+  Sent empty(PassContext& frame, const OutgoingRows* rows, const std::string& what) const {
+    Sent sent{emptyTexels(frame, ElementLight::radianceTexels(*elements), what), nullptr};
+    if (rows != nullptr)
+      sent.outgoing = emptyTexels(frame, outgoingTexels(*rows, directionsPassedOn()), what + " by direction");
+    return sent;
+  }
+
+  void illuminate(PassContext& frame, const ElementLight& result, const OutgoingRows* rows) {
     const shader::BindingSet common{NodeBinding(*elements, links->bins), LinkBinding(*links)};
     if (result.emission) gatherEmission(frame, common, result);
-    const int texels = ElementLight::radianceTexels(*elements);
-    gpu::TextureRef sent = emptyTexels(frame, texels, "radiance to be sent"),
-                    next = bounces > 1 ? emptyTexels(frame, texels, "radiance of the next bounce") : sent;
-    lightLeaves(frame, common, result, sent);
-    pullUp(frame, common, sent, result.radiance, false);
+    Sent sent = empty(frame, rows, "radiance to be sent"),
+         next = bounces > 1 ? empty(frame, rows, "radiance of the next bounce") : sent;
+    lightLeaves(frame, common, result, sent.radiance);
+    pullUp(frame, common, sent.radiance, result.radiance, false);
+    if (rows != nullptr) reflectDirect(frame, common, *rows, result, sent.outgoing);
     for (int bounce = 0; bounce < bounces; ++bounce) {
       const bool last = bounce + 1 == bounces, sky = bounce == 0 && frame.traits().environment;
-      gather(frame, common, {.environment = sky}, {.adds = bounce > 0, .reflects = !last}, sent,
-             result.irradiance, next, result.radiance);
+      gather(frame, common, {.environment = sky, .outgoing = rows != nullptr},
+             {.adds = bounce > 0, .reflects = !last}, sent, result, result.irradiance, next.radiance);
       if (last) break;
-      pullUp(frame, common, next, result.radiance, true);
+      pullUp(frame, common, next.radiance, result.radiance, true);
+      if (rows != nullptr) {
+        reflectLinks(frame, common, *rows, {.environment = sky, .outgoing = true}, {}, sent, result,
+                     next.outgoing);
+        pullUpOutgoing(frame, common, *rows, result.radiance, next.outgoing);
+      }
       std::swap(sent, next);
     }
+    if (rows != nullptr) pullUpOutgoing(frame, common, *rows, result.radiance, result.outgoing);
   }
 
   /// What shines, over the short lists of links to it (Sec. 4.3.1).
@@ -102,21 +142,26 @@ class IlluminatePass : public Pass {
                         light_leaves::reflectedImage(result.emission)},
                        static_cast<std::uint64_t>(elements->leafCount));
     pullUp(frame, common, result.emission, nullptr, false);
-    gather(frame, common, {.listed = lightLists}, {.adds = false, .reflects = false}, result.emission,
-           result.directIrradiance, result.radiance, result.radiance);
+    gather(frame, common, {.listed = lightLists}, {.adds = false, .reflects = false},
+           {result.emission, nullptr}, result, result.directIrradiance, result.radiance);
+  }
+
+  /// Lights without extent come first; what shines comes by links or by its samples, never by both.
+  int lightCount(PassContext& frame, const LightBinding& lights) const {
+    const auto withoutExtent = static_cast<int>(frame.sceneDescription().lights.size());
+    if (!shadow.present()) return 0;
+    return linksToLights() ? std::min(lights.count, withoutExtent) : lights.count;
   }
 
   void lightLeaves(PassContext& frame, const shader::BindingSet& common, const ElementLight& result,
                    const gpu::TextureRef& sent) {
     const LightBinding lights(shadow);
-    // Lights without extent come first; what shines comes by links or by its samples, never by both.
-    const auto withoutExtent = static_cast<int>(frame.sceneDescription().lights.size());
-    const int count = areaLight == AreaLight::links ? std::min(lights.count, withoutExtent) : lights.count;
-    const bool lit = shadow.present() && count > 0;
+    const int count = lightCount(frame, lights);
+    const bool lit = count > 0;
     frame.dispatchList(frame.program(
                            light_leaves::Variant{
                                .lights = lit, .shadows = lit, .linked = result.directIrradiance != nullptr},
-                           light_leaves::Constants{.samplesPerSide = lightSamples}),
+                           light_leaves::Constants{.samplesPerSide = asPublished ? 1 : int(lightSamples)}),
                        {common, lights, light_leaves::directLight({count}),
                         light_leaves::albedos(elements->albedo, gpu::Sampling::nearest),
                         light_leaves::arrivingFromLights(result.directIrradiance, gpu::Sampling::nearest),
@@ -125,22 +170,79 @@ class IlluminatePass : public Pass {
   }
 
   void gather(PassContext& frame, const shader::BindingSet& common, illuminate::Variant variant,
-              const illuminate::Constants& constants, const gpu::TextureRef& sent,
-              const gpu::TextureRef& irradiance, const gpu::TextureRef& reflected,
-              const gpu::TextureRef& radiance) {
-    variant.weight =
-        weight == Weight::bin ? illuminate::Variant::weightBin : illuminate::Variant::weightElement;
+              const illuminate::Constants& constants, const Sent& sent, const ElementLight& result,
+              const gpu::TextureRef& irradiance, const gpu::TextureRef& reflected) {
+    variant.weight = weighsElements() ? illuminate::Variant::weightElement : illuminate::Variant::weightBin;
     shader::BindingSet bound{common,
                              illuminate::illumination({frame.sceneDescription().environment}),
                              illuminate::lights(links->lights),
-                             illuminate::sentRadiance(sent, gpu::Sampling::nearest),
+                             illuminate::sentRadiance(sent.radiance, gpu::Sampling::nearest),
+                             OutgoingBinding(sent.outgoing, result.outgoingRows, directionsPassedOn()),
                              illuminate::albedos(elements->albedo, gpu::Sampling::nearest),
                              illuminate::irradianceImage(irradiance),
                              illuminate::reflectedImage(reflected),
-                             illuminate::radianceImage(radiance)};
-    if (weight == Weight::element) bound.add(illuminate::counts(linksToSameNode(frame)));
+                             illuminate::radianceImage(result.radiance)};
+    if (weighsElements()) bound.add(illuminate::counts(linksToSameNode(frame)));
     frame.dispatchList(frame.program(variant, constants), bound,
                        kTogether * static_cast<std::uint64_t>(elements->leafCount));
+  }
+
+  /// What the lobes of glossy leaves reflect of direct light: the beginning of the sum over bounces.
+  void reflectDirect(PassContext& frame, const shader::BindingSet& common, const OutgoingRows& rows,
+                     const ElementLight& result, const gpu::TextureRef& outgoing) {
+    using Variant = reflect_glossy::Variant;
+    const LightBinding lights(shadow);
+    const int count = lightCount(frame, lights);
+    if (count > 0)
+      reflect(frame, rows, Variant{.of = Variant::ofLights}, {.sums = true, .samplesPerSide = lightSamples},
+              count, {common, lights}, directionsPassedOn(), result, outgoing);
+    if (result.emission)
+      reflectLinks(frame, common, rows, {}, {.adds = true}, {result.emission, nullptr}, result, outgoing);
+    pullUpOutgoing(frame, common, rows, result.radiance, outgoing);
+  }
+
+  /// And of what comes over their links: into `outgoing`, and to the sum over bounces.
+  void reflectLinks(PassContext& frame, const shader::BindingSet& common, const OutgoingRows& rows,
+                    const reflect_glossy::Variant& variant, reflect_glossy::Constants constants,
+                    const Sent& sent, const ElementLight& result, const gpu::TextureRef& outgoing) {
+    constants.sums = constants.addsToSum = true;
+    reflect(frame, rows, variant, constants, 6 * links->bins * links->bins,
+            {common, reflect_glossy::sentRadiance(sent.radiance, gpu::Sampling::nearest),
+             OutgoingBinding(sent.outgoing, result.outgoingRows, directionsPassedOn())},
+            std::min<int>(links->bins, 2 * directionsPassedOn()), result, outgoing);
+  }
+
+  void reflect(PassContext& frame, const OutgoingRows& rows, const reflect_glossy::Variant& variant,
+               const reflect_glossy::Constants& constants, int arrivals, const shader::BindingSet& bound,
+               int resolving, const ElementLight& result, const gpu::TextureRef& outgoing) const {
+    if (rows.leaves == 0) return;
+    const auto all = static_cast<std::uint64_t>(6 * directionsPassedOn() * directionsPassedOn());
+    frame.dispatchList(
+        frame.program(variant, constants),
+        {bound,
+         reflect_glossy::reflection({frame.sceneDescription().environment, rows.leaves, directionsPassedOn(),
+                                     arrivals, static_cast<float>(resolvedExponent(resolving))}),
+         reflect_glossy::outgoingNodes(rows.nodes),
+         reflect_glossy::speculars(elements->specular, gpu::Sampling::nearest),
+         reflect_glossy::outgoingImage(outgoing), reflect_glossy::sumImage(result.outgoing)},
+        static_cast<std::uint64_t>(rows.leaves) * ((all + kDirectionsTogether - 1) / kDirectionsTogether) *
+            kDirectionsTogether);
+  }
+
+  /// `radiance`: of groups, whose fronts it knows.
+  void pullUpOutgoing(PassContext& frame, const shader::BindingSet& common, const OutgoingRows& rows,
+                      const gpu::TextureRef& radiance, const gpu::TextureRef& outgoing) const {
+    using namespace pull_up_outgoing;
+    for (const ElementTree::Run& level : rows.levels)
+      frame.dispatchList(
+          frame.program(kProgram),
+          {common,
+           outgoingRun({static_cast<int>(level.first), static_cast<int>(level.count), directionsPassedOn()}),
+           pull_up_outgoing::children(elements->children), outgoingNodes(rows.nodes),
+           pull_up_outgoing::outgoingRows(rows.ofNodes), pulledUp(radiance, gpu::Sampling::nearest),
+           outgoingImage(outgoing)},
+          static_cast<std::uint64_t>(level.count) *
+              static_cast<std::uint64_t>(6 * directionsPassedOn() * directionsPassedOn()));
   }
 
   /// For each link how many of its leaf's lead to the same node, which counts once.

@@ -1,21 +1,37 @@
 // Links among elements (Dong et al. 2007, Sec. 4.2; steps 5 to 7 of Algorithm 1).
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
+#include <span>
 #include <utility>
 
 #include "looking.h"
-#include "lumivox/base/error.h"
-#include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
 #include "pairs.h"
 #include "passes.h"
+#include "room.h"
 
 namespace lumivox::implicit_visibility {
 namespace {
 
 /// hierarchy: pairs of nodes as large as a bin. all_pairs: every leaf with every other one (Sec. 3.1).
 enum class Method { hierarchy, allPairs };
+
+/// On this side they are there twice while lists are joined, once more for what stands still, and as the
+/// device has them.
+void requireRoomForLinks(PassContext& frame, const ElementTree& tree, const DirectionBins& bins) {
+  const std::uint64_t bytes =
+      (frame.traits().movingGeometry ? 3 : 2) * sizeof(BinnedSight) + sizeof(ElementLink);
+  requireRoom({"links", tree.leafCount, tree.leafCount * std::uint64_t{bins.count()} * bytes, bins.side()},
+              ofHost());
+}
+
+void requireRoomOnDevice(PassContext& frame, const ElementTree& tree, int bins, std::uint64_t links) {
+  requireRoom({"links", tree.leafCount, links * sizeof(ElementLink), bins},
+              {"a buffer of the device", frame.device().info().maxStorageBytes});
+}
 
 class CreateLinksPass : public Pass {
   In<SurfaceElements> elements{this, "elements", "what is linked"};
@@ -32,6 +48,7 @@ class CreateLinksPass : public Pass {
   Param<float> split{
       this, "split", 2.0f, within(0.0f, 64.0f),
       "how many bins a node may cover before it is split (published: 1); 0: all are, down to the leaves"};
+  Param<bool> asPublished{this, "as_published", false, "'mapping uniform' and 'split 1'"};
   Out<ElementLinks> result{this, "links", "pairs of nodes that may exchange light"};
 
   bool worksOnHost() const override { return true; }
@@ -39,10 +56,12 @@ class CreateLinksPass : public Pass {
   void run(PassContext& frame) override {
     ElementLinks links;
     links.bins = bins;
-    links.mapping = mapping;
+    links.mapping = asPublished ? BinMapping::uniform : BinMapping(mapping);
+    const ElementTree& tree = *elements->tree;
+    // Finding pairs of so many takes minutes: what their links need is asked for at once.
+    requireRoomForLinks(frame, tree, DirectionBins(bins, links.mapping));
     if (method == Method::hierarchy) {
-      const ElementTree& tree = *elements->tree;
-      const PairSettings settings{DirectionBins(bins, mapping), split};
+      const PairSettings settings{DirectionBins(bins, links.mapping), asPublished ? 1.0f : float(split)};
       const auto find = [&](bool moving) {
         return std::make_shared<const ElementLists<std::uint32_t>>(
             findPartners(tree, *elements->state, settings, moving));
@@ -57,6 +76,39 @@ class CreateLinksPass : public Pass {
   }
 };
 
+/// What one side of an element sees, by bins. It is in a closed room when there is a link in every quarter of
+/// a face of the cube that is above its plane altogether.
+class Enclosure {
+ public:
+  Enclosure(const BinFinder& finder, const glm::vec3& normal, std::span<const ElementLink> seen) {
+    const auto side = static_cast<std::uint32_t>(finder.bins().side());
+    auto link = seen.begin();
+    for (std::uint32_t bin = 0; bin < finder.bins().count(); ++bin) {
+      const std::uint32_t row = bin / side % side, column = bin % side;
+      Part& quarter = quarters_[4 * (bin / (side * side)) + 2 * (2 * row / side) + 2 * column / side];
+      const bool isFilled = link != seen.end() && link->bin() == bin;
+      if (isFilled) ++link;
+      const bool isAbove = glm::dot(normal, finder.centre(bin)) > 0.0f;
+      for (Part* part : {&quarter, &all_})
+        ++part->bins, part->above += isAbove, part->filled += isAbove && isFilled;
+    }
+  }
+  bool isClosed() const {
+    return all_.filled > 0 && std::all_of(quarters_.begin(), quarters_.end(), [](const Part& quarter) {
+             return quarter.above < quarter.bins || quarter.bins == 0 || quarter.filled > 0;
+           });
+  }
+  std::uint32_t bins() const { return all_.above; }
+  std::uint32_t empty() const { return all_.above - all_.filled; }
+
+ private:
+  struct Part {
+    std::uint32_t bins = 0, above = 0, filled = 0;  ///< above: of the element's plane; filled: of these
+  };
+  std::array<Part, 24> quarters_;
+  Part all_;
+};
+
 class PushLinksPass : public Pass {
   In<SurfaceElements> elements{this, "elements", "what is linked"};
   In<ElementLinks> pairs{this, "links", "pairs of nodes, of create_links"};
@@ -68,6 +120,7 @@ class PushLinksPass : public Pass {
       this, "push", Push::rebinned,
       "rebinned: links of inner nodes are seen anew from the leaf; kept: in the bin and at the distance of "
       "the node (published)"};
+  Param<bool> asPublished{this, "as_published", false, "'fill one' and 'push kept'"};
   Out<ElementLinks> result{this, "links", "what each leaf sees, bin by bin"};
 
   bool worksOnHost() const override { return true; }
@@ -75,10 +128,18 @@ class PushLinksPass : public Pass {
   void run(PassContext& frame) override {
     const ElementTree& tree = *elements->tree;
     const DirectionBins bins(pairs->bins, pairs->mapping);
-    requireRoom(tree.leafCount, bins);
+    requireRoomForLinks(frame, tree, bins);
     const auto finder =
         frame.kept("table of bins", 0, [&] { return std::make_shared<const BinFinder>(bins); });
-    const Lookout lookout(tree, *elements->state, *finder, fill, push);
+    const Lookout lookout(tree, *elements->state, *finder, asPublished ? Fill::one : Fill(fill),
+                          asPublished ? Push::kept : Push(push));
+    // What is clearly too much is refused before it is looked for, which takes minutes.
+    constexpr std::uint32_t kMany = 16384;
+    if (tree.leafCount > kMany) {
+      const std::uint64_t expected = lookout.estimate({pairs->stillPartners.get(), false});
+      if (expected / 2 * sizeof(ElementLink) > frame.device().info().maxStorageBytes)
+        requireRoomOnDevice(frame, tree, pairs->bins, expected);
+    }
     using Lists = ElementLists<BinnedSight>;
     const std::shared_ptr<const Lists> still = frame.kept(
         "what elements see of what stands still", std::pair(elements->tree, pairs->stillPartners), [&] {
@@ -89,49 +150,43 @@ class PushLinksPass : public Pass {
     ElementLinks links = *pairs;
     upload(frame, moves ? all : *still, *finder, links);
     result = links;
-    if (frame.inspects()) noteEmpty(frame, bins, *links.seen);
-  }
-
-  /// Before anything is taken.
-  static void requireRoom(std::uint32_t leaves, const DirectionBins& bins) {
-    // On this side twice while lists are joined, and as the device has them.
-    const std::uint64_t bytes =
-        leaves * std::uint64_t{bins.count()} * (2 * sizeof(BinnedSight) + sizeof(ElementLink));
-    const std::uint64_t available = availableMemory();
-    if (bytes <= available) return;
-    throw Error(fmt::format(
-        "links of {} elements with 6 x {} x {} bins need up to {}; available are {}, enough for {} elements",
-        leaves, bins.side(), bins.side(), formatBytes(bytes), formatBytes(available),
-        available / (bytes / leaves)));
+    if (frame.inspects()) noteEmpty(frame, *finder, *links.seen);
   }
 
   void upload(PassContext& frame, const ElementLists<BinnedSight>& seen, const BinFinder& finder,
               ElementLinks& links) const {
     const ElementTree& tree = *elements->tree;
-    auto compact = std::make_shared<ElementLists<ElementLink>>();
-    compact->first = seen.first;
-    compact->values.reserve(seen.values.size());
-    for (const BinnedSight& link : seen.values)
-      compact->values.emplace_back(link.bin, link.sight.distance, link.sight.node);
-    const std::uint64_t bytes = compact->values.size() * sizeof(ElementLink),
-                        most = frame.device().info().maxStorageBytes;
-    if (bytes > most)
-      throw Error(fmt::format(
-          "{} links of {} elements with 6 x {} x {} bins need {} in one buffer; the device takes {}, "
-          "enough for about {} elements",
-          compact->values.size(), tree.leafCount, links.bins, links.bins, formatBytes(bytes),
-          formatBytes(most), most / (bytes / tree.leafCount)));
+    requireRoomOnDevice(frame, tree, links.bins, seen.values.size());
+    auto compact = std::make_shared<ElementLists<ElementLink>>(compactLinks(seen));
     std::vector<glm::uvec4> first;
     for (std::uint32_t leaf = 0; leaf < tree.leafCount; ++leaf)
       first.emplace_back(
-          static_cast<std::uint32_t>(seen.first[leaf]),
-          static_cast<std::uint32_t>(seen.first[leaf + 1] - seen.first[leaf]),
+          static_cast<std::uint32_t>(compact->first[leaf]),
+          static_cast<std::uint32_t>(compact->first[leaf + 1] - compact->first[leaf]),
           std::bit_cast<std::uint32_t>(finder.table().projectionScale(elements->state->normal[leaf])), 0u);
     links.directions = frame.uploaded(finder.table().bins, "directions of bins");
     links.first = frame.uploaded(first, "where links of elements begin");
     links.links = frame.uploaded(compact->values, "links of elements");
     if (elements->emission != nullptr) uploadLights(frame, *compact, links);
     links.seen = std::move(compact);
+  }
+
+  /// With the sides that are seen. Nodes at one place exchange nothing.
+  ElementLists<ElementLink> compactLinks(const ElementLists<BinnedSight>& seen) const {
+    const ElementState& state = *elements->state;
+    ElementLists<ElementLink> compact;
+    compact.values.reserve(seen.values.size());
+    for (std::uint32_t leaf = 0; leaf < seen.size(); ++leaf) {
+      for (const BinnedSight& link : seen[leaf]) {
+        const std::uint32_t node = link.sight.node;
+        const glm::vec3 path = state.position[node] - state.position[leaf];
+        if (path == glm::vec3(0.0f)) continue;
+        const bool back = !elements->tree->isGroup(node) && glm::dot(state.normal[node], path) > 0.0f;
+        compact.values.emplace_back(link.bin, link.sight.distance, node, back);
+      }
+      compact.first.push_back(compact.values.size());
+    }
+    return compact;
   }
 
   /// For each leaf its links to nodes that emit.
@@ -146,14 +201,19 @@ class PushLinksPass : public Pass {
     links.lights = frame.uploaded(words, "links of elements to lights");
   }
 
-  static void noteEmpty(PassContext& frame, const DirectionBins& bins,
-                        const ElementLists<ElementLink>& seen) {
-    if (seen.size() == 0) return;
-    const double all = static_cast<double>(seen.size()) * static_cast<double>(bins.count());
-    frame.note(
-        fmt::format("{:.1f} % of the bins of elements hold no link (of surfaces with one side that sees "
-                    "surfaces, half are)",
-                    100.0 * (1.0 - static_cast<double>(seen.values.size()) / all)));
+  void noteEmpty(PassContext& frame, const BinFinder& finder, const ElementLists<ElementLink>& seen) const {
+    const std::vector<glm::vec3>& normals = elements->state->normal;
+    std::uint64_t empty = 0, all = 0;
+    for (std::uint32_t leaf = 0; leaf < seen.size(); ++leaf)
+      for (const float side : {1.0f, -1.0f}) {
+        const Enclosure enclosure(finder, side * normals[leaf], seen[leaf]);
+        if (!enclosure.isClosed()) continue;
+        empty += enclosure.empty();
+        all += enclosure.bins();
+      }
+    if (all > 0)
+      frame.note(fmt::format("{:.1f} % of the bins of elements in closed rooms hold no link",
+                             100.0 * static_cast<double>(empty) / static_cast<double>(all)));
   }
 };
 

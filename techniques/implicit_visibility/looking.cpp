@@ -71,6 +71,18 @@ void Lookout::lookFrom(Eye& eye, std::uint32_t leaf, const Partners& partners,
       for (const std::uint32_t partner : (*partners.lists)[node]) eye.see(partner, fill_);
 }
 
+std::uint64_t Lookout::estimate(const Partners& partners) const {
+  constexpr std::uint32_t kLeaves = 256;
+  const std::uint32_t count = std::min(tree_.leafCount, kLeaves);
+  if (count == 0 || (push_ == Push::kept && partners.lists != nullptr)) return 0;
+  const ElementLists<BinnedSight> some = collect(count, [&](Eye& eye, std::uint32_t i) {
+    const auto leaf = static_cast<std::uint32_t>(std::uint64_t{i} * tree_.leafCount / count);
+    eye.open(state_.position[leaf], state_.normal[leaf]);
+    if (state_.area[leaf] > 0.0f) lookFrom(eye, leaf, partners, {});
+  });
+  return some.values.size() * std::uint64_t{tree_.leafCount} / count;
+}
+
 ElementLists<BinnedSight> Lookout::look(const Partners& partners,
                                         const ElementLists<BinnedSight>* before) const {
   ElementLists<BinnedSight> inner;

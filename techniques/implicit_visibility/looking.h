@@ -25,6 +25,8 @@ class Lookout {
   /// For each leaf and each bin the nearest of the partners of the leaf and of all nodes above it, and of
   /// what was seen `before` (null: nothing). The same for any number of threads.
   ElementLists<BinnedSight> look(const Partners& partners, const ElementLists<BinnedSight>* before) const;
+  /// About how many links that makes, from what some of the leaves see.
+  std::uint64_t estimate(const Partners& partners) const;
 
  private:
   void lookFrom(Eye& eye, std::uint32_t leaf, const Partners& partners,

@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <span>
 
 #include "leaf_materials.h"
-#include "lumivox/base/file.h"
 #include "lumivox/scene/atlas.h"
 #include "lumivox/scene/topology.h"
+#include "room.h"
 
 namespace lumivox::implicit_visibility {
 namespace {
@@ -35,12 +36,24 @@ void forEachTriangle(const Object& object, Visit&& visit) {
       visit(t, part);
 }
 
-double areaOf(const Scene& scene, const Object& object) {
-  double area = 0.0;
-  forEachTriangle(object,
-                  [&](std::uint32_t t, const Part&) { area += RestTriangle(scene, object, t).area(); });
-  return area;
-}
+struct Extent {
+  double area = 0.0, diagonal = 0.0;  ///< m^2; m, of the bounds
+
+  Extent(const Scene& scene, const Object& object) {
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+    forEachTriangle(object, [&](std::uint32_t t, const Part&) {
+      const RestTriangle triangle(scene, object, t);
+      area += triangle.area();
+      for (const glm::dvec3& edge : {glm::dvec3(0.0), triangle.edge1, triangle.edge2}) {
+        low = glm::min(low, triangle.corner + edge);
+        high = glm::max(high, triangle.corner + edge);
+      }
+    });
+    if (area > 0.0) diagonal = glm::distance(low, high);
+  }
+  /// A texel that takes all of a chart, whatever its shape; smaller for needles, which are hardly any of it.
+  double wholeTexel() const { return std::min(2.0 * diagonal, 100.0 * std::sqrt(area)); }
+};
 
 /// Texel sizes that give each object its part of the elements. Objects whose part is below one have one each,
 /// beyond the number, so that thousands of them leave nothing less to what is larger.
@@ -49,22 +62,28 @@ struct TexelSizes {
   double elements;                ///< that they give
 
   TexelSizes(const Scene& scene, double wanted, double share) : ofObjects(scene.objects.size(), 1.0) {
-    std::vector<double> areas, weights;
-    for (const Object& object : scene.objects) areas.push_back(areaOf(scene, object));
-    const double largest = areas.empty() ? 0.0 : *std::max_element(areas.begin(), areas.end());
-    for (const double area : areas) weights.push_back(area > 0.0 ? std::pow(area / largest, share) : 0.0);
-    std::vector<std::size_t> order(areas.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t i, std::size_t k) { return weights[i] < weights[k]; });
-    double total = std::accumulate(weights.begin(), weights.end(), 0.0), alone = 0.0;
-    for (const std::size_t i : order) {
-      if (!(areas[i] > 0.0)) continue;
-      double part = wanted * weights[i] / total;
-      if (part < 1.0) total -= weights[i], alone += 1.0, part = 1.0;
-      ofObjects[i] = std::sqrt(areas[i] / part);
+    std::vector<Extent> extents;
+    double largest = 0.0;
+    for (const Object& object : scene.objects) {
+      extents.emplace_back(scene, object);
+      largest = std::max(largest, extents.back().area);
     }
-    elements = alone + (total > 0.0 ? wanted : 0.0);
+    std::vector<double> weights;
+    for (const Extent& extent : extents)
+      weights.push_back(extent.area > 0.0 ? std::pow(extent.area / largest, share) : 0.0);
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    const auto isAlone = [&](double weight) { return wanted * weight < total; };
+    double alone = 0.0, shared = 0.0;  // how many are; weight of the others
+    for (const double weight : weights)
+      if (!isAlone(weight))
+        shared += weight;
+      else if (weight > 0.0)
+        alone += 1.0;
+    for (std::size_t i = 0; i < extents.size(); ++i)
+      if (weights[i] > 0.0)
+        ofObjects[i] = isAlone(weights[i]) ? extents[i].wholeTexel()
+                                           : std::sqrt(extents[i].area * shared / (wanted * weights[i]));
+    elements = alone + (shared > 0.0 ? wanted : 0.0);
   }
 };
 
@@ -233,7 +252,7 @@ Origins findOrigins(const Scene& scene, const OriginSettings& settings) {
   const auto leaves = atlasLeaves ? static_cast<std::uint64_t>(settings.elements) : scene.positions.size();
   // Of a leaf: itself, its texel twice, and its nodes with their states and textures.
   constexpr std::uint64_t kBytesPerLeaf = 512;
-  requireMemory(leaves * kBytesPerLeaf, std::to_string(leaves) + " surface elements");
+  requireRoom({"places and trees", leaves, leaves * kBytesPerLeaf}, ofHost());
   // With vertices the atlas gives charts alone: texels as large as the objects are enough.
   const SurfaceAtlas atlas =
       atlasLeaves ? atlasOf(scene, settings)

@@ -1,6 +1,5 @@
 #include "pairs.h"
 
-#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -11,8 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "lumivox/base/error.h"
-#include "lumivox/base/file.h"
+#include "room.h"
 
 namespace lumivox::implicit_visibility {
 namespace {
@@ -158,9 +156,8 @@ ElementLists<std::uint32_t> findPartners(const ElementTree& tree, const ElementS
   partners.first.reserve(tree.nodeCount + 1);
   for (std::uint32_t node = 0; node < tree.nodeCount; ++node)
     partners.first.push_back(partners.first.back() + counts[node]);
-  requireMemory(partners.first.back() * sizeof(std::uint32_t),
-                fmt::format("the links among {} elements with 6 x {} x {} bins", tree.leafCount,
-                            settings.bins.side(), settings.bins.side()));
+  requireRoom({"pairs", tree.leafCount, partners.first.back() * sizeof(std::uint32_t), settings.bins.side()},
+              ofHost());
   partners.values.resize(partners.first.back());
   for (std::atomic<std::uint32_t>& count : counts) count = 0;
   walkAll(walk, [&](std::uint32_t a, std::uint32_t b) {

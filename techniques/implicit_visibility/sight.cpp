@@ -11,7 +11,8 @@ namespace {
 
 constexpr Sight kNothing{std::numeric_limits<float>::infinity(), kNoElement};
 constexpr int kCellsPerLine = 4;
-/// Below this angle, rad, nothing counts as above a plane: rounding of coplanar discs.
+/// Below this angle, rad, nothing counts as above a plane: rounding of coplanar discs. Of discs nearer than
+/// their radius it is that share of the radius: places are rounded, however near they are to each other.
 constexpr float kFlat = 1e-4f;
 /// A disc nearer than this, in its radii, is at the same place.
 constexpr float kSamePlace = 1e-5f;
@@ -124,7 +125,7 @@ void Eye::see(std::uint32_t node, Fill fill) {
   seen.normal = seen.disc.normal;
   seen.radius = radius;
   if (hasPlane_) {
-    const float height = glm::dot(normal_, seen.direction), flat = kFlat * seen.distance;
+    const float height = glm::dot(normal_, seen.direction), flat = kFlat * std::max(seen.distance, radius);
     // Most are on one side altogether, which needs no square root to know.
     const float above = seen.disc.isSphere() || std::abs(height) > radius
                             ? radius

@@ -79,6 +79,56 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("after any sequence of times light at elements and images are those of a fresh run, bit for bit") {
+  Scene scene = furnishedCube(true);
+  // A sheet that deforms, and a lamp that shines.
+  SceneBuilder builder;
+  builder.scene = scene;
+  const std::vector<glm::vec3> flat{
+      {0.2f, 0.8f, 0.2f}, {0.2f, 0.8f, 0.6f}, {0.8f, 0.8f, 0.6f}, {0.8f, 0.8f, 0.2f}};
+  std::vector<glm::vec3> bent = flat;
+  bent[1].y = 0.65f, bent[3].x = 0.6f;
+  Object& sheet = builder.quad(flat[0], flat[1] - flat[0], flat[3] - flat[0], builder.lambert(0.7f));
+  VertexSequence sequence;
+  sequence.framesPerSecond = 1.0;
+  sequence.positions = {flat, bent};
+  sequence.normals.assign(2, std::vector<glm::vec3>(4, glm::vec3(0, 1, 0)));
+  sheet.sequence = sequence;
+  builder.quad({0.4f, 0.99f, 0.4f}, {0.2f, 0, 0}, {0, 0, 0.2f}, builder.lambert(0.5f, 5.0f));
+  builder.light(LightKind::point, glm::vec3(0.2f), {0.5, 0.9, 0.7});
+  for (const char* name : {"implicit_visibility", "implicit_visibility_lights"}) {
+    const Pipeline text = pipeline(name);
+    RenderOptions options = small();
+    options.parameters = text.settings({"elements=400", "bounces=2"});
+    const auto executorOf = [&] {
+      auto executor =
+          std::make_unique<PipelineExecutor>(device(), techniques(), builder.scene, text, options);
+      executor->keepOutput("illuminate", "light");
+      return executor;
+    };
+    const auto radianceOf = [](const PipelineExecutor& executor) {
+      return static_cast<const Out<ElementLight>*>(executor.output("illuminate", "light"))
+          ->value()
+          .radiance->downloadFloats(0);
+    };
+    const auto sequenceOf = executorOf();
+    std::vector<float> before;
+    int frame = 0;
+    for (const double time : {0.0, 0.4, 0.8, 0.4, 1e6, 0.0}) {
+      CAPTURE(name, time);
+      const FrameResult result = sequenceOf->render(time, frame++);
+      const auto fresh = executorOf();
+      const FrameResult alone = fresh->render(time);
+      const std::vector<float> radiance = radianceOf(*sequenceOf);
+      CHECK(radiance == radianceOf(*fresh));
+      CHECK(radiance != before);
+      before = radiance;
+      for (const auto& [output, image] : result.outputs)
+        CHECK(image.values() == alone.outputs.at(output).values());
+    }
+  }
+}
+
 TEST_CASE("a full update and one that keeps what stands still make the same links") {
   const Scene scene = furnishedCube(true);
   const Pipeline text = linksAlone("");

@@ -96,6 +96,23 @@ std::vector<glm::vec3> sheetCorners(float width) {
   return {{0, 0, 0}, {0, 0, 1}, {width, 0, 1}, {width, 0, 0}};
 }
 
+/// A square metre in so many squares a side, two triangles each.
+Scene sheet(int cuts) {
+  SceneBuilder builder;
+  std::vector<glm::vec3> corners;
+  for (int j = 0; j < cuts; ++j)
+    for (int i = 0; i < cuts; ++i) {
+      const auto at = [&](int x, int z) {
+        return glm::vec3(static_cast<float>(x) / static_cast<float>(cuts), 0,
+                         static_cast<float>(z) / static_cast<float>(cuts));
+      };
+      const glm::vec3 a = at(i, j), b = at(i, j + 1), c = at(i + 1, j + 1), d = at(i + 1, j);
+      corners.insert(corners.end(), {a, b, c, a, c, d});
+    }
+  builder.mesh(corners, builder.lambert(0.5f));
+  return builder.scene;
+}
+
 }  // namespace
 
 TEST_CASE("numbers of nodes alone tell parents and children, for trees of 1 to 85 leaves") {
@@ -174,8 +191,8 @@ TEST_CASE("objects too small for an element have one each, and leave a large one
   const int grey = builder.lambert(0.5f);
   constexpr int kObjects = 1000;
   for (int i = 0; i < kObjects; ++i)
-    builder.quad({static_cast<float>(i % 40), 5.0f, static_cast<float>(i / 40)}, {0, 0, 0.5f}, {0.5f, 0, 0},
-                 grey);
+    builder.quad({static_cast<float>(i % 40), 5.0f, static_cast<float>(i / 40)}, {0, 0, 0.7f},
+                 {i % 2 == 0 ? 0.7f : 0.2f, 0, 0}, grey);
   const Elements made = elementsOf(builder.scene, {{"elements", 400.0}});
   std::vector<int> counts(kObjects + 1, 0);
   for (std::uint32_t leaf = 0; leaf < made.tree().leafCount; ++leaf) ++counts[made.tree().objectOfNode[leaf]];
@@ -279,21 +296,6 @@ TEST_CASE("a sheet that shrinks to a point has elements without area, and number
 }
 
 TEST_CASE("the same elements stand on two large triangles and on twenty thousand tiny ones") {
-  const auto sheet = [](int cuts) {
-    SceneBuilder builder;
-    std::vector<glm::vec3> corners;
-    for (int j = 0; j < cuts; ++j)
-      for (int i = 0; i < cuts; ++i) {
-        const auto at = [&](int x, int z) {
-          return glm::vec3(static_cast<float>(x) / static_cast<float>(cuts), 0,
-                           static_cast<float>(z) / static_cast<float>(cuts));
-        };
-        const glm::vec3 a = at(i, j), b = at(i, j + 1), c = at(i + 1, j + 1), d = at(i + 1, j);
-        corners.insert(corners.end(), {a, b, c, a, c, d});
-      }
-    builder.mesh(corners, builder.lambert(0.5f));
-    return builder.scene;
-  };
   const Elements large = elementsOf(sheet(1), {{"elements", 256.0}}),
                  tiny = elementsOf(sheet(100), {{"elements", 256.0}});
   REQUIRE(large.tree().leafCount == 256);
@@ -303,6 +305,27 @@ TEST_CASE("the same elements stand on two large triangles and on twenty thousand
     CHECK(glm::distance(large.state().position[leaf], tiny.state().position[leaf]) < 1e-4f);
     CHECK(tiny.state().area[leaf] == Approx(1.0 / 256.0).epsilon(1e-3));
   }
+}
+
+TEST_CASE(
+    "the same elements stand on two large triangles and on a million tiny ones; a million vertices are refused",
+    "[.]") {
+  const Scene scene = sheet(708);
+  REQUIRE(scene.triangleCount() > 1000000);
+  const Elements large = elementsOf(sheet(1), {{"elements", 4096.0}}),
+                 tiny = elementsOf(scene, {{"elements", 4096.0}});
+  REQUIRE(large.tree().leafCount == tiny.tree().leafCount);
+  for (std::uint32_t leaf = 0; leaf < large.tree().leafCount; ++leaf) {
+    CHECK(glm::distance(large.state().position[leaf], tiny.state().position[leaf]) < 1e-4f);
+    CHECK(tiny.state().area[leaf] == Approx(large.state().area[leaf]).epsilon(1e-3));
+  }
+  const Elements vertices = elementsOf(scene, {{"source", "vertices"}});
+  CHECK(vertices.tree().leafCount == scene.positions.size());
+  PassHarness links(device(), techniques(), "implicit_visibility", "create_links", scene,
+                    snapshotOf(scene, 0.0));
+  links.setInput("elements", vertices.made);
+  links.setParameter("bins", 16.0);
+  CHECK_THAT(messageOf<Error>([&] { links.run(); }), Catch::Contains("elements with 6 x 16 x 16 bins need"));
 }
 
 TEST_CASE("holes of masks have no elements, and an element has the mean colour of its piece of texture") {

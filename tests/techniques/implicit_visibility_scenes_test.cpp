@@ -1,4 +1,6 @@
 // Committed scenes against the path tracer.
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "support/against_reference.h"
@@ -14,7 +16,15 @@ Scene committed(const std::string& name) {
 
 struct Errors {
   Against diffuse, glossy, occlusion;
+  double openness;  ///< RMS difference of ambient occlusion, of 1
 };
+
+/// Of ambient occlusion, without the reference's noise.
+double opennessError(const LayeredImage& reference, const ImageBuffer& image) {
+  const ImageError error = compare(image, reference.layers.at("ambient_occlusion"),
+                                   reference.layers.at("ambient_occlusion.variance"));
+  return std::sqrt(std::max(0.0, error.rmse.value * error.rmse.value - error.noiseFloor * error.noiseFloor));
+}
 
 Errors errorsOn(const std::string& name, const std::vector<std::string>& settings,
                 const Picture& picture = {96, 96, 128}) {
@@ -23,7 +33,8 @@ Errors errorsOn(const std::string& name, const std::vector<std::string>& setting
   const FrameResult frame = pictured(scene, picture, pipeline("implicit_visibility"), settings);
   return {lightAgainst(reference, frame.outputs.at("indirect_diffuse")),
           against(reference, frame.outputs.at("indirect_glossy"), "one_bounce_glossy", 0.0f),
-          occlusionAgainst(reference, frame.outputs.at("ambient_occlusion"))};
+          occlusionAgainst(reference, frame.outputs.at("ambient_occlusion")),
+          opennessError(reference, frame.outputs.at("ambient_occlusion"))};
 }
 
 }  // namespace
@@ -34,6 +45,8 @@ TEST_CASE(
   CAPTURE(errors.diffuse.rmse, errors.diffuse.ratio);
   CHECK(errors.diffuse.rmse <= 0.15);
   CHECK(errors.diffuse.ratio == Approx(1.0).margin(0.07));
+  CAPTURE(errors.openness);
+  CHECK(errors.openness <= 0.06);
 }
 
 TEST_CASE("eight bounces in the Cornell box are full indirect light within 0.15 of its error") {
@@ -107,10 +120,30 @@ TEST_CASE("table: errors of indirect light by elements and bins", "[.]") {
         if (std::string(elements) == "elements=16384" && std::string(bins) == "bins=16")
           continue;  // the device's buffers
         const Errors errors = errorsOn(name, {elements, bins});
-        std::printf("%-15s %-15s %-8s diffuse %.3f ratio %.3f  glossy %.3f ratio %.3f  occlusion %.3f\n",
-                    name, elements, bins, errors.diffuse.rmse, errors.diffuse.ratio, errors.glossy.rmse,
-                    errors.glossy.ratio, errors.occlusion.rmse);
+        std::printf(
+            "%-15s %-15s %-8s diffuse %.3f ratio %.3f  glossy %.3f ratio %.3f  occlusion %.3f absolute %.3f\n",
+            name, elements, bins, errors.diffuse.rmse, errors.diffuse.ratio, errors.glossy.rmse,
+            errors.glossy.ratio, errors.occlusion.rmse, errors.openness);
         std::fflush(stdout);
         CHECK(errors.diffuse.rmse < 0.9);
       }
+}
+
+TEST_CASE("table: errors of ambient occlusion by scene, elements and bins", "[.]") {
+  const Picture picture{64, 64, 128};
+  const auto text = pipeline("implicit_visibility");
+  for (const char* name : {"cornell", "corridor", "spinning_box", "chess", "teapot_sky", "vase", "arcade"}) {
+    const Scene scene = committed(name);
+    const LayeredImage reference = referenceOf(scene, picture);
+    for (const char* elements : {"elements=4096", "elements=16384"})
+      for (const char* bins : {"bins=8", "bins=16"}) {
+        if (std::string(elements) == "elements=16384" && std::string(bins) == "bins=16") continue;
+        const FrameResult frame = pictured(scene, picture, text, {elements, bins});
+        const ImageBuffer& openness = frame.outputs.at("ambient_occlusion");
+        std::printf("%-15s %-15s %-8s RMS %.3f mean ratio %.3f\n", name, elements, bins,
+                    opennessError(reference, openness), occlusionAgainst(reference, openness).ratio);
+        std::fflush(stdout);
+        CHECK(opennessError(reference, openness) < 0.3);
+      }
+  }
 }

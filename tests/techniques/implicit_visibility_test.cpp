@@ -36,15 +36,34 @@ TEST_CASE("too many links for the memory there is are refused before anything is
                        snapshotOf(scene, 0.0));
   elements.setParameter("elements", 200000.0);
   elements.run();
-  PassHarness push(device(), techniques(), "implicit_visibility", "push_links", scene,
-                   snapshotOf(scene, 0.0));
-  push.setInput("elements", elements.output<SurfaceElements>("elements"));
-  ElementLinks none;
-  none.bins = 64;
-  push.setInput("links", none);
-  const std::string message = messageOf<Error>([&] { push.run(); });
+  for (const std::string name : {"create_links", "push_links"}) {
+    PassHarness pass(device(), techniques(), "implicit_visibility", name, scene, snapshotOf(scene, 0.0));
+    pass.setInput("elements", elements.output<SurfaceElements>("elements"));
+    if (name == "create_links") {
+      pass.setParameter("bins", 64.0);
+    } else {
+      ElementLinks none;
+      none.bins = 64;
+      pass.setInput("links", none);
+    }
+    CHECK_THAT(
+        messageOf<Error>([&] { pass.run(); }),
+        Catch::Matches(".*links of \\d+ elements with 6 x 64 x 64 bins need [0-9.]+ [KMGT]iB; memory has "
+                       "[0-9.]+ [KMGT]iB, enough for about \\d+ elements"));
+  }
+}
+
+TEST_CASE("more links than a buffer of the device takes are refused before it is made, with what would fit") {
+  const std::uint64_t most = device().info().maxStorageBytes;
+  if (most > (std::uint64_t{1} << 28)) return;  // more than a test should take
+  // In a closed room each leaf has a link in each of the 12288 bins of its front.
+  const double leaves = std::ceil(1.1 * static_cast<double>(most) / (12288.0 * sizeof(ElementLink)));
+  const std::string message = messageOf<Error>([&] {
+    linked(closedCube(), {{{"elements", leaves}}, {{"bins", 64.0}}, {}});
+  });
   CHECK_THAT(message,
-             Catch::Contains("elements with 6 x 64 x 64 bins need up to") && Catch::Contains("enough for"));
+             Catch::Matches(".*links of \\d+ elements with 6 x 64 x 64 bins need [0-9.]+ MiB; a buffer of "
+                            "the device has [0-9.]+ MiB, enough for about \\d+ elements"));
 }
 
 TEST_CASE("two triangles that nearly lie on each other are linked without a number that is none") {
@@ -62,16 +81,30 @@ TEST_CASE("two triangles that nearly lie on each other are linked without a numb
     }
 }
 
-TEST_CASE("the share of bins that hold no link is told when a run is inspected") {
-  const Scene scene = furnishedCube();
-  const Pipeline text = pipeline("implicit_visibility");
-  RenderOptions options;
-  options.width = 16, options.height = 12;
-  options.health = true;
-  options.parameters = text.settings({"elements=256"});
-  PipelineExecutor executor(device(), techniques(), scene, text, options);
-  const std::vector<std::string> notes = executor.render(0.0).notes;
-  CHECK(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
-    return note.find("% of the bins of elements hold no link") != std::string::npos;
-  }));
+TEST_CASE("of elements in closed rooms the share of bins that hold no link is told when a run is inspected") {
+  const auto noteOn = [](const Scene& scene, const std::vector<std::string>& settings) {
+    const Pipeline text = pipeline("implicit_visibility");
+    RenderOptions options;
+    options.width = 16, options.height = 12;
+    options.health = true;
+    options.parameters = text.settings(settings);
+    PipelineExecutor executor(device(), techniques(), scene, text, options);
+    std::string found;
+    for (const std::string& note : executor.render(0.0).notes)
+      if (note.find("% of the bins of elements in closed rooms hold no link") != std::string::npos)
+        found = note.substr(note.find_last_of(' ', note.find('%') - 2) + 1);
+    return found;
+  };
+  for (const char* bins : {"bins=1", "bins=7", "bins=8"})
+    CHECK(noteOn(furnishedCube(), {"elements=256", bins}) != "");
+  CHECK(std::stod(noteOn(furnishedCube(), {"elements=1024"})) < 0.5);
+  // Too few elements for the bins.
+  CHECK(std::stod(noteOn(furnishedCube(), {"elements=256", "bins=12", "fill=one"})) > 30.0);
+  // Most bins of elements below the sky are empty, as they should be.
+  SceneBuilder builder;
+  builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.5f));
+  builder.quad({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, 0);
+  builder.scene.environment = glm::vec3(1.0f);
+  builder.look({0, 2, 2}, {0, 0, 0}, {0, 1, 0}, 0.8, 16, 12);
+  CHECK(noteOn(builder.scene, {"elements=256"}).empty());
 }

@@ -66,9 +66,9 @@ void addVariants(PipelineExecutor& executor, Cost& cost) {
 Cost costOf(const std::string& sceneText, const Pipeline& text) {
   const LogCapture silent;  // the grids are coarser than anybody would take them
   RenderOptions options;
-  const std::map<std::string, double> small{{"resolution", 16}, {"area_samples", 4},
-                                            {"surfaces", 16},   {"iterations", 8},
-                                            {"samples", 25},    {"smoke_resolution", 16}};
+  const std::map<std::string, double> small{{"resolution", 16}, {"area_samples", 4}, {"surfaces", 16},
+                                            {"iterations", 8},  {"samples", 25},     {"smoke_resolution", 16},
+                                            {"elements", 64},   {"bins", 4}};
   for (const PipelineParameter& parameter : text.parameters)
     if (const auto value = small.find(parameter.name); value != small.end())
       options.parameters[parameter.name].number = value->second;
@@ -399,5 +399,49 @@ TEST_CASE("a scene pays for what it uses and nothing else: smoke") {
                  {"spot", {"bytes shadow"}},
                  {"sun", {"bytes shadow"}},
                  {"texture", {"conservative TEXTURES=1", "gbuffer TEXTURES=1"}},
+             });
+}
+
+TEST_CASE("a scene pays for what it uses and nothing else: light between surface elements") {
+  checkCosts("implicit_visibility",
+             {
+                 {"cut-out mask", {"gbuffer MASKS=1", "shadow_map MASKS=1"}},
+                 {"emission",
+                  {"bytes elements", "bytes gbuffer", "bytes links", "bytes shadow", "gbuffer EMISSION=1",
+                   "shade EMISSION=1"}},
+                 {"environment", {"illuminate ENVIRONMENT=1"}},
+                 {"glossy material",
+                  {"bytes display", "bytes elements", "bytes gbuffer", "compose GLOSSY=1", "gbuffer GLOSSY=1",
+                   "program display_glossy", "shade GLOSSY=1"}},
+                 {"moving camera", {"again compose", "again direct", "again display", "again gbuffer"}},
+                 {"moving object",
+                  {"again compose", "again direct", "again display", "again elements", "again gbuffer",
+                   "again illuminate", "again links", "again pairs", "again shadow", "bytes elements"}},
+                 {"spot", {"bytes shadow"}},
+                 {"sun", {"bytes shadow"}},
+                 {"texture", {"gbuffer TEXTURES=1"}},
+             });
+}
+
+TEST_CASE("a scene pays for what it uses and nothing else: light between surface elements, all by links") {
+  checkCosts("implicit_visibility_lights",
+             {
+                 {"cut-out mask", {"gbuffer MASKS=1", "shadow_map MASKS=1"}},
+                 {"emission",
+                  {"bytes display", "bytes elements", "bytes gbuffer", "bytes illuminate", "bytes links",
+                   "bytes shadow", "display ADDED=1", "gbuffer EMISSION=1", "illuminate LISTED=1",
+                   "light_leaves LIGHTS=0", "light_leaves LINKED=1", "light_leaves OF=emitted",
+                   "light_leaves SHADOWS=0", "pull_up SUMS=0", "shade EMISSION=1"}},
+                 {"environment", {"illuminate ENVIRONMENT=1"}},
+                 {"glossy material",
+                  {"bytes display", "bytes elements", "bytes gbuffer", "compose GLOSSY=1", "gbuffer GLOSSY=1",
+                   "program display_glossy", "shade GLOSSY=1"}},
+                 {"moving camera", {"again compose", "again display", "again gbuffer", "again shade"}},
+                 {"moving object",
+                  {"again compose", "again display", "again elements", "again gbuffer", "again illuminate",
+                   "again links", "again pairs", "again shade", "again shadow", "bytes elements"}},
+                 {"spot", {"bytes shadow"}},
+                 {"sun", {"bytes shadow"}},
+                 {"texture", {"gbuffer TEXTURES=1"}},
              });
 }

@@ -58,7 +58,10 @@ struct ElementTree {
       children;                        ///< of node leafCount + i; kNoElement where there are fewer
   std::vector<std::uint32_t> parents;  ///< of each node; kNoElement for those without
   std::vector<std::uint32_t> segmentOfLeaf;
+  /// Of each of Scene::positions, where leaves stand on vertices (kNoElement: none does); else empty.
+  std::vector<std::uint32_t> leafOfVertex;
   std::vector<bool> emits;                  ///< of each node: whether a leaf of it shines
+  std::vector<bool> glossy;                 ///< of each node: whether a leaf of it is glossy
   std::vector<std::uint32_t> objectOfNode;  ///< index into Scene::objects; kNoElement: a group of several
   std::uint32_t root = kNoElement;          ///< of everything; kNoElement without a leaf
 

@@ -17,9 +17,12 @@ struct ElementLight {
   gpu::TextureRef directIrradiance;
   gpu::TextureRef radiance;  ///< reflected, of as many bounces as reach the surface that is seen
   gpu::TextureRef emission;  ///< emitted; null like directIrradiance
-  /// Radiance of glossy elements by direction. Null: none.
-  gpu::BufferRef outgoing;
-  int directions = 0;  ///< along a side of a face of the cube of directions of `outgoing`; 0: none
+  /// What nodes with a glossy leaf reflect by their Phong lobes, beside `radiance`: a row of texels for each of
+  /// them, one for each direction of an even cube of bins (scene/direction_bins.h). Null where nothing passes
+  /// such light on.
+  gpu::TextureRef outgoing;
+  gpu::BufferRef outgoingRows;  ///< of each node its row, kNoElement: none; null like `outgoing`
+  int directions = 0;           ///< along a side of a face of the cube of directions of `outgoing`; 0: none
 
   /// Texels of a texture of radiance.
   static int radianceTexels(const SurfaceElements& elements) {
@@ -39,14 +42,17 @@ struct PortTraits<ElementLight> {
          {"radiance", "d2 rgba32f, two texels a disc, six a group",
           "xyz reflected radiance to the front and the back, or along the axes, W/(sr m^2)"},
          {"emission", "d2 rgba32f, two texels a disc, six a group", "the same that is emitted"},
-         {"outgoing", "buffer", "radiance of glossy elements by direction, W/(sr m^2)"}}};
+         {"outgoing", "d2 rgba32f, a texel for each direction of each node with a glossy leaf",
+          "xyz radiance that its Phong lobe reflects in a direction, W/(sr m^2)"},
+         {"outgoingRows", "buffer", "word a node: its row in `outgoing`; 2^32 - 1: none"}}};
   }
   static void contents(const ElementLight& port, PortContents& contents) {
     contents.texture("irradiance", port.irradiance);
     contents.texture("directIrradiance", port.directIrradiance);
     contents.texture("radiance", port.radiance);
     contents.texture("emission", port.emission);
-    contents.buffer("outgoing", port.outgoing);
+    contents.texture("outgoing", port.outgoing);
+    contents.buffer("outgoingRows", port.outgoingRows);
   }
 };
 

@@ -10,16 +10,21 @@
 
 namespace lumivox {
 
-/// What an element sees in a bin: another element, and how far away it is. Two words of the device.
+/// What an element sees in a bin: another element, from which side, and how far away it is. Two words of the
+/// device.
 struct ElementLink {
-  std::uint32_t binAndDistance =
-      0;                   ///< bin in the lower half; upper half of the bits of the distance as a float
+  static constexpr std::uint32_t kBack = 0x8000u;
+  /// Bin in the lower 15 bits, then whether a disc's back is seen; upper half of the bits of the distance as a
+  /// float.
+  std::uint32_t binAndDistance = 0;
   std::uint32_t node = 0;  ///< of ElementTree
 
   ElementLink() = default;
-  ElementLink(std::uint32_t bin, float distance, std::uint32_t seen)
-      : binAndDistance(bin | (std::bit_cast<std::uint32_t>(distance) & 0xffff0000u)), node(seen) {}
-  std::uint32_t bin() const { return binAndDistance & 0xffffu; }
+  ElementLink(std::uint32_t bin, float distance, std::uint32_t seen, bool back)
+      : binAndDistance(bin | (back ? kBack : 0u) | (std::bit_cast<std::uint32_t>(distance) & 0xffff0000u)),
+        node(seen) {}
+  std::uint32_t bin() const { return binAndDistance & (kBack - 1u); }
+  bool back() const { return (binAndDistance & kBack) != 0u; }
   /// m, too small by at most 2^-7 of it.
   float distance() const { return std::bit_cast<float>(binAndDistance & 0xffff0000u); }
   bool operator==(const ElementLink&) const = default;
@@ -64,7 +69,8 @@ struct PortTraits<ElementLinks> {
           "uvec4 a leaf: where its links begin, and how many there are, by growing bins; bits of the float "
           "projectionScale() of its normal; 0"},
          {"links", "buffer",
-          "uvec2 a link: bin (lower half) and upper half of the distance as a float, m; node that is seen"},
+          "uvec2 a link: bin (lower 15 bits), 1 where the back of a disc is seen, and upper half of the distance as "
+          "a float, m; node that is seen"},
          {"lights", "buffer",
           "uvec2 a leaf: where its list begins, counted in words of this buffer, and its length; then the lists: "
           "numbers of links to nodes that emit, growing"}}};

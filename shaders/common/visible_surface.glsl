@@ -1,0 +1,34 @@
+// Drawing what a camera sees, so that all programs that do it cover the same pixels at the same depths. Included behind scene.glsl.
+// C++ side: framework/include/lumivox/toolkit/visible_surface.h.
+#ifndef LUMIVOX_VISIBLE_SURFACE
+#define LUMIVOX_VISIBLE_SURFACE
+
+layout(std140, binding = 1) uniform View { mat4 worldToClip; };
+
+#ifdef SCENE_VERTICES
+invariant gl_Position;
+
+void placeVertex(vec3 posWorld) { gl_Position = worldToClip * vec4(posWorld, 1.0); }
+#else
+layout(std140, binding = 2) uniform Eye {
+  vec3 eyeWorld;
+  vec2 imageSize;  // pixels
+};
+
+#if MASKS
+layout(binding = 1) uniform sampler2D maskTexture;
+bool isHole(vec2 texcoord) { return texture(maskTexture, texcoord).r < kMaskThreshold; }
+#endif
+
+// Whether the surface is not what this pixel's ray meets. A triangle whose plane holds the eye has no extent in the image, but its
+// corners are rounded to steps of the rasteriser, and what it covers then lies anywhere in its plane.
+bool isElsewhere(vec3 posWorld) {
+  const float kTolerance = 2.0;  // pixels: beyond what rounding moves a triangle that is seen
+  // Share of the coordinates below which their rounding leaves no direction.
+  const float kNearest = 1e-5;
+  vec4 clip = worldToClip * vec4(posWorld, 1.0);
+  vec2 pixel = (0.5 + vec2(0.5, -0.5) * clip.xy / clip.w) * imageSize;
+  return !(clip.w > kNearest * (length(posWorld) + length(eyeWorld)) && all(lessThan(abs(pixel - gl_FragCoord.xy), vec2(kTolerance))));
+}
+#endif
+#endif
