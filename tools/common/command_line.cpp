@@ -82,6 +82,7 @@ std::string unknownCommand(const CLI::App& app, const std::string& word) {
 std::string wrongWords(const CLI::App& app) {
   const CLI::App* command = &app;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().back();
+  if (command->get_prefix_command()) return {};  // another program reads them
   for (const std::string& word : app.remaining(true)) {
     if (word == "--") continue;
     if (word.size() < 2 || word[0] != '-')

@@ -16,6 +16,7 @@ struct Commands {
   /// Runs `work` when the subcommand was chosen.
   void onChosen(CLI::App* subcommand, Work work);
   Work chosen;
+  std::vector<std::string> words{};  ///< as given, without the program's name
 };
 
 void addTextCommands(Commands& commands);      // check, fmt, describe
@@ -35,6 +36,7 @@ void addExplainCommand(Commands& commands);    // explain
 void addDeviceCommand(Commands& commands);     // device
 void addShadersCommand(Commands& commands);    // shaders
 void addNewCommand(Commands& commands);        // new
+void addViewCommand(Commands& commands);       // view
 
 void addHelpCommand(Commands& commands);  // help
 

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "command.h"
+#include "common/reasons.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
@@ -24,29 +25,6 @@ struct ExplainCommand {
   int repeats = 5;
   bool all = false, noTimes = false, json = false;
 };
-
-/// What is left out for the same reason, at the same level.
-struct Reason {
-  LeftOut::Level level;
-  std::string why;
-  std::vector<std::string> what;
-  std::uint64_t bytes = 0;
-  double ms = 0.0;
-};
-
-std::vector<Reason> reasonsOf(const Explanation& explanation) {
-  std::vector<Reason> reasons;
-  for (const LeftOut& one : explanation.leftOut) {
-    auto known = std::find_if(reasons.begin(), reasons.end(), [&](const Reason& reason) {
-      return reason.level == one.level && reason.why == one.why;
-    });
-    if (known == reasons.end()) known = reasons.insert(known, {one.level, one.why, {}, 0, 0.0});
-    known->what.push_back(one.what);
-    known->bytes += one.savedBytes;
-    known->ms += one.savedMs;
-  }
-  return reasons;
-}
 
 std::string leftOutText(const std::vector<Reason>& reasons) {
   std::vector<std::vector<std::string>> rows{{"Why", "Level", "Left out", "Memory", "ms"}};

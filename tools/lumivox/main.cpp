@@ -22,6 +22,7 @@ int run(int count, char** arguments) {
   global.commandLine = asTyped("lumivox", count, arguments);
   global.addTo(app);
   Commands commands{app, global, {}};
+  commands.words.assign(arguments + 1, arguments + count);
   addTextCommands(commands);
   addListCommand(commands);
   addRenderCommand(commands);
@@ -39,6 +40,7 @@ int run(int count, char** arguments) {
   addDeviceCommand(commands);
   addShadersCommand(commands);
   addNewCommand(commands);
+  addViewCommand(commands);
   addHelpCommand(commands);
   addDescriptionOptions(app, LUMIVOX_VERSION);
 

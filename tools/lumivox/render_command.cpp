@@ -16,6 +16,7 @@
 #include "lumivox/base/video.h"
 #include "lumivox/experiment/report.h"
 #include "lumivox/page/contact_sheet.h"
+#include "lumivox/scene/free_camera.h"
 
 namespace lumivox::command {
 namespace {
@@ -25,6 +26,8 @@ namespace fs = std::filesystem;
 struct RenderCommand {
   fs::path scene, pipeline, output, sheet, video;
   RunOptions run;
+  std::vector<double> eye, target;  ///< in place of the camera's; empty: the camera's
+  double fov = 0.0;                 ///< rad; 0: the camera's
   DisplayOptions display;
   std::string frames, onlyOutput;
   double framesPerSecond = 24.0;
@@ -34,6 +37,7 @@ struct RenderCommand {
   bool isAnimation() const { return !frames.empty(); }
   double timeOf(int frame) const { return run.time + (isAnimation() ? frame / framesPerSecond : 0.0); }
   fs::path fileOf(int frame) const { return isAnimation() ? numberedName(output, frame) : output; }
+  bool movesCamera() const { return !eye.empty() || !target.empty() || fov > 0.0; }
   /// Whether anything is made that somebody looks at.
   bool displays() const { return output.extension() == ".png" || !sheet.empty() || !video.empty(); }
 };
@@ -88,6 +92,17 @@ std::set<int> spread(int first, int last, int most) {
   return frames;
 }
 
+/// The camera that is looked through: one of the scene, or what the options make of it.
+Camera cameraOf(const RenderCommand& command, const Scene& scene) {
+  Camera camera = scene.camera(command.run.camera);
+  const auto place = [](const std::vector<double>& n) { return glm::dvec3(n[0], n[1], n[2]); };
+  if (command.movesCamera()) camera.keys.clear();
+  if (!command.eye.empty()) camera.eye = place(command.eye);
+  if (!command.target.empty()) camera.target = place(command.target);
+  if (command.fov > 0.0) camera.fov = command.fov;
+  return camera;
+}
+
 /// What exposes an animation before its first image is written.
 class Metering {
  public:
@@ -99,7 +114,8 @@ class Metering {
 
   void add(const RenderCommand& command, const Scene& scene, int frame, const FrameResult& result) {
     const auto [width, height] = command.run.size();
-    meterImage(meter_, scene, snapshotOf(scene, command.timeOf(frame), command.run.camera, width, height),
+    meterImage(meter_, scene,
+               snapshotFrom(scene, command.timeOf(frame), cameraOf(command, scene), width, height),
                mainImage(command, result));
   }
   double exposure() const { return meter_.exposure(); }
@@ -283,7 +299,13 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
   }
   TechniqueSet techniques = global.techniqueSet();
   checkPipeline(pipeline, techniques);
-  const Scene scene = global.loadScene(command.scene);
+  Scene scene = global.loadScene(command.scene);
+  if (command.movesCamera())
+    for (Camera& camera : scene.cameras)
+      if (camera.name == scene.camera(command.run.camera).name) {
+        camera = cameraOf(command, scene);
+        break;
+      }
   const auto device = global.openDevice();
   PipelineExecutor executor(*device, techniques, scene, pipeline, options);
 
@@ -364,6 +386,12 @@ void addRenderCommand(Commands& commands) {
       "a .png with the whole image and every output side by side, or with --frames the frames");
   command->add_option("--video", options->video, "a .mp4 of the frames; needs ffmpeg");
   options->run.addTo(*command);
+  const auto addPlace = [&](const char* name, std::vector<double>& place, const char* text) {
+    command->add_option(name, place, text)->delimiter(',')->expected(3)->type_name("X,Y,Z");
+  };
+  addPlace("--eye", options->eye, "where the camera stands, in metres, in place of the scene's");
+  addPlace("--target", options->target, "what it looks at, in metres");
+  command->add_option("--fov", options->fov, "its full vertical angle, in radians")->check(CLI::Range(1e-3, 3.1));
   options->display.addTo(*command);
   command->add_option("--frames", options->frames,
                       "FIRST..LAST: numbered images, out_0007.exr or a run of # in the name");

@@ -171,11 +171,14 @@ LayeredImage renderReference(const Scene& scene, const ReferenceOptions& given) 
                                  options.height, options.samplesPerPixel),
                      static_cast<std::uint64_t>(tiles.count()));
   }
+  const auto stopped = [&] { return options.stop != nullptr && options.stop->load(); };
   forEachTile(tiles, options.threads, [&](int tile) {
+    if (stopped()) return;
     CountingRays rays{tracer.rays};
     renderTile(tracer, resolved, tiles, tile, rays, film);
     if (progress) progress->advance();
   });
+  if (stopped()) throw StoppedError(fmt::format("the reference of {} was given up", scene.name));
   const CutOff cutOff = film.cutOff(options.bounces);
   LayeredImage image = film.take();
   image.attributes = provenance(scene, resolved);

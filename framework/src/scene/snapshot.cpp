@@ -12,6 +12,7 @@
 #include <span>
 
 #include "lumivox/base/error.h"
+#include "lumivox/scene/free_camera.h"
 #include "lumivox/scene/scene.h"
 
 namespace lumivox {
@@ -338,6 +339,10 @@ void Bounds::grow(const glm::vec3& point) {
 }
 
 SceneSnapshot snapshotOf(const Scene& scene, double time, const std::string& camera, int width, int height) {
+  return snapshotFrom(scene, time, scene.camera(camera), width, height);
+}
+
+SceneSnapshot snapshotFrom(const Scene& scene, double time, const Camera& camera, int width, int height) {
   SceneSnapshot snapshot;
   snapshot.time = time;
   // Objects that move are part of the origin's bounds too, where they stand at the beginning: a scene may
@@ -378,7 +383,7 @@ SceneSnapshot snapshotOf(const Scene& scene, double time, const std::string& cam
     snapshot.bounds.grow(glm::vec3(bounds.high - snapshot.origin));
   }
   snapshot.gridBounds = gridBounds(scene, time, snapshot.origin);
-  snapshot.camera = viewOf(scene.camera(camera), time, snapshot.origin, width, height);
+  snapshot.camera = viewOf(camera, time, snapshot.origin, width, height);
   for (const Light& light : scene.lights) {
     snapshot.lights.push_back({light.kind, glm::vec3(light.position - snapshot.origin),
                                glm::vec3(glm::normalize(light.direction)), light.power, light.innerAngle,

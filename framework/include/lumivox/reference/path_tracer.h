@@ -14,15 +14,23 @@
 // The choices that this leaves open are stated in docs/reference_path_tracer.md.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "lumivox/base/error.h"
 #include "lumivox/base/image.h"
 #include "lumivox/scene/scene.h"
 
 namespace lumivox {
+
+/// A reference was given up because nobody wants it any more.
+class StoppedError : public Error {
+ public:
+  using Error::Error;
+};
 
 struct ReferenceOptions {
   int samplesPerPixel = 256;
@@ -39,6 +47,8 @@ struct ReferenceOptions {
   int threads = 0;       ///< 0: all
   bool progress = true;  ///< tells the user how far it is, and of light that the limit on bounces leaves out
   bool useCache = true;
+  /// Asked before each tile, where it is not null: once it is true, renderReference() throws StoppedError.
+  const std::atomic<bool>* stop = nullptr;
 };
 
 /// Layers (RGB but for the occlusion): direct, one_bounce_diffuse, one_bounce_glossy, one_bounce (= direct +

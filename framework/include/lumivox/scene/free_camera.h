@@ -1,0 +1,13 @@
+// A scene as a camera sees it that is none of its own: somebody flies through it.
+#pragma once
+
+#include "lumivox/scene/scene.h"
+
+namespace lumivox {
+
+/// As snapshotOf(), through `camera`. Error when it looks nowhere: eye and target are one point, or it looks
+/// along its own up.
+SceneSnapshot snapshotFrom(const Scene& scene, double time, const Camera& camera, int width = 0,
+                           int height = 0);
+
+}  // namespace lumivox

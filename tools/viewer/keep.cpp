@@ -1,0 +1,105 @@
+// What is taken out of the viewer: images, texts, the record of the panels, the command that repeats a picture.
+#include <fmt/format.h>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/experiment/report.h"
+#include "viewer/panels.h"
+#include "viewer/session.h"
+
+namespace lumivox::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A word of a command line as a shell takes it.
+std::string shellWord(const std::string& word) {
+  static const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=:,+";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string result = "'";
+  for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+void saveImage(const fs::path& file, const RenderedSide& side, const std::string& output, double exposure,
+               Curve curve) {
+  createParentDirectories(file);
+  if (file.extension() == ".png") {
+    if (curve == Curve::falseColour)
+      throw Error("save_image: false colour is of the window; expected another tone, or `shot`");
+    const ImageBuffer image = outputOf(side.frame, output);
+    const Tone tone = curve == Curve::linear ? Tone::linear : curve == Curve::filmic ? Tone::filmic : Tone::srgb;
+    writePng(file, image, image.channels() == 1 ? Display{} : Display{exposure, tone});
+  } else if (file.extension() == ".exr") {
+    LayeredImage layered;
+    for (const auto& [name, image] : side.frame.outputs)
+      if (!image.empty()) layered.layers[name] = image;
+    if (ImageBuffer whole = compositeImage(side.frame); !whole.empty()) layered.layers[""] = std::move(whole);
+    writeExr(file, layered);
+  } else {
+    throw Error(fmt::format("save_image {}: expected a name that ends in .png or .exr", file.string()));
+  }
+}
+
+/// The folder of the original text, if a copy of it would not find what it names.
+void requireSameFolder(const char* what, const fs::path& file, const fs::path& original) {
+  const fs::path here = fs::absolute(file).parent_path().lexically_normal(),
+                 there = fs::absolute(original).parent_path().lexically_normal();
+  if (here != there)
+    throw Error(fmt::format("{} {}: the text names other files beside it; expected a name in {}", what,
+                            file.string(), there.string()));
+}
+
+}  // namespace
+
+bool Session::doKeep(const Action& action) {
+  const std::string& word = action.word();
+  if (word != "save_image" && word != "save_pipeline" && word != "save_scene" && word != "record") return false;
+  const fs::path file = action.text();
+  const Side& side = state_.sides.front();
+  if (word == "record") {
+    createParentDirectories(file);
+    writeFileAtomically(file, recordOf(*this).dump(2) + "\n");
+  } else if (word == "save_image") {
+    if (rendered_ == nullptr || !rendered_->sides.front().error.empty())
+      throw Error("save_image: there is no picture; " + (rendered_ == nullptr ? std::string("expected `wait frame` before")
+                                                                              : rendered_->sides.front().error));
+    saveImage(file, rendered_->sides.front(), state_.output, exposure_, state_.curve);
+  } else if (word == "save_pipeline") {
+    const std::string text = textWithDefaults(*side.pipeline, side.values);
+    Pipeline::parse(text, file);  // what is written can be read
+    createParentDirectories(file);
+    writeFileAtomically(file, text);
+  } else {
+    requireSameFolder("save_scene", file, options_.scene);
+    writeFileAtomically(file,
+                        textWithCamera(options_.scene, cameraOf(state_, *scene_), state_.width, state_.height));
+  }
+  say(file.string() + " written", false);
+  return true;
+}
+
+std::string Session::command() const {
+  const Side& side = state_.sides.front();
+  std::vector<std::string> words{"lumivox", "render", options_.scene.string(), side.pipeline->file.string()};
+  for (const auto& [name, value] : side.values) {
+    words.emplace_back("--set");
+    words.push_back(name + "=" + value.text());
+  }
+  if (state_.free) {
+    const auto point = [](const glm::dvec3& value) { return fmt::format("{},{},{}", value.x, value.y, value.z); };
+    words.insert(words.end(), {"--eye", point(state_.free->eye), "--target", point(state_.free->target), "--fov",
+                               fmt::format("{}", state_.free->fov)});
+  }
+  if (!state_.camera.empty()) words.insert(words.end(), {"--camera", state_.camera});
+  words.insert(words.end(), {"--resolution", fmt::format("{}x{}", state_.width, state_.height)});
+  if (state_.time != 0.0) words.insert(words.end(), {"--time", fmt::format("{}", state_.time)});
+  if (state_.seed != 1) words.insert(words.end(), {"--seed", fmt::format("{}", state_.seed)});
+  if (state_.keepEverything) words.emplace_back("--keep-everything");
+  words.insert(words.end(), {"-o", "out/view.exr"});
+  std::string text;
+  for (const std::string& one : words) text += (text.empty() ? "" : " ") + shellWord(one);
+  return text;
+}
+
+}  // namespace lumivox::viewer

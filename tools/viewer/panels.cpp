@@ -1,0 +1,420 @@
+#include "viewer/panels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/reasons.h"
+#include "lumivox/base/file.h"
+#include "lumivox/results/text.h"
+
+namespace lumivox::viewer {
+namespace {
+
+using Kind = Row::Kind;
+
+Row heading(const std::string& label) {
+  Row row;
+  row.kind = Kind::heading;
+  row.name = row.label = label;
+  return row;
+}
+Row text(const std::string& name, const std::string& label, const std::string& value,
+         const std::string& tooltip = {}) {
+  Row row;
+  row.name = name;
+  row.label = label;
+  row.value = value;
+  row.tooltip = tooltip;
+  return row;
+}
+Row toggle(const std::string& name, const std::string& label, bool on, const std::string& statement,
+           const std::string& tooltip = {}) {
+  Row row = text(name, label, on ? "on" : "off", tooltip);
+  row.kind = Kind::toggle;
+  row.on = on;
+  row.statement = statement;
+  return row;
+}
+Row button(const std::string& name, const std::string& label, const std::string& statement,
+           const std::string& tooltip = {}) {
+  Row row = text(name, label, {}, tooltip);
+  row.kind = Kind::button;
+  row.statement = statement;
+  return row;
+}
+Row choice(const std::string& name, const std::string& label, const std::string& value,
+           std::vector<std::string> choices, const std::string& statement, const std::string& tooltip = {}) {
+  Row row = text(name, label, value, tooltip);
+  row.kind = Kind::choice;
+  row.choices = std::move(choices);
+  row.statement = statement;
+  return row;
+}
+Row number(const std::string& name, const std::string& label, double value, double low, double high, bool integer,
+           const std::string& statement, const std::string& tooltip = {}) {
+  Row row = text(name, label, integer ? fmt::format("{:.0f}", value) : fmt::format("{:.6g}", value), tooltip);
+  row.kind = Kind::number;
+  row.number = value;
+  row.low = low;
+  row.high = high;
+  row.integer = integer;
+  row.logarithmic = low > 0.0 && high / low > 100.0;
+  row.statement = statement;
+  return row;
+}
+
+std::string measuredText(const Measured& value) {
+  return fmt::format("{:.4g} ± {:.2g}", value.value, value.uncertainty);
+}
+
+std::vector<std::string> stemsOf(const Session& session) {
+  std::vector<std::string> names;
+  for (const auto& pipeline : session.pipelines()) names.push_back(pipeline->file.stem().string());
+  return names;
+}
+
+Panel lookPanel(const Session& session) {
+  const ViewState& state = session.state();
+  Panel panel{"look", "Look", {}};
+  std::vector<Row>& rows = panel.rows;
+  rows.push_back(choice("pipeline", "pipeline", state.sides.front().pipeline->file.stem().string(),
+                        stemsOf(session), "show {}"));
+  std::vector<std::string> seconds = stemsOf(session);
+  seconds.insert(seconds.begin(), {"nothing", "copy"});
+  rows.push_back(choice("beside", "beside", state.sides.size() < 2 ? "nothing"
+                                                                     : state.sides[1].pipeline->file.stem().string(),
+                        seconds, "beside {}", "a second pipeline, rendered in the same frame"));
+  std::vector<std::string> cameras;
+  for (const Camera& camera : session.scene().cameras) cameras.push_back(camera.name);
+  rows.push_back(choice("camera", "camera", state.free ? "free" : state.camera, cameras, "camera {}",
+                        "W A S D Q E move, the left button turns, the right one orbits"));
+  rows.push_back(number("time", "time, s", state.time, 0.0, 60.0, false, "time {}"));
+  rows.push_back(toggle("play", "play", state.plays, "play {}"));
+  std::vector<std::string> outputs{kWholeImage};
+  for (const Pipeline::Output& output : state.sides.front().pipeline->outputs) outputs.push_back(output.name);
+  rows.push_back(choice("output", "output", state.output, outputs, "output {}"));
+  std::vector<std::string> ports{"nothing"}, textures;
+  if (const RenderedResult rendered = session.rendered(); rendered != nullptr && !rendered->sides.empty())
+    for (const PassContract& pass : rendered->sides.front().contracts)
+      for (const PassContract::Port& port : pass.outputs) {
+        if (port.textures.empty()) continue;
+        ports.push_back(pass.name + "." + port.name);
+        if (state.port && state.port->pass == pass.name && state.port->port == port.name) textures = port.textures;
+      }
+  rows.push_back(choice("port", "port", state.port ? state.port->pass + "." + state.port->port : "nothing", ports,
+                        "port {}", "any texture of any output of a pass"));
+  if (state.port) {
+    rows.push_back(choice("texture", "texture", state.port->texture, textures, "texture {}"));
+    rows.push_back(number("level", "mip level", state.port->level, 0, 16, true, "level {}"));
+    rows.push_back(number("slice", "slice", state.port->slice, 0, 512, true, "slice {}"));
+  }
+  rows.push_back(choice("layout", "layout", layoutWords()[static_cast<std::size_t>(state.layout)], layoutWords(),
+                        "layout {}"));
+  rows.push_back(number("split", "split", state.split, 0, 1, false, "split {}"));
+  rows.push_back(choice("error_map", "error", errorMapWords()[static_cast<std::size_t>(state.errorMap)],
+                        errorMapWords(), "error_map {}"));
+  rows.push_back(number("exposure", state.exposure ? "exposure, EV" : "exposure, EV (automatic)",
+                        session.exposure(), -20, 20, false, "exposure {}"));
+  rows.push_back(button("exposure_auto", "automatic exposure", "exposure auto"));
+  rows.push_back(choice("tone", "tone", curveWords()[static_cast<std::size_t>(state.curve)], curveWords(),
+                        "tone {}"));
+  const Picture& picture = session.picture();
+  if (!picture.legend.empty()) rows.push_back(text("legend", "legend", picture.legend));
+  rows.push_back(text("bad_pixels", "NaN or infinite pixels", fmt::format("{}", picture.badPixels)));
+  rows.push_back(text("size", "size", fmt::format("{} x {}", state.width, state.height)));
+  return panel;
+}
+
+Panel judgePanel(const Session& session) {
+  const ViewState& state = session.state();
+  Panel panel{"judge", "Judge", {}};
+  panel.rows.push_back(toggle("reference", "trace a reference", state.traces, "reference {}"));
+  const ReferenceResult reference = session.reference();
+  panel.rows.push_back(text("samples", "samples", reference == nullptr
+                                                      ? std::string("none yet")
+                                                      : fmt::format("{} of {}, {:.1f} s{}", reference->samples,
+                                                                    state.samples, reference->seconds,
+                                                                    session.tracing() ? "" : ", done")));
+  if (const auto judged = session.judged()) {
+    for (std::size_t i = 0; i < judged->sides.size(); ++i) {
+      panel.rows.push_back(heading(judged->wish.rendered->wish.sides[i].pipeline->file.stem().string() +
+                                   (i == 0 ? "" : " (beside)")));
+      for (const JudgedOutput& one : judged->sides[i]) {
+        const std::string name = fmt::format("{}{}", i == 0 ? "" : "beside ", one.output);
+        const ImageError& error = one.error;
+        panel.rows.push_back(text(name + " layer", one.output, "against " + one.layer));
+        panel.rows.push_back(text(name + " rmse", "  RMSE", measuredText(error.rmse)));
+        panel.rows.push_back(text(name + " of nothing", "  over that of none",
+                                  one.ofNothing > 0.0 ? fmt::format("{:.3f}", error.rmse.value / one.ofNothing) : "-",
+                                  "the RMSE over that of leaving the output out"));
+        panel.rows.push_back(text(name + " mean ratio", "  mean ratio", measuredText(error.meanRatio)));
+        panel.rows.push_back(text(name + " flip", "  FLIP", fmt::format("{:.4f} ± {:.2g}", error.flip, error.flipUncertainty)));
+        panel.rows.push_back(text(name + " noise", "  noise of the reference", fmt::format("{:.3g}", error.noiseFloor)));
+      }
+    }
+  }
+  Row chart;
+  chart.kind = Kind::points;
+  chart.name = "tried";
+  chart.label = "error of the whole image against time, ms";
+  for (const TriedPoint& point : session.tried()) {
+    if (!point.error) continue;
+    std::string statement = "show " + quoted(point.side.pipeline->file.stem().string());
+    if (!point.side.values.empty()) {
+      statement += "\nset {";
+      for (const auto& [name, value] : point.side.values) statement += " " + name + " " + value.text();
+      statement += " }";
+    }
+    chart.marks.push_back({point.label, point.frameMs, point.error->value, statement});
+  }
+  panel.rows.push_back(std::move(chart));
+  return panel;
+}
+
+/// A bar of the passes' medians, a row for each, and what a frame costs once, while something moves, and always.
+void addPassTimes(std::vector<Row>& rows, const Session& session, std::size_t side, const std::string& prefix) {
+  const RenderedSide& rendered = session.rendered()->sides[side];
+  const std::vector<PassTimes> times = session.passTimes(side);
+  Row bars;
+  bars.kind = Kind::bars;
+  bars.name = prefix + "passes";
+  bars.label = "device time of passes, ms";
+  for (const PassTimes& pass : times) bars.marks.push_back({pass.name, pass.device.median, 0.0, {}});
+  rows.push_back(std::move(bars));
+  double host = 0.0, ofKind[3] = {0.0, 0.0, 0.0};
+  for (const PassTimes& pass : times) {
+    const auto record = std::find_if(rendered.times.begin(), rendered.times.end(),
+                                     [&](const PassRecord& one) { return one.name == pass.name; });
+    rows.push_back(text(prefix + "pass " + pass.name, "  " + pass.name + (pass.onHost ? " (host)" : ""),
+                        fmt::format("{:.3f} ms [{:.3f}, {:.3f}], host {:.3f} ms, {}", pass.device.median,
+                                    pass.device.lowerQuartile, pass.device.upperQuartile, pass.host.median,
+                                    formatBytes(record == rendered.times.end() ? 0 : record->bytes)),
+                        fmt::format("median and quartiles of {} frames; runs {}", pass.device.repeats,
+                                    wordOf(pass.when))));
+    host += pass.host.median;
+    ofKind[static_cast<std::size_t>(pass.when)] += pass.device.median;
+  }
+  for (const RunsWhen when : {RunsWhen::once, RunsWhen::somethingMoves, RunsWhen::everyFrame})
+    rows.push_back(text(prefix + "cost " + wordOf(when), std::string("cost ") + wordOf(when),
+                        fmt::format("{:.3f} ms", ofKind[static_cast<std::size_t>(when)])));
+  rows.push_back(text(prefix + "host", "host", fmt::format("{:.3f} ms in passes", host)));
+}
+
+Panel timePanel(const Session& session) {
+  Panel panel{"time", "Time", {}};
+  panel.rows.push_back(toggle("times", "time each pass", session.state().timesPasses, "times {}"));
+  const RenderedResult rendered = session.rendered();
+  if (rendered == nullptr) return panel;
+  panel.rows.push_back(text("device", "device", rendered->device));
+  for (std::size_t i = 0; i < rendered->sides.size(); ++i) {
+    const RenderedSide& side = rendered->sides[i];
+    const std::string prefix = i == 0 ? "" : "beside ";
+    if (!side.error.empty()) continue;
+    panel.rows.push_back(heading(prefix + rendered->wish.sides[i].pipeline->file.stem().string()));
+    panel.rows.push_back(text(prefix + "frame", "whole frame", fmt::format("{:.2f} ms", side.frame.frameMs)));
+    addPassTimes(panel.rows, session, i, prefix);
+    panel.rows.push_back(text(prefix + "bytes", "bytes on the device", formatBytes(side.bytes)));
+    std::string kept;
+    for (const PassRecord& pass : side.frame.passes)
+      if (!pass.ran) kept += (kept.empty() ? "" : ", ") + pass.name;
+    panel.rows.push_back(text(prefix + "kept", "kept from the frame before", kept.empty() ? "nothing" : kept,
+                              "passes whose inputs had not changed"));
+  }
+  return panel;
+}
+
+Panel needPanel(const Session& session) {
+  Panel panel{"need", "Need", {}};
+  panel.rows.push_back(toggle("keep_everything", "keep everything", session.state().keepEverything,
+                              "keep_everything {}", "K"));
+  const RenderedResult rendered = session.rendered();
+  if (rendered == nullptr || !rendered->sides.front().error.empty()) return panel;
+  const Explanation& explanation = rendered->sides.front().explanation;
+  panel.rows.push_back(text("passes", "passes", fmt::format("{} of {}", explanation.passesKept, explanation.passesTotal)));
+  panel.rows.push_back(text("variants", "variants of shaders",
+                            fmt::format("{} needed, {} compiled, {} possible", explanation.variantsNeeded,
+                                        explanation.variantsCompiled, explanation.variantsPossible)));
+  panel.rows.push_back(text("memory", "memory of passes",
+                            fmt::format("{}, {} saved by sharing", formatBytes(explanation.poolBytes),
+                                        formatBytes(explanation.sharedBytes))));
+  // Passes and resources first: of variants and libraries there are many.
+  std::vector<command::Reason> reasons = command::reasonsOf(explanation);
+  const auto order = [](const command::Reason& reason) {
+    return reason.level == LeftOut::Level::plugin ? 2 : reason.level == LeftOut::Level::variant ? 1 : 0;
+  };
+  std::stable_sort(reasons.begin(), reasons.end(), [&](const command::Reason& a, const command::Reason& b) {
+    return order(a) < order(b);
+  });
+  constexpr std::size_t kNamed = 4;
+  for (const command::Reason& reason : reasons) {
+    std::vector<std::string> what = reason.what;
+    if (what.size() > kNamed) {
+      what.resize(kNamed);
+      what.push_back(fmt::format("{} more", reason.what.size() - kNamed));
+    }
+    panel.rows.push_back(text(fmt::format("left out, {}: {}", name(reason.level), reason.why),
+                              fmt::format("{} {}", name(reason.level), fmt::join(what, ", ")),
+                              reason.why + (reason.bytes > 0 ? ", " + formatBytes(reason.bytes) : "")));
+  }
+  return panel;
+}
+
+Panel changePanel(const Session& session) {
+  const Side& side = session.state().sides.front();
+  Panel panel{"change", "Change", {}};
+  panel.rows.push_back(button("undo", fmt::format("undo ({})", session.undoable()), "undo 1", "Ctrl Z"));
+  panel.rows.push_back(button("redo", fmt::format("redo ({})", session.redoable()), "redo 1", "Ctrl Y"));
+  panel.rows.push_back(button("reset", "all to defaults", "reset \"all\""));
+  panel.rows.push_back(heading("of the pipeline"));
+  for (const PipelineParameter& parameter : side.pipeline->parameters) {
+    const auto set = side.values.find(parameter.name);
+    const ParameterValue& value = set == side.values.end() ? parameter.value : set->second;
+    const std::string statement = "set { " + parameter.name + " {} }";
+    const std::string tooltip = "default " + parameter.value.text();
+    Row row = !parameter.choices.empty()
+                  ? choice(parameter.name, parameter.name, value.text(), parameter.choices, statement, tooltip)
+                  : number(parameter.name, parameter.name, value.number, parameter.low.value_or(0.0),
+                           parameter.high.value_or(std::max(1.0, 4.0 * parameter.value.number)),
+                           parameter.value.number == std::floor(parameter.value.number) &&
+                               parameter.high.value_or(0.5) == std::floor(parameter.high.value_or(0.5)),
+                           statement, tooltip);
+    row.changed = set != side.values.end() && !(set->second == parameter.value);
+    panel.rows.push_back(std::move(row));
+  }
+  const RenderedResult rendered = session.rendered();
+  if (rendered == nullptr || !rendered->sides.front().error.empty()) return panel;
+  for (const PassContract& pass : rendered->sides.front().contracts) {
+    if (pass.parameters.empty()) continue;
+    Row title = heading(pass.name);
+    title.tooltip = pass.technique + "." + pass.pass + ": " + pass.meaning;
+    panel.rows.push_back(std::move(title));
+    for (const PassParameter& parameter : pass.parameters) {
+      const std::string name = pass.name + "." + parameter.name;
+      const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
+      const std::string statement = "set " + pass.name + " { " + parameter.name + " {}" + unit + " }";
+      const std::string tooltip = parameter.meaning + "; default " + parameter.defaultText;
+      Row row = parameter.number
+                    ? number(name, parameter.name + (unit.empty() ? "" : "," + unit),
+                             std::strtod(parameter.value.c_str(), nullptr), parameter.low, parameter.high,
+                             parameter.integer, statement, tooltip)
+                    : choice(name, parameter.name, parameter.value, parameter.choices, statement, tooltip);
+      row.changed = parameter.value != parameter.defaultText;
+      panel.rows.push_back(std::move(row));
+    }
+  }
+  return panel;
+}
+
+Panel scenePanel(const Session& session) {
+  Panel panel{"scene", "Scene", {}};
+  const SceneEdits& edits = session.state().edits;
+  panel.rows.push_back(text("name", "scene", session.scene().name));
+  for (const std::string& part : partsOf(session.scene())) {
+    const bool on = edits.off.count(part) == 0;
+    panel.rows.push_back(toggle(part, part, on, (on ? "off " : "on ") + quoted(part)));
+  }
+  for (const Light& light : session.scene().lights) {
+    const auto edit = edits.powers.find(light.name);
+    const glm::vec3 power = edit == edits.powers.end() ? light.power : edit->second;
+    panel.rows.push_back(heading("light " + light.name));
+    panel.rows.push_back(text("power " + light.name, "power", fmt::format("{:.4g} {:.4g} {:.4g}", power.x, power.y, power.z)));
+    panel.rows.push_back(button("brighter " + light.name, "twice as bright",
+                                fmt::format("light {} {{ power {} {} {} }}", quoted(light.name), 2 * power.x,
+                                            2 * power.y, 2 * power.z)));
+    panel.rows.push_back(button("darker " + light.name, "half as bright",
+                                fmt::format("light {} {{ power {} {} {} }}", quoted(light.name), power.x / 2,
+                                            power.y / 2, power.z / 2)));
+  }
+  for (const Material& material : session.scene().materials) {
+    const auto found = edits.materials.find(material.name);
+    const MaterialEdit* const edit = found == edits.materials.end() ? nullptr : &found->second;
+    const glm::vec3 diffuse = edit != nullptr && edit->diffuse ? *edit->diffuse : material.diffuse;
+    const float exponent = edit != nullptr && edit->exponent ? *edit->exponent : material.exponent;
+    panel.rows.push_back(heading("material " + material.name));
+    panel.rows.push_back(number("albedo " + material.name, "albedo", std::max({diffuse.x, diffuse.y, diffuse.z}), 0, 1,
+                                false, "material " + quoted(material.name) + " { diffuse {} }",
+                                "grey of this albedo"));
+    if (material.glossy())
+      panel.rows.push_back(number("exponent " + material.name, "Phong exponent", exponent,
+                                  0, 100000, false, "material " + quoted(material.name) + " { exponent {} }"));
+  }
+  return panel;
+}
+
+Panel keepPanel(const Session& session) {
+  Panel panel{"keep", "Keep", {}};
+  panel.rows.push_back(button("save_png", "picture as PNG", "save_image \"out/view.png\""));
+  panel.rows.push_back(button("save_exr", "all outputs as EXR", "save_image \"out/view.exr\""));
+  panel.rows.push_back(button("shot", "the window as PNG", "shot \"out/window.png\""));
+  panel.rows.push_back(button("record", "the panels as JSON", "record \"out/view.json\""));
+  panel.rows.push_back(text("command", "command", session.command(), "repeats this picture"));
+  panel.rows.push_back(heading("done so far, as a script"));
+  const std::vector<std::string> history = session.history();
+  constexpr std::size_t kShown = 20;
+  for (std::size_t i = history.size() > kShown ? history.size() - kShown : 0; i < history.size(); ++i)
+    panel.rows.push_back(text(fmt::format("done {}", i), {}, history[i]));
+  return panel;
+}
+
+const char* wordOf(Kind kind) {
+  switch (kind) {
+    case Kind::heading:
+      return "heading";
+    case Kind::text:
+      return "text";
+    case Kind::number:
+      return "number";
+    case Kind::choice:
+      return "choice";
+    case Kind::toggle:
+      return "toggle";
+    case Kind::button:
+      return "button";
+    case Kind::bars:
+      return "bars";
+    case Kind::points:
+      return "points";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::vector<Panel> panelsOf(const Session& session) {
+  return {lookPanel(session),   judgePanel(session), timePanel(session), needPanel(session),
+          changePanel(session), scenePanel(session), keepPanel(session)};
+}
+
+nlohmann::ordered_json recordOf(const Session& session) {
+  using Json = nlohmann::ordered_json;
+  Json panels = Json::object();
+  for (const Panel& panel : panelsOf(session)) {
+    Json rows = Json::array();
+    for (const Row& row : panel.rows) {
+      Json one = {{"name", row.name}, {"kind", wordOf(row.kind)}, {"label", row.label}};
+      if (!row.value.empty()) one["value"] = row.value;
+      if (!row.tooltip.empty()) one["tooltip"] = row.tooltip;
+      if (!row.statement.empty()) one["statement"] = row.statement;
+      if (!row.choices.empty()) one["choices"] = row.choices;
+      if (row.kind == Kind::number) one["range"] = {row.low, row.high};
+      if (row.changed) one["changed"] = true;
+      for (const Row::Mark& mark : row.marks) one["marks"].push_back({{"label", mark.label}, {"x", mark.x}, {"y", mark.y}});
+      rows.push_back(std::move(one));
+    }
+    panels[panel.name] = std::move(rows);
+  }
+  return {{"problem", session.problem()},
+          {"message", session.message()},
+          {"settled", session.settled()},
+          {"judged", session.judgedNow()},
+          {"panels", std::move(panels)}};
+}
+
+std::string filledIn(const std::string& statement, const std::string& value) {
+  std::string result = statement;
+  if (const std::size_t at = result.find("{}"); at != std::string::npos) result.replace(at, 2, value);
+  return result;
+}
+
+}  // namespace lumivox::viewer

@@ -1,0 +1,44 @@
+// What the panels show, as a record: a window draws it, and a test reads it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "viewer/session.h"
+
+namespace lumivox::viewer {
+
+/// One line of a panel. Controls carry the statement that using them performs, with "{}" for the value.
+struct Row {
+  enum class Kind { heading, text, number, choice, toggle, button, bars, points };
+  Kind kind = Kind::text;
+  std::string name;   ///< unique in its panel; what scripts click
+  std::string label, value, tooltip;
+  std::string statement;  ///< empty: nothing to be done
+  double number = 0.0, low = 0.0, high = 0.0;
+  bool integer = false, logarithmic = false, on = false, changed = false;
+  std::vector<std::string> choices;
+  /// Of bars: label and length; of points: label, x and y, and the statement that goes back to it.
+  struct Mark {
+    std::string label;
+    double x = 0.0, y = 0.0;
+    std::string statement;
+  };
+  std::vector<Mark> marks;
+};
+
+struct Panel {
+  std::string name, title;
+  std::vector<Row> rows;
+};
+
+/// All panels: look, judge, time, need, change, scene, keep.
+std::vector<Panel> panelsOf(const Session& session);
+/// The panels and the state, as JSON.
+nlohmann::ordered_json recordOf(const Session& session);
+
+/// What a control's statement becomes with a value.
+std::string filledIn(const std::string& statement, const std::string& value);
+
+}  // namespace lumivox::viewer

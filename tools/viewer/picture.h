@@ -1,0 +1,44 @@
+// From linear radiance to the bytes that a window shows: exposure and curve, false colour, errors, and what is
+// no number.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lumivox/base/display.h"
+#include "lumivox/base/image.h"
+
+namespace lumivox::viewer {
+
+/// As Tone, and false colour: a ramp over the range of the image's luminance, with a legend in its units.
+enum class Curve { srgb, linear, filmic, falseColour };
+/// What is compared, pixel by pixel: (image - reference) / reference, blue below and red above; HDR-FLIP; the
+/// square of the difference.
+enum class ErrorMap { relative, flip, squared };
+
+struct PictureLook {
+  double exposure = 0.0;  ///< EV
+  Curve curve = Curve::srgb;
+  /// Pixels that are NaN or infinite: magenta, or what is beneath; both in turn flash.
+  bool marksBadPixels = true;
+};
+
+/// Red, green and blue, row by row from the top, as a screen takes them.
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<unsigned char> bytes;
+  std::string legend;  ///< "0 .. 12.5 W/(sr m^2)"; empty: none
+  std::size_t badPixels = 0;
+  bool empty() const { return bytes.empty(); }
+};
+
+Picture pictureOf(const ImageBuffer& image, const PictureLook& look);
+/// Images of the same shape; other shapes give an empty picture.
+Picture errorPicture(const ImageBuffer& image, const ImageBuffer& reference, ErrorMap map);
+/// The first picture to the left of `at` (0..1 of the width), the second to the right, a line between.
+Picture splitPicture(const Picture& left, const Picture& right, double at);
+/// Side by side, with a gap.
+Picture besides(const Picture& left, const Picture& right);
+
+}  // namespace lumivox::viewer

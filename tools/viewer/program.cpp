@@ -1,0 +1,65 @@
+#include "viewer/program.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstring>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/installation.h"
+
+extern char** environ;
+
+namespace lumivox::viewer {
+
+ProgramResult runProgram(const std::vector<std::string>& words) {
+  int messages[2];
+  if (pipe2(messages, O_CLOEXEC) != 0) throw Error(fmt::format("{}: {}", words.front(), std::strerror(errno)));
+  std::vector<std::string> copies = words;
+  std::vector<char*> pointers;
+  for (std::string& word : copies) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(&files, messages[1], STDERR_FILENO);
+  pid_t process = -1;
+  const int failed = posix_spawn(&process, pointers.front(), &files, nullptr, pointers.data(), environ);
+  posix_spawn_file_actions_destroy(&files);
+  close(messages[1]);
+  if (failed != 0) {
+    close(messages[0]);
+    throw Error(fmt::format("{}: cannot be started, {}", words.front(), std::strerror(failed)));
+  }
+  ProgramResult result;
+  std::array<char, 4096> buffer;
+  for (;;) {
+    const ssize_t count = read(messages[0], buffer.data(), buffer.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    result.errors.append(buffer.data(), static_cast<std::size_t>(count));
+  }
+  close(messages[0]);
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  result.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return result;
+}
+
+std::filesystem::path programBeside(const std::string& name) {
+  const auto here = programFile();
+  std::error_code ignored;
+  if (here) {
+    const std::filesystem::path file = here->parent_path() / name;
+    if (std::filesystem::is_regular_file(file, ignored)) return file;
+  }
+  throw AbsentError(fmt::format("the program {} is not beside {}", name, here ? here->string() : "this one"));
+}
+
+}  // namespace lumivox::viewer

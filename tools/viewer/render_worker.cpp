@@ -1,0 +1,287 @@
+#include "viewer/render_worker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "lumivox/base/error.h"
+#include "lumivox/pipeline/pass.h"
+#include "lumivox/plugin/loader.h"
+#include "lumivox/scene/free_camera.h"
+
+namespace lumivox::viewer {
+namespace {
+
+PassContract contractOf(const PassText& text, const Pass& pass, TechniqueSource& techniques) {
+  PassContract contract{text.name, text.technique, text.pass, {}, {}, {}};
+  if (const Technique* technique = techniques.technique(text.technique))
+    if (const PassEntry* entry = technique->find(text.pass)) contract.meaning = entry->meaning;
+  for (const ParamBase* parameter : pass.parameters()) {
+    PassParameter one{parameter->name(), parameter->meaning(),     parameter->unit(),
+                      parameter->valueText(), parameter->defaultText(), parameter->choices()};
+    one.integer = parameter->type() == ParamBase::Type::integer;
+    one.number = one.integer || parameter->type() == ParamBase::Type::number;
+    if (parameter->type() == ParamBase::Type::flag) one.choices = {"off", "on"};
+    one.low = parameter->low();
+    one.high = parameter->high();
+    contract.parameters.push_back(std::move(one));
+  }
+  for (const OutBase* output : pass.outputs()) {
+    PassContract::Port port{output->name(), output->kind().name, {}};
+    for (const PortResource& resource : output->kind().resources)
+      if (resource.shape != "buffer") port.textures.push_back(resource.name);
+    contract.outputs.push_back(std::move(port));
+  }
+  return contract;
+}
+
+/// The passes before each, by the words of the text that connect its inputs.
+std::map<std::string, RunsWhen> whenPassesRun(const Pipeline& pipeline, const PipelineExecutor& executor) {
+  std::map<std::string, Reads> all;
+  for (const PassText& text : pipeline.passes) all[text.name] = executor.pass(text.name).readsFrom();
+  // As often as there are passes: then what the first reads has reached the last, in whatever order they stand.
+  for (std::size_t i = 0; i < pipeline.passes.size(); ++i)
+    for (const PassText& text : pipeline.passes)
+      for (const dsl::Item& item : text.block->items) {
+        if (!item.property || item.property->values.empty()) continue;
+        const std::string& value = item.property->values.front().text;
+        const auto source = all.find(value.substr(0, value.find('.')));
+        const std::vector<InBase*>& inputs = executor.pass(text.name).inputs();
+        const bool isInput = std::any_of(inputs.begin(), inputs.end(), [&](const InBase* input) {
+          return input->name() == item.property->word;
+        });
+        if (isInput && source != all.end()) all[text.name] = all[text.name] | source->second;
+      }
+  std::map<std::string, RunsWhen> runs;
+  for (const auto& [pass, read] : all) {
+    const auto any = [read = read](Reads set) { return (read & set) != Reads::nothing; };
+    runs[pass] = any(Reads::camera | Reads::partOfCamera | Reads::lens | Reads::history) ? RunsWhen::everyFrame
+                 : any(Reads::geometry | Reads::lights | Reads::media | Reads::time)      ? RunsWhen::somethingMoves
+                                                                                           : RunsWhen::once;
+  }
+  return runs;
+}
+
+/// One executor and what it was made for.
+class Executor {
+ public:
+  Executor(gpu::Device& device, TechniqueSource& techniques, const RenderWish& wish, const Side& side)
+      : scene_(wish.scene), pipeline_(side.pipeline), keepsEverything_(wish.keepEverything) {
+    RenderOptions options;
+    options.parameters = values_ = side.values;
+    options.seed = seed_ = wish.seed;
+    options.keepEverything = wish.keepEverything;
+    options.interactive = true;
+    executor_ = std::make_unique<PipelineExecutor>(device, techniques, *scene_, *pipeline_, options);
+    readContracts(techniques);
+  }
+
+  /// Whether it can render this by changing what differs.
+  bool suits(const RenderWish& wish, const Side& side) const {
+    return side.pipeline->hash == pipeline_->hash && wish.keepEverything == keepsEverything_;
+  }
+  void change(const RenderWish& wish, const Side& side, TechniqueSource& techniques) {
+    if (wish.scene != scene_) {
+      executor_->setScene(*wish.scene);
+      scene_ = wish.scene;
+    }
+    if (side.values != values_) {
+      executor_->setParameters(side.values);
+      values_ = side.values;
+      readContracts(techniques);
+    }
+    if (wish.seed != seed_) executor_->setSeed(seed_ = wish.seed);
+  }
+
+  RenderedSide render(const RenderWish& wish, const SceneSnapshot& snapshot) {
+    RenderedSide side;
+    side.frame = executor_->render(snapshot, 0, PipelineExecutor::Images::yes);
+    if (wish.timesPasses) {
+      executor_->invalidate();
+      executor_->render(snapshot, 0, PipelineExecutor::Images::no, PipelineExecutor::Timing::passes);
+      for (std::vector<PassRecord>& frame : executor_->timedPasses()) times_ = std::move(frame);
+    }
+    side.times = times_;
+    side.explanation = executor_->explain();
+    side.bounces = executor_->indirectBounces();
+    side.bytes = executor_->memory().bytes;
+    side.contracts = contracts_;
+    side.runs = runs_;
+    return side;
+  }
+
+  ImageBuffer port(const PortChoice& choice, const SceneSnapshot& snapshot) {
+    const auto find = [&] {
+      const OutBase* output = executor_->output(choice.pass, choice.port);
+      return output != nullptr && output->hasValue() ? output : nullptr;
+    };
+    if (!(choice == kept_)) {
+      executor_->keepOnly(choice.pass, choice.port);
+      kept_ = choice;
+      executor_->render(snapshot, 0, PipelineExecutor::Images::no);
+    }
+    const OutBase* output = find();
+    if (output == nullptr)
+      throw Error(fmt::format("{}.{} was left out: nothing in the scene asks for it", choice.pass, choice.port));
+    const PortContents contents = output->contents();
+    for (const PortContents::Resource& resource : contents.resources())
+      if (resource.texture != nullptr && (choice.texture.empty() || resource.what->name == choice.texture))
+        return sliceOf(*resource.texture, choice.level, choice.slice);
+    throw Error(fmt::format("{}.{} has no texture{}", choice.pass, choice.port,
+                            choice.texture.empty() ? "" : " '" + choice.texture + "'"));
+  }
+
+ private:
+  void readContracts(TechniqueSource& techniques) {
+    contracts_.clear();
+    for (const PassText& text : pipeline_->passes)
+      contracts_.push_back(contractOf(text, executor_->pass(text.name), techniques));
+    runs_ = whenPassesRun(*pipeline_, *executor_);
+  }
+
+  std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<const Pipeline> pipeline_;
+  bool keepsEverything_;
+  ParameterValues values_;
+  std::uint64_t seed_ = 1;
+  std::optional<PortChoice> kept_;
+  std::vector<PassRecord> times_;
+  std::vector<PassContract> contracts_;
+  std::map<std::string, RunsWhen> runs_;
+  std::unique_ptr<PipelineExecutor> executor_;
+};
+
+/// Everything that lives on the thread.
+class Renderer {
+ public:
+  explicit Renderer(const gpu::DeviceOptions& options) {
+    try {
+      device_ = std::make_unique<gpu::Device>(options);
+    } catch (const std::exception& error) {
+      deviceError_ = error.what();
+    }
+  }
+  ~Renderer() {
+    executors_.clear();  // before the libraries and the device
+  }
+
+  Rendered render(const RenderWish& wish) {
+    Rendered rendered;
+    rendered.wish = wish;
+    if (device_ == nullptr) {
+      for (std::size_t i = 0; i < wish.sides.size(); ++i) rendered.sides.emplace_back().error = deviceError_;
+      return rendered;
+    }
+    rendered.device = device_->info().renderer + ", " + gpu::programRouteText(*device_);
+    rendered.software = device_->info().software;
+    if (techniques_ == nullptr || wish.techniques != directories_) {
+      executors_.clear();
+      // Code of passes that are gone may still be on a stack of destructors: libraries stay.
+      if (techniques_ != nullptr) earlier_.push_back(std::move(techniques_));
+      techniques_ = std::make_unique<TechniqueSet>(wish.techniques);
+      directories_ = wish.techniques;
+    }
+    rendered.techniques = techniques_->available();
+    executors_.resize(wish.sides.size());
+    for (std::size_t i = 0; i < wish.sides.size(); ++i) rendered.sides.push_back(renderSide(wish, i));
+    if (wish.port && !executors_.empty() && executors_.front() != nullptr) {
+      try {
+        rendered.port = executors_.front()->port(*wish.port, snapshotOf(wish));
+      } catch (const std::exception& error) {
+        rendered.portError = error.what();
+      }
+    }
+    return rendered;
+  }
+
+ private:
+  static SceneSnapshot snapshotOf(const RenderWish& wish) {
+    return snapshotFrom(*wish.scene, wish.time, wish.camera, wish.width, wish.height);
+  }
+
+  RenderedSide renderSide(const RenderWish& wish, std::size_t index) {
+    const Side& side = wish.sides[index];
+    std::unique_ptr<Executor>& executor = executors_[index];
+    try {
+      if (executor != nullptr && executor->suits(wish, side)) {
+        executor->change(wish, side, *techniques_);
+      } else {
+        executor.reset();  // gives its memory back first
+        executor = std::make_unique<Executor>(*device_, *techniques_, wish, side);
+      }
+      return executor->render(wish, snapshotOf(wish));
+    } catch (const std::exception& error) {
+      executor.reset();  // whatever state it is in, the next frame begins anew
+      RenderedSide failed;
+      failed.error = error.what();
+      return failed;
+    }
+  }
+
+  std::unique_ptr<gpu::Device> device_;
+  std::string deviceError_;
+  std::vector<std::unique_ptr<TechniqueSet>> earlier_;
+  std::unique_ptr<TechniqueSet> techniques_;
+  std::vector<std::filesystem::path> directories_;
+  std::vector<std::unique_ptr<Executor>> executors_;
+};
+
+}  // namespace
+
+const char* wordOf(RunsWhen when) {
+  switch (when) {
+    case RunsWhen::once:
+      return "once";
+    case RunsWhen::somethingMoves:
+      return "when something moves";
+    case RunsWhen::everyFrame:
+      break;
+  }
+  return "when the camera moves";
+}
+
+RenderWorker::Work makeRenderWork(const gpu::DeviceOptions& options) {
+  return [renderer = std::make_shared<Renderer>(options)](const RenderWish& wish, RenderWorker::Turn& turn) {
+    turn.give(renderer->render(wish));
+  };
+}
+
+ImageBuffer sliceOf(const gpu::Texture& texture, int level, int slice) {
+  const gpu::TextureDescription& is = texture.description();
+  if (level < 0 || level >= is.levels)
+    throw Error(fmt::format("{} has no level {}; expected one of 0..{}", texture.label(), level, is.levels - 1));
+  const int width = std::max(1, is.width >> level), height = std::max(1, is.height >> level);
+  const int depth = is.kind == gpu::TextureKind::d3 ? std::max(1, is.depth >> level) : is.depth;
+  if (slice < 0 || slice >= depth)
+    throw Error(fmt::format("{} has no slice {}; expected one of 0..{}", texture.label(), slice, depth - 1));
+  const int components = gpu::componentCount(is.format), channels = components == 1 ? 1 : 3;
+  const bool integers =
+      is.format == gpu::Format::r32ui || is.format == gpu::Format::rg32ui || is.format == gpu::Format::rgba32ui;
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  const std::size_t first = pixels * static_cast<std::size_t>(slice) * static_cast<std::size_t>(components);
+  std::vector<float> values;
+  if (integers) {
+    const std::vector<std::byte> bytes = texture.download(level);
+    values.resize(bytes.size() / sizeof(std::uint32_t));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      std::uint32_t word = 0;
+      std::memcpy(&word, bytes.data() + i * sizeof(word), sizeof(word));
+      values[i] = static_cast<float>(word);
+    }
+  } else {
+    values = texture.downloadFloats(level);
+  }
+  ImageBuffer image(width, height, channels);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < std::min(channels, components); ++c) {
+        const std::size_t pixel =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+        image.at(x, y, c) =
+            values[first + pixel * static_cast<std::size_t>(components) + static_cast<std::size_t>(c)];
+      }
+  return image;
+}
+
+}  // namespace lumivox::viewer

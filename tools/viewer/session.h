@@ -1,0 +1,160 @@
+// What happens in the viewer, without a window: the state, what is done to it, the workers behind it, and the
+// picture that comes of it.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lumivox/gpu/device.h"
+#include "lumivox/scene/scene.h"
+#include "viewer/actions.h"
+#include "viewer/judge_worker.h"
+#include "viewer/picture.h"
+#include "viewer/reference_worker.h"
+#include "viewer/render_worker.h"
+#include "viewer/techniques.h"
+#include "viewer/view_state.h"
+#include "viewer/watch.h"
+
+namespace lumivox::viewer {
+
+struct SessionOptions {
+  std::filesystem::path scene;
+  std::vector<std::filesystem::path> pipelines;  ///< empty: every committed one that suits the scene
+  std::vector<std::string> settings;             ///< "name=value" of the first pipeline
+  std::string camera;
+  double time = 0.0;
+  int width = 0, height = 0;  ///< 0: the camera's
+  std::vector<std::filesystem::path> techniques;
+  SceneLoadOptions sceneLoad;
+  gpu::DeviceOptions device;
+};
+
+/// Times of a pass over the last frames that were timed.
+struct PassTimes {
+  std::string name;
+  TimingStatistics device, host;  ///< ms
+  bool onHost = false;
+  RunsWhen when = RunsWhen::everyFrame;
+};
+
+/// Something that was tried, with what it cost and how wrong it was: a point of the chart.
+struct TriedPoint {
+  std::string label, key;
+  Side side;
+  double frameMs = 0.0;
+  std::vector<double> times;          ///< of all frames, of which frameMs is the median
+  std::map<std::string, std::vector<PassRecord>> passes;  ///< of the last frames that were timed
+  std::optional<Measured> error;      ///< RMSE of the whole image
+};
+
+class Session {
+ public:
+  /// `wake` is called from other threads when something new is there. Error when a text is wrong.
+  Session(const SessionOptions& options, std::function<void()> wake);
+  ~Session();
+
+  /// Does statements of the grammar that need no window; returns those that do. What is wrong with them becomes
+  /// message(), and nothing of that statement is done.
+  std::vector<Action> perform(const std::string& statements);
+  /// The same for one; false: it needs the window.
+  bool perform(const Action& action);
+  /// Goes on: time, files, workers. Whether what is seen has changed.
+  bool step(double seconds);
+
+  const ViewState& state() const { return state_; }
+  const Scene& scene() const { return *scene_; }
+  const std::vector<std::shared_ptr<const Pipeline>>& pipelines() const { return pipelines_; }
+  RenderedResult rendered() const { return rendered_; }        ///< the last; null before the first
+  ReferenceResult reference() const { return reference_; }     ///< of this view; null while there is none
+  std::shared_ptr<const Judged> judged() const { return judged_; }
+  const Picture& picture() const { return picture_; }
+  const std::vector<TriedPoint>& tried() const { return tried_; }
+  /// Of the passes of one side as it is now, in their order.
+  std::vector<PassTimes> passTimes(std::size_t side) const;
+  const std::map<std::string, std::string>& technicalErrors() const { return techniques_.errors(); }
+  const std::string& message() const { return message_; }      ///< the last thing that went wrong or was done
+  bool messageIsError() const { return messageIsError_; }
+  void say(const std::string& message, bool error);
+  /// What is wrong with the texts, the shaders or the frame now, over the last good picture; empty: nothing.
+  std::string problem() const;
+  double exposure() const { return exposure_; }
+  /// The image under a point of the picture, of each output and the reference's: lines of text.
+  std::vector<std::string> valuesAt(int x, int y) const;
+  /// The command that repeats the picture.
+  std::string command() const;
+  std::vector<std::string> history() const { return log_; }    ///< statements, as a script has them
+  std::size_t undoable() const { return undo_.size(); }
+  std::size_t redoable() const { return redo_.size(); }
+  /// Whether the frame of the present state is there, and judged by what there is of a reference.
+  bool settled() const;
+  bool judgedNow() const;
+  /// Whether something happens by itself: the picture must be asked for again soon.
+  bool moves() const;
+  bool tracing() const { return tracer_.busy(); }
+
+ private:
+  void doIt(const Action& action);
+  bool doLook(const Action& action);
+  bool doChange(const Action& action);
+  bool doKeep(const Action& action);
+  void setParameters(const Action& action);
+  void resetParameter(const std::string& name);
+  void loadScene(const std::filesystem::path& file);
+  void choosePipeline(std::size_t side, const std::string& name);
+  void freeCamera(const std::function<Camera(Camera)>& change);
+  void rememberForUndo();
+  void stepBack(std::vector<ViewState>& from, std::vector<ViewState>& to, int steps);
+  void watchFiles();
+  void readChangedFiles();
+  void wantFrame();
+  void takeResults();
+  void wantReference();
+  void wantJudgement();
+  void noteTried();
+  void compose();
+  const Scene& shownScene() const { return *edited_; }
+  void applyEdits();
+
+  SessionOptions options_;
+  std::shared_ptr<const Scene> scene_, edited_;
+  std::vector<std::shared_ptr<const Pipeline>> pipelines_;
+  ViewState state_;
+  SceneEdits applied_;
+  std::vector<ViewState> undo_, redo_;
+  std::vector<std::string> log_;
+  std::string message_, textProblem_;
+  bool messageIsError_ = false;
+
+  Watch texts_;
+  double sinceWatch_ = 0.0, flicker_ = 0.0;
+  bool stateChanged_ = true, pictureChanged_ = true;
+  std::uint64_t wishes_ = 0;
+  RenderWish asked_;
+  RenderedResult rendered_, lastGood_;
+  ReferenceResult reference_;
+  std::optional<ReferenceWish> referenceWish_;
+  std::shared_ptr<const Judged> judged_;
+  std::vector<TriedPoint> tried_;
+  Picture picture_;
+  double exposure_ = 0.0;
+
+  LiveTechniques techniques_;
+  JudgeWorker judge_;
+  ReferenceWorker tracer_;
+  RenderWorker renderer_;
+};
+
+/// The default of a pipeline's parameter, or what a text makes of a pass's: the pipeline with the statements of
+/// a `set` block in the block of that pass. DiagnosticsError when the text is then wrong.
+Pipeline withPassParameters(const Pipeline& pipeline, const std::string& pass, const dsl::Block& values);
+/// The pipeline's text with these defaults, in the canonical layout.
+std::string textWithDefaults(const Pipeline& pipeline, const ParameterValues& values);
+/// The scene's text with a camera `view` as its first.
+std::string textWithCamera(const std::filesystem::path& scene, const Camera& camera, int width, int height);
+
+}  // namespace lumivox::viewer

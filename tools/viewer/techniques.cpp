@@ -1,0 +1,170 @@
+#include "viewer/techniques.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/base/installation.h"
+#include "viewer/program.h"
+
+namespace lumivox::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The folder of a technique's shaders, in the tree that its library was built in; empty where that is not at
+/// hand.
+fs::path shadersOf(const std::string& technique, const fs::path& library) {
+  if (library.empty()) return {};
+  const auto folder = programData(fs::path("shaders") / technique, library);
+  return folder ? *folder : fs::path();
+}
+
+Compiled compiled(const CompileWish& wish) {
+  Compiled result{wish, {}};
+  try {
+    const fs::path program = programBeside("shaderpack");
+    const ProgramResult done =
+        runProgram({program.string(), "--technique", wish.technique, "--source", wish.source.string(), "--include",
+                    wish.includes.string(), wish.common.string(), "--cache", wish.cache.string(), "--pack",
+                    wish.pack.string(), "--header", wish.header.string()});
+    if (done.exitCode != 0) result.error = done.errors.empty() ? "shaderpack failed" : done.errors;
+  } catch (const std::exception& error) {
+    result.error = error.what();
+  }
+  return result;
+}
+
+}  // namespace
+
+LiveTechniques::LiveTechniques(std::vector<fs::path> directories, std::function<void()> wake)
+    : given_(directories),
+      directories_(std::move(directories)),
+      folder_(fs::temp_directory_path() / fmt::format("lumivox_view_{}", getpid())),
+      compiler_(
+          [] {
+            return [](const CompileWish& wish, LatestWorker<CompileWish, Compiled>::Turn& turn) {
+              turn.give(compiled(wish));
+            };
+          },
+          std::move(wake)) {}
+
+LiveTechniques::~LiveTechniques() {
+  compiler_.stop();
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+fs::path LiveTechniques::libraryOf(const std::string& technique) const {
+  for (const fs::path& directory : given_) {
+    const fs::path library = directory / ("lib" + technique + ".so");
+    std::error_code ignored;
+    if (fs::exists(library, ignored)) return library;
+  }
+  return {};
+}
+
+void LiveTechniques::use(const std::set<std::string>& techniques) {
+  used_ = techniques;
+  files_.clear();
+  for (const std::string& technique : techniques) {
+    if (const fs::path library = libraryOf(technique); !library.empty()) {
+      files_[library] = {technique, false};
+      files_[library.parent_path() / (technique + ".shaderpack")] = {technique, false};
+    }
+    const fs::path shaders = shadersOf(technique, libraryOf(technique));
+    if (shaders.empty()) continue;
+    std::error_code ignored;
+    for (const fs::path& folder : {shaders, shaders.parent_path() / "common"})
+      for (const fs::directory_entry& file : fs::directory_iterator(folder, ignored))
+        if (file.is_regular_file(ignored)) files_.emplace(file.path(), std::pair(technique, true));
+  }
+  std::set<fs::path> names;
+  for (const auto& [file, what] : files_) names.insert(file);
+  watch_.set(names);
+}
+
+void LiveTechniques::stage(const std::string& technique, const fs::path& pack) {
+  const fs::path folder = folder_ / fmt::format("{}_{}", technique, ++stages_);
+  fs::create_directories(folder);
+  const fs::path library = libraryOf(technique);
+  fs::copy_file(library, folder / library.filename());
+  if (fs::exists(pack)) fs::copy_file(pack, folder / (technique + ".shaderpack"));
+  // Those that were staged before are as good as gone.
+  std::erase_if(directories_, [&](const fs::path& one) {
+    return one.parent_path() == folder_ && one.filename().string().starts_with(technique + "_");
+  });
+  directories_.insert(directories_.begin(), folder);
+}
+
+void LiveTechniques::compile(const std::string& technique) {
+  const fs::path source = shadersOf(technique, libraryOf(technique));
+  const auto common = programData("shaders");
+  // What the build has compiled need not be compiled again.
+  const fs::path built = libraryOf(technique).parent_path().parent_path().parent_path() / "shadercache";
+  const fs::path cache = fs::is_directory(built) ? built : cacheDirectory() / "viewer_shaders";
+  const fs::path folder = folder_ / "compiled";
+  fs::create_directories(folder);
+  compiler_.want({technique, source, source.parent_path(), common.value_or(source.parent_path()), cache, folder / (technique + ".shaderpack"),
+                  folder / (technique + "_shaders.h")});
+}
+
+void LiveTechniques::changed(const std::string& technique, bool shaders) {
+  try {
+    if (shaders) {
+      waiting_.insert(technique);
+    } else {
+      errors_.erase(technique);
+      const fs::path library = libraryOf(technique);
+      stage(technique, library.parent_path() / (technique + ".shaderpack"));
+    }
+  } catch (const std::exception& error) {
+    errors_[technique] = error.what();
+  }
+}
+
+bool LiveTechniques::update() {
+  bool news = false;
+  std::map<std::string, bool> which;  // whether shaders alone
+  for (const fs::path& file : watch_.changed()) {
+    const auto& [technique, shader] = files_.at(file);
+    // What all techniques include belongs to each of them.
+    const bool common = shader && file.parent_path().filename() == "common";
+    for (const std::string& one : common ? used_ : std::set<std::string>{technique}) {
+      const auto known = which.emplace(one, shader).first;
+      known->second = known->second && shader;
+    }
+  }
+  for (const auto& [technique, shader] : which) {
+    changed(technique, shader);
+    news = true;
+  }
+  if (const auto done = compiler_.take()) {
+    news = true;
+    if (done->error.empty()) {
+      errors_.erase(done->wish.technique);
+      try {
+        stage(done->wish.technique, done->wish.pack);
+      } catch (const std::exception& error) {
+        errors_[done->wish.technique] = error.what();
+      }
+    } else {
+      errors_[done->wish.technique] = done->error;
+    }
+  }
+  if (!waiting_.empty() && !compiler_.busy()) {
+    compile(*waiting_.begin());
+    waiting_.erase(waiting_.begin());
+  }
+  return news;
+}
+
+void LiveTechniques::reload() {
+  for (const std::string& technique : used_) changed(technique, false);
+}
+
+}  // namespace lumivox::viewer
