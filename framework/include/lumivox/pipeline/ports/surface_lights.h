@@ -1,0 +1,27 @@
+#pragma once
+
+#include "lumivox/pipeline/port.h"
+
+namespace lumivox {
+
+/// Small lights on surfaces: discs that reflect diffusely to one side. One without flux is none.
+struct SurfaceLights {
+  gpu::BufferRef lights;
+  int count = 0;
+};
+
+template <>
+struct PortTraits<SurfaceLights> {
+  static PortKind kind() {
+    return {
+        "SurfaceLights",
+        "small lights on surfaces",
+        {{"lights", "buffer",
+          "array of SurfaceLight in shaders/common/rsm.glsl: position, m, and area, m^2; normal; flux, W"}}};
+  }
+  static void contents(const SurfaceLights& port, PortContents& contents) {
+    contents.buffer("lights", port.lights);
+  }
+};
+
+}  // namespace lumivox
