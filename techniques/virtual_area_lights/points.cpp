@@ -43,6 +43,7 @@ class PointsPass : public Pass {
                            .count = static_cast<int>(set->points.size()),
                            .neighbours = neighbours,
                            .spacing = static_cast<float>(set->spacing()),
+                           .farthest = static_cast<float>(set->farthest),
                            .set = set,
                            .state = state};
   }

@@ -19,7 +19,7 @@ struct alignas(16) PointGridBlock {
   float cellsPerMetre;
   glm::ivec3 cells;
   std::int32_t count;
-  float spacing;
+  float spacing, farthest;
 };
 
 }  // namespace
@@ -73,7 +73,7 @@ SurfacePointsBinding::SurfacePointsBinding(const SurfacePoints& points)
                  StorageSlot{"PointCells"}(points.cells), StorageSlot{"PointCandidates"}(points.candidates)} {
   const GridPlacement& grid = points.grid;
   add(shader::UniformSlot<PointGridBlock>{"PointGrid"}(
-      {grid.low, 1.0f / grid.voxelSize, grid.resolution, points.count, points.spacing}));
+      {grid.low, 1.0f / grid.voxelSize, grid.resolution, points.count, points.spacing, points.farthest}));
 }
 
 FragmentBinding::FragmentBinding(const VoxelFragments& list)
