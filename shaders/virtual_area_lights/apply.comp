@@ -32,7 +32,7 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, textureSize(gPosition, 0)))) return;
   vec4 position = texelFetch(gPosition, pixel, 0), normal = texelFetch(gNormal, pixel, 0);
-  SeenSurface seen = SeenSurface(position.xyz, normal.xyz, texelFetch(gGeometricNormal, pixel, 0).w, normal.w);
+  SeenSurface seen = SeenSurface(position.xyz, normal.xyz, texelFetch(gGeometricNormal, pixel, 0).w);
 #if DIFFUSE
   vec3 diffuse = vec3(0.0), albedo = texelFetch(gDiffuse, pixel, 0).rgb;
   if (position.w > 0.0 && any(greaterThan(albedo, vec3(0.0)))) {

@@ -15,7 +15,7 @@ struct Nearest {
 // What is seen.
 struct SeenSurface {
   vec3 position, normal;
-  float model, front;
+  float model;
 };
 
 void keep(inout Nearest nearest, uint point, float distanceSquared, int neighbours) {
@@ -31,7 +31,8 @@ void keep(inout Nearest nearest, uint point, float distanceSquared, int neighbou
   nearest.count = min(nearest.count + 1, neighbours);
 }
 
-// The nearest points of the same model and side; with an exponent of 0 or more only those that reflect by it.
+// The nearest points of the same model and side, none farther than where all are listed, unless it is the only one; with an exponent of 0
+// or more only those that reflect by it.
 Nearest nearestPoints(SeenSurface seen, float exponent, int neighbours) {
   Nearest nearest;
   nearest.count = 0;
@@ -39,13 +40,16 @@ Nearest nearestPoints(SeenSurface seen, float exponent, int neighbours) {
   for (uint i = candidates.x; i < candidates.y; ++i) {
     uint point = pointCandidates[i];
     ivec2 texel = pointTexel(point);
-    if (texelFetch(pointNormal, texel, 0).w != seen.model) continue;
-    vec4 radius = texelFetch(pointRadius, texel, 0);
-    if (radius.w != seen.front) continue;
-    if (exponent >= 0.0 && (radius.y != exponent || radius.z == 0.0)) continue;
+    vec4 normal = texelFetch(pointNormal, texel, 0);
+    if (normal.w != seen.model || !onSameSide(seen.normal, normal.xyz)) continue;
+    if (exponent >= 0.0) {
+      vec4 radius = texelFetch(pointRadius, texel, 0);
+      if (radius.y != exponent || radius.z == 0.0) continue;
+    }
     vec3 path = texelFetch(pointPosition, texel, 0).xyz - seen.position;
     keep(nearest, point, dot(path, path), neighbours);
   }
+  while (nearest.count > 1 && nearest.distancesSquared[nearest.count - 1] > pointFarthest * pointFarthest) --nearest.count;
   return nearest;
 }
 

@@ -29,7 +29,8 @@ inline std::vector<glm::vec4> evaluated(const std::vector<std::string>& files, c
       )" + body + R"(
       results[i] = found;
     })";
-  const gpu::Program program(glsl, "functions", {{gpu::Stage::compute, {}, text}}, {});
+  const std::vector<gpu::StageCode> code{{gpu::Stage::compute, {}, text}};
+  const gpu::Program program(glsl, "functions", code, {});
   gpu::Buffer in(glsl, inputs.size() * sizeof(glm::vec4)), out(glsl, inputs.size() * sizeof(glm::vec4));
   in.uploadValues(std::span<const glm::vec4>(inputs));
   const std::vector<gpu::ResourceBinding> bindings{{"inputs", 0, gpu::ResourceBinding::Storage{&in}},
