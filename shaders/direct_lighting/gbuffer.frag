@@ -11,6 +11,7 @@ layout(std140, binding = 1) uniform View { mat4 worldToClip; };
 layout(std140, binding = 2) uniform Eye {
   vec3 eyeWorld;
   vec2 imageSize;  // pixels
+  float model;     // of what is drawn: what moves together
 };
 
 #if TEXTURES
@@ -71,7 +72,7 @@ void main() {
 
   outPosition = vec4(posWorld, 1.0);
   outNormal = vec4(normal, gl_FrontFacing ? 1.0 : 0.0);
-  outGeometricNormal = vec4(geometricNormal, 0.0);
+  outGeometricNormal = vec4(geometricNormal, model);
   outDiffuse = vec4(albedo, 1.0);
 #if GLOSSY
   outSpecular = material.specular;

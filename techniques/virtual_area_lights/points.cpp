@@ -2,14 +2,16 @@
 // surfaces.
 #include <fmt/format.h>
 
+#include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
+#include "lumivox/toolkit/room.h"
 #include "passes.h"
 
 namespace lumivox::virtual_area_lights {
 namespace {
 
 class PointsPass : public Pass {
-  Param<int> points{this, "points", 2048, within(1, 1048576), "most points, on both sides of open surfaces"};
+  Param<int> points{this, "points", 2048, within(1, 262144), "most points, on both sides of open surfaces"};
   Param<int> neighbours{this, "neighbours", 8, within(1, 32),
                         "of how many nearest points the look-up grid tells, anywhere on the surface"};
   Out<SurfacePoints> result{this, "points", "points spread evenly over the surfaces"};
@@ -18,7 +20,10 @@ class PointsPass : public Pass {
   bool worksOnHost() const override { return true; }
 
   void run(PassContext& frame) override {
+    if (frame.sceneDescription().triangleCount() == 0)
+      throw Error("the scene has no triangle to put points on; expected at least one");
     const auto set = frame.kept("surface points", 0, [&] {
+      requireRoom(frame, points, bytesOf, "surface points");
       return std::make_shared<const SurfacePointSet>(
           spreadSurfacePoints(frame.sceneDescription(), {.points = points, .neighbours = neighbours}));
     });
@@ -46,6 +51,15 @@ class PointsPass : public Pass {
                            .farthest = static_cast<float>(set->farthest),
                            .set = set,
                            .state = state};
+  }
+
+  /// Of three textures and the two buffers of the grid, as long as it may become.
+  static std::vector<std::uint64_t> bytesOf(int points) {
+    const glm::ivec2 size = SurfacePoints::sizeFor(points);
+    const std::uint64_t texture = sizeof(glm::vec4) * static_cast<std::uint64_t>(size.x * size.y);
+    const auto count = static_cast<std::uint64_t>(points);
+    return {texture, texture, texture, 4 * SurfacePointGrid::mostCells(count),
+            4 * SurfacePointGrid::mostEntries(count)};
   }
 
   static gpu::TextureRef texture(PassContext& frame, std::vector<glm::vec4> values,

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "lumivox/scene/surface_points.h"
 
@@ -140,21 +141,22 @@ void forEachCell(const GridPlacement& grid, const glm::vec3& position, float rea
 
 /// Cells about as wide as points are apart, and wider where many lists would become long.
 GridPlacement placementOf(const SurfacePointSet& set, const SurfacePointState& state) {
-  constexpr double kMostCells = 8.0, kMostEntries = 300.0;  // a point
   Bounds bounds;
   for (std::size_t i = 0; i < state.position.size(); ++i) {
     bounds.grow(state.position[i] - state.radius[i]);
     bounds.grow(state.position[i] + state.radius[i]);
   }
   const glm::dvec3 extent(bounds.high - bounds.low);
-  const auto count = static_cast<double>(state.position.size());
   const auto cellsOf = [&](double size) { return glm::floor(extent / size) + 1.0; };
   const auto entries = [&](double size) {
     double sum = 0.0;
     const glm::dvec3 cells = cellsOf(size);
     for (const float reach : state.reach) {
-      const glm::dvec3 covered = glm::min(glm::dvec3(2.0 * static_cast<double>(reach) / size + 1.0), cells);
-      sum += covered.x * covered.y * covered.z;
+      // A ball at a random place touches as many cells as a cell that is grown by it all around has volume.
+      const double radius = static_cast<double>(reach) / size;
+      const double touched = 1.0 + radius * (6.0 + std::numbers::pi * radius * (3.0 + 4.0 / 3.0 * radius));
+      const glm::dvec3 along = glm::min(glm::dvec3(2.0 * radius + 1.0), cells);
+      sum += std::min(touched, along.x * along.y * along.z);
     }
     return sum;
   };
@@ -162,10 +164,12 @@ GridPlacement placementOf(const SurfacePointSet& set, const SurfacePointState& s
   const double longest = std::max({extent.x, extent.y, extent.z});
   // Below a hundred thousandth of the whole a cell's border is lost in rounding.
   size = std::max(size, 1e-5 * longest);
-  for (;; size *= 1.25) {
+  const auto most = [](std::uint64_t number) { return static_cast<double>(number); };
+  for (;; size *= 1.1) {
     const glm::dvec3 cells = cellsOf(size);
     const double all = cells.x * cells.y * cells.z;
-    if (all <= 1.0 || (all <= std::max(kMostCells * count, 32768.0) && entries(size) <= kMostEntries * count))
+    if (all <= 1.0 || (all < most(SurfacePointGrid::mostCells(state.position.size())) &&
+                       entries(size) <= most(SurfacePointGrid::mostEntries(state.position.size()))))
       break;
   }
   return {bounds.low, static_cast<float>(size), glm::ivec3(cellsOf(size))};

@@ -1,6 +1,7 @@
 // Points spread evenly over the surfaces of a scene, which move and deform with them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
@@ -72,6 +73,12 @@ struct SurfacePointGrid {
   GridPlacement placement;
   std::vector<std::uint32_t> first;   ///< of each cell, x fastest, and one more
   std::vector<std::uint32_t> points;  ///< numbers
+
+  /// Cells are wider than points are apart where there would be more of them, or their lists together longer.
+  static constexpr std::uint64_t mostCells(std::uint64_t points) {
+    return std::max<std::uint64_t>(8 * points, 32768);
+  }
+  static constexpr std::uint64_t mostEntries(std::uint64_t points) { return 120 * points; }
 };
 SurfacePointGrid gridOf(const SurfacePointSet& set, const SurfacePointState& state);
 
