@@ -19,7 +19,7 @@ namespace {
 Scene floorAndPanel() {
   SceneBuilder builder;
   builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.5f));
-  Object& panel = builder.quad({-0.5f, 0.2f, 0}, {1, 0, 0}, {0, 1, 0}, builder.phong(0.1f, 0.4f, 70.0f));
+  Object& panel = builder.quad({-0.5f, 0.25f, 0}, {1, 0, 0}, {0, 1, 0}, builder.phong(0.1f, 0.4f, 70.0f));
   panel.motion = RigidMotion{};
   panel.motion->angularSpeed = 0.5 * std::numbers::pi;
   builder.light(LightKind::directional, glm::vec3(1.0f), {}, {0, -1, 0.2});
