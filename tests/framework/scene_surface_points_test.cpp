@@ -203,7 +203,7 @@ TEST_CASE("the holes of masks have no points, and what is left as many as asked 
   CHECK(points.set.area == Approx(0.5).epsilon(0.01));
   for (const glm::vec3& position : points.state.position) REQUIRE(position.x < 0.255f);
   const double packed = std::sqrt(0.25 / 500.0 * 2.0 / std::sqrt(3.0));
-  CHECK(smallestGap(points.state) > 0.55 * packed);
+  CHECK(smallestGap(points.state) > 0.6 * packed);
 }
 
 TEST_CASE(

@@ -175,7 +175,7 @@ SurfacePointSet spreadSurfacePoints(const Scene& scene, const SurfacePointSettin
     const SurfaceCandidates& candidates = drawn.candidates[model];
     if (candidates.places.empty()) continue;
     const auto pointsUpTo = [&](double covered) {
-      return std::floor(settings.points * std::min(covered / drawn.area, 1.0) + 1e-9);
+      return std::floor(settings.points * std::min(covered / drawn.area, 1.0) + 1e-6);
     };
     const double first = pointsUpTo(before);
     before += drawn.covered[model];
