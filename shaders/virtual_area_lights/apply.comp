@@ -55,7 +55,7 @@ void main() {
     float distanceSquared = dot(path, path), viewSquared = dot(view, view);
     if (distanceSquared > 0.0 && viewSquared > 0.0 && dot(path, seen.normal) > 0.0) {
       vec3 mirror = reflect(view * inversesqrt(viewSquared), seen.normal);
-      glossy = specular.rgb * light.light.rgb * lobeCosine(light.light.w, dot(mirror, path) * inversesqrt(distanceSquared));
+      glossy = specular.rgb * light.light.rgb * lobeCosine(light.light.w - 1.0, dot(mirror, path) * inversesqrt(distanceSquared));
     }
   }
   imageStore(glossyImage, pixel, vec4(glossy, 1.0));

@@ -20,9 +20,10 @@ layout(std140, binding = 0) uniform Parameters {
   int begins, ends;         // whether nothing was added before, and nothing is to come
   float resolved;           // beta: an exponent's limit by the spacing of points; 0: none
   float factor;             // c of Eq. 5, PUBLISHED
+  float overlapping;        // lights that may lie upon each other, and shine together
 };
 layout(std430, binding = 0) readonly buffer SurfaceLights { SurfaceLight surfaceLights[]; };
-layout(binding = 0, rgba32f) uniform image2D sumImage;           // rgb of the light; w the brightest light's radiance
+layout(binding = 0, rgba32f) uniform image2D sumImage;           // rgb of the light; w radiance of the brightest place
 layout(binding = 1, rgba32f) uniform image2D offsetImage;        // xyz of offsets by weight; w of weights
 layout(binding = 2, rgba32f) uniform image2D squareImage;        // xyz of their squares
 layout(binding = 3, rgba32f) uniform writeonly image2D lightImage;
@@ -78,7 +79,7 @@ void add(Receiver point, SurfaceLight light, inout Sums sums) {
 #endif
 #endif
   sums.light.rgb += reflected;
-  if (share > 0.0) sums.light.w = max(sums.light.w, max(exitance.r, max(exitance.g, exitance.b)) / kPi);
+  if (share > 0.0) sums.light.w = max(sums.light.w, overlapping / kPi * max(exitance.r, max(exitance.g, exitance.b)));
   sums.offset += weight * vec4(offset, 1.0);
   // Of a disc about its middle: a quarter of its radius squared along each axis in it.
   vec3 own = area / (4.0 * kPi) * (1.0 - light.normal.xyz * light.normal.xyz);
@@ -136,7 +137,7 @@ void main() {
   vec3 variance = all.offset.w > 0.0 ? max(all.square / all.offset.w - offset * offset, vec3(0.0)) : vec3(0.0);
   float radius = 2.0 * sqrt(max(variance.x, max(variance.y, variance.z)));  // Sec. 3.3: of an even disc its own
 #if LOBE == LOBE_GLOSSY
-  all.light.w = reflects ? resolvedExponent(point.exponent, dot(offset, offset), pointSpacing, resolved) : -1.0;
+  all.light.w = reflects ? 1.0 + resolvedExponent(point.exponent, dot(offset, offset), pointSpacing, resolved) : 0.0;
 #endif
   imageStore(lightImage, texel, all.light);
   imageStore(placeImage, texel, vec4(point.position + offset, radius));

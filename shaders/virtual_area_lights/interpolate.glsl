@@ -53,15 +53,18 @@ Nearest nearestPoints(SeenSurface seen, float exponent, int neighbours) {
   return nearest;
 }
 
-// Weight of a neighbour by Eq. 12, and in its place the cosine of the normals where all are equally far.
+// Weight of a neighbour by Eq. 12, or of its normal alone. Distances that differ by their rounding are equal.
 float neighbourWeight(SeenSurface seen, Nearest nearest, int i, bool byDistance) {
+  const float kRounding = 1e-5;
   float alike = max(0.0, dot(seen.normal, texelFetch(pointNormal, pointTexel(nearest.points[i]), 0).xyz));
+  if (!byDistance) return alike;
   float farthest = nearest.distancesSquared[nearest.count - 1];
-  return byDistance ? alike * (farthest > 0.0 ? 1.0 - sqrt(nearest.distancesSquared[i] / farthest) : 0.0) : alike;
+  float near = farthest > 0.0 ? 1.0 - sqrt(nearest.distancesSquared[i] / farthest) : 0.0;
+  return near > kRounding ? alike * near : 0.0;
 }
 
 struct AveragedLight {
-  vec4 light;  // rgb; w: exponent of a glossy one
+  vec4 light;  // rgb; w: of a glossy one 1 + exponent
   vec3 place;
 };
 
@@ -72,7 +75,7 @@ float cosineTo(vec3 place, vec3 position, vec3 normal) {
   return distanceSquared > 0.0 ? max(0.0, dot(path, normal) * inversesqrt(distanceSquared)) : 0.0;
 }
 
-// `strict`: the light of points that reflect nothing towards the camera (w < 0) does not count. `plain`: of what points reflect, in place
+// `strict`: the light of points that reflect nothing towards the camera (w = 0) does not count. `plain`: of what points reflect, in place
 // of their lights.
 AveragedLight interpolated(SeenSurface seen, Nearest nearest, sampler2D lights, sampler2D places, bool strict, bool plain) {
   vec4 light = vec4(0.0);
@@ -85,7 +88,7 @@ AveragedLight interpolated(SeenSurface seen, Nearest nearest, sampler2D lights, 
       if (!(weight > 0.0)) continue;
       ivec2 texel = pointTexel(nearest.points[i]);
       vec4 here = texelFetch(lights, texel, 0);
-      if (strict && here.w < 0.0) continue;
+      if (strict && here.w <= 0.0) continue;
       vec3 place = texelFetch(places, texel, 0).xyz;
       if (plain) here.rgb *= cosineTo(place, texelFetch(pointPosition, texel, 0).xyz, texelFetch(pointNormal, texel, 0).xyz);
       light += weight * here;

@@ -32,8 +32,8 @@ void main() {
 #if LOBE == LOBE_DIFFUSE
     local = dot(normal, toLight);
 #else
-    if (dot(normal, toLight) > 0.0 && light.w >= 0.0)
-      local = lobeCosine(light.w, dot(reflect(normalize(position - eyeWorld), normal), toLight));
+    if (dot(normal, toLight) > 0.0 && light.w > 0.0)
+      local = lobeCosine(light.w - 1.0, dot(reflect(normalize(position - eyeWorld), normal), toLight));
 #endif
   }
   vec3 normalised = vec3(0.0);

@@ -78,7 +78,7 @@ class ChoosePass : public Pass {
       sizes.push_back((sizes.back() + kFan - 1) / kFan);
       total += sizes.back();
     } while (sizes.back() > 1);
-    const SurfaceLights result{room(frame, wanted), wanted};
+    const SurfaceLights result{room(frame, wanted), wanted, map->lightCount};
     const gpu::BufferRef tree = frame.elements(choose::tree, total, "sums of flux");
     const ReflectiveShadowMapBinding texels(*map);
     std::uint32_t firstOfAddends = 0, firstOfSums = total;
@@ -104,7 +104,7 @@ class ChoosePass : public Pass {
   SurfaceLights byStride(PassContext& frame) const {
     const gpu::TextureDescription& flux = map->flux->description();
     const int across = (flux.width + stride - 1) / stride, count = across * across * flux.depth;
-    const SurfaceLights result{room(frame, count), count};
+    const SurfaceLights result{room(frame, count), count, map->lightCount};
     frame.dispatchList(frame.program(stride::kProgram),
                        {stride::parameters({flux.width, stride, across, count, area == Area::facing ? 1 : 0}),
                         ReflectiveShadowMapBinding(*map), stride::taken(result.lights)},

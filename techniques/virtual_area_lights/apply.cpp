@@ -1,5 +1,5 @@
-// The averaged lights of sparse points where the camera sees surfaces (Lensing and Broll 2013, Sec. 3.2 steps 3
-// and 4).
+// The averaged lights of sparse points where the camera sees surfaces (Lensing and Broll 2013, Sec. 3.2 steps
+// 3 and 4).
 #include "lumivox/toolkit/bindings.h"
 #include "passes.h"
 #include "virtual_area_lights_shaders.h"
@@ -51,10 +51,10 @@ class ApplyPass : public Pass {
       bound.add(apply::glossyPlace(light->glossyPosition, Sampling::nearest));
       bound.add(apply::glossyImage(glossy->texture));
     }
-    frame.dispatch(frame.program(apply::Variant{.diffuse = isDiffuse,
-                                                .glossy = isGlossy,
-                                                .interpolate = interpolate == Interpolate::plain}),
-                   bound, pixels(frame));
+    frame.dispatch(
+        frame.program(apply::Variant{
+            .diffuse = isDiffuse, .glossy = isGlossy, .interpolate = interpolate == Interpolate::plain}),
+        bound, pixels(frame));
   }
 };
 
@@ -62,7 +62,8 @@ class ApplyPass : public Pass {
 
 void addApply(TechniqueRegistry& registry) {
   registry.add<ApplyPass>(
-      "apply", "Averaged lights of sparse points at the visible surfaces (Lensing & Broll 2013, Eq. 10, 12, 13)");
+      "apply",
+      "Averaged lights of sparse points at the visible surfaces (Lensing & Broll 2013, Eq. 10, 12, 13)");
 }
 
 }  // namespace lumivox::virtual_area_lights

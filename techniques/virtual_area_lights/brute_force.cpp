@@ -22,8 +22,7 @@ class BruteForcePass : public Pass {
 
   void run(PassContext& frame) override {
     if (diffuse.wanted()) diffuse = sum(frame, brute_force::Variant::lobeDiffuse, true);
-    if (glossy.wanted())
-      glossy = sum(frame, brute_force::Variant::lobeGlossy, gbuffer->specular != nullptr);
+    if (glossy.wanted()) glossy = sum(frame, brute_force::Variant::lobeGlossy, gbuffer->specular != nullptr);
   }
 
   Image sum(PassContext& frame, int lobe, bool reflects) const {
@@ -47,8 +46,8 @@ class BruteForcePass : public Pass {
 }  // namespace
 
 void addBruteForce(TechniqueRegistry& registry) {
-  registry.add<BruteForcePass>("brute_force",
-                               "Every virtual area light at every pixel, unoccluded (Lensing & Broll 2013, Sec. 6)");
+  registry.add<BruteForcePass>(
+      "brute_force", "Every virtual area light at every pixel, unoccluded (Lensing & Broll 2013, Sec. 6)");
 }
 
 }  // namespace lumivox::virtual_area_lights

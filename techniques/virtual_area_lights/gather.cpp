@@ -1,5 +1,5 @@
-// The light of all virtual area lights at every sparse point, and as one averaged light for each lobe (Lensing
-// and Broll 2013, Sec. 3.1, 3.2 step 1 and 4.2).
+// The light of all virtual area lights at every sparse point, and as one averaged light for each lobe
+// (Lensing and Broll 2013, Sec. 3.1, 3.2 step 1 and 4.2).
 #include <array>
 
 #include "lumivox/toolkit/bindings.h"
@@ -14,7 +14,8 @@ namespace {
 using namespace shaders::virtual_area_lights;
 
 constexpr int kChunk = 128;  // kChunk in gather.comp
-/// beta of resolvedExponent(): at a lobe of exponent k points are as far apart as half of its width, sqrt(1/k).
+/// beta of resolvedExponent(): at a lobe of exponent k points are as far apart as half of its width,
+/// sqrt(1/k).
 constexpr float kResolvedBySpacing = 0.25f;
 constexpr float kSmallWeights = 1e-6f;  ///< epsilon of Eq. 7 for all lights together; the print has no value
 
@@ -55,8 +56,8 @@ class GatherPass : public Pass {
   void run(PassContext& frame) override {
     const DiffuseKey key{points->position, lights ? lights->lights : nullptr,
                          moreLights ? moreLights->lights : nullptr};
-    const Averaged& diffuse =
-        frame.kept("diffuse light of points", key, [&] { return gather(frame, gather::Variant::lobeDiffuse); });
+    const Averaged& diffuse = frame.kept("diffuse light of points", key,
+                                         [&] { return gather(frame, gather::Variant::lobeDiffuse); });
     SparseLight result{diffuse.light, diffuse.place, nullptr, nullptr};
     if (frame.traits().glossy) {
       const Averaged glossy = gather(frame, gather::Variant::lobeGlossy);
@@ -73,10 +74,7 @@ class GatherPass : public Pass {
     int total = 0, added = 0;
     for (const In<SurfaceLights>* some : all)
       if (*some) total += (*some)->count;
-    if (total == 0) {
-      if (lobe == gather::Variant::lobeGlossy) result.light->clear(glm::vec4(0, 0, 0, -1));
-      return result;
-    }
+    if (total == 0) return result;
     const Method how = method;
     const int most = how == Method::cached ? kChunk : kLoopLimit / kChunk * kChunk / 2;
     const std::array<gpu::TextureRef, 3> sums{sparseTexture(frame, *points, "sums of light"),
@@ -100,7 +98,8 @@ class GatherPass : public Pass {
             .begins = before == 0,
             .ends = added == total,
             .resolved = exponentLimit == ExponentLimit::spacing ? kResolvedBySpacing : 0.0f,
-            .factor = factor};
+            .factor = factor,
+            .overlapping = static_cast<float>((*some)->overlapping)};
         forEachPoint(frame, program,
                      {gather::parameters(parameters), SurfacePointsBinding(*points),
                       gather::surfaceLights((*some)->lights), gather::sumImage(sums[0]),
@@ -117,7 +116,8 @@ class GatherPass : public Pass {
 
 void addGather(TechniqueRegistry& registry) {
   registry.add<GatherPass>(
-      "gather", "The light of all virtual area lights at sparse points, as one (Lensing & Broll 2013, Sec. 3.2)");
+      "gather",
+      "The light of all virtual area lights at sparse points, as one (Lensing & Broll 2013, Sec. 3.2)");
 }
 
 }  // namespace lumivox::virtual_area_lights

@@ -54,13 +54,13 @@ class NormalisePass : public Pass {
         sparseTexture(frame, *points, "normalised light"),
         frame.emptyElements(normalise::kept, static_cast<std::uint64_t>(points->count), "shares of light")};
     using gpu::Sampling;
-    forEachPoint(frame, frame.program(normalise::Variant{.lobe = lobe, .published = asPublished}),
-                 {normalise::parameters({frame.snapshot().camera.eye, amplification}),
-                  SurfacePointsBinding(*points), normalise::lights(lights, Sampling::nearest),
-                  normalise::places(places, Sampling::nearest),
-                  normalise::brightest(gathered->diffuse, Sampling::nearest), normalise::kept(result.kept),
-                  normalise::normalisedImage(result.light)},
-                 *points);
+    forEachPoint(
+        frame, frame.program(normalise::Variant{.lobe = lobe, .published = asPublished}),
+        {normalise::parameters({frame.snapshot().camera.eye, amplification}), SurfacePointsBinding(*points),
+         normalise::lights(lights, Sampling::nearest), normalise::places(places, Sampling::nearest),
+         normalise::brightest(gathered->diffuse, Sampling::nearest), normalise::kept(result.kept),
+         normalise::normalisedImage(result.light)},
+        *points);
     return result;
   }
 
@@ -83,8 +83,8 @@ class NormalisePass : public Pass {
 }  // namespace
 
 void addNormalise(TechniqueRegistry& registry) {
-  registry.add<NormalisePass>("normalise",
-                              "Averaged lights as strong as what they stand for (Lensing & Broll 2013, Eq. 11)");
+  registry.add<NormalisePass>(
+      "normalise", "Averaged lights as strong as what they stand for (Lensing & Broll 2013, Eq. 11)");
 }
 
 }  // namespace lumivox::virtual_area_lights

@@ -11,14 +11,15 @@
 
 namespace lumivox::test {
 
-/// `results[i]` of the statements `body`, which read `inputs[i]` as `given` and write `found`, both vec4, with the
-/// functions of the files below shaders/ in scope: each after those that it includes.
+/// `results[i]` of the statements `body`, which read `inputs[i]` as `given` and write `found`, both vec4,
+/// with the functions of the files below shaders/ in scope: each after those that it includes.
 inline std::vector<glm::vec4> evaluated(const std::vector<std::string>& files, const std::string& body,
                                         const std::vector<glm::vec4>& inputs) {
   static gpu::Device glsl({"auto", gpu::ShaderInput::glsl});
   std::string text = "#version 450 core\nlayout(local_size_x = 64) in;\n";
   for (const std::string& file : files)
-    text += std::regex_replace(readFile(sourceDirectory() / "shaders" / file), std::regex("#include[^\n]*"), "");
+    text +=
+        std::regex_replace(readFile(sourceDirectory() / "shaders" / file), std::regex("#include[^\n]*"), "");
   text += R"(
     layout(std430, binding = 0) buffer Inputs { vec4 inputs[]; };
     layout(std430, binding = 1) buffer Results { vec4 results[]; };
@@ -26,7 +27,8 @@ inline std::vector<glm::vec4> evaluated(const std::vector<std::string>& files, c
       uint i = gl_GlobalInvocationID.x;
       if (i >= inputs.length()) return;
       vec4 given = inputs[i], found = vec4(0.0);
-      )" + body + R"(
+      )" + body +
+          R"(
       results[i] = found;
     })";
   const std::vector<gpu::StageCode> code{{gpu::Stage::compute, {}, text}};

@@ -43,19 +43,22 @@ inline gpu::TextureRef texels(const std::vector<glm::vec4>& values, glm::ivec2 s
 
 template <class T>
 gpu::BufferRef bufferOf(const std::vector<T>& values, const char* label) {
-  auto buffer = std::make_shared<gpu::Buffer>(device(), std::max(values.size(), std::size_t{1}) * sizeof(T), label);
+  auto buffer =
+      std::make_shared<gpu::Buffer>(device(), std::max(values.size(), std::size_t{1}) * sizeof(T), label);
   if (!values.empty()) buffer->uploadValues(std::span<const T>(values));
   return buffer;
 }
 
 /// Every point is a candidate everywhere.
-inline SurfacePoints pointsOf(const std::vector<SparsePoint>& points, float spacing = 0.1f, int neighbours = 8) {
+inline SurfacePoints pointsOf(const std::vector<SparsePoint>& points, float spacing = 0.1f,
+                              int neighbours = 8) {
   std::vector<glm::vec4> positions, normals, radii;
   std::vector<std::uint32_t> candidates;
   for (const SparsePoint& point : points) {
     positions.emplace_back(point.position, point.area);
     normals.emplace_back(point.normal, static_cast<float>(point.model));
-    radii.emplace_back(point.radius, std::max(point.exponent, 0.0f), point.exponent >= 0.0f ? 1.0f : 0.0f, 1.0f);
+    radii.emplace_back(point.radius, std::max(point.exponent, 0.0f), point.exponent >= 0.0f ? 1.0f : 0.0f,
+                       1.0f);
     candidates.push_back(static_cast<std::uint32_t>(candidates.size()));
   }
   const glm::ivec2 size = SurfacePoints::sizeFor(static_cast<int>(points.size()));
@@ -86,7 +89,8 @@ inline SurfaceLights lightsOf(const std::vector<DiscLight>& lights) {
 /// Parameters of one pass.
 using PassSettings = std::vector<std::pair<std::string, std::variant<double, std::string>>>;
 
-/// Runs one pass of the technique over inputs made by hand; the camera looks from (0, 1, 0) at a glossy floor.
+/// Runs one pass of the technique over inputs made by hand; the camera looks from (0, 1, 0) at a glossy
+/// floor.
 class SparsePasses {
  public:
   explicit SparsePasses(glm::dvec3 eye = {0, 1, 0}, int side = 8) {
@@ -95,17 +99,20 @@ class SparsePasses {
     builder_.look(eye, {0, 0, 1e-3}, {0, 0, -1}, 0.7, side, side);
   }
 
-  SparseLight gather(const SurfacePoints& points, const SurfaceLights& lights, const PassSettings& settings = {}) {
+  SparseLight gather(const SurfacePoints& points, const SurfaceLights& lights,
+                     const PassSettings& settings = {}) {
     PassHarness& pass = add("gather", settings);
     pass.setInput("points", points);
     pass.setInput("lights", lights);
     pass.run();
     return pass.output<SparseLight>("light");
   }
-  SparseLight normalise(const SurfacePoints& points, const SparseLight& light, const PassSettings& settings = {}) {
+  SparseLight normalise(const SurfacePoints& points, const SparseLight& light,
+                        const PassSettings& settings = {}) {
     return over("normalise", points, light, settings);
   }
-  SparseLight occlude(const SurfacePoints& points, const SparseLight& light, const PassSettings& settings = {}) {
+  SparseLight occlude(const SurfacePoints& points, const SparseLight& light,
+                      const PassSettings& settings = {}) {
     return over("occlude", points, light, settings);
   }
   /// What is reflected by surfaces of albedo 1 at `seen`, one in each pixel from the upper left on.
@@ -119,7 +126,8 @@ class SparsePasses {
     pass.run();
     return {imageOf(*pass.output<Image>("diffuse").texture), imageOf(*pass.output<Image>("glossy").texture)};
   }
-  std::pair<ImageBuffer, ImageBuffer> bruteForce(const SurfaceLights& lights, const std::vector<SparsePoint>& seen) {
+  std::pair<ImageBuffer, ImageBuffer> bruteForce(const SurfaceLights& lights,
+                                                 const std::vector<SparsePoint>& seen) {
     PassHarness& pass = add("brute_force", {});
     pass.setInput("gbuffer", gbuffer(seen));
     pass.setInput("lights", lights);
@@ -133,7 +141,8 @@ class SparsePasses {
     harnesses_.push_back(std::make_unique<PassHarness>(device(), techniques(), "virtual_area_lights", name,
                                                        builder_.scene, snapshotOf(builder_.scene, 0.0)));
     for (const auto& [parameter, value] : settings)
-      std::visit([&, &key = parameter](const auto& set) { harnesses_.back()->setParameter(key, set); }, value);
+      std::visit([&, &key = parameter](const auto& set) { harnesses_.back()->setParameter(key, set); },
+                 value);
     return *harnesses_.back();
   }
   SparseLight over(const std::string& name, const SurfacePoints& points, const SparseLight& light,
@@ -155,9 +164,9 @@ class SparsePasses {
       diffuse.emplace_back(1.0f);
       specular.push_back(point.exponent >= 0.0f ? glm::vec4(1, 1, 1, point.exponent) : glm::vec4(0.0f));
     }
-    return {texels(position, size, "position"), texels(normal, size, "normal"),
+    return {texels(position, size, "position"),          texels(normal, size, "normal"),
             texels(geometric, size, "geometric normal"), texels(diffuse, size, "diffuse"),
-            texels(specular, size, "specular"), nullptr};
+            texels(specular, size, "specular"),          nullptr};
   }
 
   SceneBuilder builder_;

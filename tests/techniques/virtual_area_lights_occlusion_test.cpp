@@ -14,7 +14,8 @@ namespace {
 double lensShare(double r, double d) {
   if (d >= 1.0 + r) return 0.0;
   if (d <= std::abs(1.0 - r)) return std::min(1.0, r * r);
-  const double a = std::acos((d * d + 1.0 - r * r) / (2.0 * d)), b = std::acos((d * d + r * r - 1.0) / (2.0 * d * r));
+  const double a = std::acos((d * d + 1.0 - r * r) / (2.0 * d)),
+               b = std::acos((d * d + r * r - 1.0) / (2.0 * d * r));
   return (a - 0.5 * std::sin(2.0 * a) + r * r * (b - 0.5 * std::sin(2.0 * b))) / kPi;
 }
 
@@ -43,15 +44,21 @@ std::vector<Shares> sharesOf(double r) {
 
 /// A point that looks up at a ball of radius 1 around (0, 4, 0), with discs before it.
 SparseLight ball(float radius = 1.0f) {
-  return {texels({{1, 1, 1, 1}}, {1024, 1}, "light"), texels({{0, 4, 0, radius}}, {1024, 1}, "place"), nullptr, nullptr};
+  return {texels({{1, 1, 1, 1}}, {1024, 1}, "light"), texels({{0, 4, 0, radius}}, {1024, 1}, "place"),
+          nullptr, nullptr};
 }
 float open(const std::vector<SparsePoint>& discs, const char* combine = "product", float radius = 1.0f) {
   std::vector<SparsePoint> points{SparsePoint{}};
   points.insert(points.end(), discs.begin(), discs.end());
   SparsePasses passes;
-  return valuesOf(passes.occlude(pointsOf(points), ball(radius), {{"combine", std::string(combine)}}).diffuse, 1).front().x;
+  return valuesOf(passes.occlude(pointsOf(points), ball(radius), {{"combine", std::string(combine)}}).diffuse,
+                  1)
+      .front()
+      .x;
 }
-SparsePoint disc(const glm::vec3& position, float radius) { return {position, glm::normalize(-position), 0.01f, radius}; }
+SparsePoint disc(const glm::vec3& position, float radius) {
+  return {position, glm::normalize(-position), 0.01f, radius};
+}
 
 }  // namespace
 
@@ -76,7 +83,8 @@ TEST_CASE("bits of a square are those of its share, wherever it lies, within an 
     for (const Shares& share : sharesOf(r)) CHECK(share.bits == Approx(share.squares).margin(0.13));
 }
 
-TEST_CASE("a disc before the light hides it by its share of area, one behind it, below or turned away nothing") {
+TEST_CASE(
+    "a disc before the light hides it by its share of area, one behind it, below or turned away nothing") {
   // On the axis: F of the disc 0.25 / 4.25 r^2 = ..., F of the ball 1 / 16.
   for (const float radius : {0.1f, 0.25f, 0.4f}) {
     const double disc1 = radius * radius / (4.0 + radius * radius), share = std::min(1.0, disc1 * 16.0);
@@ -106,7 +114,8 @@ TEST_CASE("of two discs in line a product hides twice, the nearest and the bits 
   CHECK(open(both, "mask") == Approx(std::min(open({both[0]}, "mask"), open({second}, "mask"))).margin(1e-5));
 }
 
-TEST_CASE("a disc before a ball hides of its light what rays say, RMS within 0.1, 95 % of placements within 0.2") {
+TEST_CASE(
+    "a disc before a ball hides of its light what rays say, RMS within 0.1, 95 % of placements within 0.2") {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   std::vector<double> errors;
@@ -133,7 +142,8 @@ TEST_CASE("a disc before a ball hides of its light what rays say, RMS within 0.1
       }
     const SparsePoint one{glm::vec3(centre), glm::vec3(normal), 0.01f, static_cast<float>(radius)};
     const SurfacePoints points = pointsOf({SparsePoint{}, one});
-    errors.push_back(std::abs(1.0 - valuesOf(passes.occlude(points, ball()).diffuse, 1).front().x - hidden / all));
+    errors.push_back(
+        std::abs(1.0 - valuesOf(passes.occlude(points, ball()).diffuse, 1).front().x - hidden / all));
   }
   std::sort(errors.begin(), errors.end());
   double squared = 0.0;
@@ -143,11 +153,12 @@ TEST_CASE("a disc before a ball hides of its light what rays say, RMS within 0.1
   CHECK(errors[285] <= 0.2);
 }
 
-TEST_CASE("a ball of which a point is inside fills its view, and a sphere as printed is too small by 1 + r^2 / d^2") {
-  const std::vector<glm::vec4> found =
-      evaluated({"common/constants.glsl", "virtual_area_lights/squares.glsl"},
-                "found = vec4(sphereFormFactor(0.5, given.x, given.y, false), sphereFormFactor(0.5, given.x, given.y, true), 0.0, 0.0);",
-                {{1, 4, 0, 0}, {4, 1, 0, 0}});
+TEST_CASE(
+    "a ball of which a point is inside fills its view, and a sphere as printed is too small by 1 + r^2 / d^2") {
+  const std::vector<glm::vec4> found = evaluated(
+      {"common/constants.glsl", "virtual_area_lights/squares.glsl"},
+      "found = vec4(sphereFormFactor(0.5, given.x, given.y, false), sphereFormFactor(0.5, given.x, given.y, true), 0.0, 0.0);",
+      {{1, 4, 0, 0}, {4, 1, 0, 0}});
   CHECK(found[0].x == Approx(0.125));
   CHECK(found[0].x / found[0].y == Approx(1.25));
   CHECK(found[1].x == 1.0f);

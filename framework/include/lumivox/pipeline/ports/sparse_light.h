@@ -22,10 +22,11 @@ struct PortTraits<SparseLight> {
         "the light of many small lights as one for each surface point and lobe",
         {{"diffuse", "d2 rgba32f, a texel a point",
           "xyz radiance of the averaged light, W/(sr m^2): times the albedo, what the point reflects; once "
-          "normalised, what it reflects divided by the cosine of the averaged light; w free"},
+          "normalised, what it reflects divided by the cosine of the averaged light; w radiance of the brightest place that lights it"},
          {"diffusePosition", "d2 rgba32f, a texel a point",
           "xyz place of the averaged light, posWorld, m; w radius of the sphere that stands for it, m", kAny},
-         {"glossy", "d2 rgba32f, a texel a point", "the same for the Phong lobe towards the camera"},
+         {"glossy", "d2 rgba32f, a texel a point",
+          "the same for the Phong lobe towards the camera; w 1 + exponent of the lobe, 0 without one"},
          {"glossyPosition", "d2 rgba32f, a texel a point", "the same for the Phong lobe", kAny}}};
   }
   static void contents(const SparseLight& port, PortContents& contents) {

@@ -8,6 +8,7 @@ namespace lumivox {
 struct SurfaceLights {
   gpu::BufferRef lights;
   int count = 0;
+  int overlapping = 1;  ///< most that may lie upon each other: lit by so many, a patch is there so many times
 };
 
 template <>
