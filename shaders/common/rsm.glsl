@@ -10,16 +10,21 @@ struct SurfaceLight {
   vec4 flux;          // rgb reflected flux, W
 };
 
-// Irradiance at a surface, W/m^2, without visibility (Dachsbacher & Stamminger 2005, Sec. 3.1, Eq. 1: a light of intensity
-// flux / pi times the cosine). Deviates: the patch is a disc of its area, flux cos cos / (pi d^2 + area), which is exact on the axis of
-// a disc (Lambert) and stays finite where the patch is near; as area goes to 0 it is the published inverse square law.
-vec3 surfaceLightIrradiance(SurfaceLight light, vec3 posWorld, vec3 normal) {
+// Share of what leaves a disc that arrives on each square metre of a surface at posWorld, 1/m^2, without visibility: the form factor of the
+// disc over its area, cos cos / (pi d^2 + area), which is exact on its axis (Lambert) and stays finite where it is near.
+float sharePerArea(SurfaceLight light, vec3 posWorld, vec3 normal) {
   vec3 path = light.positionArea.xyz - posWorld;
   float distanceSquared = dot(path, path);
-  if (distanceSquared == 0.0) return vec3(0.0);
+  if (distanceSquared == 0.0) return 0.0;
   vec3 toLight = path * inversesqrt(distanceSquared);
   float cosines = max(0.0, dot(toLight, normal)) * max(0.0, -dot(toLight, light.normal.xyz));
-  return light.flux.rgb * (cosines / (kPi * distanceSquared + light.positionArea.w));
+  return cosines / (kPi * distanceSquared + light.positionArea.w);
+}
+
+// Irradiance at a surface, W/m^2, without visibility (Dachsbacher & Stamminger 2005, Sec. 3.1, Eq. 1: a light of intensity
+// flux / pi times the cosine). Deviates: the patch is a disc of its area; as area goes to 0 it is the published inverse square law.
+vec3 surfaceLightIrradiance(SurfaceLight light, vec3 posWorld, vec3 normal) {
+  return light.flux.rgb * sharePerArea(light, posWorld, normal);
 }
 
 // Weight by which texels are chosen.

@@ -8,6 +8,10 @@
 #include "common/scene.glsl"
 #include "common/visible_surface.glsl"
 
+layout(std140, binding = 3) uniform Drawn {
+  float model;  // of what is drawn: what moves together
+};
+
 #if TEXTURES
 layout(binding = 0) uniform sampler2D diffuseTexture;
 #endif
@@ -53,7 +57,7 @@ void main() {
 
   outPosition = vec4(posWorld, 1.0);
   outNormal = vec4(normal, gl_FrontFacing ? 1.0 : 0.0);
-  outGeometricNormal = vec4(geometricNormal, 0.0);
+  outGeometricNormal = vec4(geometricNormal, model);
   outDiffuse = vec4(albedo, 1.0);
 #if GLOSSY
   outSpecular = material.specular;

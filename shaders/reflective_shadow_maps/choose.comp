@@ -2,22 +2,21 @@
 // Texels chosen in proportion to the luminance of their flux: sample j takes the texel that holds the share (j + 1/2) / n of all flux.
 // Dividing by the probability makes the sum over the samples an estimate of the sum over all texels, without bias in the limit.
 layout(local_size_x = 64) in;
+#include "common/list.glsl"
 #include "sum_tree.glsl"
+#include "taken.glsl"
 
 layout(std140, binding = 0) uniform Parameters {
   uint texels;
   uint width;    // texels along a side of a layer
   uint levels;   // of sums
   uint samples;
+  int facing;  // 1: areas as if texels faced the light
 };
-layout(binding = 0) uniform sampler2DArray rsmPosition;
-layout(binding = 1) uniform sampler2DArray rsmNormal;
-layout(binding = 2) uniform sampler2DArray rsmFlux;
 layout(std430, binding = 0) readonly buffer Tree { float sums[]; };
-layout(std430, binding = 1) writeonly buffer Chosen { SurfaceLight chosen[]; };
 
 void main() {
-  uint index = gl_GlobalInvocationID.x;
+  uint index = listIndex();
   if (index >= samples) return;
   float total = sums[0];
   SurfaceLight light = SurfaceLight(vec4(0.0), vec4(0.0), vec4(0.0));
@@ -50,11 +49,7 @@ void main() {
     }
     // Each sample stands for total / samples of the flux, and for as much more area as it stands for more texels.
     float copies = weight > 0.0 ? total / (float(samples) * weight) : 0.0;
-    ivec3 texel = texelOf(entry, width);
-    vec4 normalArea = texelFetch(rsmNormal, texel, 0);
-    light.positionArea = vec4(texelFetch(rsmPosition, texel, 0).xyz, normalArea.w * copies);
-    light.normal = vec4(normalArea.xyz, 0.0);
-    light.flux = vec4(texelFetch(rsmFlux, texel, 0).rgb * copies, 0.0);
+    light = texelLight(texelOf(entry, width), copies, facing != 0);
   }
-  chosen[index] = light;
+  taken[index] = light;
 }

@@ -1,7 +1,7 @@
 #version 450
 // Dachsbacher & Stamminger 2005, Sec. 3.2 and 4.2: one-bounce light at the visible surfaces as the sum over texels of the reflective
 // shadow map; occlusion between texel and surface is left out.
-#pragma lumivox axis METHOD chosen all projected
+#pragma lumivox axis METHOD lights all projected
 #include "common/rsm.glsl"
 #if METHOD == METHOD_PROJECTED
 #include "common/lights.glsl"
@@ -11,9 +11,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140, binding = 0) uniform Parameters {
   int width;      // texels along a side of a layer
-  int firstRow;   // METHOD_ALL: rows of texels, of all layers together, that this dispatch adds
-  int rows;
-  int samples;    // chosen texels; with METHOD_PROJECTED of each light
+  int first;      // lights, or rows of texels of all layers together, that this dispatch adds
+  int count;
+  int samples;    // METHOD_PROJECTED: texels for each light
   int lightCount;
   float reach;    // METHOD_PROJECTED: radius of the pattern, as a share of a half turn or of the width of the view
   float publishedScale;  // one over the sum of the printed weights; 0: weights by the density of the pattern
@@ -21,19 +21,19 @@ layout(std140, binding = 0) uniform Parameters {
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
 layout(binding = 2) uniform sampler2D gDiffuse;
-#if METHOD != METHOD_CHOSEN
+#if METHOD != METHOD_LIGHTS
 layout(binding = 3) uniform sampler2DArray rsmPosition;
 layout(binding = 4) uniform sampler2DArray rsmNormal;
 layout(binding = 5) uniform sampler2DArray rsmFlux;
 #else
-layout(std430, binding = 1) readonly buffer Chosen { SurfaceLight chosen[]; };
+layout(std430, binding = 1) readonly buffer Taken { SurfaceLight taken[]; };
 #endif
 #if METHOD == METHOD_PROJECTED
 layout(std430, binding = 6) readonly buffer Views { mat4 views[]; };
 #endif
 layout(binding = 0, rgba32f) uniform image2D diffuseImage;
 
-#if METHOD != METHOD_CHOSEN
+#if METHOD != METHOD_LIGHTS
 SurfaceLight lightAt(ivec3 texel) {
   vec4 normalArea = texelFetch(rsmNormal, texel, 0);
   return SurfaceLight(vec4(texelFetch(rsmPosition, texel, 0).xyz, normalArea.w), vec4(normalArea.xyz, 0.0),
@@ -109,10 +109,10 @@ void main() {
   vec3 irradiance = vec3(0.0);
   if (position.w > 0.0 && any(greaterThan(albedo, vec3(0.0)))) {
     vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
-#if METHOD == METHOD_CHOSEN
-    for (int i = 0; i < samples; ++i) irradiance += surfaceLightIrradiance(chosen[i], position.xyz, normal);
+#if METHOD == METHOD_LIGHTS
+    for (int i = first; i < first + count; ++i) irradiance += surfaceLightIrradiance(taken[i], position.xyz, normal);
 #elif METHOD == METHOD_ALL
-    for (int row = firstRow; row < firstRow + rows; ++row) {
+    for (int row = first; row < first + count; ++row) {
       // A sum for each row keeps the rounding of a million small addends away.
       vec3 sum = vec3(0.0);
       for (int x = 0; x < width; ++x) {
@@ -127,8 +127,8 @@ void main() {
 #endif
   }
   vec3 radiance = albedo / kPi * irradiance;
-#if METHOD == METHOD_ALL
-  radiance += imageLoad(diffuseImage, pixel).rgb;
+#if METHOD != METHOD_PROJECTED
+  if (first > 0) radiance += imageLoad(diffuseImage, pixel).rgb;
 #endif
   imageStore(diffuseImage, pixel, vec4(radiance, 1.0));
 }

@@ -5,6 +5,7 @@
 #define SCENE_MATERIALS
 #include "common/lights.glsl"
 #include "common/scene.glsl"
+#include "cross_section.glsl"
 
 layout(std140, binding = 1) uniform View {
   mat4 worldToClip;
@@ -51,15 +52,7 @@ void main() {
   vec3 normal = normalize(normalWorld);
   if (dot(normal, geometricNormal) < 0.0) normal = -normal;
 
-  // Cross-section of the light that falls into the texel. In perspective a texel at (u, v) on the plane at distance 1, w wide, has the
-  // solid angle w^2 / (1 + u^2 + v^2)^(3/2).
-  float crossSection = light.texelWidth * light.texelWidth;
-  if (light.kind != kLightDirectional) {
-    vec2 onPlane = (gl_FragCoord.xy - halfSize) * light.texelWidth;
-    float secantSquared = 1.0 + dot(onPlane, onPlane);
-    vec3 path = light.position - posWorld;
-    crossSection *= dot(path, path) / (secantSquared * sqrt(secantSquared));
-  }
+  float crossSection = crossSectionOf(light, posWorld, gl_FragCoord.xy - halfSize);
   outPosition = vec4(posWorld, 1.0);
   outNormal = vec4(normal, crossSection / max(dot(geometricNormal, toLight), kSmallestCosine));
   // The flux through the cross-section, whatever the slant: exact also where the patch is seen edge-on.

@@ -1,5 +1,5 @@
 // Sums of the texels' luminances of flux as a tree: each sum is of 16 neighbours in the order layer, row, column, or of 16 such sums. The
-// root is the first, then follow the levels down to the texels. C++ side: GatherPass::choose.
+// root is the first, then follow the levels down to the texels. C++ side: techniques/reflective_shadow_maps/choose.cpp.
 #ifndef LUMIVOX_SUM_TREE
 #define LUMIVOX_SUM_TREE
 #include "common/rsm.glsl"

@@ -43,7 +43,8 @@ class GBufferPass : public Pass {
     for (const SceneDraw& draw : frame.scene().draws())
       drawPart(frame, draw, gbuffer::Variant{.glossy = traits.glossy, .emission = traits.emission},
                {gbuffer::view({worldToClip(frame.snapshot())}),
-                gbuffer::eye({frame.snapshot().camera.eye, glm::vec2(pixels(frame))})});
+                gbuffer::eye({frame.snapshot().camera.eye, glm::vec2(pixels(frame))}),
+                gbuffer::drawn({static_cast<float>(draw.model)})});
     gbuffer = result;
   }
 };

@@ -7,14 +7,13 @@
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/light_views.h"
 #include "lumivox/toolkit/loop_limit.h"
+#include "passes.h"
 #include "reflective_shadow_maps_shaders.h"
 
 namespace lumivox::reflective_shadow_maps {
 namespace {
 
 using namespace shaders::reflective_shadow_maps;
-
-constexpr std::uint32_t kFan = 16;  // kFan in sum_tree.glsl
 
 class RenderPass : public LightViewPass {
  public:
@@ -65,17 +64,22 @@ float publishedScale(int samples) {
 }
 
 class GatherPass : public Pass {
-  enum class Method { flux, projected, all };
+  enum class Method { lights, projected, all };
   enum class Weights { exact, published };
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
-  In<ReflectiveShadowMap> map{this, "map", Presence::optional,
-                              "what the lights see; without it there is no indirect light"};
+  In<SurfaceLights> lights{
+      this, "lights", Presence::optional,
+      "with 'lights': what is gathered from, texels of a map by choose; without it there "
+      "is no indirect light"};
+  In<ReflectiveShadowMap> map{
+      this, "map", Presence::optional,
+      "with 'projected' and 'all': what the lights see; without it there is no indirect light"};
   Param<Method> method{
-      this, "method", Method::flux,
-      "texels in proportion to their flux, or, as published, around the projection of the surface point into each light's view, or all of them: exact and slow"};
+      this, "method", Method::lights,
+      "all of 'lights', or, as published, texels of 'map' around the projection of the surface point into each light's view, or all of them: exact and slow"};
   Param<int> samples{this, "samples", 400, within(1, kLoopLimit),
-                     "texels that are gathered, with 'projected' shared among the lights; unused with 'all'"};
+                     "with 'projected': texels that are gathered, shared among the lights"};
   Param<float> reach{
       this, "reach", 1.0f, within(0.01f, 1.0f),
       "with 'projected': radius of the pattern as a share of the half turn around a light, or of the width of the view of a directional light, with 'published' of a spot light too"};
@@ -85,73 +89,45 @@ class GatherPass : public Pass {
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::nothing,
                      "indirect light reflected by the diffuse lobe, without occlusion, W/(sr m^2)"};
 
+  bool uses(const InBase& input) const override {
+    if (&input == &lights) return method == Method::lights;
+    return &input != &map || method != Method::lights;
+  }
+
   void run(PassContext& frame) override {
     diffuse = Image{frame.image("indirect diffuse radiance")};
-    if (!map.present() || map->lightCount == 0) {
+    const bool dark = method == Method::lights ? !lights.present() || lights->count == 0
+                                               : !map.present() || map->lightCount == 0;
+    if (dark) {
       diffuse->texture->clear(glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
       return;
     }
-    gather::Parameters parameters{.width = map->flux->description().width,
-                                  .samples = samples,
-                                  .lightCount = map->lightCount,
-                                  .reach = reach};
-    gather::Variant variant;
-    gpu::BufferRef chosen;
-    if (method == Method::flux) {
-      variant.method = gather::Variant::methodChosen;
-      chosen = choose(frame, parameters.width, map->layerCount);
-    } else {
-      variant.method = method == Method::all ? gather::Variant::methodAll : gather::Variant::methodProjected;
-      parameters.samples = std::max(samples / map->lightCount, 1);
-      parameters.publishedScale = weights == Weights::published ? publishedScale(parameters.samples) : 0.0f;
-    }
-    const auto add = [&] {
-      frame.dispatch(
-          frame.program(variant),
-          {gather::parameters(parameters), GBufferBinding(*gbuffer), ReflectiveShadowMapBinding(*map),
-           gather::chosen(chosen), gather::diffuseImage(diffuse->texture)},
-          pixels(frame));
+    gather::Parameters parameters{};
+    const auto add = [&](int axis, const shader::BindingSet& from) {
+      frame.dispatch(frame.program(gather::Variant{axis}),
+                     {gather::parameters(parameters), GBufferBinding(*gbuffer), from,
+                      gather::diffuseImage(diffuse->texture)},
+                     pixels(frame));
     };
-    if (method != Method::all) return add();
-    diffuse->texture->clear(glm::vec4(0.0f));
-    forEachPortion(parameters.width * map->layerCount, parameters.width, [&](int first, int count) {
-      parameters.firstRow = first;
-      parameters.rows = count;
-      add();
-    });
-  }
-
-  /// Texels in proportion to their flux, as SurfaceLight, by a tree of sums (sum_tree.glsl).
-  gpu::BufferRef choose(PassContext& frame, int width, int layers) {
-    const auto count = static_cast<std::uint32_t>(static_cast<int>(samples));
-    const auto side = static_cast<std::uint32_t>(width);
-    // From the texels to the root.
-    std::vector<std::uint32_t> sizes{side * side * static_cast<std::uint32_t>(layers)};
-    std::uint32_t total = 0;
-    do {
-      sizes.push_back((sizes.back() + kFan - 1) / kFan);
-      total += sizes.back();
-    } while (sizes.back() > 1);
-    const gpu::BufferRef tree = frame.elements(choose::tree, total, "sums of flux");
-    const gpu::BufferRef chosen = frame.elements(choose::chosen, count, "chosen texels");
+    const auto addAll = [&](int items, int turns, int axis, const shader::BindingSet& from) {
+      forEachPortion(items, turns, [&](int first, int count) {
+        parameters.first = first;
+        parameters.count = count;
+        add(axis, from);
+      });
+    };
+    using Variant = gather::Variant;
+    if (method == Method::lights)
+      return addAll(lights->count, 0, Variant::methodLights, {gather::taken(lights->lights)});
+    parameters.width = map->flux->description().width;
     const ReflectiveShadowMapBinding texels(*map);
-    std::uint32_t firstOfAddends = 0, firstOfSums = total;
-    for (std::size_t level = 1; level < sizes.size(); ++level) {
-      firstOfSums -= sizes[level];
-      using Variant = accumulate::Variant;
-      const Variant variant{level == 1 ? Variant::ofTexels : Variant::ofSums};
-      frame.dispatchList(frame.program(variant),
-                         {accumulate::parameters({sizes[level - 1], side, firstOfAddends, firstOfSums}),
-                          texels, accumulate::tree(tree)},
-                         sizes[level]);
-      firstOfAddends = firstOfSums;
-    }
-    const auto levels = static_cast<std::uint32_t>(sizes.size() - 1);
-    frame.dispatchList(frame.program(choose::kProgram),
-                       {choose::parameters({sizes.front(), side, levels, count}), texels, choose::tree(tree),
-                        choose::chosen(chosen)},
-                       count);
-    return chosen;
+    if (method == Method::all)
+      return addAll(parameters.width * map->layerCount, parameters.width, Variant::methodAll, texels);
+    parameters.lightCount = map->lightCount;
+    parameters.samples = std::max(samples / map->lightCount, 1);
+    parameters.reach = reach;
+    parameters.publishedScale = weights == Weights::published ? publishedScale(parameters.samples) : 0.0f;
+    add(Variant::methodProjected, texels);
   }
 };
 
@@ -165,6 +141,7 @@ LUMIVOX_TECHNIQUE(registry) {
   registry.add<RenderPass>(
       "render",
       "Position, normal and reflected flux as seen from each light (Dachsbacher & Stamminger 2005, Sec. 4.1)");
+  addChoose(registry);
   registry.add<GatherPass>(
       "gather", "One bounce from texels of the map, unoccluded (Dachsbacher & Stamminger 2005, Sec. 3.2)");
 }

@@ -13,6 +13,7 @@
 #include "changed_cells.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/toolkit/room.h"
 #include "lumivox/toolkit/bindings.h"
 
 namespace lumivox::voxel_cone_tracing {
@@ -59,21 +60,6 @@ std::uint64_t brickBytes(const VoxelOctree& tree, int depth, const VoxelBytes& v
   return bricks * static_cast<std::uint64_t>(tree.brickVoxels()) * voxel.texels + 8 * leaves * voxel.sums;
 }
 
-/// Why so many bytes cannot be had; empty where they can. They are given back at once.
-std::string whyNot(PassContext& frame, std::uint64_t bytes) {
-  try {
-    std::vector<std::unique_ptr<gpu::Buffer>> taken;
-    for (const std::uint64_t most = frame.device().info().maxStorageBytes; bytes > 0;) {
-      const std::uint64_t some = std::min(bytes, most);
-      taken.push_back(std::make_unique<gpu::Buffer>(frame.device(), some, "room for an octree"));
-      bytes -= some;
-    }
-    return {};
-  } catch (const Error& error) {
-    return error.what();
-  }
-}
-
 }  // namespace
 
 void requireRoom(PassContext& frame, const VoxelOctree& tree, const VoxelBytes& voxel, bool holdsTree) {
@@ -85,7 +71,7 @@ void requireRoom(PassContext& frame, const VoxelOctree& tree, const VoxelBytes& 
     return some.tags + some.nodes + brickBytes(tree, depth, voxel);
   };
   const auto missing = [&](int depth) {
-    return whyNot(frame, bytesOf(depth) - std::min(bytesOf(depth), held));
+    return whyNoRoom(frame, bytesOf(depth) - std::min(bytesOf(depth), held));
   };
   const std::string why = missing(tree.depth);
   if (why.empty()) return;

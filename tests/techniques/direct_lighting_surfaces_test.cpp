@@ -2,6 +2,7 @@
 // masks.
 #include <glm/gtc/constants.hpp>
 
+#include "lumivox/pipeline/pass.h"
 #include "support/scene_builder.h"
 #include "support/techniques.h"
 
@@ -177,4 +178,28 @@ TEST_CASE(
           CHECK_THAT(shifted.at(x, y, c),
                      WithinRel(finer.at(kFiner * x + part.x, kFiner * y + part.y, c), 1e-3f));
   }
+}
+
+TEST_CASE("a g-buffer tells of each pixel what moves together, 0 where it stands still") {
+  SceneBuilder builder = floorOf({});
+  const int white = builder.lambert(0.5f);
+  for (int i = 0; i < 3; ++i) {
+    Object& tile =
+        builder.quad({-0.8f + 0.6f * static_cast<float>(i), 0.1f, -0.2f}, {0, 0, 0.4f}, {0.4f, 0, 0}, white);
+    tile.motion = RigidMotion{};
+    tile.motion->angularSpeed = i == 1 ? 2.0 : 1.0;  // the first and the last turn together
+  }
+  PassHarness harness(device(), techniques(), "direct_lighting", "gbuffer", builder.scene,
+                      snapshotOf(builder.scene, 0.0));
+  harness.run();
+  const GBuffer gbuffer = harness.output<GBuffer>("gbuffer");
+  const std::vector<float> normals = gbuffer.geometricNormal->downloadFloats(0);
+  const auto modelAt = [&](double x, double z) {
+    const auto pixel = [](double at) { return static_cast<std::size_t>((0.5 + 0.5 * at) * kSide); };
+    return normals[4 * (pixel(z) * kSide + pixel(x)) + 3];
+  };
+  CHECK(modelAt(-0.6, 0.0) == 1.0f);
+  CHECK(modelAt(0.0, 0.0) == 2.0f);
+  CHECK(modelAt(0.6, 0.0) == 1.0f);
+  CHECK(modelAt(0.0, 0.6) == 0.0f);
 }

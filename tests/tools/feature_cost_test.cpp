@@ -267,15 +267,15 @@ TEST_CASE("a scene pays for what it uses and nothing else: reflective shadow map
              {
                  {"cut-out mask", {"gbuffer MASKS=1", "render MASKS=1", "shadow_map MASKS=1"}},
                  {"emission",
-                  {"bytes gather", "bytes gbuffer", "bytes lights", "bytes shadow", "gbuffer EMISSION=1",
+                  {"bytes choose", "bytes gbuffer", "bytes lights", "bytes shadow", "gbuffer EMISSION=1",
                    "shade EMISSION=1"}},
                  {"glossy material", {"bytes gbuffer", "gbuffer GLOSSY=1", "shade GLOSSY=1"}},
                  {"moving camera", {"again compose", "again direct", "again gather", "again gbuffer"}},
                  {"moving object",
-                  {"again compose", "again direct", "again gather", "again gbuffer", "again lights",
-                   "again shadow"}},
-                 {"spot", {"bytes gather", "bytes lights", "bytes shadow"}},
-                 {"sun", {"bytes gather", "bytes lights", "bytes shadow"}},
+                  {"again choose", "again compose", "again direct", "again gather", "again gbuffer",
+                   "again lights", "again shadow"}},
+                 {"spot", {"bytes choose", "bytes lights", "bytes shadow"}},
+                 {"sun", {"bytes choose", "bytes lights", "bytes shadow"}},
                  {"texture", {"gbuffer TEXTURES=1", "render TEXTURES=1"}},
              });
 }

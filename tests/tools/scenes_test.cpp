@@ -44,7 +44,7 @@ std::vector<fs::path> committedScenes() {
 const std::set<std::string> kOwnScenes = {"cornell", "cornell_glossy", "arcade",        "corridor",
                                           "furnace", "spinning_box",   "hidden_sender", "waving_cloth",
                                           "vase",    "urn_fine",       "urn_coarse",    "glossy_sphere",
-                                          "chess"};
+                                          "chess",   "exponents"};
 bool isOwn(const fs::path& scene) {
   return kOwnScenes.count(scene.stem().string()) != 0 || scene.parent_path().filename() == "stress" ||
          scene.parent_path().filename() == "untuned" || scene.parent_path().filename() == "examples";
@@ -314,6 +314,35 @@ TEST_CASE("the urns are the same body, fine and coarse, and stand on their table
     CHECK(highest == Approx(0.44).margin(1e-4));
     CHECK(widest == Approx(0.15).margin(2e-3));
   }
+}
+
+TEST_CASE("six panels of one width have exponents from 1 to 100 000, and the sun lights the floor alone") {
+  const Scene scene = load("exponents");
+  std::vector<float> exponents;
+  for (const Object& object : scene.objects) {
+    const Material& material = scene.materials[static_cast<std::size_t>(object.parts.front().material)];
+    if (material.glossy()) exponents.push_back(material.exponent);
+  }
+  CHECK(exponents == std::vector<float>{1, 10, 100, 1000, 10000, 100000});
+  CHECK(scene.lights.front().direction == glm::dvec3(0, -1, 0));
+}
+
+TEST_CASE("stacked plates lie in one line below the lit ceiling, and the spot shines away from them") {
+  const Scene scene = load("stress/stacked_plates");
+  const SceneSnapshot snapshot = snapshotOf(scene, 0.0);
+  std::vector<glm::vec3> middles;
+  for (const char* name : {"lower", "middle", "upper"})
+    for (std::size_t i = 0; i < scene.objects.size(); ++i)
+      if (scene.objects[i].name.starts_with(name))
+        middles.push_back(glm::vec3(snapshot.objects[i].toWorld * glm::vec4(0.5f, 0.5f, 0.5f, 1.0f)));
+  REQUIRE(middles.size() == 3);
+  for (const glm::vec3& middle : middles) {
+    CHECK(middle.x == Approx(middles[0].x));
+    CHECK(middle.z == Approx(middles[0].z));
+    CHECK(static_cast<double>(middle.y) + snapshot.origin.y < scene.lights.front().position.y);
+  }
+  CHECK(middles[2].y - middles[1].y == Approx(middles[1].y - middles[0].y));
+  CHECK(scene.lights.front().direction == glm::dvec3(0, 1, 0));
 }
 
 TEST_CASE("one chess piece glides along the board, and the other stands") {

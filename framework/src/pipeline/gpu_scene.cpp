@@ -6,6 +6,7 @@
 #include <cassert>
 
 #include "gpu/memory.h"
+#include "lumivox/scene/models.h"
 
 namespace lumivox {
 namespace {
@@ -110,6 +111,7 @@ GpuScene::GpuScene(gpu::Device& device, const Scene& scene) : state_(new State{}
   s.white = whiteTextureOf(device);
   for (const SurfaceTexture& texture : scene.textures) s.textures.push_back(sharedTextureOf(device, texture));
 
+  const std::vector<std::uint32_t> models = modelsOf(scene);
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     s.firstVertices.push_back(scene.objects[o].firstVertex);
     for (const Part& part : scene.objects[o].parts) {
@@ -119,7 +121,7 @@ GpuScene::GpuScene(gpu::Device& device, const Scene& scene) : state_(new State{}
       };
       s.draws.push_back({static_cast<int>(o), part.material, part.firstIndex, part.indexCount,
                          textureOf(material.diffuseTexture), textureOf(material.maskTexture),
-                         scene.objects[o].animated()});
+                         scene.objects[o].animated(), models[o]});
     }
   }
 }

@@ -3,6 +3,7 @@
 // resource. GLSL side: shaders/common/scene.glsl.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct SceneDraw {
   const gpu::Texture* diffuseTexture = nullptr;  ///< null: none
   const gpu::Texture* maskTexture = nullptr;
   bool moving = false;
+  std::uint32_t model = 0;  ///< modelsOf() of scene/models.h
 };
 
 class GpuScene {

@@ -17,7 +17,10 @@
 #include "lumivox/pipeline/ports/scattering_grid.h"
 #include "lumivox/pipeline/ports/sh_grid.h"
 #include "lumivox/pipeline/ports/shadow_map.h"
+#include "lumivox/pipeline/ports/sparse_light.h"
 #include "lumivox/pipeline/ports/surface_elements.h"
+#include "lumivox/pipeline/ports/surface_lights.h"
+#include "lumivox/pipeline/ports/surface_points.h"
 #include "lumivox/pipeline/ports/voxel_fragments.h"
 
 namespace lumivox {
@@ -30,6 +33,7 @@ struct PortList {
 };
 using FrameworkPorts = PortList<Image, GBuffer, ShadowMap, ReflectiveShadowMap, VoxelFragments, OccupancyGrid,
                                 BinaryGrid, AttributeGrid, RadianceGrid, ShGrid, Particles, ScatteringGrid,
-                                SurfaceElements, ElementLinks, ElementLight>;
+                                SurfaceElements, ElementLinks, ElementLight, SurfacePoints,
+                                SurfaceLights, SparseLight>;
 
 }  // namespace lumivox

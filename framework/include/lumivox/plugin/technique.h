@@ -15,7 +15,7 @@
 
 namespace lumivox {
 
-inline constexpr std::uint32_t kTechniqueApiVersion = 4;
+inline constexpr std::uint32_t kTechniqueApiVersion = 5;
 
 /// Plain data, C layout: compared member by member before anything else is called.
 struct TechniqueVersionRecord {

@@ -23,7 +23,10 @@ struct PortTraits<GBuffer> {
             {{"position", "d2 rgba32f", "posWorld, m; w = 1 where something was hit, else 0", kAny},
              {"normal", "d2 rgba32f",
               "unit shading normal facing the camera; w = 1 when the front side is seen, 0 back side", kAny},
-             {"geometricNormal", "d2 rgba32f", "unit normal of the triangle facing the camera", kAny},
+             {"geometricNormal", "d2 rgba32f",
+              "unit normal of the triangle facing the camera; w = model: what moves together, 0 what stands "
+              "still",
+              kAny},
              {"diffuse", "d2 rgba32f", "diffuse albedo"},
              {"specular", "d2 rgba32f", "Phong albedo, exponent in w; null where nothing is glossy"},
              {"emission", "d2 rgba32f", "emitted radiance towards the camera; null where nothing emits"}}};

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "lumivox/pipeline/port.h"
+#include "lumivox/pipeline/ports/surface_points.h"
+
+namespace lumivox {
+
+/// The light of many small lights as one for each point of SurfacePoints and lobe (Lensing and Broll 2013,
+/// Sec. 3.2). Point i is texel (i % kWidth, i / kWidth).
+struct SparseLight {
+  static constexpr int kWidth = SurfacePoints::kWidth;
+  gpu::TextureRef diffuse, diffusePosition;
+  gpu::TextureRef glossy, glossyPosition;  ///< null where nothing is glossy
+};
+
+template <>
+struct PortTraits<SparseLight> {
+  static PortKind kind() {
+    constexpr auto kAny = PortResource::Sign::any;
+    return {
+        "SparseLight",
+        "the light of many small lights as one for each surface point and lobe",
+        {{"diffuse", "d2 rgba32f, a texel a point",
+          "xyz radiance of the averaged light, W/(sr m^2): times the albedo, what the point reflects; once "
+          "normalised, what it reflects divided by the cosine of the averaged light; w radiance of the brightest place that lights it"},
+         {"diffusePosition", "d2 rgba32f, a texel a point",
+          "xyz place of the averaged light, posWorld, m; w radius of the sphere that stands for it, m", kAny},
+         {"glossy", "d2 rgba32f, a texel a point",
+          "the same for the Phong lobe towards the camera; w 1 + exponent of the lobe, 0 without one"},
+         {"glossyPosition", "d2 rgba32f, a texel a point", "the same for the Phong lobe", kAny}}};
+  }
+  static void contents(const SparseLight& port, PortContents& contents) {
+    contents.texture("diffuse", port.diffuse);
+    contents.texture("diffusePosition", port.diffusePosition);
+    contents.texture("glossy", port.glossy);
+    contents.texture("glossyPosition", port.glossyPosition);
+  }
+};
+
+}  // namespace lumivox

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <algorithm>
+#include <memory>
+
+#include "lumivox/pipeline/port.h"
+#include "lumivox/scene/surface_points.h"
+
+namespace lumivox {
+
+/// Points spread over the surfaces, which move with them (scene/surface_points.h). Point i is texel (i %
+/// kWidth, i / kWidth); texels behind the last one hold zeros. The grid lists, cell by cell, every point that
+/// may be among the `neighbours` nearest of some place of the surface in the cell, of any model and on either
+/// side; cells are numbered with x fastest. GLSL side: shaders/common/surface_points.glsl.
+struct SurfacePoints {
+  static constexpr int kWidth = 1024;
+  gpu::TextureRef position, normal, radius;
+  GridPlacement grid;
+  gpu::BufferRef cells, candidates;
+  int count = 0;
+  int neighbours = 0;     ///< that the grid was made for: at most so many are found
+  float spacing = 0.0f;   ///< m: side of the square that a point stands for, in the mean, at rest
+  float farthest = 0.0f;  ///< m: how far away neighbours are sought; the nearest one may be farther
+  std::shared_ptr<const SurfacePointSet> set;
+  std::shared_ptr<const SurfacePointState> state;
+
+  /// Texels of a texture with a value for each of so many points.
+  static glm::ivec2 sizeFor(int points) { return {kWidth, std::max((points + kWidth - 1) / kWidth, 1)}; }
+};
+
+template <>
+struct PortTraits<SurfacePoints> {
+  static PortKind kind() {
+    constexpr auto kAny = PortResource::Sign::any;
+    return {
+        "SurfacePoints",
+        "points spread evenly over the surfaces, on both sides of the border to the device",
+        {{"position", "d2 rgba32f, a texel a point",
+          "xyz posWorld, m; w area of the surface that it stands for, m^2", kAny},
+         {"normal", "d2 rgba32f, a texel a point",
+          "xyz unit normal to the point's side; w model, 0: all that stands still", kAny},
+         {"radius", "d2 rgba32f, a texel a point",
+          "x farthest place that it stands for, m; y Phong exponent; z 1 where the surface is glossy, else "
+          "0; w 1 for a front side, 0 for the back of a point at the same place"},
+         {"cells", "buffer", "uint a cell: where its list begins in `candidates`; and one more"},
+         {"candidates", "buffer", "uint each: numbers of points, growing in a cell"}}};
+  }
+  static void contents(const SurfacePoints& port, PortContents& contents) {
+    contents.texture("position", port.position);
+    contents.texture("normal", port.normal);
+    contents.texture("radius", port.radius);
+    contents.buffer("cells", port.cells);
+    contents.buffer("candidates", port.candidates);
+  }
+};
+
+}  // namespace lumivox

@@ -1,0 +1,21 @@
+#include "lumivox/scene/models.h"
+
+namespace lumivox {
+
+std::vector<std::uint32_t> modelsOf(const Scene& scene) {
+  std::vector<std::uint32_t> models(scene.objects.size(), 0);
+  std::uint32_t last = 0;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const Object& object = scene.objects[i];
+    if (!object.animated()) continue;
+    for (std::size_t j = 0; j < i && models[i] == 0; ++j) {
+      const Object& other = scene.objects[j];
+      if (other.animated() && !object.sequence && !other.sequence && object.motion == other.motion)
+        models[i] = models[j];
+    }
+    if (models[i] == 0) models[i] = ++last;
+  }
+  return models;
+}
+
+}  // namespace lumivox

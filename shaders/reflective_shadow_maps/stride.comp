@@ -1,0 +1,22 @@
+#version 450
+// Every so many texels along both axes of each layer, the one in the middle of its square, as lights that stand for their squares.
+layout(local_size_x = 64) in;
+#include "common/list.glsl"
+#include "taken.glsl"
+
+layout(std140, binding = 0) uniform Parameters {
+  int width;   // texels along a side of a layer
+  int stride;
+  int across;  // squares along a side of a layer
+  int count;   // of all layers
+  int facing;  // 1: areas as if texels faced the light
+};
+
+void main() {
+  uint index = listIndex();
+  if (index >= uint(count)) return;
+  ivec3 square = ivec3(int(index) % across, int(index) / across % across, int(index) / across / across);
+  // At the borders a square may be cut off.
+  ivec2 first = square.xy * stride, size = min(ivec2(stride), width - first);
+  taken[index] = texelLight(ivec3(first + size / 2, square.z), float(size.x * size.y), facing != 0);
+}

@@ -1,0 +1,101 @@
+// Sec. 3.2 step 3 (Eq. 12, 13): the averaged lights of the nearest points as one.
+#ifndef LUMIVOX_INTERPOLATE
+#define LUMIVOX_INTERPOLATE
+#define POINT_CANDIDATES
+#include "common/surface_points.glsl"
+
+const int kMostNeighbours = 32;  // of the pass 'points'
+
+struct Nearest {
+  uint points[kMostNeighbours];
+  float distancesSquared[kMostNeighbours];
+  int count;
+};
+
+// What is seen.
+struct SeenSurface {
+  vec3 position, normal;
+  float model;
+};
+
+void keep(inout Nearest nearest, uint point, float distanceSquared, int neighbours) {
+  // From the farthest on; points come by growing numbers, so that of equal distances the first stays.
+  if (nearest.count == neighbours && distanceSquared >= nearest.distancesSquared[neighbours - 1]) return;
+  int place = min(nearest.count, neighbours - 1);
+  for (; place > 0 && nearest.distancesSquared[place - 1] > distanceSquared; --place) {
+    nearest.points[place] = nearest.points[place - 1];
+    nearest.distancesSquared[place] = nearest.distancesSquared[place - 1];
+  }
+  nearest.points[place] = point;
+  nearest.distancesSquared[place] = distanceSquared;
+  nearest.count = min(nearest.count + 1, neighbours);
+}
+
+// The nearest points of the same model and side, none farther than where all are listed, unless it is the only one; with an exponent of 0
+// or more only those that reflect by it.
+Nearest nearestPoints(SeenSurface seen, float exponent, int neighbours) {
+  Nearest nearest;
+  nearest.count = 0;
+  uvec2 candidates = candidatesAt(seen.position);
+  for (uint i = candidates.x; i < candidates.y; ++i) {
+    uint point = pointCandidates[i];
+    ivec2 texel = pointTexel(point);
+    vec4 normal = texelFetch(pointNormal, texel, 0);
+    if (normal.w != seen.model || !onSameSide(seen.normal, normal.xyz)) continue;
+    if (exponent >= 0.0) {
+      vec4 radius = texelFetch(pointRadius, texel, 0);
+      if (radius.y != exponent || radius.z == 0.0) continue;
+    }
+    vec3 path = texelFetch(pointPosition, texel, 0).xyz - seen.position;
+    keep(nearest, point, dot(path, path), neighbours);
+  }
+  while (nearest.count > 1 && nearest.distancesSquared[nearest.count - 1] > pointFarthest * pointFarthest) --nearest.count;
+  return nearest;
+}
+
+// Weight of a neighbour by Eq. 12, or of its normal alone. Distances that differ by their rounding are equal.
+float neighbourWeight(SeenSurface seen, Nearest nearest, int i, bool byDistance) {
+  const float kRounding = 1e-5;
+  float alike = max(0.0, dot(seen.normal, texelFetch(pointNormal, pointTexel(nearest.points[i]), 0).xyz));
+  if (!byDistance) return alike;
+  float farthest = nearest.distancesSquared[nearest.count - 1];
+  float near = farthest > 0.0 ? 1.0 - sqrt(nearest.distancesSquared[i] / farthest) : 0.0;
+  return near > kRounding ? alike * near : 0.0;
+}
+
+struct AveragedLight {
+  vec4 light;  // rgb; w: of a glossy one 1 + exponent
+  vec3 place;
+};
+
+// Cosine at a surface of a light at `place`, 0 behind the surface and at it.
+float cosineTo(vec3 place, vec3 position, vec3 normal) {
+  vec3 path = place - position;
+  float distanceSquared = dot(path, path);
+  return distanceSquared > 0.0 ? max(0.0, dot(path, normal) * inversesqrt(distanceSquared)) : 0.0;
+}
+
+// `strict`: the light of points that reflect nothing towards the camera (w = 0) does not count. `plain`: of what points reflect, in place
+// of their lights.
+AveragedLight interpolated(SeenSurface seen, Nearest nearest, sampler2D lights, sampler2D places, bool strict, bool plain) {
+  vec4 light = vec4(0.0);
+  vec3 offset = vec3(0.0);  // from what is seen, so that nothing is lost far from the origin
+  float weights = 0.0;
+  // By Eq. 12; where all weights are 0 by the normals alone; where these are too, the nearest.
+  for (int attempt = 0; attempt < 3 && weights <= 0.0; ++attempt)
+    for (int i = 0; i < nearest.count; ++i) {
+      float weight = attempt == 2 ? (weights > 0.0 ? 0.0 : 1.0) : neighbourWeight(seen, nearest, i, attempt == 0);
+      if (!(weight > 0.0)) continue;
+      ivec2 texel = pointTexel(nearest.points[i]);
+      vec4 here = texelFetch(lights, texel, 0);
+      if (strict && here.w <= 0.0) continue;
+      vec3 place = texelFetch(places, texel, 0).xyz;
+      if (plain) here.rgb *= cosineTo(place, texelFetch(pointPosition, texel, 0).xyz, texelFetch(pointNormal, texel, 0).xyz);
+      light += weight * here;
+      offset += weight * (place - seen.position);
+      weights += weight;
+    }
+  if (weights <= 0.0) return AveragedLight(vec4(0.0), seen.position);
+  return AveragedLight(light / weights, seen.position + offset / weights);
+}
+#endif

@@ -1,0 +1,99 @@
+#version 450
+// Sec. 3.3: how much of the sphere that stands for the averaged light is hidden from each point by the discs of all others.
+#pragma lumivox axis COMBINE product sum nearest mask
+layout(local_size_x = 64) in;
+#include "common/list.glsl"
+#include "common/surface_points.glsl"
+#include "discs.glsl"
+#include "squares.glsl"
+
+layout(std140, binding = 0) uniform Parameters {
+  int firstOccluder, occluders;  // that this dispatch looks at
+  int begins, ends;              // whether none was looked at before, and none is to come
+  int published;                 // the sphere's form factor as printed
+};
+layout(binding = 0) uniform sampler2D lights;
+layout(binding = 1) uniform sampler2D places;
+layout(std430, binding = 0) buffer States { uvec2 states[]; };  // between dispatches
+layout(binding = 0, rgba32f) uniform writeonly image2D occludedImage;
+
+// What is covered so far. x: product: what is open; sum: what is covered; nearest: what the nearest covers, y at which distance squared.
+#if COMBINE == COMBINE_MASK
+#define State uvec2
+#else
+#define State vec2
+#endif
+
+void main() {
+  uint index = listIndex();
+  if (index >= uint(pointCount)) return;
+  ivec2 texel = pointTexel(index);
+  vec4 light = texelFetch(lights, texel, 0), place = texelFetch(places, texel, 0);
+  vec3 position = texelFetch(pointPosition, texel, 0).xyz, normal = texelFetch(pointNormal, texel, 0).xyz;
+#if COMBINE == COMBINE_MASK
+  State state = begins != 0 ? uvec2(0u) : states[index];
+#elif COMBINE == COMBINE_PRODUCT
+  State state = begins != 0 ? vec2(1.0, 0.0) : uintBitsToFloat(states[index]);
+#else
+  State state = begins != 0 ? vec2(0.0, 3.4e38) : uintBitsToFloat(states[index]);
+#endif
+  vec3 path = place.xyz - position;
+  float distanceSquared = dot(path, path), radius = place.w;
+  float formFactor = 0.0;
+  vec3 toLight = normal;
+  if (distanceSquared > 0.0) toLight = path * inversesqrt(distanceSquared);
+  if (any(greaterThan(light.rgb, vec3(0.0)))) formFactor = sphereFormFactor(dot(normal, toLight), radius * radius, distanceSquared, published != 0);
+  if (formFactor > 0.0) {
+    float distance = sqrt(distanceSquared);
+    vec3 helper = abs(normal.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    vec3 tangent = normalize(cross(helper, normal)), binormal = cross(normal, tangent);
+    Square sphere = squareOf(toLight, formFactor, tangent, binormal);
+    for (int i = firstOccluder; i < firstOccluder + occluders; ++i) {
+      ivec2 other = pointTexel(uint(i));
+      vec3 toDisc = texelFetch(pointPosition, other, 0).xyz - position;
+      float discDistanceSquared = dot(toDisc, toDisc);
+      float above = dot(toDisc, normal);
+      // Most are below the surface, or behind the light's middle.
+      if (!(above > 0.0) || discDistanceSquared >= distanceSquared) continue;
+      float discDistance = sqrt(discDistanceSquared);
+      vec3 direction = toDisc / discDistance;
+      // The side that is seen counts: the other side of an open surface is a point of its own, and a body would hide twice.
+      float cosAtDisc = -dot(direction, texelFetch(pointNormal, other, 0).xyz);
+      if (!(cosAtDisc > 0.0)) continue;
+      float discRadius = texelFetch(pointRadius, other, 0).x;
+      Square disc = squareOf(direction, discWidth(kPi * discRadius * discRadius, cosAtDisc, discDistanceSquared) * above / discDistance,
+                             tangent, binormal);
+      // From the near side of the sphere to its middle less and less.
+      float before = radius > 0.0 ? min(1.0, (distance - discDistance) / radius) : 1.0;
+#if COMBINE == COMBINE_MASK
+      disc.side *= sqrt(before);
+      state |= coveredBits(sphere, disc);
+#else
+      float covered = before * coveredShare(sphere, disc);
+#if COMBINE == COMBINE_PRODUCT
+      state.x *= 1.0 - covered;
+#elif COMBINE == COMBINE_SUM
+      state.x += covered;
+#else
+      if (covered > 0.0 && discDistanceSquared < state.y) state = vec2(covered, discDistanceSquared);
+#endif
+#endif
+    }
+  }
+  if (ends == 0) {
+#if COMBINE == COMBINE_MASK
+    states[index] = state;
+#else
+    states[index] = floatBitsToUint(state);
+#endif
+    return;
+  }
+#if COMBINE == COMBINE_MASK
+  float open = 1.0 - float(bitCount(state.x) + bitCount(state.y)) / 64.0;
+#elif COMBINE == COMBINE_PRODUCT
+  float open = state.x;
+#else
+  float open = max(0.0, 1.0 - state.x);
+#endif
+  imageStore(occludedImage, texel, vec4(light.rgb * open, light.w));
+}

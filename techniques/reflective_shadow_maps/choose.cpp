@@ -1,0 +1,123 @@
+// Which texels of what the lights see are taken as lights.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "lumivox/base/error.h"
+#include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/room.h"
+#include "passes.h"
+#include "reflective_shadow_maps_shaders.h"
+
+namespace lumivox::reflective_shadow_maps {
+namespace {
+
+using namespace shaders::reflective_shadow_maps;
+
+constexpr std::uint32_t kFan = 16;  // kFan in sum_tree.glsl
+
+/// Texels of all layers together; the tree of sums numbers them.
+std::uint32_t texelsOf(const ReflectiveShadowMap& map) {
+  const gpu::TextureDescription& flux = map.flux->description();
+  return static_cast<std::uint32_t>(flux.width) * static_cast<std::uint32_t>(flux.height) *
+         static_cast<std::uint32_t>(flux.depth);
+}
+
+class ChoosePass : public Pass {
+  enum class Method { flux, stride };
+  enum class Area { surface, facing };
+
+  In<ReflectiveShadowMap> map{this, "map", Presence::optional,
+                              "what the lights see; without it there are no lights"};
+  Param<Method> method{
+      this, "method", Method::flux,
+      "flux: 'lights' texels in proportion to their flux; stride: every so many along both axes, each with the flux and the area of its square (Lensing & Broll 2013: all, a stride of 1)"};
+  Param<int> wanted{this, "lights", 1024, within(1, 1048576), "with 'flux': texels that are taken"};
+  Param<int> stride{this, "stride", 1, within(1, 4096),
+                    "with 'stride': side of a square of texels that one stands for"};
+  Param<Area> area{
+      this, "area", Area::surface,
+      "surface: that of the surface which a texel stands for; facing: what it would be if the texel faced the light (Lensing & Broll 2013, Sec. 4.1)"};
+  Out<SurfaceLights> lights{this, "lights", "texels as lights on surfaces"};
+
+  void run(PassContext& frame) override {
+    if (!map.present() || map->lightCount == 0) {
+      lights = SurfaceLights{frame.emptyElements(choose::taken, 1, "no lights"), 0};
+      return;
+    }
+    requireAreas(*map);
+    lights = method == Method::flux ? byFlux(frame) : byStride(frame);
+  }
+
+  static void requireAreas(const ReflectiveShadowMap& map) {
+    for (const gpu::TextureRef& texture : {map.position, map.normal})
+      if (map.flux == nullptr || texture == nullptr || !(texture->description() == map.flux->description()))
+        throw Error(
+            "the map lacks positions, or normals with areas: expected textures of the size and format of its "
+            "flux, as reflective_shadow_maps.render makes them");
+  }
+
+  static gpu::BufferRef room(PassContext& frame, int count) {
+    const auto bytesOf = [](int lights) {
+      return std::vector{choose::taken.elementBytes * static_cast<std::uint64_t>(lights)};
+    };
+    // What is small is simply taken.
+    if (count > 65536) requireRoom(frame, count, bytesOf, "lights on surfaces");
+    return frame.elements(choose::taken, static_cast<std::uint64_t>(count), "lights on surfaces");
+  }
+
+  /// By a tree of sums (sum_tree.glsl).
+  SurfaceLights byFlux(PassContext& frame) const {
+    const auto count = static_cast<std::uint32_t>(static_cast<int>(wanted));
+    const auto side = static_cast<std::uint32_t>(map->flux->description().width);
+    // From the texels to the root.
+    std::vector<std::uint32_t> sizes{texelsOf(*map)};
+    std::uint32_t total = 0;
+    do {
+      sizes.push_back((sizes.back() + kFan - 1) / kFan);
+      total += sizes.back();
+    } while (sizes.back() > 1);
+    const SurfaceLights result{room(frame, wanted), wanted, map->lightCount};
+    const gpu::BufferRef tree = frame.elements(choose::tree, total, "sums of flux");
+    const ReflectiveShadowMapBinding texels(*map);
+    std::uint32_t firstOfAddends = 0, firstOfSums = total;
+    for (std::size_t level = 1; level < sizes.size(); ++level) {
+      firstOfSums -= sizes[level];
+      using Variant = accumulate::Variant;
+      const Variant variant{level == 1 ? Variant::ofTexels : Variant::ofSums};
+      frame.dispatchList(frame.program(variant),
+                         {accumulate::parameters({sizes[level - 1], side, firstOfAddends, firstOfSums}),
+                          texels, accumulate::tree(tree)},
+                         sizes[level]);
+      firstOfAddends = firstOfSums;
+    }
+    const auto levels = static_cast<std::uint32_t>(sizes.size() - 1);
+    frame.dispatchList(
+        frame.program(choose::kProgram),
+        {choose::parameters({sizes.front(), side, levels, count, area == Area::facing ? 1 : 0}), texels,
+         choose::tree(tree), choose::taken(result.lights)},
+        count);
+    return result;
+  }
+
+  SurfaceLights byStride(PassContext& frame) const {
+    const gpu::TextureDescription& flux = map->flux->description();
+    const int across = (flux.width + stride - 1) / stride, count = across * across * flux.depth;
+    const SurfaceLights result{room(frame, count), count, map->lightCount};
+    frame.dispatchList(frame.program(stride::kProgram),
+                       {stride::parameters({flux.width, stride, across, count, area == Area::facing ? 1 : 0}),
+                        ReflectiveShadowMapBinding(*map), stride::taken(result.lights)},
+                       static_cast<std::uint64_t>(count));
+    return result;
+  }
+};
+
+}  // namespace
+
+void addChoose(TechniqueRegistry& registry) {
+  registry.add<ChoosePass>("choose",
+                           "Texels of the map as lights on surfaces, in proportion to their flux or evenly");
+}
+
+}  // namespace lumivox::reflective_shadow_maps

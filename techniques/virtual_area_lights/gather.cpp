@@ -1,0 +1,123 @@
+// The light of all virtual area lights at every sparse point, and as one averaged light for each lobe
+// (Lensing and Broll 2013, Sec. 3.1, 3.2 step 1 and 4.2).
+#include <array>
+
+#include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/loop_limit.h"
+#include "passes.h"
+#include "sparse_texture.h"
+#include "virtual_area_lights_shaders.h"
+
+namespace lumivox::virtual_area_lights {
+namespace {
+
+using namespace shaders::virtual_area_lights;
+
+constexpr int kChunk = 128;  // kChunk in gather.comp
+/// beta of resolvedExponent(): at a lobe of exponent k points are as far apart as half of its width,
+/// sqrt(1/k).
+constexpr float kResolvedBySpacing = 0.25f;
+constexpr float kSmallWeights = 1e-6f;  ///< epsilon of Eq. 7 for all lights together; the print has no value
+
+class GatherPass : public Pass {
+  enum class Method { cached, shared };
+  enum class ExponentLimit { spacing, none };
+
+  In<SurfacePoints> points{this, "points", "where light is gathered"};
+  In<SurfaceLights> lights{this, "lights", Presence::optional, "virtual area lights", Needs::anyLight};
+  In<SurfaceLights> moreLights{this, "more_lights", Presence::optional, "more of them, from elsewhere"};
+  Param<Method> method{
+      this, "method", Method::shared,
+      "how lights reach the points; cached: 128 in a dispatch, added to the targets (published); shared: "
+      "through the memory of a work group"};
+  Param<ExponentLimit> exponentLimit{
+      this, "exponent_limit", ExponentLimit::spacing,
+      "of the glossy lobe; spacing: none narrower than what points as far apart as they are still catch; "
+      "none: as published"};
+  Param<bool> asPublished{
+      this, "as_published", false,
+      "Eq. 4 with the flux and Eq. 5 at the middle of the disc, without the receiver's cosine"};
+  Param<float> factor{this, "factor", 1.0f, within(0.0f, 1e6f),
+                      "with 'as_published': c of Eq. 5, which the paper leaves to the user"};
+  Out<SparseLight> light{this, "light", Contributes::nothing, Needs::anyLight,
+                         "at each point and for each lobe one averaged light"};
+
+  Reads readsFrom() const override { return Reads::camera; }
+
+  struct Averaged {
+    gpu::TextureRef light, place;
+  };
+  struct DiffuseKey {
+    gpu::TextureRef points;
+    gpu::BufferRef lights, more;
+    bool operator==(const DiffuseKey&) const = default;
+  };
+
+  void run(PassContext& frame) override {
+    const DiffuseKey key{points->position, lights ? lights->lights : nullptr,
+                         moreLights ? moreLights->lights : nullptr};
+    const Averaged& diffuse = frame.kept("diffuse light of points", key,
+                                         [&] { return gather(frame, gather::Variant::lobeDiffuse); });
+    SparseLight result{diffuse.light, diffuse.place, nullptr, nullptr};
+    if (frame.traits().glossy) {
+      const Averaged glossy = gather(frame, gather::Variant::lobeGlossy);
+      result.glossy = glossy.light;
+      result.glossyPosition = glossy.place;
+    }
+    light = result;
+  }
+
+  Averaged gather(PassContext& frame, int lobe) const {
+    const Averaged result{sparseTexture(frame, *points, "averaged light"),
+                          sparseTexture(frame, *points, "place of averaged light")};
+    const std::array<const In<SurfaceLights>*, 2> all{&lights, &moreLights};
+    int total = 0, added = 0;
+    for (const In<SurfaceLights>* some : all)
+      if (*some) total += (*some)->count;
+    if (total == 0) return result;
+    const Method how = method;
+    const int most = how == Method::cached ? kChunk : kLoopLimit / kChunk * kChunk / 2;
+    const std::array<gpu::TextureRef, 3> sums{sparseTexture(frame, *points, "sums of light"),
+                                              sparseTexture(frame, *points, "sums of offsets"),
+                                              sparseTexture(frame, *points, "sums of squares")};
+    const shader::BoundProgram& program = frame.program(gather::Variant{
+        .lobe = lobe,
+        .method = how == Method::cached ? gather::Variant::methodCached : gather::Variant::methodShared,
+        .published = asPublished});
+    for (const In<SurfaceLights>* some : all) {
+      if (!*some) continue;
+      for (int first = 0; first < (*some)->count; first += most) {
+        const int count = std::min(most, (*some)->count - first);
+        const int before = added;
+        added += count;
+        const gather::Parameters parameters{
+            .eyeWorld = frame.snapshot().camera.eye,
+            .firstLight = first,
+            .lights = count,
+            .smallWeight = kSmallWeights / static_cast<float>(total),
+            .begins = before == 0,
+            .ends = added == total,
+            .resolved = exponentLimit == ExponentLimit::spacing ? kResolvedBySpacing : 0.0f,
+            .factor = factor,
+            .overlapping = static_cast<float>((*some)->overlapping)};
+        forEachPoint(frame, program,
+                     {gather::parameters(parameters), SurfacePointsBinding(*points),
+                      gather::surfaceLights((*some)->lights), gather::sumImage(sums[0]),
+                      gather::offsetImage(sums[1]), gather::squareImage(sums[2]),
+                      gather::lightImage(result.light), gather::placeImage(result.place)},
+                     *points);
+      }
+    }
+    return result;
+  }
+};
+
+}  // namespace
+
+void addGather(TechniqueRegistry& registry) {
+  registry.add<GatherPass>(
+      "gather",
+      "The light of all virtual area lights at sparse points, as one (Lensing & Broll 2013, Sec. 3.2)");
+}
+
+}  // namespace lumivox::virtual_area_lights

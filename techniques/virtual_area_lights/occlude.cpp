@@ -1,0 +1,68 @@
+// What stands between points and their averaged lights (Lensing and Broll 2013, Sec. 3.3).
+#include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/loop_limit.h"
+#include "passes.h"
+#include "sparse_texture.h"
+#include "virtual_area_lights_shaders.h"
+
+namespace lumivox::virtual_area_lights {
+namespace {
+
+using namespace shaders::virtual_area_lights;
+
+class OccludePass : public Pass {
+  enum class Combine { product, sum, nearest, mask };
+
+  In<SurfacePoints> points{this, "points", "where light was gathered, and the discs that stand before it"};
+  In<SparseLight> unoccluded{this, "light", "averaged light, of normalise"};
+  Param<bool> occlusion{this, "occlusion", true, "off: the light passes as it is"};
+  Param<Combine> combine{
+      this, "combine", Combine::product,
+      "how discs hide together; product: each its share of what is left (published); sum: of all; "
+      "nearest: the nearest alone; mask: what 64 bits of the light's square say together"};
+  Param<bool> asPublished{this, "as_published", false,
+                          "the sphere seen by the form factor of a disc, as printed"};
+  Out<SparseLight> light{this, "light", Contributes::nothing, Needs::anyLight,
+                         "averaged light without what discs hide of it"};
+
+  bool uses(const InBase& input) const override { return occlusion || &input != &points; }
+
+  void run(PassContext& frame) override {
+    SparseLight result = *unoccluded;
+    if (occlusion) {
+      result.diffuse = frame.kept("occluded diffuse light", result.diffuse, [&] {
+        return occlude(frame, unoccluded->diffuse, unoccluded->diffusePosition);
+      });
+      if (result.glossy) result.glossy = occlude(frame, unoccluded->glossy, unoccluded->glossyPosition);
+    }
+    light = result;
+  }
+
+  gpu::TextureRef occlude(PassContext& frame, const gpu::TextureRef& lights,
+                          const gpu::TextureRef& places) const {
+    gpu::TextureRef result = sparseTexture(frame, *points, "occluded light");
+    const gpu::BufferRef states =
+        frame.elements(occlude::states, static_cast<std::uint64_t>(points->count), "occlusion so far");
+    const shader::BoundProgram& program =
+        frame.program(occlude::Variant{.combine = static_cast<int>(static_cast<Combine>(combine))});
+    forEachPortion(points->count, 0, [&](int first, int count) {
+      forEachPoint(
+          frame, program,
+          {occlude::parameters({first, count, first == 0, first + count == points->count, asPublished}),
+           SurfacePointsBinding(*points), occlude::lights(lights, gpu::Sampling::nearest),
+           occlude::places(places, gpu::Sampling::nearest), occlude::states(states),
+           occlude::occludedImage(result)},
+          *points);
+    });
+    return result;
+  }
+};
+
+}  // namespace
+
+void addOcclude(TechniqueRegistry& registry) {
+  registry.add<OccludePass>("occlude",
+                            "Discs of points before the averaged lights (Lensing & Broll 2013, Sec. 3.3)");
+}
+
+}  // namespace lumivox::virtual_area_lights

@@ -1,0 +1,45 @@
+// Functions of shader includes, called from C++ for many inputs at once.
+#pragma once
+
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "lumivox/base/file.h"
+#include "lumivox/gpu/device.h"
+#include "support/support.h"
+
+namespace lumivox::test {
+
+/// `results[i]` of the statements `body`, which read `inputs[i]` as `given` and write `found`, both vec4,
+/// with the functions of the files below shaders/ in scope: each after those that it includes.
+inline std::vector<glm::vec4> evaluated(const std::vector<std::string>& files, const std::string& body,
+                                        const std::vector<glm::vec4>& inputs) {
+  static gpu::Device glsl({"auto", gpu::ShaderInput::glsl});
+  std::string text = "#version 450 core\nlayout(local_size_x = 64) in;\n";
+  for (const std::string& file : files)
+    text +=
+        std::regex_replace(readFile(sourceDirectory() / "shaders" / file), std::regex("#include[^\n]*"), "");
+  text += R"(
+    layout(std430, binding = 0) buffer Inputs { vec4 inputs[]; };
+    layout(std430, binding = 1) buffer Results { vec4 results[]; };
+    void main() {
+      uint i = gl_GlobalInvocationID.x;
+      if (i >= inputs.length()) return;
+      vec4 given = inputs[i], found = vec4(0.0);
+      )" + body +
+          R"(
+      results[i] = found;
+    })";
+  const std::vector<gpu::StageCode> code{{gpu::Stage::compute, {}, text}};
+  const gpu::Program program(glsl, "functions", code, {});
+  gpu::Buffer in(glsl, inputs.size() * sizeof(glm::vec4)), out(glsl, inputs.size() * sizeof(glm::vec4));
+  in.uploadValues(std::span<const glm::vec4>(inputs));
+  const std::vector<gpu::ResourceBinding> bindings{{"inputs", 0, gpu::ResourceBinding::Storage{&in}},
+                                                   {"results", 1, gpu::ResourceBinding::Storage{&out}}};
+  glsl.dispatch(program, bindings, {static_cast<int>((inputs.size() + 63) / 64), 1, 1});
+  glsl.barrier();
+  return out.downloadValues<glm::vec4>();
+}
+
+}  // namespace lumivox::test

@@ -1,0 +1,276 @@
+// Averaged lights of sparse points, pass by pass, over lights and points made by hand.
+#include "support/virtual_area_lights.h"
+
+#include <cmath>
+#include <random>
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+float brightness(const glm::vec4& light) {
+  return light.x;
+}
+
+/// A square of lights of 2 half x 2 half metres at a height, n x n of them, that faces down.
+std::vector<DiscLight> ceiling(float half, float height, int n, float exitance = 1.0f) {
+  std::vector<DiscLight> lights;
+  const float side = 2.0f * half / static_cast<float>(n);
+  for (int z = 0; z < n; ++z)
+    for (int x = 0; x < n; ++x)
+      lights.push_back({{-half + side * (static_cast<float>(x) + 0.5f), height,
+                         -half + side * (static_cast<float>(z) + 0.5f)},
+                        {0, -1, 0},
+                        side * side,
+                        glm::vec3(exitance)});
+  return lights;
+}
+
+/// All walls of a cube of side 2 around the origin, n x n lights each, which shine inwards.
+std::vector<DiscLight> closedBox(int n) {
+  std::vector<DiscLight> lights;
+  const float side = 2.0f / static_cast<float>(n);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float sign : {-1.0f, 1.0f})
+      for (int i = 0; i < n * n; ++i) {
+        glm::vec3 position(0.0f), normal(0.0f);
+        position[axis] = sign;
+        normal[axis] = -sign;
+        position[(axis + 1) % 3] = -1.0f + side * (static_cast<float>(i % n) + 0.5f);
+        position[(axis + 2) % 3] = -1.0f + side * (static_cast<float>(i / n) + 0.5f);
+        lights.push_back({position, normal, side * side, glm::vec3(1.0f)});
+      }
+  return lights;
+}
+
+std::vector<SparsePoint> randomPoints(int count, float exponent = -1.0f) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> place(-1.0f, 1.0f);
+  std::vector<SparsePoint> points;
+  for (int i = 0; i < count; ++i)
+    points.push_back({{place(random), 0.0f, place(random)}, {0, 1, 0}, 0.01f, 0.1f, exponent});
+  return points;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "in a closed box of even exitance all of it arrives: E / M is 1 within 1 % two texels from a wall") {
+  constexpr int kSide = 32;
+  constexpr float kTexel = 2.0f / kSide;
+  std::vector<SparsePoint> points;
+  // On the floor, from the middle towards a wall; the last ones two texels and half a texel from it.
+  for (const float x : {0.0f, 0.5f, 1.0f - 2.0f * kTexel, 1.0f - 0.5f * kTexel})
+    points.push_back({{x, -1, 0.5f * kTexel}});
+  SparsePasses passes;
+  const SparseLight light = passes.gather(pointsOf(points), lightsOf(closedBox(kSide)));
+  const std::vector<glm::vec4> found = valuesOf(light.diffuse, points.size());
+  for (std::size_t i = 0; i < 3; ++i) {
+    CAPTURE(i);
+    CHECK(kPi * brightness(found[i]) == Approx(1.0).margin(0.01));
+  }
+  CHECK(kPi * brightness(found[3]) == Approx(0.967).margin(0.02));
+}
+
+TEST_CASE("a hundredth of a texel above a light at most its exitance arrives, and at the light nothing bad") {
+  SparsePasses passes;
+  for (const float height : {1e-3f, 1e-6f, 0.0f}) {
+    const std::vector<SparsePoint> points{{{0, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, 10.0f}};
+    const SurfacePoints made = pointsOf(points);
+    const SparseLight light =
+        passes.normalise(made, passes.gather(made, lightsOf({{{0, height, 0}, {0, -1, 0}, 0.01f}})));
+    for (const gpu::TextureRef& texture : {light.diffuse, light.glossy}) {
+      const glm::vec4 found = valuesOf(texture, 1).front();
+      CAPTURE(height);
+      CHECK(std::isfinite(found.x));
+      CHECK(kPi * found.x >= 0.0);
+      CHECK(kPi * found.x <= 1.0 + 1e-5);
+    }
+  }
+}
+
+TEST_CASE("the local model gives back at a point what all lights give there, within 1e-5 unless clamped") {
+  const std::vector<SparsePoint> points = randomPoints(200, 10.0f);
+  const SurfacePoints made = pointsOf(points);
+  SparsePasses passes;
+  const SparseLight gathered = passes.gather(made, lightsOf(ceiling(0.5f, 0.6f, 16))),
+                    normalised = passes.normalise(made, gathered);
+  const auto light = valuesOf(gathered.diffuse, points.size()),
+             place = valuesOf(gathered.diffusePosition, points.size()),
+             found = valuesOf(normalised.diffuse, points.size());
+  const auto glossy = valuesOf(gathered.glossy, points.size()),
+             glossyPlace = valuesOf(gathered.glossyPosition, points.size()),
+             glossyFound = valuesOf(normalised.glossy, points.size());
+  int unclamped = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const glm::vec3 toLight = glm::normalize(glm::vec3(place[i]) - points[i].position);
+    CHECK(found[i].x * toLight.y == Approx(light[i].x).epsilon(1e-5));
+    const glm::vec3 toGlossy = glm::normalize(glm::vec3(glossyPlace[i]) - points[i].position),
+                    mirror = glm::reflect(glm::normalize(points[i].position - glm::vec3(0, 1, 0)),
+                                          glm::vec3(0, 1, 0));
+    const double lobe = std::pow(std::max(0.0f, glm::dot(mirror, toGlossy)), glossy[i].w - 1.0f);
+    CHECK(glossyFound[i].x <= std::min(10.0f * glossy[i].x, light[i].w) * 1.00001f);
+    if (lobe > 0.1001 && glossy[i].x / lobe < light[i].w) {
+      CHECK(glossyFound[i].x * lobe == Approx(glossy[i].x).epsilon(2e-5));
+      ++unclamped;
+    }
+  }
+  CHECK(unclamped > 20);
+}
+
+TEST_CASE(
+    "light that a point cannot be given back is left out, and none is brighter than the brightest light") {
+  // Lights to the left and right of the mirror direction, whose mean place is below the wall that reflects
+  // them.
+  const std::vector<SparsePoint> points{{{0, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, 10.0f}};
+  const SurfacePoints made = pointsOf(points);
+  SparsePasses passes;
+  SparseLight light{texels({{1, 1, 1, 2}}, {1024, 1}, "light"), texels({{0, -1, 0, 1}}, {1024, 1}, "place"),
+                    nullptr, nullptr};
+  CHECK(valuesOf(passes.normalise(made, light).diffuse, 1).front().x == 0.0f);
+  light.diffusePosition = texels({{1, 0.001, 0, 1}}, {1024, 1}, "place");  // cosine 1e-3
+  CHECK(valuesOf(passes.normalise(made, light).diffuse, 1).front().x == Approx(2.0));
+  light.diffuse = texels({{1, 1, 1, 100}}, {1024, 1}, "light");
+  CHECK(valuesOf(passes.normalise(made, light).diffuse, 1).front().x == Approx(10.0));
+  CHECK(valuesOf(passes.normalise(made, light, {{"amplification", 4.0}}).diffuse, 1).front().x ==
+        Approx(4.0));
+  CHECK(valuesOf(passes.normalise(made, light, {{"as_published", std::string("on")}}).diffuse, 1).front().x ==
+        Approx(1000.0).epsilon(0.001));
+}
+
+TEST_CASE("a plane one metre wide under a light at half a metre is lit within 2 % by 1024 points") {
+  std::vector<SparsePoint> points, seen;
+  for (int z = 0; z < 32; ++z)
+    for (int x = 0; x < 32; ++x)
+      points.push_back({{(static_cast<float>(x) + 0.5f) / 32.0f - 0.5f, 0,
+                         (static_cast<float>(z) + 0.5f) / 32.0f - 0.5f}});
+  for (int i = 0; i < 64; ++i)
+    seen.push_back({{static_cast<float>(i % 8) / 9.1f - 0.37f, 0, static_cast<float>(i / 8) / 8.7f - 0.39f}});
+  const SurfaceLights lights = lightsOf({{{0, 0.5f, 0}, {0, -1, 0}, 0.001f}});
+  const SurfacePoints made = pointsOf(points, 1.0f / 32.0f);
+  SparsePasses passes;
+  const ImageBuffer sparse =
+                        passes.apply(made, passes.normalise(made, passes.gather(made, lights)), seen).first,
+                    exact = passes.bruteForce(lights, seen).first;
+  double squared = 0.0, mean = 0.0;
+  for (int i = 0; i < 64; ++i) {
+    squared += std::pow(sparse.at(i % 8, i / 8, 0) - exact.at(i % 8, i / 8, 0), 2) / 64.0;
+    mean += exact.at(i % 8, i / 8, 0) / 64.0;
+  }
+  CHECK(std::sqrt(squared) <= 0.02 * mean);
+}
+
+TEST_CASE("equal light of all neighbours is interpolated to itself, within 1e-6") {
+  const std::vector<SparsePoint> points = randomPoints(50);
+  const SurfacePoints made = pointsOf(points);
+  const SparseLight light{texels(std::vector<glm::vec4>(50, glm::vec4(1, 2, 3, 9)), {1024, 1}, "light"),
+                          texels(std::vector<glm::vec4>(50, glm::vec4(0, 1e4, 0, 1)), {1024, 1}, "place"),
+                          nullptr, nullptr};
+  std::vector<SparsePoint> seen = randomPoints(64);
+  SparsePasses passes;
+  const ImageBuffer image = passes.apply(made, light, seen).first;
+  for (int i = 0; i < 64; ++i)
+    for (int c = 0; c < 3; ++c) CHECK(image.at(i % 8, i / 8, c) == Approx(c + 1.0).epsilon(1e-6));
+}
+
+TEST_CASE(
+    "where no neighbour counts by its distance normals decide, and where they do not either the nearest") {
+  const auto lit = [](int count) {
+    std::vector<glm::vec4> values;
+    for (int i = 0; i < count; ++i) values.emplace_back(static_cast<float>(i + 1), 0, 0, 1);
+    return SparseLight{
+        texels(values, {1024, 1}, "light"),
+        texels(std::vector<glm::vec4>(static_cast<std::size_t>(count), glm::vec4(0, 1e4, 0, 1)), {1024, 1},
+               "place"),
+        nullptr, nullptr};
+  };
+  const std::vector<SparsePoint> seen(64, SparsePoint{});
+  SparsePasses passes;
+  // Eight around what is seen, at one distance; two of them turned away so far that they are of its other
+  // side.
+  std::vector<SparsePoint> ring;
+  for (int i = 0; i < 8; ++i) {
+    const double turn = i * kPi / 4.0;
+    ring.push_back({{std::cos(turn), 0, std::sin(turn)}, {0, i < 2 ? -1.0f : 1.0f, 0}});
+  }
+  const SurfacePoints equidistant = pointsOf(ring);
+  CHECK(passes.apply(equidistant, lit(8), seen).first.at(0, 0, 0) ==
+        Approx((3 + 4 + 5 + 6 + 7 + 8) / 6.0).epsilon(1e-3));
+  // At right angles to what is seen: no cosine; the first of them is the nearest.
+  const SurfacePoints aside = pointsOf({{{0.5f, 0, 0}, {1, 0, 0}}, {{1, 0, 0}, {1, 0, 0}}});
+  CHECK(passes.apply(aside, lit(2), seen).first.at(0, 0, 0) == Approx(1.0));
+  // A model of one point, and one without any.
+  CHECK(passes.apply(pointsOf({{{0.3f, 0, 0}}}), lit(1), seen).first.at(0, 0, 0) == Approx(1.0));
+  SparsePoint other;
+  other.model = 3;
+  CHECK(passes.apply(pointsOf({other}), lit(1), seen).first.at(0, 0, 0) == 0.0f);
+}
+
+TEST_CASE("a map with four times the texels moves the averaged light by less than 1 % of its distance") {
+  const std::vector<SparsePoint> points = randomPoints(50, 20.0f);
+  const SurfacePoints made = pointsOf(points);
+  SparsePasses passes;
+  const SparseLight coarse = passes.gather(made, lightsOf(ceiling(0.5f, 0.6f, 16))),
+                    fine = passes.gather(made, lightsOf(ceiling(0.5f, 0.6f, 32)));
+  const auto one = valuesOf(coarse.diffusePosition, 50), other = valuesOf(fine.diffusePosition, 50);
+  for (std::size_t i = 0; i < 50; ++i)
+    CHECK(glm::distance(glm::vec3(one[i]), glm::vec3(other[i])) <
+          0.01f * glm::distance(glm::vec3(one[i]), points[i].position));
+}
+
+TEST_CASE("an even disc of lights is a sphere of its own radius, and one light as wide as itself") {
+  std::vector<DiscLight> disc;
+  for (const DiscLight& light : ceiling(1.0f, 20.0f, 64))
+    if (glm::length(glm::vec2(light.position.x, light.position.z)) < 1.0f) disc.push_back(light);
+  const SurfacePoints made = pointsOf({SparsePoint{}});
+  SparsePasses passes;
+  CHECK(valuesOf(passes.gather(made, lightsOf(disc)).diffusePosition, 1).front().w ==
+        Approx(1.0).epsilon(0.01));
+  const DiscLight one{{0, 1, 0}, {0, -1, 0}, static_cast<float>(kPi * 0.04)};
+  CHECK(valuesOf(passes.gather(made, lightsOf({one})).diffusePosition, 1).front().w ==
+        Approx(0.2).epsilon(0.001));
+}
+
+TEST_CASE("lights in chunks and through group memory, and lights from two sources, come to the same sums") {
+  const std::vector<SparsePoint> points = randomPoints(100, 30.0f);
+  const SurfacePoints made = pointsOf(points);
+  std::vector<DiscLight> all = ceiling(0.5f, 0.6f, 20);
+  all[7].exitance = glm::vec3(1e6f, 1.0f, 0.0f);
+  SparsePasses passes;
+  const SparseLight shared = passes.gather(made, lightsOf(all), {{"method", std::string("shared")}}),
+                    cached = passes.gather(made, lightsOf(all), {{"method", std::string("cached")}});
+  using Member = gpu::TextureRef SparseLight::*;
+  for (const Member member : {&SparseLight::diffuse, &SparseLight::diffusePosition, &SparseLight::glossy,
+                              &SparseLight::glossyPosition})
+    CHECK(valuesOf(shared.*member, 100) == valuesOf(cached.*member, 100));
+}
+
+TEST_CASE("no light gives none, and light of 10^6 : 1 or in a point's plane stays finite and not negative") {
+  const std::vector<SparsePoint> points{{{0, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, 0.0f},
+                                        {{0.1f, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, 1.0f},
+                                        {{0.2f, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, 1e5f},
+                                        {{0.3f, 0, 0}, {0, 0, 0}, 0.0f, 0.0f, 10.0f}};
+  const SurfacePoints made = pointsOf(points);
+  SparsePasses passes;
+  const std::vector<std::vector<DiscLight>> cases{
+      {},
+      {{{1, 0, 0}, {0, -1, 0}, 0.01f}},
+      {{{0, 1, 0}, {0, -1, 0}, 0.01f, glm::vec3(1e6f)}, {{0.5f, 1, 0}, {0, -1, 0}, 0.01f}},
+      {{{0, 1e-6f, 0}, {0, -1, 0}, 0.01f}},
+      {{{0, 1, 0}, {0, -1, 0}, 0.0f, glm::vec3(0.0f)}}};
+  for (const std::vector<DiscLight>& lights : cases) {
+    const SparseLight light =
+        passes.occlude(made, passes.normalise(made, passes.gather(made, lightsOf(lights))));
+    const auto [diffuse, glossy] = passes.apply(made, light, {points[0], points[1], points[2]});
+    float brightest = 0.0f;
+    for (const DiscLight& one : lights)
+      brightest = std::max(brightest, one.exitance.x / static_cast<float>(kPi));
+    for (const ImageBuffer& image : {diffuse, glossy})
+      for (const float value : image.values()) {
+        CHECK(std::isfinite(value));
+        CHECK(value >= 0.0f);
+        CHECK(value <= std::max(1.0f, brightest) * 1.0001f);
+      }
+  }
+}
