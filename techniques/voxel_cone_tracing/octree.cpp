@@ -13,8 +13,8 @@
 #include "changed_cells.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
-#include "lumivox/toolkit/room.h"
 #include "lumivox/toolkit/bindings.h"
+#include "lumivox/toolkit/room.h"
 
 namespace lumivox::voxel_cone_tracing {
 
