@@ -133,14 +133,14 @@ inline Volume closedRoom(int inside, double radiance, double albedo = 0.5) {
                             0.0, albedo);
 }
 
-struct SurfacePoint {
+struct ReadPoint {
   glm::vec3 place, normal;
 };
 
 /// One row of pixels, one for each point; white.
-inline GBuffer seen(const std::vector<SurfacePoint>& points) {
+inline GBuffer seen(const std::vector<ReadPoint>& points) {
   std::vector<float> positions, normals, geometric, diffuse;
-  for (const SurfacePoint& point : points) {
+  for (const ReadPoint& point : points) {
     for (int c = 0; c < 3; ++c) {
       positions.push_back(point.place[c]);
       normals.push_back(point.normal[c]);
@@ -164,8 +164,8 @@ inline GBuffer seen(const std::vector<SurfacePoint>& points) {
 }
 
 /// Every voxel of the walls of a closed room, without the edges, as a surface point so far before its middle.
-inline std::vector<SurfacePoint> wallsOf(const Volume& room, float before = 0.0f) {
-  std::vector<SurfacePoint> points;
+inline std::vector<ReadPoint> wallsOf(const Volume& room, float before = 0.0f) {
+  std::vector<ReadPoint> points;
   const int last = room.size().x - 1;
   room.forEach([&](const glm::ivec3& voxel) {
     int walls = 0;
@@ -252,7 +252,7 @@ inline glm::dvec4 coefficientsIn(const ShGrid& light, const glm::ivec3& voxel) {
 
 /// E / pi of each point, of the first channel.
 inline std::vector<double> gathered(const Volume& volume, const ShGrid& light,
-                                    const std::vector<SurfacePoint>& points,
+                                    const std::vector<ReadPoint>& points,
                                     const std::vector<Setting>& settings = {}, double sky = 0.0,
                                     const char* output = "diffuse") {
   Runner runner("gather", underSky(sky), static_cast<int>(points.size()));
@@ -267,7 +267,7 @@ inline std::vector<double> gathered(const Volume& volume, const ShGrid& light,
   for (std::size_t i = 0; i < points.size(); ++i) result.push_back(values[4 * i]);
   return result;
 }
-inline double gatheredAt(const Volume& volume, const ShGrid& light, const SurfacePoint& point,
+inline double gatheredAt(const Volume& volume, const ShGrid& light, const ReadPoint& point,
                          const std::vector<Setting>& settings = {}, const char* output = "diffuse") {
   return gathered(volume, light, {point}, settings, 0.0, output).front();
 }

@@ -58,10 +58,10 @@ struct AnyLight {
 };
 
 /// Within the volume: on all sides of all kinds of voxels, of normals of all kinds.
-std::vector<SurfacePoint> somePoints(const Volume& volume, int count, unsigned seed) {
+std::vector<ReadPoint> somePoints(const Volume& volume, int count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit;
-  std::vector<SurfacePoint> points;
+  std::vector<ReadPoint> points;
   for (int i = 0; i < count; ++i) {
     const glm::dvec3 place = glm::dvec3(volume.size()) * glm::dvec3(unit(random), unit(random), unit(random));
     glm::dvec3 normal = someDirection(random);
@@ -73,7 +73,7 @@ std::vector<SurfacePoint> somePoints(const Volume& volume, int count, unsigned s
 }
 
 double expectedAt(const ReadingOnHost& reading, const Volume& volume, const AnyLight& light,
-                  const SurfacePoint& point, const glm::dvec3& shading) {
+                  const ReadPoint& point, const glm::dvec3& shading) {
   double sum = 0.0;
   for (const auto& [voxel, weight] : reading.sharesAt(point.place, point.normal)) {
     const std::size_t i = 4 * volume.at(voxel);
@@ -90,7 +90,7 @@ TEST_CASE("a surface point reads the voxels of Eq. 5 that are free and open to i
   for (const unsigned seed : {1u, 2u}) {
     const Clutter clutter(seed);
     const AnyLight light(clutter.volume, seed);
-    const std::vector<SurfacePoint> points = somePoints(clutter.volume, 2000, seed);
+    const std::vector<ReadPoint> points = somePoints(clutter.volume, 2000, seed);
     for (const bool six : {true, false})
       for (const bool filtered : {true, false})
         for (const bool free : {true, false})
@@ -117,10 +117,10 @@ TEST_CASE("a surface point reads the voxels of Eq. 5 that are free and open to i
 TEST_CASE("triangles decide what is read, and shading normals what of it arrives") {
   const Clutter clutter(3);
   const AnyLight light(clutter.volume, 3);
-  const std::vector<SurfacePoint> points = somePoints(clutter.volume, 500, 3);
+  const std::vector<ReadPoint> points = somePoints(clutter.volume, 500, 3);
   std::mt19937 random(3);
-  std::vector<SurfacePoint> shaded = points;
-  for (SurfacePoint& point : shaded) point.normal = someDirection(random);
+  std::vector<ReadPoint> shaded = points;
+  for (ReadPoint& point : shaded) point.normal = someDirection(random);
   GBuffer both = seen(points);
   both.normal = seen(shaded).normal;
   Runner gather("gather", underSky(0.0), static_cast<int>(points.size()));
@@ -153,7 +153,7 @@ TEST_CASE(
   // Both sides may cancel out, so that the light decides which way a surface looks.
   AttributeGrid cancelled = volume.attributes();
   cancelled.normal->clear(glm::vec4(0.0f));
-  const std::vector<SurfacePoint> points{{{8.2f, 7.7f, 8.4f}, {0, 0, 1}}};
+  const std::vector<ReadPoint> points{{{8.2f, 7.7f, 8.4f}, {0, 0, 1}}};
   for (const AttributeGrid& attributes : {cancelled, volume.attributes()})
     for (const double shift : {0.5, 3.0})
       for (const char* voxels : {"six", "eight"}) {
@@ -338,7 +338,7 @@ TEST_CASE(
 TEST_CASE("outside of the volume a surface sees the environment alone, and nothing is closed or cut off") {
   const Volume volume({4, 4, 4});
   const AnyLight light(volume, 8);
-  const std::vector<SurfacePoint> points{{{4.5f, 2.0f, 2.0f}, {0, 0, 1}}, {{2.0f, -0.5f, 2.0f}, {0, 1, 0}}};
+  const std::vector<ReadPoint> points{{{4.5f, 2.0f, 2.0f}, {0, 0, 1}}, {{2.0f, -0.5f, 2.0f}, {0, 1, 0}}};
   for (const auto& [output, expected] :
        {std::pair("diffuse", 1.5), std::pair("clipped", 0.0), std::pair("occlusion", 1.0)}) {
     INFO(output);
@@ -357,7 +357,7 @@ TEST_CASE("numbers of a volume count its unit, for rays and for surfaces") {
   };
   CHECK(coefficientsIn(sum(0.25), {3, 3, 3}).x == Approx(0.25 * coefficientsIn(sum(1.0), {3, 3, 3}).x));
   ShGrid light = sum(1.0);
-  const SurfacePoint wall{{0.9f, 3.5f, 3.5f}, {1, 0, 0}};
+  const ReadPoint wall{{0.9f, 3.5f, 3.5f}, {1, 0, 0}};
   const double one = gatheredAt(room, light, wall);
   light.unit = 3.0f;
   CHECK(gatheredAt(room, light, wall) == Approx(3.0 * one));

@@ -45,7 +45,7 @@ void checkAgainstQuadrature(int samples) {
     const VolumeOnHost host(lit);
     std::mt19937 random(5);
     const std::vector<glm::ivec3> voxels = someOfEachKind(host.set(), 50, random);
-    std::vector<SurfacePoint> points;
+    std::vector<ReadPoint> points;
     for (const glm::ivec3& voxel : voxels) points.push_back({lit.middleOf(voxel), {0, 0, 1}});
     // No sky: rays that leave bring nothing.
     Scene dark = lit.scene;

@@ -68,7 +68,7 @@ TEST_CASE(
     "a point over a wide floor under an open sky receives pi L, to which a floor that shines adds nothing") {
   // Of the directions below the horizon those that leave beside the floor see the sky.
   constexpr int kSide = 192;
-  const SurfacePoint above{{96.5f, 96.5f, 1.5f}, {0, 0, 1}};
+  const ReadPoint above{{96.5f, 96.5f, 1.5f}, {0, 0, 1}};
   for (const double floor : {0.0, 2.0}) {
     const Volume volume = floorOf(kSide, 6, floor);
     for (const char* source : {"surface", "harmonics"}) {
@@ -89,7 +89,7 @@ TEST_CASE("a small bright voxel counts 3/4 of its irradiance overhead, 1/4 at th
   const auto found = [](const glm::ivec3& place) {
     Volume volume({25, 25, 25});
     volume.occupy(place, {0, 0, 1}, 1.0, 1.0);
-    const SurfacePoint middle{{12.5f, 12.5f, 12.5f}, {0, 0, 1}};
+    const ReadPoint middle{{12.5f, 12.5f, 12.5f}, {0, 0, 1}};
     Runner march = marching(volume, {{"rays", 200000}, {"walk", 0, "exact"}, {"voxels", 0, "own"}});
     march.in("gbuffer", seen({middle}));
     const ShGrid light = march.run<ShGrid>("incoming");
@@ -151,7 +151,7 @@ TEST_CASE(
   ball.occupyWhere([&](const glm::ivec3& voxel) { return glm::length(fromMiddle(voxel)) > kRadius; },
                    [&](const glm::ivec3& voxel) { return glm::normalize(-fromMiddle(voxel)); }, 1.0);
   for (const double rho : {0.0, 0.5, 0.8, 0.9}) {
-    std::vector<SurfacePoint> points;
+    std::vector<ReadPoint> points;
     double expected = 0.0;
     ball.forEach([&](const glm::ivec3& voxel) {
       const double length = glm::length(fromMiddle(voxel)), k = length * length / (kRadius * kRadius);
@@ -294,7 +294,7 @@ TEST_CASE("one set of directions for all voxels gives equal voxels equal light")
 
 TEST_CASE("only the voxels that surfaces read are filled, and the picture is the same to the bit") {
   const Volume room = closedRoom(12, 1.0, 0.7);
-  const std::vector<SurfacePoint> points{{{0.4f, 5.2f, 7.7f}, {1, 0, 0}},
+  const std::vector<ReadPoint> points{{{0.4f, 5.2f, 7.7f}, {1, 0, 0}},
                                          {{0.6f, 6.9f, 3.1f}, glm::normalize(glm::vec3(1, 0.3, -0.2))},
                                          {{7.3f, 0.5f, 9.8f}, {0, 1, 0}}};
   for (const char* voxels : {"six", "eight", "own", "trilinear"})
@@ -329,7 +329,7 @@ TEST_CASE("openness before a long wall is that of its kernel, and on an open flo
   walled.occupyWhere(
       [](const glm::ivec3& voxel) { return voxel.x == kBehind && voxel.z >= 1 && voxel.z <= kWall; },
       [](const glm::ivec3&) { return glm::dvec3(-1, 0, 0); }, 0.0);
-  const SurfacePoint point{{48.5f, 48.5f, 1.5f}, {0, 0, 1}};
+  const ReadPoint point{{48.5f, 48.5f, 1.5f}, {0, 0, 1}};
   const auto openness = [&](const Volume& volume) {
     Runner occlude("occlude", underSky(0.0));
     occlude.in("opacity", volume.opacity())
@@ -366,7 +366,7 @@ TEST_CASE("what two bands make negative is cut off and told, or kept as the diff
   for (int i = 0; i < 27; ++i) values.insert(values.end(), {1.0f, 0.0f, -2.0f, 0.0f});
   const gpu::TextureRef volume = volumeTexture({3, 3, 3}, gpu::Format::rgba32f, values);
   light.levels.push_back({empty.grid(), {volume, nullptr, nullptr}});
-  const SurfacePoint up{{1.5f, 1.5f, 1.5f}, {0, 0, 1}};
+  const ReadPoint up{{1.5f, 1.5f, 1.5f}, {0, 0, 1}};
   const double mean = kY0, net = 2.0 / 3.0 * kY1 * -2.0;
   REQUIRE(mean + net < 0.0);
   CHECK(gatheredAt(empty, light, up) == 0.0);
@@ -406,7 +406,7 @@ TEST_CASE("the weights of Eq. 5 are cosines of the ways from the surface point, 
     }
     return sum / weights;
   };
-  const SurfacePoint point{place, normal};
+  const ReadPoint point{place, normal};
   CHECK(gatheredAt(volume, light, point, {{"filter", 0, "off"}}) == Approx(expected(true)).epsilon(1e-4));
   CHECK(gatheredAt(volume, light, point, {{"filter", 0, "off"}, {"voxels", 0, "eight"}}) ==
         Approx(expected(false)).epsilon(1e-4));
