@@ -40,7 +40,8 @@ RenderOptions smallOptions(const Pipeline& pipeline) {
   options.height = 32;
   const std::map<std::string, double> small{{"resolution", 32}, {"area_samples", 4}, {"surfaces", 16},
                                             {"iterations", 8},  {"samples", 25},     {"cones", 2},
-                                            {"rays", 4},        {"elements", 512},   {"bins", 4}};
+                                            {"rays", 4},        {"elements", 512},   {"bins", 4},
+                                            {"points", 128},    {"lights", 64}};
   for (const PipelineParameter& parameter : pipeline.parameters)
     if (const auto value = small.find(parameter.name); value != small.end())
       options.parameters[parameter.name].number = value->second;

@@ -29,8 +29,8 @@ bool canShowWindows() {
 }
 
 std::string windowCommand(const std::string& options) {
-  return "xvfb-run -a -s '-screen 0 1400x1000x24' '" + (binaryDirectory() / "bin/lumivox-view").string() + "' " +
-         options;
+  return "xvfb-run -a -s '-screen 0 1400x1000x24' '" + (binaryDirectory() / "bin/lumivox-view").string() +
+         "' " + options;
 }
 
 /// The little room with a pipeline in a window, and what a script does there.
@@ -64,7 +64,8 @@ void checkSamePixels(const std::filesystem::path& a, const std::filesystem::path
 
 }  // namespace
 
-TEST_CASE("a window shows the picture that render makes, to the bit, through a camera of the scene or a free one") {
+TEST_CASE(
+    "a window shows the picture that render makes, to the bit, through a camera of the scene or a free one") {
   if (!canShowWindows()) return;
   const Workplace place;
   const CommandResult done =
@@ -119,13 +120,15 @@ TEST_CASE("a parameter that is clicked is the parameter that is written, and und
   checkSamePixels(place.file("clicked.exr"), place.file("written.exr"));
 }
 
-TEST_CASE("what is switched off in the scene is left out at once, and the reference converges beside the picture") {
+TEST_CASE(
+    "what is switched off in the scene is left out at once, and the reference converges beside the picture") {
   if (!canShowWindows()) return;
   const Workplace place;
   const CommandResult done =
       shown(place,
             "wait frame\n wait reference 8\n wait judged\n record " + quotedFile(place, "on.json") +
-                "\n panel scene\n click \"scene/light bulb\"\n wait frame\n record " + quotedFile(place, "off.json") +
+                "\n panel scene\n click \"scene/light bulb\"\n wait frame\n record " +
+                quotedFile(place, "off.json") +
                 "\n window 1 1\n wait frame\n window 4096 200\n wait frame\n shot " +
                 quotedFile(place, "wide.png") + "\n quit on",
             committedPipeline("reflective_shadow_maps"));
@@ -141,7 +144,8 @@ TEST_CASE("what is switched off in the scene is left out at once, and the refere
   CHECK(place.has("wide.png"));
 }
 
-TEST_CASE("a text that is broken while it is shown says where, and the picture comes back when it is mended") {
+TEST_CASE(
+    "a text that is broken while it is shown says where, and the picture comes back when it is mended") {
   if (!canShowWindows()) return;
   const Workplace place;
   place.write("own.pipeline", readFile(committedPipeline("reflective_shadow_maps")));
@@ -188,12 +192,12 @@ TEST_CASE("a shader that is broken while it is shown says its line, and what is 
   const std::string good = readFile(shader);
   place.write("script.view", "view \"a test\" {\n wait frame\n save_image " + quotedFile(place, "first.exr") +
                                  "\n wait problem\n record " + quotedFile(place, "broken.json") +
-                                 "\n wait mended\n wait frame\n save_image " + quotedFile(place, "mended.exr") +
-                                 "\n quit on\n}\n");
+                                 "\n wait mended\n wait frame\n save_image " +
+                                 quotedFile(place, "mended.exr") + "\n quit on\n}\n");
   CommandResult done;
   std::thread window([&] {
-    done = runCommand(windowCommand("--techniques '" + place.file("lib/techniques") + "' '" + place.scene() + "' '" +
-                                    committedPipeline("reflective_shadow_maps") +
+    done = runCommand(windowCommand("--techniques '" + place.file("lib/techniques") + "' '" + place.scene() +
+                                    "' '" + committedPipeline("reflective_shadow_maps") +
                                     "' --resolution 24x16 --script '" + place.file("script.view") + "'"));
   });
   const bool first = becomes([&] { return place.has("first.exr"); });
@@ -226,10 +230,11 @@ TEST_CASE("a shader that is broken while it is shown says its line, and what is 
 TEST_CASE("two hundred random actions leave a window that works") {
   if (!canShowWindows()) return;
   const Workplace place;
-  const CommandResult done = shown(place,
-                                   "seed 7\n wait frame\n random 200\n reset \"all\"\n camera main\n wait frame\n record " +
-                                       quotedFile(place, "record.json") + "\n quit on",
-                                   committedPipeline("reflective_shadow_maps"), "--resolution 8x8");
+  const CommandResult done =
+      shown(place,
+            "seed 7\n wait frame\n random 200\n reset \"all\"\n camera main\n wait frame\n record " +
+                quotedFile(place, "record.json") + "\n quit on",
+            committedPipeline("reflective_shadow_maps"), "--resolution 8x8");
   INFO(done.errors);
   CHECK(done.exitCode == 0);
   CHECK(Json::parse(place.read("record.json")).at("settled") == true);
@@ -238,14 +243,17 @@ TEST_CASE("two hundred random actions leave a window that works") {
 TEST_CASE("a technique that throws is told in place, and the window goes on") {
   if (!canShowWindows()) return;
   const Place place;
-  place.write("refuse.pipeline",
-              "pipeline \"Refuse\" {\n  pass paint hostile.paint { deed refuse }\n\n  output direct paint.radiance\n}\n");
-  place.write("script.view", "view \"a test\" {\n wait problem\n record " + quotedFile(place, "refused.json") +
+  place.write(
+      "refuse.pipeline",
+      "pipeline \"Refuse\" {\n  pass paint hostile.paint { deed refuse }\n\n  output direct paint.radiance\n}\n");
+  place.write("script.view", "view \"a test\" {\n wait problem\n record " +
+                                 quotedFile(place, "refused.json") +
                                  "\n show fast\n wait mended\n wait frame\n save_image " +
                                  quotedFile(place, "good.exr") + "\n quit on\n}\n");
-  const CommandResult done = runCommand(windowCommand(
-      "--techniques '" + Place::techniques() + "' '" + place.scene() + "' '" + place.file("refuse.pipeline") + "' '" +
-      place.file("fast.pipeline") + "' --resolution 8x8 --script '" + place.file("script.view") + "'"));
+  const CommandResult done =
+      runCommand(windowCommand("--techniques '" + Place::techniques() + "' '" + place.scene() + "' '" +
+                               place.file("refuse.pipeline") + "' '" + place.file("fast.pipeline") +
+                               "' --resolution 8x8 --script '" + place.file("script.view") + "'"));
   INFO(done.errors);
   CHECK(done.exitCode == 0);
   CHECK(contains(Json::parse(place.read("refused.json")).at("problem"), "the pass refuses"));
@@ -254,7 +262,8 @@ TEST_CASE("a technique that throws is told in place, and the window goes on") {
 
 TEST_CASE("without a display a sentence says so, and wrong texts open no window") {
   const Workplace place;
-  const std::string program = "env -u DISPLAY -u WAYLAND_DISPLAY '" + (binaryDirectory() / "bin/lumivox-view").string() + "' ";
+  const std::string program =
+      "env -u DISPLAY -u WAYLAND_DISPLAY '" + (binaryDirectory() / "bin/lumivox-view").string() + "' ";
   const std::string texts = "'" + place.scene() + "' '" + committedPipeline("direct_lighting") + "'";
   const CommandResult none = runCommand(program + texts);
   CHECK(none.exitCode == 2);
@@ -268,14 +277,17 @@ TEST_CASE("without a display a sentence says so, and wrong texts open no window"
 }
 
 TEST_CASE("every statement that the window writes into its history is one that it reads") {
-  for (const char* text : {"move 0.1 0 -2.5", "turn 0.01 rad -0.02 rad", "set { resolution 32 }", "set gather { cones 6 }",
-                           "off \"light bulb\"", "exposure auto", "exposure 1.5", "port \"voxels.fragments\"",
-                           "light \"the bulb\" { power 1 2 3 }", "layout side_by_side", "wait reference 64"}) {
+  for (const char* text :
+       {"move 0.1 0 -2.5", "turn 0.01 rad -0.02 rad", "set { resolution 32 }", "set gather { cones 6 }",
+        "off \"light bulb\"", "exposure auto", "exposure 1.5", "port \"voxels.fragments\"",
+        "light \"the bulb\" { power 1 2 3 }", "layout side_by_side", "wait reference 64"}) {
     INFO(text);
     const std::vector<Action> actions = parseActions(text);
     REQUIRE(actions.size() == 1);
     CHECK(parseActions(actions.front().written()).front().written() == actions.front().written());
   }
+  for (const char* choice : {"split", "whole image", "voxels.fragments"})
+    CHECK(parseActions("output " + choiceValue(choice)).front().text() == choice);
   CHECK_THROWS_WITH(parseActions("layout sideways"), Catch::Contains("sideways"));
 }
 
@@ -325,7 +337,8 @@ TEST_CASE("pictures mark what is no number, tell the sign of errors, and split w
   CHECK(error.bytes[2] > 150);  // too dark: blue
   CHECK(error.bytes[3] > 150);  // too bright: red
   CHECK(error.bytes[5] == 0);
-  const Picture dark = pictureOf(ImageBuffer(4, 1, 3, 0.0f), {}), bright = pictureOf(ImageBuffer(4, 1, 3, 1.0f), {});
+  const Picture dark = pictureOf(ImageBuffer(4, 1, 3, 0.0f), {}),
+                bright = pictureOf(ImageBuffer(4, 1, 3, 1.0f), {});
   const Picture split = splitPicture(dark, bright, 0.5);
   CHECK(split.bytes[0] == 0);
   CHECK(split.bytes[9] == 255);
@@ -333,9 +346,10 @@ TEST_CASE("pictures mark what is no number, tell the sign of errors, and split w
 
 TEST_CASE("a scene without an object keeps the triangles of the others where they were") {
   const Workplace place;
-  place.write("two.scene",
-              "scene \"Two rooms\" {\n  camera main { eye 0 0 0.9  target 0 0 -1 }\n  mesh room { file \"room.obj\" }\n"
-              "  mesh other { file \"room.obj\" }\n  light bulb point { position 0 0.5 0  intensity 1 1 1 }\n}\n");
+  place.write(
+      "two.scene",
+      "scene \"Two rooms\" {\n  camera main { eye 0 0 0.9  target 0 0 -1 }\n  mesh room { file \"room.obj\" }\n"
+      "  mesh other { file \"room.obj\" }\n  light bulb point { position 0 0.5 0  intensity 1 1 1 }\n}\n");
   const Scene scene = loadScene(place.file("two.scene"));
   REQUIRE(scene.objects.size() == 2);
   SceneEdits edits;

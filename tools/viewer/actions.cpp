@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+
 #include "lumivox/base/error.h"
 
 namespace lumivox::viewer {
@@ -40,7 +43,8 @@ PropertySpecification chosen(std::string word, std::vector<std::string> choices,
 std::vector<PropertySpecification> lookProperties() {
   return {
       one("show", PropertyType::name, "the pipeline that is shown, by its name or its file"),
-      one("beside", PropertyType::name, "a second pipeline, `copy` of the first with values of its own, or `nothing`"),
+      one("beside", PropertyType::name,
+          "a second pipeline, `copy` of the first with values of its own, or `nothing`"),
       one("swap", PropertyType::flag, "exchanges the two"),
       one("camera", PropertyType::name, "looks through a camera of the scene"),
       measured("eye", PropertyType::vector3, dsl::kLength, "where one looks from, with a free camera"),
@@ -65,7 +69,8 @@ std::vector<PropertySpecification> lookProperties() {
       ranged("split", PropertyType::number, 0, 1, "where the picture ends and the reference begins"),
       one("exposure", PropertyType::any, "in EV, or `auto`"),
       chosen("tone", {"srgb", "linear", "filmic", "false_colour"}, "how radiance becomes colours"),
-      ranged("samples", PropertyType::integer, 2, 1 << 20, "per pixel, at which the reference is good enough"),
+      ranged("samples", PropertyType::integer, 2, 1 << 20,
+             "per pixel, at which the reference is good enough"),
       one("reference", PropertyType::flag, "whether a reference is traced in the background"),
       ranged("seed", PropertyType::integer, 0, 9007199254740992.0, "of the random numbers of techniques"),
       one("keep_everything", PropertyType::flag, "leaves nothing out"),
@@ -76,7 +81,8 @@ std::vector<PropertySpecification> lookProperties() {
 std::vector<PropertySpecification> changeProperties() {
   return {
       one("reset", PropertyType::name, "a parameter back to its default, or `all`"),
-      one("off", PropertyType::name, "switches a part of the scene off: \"light NAME\", \"gloss\", \"environment\" ..."),
+      one("off", PropertyType::name,
+          "switches a part of the scene off: \"light NAME\", \"gloss\", \"environment\" ..."),
       one("on", PropertyType::name, "switches it on again"),
       ranged("environment", PropertyType::oneOrThree, 0, 1e30, "radiance of the sky"),
       ranged("undo", PropertyType::integer, 1, 1000, "so many changes"),
@@ -96,8 +102,9 @@ std::vector<PropertySpecification> keepProperties() {
 }
 
 std::vector<PropertySpecification> windowProperties() {
-  PropertySpecification wait = one("wait", PropertyType::any,
-                                   "for `frame`, `judged`, `problem`, `mended`, or `reference` and so many samples, at most a minute");
+  PropertySpecification wait =
+      one("wait", PropertyType::any,
+          "for `frame`, `judged`, `problem`, `mended`, or `reference` and so many samples, at most a minute");
   return {
       std::move(wait),
       one("click", PropertyType::name, "a control, by its name"),
@@ -118,13 +125,15 @@ dsl::BlockSpecification block(std::string word, dsl::HeaderUse name, std::string
 }
 
 std::vector<dsl::BlockSpecification> makeSpecifications() {
-  dsl::BlockSpecification view = block("view", dsl::HeaderUse::required, "what is done in the window, in order");
+  dsl::BlockSpecification view =
+      block("view", dsl::HeaderUse::required, "what is done in the window, in order");
   for (const auto& list : {lookProperties(), changeProperties(), keepProperties(), windowProperties()})
     view.properties.insert(view.properties.end(), list.begin(), list.end());
-  dsl::BlockSpecification set = block("set", dsl::HeaderUse::optional,
-                                      "parameters of the pipeline, or of the pass that is named");
+  dsl::BlockSpecification set =
+      block("set", dsl::HeaderUse::optional, "parameters of the pipeline, or of the pass that is named");
   set.open = true;
-  dsl::BlockSpecification material = block("material", dsl::HeaderUse::required, "other values of a material");
+  dsl::BlockSpecification material =
+      block("material", dsl::HeaderUse::required, "other values of a material");
   material.properties = {ranged("diffuse", PropertyType::oneOrThree, 0, 1, "albedo"),
                          ranged("specular", PropertyType::oneOrThree, 0, 1, "Phong albedo"),
                          ranged("exponent", PropertyType::number, 0, 1e30, "of the Phong lobe"),
@@ -143,7 +152,8 @@ std::vector<Action> actionsOf(dsl::Document parsed) {
   std::vector<Action> actions;
   for (const dsl::Item& item : document->items)
     for (const dsl::Item& statement : item.block->items)
-      actions.push_back({document, statement.property ? &*statement.property : nullptr, statement.block.get()});
+      actions.push_back(
+          {document, statement.property ? &*statement.property : nullptr, statement.block.get()});
   return actions;
 }
 
@@ -197,6 +207,13 @@ std::string quoted(const std::string& text) {
     result += c;
   }
   return result + "\"";
+}
+
+std::string choiceValue(const std::string& choice) {
+  const bool plain = std::all_of(choice.begin(), choice.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '.';
+  });
+  return plain && !choice.empty() ? choice : quoted(choice);
 }
 
 }  // namespace lumivox::viewer

@@ -1,5 +1,5 @@
-// What can be done in the viewer, as statements of the language of the other texts: controls write them, scripts
-// consist of them, and the history is a list of them.
+// What can be done in the viewer, as statements of the language of the other texts: controls write them,
+// scripts consist of them, and the history is a list of them.
 #pragma once
 
 #include <filesystem>
@@ -38,5 +38,7 @@ std::vector<Action> parseActions(const std::string& statements);
 
 /// A text as a value of a statement: in quotation marks.
 std::string quoted(const std::string& text);
+/// One of the choices of a control: words and numbers as they are, in quotation marks what is neither.
+std::string choiceValue(const std::string& choice);
 
 }  // namespace lumivox::viewer

@@ -52,11 +52,12 @@ JudgeWorker::Work makeJudgeWork() {
             layer.empty() ? std::nullopt : referenceLayer(wish.reference->image, layer);
         const ImageBuffer image = outputOf(side.frame, name);
         if (!reference || !reference->mean.sameShape(image)) continue;
-        JudgedOutput one{name, layer, compare(image, reference->mean, reference->variance, wish.exposure), 0.0};
+        JudgedOutput one{name, layer, compare(image, reference->mean, reference->variance, wish.exposure),
+                         0.0};
         const auto component = side.frame.components.find(name);
-        const ImageBuffer nothing = neutralImage(
-            image.width(), image.height(),
-            component == side.frame.components.end() ? Contributes::final : component->second);
+        const ImageBuffer nothing =
+            neutralImage(image.width(), image.height(),
+                         component == side.frame.components.end() ? Contributes::final : component->second);
         one.ofNothing = compare(nothing, reference->mean, reference->variance, wish.exposure).rmse.value;
         outputs.push_back(std::move(one));
       }

@@ -1,4 +1,5 @@
-// What is taken out of the viewer: images, texts, the record of the panels, the command that repeats a picture.
+// What is taken out of the viewer: images, texts, the record of the panels, the command that repeats a
+// picture.
 #include <fmt/format.h>
 
 #include "lumivox/base/error.h"
@@ -28,7 +29,9 @@ void saveImage(const fs::path& file, const RenderedSide& side, const std::string
     if (curve == Curve::falseColour)
       throw Error("save_image: false colour is of the window; expected another tone, or `shot`");
     const ImageBuffer image = outputOf(side.frame, output);
-    const Tone tone = curve == Curve::linear ? Tone::linear : curve == Curve::filmic ? Tone::filmic : Tone::srgb;
+    const Tone tone = curve == Curve::linear   ? Tone::linear
+                      : curve == Curve::filmic ? Tone::filmic
+                                               : Tone::srgb;
     writePng(file, image, image.channels() == 1 ? Display{} : Display{exposure, tone});
   } else if (file.extension() == ".exr") {
     LayeredImage layered;
@@ -54,7 +57,8 @@ void requireSameFolder(const char* what, const fs::path& file, const fs::path& o
 
 bool Session::doKeep(const Action& action) {
   const std::string& word = action.word();
-  if (word != "save_image" && word != "save_pipeline" && word != "save_scene" && word != "record") return false;
+  if (word != "save_image" && word != "save_pipeline" && word != "save_scene" && word != "record")
+    return false;
   const fs::path file = action.text();
   const Side& side = state_.sides.front();
   if (word == "record") {
@@ -62,8 +66,9 @@ bool Session::doKeep(const Action& action) {
     writeFileAtomically(file, recordOf(*this).dump(2) + "\n");
   } else if (word == "save_image") {
     if (rendered_ == nullptr || !rendered_->sides.front().error.empty())
-      throw Error("save_image: there is no picture; " + (rendered_ == nullptr ? std::string("expected `wait frame` before")
-                                                                              : rendered_->sides.front().error));
+      throw Error("save_image: there is no picture; " + (rendered_ == nullptr
+                                                             ? std::string("expected `wait frame` before")
+                                                             : rendered_->sides.front().error));
     saveImage(file, rendered_->sides.front(), state_.output, exposure_, state_.curve);
   } else if (word == "save_pipeline") {
     const std::string text = textWithDefaults(*side.pipeline, side.values);
@@ -72,8 +77,8 @@ bool Session::doKeep(const Action& action) {
     writeFileAtomically(file, text);
   } else {
     requireSameFolder("save_scene", file, options_.scene);
-    writeFileAtomically(file,
-                        textWithCamera(options_.scene, cameraOf(state_, *scene_), state_.width, state_.height));
+    writeFileAtomically(
+        file, textWithCamera(options_.scene, cameraOf(state_, *scene_), state_.width, state_.height));
   }
   say(file.string() + " written", false);
   return true;
@@ -87,9 +92,11 @@ std::string Session::command() const {
     words.push_back(name + "=" + value.text());
   }
   if (state_.free) {
-    const auto point = [](const glm::dvec3& value) { return fmt::format("{},{},{}", value.x, value.y, value.z); };
-    words.insert(words.end(), {"--eye", point(state_.free->eye), "--target", point(state_.free->target), "--fov",
-                               fmt::format("{}", state_.free->fov)});
+    const auto point = [](const glm::dvec3& value) {
+      return fmt::format("{},{},{}", value.x, value.y, value.z);
+    };
+    words.insert(words.end(), {"--eye", point(state_.free->eye), "--target", point(state_.free->target),
+                               "--fov", fmt::format("{}", state_.free->fov)});
   }
   if (!state_.camera.empty()) words.insert(words.end(), {"--camera", state_.camera});
   words.insert(words.end(), {"--resolution", fmt::format("{}x{}", state_.width, state_.height)});

@@ -12,8 +12,8 @@
 
 namespace lumivox::viewer {
 
-/// `Wish` says what is wanted, `Result` is what comes of it. The work runs on a thread of its own, which sleeps
-/// while nothing is wanted, and may give several results for one wish.
+/// `Wish` says what is wanted, `Result` is what comes of it. The work runs on a thread of its own, which
+/// sleeps while nothing is wanted, and may give several results for one wish.
 template <class Wish, class Result>
 class LatestWorker {
  public:
@@ -24,9 +24,7 @@ class LatestWorker {
   /// What the work sees of its worker.
   class Turn {
    public:
-    void give(Result result) {
-      worker_.deliver(std::move(result));
-    }
+    void give(Result result) { worker_.deliver(std::move(result)); }
     /// Whether another wish waits, or nobody wants anything any more.
     const std::atomic<bool>& outdated() const { return worker_.outdated_; }
 

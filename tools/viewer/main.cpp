@@ -25,8 +25,8 @@ struct ViewOptions {
   double fpsLimit = 60.0;
 };
 
-/// Where the layout of the window is kept for this user: $XDG_CONFIG_HOME/lumivox/view.ini, else in ~/.config;
-/// nowhere without a home.
+/// Where the layout of the window is kept for this user: $XDG_CONFIG_HOME/lumivox/view.ini, else in
+/// ~/.config; nowhere without a home.
 std::filesystem::path layoutFile() {
   const auto folderOf = [](const char* variable) {
     const char* value = std::getenv(variable);
@@ -58,7 +58,8 @@ int view(const ViewOptions& options, const GlobalOptions& global) {
   window.fpsLimit = options.fpsLimit;
   if (options.script.empty()) window.layoutFile = layoutFile();
   window.title = fmt::format("{} - Lumivox", options.scene.filename().string());
-  // The session first: texts that are wrong open no window. Its threads begin when the window asks for a picture.
+  // The session first: texts that are wrong open no window. Its threads begin when the window asks for a
+  // picture.
   Session looked(session, [] { Window::wake(); });
   Window shown(window);
   shown.run(looked, std::move(script));
@@ -80,7 +81,8 @@ int run(int count, char** arguments) {
                  "the pipelines' texts, the first shown (default: every committed one that suits the scene)");
   options.run.addTo(app);
   app.add_option("--window", options.windowSize, "WxH: size of the window (default 1280x800)");
-  app.add_option("--fps-limit", options.fpsLimit, "most frames a second that the window draws (default 60; 0: no limit)")
+  app.add_option("--fps-limit", options.fpsLimit,
+                 "most frames a second that the window draws (default 60; 0: no limit)")
       ->check(CLI::Range(0.0, 10000.0));
   app.add_option("--script", options.script, "a text of what is done in the window, in order");
   addDescriptionOptions(app, LUMIVOX_VERSION);

@@ -51,8 +51,8 @@ Row choice(const std::string& name, const std::string& label, const std::string&
   row.statement = statement;
   return row;
 }
-Row number(const std::string& name, const std::string& label, double value, double low, double high, bool integer,
-           const std::string& statement, const std::string& tooltip = {}) {
+Row number(const std::string& name, const std::string& label, double value, double low, double high,
+           bool integer, const std::string& statement, const std::string& tooltip = {}) {
   Row row = text(name, label, integer ? fmt::format("{:.0f}", value) : fmt::format("{:.6g}", value), tooltip);
   row.kind = Kind::number;
   row.number = value;
@@ -82,8 +82,8 @@ Panel lookPanel(const Session& session) {
                         stemsOf(session), "show {}"));
   std::vector<std::string> seconds = stemsOf(session);
   seconds.insert(seconds.begin(), {"nothing", "copy"});
-  rows.push_back(choice("beside", "beside", state.sides.size() < 2 ? "nothing"
-                                                                     : state.sides[1].pipeline->file.stem().string(),
+  rows.push_back(choice("beside", "beside",
+                        state.sides.size() < 2 ? "nothing" : state.sides[1].pipeline->file.stem().string(),
                         seconds, "beside {}", "a second pipeline, rendered in the same frame"));
   std::vector<std::string> cameras;
   for (const Camera& camera : session.scene().cameras) cameras.push_back(camera.name);
@@ -100,25 +100,26 @@ Panel lookPanel(const Session& session) {
       for (const PassContract::Port& port : pass.outputs) {
         if (port.textures.empty()) continue;
         ports.push_back(pass.name + "." + port.name);
-        if (state.port && state.port->pass == pass.name && state.port->port == port.name) textures = port.textures;
+        if (state.port && state.port->pass == pass.name && state.port->port == port.name)
+          textures = port.textures;
       }
-  rows.push_back(choice("port", "port", state.port ? state.port->pass + "." + state.port->port : "nothing", ports,
-                        "port {}", "any texture of any output of a pass"));
+  rows.push_back(choice("port", "port", state.port ? state.port->pass + "." + state.port->port : "nothing",
+                        ports, "port {}", "any texture of any output of a pass"));
   if (state.port) {
     rows.push_back(choice("texture", "texture", state.port->texture, textures, "texture {}"));
     rows.push_back(number("level", "mip level", state.port->level, 0, 16, true, "level {}"));
     rows.push_back(number("slice", "slice", state.port->slice, 0, 512, true, "slice {}"));
   }
-  rows.push_back(choice("layout", "layout", layoutWords()[static_cast<std::size_t>(state.layout)], layoutWords(),
-                        "layout {}"));
+  rows.push_back(choice("layout", "layout", layoutWords()[static_cast<std::size_t>(state.layout)],
+                        layoutWords(), "layout {}"));
   rows.push_back(number("split", "split", state.split, 0, 1, false, "split {}"));
   rows.push_back(choice("error_map", "error", errorMapWords()[static_cast<std::size_t>(state.errorMap)],
                         errorMapWords(), "error_map {}"));
   rows.push_back(number("exposure", state.exposure ? "exposure, EV" : "exposure, EV (automatic)",
                         session.exposure(), -20, 20, false, "exposure {}"));
   rows.push_back(button("exposure_auto", "automatic exposure", "exposure auto"));
-  rows.push_back(choice("tone", "tone", curveWords()[static_cast<std::size_t>(state.curve)], curveWords(),
-                        "tone {}"));
+  rows.push_back(
+      choice("tone", "tone", curveWords()[static_cast<std::size_t>(state.curve)], curveWords(), "tone {}"));
   const Picture& picture = session.picture();
   if (!picture.legend.empty()) rows.push_back(text("legend", "legend", picture.legend));
   rows.push_back(text("bad_pixels", "NaN or infinite pixels", fmt::format("{}", picture.badPixels)));
@@ -131,11 +132,11 @@ Panel judgePanel(const Session& session) {
   Panel panel{"judge", "Judge", {}};
   panel.rows.push_back(toggle("reference", "trace a reference", state.traces, "reference {}"));
   const ReferenceResult reference = session.reference();
-  panel.rows.push_back(text("samples", "samples", reference == nullptr
-                                                      ? std::string("none yet")
-                                                      : fmt::format("{} of {}, {:.1f} s{}", reference->samples,
-                                                                    state.samples, reference->seconds,
-                                                                    session.tracing() ? "" : ", done")));
+  panel.rows.push_back(text("samples", "samples",
+                            reference == nullptr
+                                ? std::string("none yet")
+                                : fmt::format("{} of {}, {:.1f} s{}", reference->samples, state.samples,
+                                              reference->seconds, session.tracing() ? "" : ", done")));
   if (const auto judged = session.judged()) {
     for (std::size_t i = 0; i < judged->sides.size(); ++i) {
       panel.rows.push_back(heading(judged->wish.rendered->wish.sides[i].pipeline->file.stem().string() +
@@ -145,12 +146,15 @@ Panel judgePanel(const Session& session) {
         const ImageError& error = one.error;
         panel.rows.push_back(text(name + " layer", one.output, "against " + one.layer));
         panel.rows.push_back(text(name + " rmse", "  RMSE", measuredText(error.rmse)));
-        panel.rows.push_back(text(name + " of nothing", "  over that of none",
-                                  one.ofNothing > 0.0 ? fmt::format("{:.3f}", error.rmse.value / one.ofNothing) : "-",
-                                  "the RMSE over that of leaving the output out"));
+        panel.rows.push_back(
+            text(name + " of nothing", "  over that of none",
+                 one.ofNothing > 0.0 ? fmt::format("{:.3f}", error.rmse.value / one.ofNothing) : "-",
+                 "the RMSE over that of leaving the output out"));
         panel.rows.push_back(text(name + " mean ratio", "  mean ratio", measuredText(error.meanRatio)));
-        panel.rows.push_back(text(name + " flip", "  FLIP", fmt::format("{:.4f} ± {:.2g}", error.flip, error.flipUncertainty)));
-        panel.rows.push_back(text(name + " noise", "  noise of the reference", fmt::format("{:.3g}", error.noiseFloor)));
+        panel.rows.push_back(text(name + " flip", "  FLIP",
+                                  fmt::format("{:.4f} ± {:.2g}", error.flip, error.flipUncertainty)));
+        panel.rows.push_back(
+            text(name + " noise", "  noise of the reference", fmt::format("{:.3g}", error.noiseFloor)));
       }
     }
   }
@@ -172,8 +176,10 @@ Panel judgePanel(const Session& session) {
   return panel;
 }
 
-/// A bar of the passes' medians, a row for each, and what a frame costs once, while something moves, and always.
-void addPassTimes(std::vector<Row>& rows, const Session& session, std::size_t side, const std::string& prefix) {
+/// A bar of the passes' medians, a row for each, and what a frame costs once, while something moves, and
+/// always.
+void addPassTimes(std::vector<Row>& rows, const Session& session, std::size_t side,
+                  const std::string& prefix) {
   const RenderedSide& rendered = session.rendered()->sides[side];
   const std::vector<PassTimes> times = session.passTimes(side);
   Row bars;
@@ -186,12 +192,12 @@ void addPassTimes(std::vector<Row>& rows, const Session& session, std::size_t si
   for (const PassTimes& pass : times) {
     const auto record = std::find_if(rendered.times.begin(), rendered.times.end(),
                                      [&](const PassRecord& one) { return one.name == pass.name; });
-    rows.push_back(text(prefix + "pass " + pass.name, "  " + pass.name + (pass.onHost ? " (host)" : ""),
-                        fmt::format("{:.3f} ms [{:.3f}, {:.3f}], host {:.3f} ms, {}", pass.device.median,
-                                    pass.device.lowerQuartile, pass.device.upperQuartile, pass.host.median,
-                                    formatBytes(record == rendered.times.end() ? 0 : record->bytes)),
-                        fmt::format("median and quartiles of {} frames; runs {}", pass.device.repeats,
-                                    wordOf(pass.when))));
+    rows.push_back(text(
+        prefix + "pass " + pass.name, "  " + pass.name + (pass.onHost ? " (host)" : ""),
+        fmt::format("{:.3f} ms [{:.3f}, {:.3f}], host {:.3f} ms, {}", pass.device.median,
+                    pass.device.lowerQuartile, pass.device.upperQuartile, pass.host.median,
+                    formatBytes(record == rendered.times.end() ? 0 : record->bytes)),
+        fmt::format("median and quartiles of {} frames; runs {}", pass.device.repeats, wordOf(pass.when))));
     host += pass.host.median;
     ofKind[static_cast<std::size_t>(pass.when)] += pass.device.median;
   }
@@ -231,7 +237,8 @@ Panel needPanel(const Session& session) {
   const RenderedResult rendered = session.rendered();
   if (rendered == nullptr || !rendered->sides.front().error.empty()) return panel;
   const Explanation& explanation = rendered->sides.front().explanation;
-  panel.rows.push_back(text("passes", "passes", fmt::format("{} of {}", explanation.passesKept, explanation.passesTotal)));
+  panel.rows.push_back(
+      text("passes", "passes", fmt::format("{} of {}", explanation.passesKept, explanation.passesTotal)));
   panel.rows.push_back(text("variants", "variants of shaders",
                             fmt::format("{} needed, {} compiled, {} possible", explanation.variantsNeeded,
                                         explanation.variantsCompiled, explanation.variantsPossible)));
@@ -243,9 +250,8 @@ Panel needPanel(const Session& session) {
   const auto order = [](const command::Reason& reason) {
     return reason.level == LeftOut::Level::plugin ? 2 : reason.level == LeftOut::Level::variant ? 1 : 0;
   };
-  std::stable_sort(reasons.begin(), reasons.end(), [&](const command::Reason& a, const command::Reason& b) {
-    return order(a) < order(b);
-  });
+  std::stable_sort(reasons.begin(), reasons.end(),
+                   [&](const command::Reason& a, const command::Reason& b) { return order(a) < order(b); });
   constexpr std::size_t kNamed = 4;
   for (const command::Reason& reason : reasons) {
     std::vector<std::string> what = reason.what;
@@ -272,13 +278,14 @@ Panel changePanel(const Session& session) {
     const ParameterValue& value = set == side.values.end() ? parameter.value : set->second;
     const std::string statement = "set { " + parameter.name + " {} }";
     const std::string tooltip = "default " + parameter.value.text();
-    Row row = !parameter.choices.empty()
-                  ? choice(parameter.name, parameter.name, value.text(), parameter.choices, statement, tooltip)
-                  : number(parameter.name, parameter.name, value.number, parameter.low.value_or(0.0),
-                           parameter.high.value_or(std::max(1.0, 4.0 * parameter.value.number)),
-                           parameter.value.number == std::floor(parameter.value.number) &&
-                               parameter.high.value_or(0.5) == std::floor(parameter.high.value_or(0.5)),
-                           statement, tooltip);
+    Row row =
+        !parameter.choices.empty()
+            ? choice(parameter.name, parameter.name, value.text(), parameter.choices, statement, tooltip)
+            : number(parameter.name, parameter.name, value.number, parameter.low.value_or(0.0),
+                     parameter.high.value_or(std::max(1.0, 4.0 * parameter.value.number)),
+                     parameter.value.number == std::floor(parameter.value.number) &&
+                         parameter.high.value_or(0.5) == std::floor(parameter.high.value_or(0.5)),
+                     statement, tooltip);
     row.changed = set != side.values.end() && !(set->second == parameter.value);
     panel.rows.push_back(std::move(row));
   }
@@ -318,7 +325,8 @@ Panel scenePanel(const Session& session) {
     const auto edit = edits.powers.find(light.name);
     const glm::vec3 power = edit == edits.powers.end() ? light.power : edit->second;
     panel.rows.push_back(heading("light " + light.name));
-    panel.rows.push_back(text("power " + light.name, "power", fmt::format("{:.4g} {:.4g} {:.4g}", power.x, power.y, power.z)));
+    panel.rows.push_back(
+        text("power " + light.name, "power", fmt::format("{:.4g} {:.4g} {:.4g}", power.x, power.y, power.z)));
     panel.rows.push_back(button("brighter " + light.name, "twice as bright",
                                 fmt::format("light {} {{ power {} {} {} }}", quoted(light.name), 2 * power.x,
                                             2 * power.y, 2 * power.z)));
@@ -332,12 +340,12 @@ Panel scenePanel(const Session& session) {
     const glm::vec3 diffuse = edit != nullptr && edit->diffuse ? *edit->diffuse : material.diffuse;
     const float exponent = edit != nullptr && edit->exponent ? *edit->exponent : material.exponent;
     panel.rows.push_back(heading("material " + material.name));
-    panel.rows.push_back(number("albedo " + material.name, "albedo", std::max({diffuse.x, diffuse.y, diffuse.z}), 0, 1,
-                                false, "material " + quoted(material.name) + " { diffuse {} }",
-                                "grey of this albedo"));
+    panel.rows.push_back(
+        number("albedo " + material.name, "albedo", std::max({diffuse.x, diffuse.y, diffuse.z}), 0, 1, false,
+               "material " + quoted(material.name) + " { diffuse {} }", "grey of this albedo"));
     if (material.glossy())
-      panel.rows.push_back(number("exponent " + material.name, "Phong exponent", exponent,
-                                  0, 100000, false, "material " + quoted(material.name) + " { exponent {} }"));
+      panel.rows.push_back(number("exponent " + material.name, "Phong exponent", exponent, 0, 100000, false,
+                                  "material " + quoted(material.name) + " { exponent {} }"));
   }
   return panel;
 }
@@ -399,7 +407,8 @@ nlohmann::ordered_json recordOf(const Session& session) {
       if (!row.choices.empty()) one["choices"] = row.choices;
       if (row.kind == Kind::number) one["range"] = {row.low, row.high};
       if (row.changed) one["changed"] = true;
-      for (const Row::Mark& mark : row.marks) one["marks"].push_back({{"label", mark.label}, {"x", mark.x}, {"y", mark.y}});
+      for (const Row::Mark& mark : row.marks)
+        one["marks"].push_back({{"label", mark.label}, {"x", mark.x}, {"y", mark.y}});
       rows.push_back(std::move(one));
     }
     panels[panel.name] = std::move(rows);

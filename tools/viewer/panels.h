@@ -13,7 +13,7 @@ namespace lumivox::viewer {
 struct Row {
   enum class Kind { heading, text, number, choice, toggle, button, bars, points };
   Kind kind = Kind::text;
-  std::string name;   ///< unique in its panel; what scripts click
+  std::string name;  ///< unique in its panel; what scripts click
   std::string label, value, tooltip;
   std::string statement;  ///< empty: nothing to be done
   double number = 0.0, low = 0.0, high = 0.0;

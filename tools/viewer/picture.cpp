@@ -98,13 +98,16 @@ Picture errorPicture(const ImageBuffer& image, const ImageBuffer& reference, Err
     if (map == ErrorMap::squared) {
       colour[0] = colour[1] = colour[2] = static_cast<float>(difference * difference / (mean * mean + 1e-30));
     } else {
-      // Where the reference is dark a hundredth of its mean stands in, as in the relative error of the report.
-      const auto relative = static_cast<float>(difference / std::max<double>(truth.values()[pixel], 0.01 * mean + 1e-30));
+      // Where the reference is dark a hundredth of its mean stands in, as in the relative error of the
+      // report.
+      const auto relative =
+          static_cast<float>(difference / std::max<double>(truth.values()[pixel], 0.01 * mean + 1e-30));
       const float strength = std::min(1.0f, std::abs(relative));
       colour[0] = relative > 0.0f ? strength : 0.0f;
       colour[1] = 0.0f;
       colour[2] = relative < 0.0f ? strength : 0.0f;
-      if (!std::isfinite(relative)) colour[0] = colour[1] = colour[2] = std::numeric_limits<float>::quiet_NaN();
+      if (!std::isfinite(relative))
+        colour[0] = colour[1] = colour[2] = std::numeric_limits<float>::quiet_NaN();
     }
   }
   picture = framed(shown, {});
@@ -121,9 +124,10 @@ Picture splitPicture(const Picture& left, const Picture& right, double at) {
   for (int y = 0; y < left.height; ++y) {
     const std::size_t row = 3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(left.width);
     const auto from = static_cast<std::ptrdiff_t>(row + 3 * static_cast<std::size_t>(column));
-    std::copy(right.bytes.begin() + from,
-              right.bytes.begin() + static_cast<std::ptrdiff_t>(row + 3 * static_cast<std::size_t>(left.width)),
-              picture.bytes.begin() + from);
+    std::copy(
+        right.bytes.begin() + from,
+        right.bytes.begin() + static_cast<std::ptrdiff_t>(row + 3 * static_cast<std::size_t>(left.width)),
+        picture.bytes.begin() + from);
     if (column > 0 && column < left.width)
       std::fill_n(picture.bytes.begin() + from, 3, static_cast<unsigned char>(255));
   }

@@ -1,5 +1,5 @@
-// From linear radiance to the bytes that a window shows: exposure and curve, false colour, errors, and what is
-// no number.
+// From linear radiance to the bytes that a window shows: exposure and curve, false colour, errors, and what
+// is no number.
 #pragma once
 
 #include <optional>

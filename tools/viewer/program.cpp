@@ -18,7 +18,8 @@ namespace lumivox::viewer {
 
 ProgramResult runProgram(const std::vector<std::string>& words) {
   int messages[2];
-  if (pipe2(messages, O_CLOEXEC) != 0) throw Error(fmt::format("{}: {}", words.front(), std::strerror(errno)));
+  if (pipe2(messages, O_CLOEXEC) != 0)
+    throw Error(fmt::format("{}: {}", words.front(), std::strerror(errno)));
   std::vector<std::string> copies = words;
   std::vector<char*> pointers;
   for (std::string& word : copies) pointers.push_back(word.data());

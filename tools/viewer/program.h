@@ -8,7 +8,7 @@
 namespace lumivox::viewer {
 
 struct ProgramResult {
-  int exitCode = -1;  ///< 128 and the signal's number of one that a signal ended
+  int exitCode = -1;   ///< 128 and the signal's number of one that a signal ended
   std::string errors;  ///< what it wrote to standard error
 };
 

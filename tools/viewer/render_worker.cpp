@@ -18,7 +18,7 @@ PassContract contractOf(const PassText& text, const Pass& pass, TechniqueSource&
   if (const Technique* technique = techniques.technique(text.technique))
     if (const PassEntry* entry = technique->find(text.pass)) contract.meaning = entry->meaning;
   for (const ParamBase* parameter : pass.parameters()) {
-    PassParameter one{parameter->name(), parameter->meaning(),     parameter->unit(),
+    PassParameter one{parameter->name(),      parameter->meaning(),     parameter->unit(),
                       parameter->valueText(), parameter->defaultText(), parameter->choices()};
     one.integer = parameter->type() == ParamBase::Type::integer;
     one.number = one.integer || parameter->type() == ParamBase::Type::number;
@@ -40,7 +40,8 @@ PassContract contractOf(const PassText& text, const Pass& pass, TechniqueSource&
 std::map<std::string, RunsWhen> whenPassesRun(const Pipeline& pipeline, const PipelineExecutor& executor) {
   std::map<std::string, Reads> all;
   for (const PassText& text : pipeline.passes) all[text.name] = executor.pass(text.name).readsFrom();
-  // As often as there are passes: then what the first reads has reached the last, in whatever order they stand.
+  // As often as there are passes: then what the first reads has reached the last, in whatever order they
+  // stand.
   for (std::size_t i = 0; i < pipeline.passes.size(); ++i)
     for (const PassText& text : pipeline.passes)
       for (const dsl::Item& item : text.block->items) {
@@ -56,9 +57,10 @@ std::map<std::string, RunsWhen> whenPassesRun(const Pipeline& pipeline, const Pi
   std::map<std::string, RunsWhen> runs;
   for (const auto& [pass, read] : all) {
     const auto any = [read = read](Reads set) { return (read & set) != Reads::nothing; };
-    runs[pass] = any(Reads::camera | Reads::partOfCamera | Reads::lens | Reads::history) ? RunsWhen::everyFrame
-                 : any(Reads::geometry | Reads::lights | Reads::media | Reads::time)      ? RunsWhen::somethingMoves
-                                                                                           : RunsWhen::once;
+    runs[pass] =
+        any(Reads::camera | Reads::partOfCamera | Reads::lens | Reads::history) ? RunsWhen::everyFrame
+        : any(Reads::geometry | Reads::lights | Reads::media | Reads::time)     ? RunsWhen::somethingMoves
+                                                                                : RunsWhen::once;
   }
   return runs;
 }
@@ -123,7 +125,8 @@ class Executor {
     }
     const OutBase* output = find();
     if (output == nullptr)
-      throw Error(fmt::format("{}.{} was left out: nothing in the scene asks for it", choice.pass, choice.port));
+      throw Error(
+          fmt::format("{}.{} was left out: nothing in the scene asks for it", choice.pass, choice.port));
     const PortContents contents = output->contents();
     for (const PortContents::Resource& resource : contents.resources())
       if (resource.texture != nullptr && (choice.texture.empty() || resource.what->name == choice.texture))
@@ -250,14 +253,15 @@ RenderWorker::Work makeRenderWork(const gpu::DeviceOptions& options) {
 ImageBuffer sliceOf(const gpu::Texture& texture, int level, int slice) {
   const gpu::TextureDescription& is = texture.description();
   if (level < 0 || level >= is.levels)
-    throw Error(fmt::format("{} has no level {}; expected one of 0..{}", texture.label(), level, is.levels - 1));
+    throw Error(
+        fmt::format("{} has no level {}; expected one of 0..{}", texture.label(), level, is.levels - 1));
   const int width = std::max(1, is.width >> level), height = std::max(1, is.height >> level);
   const int depth = is.kind == gpu::TextureKind::d3 ? std::max(1, is.depth >> level) : is.depth;
   if (slice < 0 || slice >= depth)
     throw Error(fmt::format("{} has no slice {}; expected one of 0..{}", texture.label(), slice, depth - 1));
   const int components = gpu::componentCount(is.format), channels = components == 1 ? 1 : 3;
-  const bool integers =
-      is.format == gpu::Format::r32ui || is.format == gpu::Format::rg32ui || is.format == gpu::Format::rgba32ui;
+  const bool integers = is.format == gpu::Format::r32ui || is.format == gpu::Format::rg32ui ||
+                        is.format == gpu::Format::rgba32ui;
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   const std::size_t first = pixels * static_cast<std::size_t>(slice) * static_cast<std::size_t>(components);
   std::vector<float> values;

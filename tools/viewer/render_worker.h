@@ -1,5 +1,5 @@
-// The frames of the viewer: the device, the techniques and the executors, on a thread of their own, so that the
-// window goes on while a frame takes long. The device is the one that renders without a window.
+// The frames of the viewer: the device, the techniques and the executors, on a thread of their own, so that
+// the window goes on while a frame takes long. The device is the one that renders without a window.
 #pragma once
 
 #include <cstdint>
@@ -81,8 +81,8 @@ struct RenderedSide {
 struct Rendered {
   RenderWish wish;
   std::vector<RenderedSide> sides;
-  ImageBuffer port;                    ///< of RenderWish::port
-  std::string portError, device;       ///< device: its renderer and how programs reach it
+  ImageBuffer port;                     ///< of RenderWish::port
+  std::string portError, device;        ///< device: its renderer and how programs reach it
   std::vector<std::string> techniques;  ///< that are there
   bool software = false;
 };

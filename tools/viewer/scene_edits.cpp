@@ -88,7 +88,8 @@ Scene edited(const Scene& scene, const SceneEdits& edits) {
       light.power = found->second;
   result.environment = edits.environment.value_or(result.environment);
   if (edits.off.count("environment") != 0) result.environment = glm::vec3(0.0f);
-  std::erase_if(result.lights, [&](const Light& light) { return edits.off.count("light " + light.name) != 0; });
+  std::erase_if(result.lights,
+                [&](const Light& light) { return edits.off.count("light " + light.name) != 0; });
   std::erase_if(result.media,
                 [&](const Medium& medium) { return edits.off.count("medium " + medium.name) != 0; });
   if (std::any_of(edits.off.begin(), edits.off.end(),

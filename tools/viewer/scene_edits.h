@@ -32,8 +32,8 @@ struct SceneEdits {
 /// What can be switched off in a scene: "environment", "gloss", "light NAME", "object NAME", "medium NAME".
 std::vector<std::string> partsOf(const Scene& scene);
 
-/// The scene with the edits. Names that it lacks are passed over: the text may have changed since. Its hash is
-/// that of the scene and the edits.
+/// The scene with the edits. Names that it lacks are passed over: the text may have changed since. Its hash
+/// is that of the scene and the edits.
 Scene edited(const Scene& scene, const SceneEdits& edits);
 
 }  // namespace lumivox::viewer

@@ -16,19 +16,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kWatchSeconds = 0.25;    // between looks at the files
-constexpr double kFlickerSeconds = 0.5;   // a picture of two that flicker
+constexpr double kWatchSeconds = 0.25;   // between looks at the files
+constexpr double kFlickerSeconds = 0.5;  // a picture of two that flicker
 constexpr std::size_t kMostUndo = 1000;
-constexpr std::size_t kFramesKept = 64;   // of which times are told
+constexpr std::size_t kFramesKept = 64;  // of which times are told
 
 /// Statements that change what is made or how it is judged, and so can be undone; looking around cannot.
 bool isUndoable(const std::string& word) {
-  static const std::set<std::string> words{"set",  "reset",       "show",  "beside",          "swap", "off", "on",
-                                           "light", "environment", "material", "keep_everything", "seed"};
+  static const std::set<std::string> words{
+      "set",   "reset",       "show",     "beside",          "swap", "off", "on",
+      "light", "environment", "material", "keep_everything", "seed"};
   return words.count(word) != 0;
 }
 
-std::vector<std::shared_ptr<const Pipeline>> loadPipelines(const SessionOptions& options, const Scene& scene) {
+std::vector<std::shared_ptr<const Pipeline>> loadPipelines(const SessionOptions& options,
+                                                           const Scene& scene) {
   std::vector<std::shared_ptr<const Pipeline>> pipelines;
   for (const fs::path& file : options.pipelines)
     pipelines.push_back(std::make_shared<const Pipeline>(Pipeline::load(file)));
@@ -72,8 +74,9 @@ Word wordOf(const std::vector<std::string>& words, const std::string& text) {
 
 glm::vec3 colourOf(const Action& action) {
   const std::vector<double> n = action.numbers();
-  return n.size() == 1 ? glm::vec3(static_cast<float>(n[0]))
-                       : glm::vec3(static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2]));
+  return n.size() == 1
+             ? glm::vec3(static_cast<float>(n[0]))
+             : glm::vec3(static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2]));
 }
 glm::vec3 colourOf(const dsl::Property& property) {
   return colourOf(Action{nullptr, &property, nullptr});
@@ -209,7 +212,8 @@ bool Session::doLook(const Action& action) {
   } else if (word == "output") {
     const std::string name = action.text();
     std::vector<std::string> names{kWholeImage};
-    for (const Pipeline::Output& output : state_.sides.front().pipeline->outputs) names.push_back(output.name);
+    for (const Pipeline::Output& output : state_.sides.front().pipeline->outputs)
+      names.push_back(output.name);
     if (std::find(names.begin(), names.end(), name) == names.end())
       throw Error(fmt::format("output '{}': expected one of {}", name, fmt::join(names, ", ")));
     state_.output = name;
@@ -292,10 +296,9 @@ void Session::setParameters(const Action& action) {
   for (const dsl::Item& item : action.block->items)
     if (item.property) {
       if (item.property->values.size() != 1)
-        throw DiagnosticsError({action.document->finding(item.property->place,
-                                                         static_cast<int>(item.property->word.size()),
-                                                         "'" + item.property->word + "' has no single value",
-                                                         "one value")});
+        throw DiagnosticsError(
+            {action.document->finding(item.property->place, static_cast<int>(item.property->word.size()),
+                                      "'" + item.property->word + "' has no single value", "one value")});
       settings.push_back(item.property->word + "=" + item.property->values.front().written());
     }
   for (const auto& [name, value] : side.pipeline->settings(settings)) side.values[name] = value;
@@ -335,7 +338,8 @@ bool Session::doChange(const Action& action) {
   const auto requirePart = [&](const std::string& name) {
     const std::vector<std::string> parts = partsOf(*scene_);
     if (std::find(parts.begin(), parts.end(), name) != parts.end()) return;
-    throw Error(fmt::format("'{}': no such part of the scene; expected one of {}", name, fmt::join(parts, ", ")));
+    throw Error(
+        fmt::format("'{}': no such part of the scene; expected one of {}", name, fmt::join(parts, ", ")));
   };
   if (word == "show") {
     choosePipeline(0, action.text());
@@ -381,7 +385,8 @@ bool Session::doChange(const Action& action) {
       if (property.word == "diffuse") edit.diffuse = colourOf(property);
       if (property.word == "specular") edit.specular = colourOf(property);
       if (property.word == "emission") edit.emission = colourOf(property);
-      if (property.word == "exponent") edit.exponent = static_cast<float>(property.values.front().inBaseUnits());
+      if (property.word == "exponent")
+        edit.exponent = static_cast<float>(property.values.front().inBaseUnits());
     }
   } else if (word == "keep_everything") {
     state_.keepEverything = action.flag();
@@ -534,8 +539,9 @@ void Session::wantReference() {
     return;
   }
   const RenderWish& shown = rendered_->wish;
-  ReferenceWish wish{shown.scene, shown.camera, shown.time,           shown.width,
-                     shown.height, bounceLayersOf(*rendered_), state_.samples};
+  ReferenceWish wish{shown.scene,   shown.camera, shown.time,
+                     shown.width,   shown.height, bounceLayersOf(*rendered_),
+                     state_.samples};
   if (referenceWish_ && referenceWish_->isSameView(wish)) return;
   referenceWish_ = wish;
   reference_.reset();
@@ -555,9 +561,11 @@ void Session::noteTried() {
     if (!side.error.empty()) continue;
     const Side& what = rendered_->wish.sides[i];
     const std::string key = keyOf(*rendered_, i);
-    auto known = std::find_if(tried_.begin(), tried_.end(), [&](const TriedPoint& one) { return one.key == key; });
+    auto known =
+        std::find_if(tried_.begin(), tried_.end(), [&](const TriedPoint& one) { return one.key == key; });
     if (known == tried_.end())
-      known = tried_.insert(tried_.end(), {valuesText(*what.pipeline, what.values), key, what, 0.0, {}, {}, {}});
+      known =
+          tried_.insert(tried_.end(), {valuesText(*what.pipeline, what.values), key, what, 0.0, {}, {}, {}});
     // A frame that found its results kept says nothing of the cost.
     const bool whole = std::all_of(side.frame.passes.begin(), side.frame.passes.end(),
                                    [](const PassRecord& pass) { return pass.ran; });
@@ -580,7 +588,8 @@ std::vector<PassTimes> Session::passTimes(std::size_t side) const {
   if (rendered_ == nullptr || side >= rendered_->sides.size()) return times;
   const RenderedSide& shown = rendered_->sides[side];
   const std::string key = keyOf(*rendered_, side);
-  const auto tried = std::find_if(tried_.begin(), tried_.end(), [&](const TriedPoint& one) { return one.key == key; });
+  const auto tried =
+      std::find_if(tried_.begin(), tried_.end(), [&](const TriedPoint& one) { return one.key == key; });
   if (tried == tried_.end()) return times;
   for (const PassRecord& pass : shown.times) {
     PassTimes one;
@@ -618,7 +627,8 @@ bool Session::moves() const {
 void Session::compose() {
   if (lastGood_ == nullptr) return;
   const auto imageOfSide = [&](std::size_t side) {
-    return side < lastGood_->sides.size() ? outputOf(lastGood_->sides[side].frame, state_.output) : ImageBuffer{};
+    return side < lastGood_->sides.size() ? outputOf(lastGood_->sides[side].frame, state_.output)
+                                          : ImageBuffer{};
   };
   const bool showsPort = state_.port && !lastGood_->port.empty();
   const ImageBuffer image = showsPort ? lastGood_->port : imageOfSide(0);
@@ -680,7 +690,8 @@ std::vector<std::string> Session::valuesAt(int x, int y) const {
     std::string text = name + ":";
     for (int c = 0; c < image.channels(); ++c) {
       text += fmt::format(" {:.4g}", image.at(x, y, c));
-      if (variance.sameShape(image)) text += fmt::format(" ± {:.2g}", std::sqrt(std::max(0.0f, variance.at(x, y, c))));
+      if (variance.sameShape(image))
+        text += fmt::format(" ± {:.2g}", std::sqrt(std::max(0.0f, variance.at(x, y, c))));
     }
     lines.push_back(text);
   };

@@ -47,9 +47,9 @@ struct TriedPoint {
   std::string label, key;
   Side side;
   double frameMs = 0.0;
-  std::vector<double> times;          ///< of all frames, of which frameMs is the median
+  std::vector<double> times;                              ///< of all frames, of which frameMs is the median
   std::map<std::string, std::vector<PassRecord>> passes;  ///< of the last frames that were timed
-  std::optional<Measured> error;      ///< RMSE of the whole image
+  std::optional<Measured> error;                          ///< RMSE of the whole image
 };
 
 class Session {
@@ -58,8 +58,8 @@ class Session {
   Session(const SessionOptions& options, std::function<void()> wake);
   ~Session();
 
-  /// Does statements of the grammar that need no window; returns those that do. What is wrong with them becomes
-  /// message(), and nothing of that statement is done.
+  /// Does statements of the grammar that need no window; returns those that do. What is wrong with them
+  /// becomes message(), and nothing of that statement is done.
   std::vector<Action> perform(const std::string& statements);
   /// The same for one; false: it needs the window.
   bool perform(const Action& action);
@@ -69,15 +69,15 @@ class Session {
   const ViewState& state() const { return state_; }
   const Scene& scene() const { return *scene_; }
   const std::vector<std::shared_ptr<const Pipeline>>& pipelines() const { return pipelines_; }
-  RenderedResult rendered() const { return rendered_; }        ///< the last; null before the first
-  ReferenceResult reference() const { return reference_; }     ///< of this view; null while there is none
+  RenderedResult rendered() const { return rendered_; }     ///< the last; null before the first
+  ReferenceResult reference() const { return reference_; }  ///< of this view; null while there is none
   std::shared_ptr<const Judged> judged() const { return judged_; }
   const Picture& picture() const { return picture_; }
   const std::vector<TriedPoint>& tried() const { return tried_; }
   /// Of the passes of one side as it is now, in their order.
   std::vector<PassTimes> passTimes(std::size_t side) const;
   const std::map<std::string, std::string>& technicalErrors() const { return techniques_.errors(); }
-  const std::string& message() const { return message_; }      ///< the last thing that went wrong or was done
+  const std::string& message() const { return message_; }  ///< the last thing that went wrong or was done
   bool messageIsError() const { return messageIsError_; }
   void say(const std::string& message, bool error);
   /// What is wrong with the texts, the shaders or the frame now, over the last good picture; empty: nothing.
@@ -87,7 +87,7 @@ class Session {
   std::vector<std::string> valuesAt(int x, int y) const;
   /// The command that repeats the picture.
   std::string command() const;
-  std::vector<std::string> history() const { return log_; }    ///< statements, as a script has them
+  std::vector<std::string> history() const { return log_; }  ///< statements, as a script has them
   std::size_t undoable() const { return undo_.size(); }
   std::size_t redoable() const { return redo_.size(); }
   /// Whether the frame of the present state is there, and judged by what there is of a reference.
@@ -149,8 +149,8 @@ class Session {
   RenderWorker renderer_;
 };
 
-/// The default of a pipeline's parameter, or what a text makes of a pass's: the pipeline with the statements of
-/// a `set` block in the block of that pass. DiagnosticsError when the text is then wrong.
+/// The default of a pipeline's parameter, or what a text makes of a pass's: the pipeline with the statements
+/// of a `set` block in the block of that pass. DiagnosticsError when the text is then wrong.
 Pipeline withPassParameters(const Pipeline& pipeline, const std::string& pass, const dsl::Block& values);
 /// The pipeline's text with these defaults, in the canonical layout.
 std::string textWithDefaults(const Pipeline& pipeline, const ParameterValues& values);

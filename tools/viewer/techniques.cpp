@@ -29,9 +29,9 @@ Compiled compiled(const CompileWish& wish) {
   try {
     const fs::path program = programBeside("shaderpack");
     const ProgramResult done =
-        runProgram({program.string(), "--technique", wish.technique, "--source", wish.source.string(), "--include",
-                    wish.includes.string(), wish.common.string(), "--cache", wish.cache.string(), "--pack",
-                    wish.pack.string(), "--header", wish.header.string()});
+        runProgram({program.string(), "--technique", wish.technique, "--source", wish.source.string(),
+                    "--include", wish.includes.string(), wish.common.string(), "--cache", wish.cache.string(),
+                    "--pack", wish.pack.string(), "--header", wish.header.string()});
     if (done.exitCode != 0) result.error = done.errors.empty() ? "shaderpack failed" : done.errors;
   } catch (const std::exception& error) {
     result.error = error.what();
@@ -109,8 +109,8 @@ void LiveTechniques::compile(const std::string& technique) {
   const fs::path cache = fs::is_directory(built) ? built : cacheDirectory() / "viewer_shaders";
   const fs::path folder = folder_ / "compiled";
   fs::create_directories(folder);
-  compiler_.want({technique, source, source.parent_path(), common.value_or(source.parent_path()), cache, folder / (technique + ".shaderpack"),
-                  folder / (technique + "_shaders.h")});
+  compiler_.want({technique, source, source.parent_path(), common.value_or(source.parent_path()), cache,
+                  folder / (technique + ".shaderpack"), folder / (technique + "_shaders.h")});
 }
 
 void LiveTechniques::changed(const std::string& technique, bool shaders) {

@@ -1,6 +1,6 @@
 // Techniques that are changed while they are shown: libraries and shader packs are watched, shaders compiled
-// anew in the background. What is loaded stays as it is; a changed technique is opened beside it from a folder
-// of its own.
+// anew in the background. What is loaded stays as it is; a changed technique is opened beside it from a
+// folder of its own.
 #pragma once
 
 #include <filesystem>
@@ -55,7 +55,8 @@ class LiveTechniques {
   int stages_ = 0;
   std::set<std::string> used_, waiting_;
   Watch watch_;
-  std::map<std::filesystem::path, std::pair<std::string, bool>> files_;  ///< technique, whether it is a shader
+  std::map<std::filesystem::path, std::pair<std::string, bool>>
+      files_;  ///< technique, whether it is a shader
   std::map<std::string, std::string> errors_;
   LatestWorker<CompileWish, Compiled> compiler_;
 };

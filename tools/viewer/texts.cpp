@@ -52,7 +52,8 @@ Pipeline withPassParameters(const Pipeline& pipeline, const std::string& pass, c
     for (const PassText& one : pipeline.passes) names.push_back(one.name);
     const std::string nearest = nearestWord(pass, names);
     throw Error(fmt::format("set {}: the pipeline has no such pass; expected one of {}{}", pass,
-                            fmt::join(names, ", "), nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+                            fmt::join(names, ", "),
+                            nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
   }
   for (const dsl::Item& item : values.items)
     if (item.property) replace(*block, *item.property);
@@ -80,10 +81,12 @@ std::string textWithCamera(const std::filesystem::path& scene, const Camera& cam
   dsl::Document document = dsl::parseFile(scene);
   document = dsl::parse(document.source, scene);  // includes as they are written
   if (!document.findings.empty()) throw DiagnosticsError(document.findings);
-  const auto vector = [](const glm::dvec3& value) { return fmt::format("{} {} {}", value.x, value.y, value.z); };
-  std::string text = fmt::format("camera view {{\neye {}\ntarget {}\nup {}\nfov {} rad\nresolution {} {}\n",
-                                 vector(camera.eye), vector(camera.target), vector(camera.up), camera.fov, width,
-                                 height);
+  const auto vector = [](const glm::dvec3& value) {
+    return fmt::format("{} {} {}", value.x, value.y, value.z);
+  };
+  std::string text =
+      fmt::format("camera view {{\neye {}\ntarget {}\nup {}\nfov {} rad\nresolution {} {}\n",
+                  vector(camera.eye), vector(camera.target), vector(camera.up), camera.fov, width, height);
   if (camera.aperture > 0.0) text += fmt::format("aperture {}\nfocus {}\n", camera.aperture, camera.focus);
   dsl::Item item = propertyItem(text + "}");
   for (dsl::Item& top : document.items) {

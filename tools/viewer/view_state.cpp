@@ -27,7 +27,8 @@ glm::dvec3 turnedDirection(const glm::dvec3& direction, const glm::dvec3& up, do
 }  // namespace
 
 const std::vector<std::string>& layoutWords() {
-  static const std::vector<std::string> words{"picture", "reference", "split", "side_by_side", "flicker", "error"};
+  static const std::vector<std::string> words{"picture",      "reference", "split",
+                                              "side_by_side", "flicker",   "error"};
   return words;
 }
 const std::vector<std::string>& errorMapWords() {
@@ -47,9 +48,9 @@ Camera cameraOf(const ViewState& state, const Scene& scene) {
                                  [&](const CameraKey& key) { return key.time > state.time; });
   const CameraKey& after = next == camera.keys.end() ? camera.keys.back() : *next;
   const CameraKey& before = next == camera.keys.begin() ? after : *(next - 1);
-  const double weight =
-      after.time > before.time ? std::clamp((state.time - before.time) / (after.time - before.time), 0.0, 1.0)
-                               : 0.0;
+  const double weight = after.time > before.time
+                            ? std::clamp((state.time - before.time) / (after.time - before.time), 0.0, 1.0)
+                            : 0.0;
   camera.eye = glm::mix(before.eye, after.eye, weight);
   camera.target = glm::mix(before.target, after.target, weight);
   camera.keys.clear();

@@ -24,11 +24,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kLongestWait = 60.0;      // s, of a script's `wait`
-constexpr double kWatchInterval = 0.25;    // s between looks at the files while nothing happens
-constexpr float kPanelWidth = 420.0f;      // pixels at a scale of 1
-constexpr double kWalkSeconds = 4.0;       // to walk through the whole scene
-constexpr double kTurnPerPixel = 0.005;    // rad
+constexpr double kLongestWait = 60.0;    // s, of a script's `wait`
+constexpr double kWatchInterval = 0.25;  // s between looks at the files while nothing happens
+constexpr float kPanelWidth = 420.0f;    // pixels at a scale of 1
+constexpr double kWalkSeconds = 4.0;     // to walk through the whole scene
+constexpr double kTurnPerPixel = 0.005;  // rad
 constexpr double kZoomPerNotch = 0.9;
 
 std::string& lastGlfwError() {
@@ -52,7 +52,8 @@ class ScreenTexture {
       width_ = picture.width;
       height_ = picture.height;
     } else {
-      glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, picture.bytes.data());
+      glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE,
+                      picture.bytes.data());
     }
   }
   ImTextureID id() const { return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(name_)); }
@@ -194,17 +195,20 @@ void Window::State::drawPicture(const ImVec2& low, const ImVec2& size) {
     image = {corner, ImVec2(corner.x + shown.x, corner.y + shown.y)};
     ImGui::Image(texture->id(), shown);
     ImGui::SetCursorScreenPos(corner);
-    ImGui::InvisibleButton("hand", shown, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    ImGui::InvisibleButton("hand", shown,
+                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemActive() && (io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f))
       act(fmt::format("{} {} rad {} rad", ImGui::IsMouseDown(ImGuiMouseButton_Left) ? "turn" : "orbit",
                       io.MouseDelta.x * kTurnPerPixel, -io.MouseDelta.y * kTurnPerPixel));
     if (ImGui::IsItemHovered()) {
-      if (io.MouseWheel != 0.0f) act(fmt::format("zoom {}", std::pow(kZoomPerNotch, static_cast<double>(io.MouseWheel))));
+      if (io.MouseWheel != 0.0f)
+        act(fmt::format("zoom {}", std::pow(kZoomPerNotch, static_cast<double>(io.MouseWheel))));
       const int x = static_cast<int>((io.MousePos.x - corner.x) / factor),
                 y = static_cast<int>((io.MousePos.y - corner.y) / factor);
       ImGui::BeginTooltip();
-      for (const std::string& line : session->valuesAt(x % session->state().width, y)) ImGui::TextUnformatted(line.c_str());
+      for (const std::string& line : session->valuesAt(x % session->state().width, y))
+        ImGui::TextUnformatted(line.c_str());
       ImGui::EndTooltip();
     }
   } else {
@@ -222,7 +226,8 @@ void Window::State::drawProblem(const ImVec2& at, float width) {
   ImGui::SetCursorScreenPos(at);
   ImGui::PushTextWrapPos(at.x + width);
   const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, width);
-  ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(at.x - 4, at.y - 2), ImVec2(at.x + size.x + 4, at.y + size.y + 2),
+  ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(at.x - 4, at.y - 2),
+                                            ImVec2(at.x + size.x + 4, at.y + size.y + 2),
                                             bad ? IM_COL32(96, 0, 0, 220) : IM_COL32(0, 0, 0, 160));
   ImGui::TextUnformatted(text.c_str());
   ImGui::PopTextWrapPos();
@@ -244,7 +249,8 @@ void Window::State::drawMarks(const Row& row) {
     float at = corner.x;
     for (std::size_t i = 0; i < row.marks.size() && all > 0.0; ++i) {
       const float next = at + width * static_cast<float>(row.marks[i].x / all);
-      const ImU32 colour = ImColor::HSV(static_cast<float>(i) * 0.618f - std::floor(static_cast<float>(i) * 0.618f), 0.6f, 0.8f);
+      const ImU32 colour = ImColor::HSV(
+          static_cast<float>(i) * 0.618f - std::floor(static_cast<float>(i) * 0.618f), 0.6f, 0.8f);
       list->AddRectFilled(ImVec2(at, corner.y), ImVec2(next, corner.y + height), colour);
       if (ImGui::IsMouseHoveringRect(ImVec2(at, corner.y), ImVec2(next, corner.y + height)))
         ImGui::SetTooltip("%s: %.3f ms", row.marks[i].label.c_str(), row.marks[i].x);
@@ -283,7 +289,7 @@ void Window::State::drawMarks(const Row& row) {
 void Window::State::drawChoice(const Panel& panel, const Row& row) {
   if (!ImGui::BeginCombo(row.label.c_str(), row.value.c_str())) return;
   for (const std::string& word : row.choices) {
-    if (ImGui::Selectable(word.c_str(), word == row.value)) act(filledIn(row.statement, quoted(word)));
+    if (ImGui::Selectable(word.c_str(), word == row.value)) act(filledIn(row.statement, choiceValue(word)));
     controls[panel.name + "/" + row.name + "/" + word] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
   }
   ImGui::EndCombo();
@@ -324,7 +330,7 @@ void Window::State::drawRow(const Panel& panel, const Row& row) {
         act(filledIn(row.statement, row.integer ? fmt::format("{:.0f}", value) : fmt::format("{}", value)));
       };
       const double less = row.integer && row.number <= 8.0 ? row.number - 1.0 : row.number / 2.0,
-                   more = row.number == 0.0 ? (row.integer ? 1.0 : row.high / 16.0)
+                   more = row.number == 0.0                 ? (row.integer ? 1.0 : row.high / 16.0)
                           : row.integer && row.number < 8.0 ? row.number + 1.0
                                                             : row.number * 2.0;
       if (ImGui::SmallButton("-")) change(row.integer ? std::floor(less) : less);
@@ -335,8 +341,8 @@ void Window::State::drawRow(const Panel& panel, const Row& row) {
       ImGui::SameLine();
       double value = row.number;
       const double low = row.low, high = row.high;
-      ImGui::SliderScalar(row.label.c_str(), ImGuiDataType_Double, &value, &low, &high, row.integer ? "%.0f" : "%.5g",
-                          row.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+      ImGui::SliderScalar(row.label.c_str(), ImGuiDataType_Double, &value, &low, &high,
+                          row.integer ? "%.0f" : "%.5g", row.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
       if (ImGui::IsItemEdited() && value != row.number) change(row.integer ? std::round(value) : value);
       place();
       break;
@@ -346,7 +352,8 @@ void Window::State::drawRow(const Panel& panel, const Row& row) {
       drawMarks(row);
       break;
   }
-  if (!row.tooltip.empty() && row.kind != Row::Kind::bars && row.kind != Row::Kind::points && ImGui::IsItemHovered())
+  if (!row.tooltip.empty() && row.kind != Row::Kind::bars && row.kind != Row::Kind::points &&
+      ImGui::IsItemHovered())
     ImGui::SetTooltip("%s", row.tooltip.c_str());
   ImGui::PopItemWidth();
   if (row.changed) ImGui::PopStyleColor();
@@ -412,8 +419,8 @@ void Window::State::feedClick() {
 bool Window::State::waitIsOver(const Action& action) {
   const std::string what = action.text();
   if (std::chrono::duration<double>(Clock::now() - waitsSince).count() > kLongestWait)
-    throw Error(fmt::format("{}: `{}` took more than {} s; {}", action.place().text(), action.written(), kLongestWait,
-                            session->problem()));
+    throw Error(fmt::format("{}: `{}` took more than {} s; {}", action.place().text(), action.written(),
+                            kLongestWait, session->problem()));
   if (what == "frame") return session->settled();
   if (what == "judged") return session->judgedNow();
   if (what == "problem") return !session->problem().empty();
@@ -423,7 +430,8 @@ bool Window::State::waitIsOver(const Action& action) {
     const int wanted = action.property->values.size() > 1 ? static_cast<int>(action.number(1)) : 2;
     return session->settled() && reference != nullptr && reference->samples >= wanted;
   }
-  throw Error(fmt::format("{}: wait {}: expected frame, judged, problem, mended or reference", action.place().text(), what));
+  throw Error(fmt::format("{}: wait {}: expected frame, judged, problem, mended or reference",
+                          action.place().text(), what));
 }
 
 void Window::State::resize(int width, int height) {
@@ -439,8 +447,9 @@ bool Window::State::doInWindow(const Action& action) {
       std::vector<std::string> names;
       for (const auto& [name, place] : controls) names.push_back(name);
       const std::string nearest = nearestWord(action.text(), names);
-      throw Error(fmt::format("{}: click '{}': there is no such control in the open panel '{}'{}", action.place().text(),
-                              action.text(), openPanel, nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+      throw Error(fmt::format("{}: click '{}': there is no such control in the open panel '{}'{}",
+                              action.place().text(), action.text(), openPanel,
+                              nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
     }
     const Rectangle& at = found->second;
     click = {ImVec2(0.5f * (at.low.x + at.high.x), 0.5f * (at.low.y + at.high.y)), 0};
@@ -479,7 +488,7 @@ void Window::State::randomActions(int count) {
     const Row& row = panel.rows[random() % panel.rows.size()];
     std::string statement = row.statement;
     if (row.kind == Row::Kind::choice && !row.choices.empty())
-      statement = filledIn(statement, quoted(row.choices[random() % row.choices.size()]));
+      statement = filledIn(statement, choiceValue(row.choices[random() % row.choices.size()]));
     if (row.kind == Row::Kind::toggle) statement = filledIn(statement, random() % 2 == 0 ? "on" : "off");
     if (row.kind == Row::Kind::number) {
       const double share = static_cast<double>(random() % 1000) / 999.0;
@@ -502,11 +511,12 @@ void Window::State::shoot(const std::filesystem::path& file) {
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       for (int c = 0; c < 3; ++c)
-        pixels.at(x, y, c) = static_cast<float>(bytes[4 * (static_cast<std::size_t>(height - 1 - y) *
-                                                               static_cast<std::size_t>(width) +
-                                                           static_cast<std::size_t>(x)) +
-                                                      static_cast<std::size_t>(c)]) /
-                             255.0f;
+        pixels.at(x, y, c) =
+            static_cast<float>(
+                bytes[4 * (static_cast<std::size_t>(height - 1 - y) * static_cast<std::size_t>(width) +
+                           static_cast<std::size_t>(x)) +
+                      static_cast<std::size_t>(c)]) /
+            255.0f;
   createParentDirectories(file);
   writePng(file, pixels, {0.0, Tone::linear});
 }
@@ -541,8 +551,9 @@ Window::Window(const WindowOptions& options) : state_(std::make_unique<State>())
   s.options = options;
   glfwSetErrorCallback([](int, const char* text) { lastGlfwError() = text; });
   if (!glfwInit())
-    throw AbsentError(fmt::format(
-        "there is no display to open a window on ({}); `lumivox render` makes images without one", lastGlfwError()));
+    throw AbsentError(
+        fmt::format("there is no display to open a window on ({}); `lumivox render` makes images without one",
+                    lastGlfwError()));
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
@@ -551,7 +562,8 @@ Window::Window(const WindowOptions& options) : state_(std::make_unique<State>())
   if (s.window == nullptr) {
     const std::string why = lastGlfwError();
     glfwTerminate();
-    throw AbsentError(fmt::format("no window with OpenGL 4.5 ({}); `lumivox render` makes images without one", why));
+    throw AbsentError(
+        fmt::format("no window with OpenGL 4.5 ({}); `lumivox render` makes images without one", why));
   }
   glfwMakeContextCurrent(s.window);
   glfwSwapInterval(1);

@@ -1,5 +1,5 @@
-// The window: GLFW and Dear ImGui. It draws the session's picture and panels, and turns what hands do into the
-// statements of scripts.
+// The window: GLFW and Dear ImGui. It draws the session's picture and panels, and turns what hands do into
+// the statements of scripts.
 #pragma once
 
 #include <filesystem>
@@ -21,8 +21,8 @@ struct WindowOptions {
 
 class Window {
  public:
-  /// Opens it. AbsentError when there is no display or no OpenGL 4.5. It must be the process's only one, on the
-  /// main thread.
+  /// Opens it. AbsentError when there is no display or no OpenGL 4.5. It must be the process's only one, on
+  /// the main thread.
   explicit Window(const WindowOptions& options);
   ~Window();
   Window(const Window&) = delete;
@@ -30,8 +30,8 @@ class Window {
 
   /// Wakes run() up, from any thread.
   static void wake();
-  /// Until it is closed, or the script's statements are done and one of them closes it. Error: a statement of the
-  /// script went wrong; it names its place.
+  /// Until it is closed, or the script's statements are done and one of them closes it. Error: a statement of
+  /// the script went wrong; it names its place.
   void run(Session& session, std::vector<Action> script);
 
  private:
