@@ -77,6 +77,19 @@ void checkSameOutputs(const FrameResult& pruned, const FrameResult& whole) {
   }
 }
 
+/// A frame, or why the pipeline refuses the scene.
+struct Rendered {
+  FrameResult frame;
+  std::string refusal;
+};
+Rendered renderedOrRefused(PipelineExecutor& executor, double time) {
+  try {
+    return {executor.render(time), {}};
+  } catch (const Error& refused) {
+    return {{}, refused.what()};
+  }
+}
+
 void checkSameImage(const std::filesystem::path& sceneFile) {
   const std::optional<Scene> loaded = sceneIfPresent(sceneFile);
   if (!loaded) return;
@@ -92,7 +105,11 @@ void checkSameImage(const std::filesystem::path& sceneFile) {
     // A later frame of a scene that moves, too: what did not change is then left out as well.
     for (const double time : changes(scene) ? std::vector<double>{0.0, 0.4} : std::vector<double>{0.0}) {
       INFO(sceneFile.filename() << " through " << pipelineFile.filename() << " at " << time << " s");
-      checkSameOutputs(pruned.render(time), whole.render(time));
+      const Rendered one = renderedOrRefused(pruned, time), other = renderedOrRefused(whole, time);
+      CHECK(one.refusal == other.refusal);
+      // A scene that a pass has no use of is refused by it, whatever is left out: points need triangles.
+      if (!one.refusal.empty()) CHECK(scene.triangleCount() == 0);
+      if (one.refusal.empty() && other.refusal.empty()) checkSameOutputs(one.frame, other.frame);
     }
   }
 }
