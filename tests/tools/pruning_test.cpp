@@ -44,7 +44,7 @@ RenderOptions smallOptions(const Pipeline& pipeline) {
                                             {"points", 128},    {"lights", 64}};
   for (const PipelineParameter& parameter : pipeline.parameters)
     if (const auto value = small.find(parameter.name); value != small.end())
-      options.parameters[parameter.name].number = value->second;
+      options.parameters[parameter.name].number = std::min(parameter.value.number, value->second);
   // Light that goes from cell to cell, many times, is most of the work of such a pipeline.
   if (options.parameters.contains("iterations")) options.parameters["resolution"].number = 16;
   return options;

@@ -21,10 +21,10 @@ using Json = nlohmann::json;
 namespace {
 
 bool canShowWindows() {
-  if (runCommand("command -v xvfb-run").exitCode == 0 &&
+  if (runCommand("command -v xvfb-run && command -v xauth").exitCode == 0 &&
       std::filesystem::exists(binaryDirectory() / "bin/lumivox-view"))
     return true;
-  skip("xvfb-run is not installed");
+  skip("xvfb-run or xauth is not installed");
   return false;
 }
 
