@@ -295,8 +295,8 @@ TEST_CASE("one set of directions for all voxels gives equal voxels equal light")
 TEST_CASE("only the voxels that surfaces read are filled, and the picture is the same to the bit") {
   const Volume room = closedRoom(12, 1.0, 0.7);
   const std::vector<ReadPoint> points{{{0.4f, 5.2f, 7.7f}, {1, 0, 0}},
-                                         {{0.6f, 6.9f, 3.1f}, glm::normalize(glm::vec3(1, 0.3, -0.2))},
-                                         {{7.3f, 0.5f, 9.8f}, {0, 1, 0}}};
+                                      {{0.6f, 6.9f, 3.1f}, glm::normalize(glm::vec3(1, 0.3, -0.2))},
+                                      {{7.3f, 0.5f, 9.8f}, {0, 1, 0}}};
   for (const char* voxels : {"six", "eight", "own", "trilinear"})
     for (const char* filter : {"on", "off"})
       for (const double bounces : {1.0, 3.0}) {

@@ -191,5 +191,7 @@ TEST_CASE("table: how far discs off their axis are from the closed forms", "[.]"
         const float found = formFactors({{radius, height, off, perpendicular ? 1.0 : 0.0}}).front().x;
         std::printf("r/d %.1f %s angle %.2f: %.3f\n", radius, perpendicular ? "perpendicular" : "parallel",
                     angle, found / exactFormFactor(radius, height, off, perpendicular));
+        CHECK(found > 0.0);
+        CHECK(found <= 1.0);
       }
 }

@@ -1,4 +1,5 @@
-// view: starts the window, which is a program of its own, so that this one needs neither a display nor its libraries.
+// view: starts the window, which is a program of its own, so that this one needs neither a display nor its
+// libraries.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -17,11 +18,13 @@ constexpr const char* kProgram = "lumivox-view";
 
 int view(const std::vector<std::string>& words) {
   const auto here = programFile();
-  const std::filesystem::path program = here ? here->parent_path() / kProgram : std::filesystem::path(kProgram);
+  const std::filesystem::path program =
+      here ? here->parent_path() / kProgram : std::filesystem::path(kProgram);
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(program, ignored))
-    throw AbsentError(fmt::format("{} is not there: this Lumivox was built without its window (`lumivox render` makes images without one)",
-                                  program.string()));
+    throw AbsentError(fmt::format(
+        "{} is not there: this Lumivox was built without its window (`lumivox render` makes images without one)",
+        program.string()));
   std::vector<std::string> copies{program.string()};
   copies.insert(copies.end(), words.begin(), words.end());
   std::vector<char*> pointers;

@@ -120,6 +120,8 @@ class Session {
   const Scene& shownScene() const { return *edited_; }
   void applyEdits();
 
+  static constexpr double kFlickerSeconds = 0.5;  ///< a picture of two that flicker
+
   SessionOptions options_;
   std::shared_ptr<const Scene> scene_, edited_;
   std::vector<std::shared_ptr<const Pipeline>> pipelines_;

@@ -106,7 +106,6 @@ struct Window::State {
   bool showsHelp = false, showsPanels = true;
   std::map<std::string, Rectangle> controls;  ///< of this frame, "panel/row"
   Rectangle image;                            ///< of the picture on the screen
-  glm::dvec2 drag{0.0};
 
   std::vector<Action> script;
   std::size_t done = 0;
@@ -118,7 +117,6 @@ struct Window::State {
     int frame = 0;
   };
   std::optional<Click> click;
-  std::optional<std::string> pressed;
   int soon = 3;  ///< frames that are drawn whatever happens: ImGui needs some to settle
 
   void act(const std::string& statements);
