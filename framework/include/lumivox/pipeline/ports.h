@@ -31,9 +31,9 @@ struct PortList {
   static constexpr std::size_t bytes() { return (sizeof(Ports) + ...); }
   static std::vector<const PortKind*> kinds() { return {&portKind<Ports>()...}; }
 };
-using FrameworkPorts = PortList<Image, GBuffer, ShadowMap, ReflectiveShadowMap, VoxelFragments, OccupancyGrid,
-                                BinaryGrid, AttributeGrid, RadianceGrid, ShGrid, Particles, ScatteringGrid,
-                                SurfaceElements, ElementLinks, ElementLight, SurfacePoints,
-                                SurfaceLights, SparseLight>;
+using FrameworkPorts =
+    PortList<Image, GBuffer, ShadowMap, ReflectiveShadowMap, VoxelFragments, OccupancyGrid, BinaryGrid,
+             AttributeGrid, RadianceGrid, ShGrid, Particles, ScatteringGrid, SurfaceElements, ElementLinks,
+             ElementLight, SurfacePoints, SurfaceLights, SparseLight>;
 
 }  // namespace lumivox

@@ -14,8 +14,8 @@ namespace lumivox {
 /// device.
 struct ElementLink {
   static constexpr std::uint32_t kBack = 0x8000u;
-  /// Bin in the lower 15 bits, then whether a disc's back is seen; upper half of the bits of the distance as a
-  /// float.
+  /// Bin in the lower 15 bits, then whether a disc's back is seen; upper half of the bits of the distance as
+  /// a float.
   std::uint32_t binAndDistance = 0;
   std::uint32_t node = 0;  ///< of ElementTree
 
