@@ -7,25 +7,18 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <exception>
-#include <map>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <thread>
 #include <vector>
 
-#include "../spread.h"
+#include "../timed_pipelines.h"
 #include "lumivox/base/error.h"
-#include "lumivox/measure/power_law.h"
-#include "lumivox/pipeline/pass.h"
-#include "lumivox/pipeline/pipeline.h"
 #include "lumivox/pipeline/ports.h"
-#include "lumivox/plugin/loader.h"
 
 namespace {
 
@@ -44,107 +37,6 @@ pipeline "links" {
   pass all_links implicit_visibility.push_links { elements elements.elements  links all.links }
 }
 )";
-
-using Times = std::map<std::string, double>;  ///< ms by pass
-
-std::string inWords(const std::vector<double>& ratios) {
-  const Spread spread = spreadOf(ratios);
-  return fmt::format("{:.3g} [{:.3g}, {:.3g}]", spread.median, spread.lower, spread.upper);
-}
-
-void row(const std::string& what, const std::string& figure) {
-  fmt::print("  {:<76}{}\n", what, figure);
-  std::fflush(stdout);
-}
-
-struct Machine {
-  gpu::Device device;
-  TechniqueSet techniques{TechniqueSet::defaultDirectories({})};
-  int repeats = 5;
-};
-
-/// A pipeline on a scene.
-class Bench {
- public:
-  Bench(Machine& machine, const Scene& scene, const Pipeline& pipeline,
-        const std::vector<std::string>& settings, int size = 64)
-      : repeats_(machine.repeats) {
-    RenderOptions options;
-    options.width = options.height = size;
-    options.parameters = pipeline.settings(settings);
-    executor_ =
-        std::make_unique<PipelineExecutor>(machine.device, machine.techniques, scene, pipeline, options);
-  }
-  PipelineExecutor& executor() { return *executor_; }
-  void keep(const std::string& pass, const std::string& port) { executor_->keepOutput(pass, port); }
-
-  /// Of the passes that run at this time.
-  Times at(double time) {
-    executor_->render(time, 0, PipelineExecutor::Images::no, PipelineExecutor::Timing::passes);
-    Times times;
-    const std::vector<std::vector<PassRecord>> frames = executor_->timedPasses();
-    for (const PassRecord& pass : frames.back()) times[pass.name] = pass.ran ? pass.deviceMs : 0.0;
-    return times;
-  }
-  Times afresh(double time = 0.0) {
-    executor_->invalidate();
-    return at(time);
-  }
-  /// So many, after one of warm-up.
-  std::vector<Times> severalAfresh() {
-    afresh();
-    std::vector<Times> result;
-    for (int i = 0; i < repeats_; ++i) result.push_back(afresh());
-    return result;
-  }
-  template <class Port>
-  const Port& made(const std::string& pass, const std::string& port) {
-    return static_cast<const Out<Port>*>(executor_->output(pass, port))->value();
-  }
-
- private:
-  int repeats_;
-  std::unique_ptr<PipelineExecutor> executor_;
-};
-
-double sumOf(const Times& times, const std::vector<std::string>& passes) {
-  double sum = 0.0;
-  for (const std::string& pass : passes) sum += times.at(pass);
-  return sum;
-}
-
-double total(const Times& times) {
-  double sum = 0.0;
-  for (const auto& [pass, ms] : times) sum += ms;
-  return sum;
-}
-
-std::vector<double> ratios(const std::vector<Times>& frames, const std::vector<std::string>& passes,
-                           const std::vector<std::string>& over) {
-  std::vector<double> result;
-  for (const Times& frame : frames) result.push_back(sumOf(frame, passes) / sumOf(frame, over));
-  return result;
-}
-
-/// Measured at each number of elements, with exponents at the end.
-class Growth {
- public:
-  void add(const std::string& what, double elements, double value) {
-    points_[what].push_back({elements, {value, 0.0}});
-  }
-  void print() const {
-    for (const auto& [what, points] : points_) {
-      const PowerLaw law = fitPowerLaw(points);
-      std::string values;
-      for (const PowerLawPoint& point : points) values += fmt::format(" {:.4g}", point.y.value);
-      row("exponent of " + what,
-          fmt::format("{:.2f} +- {:.2f}  of{}", law.slope.value, law.slope.uncertainty, values));
-    }
-  }
-
- private:
-  std::map<std::string, std::vector<PowerLawPoint>> points_;
-};
 
 /// Links that are seen anew from leaves: those of each leaf and of all nodes above it.
 double rasterised(const ElementTree& tree, const ElementLinks& pairs) {
@@ -377,24 +269,13 @@ void lightLists(Machine& machine, const Scene& scene, int elements, int bins) {
   if (!same) throw Error("light by lists differs from that of all bins");
 }
 
-int repeatsOf(const char* text) {
-  const std::string_view word = text;
-  int number = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  if (error != std::errc() || end != word.data() + word.size() || number < 1)
-    throw Error(fmt::format(
-        "'{}': REPEATS is a whole number from 1 on; usage: bench_implicit_visibility [--quick | REPEATS]",
-        word));
-  return number;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
     const bool quick = argc > 1 && std::string_view(argv[1]) == "--quick";
     Machine machine;
-    machine.repeats = quick ? 1 : argc > 1 ? repeatsOf(argv[1]) : 5;
+    machine.repeats = quick ? 1 : argc > 1 ? repeatsOf(argv[1], "bench_implicit_visibility") : 5;
     const Scene cornell = loadScene("scenes/cornell.scene"), box = loadScene("scenes/spinning_box.scene");
     fmt::print("{} repeats in turns, median [quartiles], on {}\n", machine.repeats,
                machine.device.info().renderer);
