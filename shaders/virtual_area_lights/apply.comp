@@ -10,7 +10,6 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140, binding = 0) uniform Parameters {
   vec3 eyeWorld;
-  int neighbours;
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
@@ -36,7 +35,7 @@ void main() {
 #if DIFFUSE
   vec3 diffuse = vec3(0.0), albedo = texelFetch(gDiffuse, pixel, 0).rgb;
   if (position.w > 0.0 && any(greaterThan(albedo, vec3(0.0)))) {
-    Nearest nearest = nearestPoints(seen, -1.0, neighbours);
+    Nearest nearest = nearestPoints(seen, -1.0);
     AveragedLight light = interpolated(seen, nearest, diffuseLight, diffusePlace, false, INTERPOLATE == INTERPOLATE_PLAIN);
     diffuse = albedo * light.light.rgb;
 #if INTERPOLATE == INTERPOLATE_AVERAGED
@@ -49,7 +48,7 @@ void main() {
   vec3 glossy = vec3(0.0);
   vec4 specular = texelFetch(gSpecular, pixel, 0);
   if (position.w > 0.0 && any(greaterThan(specular.rgb, vec3(0.0)))) {
-    Nearest nearest = nearestPoints(seen, specular.w, neighbours);
+    Nearest nearest = nearestPoints(seen, specular.w);
     AveragedLight light = interpolated(seen, nearest, glossyLight, glossyPlace, true, false);
     vec3 path = light.place - seen.position, view = seen.position - eyeWorld;
     float distanceSquared = dot(path, path), viewSquared = dot(view, view);

@@ -5,11 +5,14 @@
 #include "common/surface_points.glsl"
 
 const int kMostNeighbours = 32;  // of the pass 'points'
+layout(constant_id = 0) const int neighbours = 8;
 
+// By growing distances. All places are known when the program is linked, so that loops unroll and everything stays in registers.
 struct Nearest {
   uint points[kMostNeighbours];
   float distancesSquared[kMostNeighbours];
   int count;
+  float farthestSquared;  // of the last of them
 };
 
 // What is seen.
@@ -18,24 +21,28 @@ struct SeenSurface {
   float model;
 };
 
-void keep(inout Nearest nearest, uint point, float distanceSquared, int neighbours) {
-  // From the farthest on; points come by growing numbers, so that of equal distances the first stays.
-  if (nearest.count == neighbours && distanceSquared >= nearest.distancesSquared[neighbours - 1]) return;
-  int place = min(nearest.count, neighbours - 1);
-  for (; place > 0 && nearest.distancesSquared[place - 1] > distanceSquared; --place) {
-    nearest.points[place] = nearest.points[place - 1];
-    nearest.distancesSquared[place] = nearest.distancesSquared[place - 1];
+void keep(inout Nearest nearest, uint point, float distanceSquared) {
+  // Points come by growing numbers, so that of equal distances the first stays.
+  for (int i = neighbours - 1; i > 0; --i) {
+    bool moves = nearest.distancesSquared[i - 1] > distanceSquared, enters = nearest.distancesSquared[i] > distanceSquared;
+    nearest.points[i] = moves ? nearest.points[i - 1] : enters ? point : nearest.points[i];
+    nearest.distancesSquared[i] = moves ? nearest.distancesSquared[i - 1] : enters ? distanceSquared : nearest.distancesSquared[i];
   }
-  nearest.points[place] = point;
-  nearest.distancesSquared[place] = distanceSquared;
-  nearest.count = min(nearest.count + 1, neighbours);
+  if (nearest.distancesSquared[0] > distanceSquared) {
+    nearest.points[0] = point;
+    nearest.distancesSquared[0] = distanceSquared;
+  }
 }
 
 // The nearest points of the same model and side, none farther than where all are listed, unless it is the only one; with an exponent of 0
 // or more only those that reflect by it.
-Nearest nearestPoints(SeenSurface seen, float exponent, int neighbours) {
+Nearest nearestPoints(SeenSurface seen, float exponent) {
+  const float kNone = 3.4e38;
   Nearest nearest;
-  nearest.count = 0;
+  for (int i = 0; i < neighbours; ++i) {
+    nearest.points[i] = 0u;
+    nearest.distancesSquared[i] = kNone;
+  }
   uvec2 candidates = candidatesAt(seen.position);
   for (uint i = candidates.x; i < candidates.y; ++i) {
     uint point = pointCandidates[i];
@@ -47,19 +54,24 @@ Nearest nearestPoints(SeenSurface seen, float exponent, int neighbours) {
       if (radius.y != exponent || radius.z == 0.0) continue;
     }
     vec3 path = texelFetch(pointPosition, texel, 0).xyz - seen.position;
-    keep(nearest, point, dot(path, path), neighbours);
+    keep(nearest, point, dot(path, path));
   }
-  while (nearest.count > 1 && nearest.distancesSquared[nearest.count - 1] > pointFarthest * pointFarthest) --nearest.count;
+  nearest.count = nearest.distancesSquared[0] < kNone ? 1 : 0;
+  nearest.farthestSquared = nearest.distancesSquared[0];
+  for (int i = 1; i < neighbours; ++i)
+    if (nearest.distancesSquared[i] < kNone && nearest.distancesSquared[i] <= pointFarthest * pointFarthest) {
+      nearest.count = i + 1;
+      nearest.farthestSquared = nearest.distancesSquared[i];
+    }
   return nearest;
 }
 
 // Weight of a neighbour by Eq. 12, or of its normal alone. Distances that differ by their rounding are equal.
-float neighbourWeight(SeenSurface seen, Nearest nearest, int i, bool byDistance) {
+float neighbourWeight(SeenSurface seen, uint point, float distanceSquared, float farthestSquared, bool byDistance) {
   const float kRounding = 1e-5;
-  float alike = max(0.0, dot(seen.normal, texelFetch(pointNormal, pointTexel(nearest.points[i]), 0).xyz));
+  float alike = max(0.0, dot(seen.normal, texelFetch(pointNormal, pointTexel(point), 0).xyz));
   if (!byDistance) return alike;
-  float farthest = nearest.distancesSquared[nearest.count - 1];
-  float near = farthest > 0.0 ? 1.0 - sqrt(nearest.distancesSquared[i] / farthest) : 0.0;
+  float near = farthestSquared > 0.0 ? 1.0 - sqrt(distanceSquared / farthestSquared) : 0.0;
   return near > kRounding ? alike * near : 0.0;
 }
 
@@ -83,8 +95,10 @@ AveragedLight interpolated(SeenSurface seen, Nearest nearest, sampler2D lights, 
   float weights = 0.0;
   // By Eq. 12; where all weights are 0 by the normals alone; where these are too, the nearest.
   for (int attempt = 0; attempt < 3 && weights <= 0.0; ++attempt)
-    for (int i = 0; i < nearest.count; ++i) {
-      float weight = attempt == 2 ? (weights > 0.0 ? 0.0 : 1.0) : neighbourWeight(seen, nearest, i, attempt == 0);
+    for (int i = 0; i < neighbours; ++i) {
+      if (i >= nearest.count) continue;
+      float weight = attempt == 2 ? (weights > 0.0 ? 0.0 : 1.0)
+                                  : neighbourWeight(seen, nearest.points[i], nearest.distancesSquared[i], nearest.farthestSquared, attempt == 0);
       if (!(weight > 0.0)) continue;
       ivec2 texel = pointTexel(nearest.points[i]);
       vec4 here = texelFetch(lights, texel, 0);

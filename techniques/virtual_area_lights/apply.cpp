@@ -39,8 +39,8 @@ class ApplyPass : public Pass {
     if (glossy.wanted() && !isGlossy) glossy->texture->clear(glm::vec4(0, 0, 0, 1));
     if (!isDiffuse && !isGlossy) return;
     using gpu::Sampling;
-    shader::BindingSet bound{apply::parameters({frame.snapshot().camera.eye, points->neighbours}),
-                             GBufferBinding(*gbuffer), SurfacePointsBinding(*points)};
+    shader::BindingSet bound{apply::parameters({frame.snapshot().camera.eye}), GBufferBinding(*gbuffer),
+                             SurfacePointsBinding(*points)};
     if (isDiffuse) {
       bound.add(apply::diffuseLight(light->diffuse, Sampling::nearest));
       bound.add(apply::diffusePlace(light->diffusePosition, Sampling::nearest));
@@ -51,10 +51,11 @@ class ApplyPass : public Pass {
       bound.add(apply::glossyPlace(light->glossyPosition, Sampling::nearest));
       bound.add(apply::glossyImage(glossy->texture));
     }
-    frame.dispatch(
-        frame.program(apply::Variant{
-            .diffuse = isDiffuse, .glossy = isGlossy, .interpolate = interpolate == Interpolate::plain}),
-        bound, pixels(frame));
+    frame.dispatch(frame.program(apply::Variant{.diffuse = isDiffuse,
+                                                .glossy = isGlossy,
+                                                .interpolate = interpolate == Interpolate::plain},
+                                 apply::Constants{.neighbours = points->neighbours}),
+                   bound, pixels(frame));
   }
 };
 
