@@ -1,6 +1,7 @@
 // The light of all virtual area lights at every sparse point, and as one averaged light for each lobe
 // (Lensing and Broll 2013, Sec. 3.1, 3.2 step 1 and 4.2).
 #include <array>
+#include <vector>
 
 #include "lumivox/toolkit/bindings.h"
 #include "lumivox/toolkit/loop_limit.h"
@@ -42,7 +43,13 @@ class GatherPass : public Pass {
   Out<SparseLight> light{this, "light", Contributes::nothing, Needs::anyLight,
                          "at each point and for each lobe one averaged light"};
 
-  Reads readsFrom() const override { return Reads::camera; }
+  bool looksBack_ = true;  ///< whether anything reflects towards the eye
+
+  Reads readsFrom() const override { return Reads::partOfCamera; }
+  std::vector<float> readsOfCamera(const SceneSnapshot& snapshot) const override {
+    const glm::vec3& eye = snapshot.camera.eye;
+    return looksBack_ ? std::vector{eye.x, eye.y, eye.z} : std::vector<float>{};
+  }
 
   struct Averaged {
     gpu::TextureRef light, place;
@@ -59,7 +66,8 @@ class GatherPass : public Pass {
     const Averaged& diffuse = frame.kept("diffuse light of points", key,
                                          [&] { return gather(frame, gather::Variant::lobeDiffuse); });
     SparseLight result{diffuse.light, diffuse.place, nullptr, nullptr};
-    if (frame.traits().glossy) {
+    looksBack_ = frame.traits().glossy;
+    if (looksBack_) {
       const Averaged glossy = gather(frame, gather::Variant::lobeGlossy);
       result.glossy = glossy.light;
       result.glossyPosition = glossy.place;

@@ -25,7 +25,13 @@ class NormalisePass : public Pass {
   Out<SparseLight> light{this, "light", Contributes::nothing, Needs::anyLight,
                          "averaged light that the local model turns into what is reflected at the point"};
 
-  Reads readsFrom() const override { return Reads::camera; }
+  bool looksBack_ = true;  ///< whether anything reflects towards the eye
+
+  Reads readsFrom() const override { return Reads::partOfCamera; }
+  std::vector<float> readsOfCamera(const SceneSnapshot& snapshot) const override {
+    const glm::vec3& eye = snapshot.camera.eye;
+    return looksBack_ ? std::vector{eye.x, eye.y, eye.z} : std::vector<float>{};
+  }
 
   struct Normalised {
     gpu::TextureRef light;
@@ -39,7 +45,8 @@ class NormalisePass : public Pass {
     SparseLight result = *gathered;
     result.diffuse = diffuse.light;
     tellShare(frame, diffuse, "diffuse");
-    if (gathered->glossy) {
+    looksBack_ = gathered->glossy != nullptr;
+    if (looksBack_) {
       const Normalised glossy =
           normalise(frame, normalise::Variant::lobeGlossy, gathered->glossy, gathered->glossyPosition);
       result.glossy = glossy.light;

@@ -66,9 +66,9 @@ void addVariants(PipelineExecutor& executor, Cost& cost) {
 Cost costOf(const std::string& sceneText, const Pipeline& text) {
   const LogCapture silent;  // the grids are coarser than anybody would take them
   RenderOptions options;
-  const std::map<std::string, double> small{{"resolution", 16}, {"area_samples", 4}, {"surfaces", 16},
-                                            {"iterations", 8},  {"samples", 25},     {"smoke_resolution", 16},
-                                            {"elements", 64},   {"bins", 4}};
+  const std::map<std::string, double> small{
+      {"resolution", 16},       {"area_samples", 4}, {"surfaces", 16}, {"iterations", 8}, {"samples", 25},
+      {"smoke_resolution", 16}, {"elements", 64},    {"bins", 4},      {"points", 64},    {"lights", 32}};
   for (const PipelineParameter& parameter : text.parameters)
     if (const auto value = small.find(parameter.name); value != small.end())
       options.parameters[parameter.name].number = value->second;
@@ -446,4 +446,26 @@ TEST_CASE("a scene pays for what it uses and nothing else: light between surface
                  {"sun", {"bytes shadow"}},
                  {"texture", {"gbuffer TEXTURES=1"}},
              });
+}
+
+TEST_CASE("a scene pays for what it uses and nothing else: light averaged at surface points") {
+  checkCosts(
+      "virtual_area_lights",
+      {
+          {"cut-out mask", {"gbuffer MASKS=1", "render MASKS=1", "shadow_map MASKS=1"}},
+          {"emission",
+           {"bytes choose", "bytes gbuffer", "bytes map", "bytes shadow", "gbuffer EMISSION=1",
+            "shade EMISSION=1"}},
+          {"glossy material",
+           {"apply GLOSSY=1", "bytes apply", "bytes gather", "bytes gbuffer", "bytes normalise",
+            "bytes occlude", "compose GLOSSY=1", "gather LOBE=glossy", "gbuffer GLOSSY=1",
+            "normalise LOBE=glossy", "shade GLOSSY=1"}},
+          {"moving camera", {"again apply", "again compose", "again direct", "again gbuffer"}},
+          {"moving object",
+           {"again apply", "again choose", "again compose", "again direct", "again gather", "again gbuffer",
+            "again map", "again normalise", "again occlude", "again points", "again shadow"}},
+          {"spot", {"bytes choose", "bytes map", "bytes shadow"}},
+          {"sun", {"bytes choose", "bytes map", "bytes shadow"}},
+          {"texture", {"gbuffer TEXTURES=1", "render TEXTURES=1"}},
+      });
 }
