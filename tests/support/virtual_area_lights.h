@@ -100,10 +100,11 @@ class SparsePasses {
   }
 
   SparseLight gather(const SurfacePoints& points, const SurfaceLights& lights,
-                     const PassSettings& settings = {}) {
+                     const PassSettings& settings = {}, const SurfaceLights* more = nullptr) {
     PassHarness& pass = add("gather", settings);
     pass.setInput("points", points);
     pass.setInput("lights", lights);
+    if (more != nullptr) pass.setInput("more_lights", *more);
     pass.run();
     return pass.output<SparseLight>("light");
   }
