@@ -324,6 +324,35 @@ TEST_CASE("from any place the grid finds the eight nearest points on its side") 
   }
 }
 
+TEST_CASE(
+    "the grid finds the eight nearest points where a model is pulled to three times its length, or to a third") {
+  int missed = 0;
+  // A cube, and a plate whose triangles are long across the pull, so that their longest sides hardly grow.
+  for (const glm::vec3& size : {glm::vec3(1.0f), glm::vec3(0.3f, 2.0f, 1.0f)})
+    for (const float pull : {3.0f, 1.0f / 3.0f}) {
+      Scene scene = boxScene(size);
+      const Scene pulled = boxScene(size * glm::vec3(pull, 1, 1));
+      VertexSequence sequence;
+      sequence.framesPerSecond = 1.0;
+      sequence.loop = false;
+      sequence.positions = {scene.positions, pulled.positions};
+      sequence.normals = {scene.normals, pulled.normals};
+      scene.objects[0].sequence = sequence;
+      const Spread points = spread(scene, 600, 1.0);
+      const SurfacePointGrid grid = gridOf(points.set, points.state);
+      std::vector<std::uint32_t> all(points.size());
+      std::iota(all.begin(), all.end(), 0u);
+      const SceneSnapshot snapshot = snapshotOf(pulled, 0.0);
+      const glm::vec3 shift(snapshot.origin - snapshotOf(scene, 1.0).origin);
+      for (Place place : randomPlaces(pulled, snapshot, 500)) {
+        place.position += shift;
+        const std::vector<std::uint32_t> candidates = listed(grid, place.position);
+        if (nearest(points.state, place, candidates, 8) != nearest(points.state, place, all, 8)) ++missed;
+      }
+    }
+  CHECK(missed <= 2);  // of 2000: beside an edge of a side that the pull leaves as it is
+}
+
 TEST_CASE("a grid has no longer lists where two small objects are far from each other") {
   SceneBuilder builder;
   const int white = builder.lambert(0.5f);

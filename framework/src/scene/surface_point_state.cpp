@@ -61,23 +61,33 @@ class MovedObject {
   float side_;
 };
 
-/// By how much the longest side and the area of a triangle have grown.
+/// By how much lengths in a triangle have grown at most, and its area.
 struct Stretch {
   float length = 1.0f, area = 1.0f;
   Stretch() = default;
   Stretch(const std::array<glm::vec3, 3>& rest, const std::array<glm::vec3, 3>& now) {
-    float before = 0.0f, after = 0.0f;
-    for (std::size_t k = 0; k < 3; ++k) {
-      before = std::max(before, glm::distance(rest[k], rest[(k + 1) % 3]));
-      after = std::max(after, glm::distance(now[k], now[(k + 1) % 3]));
-    }
-    const auto doubleArea = [](const std::array<glm::vec3, 3>& of) {
-      return glm::length(glm::cross(of[1] - of[0], of[2] - of[0]));
-    };
-    const float areaBefore = doubleArea(rest);
-    if (before > 0.0f) length = after / before;
-    if (areaBefore > 0.0f) area = doubleArea(now) / areaBefore;
+    const Sides before(rest), after(now);
+    const double was = before.determinant();
+    if (!(was > 0.0)) return;
+    const double squared = after.determinant() / was;
+    // The larger eigenvalue of what takes squares of lengths at rest to those of now.
+    const double half =
+        0.5 * (before.second * after.first - 2.0 * before.mixed * after.mixed + before.first * after.second) /
+        was;
+    length = static_cast<float>(std::sqrt(half + std::sqrt(std::max(half * half - squared, 0.0))));
+    area = static_cast<float>(std::sqrt(squared));
   }
+
+ private:
+  /// Products of two sides of a triangle with themselves and each other.
+  struct Sides {
+    double first, second, mixed;
+    explicit Sides(const std::array<glm::vec3, 3>& of) {
+      const glm::dvec3 one(of[1] - of[0]), other(of[2] - of[0]);
+      first = glm::dot(one, one), second = glm::dot(other, other), mixed = glm::dot(one, other);
+    }
+    double determinant() const { return std::max(first * second - mixed * mixed, 0.0); }
+  };
 };
 
 }  // namespace
