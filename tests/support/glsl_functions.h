@@ -1,6 +1,8 @@
 // Functions of shader includes, called from C++ for many inputs at once.
 #pragma once
 
+#include <cstdlib>
+#include <filesystem>
 #include <regex>
 #include <string>
 #include <vector>
@@ -11,6 +13,12 @@
 
 namespace lumivox::test {
 
+/// The tree's, or what tests/mutation/mutate has made of them.
+inline std::filesystem::path shaderDirectory() {
+  const char* changed = std::getenv("LUMIVOX_TEST_SHADERS");
+  return changed != nullptr ? std::filesystem::path(changed) : sourceDirectory() / "shaders";
+}
+
 /// `results[i]` of the statements `body`, which read `inputs[i]` as `given` and write `found`, both vec4,
 /// with the functions of the files below shaders/ in scope: each after those that it includes.
 inline std::vector<glm::vec4> evaluated(const std::vector<std::string>& files, const std::string& body,
@@ -18,8 +26,7 @@ inline std::vector<glm::vec4> evaluated(const std::vector<std::string>& files, c
   static gpu::Device glsl({"auto", gpu::ShaderInput::glsl});
   std::string text = "#version 450 core\nlayout(local_size_x = 64) in;\n";
   for (const std::string& file : files)
-    text +=
-        std::regex_replace(readFile(sourceDirectory() / "shaders" / file), std::regex("#include[^\n]*"), "");
+    text += std::regex_replace(readFile(shaderDirectory() / file), std::regex("#include[^\n]*"), "");
   text += R"(
     layout(std430, binding = 0) buffer Inputs { vec4 inputs[]; };
     layout(std430, binding = 1) buffer Results { vec4 results[]; };

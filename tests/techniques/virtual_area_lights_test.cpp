@@ -254,6 +254,76 @@ TEST_CASE("lights in chunks and through group memory, and lights of two sources,
                                {{"method", std::string(method)}}, &rest));
 }
 
+TEST_CASE(
+    "every light at every pixel is what is gathered at points there, both lobes, in any number of portions") {
+  std::vector<SparsePoint> points = randomPoints(64, 30.0f);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].position.y = 0.002f * static_cast<float>(i);
+    points[i].normal = glm::normalize(glm::vec3(0.3f * points[i].position.z, 1, 0.3f * points[i].position.x));
+    points[i].exponent = static_cast<float>(i % 4) * 10.0f;
+  }
+  const SurfacePoints made = pointsOf(points);
+  SparsePasses passes({0.2, 0.4, 0.1});
+  const std::vector<DiscLight> lights = ceiling(0.5f, 0.3f, 20);
+  const SparseLight all = passes.gather(made, lightsOf(lights), {{"exponent_limit", std::string("none")}});
+  const auto [diffuse, glossy] = passes.bruteForce(lightsOf(lights), points);
+  const std::vector<glm::vec4> asPoints = valuesOf(all.diffuse, 64), asShiny = valuesOf(all.glossy, 64);
+  int lit = 0;
+  for (int i = 0; i < 64; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    CAPTURE(i);
+    CHECK(diffuse.at(i % 8, i / 8, 0) == Approx(asPoints[n].x).epsilon(1e-5));
+    CHECK(glossy.at(i % 8, i / 8, 0) == Approx(asShiny[n].x).epsilon(1e-5));
+    lit += asShiny[n].x > 0.0f ? 1 : 0;
+  }
+  CHECK(lit > 20);
+  // One light, so often that a dispatch cannot take all of them.
+  const std::vector<DiscLight> one(61000, {{0, 1, 0}, {0, -1, 0}, 0.01f});
+  const ImageBuffer many = passes.bruteForce(lightsOf(one), points).first,
+                    single = passes.bruteForce(lightsOf({one.front()}), points).first;
+  for (int i = 0; i < 64; ++i)
+    CHECK(many.at(i % 8, i / 8, 0) == Approx(61000.0 * single.at(i % 8, i / 8, 0)).epsilon(1e-4));
+}
+
+TEST_CASE(
+    "a pixel takes a glossy light by its own normal, place and view: the light times cos^k of the angle to the mirror") {
+  // Light of exponent 7 at a place near the floor; what is seen lies beside the only point, near the camera
+  // too.
+  const glm::vec3 place(0.3f, 0.2f, -0.1f), eye(0.05f, 0.2f, 0.1f);
+  SparsePasses passes(eye);
+  SparsePoint point{{0, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, 7.0f};
+  const SparseLight light{nullptr, nullptr, texels({{2, 3, 4, 8}}, {1024, 1}, "light"),
+                          texels({{place.x, place.y, place.z, 1}}, {1024, 1}, "place")};
+  SparseLight both = light;
+  both.diffuse = texels({{2, 3, 4, 1}}, {1024, 1}, "light");
+  both.diffusePosition = light.glossyPosition;
+  std::vector<SparsePoint> seen = randomPoints(64, 7.0f);
+  for (SparsePoint& one : seen) {
+    one.normal = glm::normalize(glm::vec3(0.4f + one.position.z, 1, 0.6f * one.position.x));
+    one.position = point.position;
+  }
+  const auto [diffuse, glossy] = passes.apply(pointsOf({point}), both, seen);
+  int lit = 0;
+  for (std::size_t i = 0; i < 64; ++i) {
+    const glm::vec3 toLight = glm::normalize(place - seen[i].position),
+                    mirror = glm::reflect(glm::normalize(seen[i].position - eye), seen[i].normal);
+    const float cosine = std::max(0.0f, glm::dot(mirror, toLight)),
+                expected = glm::dot(toLight, seen[i].normal) > 0.0f ? 3.0f * std::pow(cosine, 7.0f) : 0.0f;
+    const int x = static_cast<int>(i) % 8, y = static_cast<int>(i) / 8;
+    CAPTURE(i);
+    CHECK(glossy.at(x, y, 1) == Approx(expected).epsilon(1e-4).margin(1e-6));
+    CHECK(diffuse.at(x, y, 1) ==
+          Approx(3.0f * std::max(0.0f, glm::dot(toLight, seen[i].normal))).epsilon(1e-4).margin(1e-6));
+    lit += expected > 0.01f ? 1 : 0;
+  }
+  CHECK(lit > 20);
+  // Points of another exponent, and those that reflect nothing, leave it dark.
+  for (const float exponent : {6.0f, -1.0f}) {
+    point.exponent = exponent;
+    CHECK(passes.apply(pointsOf({point}), both, seen).second.at(3, 3, 1) == 0.0f);
+  }
+}
+
 TEST_CASE("no light gives none, and light of 10^6 : 1 or in a point's plane stays finite and not negative") {
   const std::vector<SparsePoint> points{{{0, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, 0.0f},
                                         {{0.1f, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, 1.0f},
