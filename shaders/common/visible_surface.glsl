@@ -4,6 +4,9 @@
 #define LUMIVOX_VISIBLE_SURFACE
 
 layout(std140, binding = 1) uniform View { mat4 worldToClip; };
+layout(std140, binding = 3) uniform Drawn {
+  float model;  // of what is drawn: what moves together
+};
 
 #ifdef SCENE_VERTICES
 invariant gl_Position;

@@ -8,10 +8,6 @@
 #include "common/scene.glsl"
 #include "common/visible_surface.glsl"
 
-layout(std140, binding = 3) uniform Drawn {
-  float model;  // of what is drawn: what moves together
-};
-
 #if TEXTURES
 layout(binding = 0) uniform sampler2D diffuseTexture;
 #endif

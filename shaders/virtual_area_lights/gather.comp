@@ -81,8 +81,12 @@ void add(Receiver point, SurfaceLight light, inout Sums sums) {
   sums.light.rgb += reflected;
   if (share > 0.0) sums.light.w = max(sums.light.w, overlapping / kPi * max(exitance.r, max(exitance.g, exitance.b)));
   sums.offset += weight * vec4(offset, 1.0);
+#if PUBLISHED
+  vec3 own = vec3(0.0);
+#else
   // Of a disc about its middle: a quarter of its radius squared along each axis in it.
   vec3 own = area / (4.0 * kPi) * (1.0 - light.normal.xyz * light.normal.xyz);
+#endif
   sums.square += weight * (offset * offset + own);
 }
 

@@ -3,6 +3,7 @@
 #define LUMIVOX_INTERPOLATE
 #define POINT_CANDIDATES
 #include "common/surface_points.glsl"
+#include "light.glsl"
 
 const int kMostNeighbours = 32;  // of the pass 'points'
 layout(constant_id = 0) const int neighbours = 8;
@@ -73,18 +74,6 @@ float neighbourWeight(SeenSurface seen, uint point, float distanceSquared, float
   if (!byDistance) return alike;
   float near = farthestSquared > 0.0 ? 1.0 - sqrt(distanceSquared / farthestSquared) : 0.0;
   return near > kRounding ? alike * near : 0.0;
-}
-
-struct AveragedLight {
-  vec4 light;  // rgb; w: of a glossy one 1 + exponent
-  vec3 place;
-};
-
-// Cosine at a surface of a light at `place`, 0 behind the surface and at it.
-float cosineTo(vec3 place, vec3 position, vec3 normal) {
-  vec3 path = place - position;
-  float distanceSquared = dot(path, path);
-  return distanceSquared > 0.0 ? max(0.0, dot(path, normal) * inversesqrt(distanceSquared)) : 0.0;
 }
 
 // `strict`: the light of points that reflect nothing towards the camera (w = 0) does not count. `plain`: of what points reflect, in place

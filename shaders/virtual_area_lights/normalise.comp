@@ -39,7 +39,7 @@ void main() {
   vec3 normalised = vec3(0.0);
 #if PUBLISHED
   // As it is printed, as far as a float holds it.
-  if (local > 0.0) normalised = min(light.rgb / local, vec3(1e30));
+  if (local > 0.0) normalised = dividedAsPublished(light.rgb * distanceSquared, local);
 #else
   if (local > 0.0) {
     float most = min(amplification, texelFetch(brightest, texel, 0).w / strongest), asked = 1.0 / local;

@@ -29,22 +29,10 @@ class GBufferPass : public Pass {
     result.diffuse = frame.image("g-buffer diffuse albedo");
     if (traits.glossy) result.specular = frame.image("g-buffer specular");
     if (traits.emission) result.emission = frame.image("g-buffer emission");
-    const glm::ivec3 size = pixels(frame);
-    const gpu::TextureRef depth =
-        frame.texture({gpu::TextureKind::d2, gpu::Format::depth32f, size.x, size.y, 1, 1}, "g-buffer depth");
-
-    gpu::RenderTargets targets{.depth = depth.get()};
-    for (const gpu::TextureRef& texture : {result.position, result.normal, result.geometricNormal,
-                                           result.diffuse, result.specular, result.emission}) {
-      targets.colours.push_back({texture.get(), -1});
-    }
-    while (targets.colours.back().texture == nullptr) targets.colours.pop_back();
-    const gpu::Drawing drawing = frame.device().drawTo(targets, kVisibleSurface);
-    for (const SceneDraw& draw : frame.scene().draws())
-      drawPart(frame, draw, gbuffer::Variant{.glossy = traits.glossy, .emission = traits.emission},
-               {gbuffer::view({worldToClip(frame.snapshot())}),
-                gbuffer::eye({frame.snapshot().camera.eye, glm::vec2(pixels(frame))}),
-                gbuffer::drawn({static_cast<float>(draw.model)})});
+    drawVisible(frame,
+                {result.position, result.normal, result.geometricNormal, result.diffuse, result.specular,
+                 result.emission},
+                gbuffer::Variant{.glossy = traits.glossy, .emission = traits.emission}, {});
     gbuffer = result;
   }
 };

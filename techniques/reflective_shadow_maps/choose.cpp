@@ -39,6 +39,8 @@ class ChoosePass : public Pass {
   Param<Area> area{
       this, "area", Area::surface,
       "surface: that of the surface which a texel stands for; facing: what it would be if the texel faced the light (Lensing & Broll 2013, Sec. 4.1)"};
+  Param<bool> asPublished{this, "as_published", false,
+                          "'method stride' and 'area facing' (Lensing & Broll 2013)"};
   Out<SurfaceLights> lights{this, "lights", "texels as lights on surfaces"};
 
   void run(PassContext& frame) override {
@@ -47,8 +49,10 @@ class ChoosePass : public Pass {
       return;
     }
     requireAreas(*map);
-    lights = method == Method::flux ? byFlux(frame) : byStride(frame);
+    lights = method == Method::flux && !asPublished ? byFlux(frame) : byStride(frame);
   }
+
+  int facing() const { return asPublished || area == Area::facing ? 1 : 0; }
 
   static void requireAreas(const ReflectiveShadowMap& map) {
     for (const gpu::TextureRef& texture : {map.position, map.normal})
@@ -93,11 +97,10 @@ class ChoosePass : public Pass {
       firstOfAddends = firstOfSums;
     }
     const auto levels = static_cast<std::uint32_t>(sizes.size() - 1);
-    frame.dispatchList(
-        frame.program(choose::kProgram),
-        {choose::parameters({sizes.front(), side, levels, count, area == Area::facing ? 1 : 0}), texels,
-         choose::tree(tree), choose::taken(result.lights)},
-        count);
+    frame.dispatchList(frame.program(choose::kProgram),
+                       {choose::parameters({sizes.front(), side, levels, count, facing()}), texels,
+                        choose::tree(tree), choose::taken(result.lights)},
+                       count);
     return result;
   }
 
@@ -106,7 +109,7 @@ class ChoosePass : public Pass {
     const int across = (flux.width + stride - 1) / stride, count = across * across * flux.depth;
     const SurfaceLights result{room(frame, count), count, map->lightCount};
     frame.dispatchList(frame.program(stride::kProgram),
-                       {stride::parameters({flux.width, stride, across, count, area == Area::facing ? 1 : 0}),
+                       {stride::parameters({flux.width, stride, across, count, facing()}),
                         ReflectiveShadowMapBinding(*map), stride::taken(result.lights)},
                        static_cast<std::uint64_t>(count));
     return result;

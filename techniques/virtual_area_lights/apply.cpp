@@ -1,5 +1,9 @@
 // The averaged lights of sparse points where the camera sees surfaces (Lensing and Broll 2013, Sec. 3.2 steps
 // 3 and 4).
+#include <tuple>
+
+#include "apply_vertices.h"
+#include "lumivox/base/error.h"
 #include "lumivox/toolkit/bindings.h"
 #include "passes.h"
 #include "virtual_area_lights_shaders.h"
@@ -11,6 +15,7 @@ using namespace shaders::virtual_area_lights;
 
 class ApplyPass : public Pass {
   enum class Interpolate { averaged, plain };
+  enum class At { pixels, vertices };
 
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<SurfacePoints> points{this, "points", "where light was gathered"};
@@ -19,12 +24,21 @@ class ApplyPass : public Pass {
       this, "interpolate", Interpolate::averaged,
       "of the diffuse lobe; averaged: the points' lights, which the pixel's normal then meets; plain: what the "
       "points reflect"};
+  Param<At> at{
+      this, "at", At::pixels,
+      "where the nearest points are mixed; pixels: for each one anew; vertices: at those of the meshes, "
+      "and from there through the rasteriser (published), for meshes finer than the points"};
+  Param<bool> asPublished{this, "as_published", false,
+                          "'at vertices', and Eq. 10 with its squared distance to the averaged place, as "
+                          "normalise must have it too"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::anyLight,
                      "indirect light reflected by the diffuse lobe, W/(sr m^2)"};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::anyLight | Needs::glossyMaterial,
                     "indirect light reflected by the Phong lobe, W/(sr m^2)"};
 
-  Reads readsFrom() const override { return Reads::camera; }
+  Reads readsFrom() const override {
+    return atVertices() ? Reads::camera | Reads::geometry | Reads::materials : Reads::camera;
+  }
   bool uses(const InBase& input) const override {
     return &input == &gbuffer || diffuse.wanted() || glossy.wanted();
   }
@@ -38,24 +52,44 @@ class ApplyPass : public Pass {
     if (diffuse.wanted() && !isDiffuse) diffuse->texture->clear(glm::vec4(0, 0, 0, 1));
     if (glossy.wanted() && !isGlossy) glossy->texture->clear(glm::vec4(0, 0, 0, 1));
     if (!isDiffuse && !isGlossy) return;
-    using gpu::Sampling;
-    shader::BindingSet bound{apply::parameters({frame.snapshot().camera.eye}), GBufferBinding(*gbuffer),
-                             SurfacePointsBinding(*points)};
-    if (isDiffuse) {
-      bound.add(apply::diffuseLight(light->diffuse, Sampling::nearest));
-      bound.add(apply::diffusePlace(light->diffusePosition, Sampling::nearest));
-      bound.add(apply::diffuseImage(diffuse->texture));
+    SparseLight shown = *light;
+    if (atVertices()) {
+      const VertexInputs inputs{*gbuffer, *points, interpolated() != 0};
+      if (isDiffuse)
+        std::tie(shown.diffuse, shown.diffusePosition) =
+            diffuseOverTriangles(frame, inputs, light->diffuse, light->diffusePosition);
+      if (isGlossy)
+        std::tie(shown.glossy, shown.glossyPosition) =
+            glossyOverTriangles(frame, inputs, light->glossy, light->glossyPosition);
     }
-    if (isGlossy) {
-      bound.add(apply::glossyLight(light->glossy, Sampling::nearest));
-      bound.add(apply::glossyPlace(light->glossyPosition, Sampling::nearest));
-      bound.add(apply::glossyImage(glossy->texture));
-    }
+    shader::BindingSet bound{apply::parameters({frame.snapshot().camera.eye, asPublished}),
+                             GBufferBinding(*gbuffer), SurfacePointsBinding(*points), lightBinding(shown)};
+    if (isDiffuse) bound.add(apply::diffuseImage(diffuse->texture));
+    if (isGlossy) bound.add(apply::glossyImage(glossy->texture));
     frame.dispatch(frame.program(apply::Variant{.diffuse = isDiffuse,
                                                 .glossy = isGlossy,
-                                                .interpolate = interpolate == Interpolate::plain},
+                                                .interpolate = interpolated(),
+                                                .at = atVertices() ? apply::Variant::atVertices
+                                                                   : apply::Variant::atPixels},
                                  apply::Constants{.neighbours = points->neighbours}),
                    bound, pixels(frame));
+  }
+
+  bool atVertices() const { return asPublished || at == At::vertices; }
+  int interpolated() const {
+    if (asPublished && interpolate == Interpolate::plain)
+      throw Error(
+          "virtual_area_lights.apply: 'interpolate plain' and 'as_published on' exclude each other; expected "
+          "'interpolate averaged', which is published");
+    return interpolate == Interpolate::plain;
+  }
+
+  static shader::BindingSet lightBinding(const SparseLight& of) {
+    using gpu::Sampling;
+    return {apply::diffuseLight(of.diffuse, Sampling::nearest),
+            apply::diffusePlace(of.diffusePosition, Sampling::nearest),
+            apply::glossyLight(of.glossy, Sampling::nearest),
+            apply::glossyPlace(of.glossyPosition, Sampling::nearest)};
   }
 };
 

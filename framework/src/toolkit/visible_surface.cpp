@@ -6,6 +6,31 @@
 
 namespace lumivox {
 
+namespace {
+
+// Blocks of common/visible_surface.glsl.
+struct alignas(16) ViewBlock {
+  glm::mat4 worldToClip;
+};
+struct alignas(16) EyeBlock {
+  glm::vec3 eyeWorld;
+  float padding = 0.0f;
+  glm::vec2 imageSize;
+};
+struct alignas(16) DrawnBlock {
+  float model;
+};
+
+}  // namespace
+
+VisibleSurfaceBinding::VisibleSurfaceBinding(const PassContext& frame, const SceneDraw& draw) {
+  using shader::UniformSlot;
+  const SceneSnapshot& snapshot = frame.snapshot();
+  add(UniformSlot<ViewBlock>{"View"}({worldToClip(snapshot)}));
+  add(UniformSlot<EyeBlock>{"Eye"}({.eyeWorld = snapshot.camera.eye, .imageSize = glm::vec2(pixels(frame))}));
+  add(UniformSlot<DrawnBlock>{"Drawn"}({static_cast<float>(draw.model)}));
+}
+
 // In single precision a depth that begins at a ten thousandth of the far end tells surfaces apart that are
 // 6e-4 of it from each other: from outside of the scene it begins where the scene does.
 glm::mat4 worldToClip(const SceneSnapshot& snapshot) {

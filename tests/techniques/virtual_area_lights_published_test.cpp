@@ -1,0 +1,400 @@
+// Virtual area lights as published (Lensing and Broll 2013): what each printed form must give, worked out by
+// hand; light at vertices, through the rasteriser; and the word that sets all of it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "lumivox/base/error.h"
+#include "lumivox/experiment/voxelizers.h"
+#include "support/against_reference.h"
+#include "support/virtual_area_lights.h"
+
+using namespace lumivox;
+using namespace lumivox::test;
+
+namespace {
+
+constexpr int kPixels = 48;
+const PassSettings kAsPublished{{"as_published", std::string("on")}};
+const PassSettings kAtVertices{{"at", std::string("vertices")}};
+
+/// What a scene's camera sees at one time, and the pass that shows light on it.
+struct Shown {
+  const Scene& scene;
+  SceneSnapshot snapshot;
+  PassHarness gbufferPass;
+
+  explicit Shown(const Scene& shownScene, double time = 0.0)
+      : scene(shownScene),
+        snapshot(snapshotOf(scene, time, {}, kPixels, kPixels)),
+        gbufferPass(device(), techniques(), "direct_lighting", "gbuffer", scene, snapshot) {
+    gbufferPass.run();
+  }
+  SurfacePoints points(int count) const {
+    PassHarness pass(device(), techniques(), "virtual_area_lights", "points", scene, snapshot);
+    pass.setParameter("points", static_cast<double>(count));
+    pass.run();
+    return pass.output<SurfacePoints>("points");
+  }
+  /// Diffuse and, where the scene has glossy surfaces, glossy.
+  std::pair<ImageBuffer, ImageBuffer> apply(const SurfacePoints& points, const SparseLight& light,
+                                            const PassSettings& settings) {
+    PassHarness pass(device(), techniques(), "virtual_area_lights", "apply", scene, snapshot);
+    for (const auto& [key, value] : settings)
+      std::visit([&, &name = key](const auto& set) { pass.setParameter(name, set); }, value);
+    pass.setInput("gbuffer", gbuffer());
+    pass.setInput("points", points);
+    pass.setInput("light", light);
+    pass.run();
+    return {imageOf(*pass.output<Image>("diffuse").texture),
+            light.glossy ? imageOf(*pass.output<Image>("glossy").texture) : ImageBuffer()};
+  }
+  const GBuffer& gbuffer() { return gbufferPass.output<GBuffer>("gbuffer"); }
+};
+
+gpu::TextureRef ofPoints(const std::vector<glm::vec4>& values, const char* label) {
+  return texels(values, SurfacePoints::sizeFor(static_cast<int>(values.size())), label);
+}
+
+bool differ(const ImageBuffer& a, const ImageBuffer& b) {
+  return !std::equal(a.values().begin(), a.values().end(), b.values().begin(), b.values().end());
+}
+
+/// A glossy triangle with corners at `corners`, seen from `height`.
+SceneBuilder oneTriangle(const std::vector<glm::vec3>& corners, double height) {
+  SceneBuilder builder;
+  builder.mesh(corners, builder.phong(0.5f, 0.25f, 10.0f));
+  builder.light(LightKind::point, glm::vec3(1.0f), {0, 1, 0});
+  builder.look({0.4, height, 1.0}, {0, 0, -0.2}, {0, 1, 0}, 0.9, kPixels, kPixels);
+  return builder;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "Eq. 4 and 5 as printed: the flux, the lobe at the middle of the disc, and no cosine for it at the receiver") {
+  constexpr double kFactor = 3.0, kExponent = 100.0;
+  // One light above, one aside; both face the point, a metre away.
+  const std::vector<DiscLight> lights{{{0, 1, 0}, {0, -1, 0}, 0.01f, glm::vec3(2.0f)},
+                                      {{0.6f, 0.8f, 0}, {-0.6f, -0.8f, 0}, 0.02f, glm::vec3(5.0f)}};
+  const double fluxes[2] = {0.02, 0.1}, cosines[2] = {1.0, 0.8};
+  const glm::dvec3 places[2] = {{0, 1, 0}, {0.6, 0.8, 0}};
+  // The limit by the spacing of 0.1 m would be an exponent of 25.
+  const SurfacePoints points = pointsOf({{{0, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, kExponent}});
+  SparsePasses passes;
+  const SparseLight light =
+      passes.gather(points, lightsOf(lights), {{"as_published", std::string("on")}, {"factor", kFactor}});
+  for (const bool glossy : {false, true}) {
+    double sum = 0.0, weights = 0.0;
+    glm::dvec3 mean(0.0), squares(0.0);
+    for (int i = 0; i < 2; ++i) {
+      const double squaredRadius = lights[static_cast<std::size_t>(i)].area / kPi,
+                   width = squaredRadius / (1.0 + squaredRadius),
+                   lobe = glossy ? std::pow(cosines[i], kExponent) : cosines[i];
+      sum += fluxes[i] * width * lobe * (glossy ? kFactor * (kExponent + 1.0) : 1.0 / kPi);
+      const double weight = 0.5e-6 + width * lobe;
+      weights += weight;
+      mean += weight * places[i];
+      squares += weight * places[i] * places[i];
+    }
+    mean /= weights;
+    const glm::dvec3 variance = squares / weights - mean * mean;
+    CAPTURE(glossy);
+    const glm::vec4 found = valuesOf(glossy ? light.glossy : light.diffuse, 1).front(),
+                    place = valuesOf(glossy ? light.glossyPosition : light.diffusePosition, 1).front();
+    CHECK(found.x == Approx(sum).epsilon(1e-4));
+    CHECK(place.x == Approx(mean.x).epsilon(1e-4));
+    CHECK(place.y == Approx(mean.y).epsilon(1e-4));
+    // Twice the largest deviation of the places, without the discs' own extent.
+    CHECK(place.w ==
+          Approx(2.0 * std::sqrt(std::max({variance.x, variance.y, variance.z}))).epsilon(2e-3).margin(2e-3));
+    if (glossy) CHECK(found.w == Approx(1.0 + kExponent));
+  }
+  // One light alone is no sphere at all.
+  CHECK(valuesOf(passes.gather(points, lightsOf({lights[0]}), kAsPublished).diffusePosition, 1).front().w ==
+        Approx(0.0).margin(1e-3));
+}
+
+TEST_CASE("Eq. 11 as printed: the squared distance over the cosine or the lobe, without a bound") {
+  const SurfacePoints points = pointsOf({{{0, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, 10.0f}});
+  const SparseLight light{ofPoints({{3, 3, 3, 1}}, "light"),
+                          ofPoints({{1.2f, 1.6f, 0, 1}}, "place"),  // 2 m away, cosine 0.8
+                          ofPoints({{3, 3, 3, 11}}, "light"), ofPoints({{1.2f, 1.6f, 0, 1}}, "place")};
+  SparsePasses passes;
+  const SparseLight found = passes.normalise(points, light, kAsPublished);
+  CHECK(valuesOf(found.diffuse, 1).front().x == Approx(3.0 * 4.0 / 0.8).epsilon(1e-5));
+  CHECK(valuesOf(found.glossy, 1).front().x == Approx(3.0 * 4.0 / std::pow(0.8, 10.0)).epsilon(1e-4));
+  // As far as a float holds it.
+  SparseLight grazing = light;
+  grazing.diffusePosition = ofPoints({{1e6f, 1e-30f, 0, 1}}, "place");
+  grazing.diffuse = ofPoints({{1e20f, 0, 0, 1}}, "light");
+  const glm::vec4 most = valuesOf(passes.normalise(points, grazing, kAsPublished).diffuse, 1).front();
+  CHECK(most.x == Approx(1e30f));
+  CHECK(most.y == 0.0f);
+}
+
+TEST_CASE(
+    "Sec. 3.3 as printed: a sphere is seen as a disc is, and each disc hides its share of what is left") {
+  // A sphere of half a metre at two metres; discs of 0.1 m at 1 m and at 1.2 m, before its middle.
+  const SurfacePoints points = pointsOf({{{0, 0, 0}, {0, 1, 0}, 0.01f, 0.1f},
+                                         {{0, 1, 0}, {0, -1, 0}, 0.01f, 0.1f},
+                                         {{0, 1.2f, 0}, {0, -1, 0}, 0.01f, 0.1f}});
+  const std::vector<glm::vec4> lights{{1, 1, 1, 1}, {}, {}}, places{{0, 2, 0, 0.5f}, {}, {}};
+  const SparseLight light{ofPoints(lights, "light"), ofPoints(places, "place"), nullptr, nullptr};
+  const auto disc = [](double distance) { return 0.01 / (distance * distance + 0.01); };
+  SparsePasses passes;
+  const auto open = [&](const PassSettings& settings) {
+    return valuesOf(passes.occlude(points, light, settings).diffuse, 1).front().x;
+  };
+  const double printed = 0.25 / (4.0 + 0.25), ours = 0.25 / 4.0;
+  CHECK(open({{"as_published", std::string("on")}, {"combine", std::string("sum")}}) ==
+        Approx((1.0 - disc(1.0) / printed) * (1.0 - disc(1.2) / printed)).epsilon(1e-4));
+  CHECK(open({}) == Approx((1.0 - disc(1.0) / ours) * (1.0 - disc(1.2) / ours)).epsilon(1e-4));
+}
+
+TEST_CASE(
+    "light and place at the corners of a triangle are interpolated by barycentric coordinates, on the side "
+    "seen, and Eq. 10 is evaluated in each pixel, as printed with its squared distance") {
+  const std::vector<glm::vec3> corners{{-1, 0, 0.5f}, {1.2f, 0, 0.3f}, {0.1f, 0, -1}};
+  for (const float height : {1.2f, -1.2f})
+    for (const bool published : {false, true}) {
+      const SceneBuilder builder = oneTriangle(corners, height);
+      Shown shown(builder.scene);
+      const glm::vec3 origin(shown.snapshot.origin);
+      // A point of each side at each corner, with a light of its own.
+      std::vector<SparsePoint> places;
+      std::vector<glm::vec4> diffuse, glossy, diffusePlace, glossyPlace;
+      for (const float side : {1.0f, -1.0f})
+        for (std::size_t i = 0; i < 3; ++i) {
+          places.push_back({corners[i] - origin, {0, side, 0}, 0.01f, 0.1f, 10.0f});
+          const float light = 1.0f + 2.0f * static_cast<float>(i) + (side > 0.0f ? 0.0f : 10.0f);
+          diffuse.emplace_back(light, 0.5f * light, 3.0f, 1.0f);
+          glossy.emplace_back(3.0f, light, 0.5f * light, 11.0f);
+          diffusePlace.emplace_back(
+              places.back().position + glm::vec3(0.3f * static_cast<float>(i), side, 0.2f), 1);
+          glossyPlace.emplace_back(places.back().position + glm::vec3(-0.4f, 0.5f * side, -0.9f), 1);
+        }
+      SurfacePoints points = pointsOf(places, 0.1f, 1);
+      auto set = std::make_shared<SurfacePointSet>();
+      set->points.resize(6);
+      set->points[3].back = true;
+      points.set = set;
+      PassSettings settings = published ? kAsPublished : kAtVertices;
+      const auto [diffuseImage, glossyImage] =
+          shown.apply(points,
+                      {ofPoints(diffuse, "light"), ofPoints(diffusePlace, "place"),
+                       ofPoints(glossy, "glossy"), ofPoints(glossyPlace, "glossy place")},
+                      settings);
+      const ImageBuffer positions = imageOf(*shown.gbuffer().position, 4);
+      const std::size_t first = height > 0.0f ? 0 : 3;
+      const glm::dvec3 normal(0.0, height > 0.0f ? 1.0 : -1.0, 0.0), eye(shown.snapshot.camera.eye);
+      const glm::dvec3 a(places[0].position), b(places[1].position), c(places[2].position);
+      const glm::dvec3 across = glm::cross(b - a, c - a);
+      CAPTURE(height, published);
+      int seen = 0, reflected = 0;
+      double worst = 0.0;
+      for (int y = 0; y < kPixels; ++y)
+        for (int x = 0; x < kPixels; ++x) {
+          if (positions.at(x, y, 3) == 0.0f) {
+            worst = std::max<double>(worst, diffuseImage.at(x, y, 0));
+            continue;
+          }
+          ++seen;
+          const glm::dvec3 p(positions.at(x, y, 0), positions.at(x, y, 1), positions.at(x, y, 2));
+          const double ofB = glm::dot(glm::cross(p - a, c - a), across) / glm::dot(across, across),
+                       ofC = glm::dot(glm::cross(b - a, p - a), across) / glm::dot(across, across);
+          const double weights[3] = {1.0 - ofB - ofC, ofB, ofC};
+          const auto mixed = [&](const std::vector<glm::vec4>& values) {
+            glm::dvec4 sum(0.0);
+            for (std::size_t i = 0; i < 3; ++i) sum += weights[i] * glm::dvec4(values[first + i]);
+            return sum;
+          };
+          const auto toward = [&](const std::vector<glm::vec4>& values) {
+            return glm::dvec3(mixed(values)) - p;
+          };
+          const glm::dvec3 path = toward(diffusePlace), glossyPath = toward(glossyPlace);
+          const double cosine = std::max(0.0, glm::dot(glm::normalize(path), normal)),
+                       mirror = std::max(0.0, glm::dot(glm::reflect(glm::normalize(p - eye), normal),
+                                                       glm::normalize(glossyPath)));
+          const double diffuseOver = published ? glm::dot(path, path) : 1.0,
+                       glossyOver = published ? glm::dot(glossyPath, glossyPath) : 1.0;
+          reflected += mirror > 0.8;
+          for (int k = 0; k < 3; ++k) {
+            const double expected = 0.5 * mixed(diffuse)[k] * cosine / diffuseOver,
+                         expectedGlossy = 0.25 * mixed(glossy)[k] * std::pow(mirror, 10.0) / glossyOver;
+            worst = std::max({worst, std::abs(diffuseImage.at(x, y, k) - expected) / 10.0,
+                              std::abs(glossyImage.at(x, y, k) - expectedGlossy) / 10.0});
+          }
+        }
+      CHECK(seen > 100);
+      CHECK(reflected > 20);
+      CHECK(worst < 2e-5);
+    }
+}
+
+TEST_CASE(
+    "one light of each model is at vertices what it is at pixels: hidden surfaces, turned, deformed, mirrored, cut "
+    "away by masks") {
+  const auto check = [](const Scene& scene, double time) {
+    Shown shown(scene, time);
+    const SurfacePoints points = shown.points(256);
+    const auto count = static_cast<std::size_t>(points.count);
+    const std::vector<glm::vec4> normals = valuesOf(points.normal, count);
+    std::vector<glm::vec4> lights, places(count, glm::vec4(0.3f, 40.0f, 30.0f, 1.0f));
+    for (const glm::vec4& normal : normals)
+      lights.emplace_back(1.0f + 2.0f * normal.w, 1.0f, 0.5f * normal.w, 0.0f);
+    const SparseLight light{ofPoints(lights, "light"), ofPoints(places, "place"), nullptr, nullptr};
+    const ImageBuffer pixels = shown.apply(points, light, {}).first,
+                      vertices = shown.apply(points, light, kAtVertices).first;
+    double worst = 0.0;
+    int lit = 0;
+    for (std::size_t i = 0; i < pixels.values().size(); ++i) {
+      worst = std::max(worst, std::abs(static_cast<double>(pixels.values()[i] - vertices.values()[i])));
+      lit += vertices.values()[i] > 0.0f;
+    }
+    CHECK(lit > kPixels * kPixels / 10);
+    CHECK(worst < 1e-5);
+  };
+  SECTION("of what turns before what stands still") {
+    check(loadScene(sourceDirectory() / "scenes/spinning_box.scene"), 0.7);
+  }
+  SECTION("of what deforms") {
+    check(loadScene(sourceDirectory() / "scenes/waving_cloth.scene"), 0.3);
+  }
+  SECTION("of what a placement mirrors") {
+    SceneBuilder builder = oneTriangle({{-1, 0, 0.5f}, {1.2f, 0, 0.3f}, {0.1f, 0, -1}}, 1.2);
+    builder.scene.objects[0].placement = glm::dmat4(glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, 1));
+    check(builder.scene, 0.0);
+  }
+  SECTION("of a sheet whose left half a mask cuts away") {
+    SceneBuilder builder;
+    SurfaceTexture half;
+    half.width = 2, half.height = 1, half.mask = true;
+    half.values = {0.0f, 1.0f};
+    Material masked;
+    masked.diffuse = glm::vec3(0.5f);
+    masked.maskTexture = static_cast<int>(builder.scene.textures.size());
+    builder.scene.textures.push_back(half);
+    builder.quad({-1, 0.5f, 1}, {2, 0, 0}, {0, 0, -2}, builder.material(masked));
+    builder.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, builder.lambert(0.25f));
+    builder.light(LightKind::point, glm::vec3(1.0f), {0, 1, 0});
+    builder.look({0, 3, 0}, {0, 0, 0}, {0, 0, -1}, 0.7, kPixels, kPixels);
+    check(builder.scene, 0.0);
+  }
+}
+
+TEST_CASE(
+    "what points reflect, interpolated at vertices, is published nowhere: the two words exclude each other") {
+  const SceneBuilder builder = oneTriangle({{-1, 0, 0.5f}, {1.2f, 0, 0.3f}, {0.1f, 0, -1}}, 1.2);
+  Shown shown(builder.scene);
+  const SurfacePoints points = shown.points(16);
+  const std::vector<glm::vec4> ones(static_cast<std::size_t>(points.count), glm::vec4(1.0f));
+  const SparseLight light{ofPoints(ones, "light"), ofPoints(ones, "place"), nullptr, nullptr};
+  const std::string message = messageOf<Error>([&] {
+    shown.apply(points, light, {{"as_published", std::string("on")}, {"interpolate", std::string("plain")}});
+  });
+  CHECK_THAT(message, Catch::Contains("'interpolate plain' and 'as_published on' exclude each other"));
+  CHECK_NOTHROW(
+      shown.apply(points, light, {{"at", std::string("vertices")}, {"interpolate", std::string("plain")}}));
+}
+
+TEST_CASE(
+    "'as_published' in every pass is the same image as the printed words set one by one, and as its pipeline") {
+  Scene scene = litRoom(kPixels, kPixels);
+  const auto shown = [&](const std::string& choose, const std::string& gather, const std::string& occlude,
+                         const std::string& apply, const std::string& normalise) {
+    const std::string text = fmt::format(R"(pipeline "published" {{
+      pass gbuffer direct_lighting.gbuffer {{ }}
+      pass points virtual_area_lights.points {{ points 128 }}
+      pass map reflective_shadow_maps.render {{ size 16 }}
+      pass choose reflective_shadow_maps.choose {{ map map.map  lights 64  {} }}
+      pass gather virtual_area_lights.gather {{ points points.points  lights choose.lights  {} }}
+      pass normalise virtual_area_lights.normalise {{ points points.points  light gather.light  {} }}
+      pass occlude virtual_area_lights.occlude {{ points points.points  light normalise.light  {} }}
+      pass apply virtual_area_lights.apply {{ gbuffer gbuffer  points points.points  light occlude.light  {} }}
+      output indirect_diffuse apply.diffuse
+      output indirect_glossy apply.glossy
+    }})",
+                                         choose, gather, normalise, occlude, apply);
+    return renderOnce(scene, Pipeline::parse(text, "published.pipeline")).outputs;
+  };
+  const std::string on = "as_published on";
+  const auto published = shown(on, on, on, on, on), ours = shown("", "", "", "", "");
+  const auto words = shown("method stride  area facing", on + "  method cached  exponent_limit none",
+                           on + "  combine product", on + "  at vertices  interpolate averaged", on);
+  RenderOptions options;
+  const Pipeline committed = Pipeline::load(
+      sourceDirectory() / "scenes/pipelines/virtual_area_lights/virtual_area_lights_as_published.pipeline");
+  options.parameters = committed.settings({"points=128", "map=16"});
+  const auto pipelined = renderOnce(scene, committed, options).outputs;
+  for (const char* output : {"indirect_diffuse", "indirect_glossy"}) {
+    CAPTURE(output);
+    CHECK(!differ(published.at(output), words.at(output)));
+    CHECK(!differ(published.at(output), pipelined.at(output)));
+    CHECK(differ(published.at(output), ours.at(output)));
+  }
+  // Each pass's word does something by itself.
+  CHECK(differ(ours.at("indirect_diffuse"), shown(on, "", "", "", "").at("indirect_diffuse")));
+  CHECK(differ(ours.at("indirect_diffuse"), shown("", on, "", "", "").at("indirect_diffuse")));
+  CHECK(differ(ours.at("indirect_diffuse"), shown("", "", on, "", "").at("indirect_diffuse")));
+  CHECK(differ(ours.at("indirect_diffuse"), shown("", "", "", on, "").at("indirect_diffuse")));
+  CHECK(differ(ours.at("indirect_diffuse"), shown("", "", "", "", on).at("indirect_diffuse")));
+  for (const auto& [name, image] : published)
+    for (const float value : image.values()) CHECK((std::isfinite(value) && value >= 0.0f));
+}
+
+namespace {
+
+/// RMS difference of diffuse light at vertices to that at pixels, over the mean.
+double ofVertices(const Scene& scene, int points) {
+  std::string text = pipeline("virtual_area_lights").document->source;
+  const std::string last = "    light occlude.light\n";
+  const auto image = [&](const std::string& at) {
+    std::string with = text;
+    with.insert(with.find(last), "    at " + at + "\n");
+    const Pipeline chosen = Pipeline::parse(with, pipeline("virtual_area_lights").file);
+    return pictured(scene, {64, 64}, chosen,
+                    {"points=" + std::to_string(points), "occlusion=off", "lights=256"})
+        .outputs.at("indirect_diffuse");
+  };
+  const ImageBuffer pixels = image("pixels"), vertices = image("vertices");
+  double squares = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < pixels.values().size(); ++i) {
+    squares += std::pow(static_cast<double>(vertices.values()[i] - pixels.values()[i]), 2.0);
+    sum += static_cast<double>(pixels.values()[i]);
+  }
+  const auto count = static_cast<double>(pixels.values().size());
+  return std::sqrt(squares / count) / (sum / count);
+}
+
+Scene finer(Scene scene, int times) {
+  for (int i = 0; i < times; ++i) scene = subdivided(scene);
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "light at vertices loses what a mesh coarser than the points cannot hold, and no more on a finer one") {
+  const Scene cornell = loadScene(sourceDirectory() / "scenes/cornell.scene");
+  const double coarse = ofVertices(cornell, 512), fine = ofVertices(finer(cornell, 4), 512);
+  CAPTURE(coarse, fine);
+  CHECK(coarse > 0.3);
+  CHECK(fine < 0.05);
+}
+
+TEST_CASE("table: light at vertices against light at pixels, by triangles", "[.]") {
+  const Scene cornell = loadScene(sourceDirectory() / "scenes/cornell.scene");
+  for (int times = 0; times <= 5; ++times) {
+    const Scene scene = finer(cornell, times);
+    for (const int points : {512, 2048, 8192}) {
+      const double difference = ofVertices(scene, points);
+      std::printf("cornell %6zu triangles %5d points: %.3f of the mean\n", scene.indices.size() / 3, points,
+                  difference);
+      std::fflush(stdout);
+      CHECK(difference < 9.0);
+    }
+  }
+}
