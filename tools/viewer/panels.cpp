@@ -74,6 +74,39 @@ std::vector<std::string> stemsOf(const Session& session) {
   return names;
 }
 
+/// What is shown of a port, and what could be.
+void addPort(std::vector<Row>& rows, const Session& session, const std::vector<std::string>& textures,
+             const std::vector<std::string>& fields) {
+  const PortChoice& port = *session.state().port;
+  const RenderedResult rendered = session.rendered();
+  static const PortPicture nothing;
+  const PortPicture& shown = rendered == nullptr ? nothing : rendered->port;
+  if (!textures.empty())
+    rows.push_back(choice("texture", "texture", port.texture.empty() ? textures.front() : port.texture,
+                          textures, "texture {}"));
+  if (fields.size() > 1)
+    rows.push_back(choice("voxels", "voxels", port.field.empty() ? "nothing" : port.field, fields,
+                          "voxels {}", "a field of the voxels as cubes, or spherical harmonics as lobes"));
+  rows.push_back(number("level", "level", port.level, 0, std::max(0, shown.levels - 1), true, "level {}"));
+  if (!shown.brightness.empty()) {
+    rows.push_back(number("above", "voxels above", port.above, 0, 1, false, "above {}",
+                          "voxels whose values are not above it are left out"));
+    rows.push_back(number("see_through", "see through", session.state().seeThrough, 0, 1, false,
+                          "see_through {}", "how much of the picture is seen behind the voxels"));
+    const auto& brightness = shown.brightness.values();
+    const auto pixels =
+        brightness.size() - static_cast<std::size_t>(std::count(brightness.begin(), brightness.end(), 0.0f));
+    rows.push_back(text("voxel_pixels", "pixels with voxels", fmt::format("{}", pixels)));
+  } else {
+    rows.push_back(number("slice", "slice", port.slice, 0, std::max(0, shown.slices - 1), true, "slice {}"));
+    rows.push_back(choice("channel", "components", channelWords()[static_cast<std::size_t>(port.channel)],
+                          channelWords(), "channel {}"));
+  }
+  if (!shown.quantity.empty())
+    rows.push_back(text("quantity", shown.shown,
+                        shown.quantity + (shown.unit.empty() || shown.unit == "1" ? "" : ", " + shown.unit)));
+}
+
 Panel lookPanel(const Session& session) {
   const ViewState& state = session.state();
   Panel panel{"look", "Look", {}};
@@ -94,22 +127,19 @@ Panel lookPanel(const Session& session) {
   std::vector<std::string> outputs{kWholeImage};
   for (const Pipeline::Output& output : state.sides.front().pipeline->outputs) outputs.push_back(output.name);
   rows.push_back(choice("output", "output", state.output, outputs, "output {}"));
-  std::vector<std::string> ports{"nothing"}, textures;
+  std::vector<std::string> ports{"nothing"}, textures, fields{"nothing"};
   if (const RenderedResult rendered = session.rendered(); rendered != nullptr && !rendered->sides.empty())
     for (const PassContract& pass : rendered->sides.front().contracts)
       for (const PassContract::Port& port : pass.outputs) {
-        if (port.textures.empty()) continue;
+        if (port.textures.empty() && port.fields.empty()) continue;
         ports.push_back(pass.name + "." + port.name);
-        if (state.port && state.port->pass == pass.name && state.port->port == port.name)
-          textures = port.textures;
+        if (!state.port || state.port->pass != pass.name || state.port->port != port.name) continue;
+        textures = port.textures;
+        fields.insert(fields.end(), port.fields.begin(), port.fields.end());
       }
   rows.push_back(choice("port", "port", state.port ? state.port->pass + "." + state.port->port : "nothing",
                         ports, "port {}", "any texture of any output of a pass"));
-  if (state.port) {
-    rows.push_back(choice("texture", "texture", state.port->texture, textures, "texture {}"));
-    rows.push_back(number("level", "mip level", state.port->level, 0, 16, true, "level {}"));
-    rows.push_back(number("slice", "slice", state.port->slice, 0, 512, true, "slice {}"));
-  }
+  if (state.port) addPort(rows, session, textures, fields);
   rows.push_back(choice("layout", "layout", layoutWords()[static_cast<std::size_t>(state.layout)],
                         layoutWords(), "layout {}"));
   rows.push_back(number("split", "split", state.split, 0, 1, false, "split {}"));

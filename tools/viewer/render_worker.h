@@ -16,6 +16,7 @@
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/scene/scene.h"
 #include "viewer/latest_worker.h"
+#include "viewer/port_view.h"
 
 namespace lumivox::viewer {
 
@@ -23,13 +24,6 @@ namespace lumivox::viewer {
 struct Side {
   std::shared_ptr<const Pipeline> pipeline;
   ParameterValues values;  ///< over the defaults
-};
-
-/// An output of a pass that is looked at although no image needs it.
-struct PortChoice {
-  std::string pass, port, texture;  ///< texture: a resource of the port's kind; empty: its first texture
-  int level = 0, slice = 0;
-  bool operator==(const PortChoice&) const = default;
 };
 
 struct RenderWish {
@@ -58,7 +52,7 @@ struct PassContract {
   std::vector<PassParameter> parameters;
   struct Port {
     std::string name, kind;
-    std::vector<std::string> textures;
+    std::vector<std::string> textures, fields;  ///< fields: drawnFields()
   };
   std::vector<Port> outputs;
 };
@@ -81,7 +75,7 @@ struct RenderedSide {
 struct Rendered {
   RenderWish wish;
   std::vector<RenderedSide> sides;
-  ImageBuffer port;                     ///< of RenderWish::port
+  PortPicture port;                     ///< of RenderWish::port
   std::string portError, device;        ///< device: its renderer and how programs reach it
   std::vector<std::string> techniques;  ///< that are there
   bool software = false;
@@ -91,9 +85,5 @@ using RenderWorker = LatestWorker<RenderWish, Rendered>;
 
 /// The work of such a worker. A device that cannot be opened is an error of every frame.
 RenderWorker::Work makeRenderWork(const gpu::DeviceOptions& options);
-
-/// A level and a slice of a texture as an image: of one component one channel, of more the first three.
-/// Integers are shown as numbers. Error for one that has no such level or slice.
-ImageBuffer sliceOf(const gpu::Texture& texture, int level, int slice);
 
 }  // namespace lumivox::viewer

@@ -100,6 +100,7 @@ class Session {
  private:
   void doIt(const Action& action);
   bool doLook(const Action& action);
+  bool doLookAtPort(const Action& action);
   bool doChange(const Action& action);
   bool doKeep(const Action& action);
   void setParameters(const Action& action);
@@ -117,6 +118,7 @@ class Session {
   void wantJudgement();
   void noteTried();
   void compose();
+  Picture portPicture(const PictureLook& outputLook) const;
   const Scene& shownScene() const { return *edited_; }
   void applyEdits();
 

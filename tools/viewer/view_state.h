@@ -31,6 +31,7 @@ struct ViewState {
   std::vector<Side> sides;  ///< one or two
   std::string output;
   std::optional<PortChoice> port;
+  double seeThrough = 0.0;  ///< share of the picture that is seen behind voxels
   Layout layout = Layout::picture;
   ErrorMap errorMap = ErrorMap::relative;
   double split = 0.5;
