@@ -7,62 +7,12 @@
 #include "common/reasons.h"
 #include "lumivox/base/file.h"
 #include "lumivox/results/text.h"
+#include "viewer/panel_rows.h"
 
 namespace lumivox::viewer {
 namespace {
 
 using Kind = Row::Kind;
-
-Row heading(const std::string& label) {
-  Row row;
-  row.kind = Kind::heading;
-  row.name = row.label = label;
-  return row;
-}
-Row text(const std::string& name, const std::string& label, const std::string& value,
-         const std::string& tooltip = {}) {
-  Row row;
-  row.name = name;
-  row.label = label;
-  row.value = value;
-  row.tooltip = tooltip;
-  return row;
-}
-Row toggle(const std::string& name, const std::string& label, bool on, const std::string& statement,
-           const std::string& tooltip = {}) {
-  Row row = text(name, label, on ? "on" : "off", tooltip);
-  row.kind = Kind::toggle;
-  row.on = on;
-  row.statement = statement;
-  return row;
-}
-Row button(const std::string& name, const std::string& label, const std::string& statement,
-           const std::string& tooltip = {}) {
-  Row row = text(name, label, {}, tooltip);
-  row.kind = Kind::button;
-  row.statement = statement;
-  return row;
-}
-Row choice(const std::string& name, const std::string& label, const std::string& value,
-           std::vector<std::string> choices, const std::string& statement, const std::string& tooltip = {}) {
-  Row row = text(name, label, value, tooltip);
-  row.kind = Kind::choice;
-  row.choices = std::move(choices);
-  row.statement = statement;
-  return row;
-}
-Row number(const std::string& name, const std::string& label, double value, double low, double high,
-           bool integer, const std::string& statement, const std::string& tooltip = {}) {
-  Row row = text(name, label, integer ? fmt::format("{:.0f}", value) : fmt::format("{:.6g}", value), tooltip);
-  row.kind = Kind::number;
-  row.number = value;
-  row.low = low;
-  row.high = high;
-  row.integer = integer;
-  row.logarithmic = low > 0.0 && high / low > 100.0;
-  row.statement = statement;
-  return row;
-}
 
 std::string measuredText(const Measured& value) {
   return fmt::format("{:.4g} ± {:.2g}", value.value, value.uncertainty);
@@ -292,90 +242,6 @@ Panel needPanel(const Session& session) {
     panel.rows.push_back(text(fmt::format("left out, {}: {}", name(reason.level), reason.why),
                               fmt::format("{} {}", name(reason.level), fmt::join(what, ", ")),
                               reason.why + (reason.bytes > 0 ? ", " + formatBytes(reason.bytes) : "")));
-  }
-  return panel;
-}
-
-Panel changePanel(const Session& session) {
-  const Side& side = session.state().sides.front();
-  Panel panel{"change", "Change", {}};
-  panel.rows.push_back(button("undo", fmt::format("undo ({})", session.undoable()), "undo 1", "Ctrl Z"));
-  panel.rows.push_back(button("redo", fmt::format("redo ({})", session.redoable()), "redo 1", "Ctrl Y"));
-  panel.rows.push_back(button("reset", "all to defaults", "reset \"all\""));
-  panel.rows.push_back(heading("of the pipeline"));
-  for (const PipelineParameter& parameter : side.pipeline->parameters) {
-    const auto set = side.values.find(parameter.name);
-    const ParameterValue& value = set == side.values.end() ? parameter.value : set->second;
-    const std::string statement = "set { " + parameter.name + " {} }";
-    const std::string tooltip = "default " + parameter.value.text();
-    Row row =
-        !parameter.choices.empty()
-            ? choice(parameter.name, parameter.name, value.text(), parameter.choices, statement, tooltip)
-            : number(parameter.name, parameter.name, value.number, parameter.low.value_or(0.0),
-                     parameter.high.value_or(std::max(1.0, 4.0 * parameter.value.number)),
-                     parameter.value.number == std::floor(parameter.value.number) &&
-                         parameter.high.value_or(0.5) == std::floor(parameter.high.value_or(0.5)),
-                     statement, tooltip);
-    row.changed = set != side.values.end() && !(set->second == parameter.value);
-    panel.rows.push_back(std::move(row));
-  }
-  const RenderedResult rendered = session.rendered();
-  if (rendered == nullptr || !rendered->sides.front().error.empty()) return panel;
-  for (const PassContract& pass : rendered->sides.front().contracts) {
-    if (pass.parameters.empty()) continue;
-    Row title = heading(pass.name);
-    title.tooltip = pass.technique + "." + pass.pass + ": " + pass.meaning;
-    panel.rows.push_back(std::move(title));
-    for (const PassParameter& parameter : pass.parameters) {
-      const std::string name = pass.name + "." + parameter.name;
-      const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
-      const std::string statement = "set " + pass.name + " { " + parameter.name + " {}" + unit + " }";
-      const std::string tooltip = parameter.meaning + "; default " + parameter.defaultText;
-      Row row = parameter.number
-                    ? number(name, parameter.name + (unit.empty() ? "" : "," + unit),
-                             std::strtod(parameter.value.c_str(), nullptr), parameter.low, parameter.high,
-                             parameter.integer, statement, tooltip)
-                    : choice(name, parameter.name, parameter.value, parameter.choices, statement, tooltip);
-      row.changed = parameter.value != parameter.defaultText;
-      panel.rows.push_back(std::move(row));
-    }
-  }
-  return panel;
-}
-
-Panel scenePanel(const Session& session) {
-  Panel panel{"scene", "Scene", {}};
-  const SceneEdits& edits = session.state().edits;
-  panel.rows.push_back(text("name", "scene", session.scene().name));
-  for (const std::string& part : partsOf(session.scene())) {
-    const bool on = edits.off.count(part) == 0;
-    panel.rows.push_back(toggle(part, part, on, (on ? "off " : "on ") + quoted(part)));
-  }
-  for (const Light& light : session.scene().lights) {
-    const auto edit = edits.powers.find(light.name);
-    const glm::vec3 power = edit == edits.powers.end() ? light.power : edit->second;
-    panel.rows.push_back(heading("light " + light.name));
-    panel.rows.push_back(
-        text("power " + light.name, "power", fmt::format("{:.4g} {:.4g} {:.4g}", power.x, power.y, power.z)));
-    panel.rows.push_back(button("brighter " + light.name, "twice as bright",
-                                fmt::format("light {} {{ power {} {} {} }}", quoted(light.name), 2 * power.x,
-                                            2 * power.y, 2 * power.z)));
-    panel.rows.push_back(button("darker " + light.name, "half as bright",
-                                fmt::format("light {} {{ power {} {} {} }}", quoted(light.name), power.x / 2,
-                                            power.y / 2, power.z / 2)));
-  }
-  for (const Material& material : session.scene().materials) {
-    const auto found = edits.materials.find(material.name);
-    const MaterialEdit* const edit = found == edits.materials.end() ? nullptr : &found->second;
-    const glm::vec3 diffuse = edit != nullptr && edit->diffuse ? *edit->diffuse : material.diffuse;
-    const float exponent = edit != nullptr && edit->exponent ? *edit->exponent : material.exponent;
-    panel.rows.push_back(heading("material " + material.name));
-    panel.rows.push_back(
-        number("albedo " + material.name, "albedo", std::max({diffuse.x, diffuse.y, diffuse.z}), 0, 1, false,
-               "material " + quoted(material.name) + " { diffuse {} }", "grey of this albedo"));
-    if (material.glossy())
-      panel.rows.push_back(number("exponent " + material.name, "Phong exponent", exponent, 0, 100000, false,
-                                  "material " + quoted(material.name) + " { exponent {} }"));
   }
   return panel;
 }
