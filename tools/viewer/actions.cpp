@@ -82,6 +82,7 @@ std::vector<PropertySpecification> lookProperties() {
       ranged("seed", PropertyType::integer, 0, 9007199254740992.0, "of the random numbers of techniques"),
       one("keep_everything", PropertyType::flag, "leaves nothing out"),
       one("times", PropertyType::flag, "whether each pass is timed"),
+      one("work", PropertyType::flag, "whether what each pass does and holds is counted"),
   };
 }
 

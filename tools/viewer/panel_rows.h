@@ -23,5 +23,6 @@ Row number(const std::string& name, const std::string& label, double value, doub
 // The panels that stand in files of their own.
 Panel changePanel(const Session& session);
 Panel scenePanel(const Session& session);
+Panel timePanel(const Session& session);
 
 }  // namespace lumivox::viewer

@@ -143,7 +143,7 @@ Panel judgePanel(const Session& session) {
   chart.name = "tried";
   chart.label = "error of the whole image against time, ms";
   for (const TriedPoint& point : session.tried()) {
-    if (!point.error) continue;
+    if (!point.error || point.frameMs <= 0.0) continue;
     std::string statement = "show " + quoted(point.side.pipeline->file.stem().string());
     if (!point.side.values.empty()) {
       statement += "\nset {";
@@ -153,60 +153,6 @@ Panel judgePanel(const Session& session) {
     chart.marks.push_back({point.label, point.frameMs, point.error->value, statement});
   }
   panel.rows.push_back(std::move(chart));
-  return panel;
-}
-
-/// A bar of the passes' medians, a row for each, and what a frame costs once, while something moves, and
-/// always.
-void addPassTimes(std::vector<Row>& rows, const Session& session, std::size_t side,
-                  const std::string& prefix) {
-  const RenderedSide& rendered = session.rendered()->sides[side];
-  const std::vector<PassTimes> times = session.passTimes(side);
-  Row bars;
-  bars.kind = Kind::bars;
-  bars.name = prefix + "passes";
-  bars.label = "device time of passes, ms";
-  for (const PassTimes& pass : times) bars.marks.push_back({pass.name, pass.device.median, 0.0, {}});
-  rows.push_back(std::move(bars));
-  double host = 0.0, ofKind[3] = {0.0, 0.0, 0.0};
-  for (const PassTimes& pass : times) {
-    const auto record = std::find_if(rendered.times.begin(), rendered.times.end(),
-                                     [&](const PassRecord& one) { return one.name == pass.name; });
-    rows.push_back(text(
-        prefix + "pass " + pass.name, "  " + pass.name + (pass.onHost ? " (host)" : ""),
-        fmt::format("{:.3f} ms [{:.3f}, {:.3f}], host {:.3f} ms, {}", pass.device.median,
-                    pass.device.lowerQuartile, pass.device.upperQuartile, pass.host.median,
-                    formatBytes(record == rendered.times.end() ? 0 : record->bytes)),
-        fmt::format("median and quartiles of {} frames; runs {}", pass.device.repeats, wordOf(pass.when))));
-    host += pass.host.median;
-    ofKind[static_cast<std::size_t>(pass.when)] += pass.device.median;
-  }
-  for (const RunsWhen when : {RunsWhen::once, RunsWhen::somethingMoves, RunsWhen::everyFrame})
-    rows.push_back(text(prefix + "cost " + wordOf(when), std::string("cost ") + wordOf(when),
-                        fmt::format("{:.3f} ms", ofKind[static_cast<std::size_t>(when)])));
-  rows.push_back(text(prefix + "host", "host", fmt::format("{:.3f} ms in passes", host)));
-}
-
-Panel timePanel(const Session& session) {
-  Panel panel{"time", "Time", {}};
-  panel.rows.push_back(toggle("times", "time each pass", session.state().timesPasses, "times {}"));
-  const RenderedResult rendered = session.rendered();
-  if (rendered == nullptr) return panel;
-  panel.rows.push_back(text("device", "device", rendered->device));
-  for (std::size_t i = 0; i < rendered->sides.size(); ++i) {
-    const RenderedSide& side = rendered->sides[i];
-    const std::string prefix = i == 0 ? "" : "beside ";
-    if (!side.error.empty()) continue;
-    panel.rows.push_back(heading(prefix + rendered->wish.sides[i].pipeline->file.stem().string()));
-    panel.rows.push_back(text(prefix + "frame", "whole frame", fmt::format("{:.2f} ms", side.frame.frameMs)));
-    addPassTimes(panel.rows, session, i, prefix);
-    panel.rows.push_back(text(prefix + "bytes", "bytes on the device", formatBytes(side.bytes)));
-    std::string kept;
-    for (const PassRecord& pass : side.frame.passes)
-      if (!pass.ran) kept += (kept.empty() ? "" : ", ") + pass.name;
-    panel.rows.push_back(text(prefix + "kept", "kept from the frame before", kept.empty() ? "nothing" : kept,
-                              "passes whose inputs had not changed"));
-  }
   return panel;
 }
 
@@ -277,6 +223,8 @@ const char* wordOf(Kind kind) {
       return "button";
     case Kind::bars:
       return "bars";
+    case Kind::stacks:
+      return "stacks";
     case Kind::points:
       return "points";
   }

@@ -65,17 +65,24 @@ std::map<std::string, RunsWhen> whenPassesRun(const Pipeline& pipeline, const Pi
   return runs;
 }
 
+RenderOptions optionsOf(const RenderWish& wish, const Side& side) {
+  RenderOptions options;
+  options.parameters = side.values;
+  options.seed = wish.seed;
+  options.keepEverything = wish.keepEverything;
+  options.interactive = true;
+  return options;
+}
+
 /// One executor and what it was made for.
 class Executor {
  public:
   Executor(gpu::Device& device, TechniqueSource& techniques, const RenderWish& wish, const Side& side)
       : scene_(wish.scene), pipeline_(side.pipeline), keepsEverything_(wish.keepEverything) {
-    RenderOptions options;
-    options.parameters = values_ = side.values;
-    options.seed = seed_ = wish.seed;
-    options.keepEverything = wish.keepEverything;
-    options.interactive = true;
-    executor_ = std::make_unique<PipelineExecutor>(device, techniques, *scene_, *pipeline_, options);
+    values_ = side.values;
+    seed_ = wish.seed;
+    executor_ =
+        std::make_unique<PipelineExecutor>(device, techniques, *scene_, *pipeline_, optionsOf(wish, side));
     readContracts(techniques);
   }
 
@@ -209,7 +216,12 @@ class Renderer {
         executor.reset();  // gives its memory back first
         executor = std::make_unique<Executor>(*device_, *techniques_, wish, side);
       }
-      return executor->render(wish, snapshotOf(wish));
+      const SceneSnapshot snapshot = snapshotOf(wish);
+      RenderedSide rendered = executor->render(wish, snapshot);
+      if (wish.countsWork)
+        rendered.work =
+            countFrame(*device_, *techniques_, *wish.scene, *side.pipeline, snapshot, optionsOf(wish, side));
+      return rendered;
     } catch (const std::exception& error) {
       executor.reset();  // whatever state it is in, the next frame begins anew
       RenderedSide failed;

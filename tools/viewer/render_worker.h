@@ -16,6 +16,7 @@
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/scene/scene.h"
 #include "viewer/latest_worker.h"
+#include "viewer/pass_work.h"
 #include "viewer/port_view.h"
 
 namespace lumivox::viewer {
@@ -33,7 +34,7 @@ struct RenderWish {
   double time = 0.0;
   int width = 0, height = 0;
   std::uint64_t seed = 1;
-  bool keepEverything = false, timesPasses = false;
+  bool keepEverything = false, timesPasses = false, countsWork = false;
   std::vector<Side> sides;
   std::optional<PortChoice> port;  ///< of the first side
   /// Where technique libraries are sought; another list opens them anew.
@@ -70,6 +71,7 @@ struct RenderedSide {
   std::map<std::string, RunsWhen> runs;  ///< of passes
   std::uint64_t bytes = 0;
   std::vector<PassRecord> times;  ///< of the last frame whose passes were timed
+  FrameWork work;                 ///< once RenderWish::countsWork
   std::string error;              ///< why there is no frame; empty: there is one
 };
 struct Rendered {

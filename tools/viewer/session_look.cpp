@@ -96,6 +96,8 @@ bool Session::doLook(const Action& action) {
     state_.traces = action.flag();
   } else if (word == "times") {
     state_.timesPasses = action.flag();
+  } else if (word == "work") {
+    state_.countsWork = action.flag();
   } else {
     return doLookAtPort(action);
   }

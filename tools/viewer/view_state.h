@@ -37,7 +37,7 @@ struct ViewState {
   double split = 0.5;
   std::optional<double> exposure;  ///< EV; otherwise that of the picture
   Curve curve = Curve::srgb;
-  bool keepEverything = false, timesPasses = true, traces = true;
+  bool keepEverything = false, timesPasses = true, countsWork = false, traces = true;
   int samples = 1024;
   std::uint64_t seed = 1;
   SceneEdits edits;

@@ -89,6 +89,8 @@ struct Window::State {
   void drawRow(const Panel& panel, const Row& row);
   void drawChoice(const Panel& panel, const Row& row);
   void drawMarks(const Row& row);
+  void drawBars(const Row& row, const ImVec2& corner, float width) const;
+  void drawStacks(const Row& row, const ImVec2& corner, float width) const;
   void drawHelp();
   void drawProblem(const ImVec2& at, float width);
   void feedClick();
