@@ -150,7 +150,7 @@ class Session {
   Watch texts_;
   double sinceWatch_ = 0.0, flicker_ = 0.0;
   bool stateChanged_ = true, pictureChanged_ = true;
-  std::uint64_t wishes_ = 0;
+  std::uint64_t wishes_ = 0, notedFrame_ = 0, notedTimes_ = 0;
   RenderWish asked_;
   RenderedResult rendered_, lastGood_;
   ReferenceResult reference_;

@@ -21,6 +21,24 @@ std::string& lastGlfwError() {
   return text;
 }
 
+/// Sets `touched` whenever hands or the display do something. Before ImGui listens, which calls those it
+/// finds.
+void listenTo(GLFWwindow* window, bool& touched) {
+  glfwSetWindowUserPointer(window, &touched);
+  static const auto touch = [](GLFWwindow* of) { *static_cast<bool*>(glfwGetWindowUserPointer(of)) = true; };
+  glfwSetCursorPosCallback(window, [](GLFWwindow* of, double, double) { touch(of); });
+  glfwSetCursorEnterCallback(window, [](GLFWwindow* of, int) { touch(of); });
+  glfwSetMouseButtonCallback(window, [](GLFWwindow* of, int, int, int) { touch(of); });
+  glfwSetScrollCallback(window, [](GLFWwindow* of, double, double) { touch(of); });
+  glfwSetKeyCallback(window, [](GLFWwindow* of, int, int, int, int) { touch(of); });
+  glfwSetCharCallback(window, [](GLFWwindow* of, unsigned) { touch(of); });
+  glfwSetWindowFocusCallback(window, [](GLFWwindow* of, int) { touch(of); });
+  glfwSetWindowRefreshCallback(window, [](GLFWwindow* of) { touch(of); });
+  glfwSetWindowSizeCallback(window, [](GLFWwindow* of, int, int) { touch(of); });
+  glfwSetFramebufferSizeCallback(window, [](GLFWwindow* of, int, int) { touch(of); });
+  glfwSetWindowContentScaleCallback(window, [](GLFWwindow* of, float, float) { touch(of); });
+}
+
 }  // namespace
 
 Window::Window(const WindowOptions& options) : state_(std::make_unique<State>()) {
@@ -42,6 +60,7 @@ Window::Window(const WindowOptions& options) : state_(std::make_unique<State>())
     throw AbsentError(
         fmt::format("no window with OpenGL 4.5 ({}); `lumivox render` makes images without one", why));
   }
+  listenTo(s.window, s.touched);
   glfwMakeContextCurrent(s.window);
   glfwSwapInterval(1);
   float scaleY = 1.0f;
@@ -100,6 +119,9 @@ void Window::run(Session& session, std::vector<Action> script) {
       s.script.clear();
       s.done = 0;
     }
+    // Nothing is drawn where nothing has happened: the panels would look as they do.
+    if (s.soon == 0 && !s.touched && !s.click && s.script.empty()) continue;
+    s.touched = false;
     const ImGuiIO& io = ImGui::GetIO();
     const bool touched = io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f || ImGui::IsAnyMouseDown();
     ImGui_ImplOpenGL3_NewFrame();

@@ -59,6 +59,7 @@ struct Window::State {
   WindowOptions options;
   GLFWwindow* window = nullptr;
   float scale = 1.0f;
+  bool touched = true;  ///< something came from hands or the display since the last drawing
   std::string layoutFile;
   std::unique_ptr<ScreenTexture> texture;
   Session* session = nullptr;
