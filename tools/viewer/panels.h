@@ -11,7 +11,7 @@ namespace lumivox::viewer {
 
 /// One line of a panel. Controls carry the statement that using them performs, with "{}" for the value.
 struct Row {
-  enum class Kind { heading, text, number, choice, toggle, button, bars, points };
+  enum class Kind { heading, text, number, choice, toggle, button, bars, stacks, points };
   Kind kind = Kind::text;
   std::string name;  ///< unique in its panel; what scripts click
   std::string label, value, tooltip;
@@ -19,7 +19,8 @@ struct Row {
   double number = 0.0, low = 0.0, high = 0.0;
   bool integer = false, logarithmic = false, on = false, changed = false;
   std::vector<std::string> choices;
-  /// Of bars: label and length; of points: label, x and y, and the statement that goes back to it.
+  /// Of bars: label and length; of stacks: label, column and height, from the bottom up; of points: label, x
+  /// and y, and the statement that goes back to it.
   struct Mark {
     std::string label;
     double x = 0.0, y = 0.0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -52,6 +53,12 @@ struct TriedPoint {
   std::optional<Measured> error;                          ///< RMSE of the whole image
 };
 
+/// The passes of a frame whose passes were timed, of each side.
+struct TimedFrame {
+  double seconds = 0.0;  ///< since the session began
+  std::vector<std::vector<PassRecord>> sides;
+};
+
 class Session {
  public:
   /// `wake` is called from other threads when something new is there. Error when a text is wrong.
@@ -74,6 +81,11 @@ class Session {
   std::shared_ptr<const Judged> judged() const { return judged_; }
   const Picture& picture() const { return picture_; }
   const std::vector<TriedPoint>& tried() const { return tried_; }
+  static constexpr double kFrameSeconds = 10.0;  ///< that timedFrames() go back
+  /// Of the last seconds before the newest, the oldest first.
+  const std::deque<TimedFrame>& timedFrames() const { return timedFrames_; }
+  /// From the program's start to the first picture; nothing before it.
+  std::optional<double> firstPictureSeconds() const { return firstPicture_; }
   /// Of the passes of one side as it is now, in their order.
   std::vector<PassTimes> passTimes(std::size_t side) const;
   const std::map<std::string, std::string>& technicalErrors() const { return techniques_.errors(); }
@@ -100,6 +112,7 @@ class Session {
  private:
   void doIt(const Action& action);
   bool doLook(const Action& action);
+  bool doLookAtPort(const Action& action);
   bool doChange(const Action& action);
   bool doKeep(const Action& action);
   void setParameters(const Action& action);
@@ -116,7 +129,9 @@ class Session {
   void wantReference();
   void wantJudgement();
   void noteTried();
+  void noteTimes();
   void compose();
+  Picture portPicture(const PictureLook& outputLook) const;
   const Scene& shownScene() const { return *edited_; }
   void applyEdits();
 
@@ -135,13 +150,15 @@ class Session {
   Watch texts_;
   double sinceWatch_ = 0.0, flicker_ = 0.0;
   bool stateChanged_ = true, pictureChanged_ = true;
-  std::uint64_t wishes_ = 0;
+  std::uint64_t wishes_ = 0, notedFrame_ = 0, notedTimes_ = 0;
   RenderWish asked_;
   RenderedResult rendered_, lastGood_;
   ReferenceResult reference_;
   std::optional<ReferenceWish> referenceWish_;
   std::shared_ptr<const Judged> judged_;
   std::vector<TriedPoint> tried_;
+  std::deque<TimedFrame> timedFrames_;
+  std::optional<double> firstPicture_;
   Picture picture_;
   double exposure_ = 0.0;
 

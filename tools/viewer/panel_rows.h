@@ -1,0 +1,28 @@
+// How the sources of the panels write rows.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "viewer/panels.h"
+
+namespace lumivox::viewer {
+
+Row heading(const std::string& label);
+Row text(const std::string& name, const std::string& label, const std::string& value,
+         const std::string& tooltip = {});
+Row toggle(const std::string& name, const std::string& label, bool on, const std::string& statement,
+           const std::string& tooltip = {});
+Row button(const std::string& name, const std::string& label, const std::string& statement,
+           const std::string& tooltip = {});
+Row choice(const std::string& name, const std::string& label, const std::string& value,
+           std::vector<std::string> choices, const std::string& statement, const std::string& tooltip = {});
+Row number(const std::string& name, const std::string& label, double value, double low, double high,
+           bool integer, const std::string& statement, const std::string& tooltip = {});
+
+// The panels that stand in files of their own.
+Panel changePanel(const Session& session);
+Panel scenePanel(const Session& session);
+Panel timePanel(const Session& session);
+
+}  // namespace lumivox::viewer

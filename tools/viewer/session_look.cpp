@@ -1,0 +1,139 @@
+// Where one looks from, at what, and how: statements that nobody takes back.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lumivox/base/error.h"
+#include "lumivox/measure/exposure.h"
+#include "lumivox/scene/free_camera.h"
+#include "viewer/session.h"
+
+namespace lumivox::viewer {
+namespace {
+
+template <class Word>
+Word wordOf(const std::vector<std::string>& words, const std::string& text) {
+  return static_cast<Word>(std::find(words.begin(), words.end(), text) - words.begin());
+}
+
+}  // namespace
+
+void Session::freeCamera(const std::function<Camera(Camera)>& change) {
+  Camera camera = change(cameraOf(state_, *scene_));
+  camera.name = "view";
+  camera.keys.clear();
+  snapshotFrom(*scene_, state_.time, camera, state_.width, state_.height);  // refuses one that looks nowhere
+  state_.free = std::move(camera);
+}
+
+bool Session::doLook(const Action& action) {
+  const std::string& word = action.word();
+  const auto vector = [&] {
+    const std::vector<double> n = action.numbers();
+    return glm::dvec3(n[0], n[1], n[2]);
+  };
+  if (word == "camera") {
+    state_.camera = scene_->camera(action.text()).name;
+    state_.free.reset();
+  } else if (word == "eye") {
+    freeCamera([&](Camera camera) { return camera.eye = vector(), camera; });
+  } else if (word == "target") {
+    freeCamera([&](Camera camera) { return camera.target = vector(), camera; });
+  } else if (word == "fov") {
+    const double fov = action.number();
+    if (!(fov > 0.0) || !(fov < 3.1)) throw Error("fov: expected an angle between 0 and 177 deg");
+    freeCamera([&](Camera camera) { return camera.fov = fov, camera; });
+  } else if (word == "move") {
+    freeCamera([&](const Camera& camera) { return moved(camera, vector()); });
+  } else if (word == "turn" || word == "orbit") {
+    const std::vector<double> n = action.numbers();
+    freeCamera([&](const Camera& camera) {
+      return word == "turn" ? turned(camera, n[0], n[1]) : orbited(camera, n[0], n[1]);
+    });
+  } else if (word == "zoom") {
+    freeCamera([&](const Camera& camera) { return zoomed(camera, action.number()); });
+  } else if (word == "time") {
+    state_.time = action.number();
+  } else if (word == "play") {
+    state_.plays = action.flag();
+  } else if (word == "speed") {
+    state_.speed = action.number();
+  } else if (word == "size") {
+    const std::vector<double> n = action.numbers();
+    state_.width = static_cast<int>(n[0]);
+    state_.height = static_cast<int>(n[1]);
+  } else if (word == "output") {
+    const std::string name = action.text();
+    std::vector<std::string> names{kWholeImage};
+    for (const Pipeline::Output& output : state_.sides.front().pipeline->outputs)
+      names.push_back(output.name);
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw Error(fmt::format("output '{}': expected one of {}", name, fmt::join(names, ", ")));
+    state_.output = name;
+    state_.port.reset();
+  } else if (word == "layout") {
+    state_.layout = wordOf<Layout>(layoutWords(), action.text());
+  } else if (word == "error_map") {
+    state_.errorMap = wordOf<ErrorMap>(errorMapWords(), action.text());
+  } else if (word == "split") {
+    state_.split = action.number();
+  } else if (word == "exposure") {
+    const dsl::Value& value = action.property->values.front();
+    if (value.kind == dsl::ValueKind::word && value.text == "auto") {
+      state_.exposure.reset();
+    } else if (value.kind == dsl::ValueKind::number && std::abs(value.number) <= kLargestExposure) {
+      state_.exposure = value.number;
+    } else {
+      throw Error(fmt::format("exposure {}: expected auto, or EV of at most {} up or down", value.written(),
+                              kLargestExposure));
+    }
+  } else if (word == "tone") {
+    state_.curve = wordOf<Curve>(curveWords(), action.text());
+  } else if (word == "samples") {
+    state_.samples = static_cast<int>(action.number());
+  } else if (word == "reference") {
+    state_.traces = action.flag();
+  } else if (word == "times") {
+    state_.timesPasses = action.flag();
+  } else if (word == "work") {
+    state_.countsWork = action.flag();
+  } else {
+    return doLookAtPort(action);
+  }
+  return true;
+}
+
+bool Session::doLookAtPort(const Action& action) {
+  const std::string& word = action.word();
+  if (word == "see_through") {
+    state_.seeThrough = action.number();
+  } else if (word == "port") {
+    const std::string name = action.text();
+    const std::size_t dot = name.find('.');
+    if (name == "nothing") {
+      state_.port.reset();
+    } else if (dot == std::string::npos) {
+      throw Error(fmt::format("port '{}': expected PASS.PORT, or nothing", name));
+    } else {
+      state_.port.emplace();
+      state_.port->pass = name.substr(0, dot);
+      state_.port->port = name.substr(dot + 1);
+    }
+  } else if (word == "texture" || word == "voxels" || word == "channel" || word == "level" ||
+             word == "slice" || word == "above") {
+    if (!state_.port) throw Error(word + ": no port is shown; expected `port PASS.PORT` before");
+    PortChoice& port = *state_.port;
+    if (word == "texture") port.texture = action.text(), port.field.clear();
+    if (word == "voxels") port.field = action.text() == "nothing" ? std::string() : action.text();
+    if (word == "channel") port.channel = wordOf<Channel>(channelWords(), action.text());
+    if (word == "level") port.level = static_cast<int>(action.number());
+    if (word == "slice") port.slice = static_cast<int>(action.number());
+    if (word == "above") port.above = static_cast<float>(action.number());
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace lumivox::viewer

@@ -1,0 +1,229 @@
+// What the window shows, and what hands do to it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "viewer/window_state.h"
+
+namespace lumivox::viewer {
+namespace {
+
+constexpr float kPanelWidth = 420.0f;    // pixels at a scale of 1
+constexpr double kTurnPerPixel = 0.005;  // rad
+constexpr double kZoomPerNotch = 0.9;
+
+}  // namespace
+
+void Window::State::drawPicture(const ImVec2& low, const ImVec2& size) {
+  ImGui::SetNextWindowPos(low);
+  ImGui::SetNextWindowSize(size);
+  ImGui::Begin("picture", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  if (texture->width() > 0 && room.x >= 1.0f && room.y >= 1.0f) {
+    const float factor = std::min(room.x / static_cast<float>(texture->width()),
+                                  room.y / static_cast<float>(texture->height()));
+    const ImVec2 shown(std::max(1.0f, static_cast<float>(texture->width()) * factor),
+                       std::max(1.0f, static_cast<float>(texture->height()) * factor));
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    image = {corner, ImVec2(corner.x + shown.x, corner.y + shown.y)};
+    ImGui::Image(texture->id(), shown);
+    ImGui::SetCursorScreenPos(corner);
+    ImGui::InvisibleButton("hand", shown,
+                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    const ImGuiIO& io = ImGui::GetIO();
+    if (ImGui::IsItemActive() && (io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f))
+      act(fmt::format("{} {} rad {} rad", ImGui::IsMouseDown(ImGuiMouseButton_Left) ? "turn" : "orbit",
+                      io.MouseDelta.x * kTurnPerPixel, -io.MouseDelta.y * kTurnPerPixel));
+    if (ImGui::IsItemHovered()) {
+      if (io.MouseWheel != 0.0f)
+        act(fmt::format("zoom {}", std::pow(kZoomPerNotch, static_cast<double>(io.MouseWheel))));
+      const int x = static_cast<int>((io.MousePos.x - corner.x) / factor),
+                y = static_cast<int>((io.MousePos.y - corner.y) / factor);
+      ImGui::BeginTooltip();
+      for (const std::string& line : session->valuesAt(x % session->state().width, y))
+        ImGui::TextUnformatted(line.c_str());
+      ImGui::EndTooltip();
+    }
+  } else {
+    ImGui::TextUnformatted(session->problem().empty() ? "the first picture is being made ..." : "no picture");
+  }
+  drawProblem(ImVec2(low.x + 8.0f, low.y + 8.0f), size.x - 16.0f);
+  ImGui::End();
+}
+
+void Window::State::drawProblem(const ImVec2& at, float width) {
+  const std::string problem = session->problem();
+  const std::string text = problem.empty() ? session->message() : problem;
+  if (text.empty()) return;
+  const bool bad = !problem.empty() || session->messageIsError();
+  ImGui::SetCursorScreenPos(at);
+  ImGui::PushTextWrapPos(at.x + width);
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, width);
+  ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(at.x - 4, at.y - 2),
+                                            ImVec2(at.x + size.x + 4, at.y + size.y + 2),
+                                            bad ? IM_COL32(96, 0, 0, 220) : IM_COL32(0, 0, 0, 160));
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+void Window::State::drawMarks(const Row& row) {
+  ImGui::TextUnformatted(row.label.c_str());
+  if (row.marks.empty()) {
+    ImGui::TextUnformatted("  nothing yet");
+    return;
+  }
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float width = std::max(32.0f, ImGui::GetContentRegionAvail().x);
+  if (row.kind == Row::Kind::bars) return drawBars(row, corner, width);
+  if (row.kind == Row::Kind::stacks) return drawStacks(row, corner, width);
+  // Both axes logarithmic: equal factors are equal ways.
+  const float height = 140.0f * scale;
+  double lowX = 1e300, highX = 0.0, lowY = 1e300, highY = 0.0;
+  for (const Row::Mark& mark : row.marks) {
+    lowX = std::min(lowX, std::max(mark.x, 1e-6)), highX = std::max(highX, std::max(mark.x, 1e-6));
+    lowY = std::min(lowY, std::max(mark.y, 1e-9)), highY = std::max(highY, std::max(mark.y, 1e-9));
+  }
+  lowX /= 1.5, highX *= 1.5, lowY /= 1.5, highY *= 1.5;
+  list->AddRect(corner, ImVec2(corner.x + width, corner.y + height), IM_COL32(128, 128, 128, 255));
+  for (std::size_t i = 0; i < row.marks.size(); ++i) {
+    const Row::Mark& mark = row.marks[i];
+    const auto x = static_cast<float>(std::log(std::max(mark.x, 1e-6) / lowX) / std::log(highX / lowX)),
+               y = static_cast<float>(std::log(std::max(mark.y, 1e-9) / lowY) / std::log(highY / lowY));
+    const ImVec2 at(corner.x + x * width, corner.y + (1.0f - y) * height);
+    const float radius = 4.0f * scale;
+    const ImVec2 low(at.x - radius, at.y - radius), high(at.x + radius, at.y + radius);
+    controls["judge/tried " + std::to_string(i)] = {low, high};
+    const bool hovered = ImGui::IsMouseHoveringRect(low, high);
+    list->AddCircleFilled(at, radius, hovered ? IM_COL32(255, 255, 255, 255) : IM_COL32(255, 160, 32, 255));
+    if (hovered) {
+      ImGui::SetTooltip("%s: %.2f ms, RMSE %.4g", mark.label.c_str(), mark.x, mark.y);
+      if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) act(mark.statement);
+    }
+  }
+  ImGui::Dummy(ImVec2(width, height));
+}
+
+void Window::State::drawChoice(const Panel& panel, const Row& row) {
+  if (!ImGui::BeginCombo(row.label.c_str(), row.value.c_str())) return;
+  for (const std::string& word : row.choices) {
+    if (ImGui::Selectable(word.c_str(), word == row.value)) act(filledIn(row.statement, choiceValue(word)));
+    controls[panel.name + "/" + row.name + "/" + word] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+  }
+  ImGui::EndCombo();
+}
+
+void Window::State::drawRow(const Panel& panel, const Row& row) {
+  ImGui::PushID(row.name.c_str());
+  const std::string name = panel.name + "/" + row.name;
+  const auto place = [&] { controls[name] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()}; };
+  if (row.changed) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(255, 200, 96, 255));
+  ImGui::PushItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
+  switch (row.kind) {
+    case Row::Kind::heading:
+      ImGui::Separator();
+      ImGui::TextUnformatted(row.label.c_str());
+      break;
+    case Row::Kind::text:
+      ImGui::TextWrapped("%s%s%s", row.label.c_str(), row.label.empty() ? "" : ": ", row.value.c_str());
+      place();
+      break;
+    case Row::Kind::toggle: {
+      bool on = row.on;
+      if (ImGui::Checkbox(row.label.c_str(), &on)) act(filledIn(row.statement, on ? "on" : "off"));
+      place();
+      break;
+    }
+    case Row::Kind::button:
+      if (ImGui::Button(row.label.c_str())) act(row.statement);
+      place();
+      break;
+    case Row::Kind::choice:
+      drawChoice(panel, row);
+      place();
+      break;
+    case Row::Kind::number: {
+      const auto change = [&](double value) {
+        value = std::clamp(value, row.low, row.high);
+        act(filledIn(row.statement, row.integer ? fmt::format("{:.0f}", value) : fmt::format("{}", value)));
+      };
+      const double less = row.integer && row.number <= 8.0 ? row.number - 1.0 : row.number / 2.0,
+                   more = row.number == 0.0                 ? (row.integer ? 1.0 : row.high / 16.0)
+                          : row.integer && row.number < 8.0 ? row.number + 1.0
+                                                            : row.number * 2.0;
+      if (ImGui::SmallButton("-")) change(row.integer ? std::floor(less) : less);
+      controls[name + "/less"] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+      ImGui::SameLine();
+      if (ImGui::SmallButton("+")) change(more);
+      controls[name + "/more"] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+      ImGui::SameLine();
+      double value = row.number;
+      const double low = row.low, high = row.high;
+      ImGui::SliderScalar(row.label.c_str(), ImGuiDataType_Double, &value, &low, &high,
+                          row.integer ? "%.0f" : "%.5g", row.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+      if (ImGui::IsItemEdited() && value != row.number) change(row.integer ? std::round(value) : value);
+      place();
+      break;
+    }
+    case Row::Kind::bars:
+    case Row::Kind::stacks:
+    case Row::Kind::points:
+      drawMarks(row);
+      break;
+  }
+  if (!row.tooltip.empty() && row.marks.empty() && ImGui::IsItemHovered())
+    ImGui::SetTooltip("%s", row.tooltip.c_str());
+  ImGui::PopItemWidth();
+  if (row.changed) ImGui::PopStyleColor();
+  ImGui::PopID();
+}
+
+void Window::State::drawPanels() {
+  if (!ImGui::BeginTabBar("panels")) return;
+  for (const Panel& panel : panels) {
+    const ImGuiTabItemFlags flags = wantedPanel == panel.name ? ImGuiTabItemFlags_SetSelected : 0;
+    const bool open = ImGui::BeginTabItem(panel.title.c_str(), nullptr, flags);
+    controls["panel/" + panel.name] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+    if (!open) continue;
+    openPanel = panel.name;
+    ImGui::BeginChild("rows");
+    for (const Row& row : panel.rows) drawRow(panel, row);
+    ImGui::EndChild();
+    ImGui::EndTabItem();
+  }
+  wantedPanel.clear();
+  ImGui::EndTabBar();
+}
+
+void Window::State::drawHelp() {
+  if (!showsHelp) return;
+  ImGui::SetNextWindowPos(ImVec2(40.0f * scale, 40.0f * scale), ImGuiCond_Appearing);
+  ImGui::Begin("Keys", &showsHelp, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::TextUnformatted("W A S D  forward, left, back, right     Q E  down, up");
+  ImGui::TextUnformatted("left button  turn     right button  orbit     wheel  nearer");
+  for (const KeyStatement& one : keyStatements()) ImGui::Text("%-8s %s", one.name, one.meaning);
+  ImGui::TextUnformatted("Tab goes through the controls of a panel that has the focus, Enter changes one.");
+  ImGui::End();
+}
+
+void Window::State::draw() {
+  controls.clear();
+  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  const float side = showsPanels ? std::min(kPanelWidth * scale, 0.6f * all.x) : 0.0f;
+  drawPicture(ImVec2(0, 0), ImVec2(std::max(1.0f, all.x - side), std::max(1.0f, all.y)));
+  if (showsPanels) {
+    ImGui::SetNextWindowPos(ImVec2(all.x - side, 0));
+    ImGui::SetNextWindowSize(ImVec2(std::max(1.0f, side), std::max(1.0f, all.y)));
+    ImGui::Begin("panels", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+    drawPanels();
+    ImGui::End();
+  }
+  drawHelp();
+}
+
+}  // namespace lumivox::viewer

@@ -1,0 +1,70 @@
+// What keys do: each is a statement of a script, or turns something over.
+#include <fmt/format.h>
+
+#include "viewer/window_state.h"
+
+namespace lumivox::viewer {
+namespace {
+
+constexpr double kWalkSeconds = 4.0;  // to walk through the whole scene
+
+}  // namespace
+
+const std::vector<KeyStatement>& keyStatements() {
+  static const std::vector<KeyStatement> keys{
+      {GLFW_KEY_K, false, "K", "keep_everything", "keep everything, or leave out"},
+      {GLFW_KEY_SPACE, false, "space", "play", "play, or stand still"},
+      {GLFW_KEY_PERIOD, false, ".", "step", "a frame on"},
+      {GLFW_KEY_P, false, "P", "layout picture", "the picture"},
+      {GLFW_KEY_R, false, "R", "layout reference", "the reference"},
+      {GLFW_KEY_B, false, "B", "layout side_by_side", "picture, reference and error side by side"},
+      {GLFW_KEY_F, false, "F", "layout flicker", "picture and reference in turn"},
+      {GLFW_KEY_X, false, "X", "layout split", "picture and reference, split"},
+      {GLFW_KEY_V, false, "V", "layout error", "the error"},
+      {GLFW_KEY_Z, true, "ctrl Z", "undo 1", "undo"},
+      {GLFW_KEY_Y, true, "ctrl Y", "redo 1", "redo"},
+      {GLFW_KEY_F5, false, "F5", "reload on", "read all texts and libraries again"},
+      {GLFW_KEY_F2, false, "F2", "save_image \"out/view.exr\"", "keep all outputs"},
+      {GLFW_KEY_H, false, "H", "panels", "show or hide the panels"},
+      {GLFW_KEY_SLASH, false, "?", "help", "this help"},
+  };
+  return keys;
+}
+
+void Window::State::act(const std::string& statements) {
+  for (const Action& action : session->perform(statements)) doInWindow(action);
+  soon = 3;
+}
+
+void Window::State::key(const KeyStatement& pressedKey) {
+  const ViewState& state = session->state();
+  const std::string statement = pressedKey.statement;
+  if (statement == "help") {
+    showsHelp = !showsHelp;
+  } else if (statement == "panels") {
+    showsPanels = !showsPanels;
+  } else if (statement == "keep_everything") {
+    act(state.keepEverything ? "keep_everything off" : "keep_everything on");
+  } else if (statement == "play") {
+    act(state.plays ? "play off" : "play on");
+  } else if (statement == "step") {
+    act(fmt::format("time {}", state.time + 1.0 / 24.0));
+  } else {
+    act(statement);
+  }
+  soon = 3;
+}
+
+void Window::State::walk(double seconds) {
+  glm::dvec3 way(0.0);
+  const auto held = [&](int which) { return ImGui::IsKeyDown(which) ? 1.0 : 0.0; };
+  way.x = held(GLFW_KEY_D) - held(GLFW_KEY_A);
+  way.y = held(GLFW_KEY_E) - held(GLFW_KEY_Q);
+  way.z = held(GLFW_KEY_W) - held(GLFW_KEY_S);
+  if (way == glm::dvec3(0.0) || ImGui::GetIO().KeyCtrl) return;
+  const Camera camera = cameraOf(session->state(), session->scene());
+  const double step = glm::length(camera.target - camera.eye) * seconds / kWalkSeconds;
+  act(fmt::format("move {} {} {}", way.x * step, way.y * step, way.z * step));
+}
+
+}  // namespace lumivox::viewer

@@ -1,0 +1,158 @@
+// Statements that need the window: clicks, keys, shots, and waiting.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <random>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/base/image.h"
+#include "viewer/window_state.h"
+
+namespace lumivox::viewer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kLongestWait = 60.0;  // s, of a script's `wait`
+
+}  // namespace
+
+void Window::State::feedClick() {
+  if (!click) return;
+  ImGuiIO& io = ImGui::GetIO();
+  io.MousePos = click->at;
+  io.MouseDown[0] = click->frame == 2;
+  soon = 3;
+  if (++click->frame > 4) click.reset();
+}
+
+bool Window::State::waitIsOver(const Action& action) {
+  const std::string what = action.text();
+  if (std::chrono::duration<double>(Clock::now() - waitsSince).count() > kLongestWait)
+    throw Error(fmt::format("{}: `{}` took more than {} s; {}", action.place().text(), action.written(),
+                            kLongestWait, session->problem()));
+  if (what == "frame") return session->settled();
+  if (what == "judged") return session->judgedNow();
+  if (what == "problem") return !session->problem().empty();
+  if (what == "mended") return session->problem().empty();
+  if (what == "reference") {
+    const ReferenceResult reference = session->reference();
+    const int wanted = action.property->values.size() > 1 ? static_cast<int>(action.number(1)) : 2;
+    return session->settled() && reference != nullptr && reference->samples >= wanted;
+  }
+  throw Error(fmt::format("{}: wait {}: expected frame, judged, problem, mended or reference",
+                          action.place().text(), what));
+}
+
+void Window::State::resize(int width, int height) {
+  glfwSetWindowSize(window, width, height);
+  soon = 4;
+}
+
+bool Window::State::doInWindow(const Action& action) {
+  const std::string& word = action.word();
+  if (word == "click") {
+    const auto found = controls.find(action.text());
+    if (found == controls.end()) {
+      std::vector<std::string> names;
+      for (const auto& [name, place] : controls) names.push_back(name);
+      const std::string nearest = nearestWord(action.text(), names);
+      throw Error(fmt::format("{}: click '{}': there is no such control in the open panel '{}'{}",
+                              action.place().text(), action.text(), openPanel,
+                              nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+    }
+    const Rectangle& at = found->second;
+    click = {ImVec2(0.5f * (at.low.x + at.high.x), 0.5f * (at.low.y + at.high.y)), 0};
+    // A box's label belongs to it, its middle may not.
+    click->at.x = std::min(click->at.x, at.low.x + 10.0f * scale);
+  } else if (word == "key") {
+    for (const KeyStatement& one : keyStatements())
+      if (one.name == action.text()) return key(one), true;
+    throw Error(fmt::format("{}: key '{}': nothing is bound to it", action.place().text(), action.text()));
+  } else if (word == "panel") {
+    wantedPanel = action.text();
+    if (std::none_of(panels.begin(), panels.end(), [&](const Panel& one) { return one.name == wantedPanel; }))
+      throw Error(fmt::format("{}: there is no panel '{}'", action.place().text(), wantedPanel));
+    soon = 4;
+  } else if (word == "window") {
+    const std::vector<double> n = action.numbers();
+    resize(static_cast<int>(n[0]), static_cast<int>(n[1]));
+  } else if (word == "shot") {
+    shoot(action.text());
+  } else if (word == "random") {
+    randomActions(static_cast<int>(action.number()));
+  } else if (word == "quit") {
+    glfwSetWindowShouldClose(window, GLFW_TRUE);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void Window::State::randomActions(int count) {
+  std::mt19937_64 random(session->state().seed);
+  for (int i = 0; i < count; ++i) {
+    panels = panelsOf(*session);
+    const Panel& panel = panels[random() % panels.size()];
+    if (panel.name == "keep" || panel.rows.empty()) continue;  // nothing is written
+    const Row& row = panel.rows[random() % panel.rows.size()];
+    std::string statement = row.statement;
+    if (row.kind == Row::Kind::choice && !row.choices.empty())
+      statement = filledIn(statement, choiceValue(row.choices[random() % row.choices.size()]));
+    if (row.kind == Row::Kind::toggle) statement = filledIn(statement, random() % 2 == 0 ? "on" : "off");
+    if (row.kind == Row::Kind::number) {
+      const double share = static_cast<double>(random() % 1000) / 999.0;
+      // Small values: a script of many is not to wait for the largest grid.
+      const double high = std::min(row.high, row.low + 64.0), value = row.low + share * (high - row.low);
+      statement = filledIn(statement, row.integer ? fmt::format("{:.0f}", value) : fmt::format("{}", value));
+    }
+    if (!statement.empty()) act(statement);
+    session->step(0.01);
+  }
+}
+
+void Window::State::shoot(const std::filesystem::path& file) {
+  int width = 0, height = 0;
+  glfwGetFramebufferSize(window, &width, &height);
+  std::vector<unsigned char> bytes(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, bytes.data());
+  ImageBuffer pixels(width, height, 3);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < 3; ++c)
+        pixels.at(x, y, c) =
+            static_cast<float>(
+                bytes[4 * (static_cast<std::size_t>(height - 1 - y) * static_cast<std::size_t>(width) +
+                           static_cast<std::size_t>(x)) +
+                      static_cast<std::size_t>(c)]) /
+            255.0f;
+  createParentDirectories(file);
+  writePng(file, pixels, {0.0, Tone::linear});
+}
+
+/// Does what it can without waiting; whether there is something left.
+bool Window::State::advanceScript() {
+  while (done < script.size() && !click && soon == 0) {
+    const Action& action = script[done];
+    if (action.word() == "wait") {
+      if (!waits) waitsSince = Clock::now();
+      waits = true;
+      if (!waitIsOver(action)) return true;
+      waits = false;
+    } else {
+      const std::string before = session->message();
+      session->say({}, false);
+      if (!session->perform(action)) doInWindow(action);
+      if (session->messageIsError())
+        throw Error(fmt::format("{}: {}: {}", action.place().text(), action.written(), session->message()));
+      if (session->message().empty()) session->say(before, false);
+      soon = std::max(soon, 2);
+    }
+    ++done;
+  }
+  return done < script.size();
+}
+
+}  // namespace lumivox::viewer

@@ -1,0 +1,106 @@
+// The inside of the window, which its sources share.
+#pragma once
+
+#include <epoxy/gl.h>
+// After epoxy, which brings OpenGL.
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <chrono>
+#include <map>
+
+#include "viewer/panels.h"
+#include "viewer/window.h"
+
+namespace lumivox::viewer {
+
+/// A picture on the screen's side.
+class ScreenTexture {
+ public:
+  ~ScreenTexture() { glDeleteTextures(1, &name_); }
+  void show(const Picture& picture) {
+    if (name_ == 0) glGenTextures(1, &name_);
+    glBindTexture(GL_TEXTURE_2D, name_);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    if (picture.width != width_ || picture.height != height_) {
+      glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, picture.width, picture.height, 0, GL_RGB, GL_UNSIGNED_BYTE,
+                   picture.bytes.data());
+      glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+      glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+      width_ = picture.width;
+      height_ = picture.height;
+    } else {
+      glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE,
+                      picture.bytes.data());
+    }
+  }
+  ImTextureID id() const { return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(name_)); }
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+ private:
+  GLuint name_ = 0;
+  int width_ = 0, height_ = 0;
+};
+
+struct KeyStatement {
+  int key;
+  bool control;
+  const char *name, *statement, *meaning;
+};
+/// What keys do, beside those that walk.
+const std::vector<KeyStatement>& keyStatements();
+
+struct Rectangle {
+  ImVec2 low{0, 0}, high{0, 0};
+};
+
+struct Window::State {
+  WindowOptions options;
+  GLFWwindow* window = nullptr;
+  float scale = 1.0f;
+  bool touched = true;  ///< something came from hands or the display since the last drawing
+  std::string layoutFile;
+  std::unique_ptr<ScreenTexture> texture;
+  Session* session = nullptr;
+  std::vector<Panel> panels;
+  std::string openPanel = "look", wantedPanel;
+  bool showsHelp = false, showsPanels = true;
+  std::map<std::string, Rectangle> controls;  ///< of this frame, "panel/row"
+  Rectangle image;                            ///< of the picture on the screen
+
+  std::vector<Action> script;
+  std::size_t done = 0;
+  std::chrono::steady_clock::time_point waitsSince;
+  bool waits = false;
+  /// A click of a script takes three frames: there, down, up.
+  struct Click {
+    ImVec2 at;
+    int frame = 0;
+  };
+  std::optional<Click> click;
+  int soon = 3;  ///< frames that are drawn whatever happens: ImGui needs some to settle
+
+  void act(const std::string& statements);
+  void key(const KeyStatement& key);
+  void walk(double seconds);
+  void draw();
+  void drawPicture(const ImVec2& low, const ImVec2& size);
+  void drawPanels();
+  void drawRow(const Panel& panel, const Row& row);
+  void drawChoice(const Panel& panel, const Row& row);
+  void drawMarks(const Row& row);
+  void drawBars(const Row& row, const ImVec2& corner, float width) const;
+  void drawStacks(const Row& row, const ImVec2& corner, float width) const;
+  void drawHelp();
+  void drawProblem(const ImVec2& at, float width);
+  void feedClick();
+  bool advanceScript();
+  bool doInWindow(const Action& action);
+  bool waitIsOver(const Action& action);
+  void shoot(const std::filesystem::path& file);
+  void resize(int width, int height);
+  void randomActions(int count);
+};
+
+}  // namespace lumivox::viewer
