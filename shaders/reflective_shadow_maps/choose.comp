@@ -11,7 +11,7 @@ layout(std140, binding = 0) uniform Parameters {
   uint width;    // texels along a side of a layer
   uint levels;   // of sums
   uint samples;
-  int facing;  // 1: areas as if texels faced the light
+  int area;      // of lights: taken.glsl
 };
 layout(std430, binding = 0) readonly buffer Tree { float sums[]; };
 
@@ -49,7 +49,7 @@ void main() {
     }
     // Each sample stands for total / samples of the flux, and for as much more area as it stands for more texels.
     float copies = weight > 0.0 ? total / (float(samples) * weight) : 0.0;
-    light = texelLight(texelOf(entry, width), copies, facing != 0);
+    light = texelLight(texelOf(entry, width), copies, area);
   }
   taken[index] = light;
 }

@@ -11,6 +11,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140, binding = 0) uniform Parameters {
   vec3 eyeWorld;
   int neighbours;
+  int published;  // Eq. 13 as printed
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
@@ -37,7 +38,7 @@ void main() {
   vec3 diffuse = vec3(0.0), albedo = texelFetch(gDiffuse, pixel, 0).rgb;
   if (position.w > 0.0 && any(greaterThan(albedo, vec3(0.0)))) {
     Nearest nearest = nearestPoints(seen, -1.0, neighbours);
-    AveragedLight light = interpolated(seen, nearest, diffuseLight, diffusePlace, false, INTERPOLATE == INTERPOLATE_PLAIN);
+    AveragedLight light = interpolated(seen, nearest, diffuseLight, diffusePlace, false, false, INTERPOLATE == INTERPOLATE_PLAIN);
     diffuse = albedo * light.light.rgb;
 #if INTERPOLATE == INTERPOLATE_AVERAGED
     diffuse *= cosineTo(light.place, seen.position, seen.normal);
@@ -50,7 +51,7 @@ void main() {
   vec4 specular = texelFetch(gSpecular, pixel, 0);
   if (position.w > 0.0 && any(greaterThan(specular.rgb, vec3(0.0)))) {
     Nearest nearest = nearestPoints(seen, specular.w, neighbours);
-    AveragedLight light = interpolated(seen, nearest, glossyLight, glossyPlace, true, false);
+    AveragedLight light = interpolated(seen, nearest, glossyLight, glossyPlace, true, published == 0, false);
     vec3 path = light.place - seen.position, view = seen.position - eyeWorld;
     float distanceSquared = dot(path, path), viewSquared = dot(view, view);
     if (distanceSquared > 0.0 && viewSquared > 0.0 && dot(path, seen.normal) > 0.0) {

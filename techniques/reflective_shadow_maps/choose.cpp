@@ -26,7 +26,7 @@ std::uint32_t texelsOf(const ReflectiveShadowMap& map) {
 
 class ChoosePass : public Pass {
   enum class Method { flux, stride };
-  enum class Area { surface, facing };
+  enum class Area { surface, shared, facing };  // in the order of taken.glsl
 
   In<ReflectiveShadowMap> map{this, "map", Presence::optional,
                               "what the lights see; without it there are no lights"};
@@ -38,7 +38,7 @@ class ChoosePass : public Pass {
                     "with 'stride': side of a square of texels that one stands for"};
   Param<Area> area{
       this, "area", Area::surface,
-      "surface: that of the surface which a texel stands for; facing: what it would be if the texel faced the light (Lensing & Broll 2013, Sec. 4.1)"};
+      "surface: that of the surface which a texel stands for; shared: the same, shared by the samples of an area light, which see one surface; facing: what it would be if the texel faced the light (Lensing & Broll 2013, Sec. 4.1)"};
   Out<SurfaceLights> lights{this, "lights", "texels as lights on surfaces"};
 
   void run(PassContext& frame) override {
@@ -56,6 +56,19 @@ class ChoosePass : public Pass {
         throw Error(
             "the map lacks positions, or normals with areas: expected textures of the size and format of its "
             "flux, as reflective_shadow_maps.render makes them");
+  }
+
+  int areaCode() const { return static_cast<int>(static_cast<Area>(area)); }
+
+  /// Each sample of a light is a light of its own, unless they share their areas.
+  int overlapping(PassContext& frame) const {
+    if (area != Area::shared) return map->lightCount;
+    const Scene& scene = frame.sceneDescription();
+    auto lightsOfScene = static_cast<int>(scene.lights.size());
+    for (const Object& object : scene.objects)
+      for (const Part& part : object.parts)
+        if (scene.materials[static_cast<std::size_t>(part.material)].emissive()) ++lightsOfScene;
+    return std::clamp(lightsOfScene, 1, map->lightCount);
   }
 
   static gpu::BufferRef room(PassContext& frame, int count) {
@@ -78,7 +91,7 @@ class ChoosePass : public Pass {
       sizes.push_back((sizes.back() + kFan - 1) / kFan);
       total += sizes.back();
     } while (sizes.back() > 1);
-    const SurfaceLights result{room(frame, wanted), wanted, map->lightCount};
+    const SurfaceLights result{room(frame, wanted), wanted, overlapping(frame)};
     const gpu::BufferRef tree = frame.elements(choose::tree, total, "sums of flux");
     const ReflectiveShadowMapBinding texels(*map);
     std::uint32_t firstOfAddends = 0, firstOfSums = total;
@@ -93,20 +106,19 @@ class ChoosePass : public Pass {
       firstOfAddends = firstOfSums;
     }
     const auto levels = static_cast<std::uint32_t>(sizes.size() - 1);
-    frame.dispatchList(
-        frame.program(choose::kProgram),
-        {choose::parameters({sizes.front(), side, levels, count, area == Area::facing ? 1 : 0}), texels,
-         choose::tree(tree), choose::taken(result.lights)},
-        count);
+    frame.dispatchList(frame.program(choose::kProgram),
+                       {choose::parameters({sizes.front(), side, levels, count, areaCode()}), texels,
+                        choose::tree(tree), choose::taken(result.lights)},
+                       count);
     return result;
   }
 
   SurfaceLights byStride(PassContext& frame) const {
     const gpu::TextureDescription& flux = map->flux->description();
     const int across = (flux.width + stride - 1) / stride, count = across * across * flux.depth;
-    const SurfaceLights result{room(frame, count), count, map->lightCount};
+    const SurfaceLights result{room(frame, count), count, overlapping(frame)};
     frame.dispatchList(frame.program(stride::kProgram),
-                       {stride::parameters({flux.width, stride, across, count, area == Area::facing ? 1 : 0}),
+                       {stride::parameters({flux.width, stride, across, count, areaCode()}),
                         ReflectiveShadowMapBinding(*map), stride::taken(result.lights)},
                        static_cast<std::uint64_t>(count));
     return result;

@@ -19,6 +19,9 @@ class ApplyPass : public Pass {
       this, "interpolate", Interpolate::averaged,
       "of the diffuse lobe; averaged: the points' lights, which the pixel's normal then meets; plain: what the "
       "points reflect"};
+  Param<bool> asPublished{
+      this, "as_published", false,
+      "of the glossy lobe too the mean of the lights' places, in place of their offsets from the points"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::anyLight,
                      "indirect light reflected by the diffuse lobe, W/(sr m^2)"};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::anyLight | Needs::glossyMaterial,
@@ -39,8 +42,9 @@ class ApplyPass : public Pass {
     if (glossy.wanted() && !isGlossy) glossy->texture->clear(glm::vec4(0, 0, 0, 1));
     if (!isDiffuse && !isGlossy) return;
     using gpu::Sampling;
-    shader::BindingSet bound{apply::parameters({frame.snapshot().camera.eye, points->neighbours}),
-                             GBufferBinding(*gbuffer), SurfacePointsBinding(*points)};
+    shader::BindingSet bound{
+        apply::parameters({frame.snapshot().camera.eye, points->neighbours, asPublished}),
+        GBufferBinding(*gbuffer), SurfacePointsBinding(*points)};
     if (isDiffuse) {
       bound.add(apply::diffuseLight(light->diffuse, Sampling::nearest));
       bound.add(apply::diffusePlace(light->diffusePosition, Sampling::nearest));
