@@ -17,6 +17,10 @@ using namespace shaders::reflective_shadow_maps;
 
 constexpr std::uint32_t kFan = 16;  // kFan in sum_tree.glsl
 
+/// Texels along a side of a patch. With 4, 8 and 16 the lights of five scenes err alike; with 1, rows of
+/// views that look the same way, by up to a fifth more.
+constexpr std::uint32_t kPatchRows = 16;
+
 /// Texels of all layers together; the tree of sums numbers them.
 std::uint32_t texelsOf(const ReflectiveShadowMap& map) {
   const gpu::TextureDescription& flux = map.flux->description();
@@ -30,6 +34,8 @@ class ChoosePass : public Pass {
 
   In<ReflectiveShadowMap> map{this, "map", Presence::optional,
                               "what the lights see; without it there are no lights"};
+  enum class Order { rows, patches };
+
   Param<Method> method{
       this, "method", Method::flux,
       "flux: 'lights' texels in proportion to their flux; stride: every so many along both axes, each with the flux and the area of its square (Lensing & Broll 2013: all, a stride of 1)"};
@@ -39,6 +45,9 @@ class ChoosePass : public Pass {
   Param<Area> area{
       this, "area", Area::surface,
       "surface: that of the surface which a texel stands for; shared: the same, shared by the samples of an area light, which see one surface; facing: what it would be if the texel faced the light (Lensing & Broll 2013, Sec. 4.1)"};
+  Param<Order> order{
+      this, "order", Order::rows,
+      "with 'flux': in which texels follow each other, so that near ones are seldom taken together; rows: those of each view; patches: squares, of all views that look the same way from an area light"};
   Out<SurfaceLights> lights{this, "lights", "texels as lights on surfaces"};
 
   void run(PassContext& frame) override {
@@ -84,6 +93,15 @@ class ChoosePass : public Pass {
   SurfaceLights byFlux(PassContext& frame) const {
     const auto count = static_cast<std::uint32_t>(static_cast<int>(wanted));
     const auto side = static_cast<std::uint32_t>(map->flux->description().width);
+    // TexelOrder in sum_tree.glsl. Where all lights have six views, those of one direction go together.
+    constexpr int kCubeViews = 6;
+    const bool inPatches = order == Order::patches;
+    const auto layers = static_cast<std::uint32_t>(map->layerCount);
+    const std::uint32_t rows = inPatches ? kPatchRows : 1u,
+                        together = inPatches && map->layerCount == kCubeViews * map->lightCount
+                                       ? static_cast<std::uint32_t>(map->lightCount)
+                                       : 1u,
+                        ways = layers / together;
     // From the texels to the root.
     std::vector<std::uint32_t> sizes{texelsOf(*map)};
     std::uint32_t total = 0;
@@ -100,16 +118,18 @@ class ChoosePass : public Pass {
       using Variant = accumulate::Variant;
       const Variant variant{level == 1 ? Variant::ofTexels : Variant::ofSums};
       frame.dispatchList(frame.program(variant),
-                         {accumulate::parameters({sizes[level - 1], side, firstOfAddends, firstOfSums}),
+                         {accumulate::parameters(
+                              {sizes[level - 1], firstOfAddends, firstOfSums, side, rows, together, ways}),
                           texels, accumulate::tree(tree)},
                          sizes[level]);
       firstOfAddends = firstOfSums;
     }
     const auto levels = static_cast<std::uint32_t>(sizes.size() - 1);
-    frame.dispatchList(frame.program(choose::kProgram),
-                       {choose::parameters({sizes.front(), side, levels, count, areaCode()}), texels,
-                        choose::tree(tree), choose::taken(result.lights)},
-                       count);
+    frame.dispatchList(
+        frame.program(choose::kProgram),
+        {choose::parameters({sizes.front(), levels, count, areaCode(), side, rows, together, ways}), texels,
+         choose::tree(tree), choose::taken(result.lights)},
+        count);
     return result;
   }
 
