@@ -15,10 +15,13 @@ struct LightSample {
   int firstView;             // its first shadow layer, -1 without shadow
   vec3 power;                // directional: irradiance W/m^2; point, spot: intensity W/sr; area: radiance times area W/sr
   int viewCount;             // shadow layers: 1, or the 6 faces of a cube
-  float cosInner, cosOuter;  // of a spot
+  float cosInner, cosOuter;  // of a spot; of an area sample cosInner is partOfLight()
   float texelWidth;          // of a shadow texel: m (directional), or m per metre of distance
   float patchRadiusSquared;  // of the patch that an area sample stands for, m^2
 };
+
+// Which part of its light a sample is: one of so many by which an area light is represented, and which together light what it lights.
+float partOfLight(LightSample light) { return light.kind == kLightArea ? light.cosInner : 1.0; }
 
 layout(std430, binding = 5) readonly buffer Lights { LightSample lights[]; };
 #ifdef SHADOW_VIEWS

@@ -8,9 +8,9 @@ layout(local_size_x = 64) in;
 
 layout(std140, binding = 0) uniform Parameters {
   uint addends;
-  uint width;         // texels along a side of a layer
   uint firstAddend;   // in the tree
   uint firstSum;
+  uint width, rows, together, ways;  // TexelOrder
 };
 #if OF == OF_TEXELS
 layout(binding = 0) uniform sampler2DArray rsmFlux;
@@ -22,12 +22,13 @@ void main() {
   if (first >= addends) return;
   float sum = 0.0;
 #if OF == OF_TEXELS
-  ivec3 texel = texelOf(first, width);
+  TexelOrder order = TexelOrder(width, rows, together, ways);
+  ivec3 texel = texelOf(first, order);
 #endif
   for (uint i = first; i < min(first + kFan, addends); ++i) {
 #if OF == OF_TEXELS
     sum += luminance(texelFetch(rsmFlux, texel, 0).rgb);
-    advance(texel, width);
+    advance(texel, order);
 #else
     sum += sums[firstAddend + i];
 #endif

@@ -8,16 +8,17 @@ layout(local_size_x = 64) in;
 
 layout(std140, binding = 0) uniform Parameters {
   uint texels;
-  uint width;    // texels along a side of a layer
   uint levels;   // of sums
   uint samples;
-  int facing;  // 1: areas as if texels faced the light
+  int area;      // of lights: taken.glsl
+  uint width, rows, together, ways;  // TexelOrder
 };
 layout(std430, binding = 0) readonly buffer Tree { float sums[]; };
 
 void main() {
   uint index = listIndex();
   if (index >= samples) return;
+  TexelOrder order = TexelOrder(width, rows, together, ways);
   float total = sums[0];
   SurfaceLight light = SurfaceLight(vec4(0.0), vec4(0.0), vec4(0.0));
   if (total > 0.0) {
@@ -28,7 +29,7 @@ void main() {
     for (uint level = levels; level > 0u; --level) {
       firstOfLevel += levelSize(texels, level);
       uint child = entry * kFan, end = min(child + kFan, levelSize(texels, level - 1u));
-      ivec3 texel = texelOf(child, width);
+      ivec3 texel = texelOf(child, order);
       entry = child;
       weight = 0.0;
       for (; child < end; ++child) {
@@ -37,7 +38,7 @@ void main() {
           here = sums[firstOfLevel + child];
         } else {
           here = luminance(texelFetch(rsmFlux, texel, 0).rgb);
-          advance(texel, width);
+          advance(texel, order);
         }
         if (here <= 0.0) continue;
         entry = child;
@@ -49,7 +50,7 @@ void main() {
     }
     // Each sample stands for total / samples of the flux, and for as much more area as it stands for more texels.
     float copies = weight > 0.0 ? total / (float(samples) * weight) : 0.0;
-    light = texelLight(texelOf(entry, width), copies, facing != 0);
+    light = texelLight(texelOf(entry, order), copies, area);
   }
   taken[index] = light;
 }

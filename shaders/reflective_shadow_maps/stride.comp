@@ -9,7 +9,7 @@ layout(std140, binding = 0) uniform Parameters {
   int stride;
   int across;  // squares along a side of a layer
   int count;   // of all layers
-  int facing;  // 1: areas as if texels faced the light
+  int area;    // of lights: taken.glsl
 };
 
 void main() {
@@ -18,5 +18,5 @@ void main() {
   ivec3 square = ivec3(int(index) % across, int(index) / across % across, int(index) / across / across);
   // At the borders a square may be cut off.
   ivec2 first = square.xy * stride, size = min(ivec2(stride), width - first);
-  taken[index] = texelLight(ivec3(first + size / 2, square.z), float(size.x * size.y), facing != 0);
+  taken[index] = texelLight(ivec3(first + size / 2, square.z), float(size.x * size.y), area);
 }

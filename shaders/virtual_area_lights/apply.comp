@@ -46,7 +46,7 @@ void main() {
   if (position.w > 0.0 && any(greaterThan(albedo, vec3(0.0)))) {
 #if AT == AT_PIXELS
     Nearest nearest = nearestPoints(seen, -1.0);
-    AveragedLight light = interpolated(seen, nearest, diffuseLight, diffusePlace, false, INTERPOLATE == INTERPOLATE_PLAIN);
+    AveragedLight light = interpolated(seen, nearest, diffuseLight, diffusePlace, false, false, INTERPOLATE == INTERPOLATE_PLAIN);
 #else
     AveragedLight light = AveragedLight(texelFetch(diffuseLight, pixel, 0), texelFetch(diffusePlace, pixel, 0).xyz);
 #endif
@@ -65,7 +65,7 @@ void main() {
   if (position.w > 0.0 && any(greaterThan(specular.rgb, vec3(0.0)))) {
 #if AT == AT_PIXELS
     Nearest nearest = nearestPoints(seen, specular.w);
-    AveragedLight light = interpolated(seen, nearest, glossyLight, glossyPlace, true, false);
+    AveragedLight light = interpolated(seen, nearest, glossyLight, glossyPlace, true, true, false);
 #else
     AveragedLight light = AveragedLight(texelFetch(glossyLight, pixel, 0), texelFetch(glossyPlace, pixel, 0).xyz);
 #endif

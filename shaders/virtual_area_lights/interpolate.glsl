@@ -76,9 +76,12 @@ float neighbourWeight(SeenSurface seen, uint point, float distanceSquared, float
   return near > kRounding ? alike * near : 0.0;
 }
 
-// `strict`: the light of points that reflect nothing towards the camera (w = 0) does not count. `plain`: of what points reflect, in place
-// of their lights.
-AveragedLight interpolated(SeenSurface seen, Nearest nearest, sampler2D lights, sampler2D places, bool strict, bool plain) {
+// `glossy`: the light of points that reflect nothing towards the camera (w = 0) does not count, and as `seenFromPoints` offsets from the
+// points are averaged. Deviates from Eq. 13, which averages places: what a lobe catches of an area wider than itself moves along with the
+// point. Where all neighbours lie on one side, above all where surfaces meet, a mean of places is out of the lobe of what is seen there.
+// `plain`: of what points reflect, in place of their lights.
+AveragedLight interpolated(SeenSurface seen, Nearest nearest, sampler2D lights, sampler2D places, bool glossy, bool seenFromPoints,
+                           bool plain) {
   vec4 light = vec4(0.0);
   vec3 offset = vec3(0.0);  // from what is seen, so that nothing is lost far from the origin
   float weights = 0.0;
@@ -91,11 +94,12 @@ AveragedLight interpolated(SeenSurface seen, Nearest nearest, sampler2D lights, 
       if (!(weight > 0.0)) continue;
       ivec2 texel = pointTexel(nearest.points[i]);
       vec4 here = texelFetch(lights, texel, 0);
-      if (strict && here.w <= 0.0) continue;
+      if (glossy && here.w <= 0.0) continue;
       vec3 place = texelFetch(places, texel, 0).xyz;
-      if (plain) here.rgb *= cosineTo(place, texelFetch(pointPosition, texel, 0).xyz, texelFetch(pointNormal, texel, 0).xyz);
+      vec3 position = texelFetch(pointPosition, texel, 0).xyz;
+      if (plain) here.rgb *= cosineTo(place, position, texelFetch(pointNormal, texel, 0).xyz);
       light += weight * here;
-      offset += weight * (place - seen.position);
+      offset += weight * (place - (seenFromPoints ? position : seen.position));
       weights += weight;
     }
   if (weights <= 0.0) return AveragedLight(vec4(0.0), seen.position);

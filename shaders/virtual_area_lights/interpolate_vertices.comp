@@ -21,7 +21,8 @@ struct VertexLight {
 };
 layout(std140, binding = 0) uniform Parameters {
   int vertices;
-  int sides;  // 1: fronts alone have points
+  int sides;      // 1: fronts alone have points
+  int published;  // Eq. 13 as printed
 };
 layout(binding = 0) uniform sampler2D lights;
 layout(binding = 1) uniform sampler2D places;
@@ -41,13 +42,13 @@ void main() {
     SeenSurface seen = SeenSurface(position, side == 0 ? normal : -normal, owner.model);
 #if LOBE == LOBE_DIFFUSE
     Nearest nearest = nearestPoints(seen, -1.0);
-    AveragedLight light = interpolated(seen, nearest, lights, places, false, INTERPOLATE == INTERPOLATE_PLAIN);
+    AveragedLight light = interpolated(seen, nearest, lights, places, false, false, INTERPOLATE == INTERPOLATE_PLAIN);
     bool known = nearest.count > 0;
 #else
     AveragedLight light = AveragedLight(vec4(0.0), position);
     vec4 specular = materials[owner.material].specular;
     if (any(greaterThan(specular.rgb, vec3(0.0))))
-      light = interpolated(seen, nearestPoints(seen, specular.w), lights, places, true, false);
+      light = interpolated(seen, nearestPoints(seen, specular.w), lights, places, true, published == 0, false);
     bool known = light.light.w > 0.0;  // points that reflect nothing towards the camera have 0
 #endif
     vertexLights[vertex * uint(sides) + uint(side)] = VertexLight(known ? light.light : vec4(0.0), known ? vec4(light.place - position, 1.0) : vec4(0.0));

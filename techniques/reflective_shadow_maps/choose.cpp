@@ -17,6 +17,10 @@ using namespace shaders::reflective_shadow_maps;
 
 constexpr std::uint32_t kFan = 16;  // kFan in sum_tree.glsl
 
+/// Texels along a side of a patch. With 4, 8 and 16 the lights of five scenes err alike; with 1, rows of
+/// views that look the same way, by up to a fifth more.
+constexpr std::uint32_t kPatchRows = 16;
+
 /// Texels of all layers together; the tree of sums numbers them.
 std::uint32_t texelsOf(const ReflectiveShadowMap& map) {
   const gpu::TextureDescription& flux = map.flux->description();
@@ -26,10 +30,12 @@ std::uint32_t texelsOf(const ReflectiveShadowMap& map) {
 
 class ChoosePass : public Pass {
   enum class Method { flux, stride };
-  enum class Area { surface, facing };
+  enum class Area { surface, shared, facing };  // in the order of taken.glsl
 
   In<ReflectiveShadowMap> map{this, "map", Presence::optional,
                               "what the lights see; without it there are no lights"};
+  enum class Order { rows, patches };
+
   Param<Method> method{
       this, "method", Method::flux,
       "flux: 'lights' texels in proportion to their flux; stride: every so many along both axes, each with the flux and the area of its square (Lensing & Broll 2013: all, a stride of 1)"};
@@ -38,7 +44,10 @@ class ChoosePass : public Pass {
                     "with 'stride': side of a square of texels that one stands for"};
   Param<Area> area{
       this, "area", Area::surface,
-      "surface: that of the surface which a texel stands for; facing: what it would be if the texel faced the light (Lensing & Broll 2013, Sec. 4.1)"};
+      "surface: that of the surface which a texel stands for; shared: the same, shared by the samples of an area light, which see one surface; facing: what it would be if the texel faced the light (Lensing & Broll 2013, Sec. 4.1)"};
+  Param<Order> order{
+      this, "order", Order::rows,
+      "with 'flux': in which texels follow each other, so that near ones are seldom taken together; rows: those of each view; patches: squares, of all views that look the same way from an area light"};
   Param<bool> asPublished{this, "as_published", false,
                           "'method stride' and 'area facing' (Lensing & Broll 2013)"};
   Out<SurfaceLights> lights{this, "lights", "texels as lights on surfaces"};
@@ -52,7 +61,7 @@ class ChoosePass : public Pass {
     lights = method == Method::flux && !asPublished ? byFlux(frame) : byStride(frame);
   }
 
-  int facing() const { return asPublished || area == Area::facing ? 1 : 0; }
+  Area areaOf() const { return asPublished ? Area::facing : static_cast<Area>(area); }
 
   static void requireAreas(const ReflectiveShadowMap& map) {
     for (const gpu::TextureRef& texture : {map.position, map.normal})
@@ -60,6 +69,19 @@ class ChoosePass : public Pass {
         throw Error(
             "the map lacks positions, or normals with areas: expected textures of the size and format of its "
             "flux, as reflective_shadow_maps.render makes them");
+  }
+
+  int areaCode() const { return static_cast<int>(areaOf()); }
+
+  /// Each sample of a light is a light of its own, unless they share their areas.
+  int overlapping(PassContext& frame) const {
+    if (areaOf() != Area::shared) return map->lightCount;
+    const Scene& scene = frame.sceneDescription();
+    auto lightsOfScene = static_cast<int>(scene.lights.size());
+    for (const Object& object : scene.objects)
+      for (const Part& part : object.parts)
+        if (scene.materials[static_cast<std::size_t>(part.material)].emissive()) ++lightsOfScene;
+    return std::clamp(lightsOfScene, 1, map->lightCount);
   }
 
   static gpu::BufferRef room(PassContext& frame, int count) {
@@ -75,6 +97,15 @@ class ChoosePass : public Pass {
   SurfaceLights byFlux(PassContext& frame) const {
     const auto count = static_cast<std::uint32_t>(static_cast<int>(wanted));
     const auto side = static_cast<std::uint32_t>(map->flux->description().width);
+    // TexelOrder in sum_tree.glsl. Where all lights have six views, those of one direction go together.
+    constexpr int kCubeViews = 6;
+    const bool inPatches = order == Order::patches;
+    const auto layers = static_cast<std::uint32_t>(map->layerCount);
+    const std::uint32_t rows = inPatches ? kPatchRows : 1u,
+                        together = inPatches && map->layerCount == kCubeViews * map->lightCount
+                                       ? static_cast<std::uint32_t>(map->lightCount)
+                                       : 1u,
+                        ways = layers / together;
     // From the texels to the root.
     std::vector<std::uint32_t> sizes{texelsOf(*map)};
     std::uint32_t total = 0;
@@ -82,7 +113,7 @@ class ChoosePass : public Pass {
       sizes.push_back((sizes.back() + kFan - 1) / kFan);
       total += sizes.back();
     } while (sizes.back() > 1);
-    const SurfaceLights result{room(frame, wanted), wanted, map->lightCount};
+    const SurfaceLights result{room(frame, wanted), wanted, overlapping(frame)};
     const gpu::BufferRef tree = frame.elements(choose::tree, total, "sums of flux");
     const ReflectiveShadowMapBinding texels(*map);
     std::uint32_t firstOfAddends = 0, firstOfSums = total;
@@ -91,25 +122,27 @@ class ChoosePass : public Pass {
       using Variant = accumulate::Variant;
       const Variant variant{level == 1 ? Variant::ofTexels : Variant::ofSums};
       frame.dispatchList(frame.program(variant),
-                         {accumulate::parameters({sizes[level - 1], side, firstOfAddends, firstOfSums}),
+                         {accumulate::parameters(
+                              {sizes[level - 1], firstOfAddends, firstOfSums, side, rows, together, ways}),
                           texels, accumulate::tree(tree)},
                          sizes[level]);
       firstOfAddends = firstOfSums;
     }
     const auto levels = static_cast<std::uint32_t>(sizes.size() - 1);
-    frame.dispatchList(frame.program(choose::kProgram),
-                       {choose::parameters({sizes.front(), side, levels, count, facing()}), texels,
-                        choose::tree(tree), choose::taken(result.lights)},
-                       count);
+    frame.dispatchList(
+        frame.program(choose::kProgram),
+        {choose::parameters({sizes.front(), levels, count, areaCode(), side, rows, together, ways}), texels,
+         choose::tree(tree), choose::taken(result.lights)},
+        count);
     return result;
   }
 
   SurfaceLights byStride(PassContext& frame) const {
     const gpu::TextureDescription& flux = map->flux->description();
     const int across = (flux.width + stride - 1) / stride, count = across * across * flux.depth;
-    const SurfaceLights result{room(frame, count), count, map->lightCount};
+    const SurfaceLights result{room(frame, count), count, overlapping(frame)};
     frame.dispatchList(frame.program(stride::kProgram),
-                       {stride::parameters({flux.width, stride, across, count, facing()}),
+                       {stride::parameters({flux.width, stride, across, count, areaCode()}),
                         ReflectiveShadowMapBinding(*map), stride::taken(result.lights)},
                        static_cast<std::uint64_t>(count));
     return result;

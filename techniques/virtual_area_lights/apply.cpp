@@ -29,8 +29,9 @@ class ApplyPass : public Pass {
       "where the nearest points are mixed; pixels: for each one anew; vertices: at those of the meshes, "
       "and from there through the rasteriser (published), for meshes finer than the points"};
   Param<bool> asPublished{this, "as_published", false,
-                          "'at vertices', and Eq. 10 with its squared distance to the averaged place, as "
-                          "normalise must have it too"};
+                          "'at vertices', Eq. 10 with its squared distance to the averaged place, as "
+                          "normalise must have it too, and of the glossy lobe too the mean of the lights' "
+                          "places, in place of their offsets from the points"};
   Out<Image> diffuse{this, "diffuse", Contributes::indirectDiffuse, Needs::anyLight,
                      "indirect light reflected by the diffuse lobe, W/(sr m^2)"};
   Out<Image> glossy{this, "glossy", Contributes::indirectGlossy, Needs::anyLight | Needs::glossyMaterial,
@@ -54,7 +55,7 @@ class ApplyPass : public Pass {
     if (!isDiffuse && !isGlossy) return;
     SparseLight shown = *light;
     if (atVertices()) {
-      const VertexInputs inputs{*gbuffer, *points, interpolated() != 0};
+      const VertexInputs inputs{*gbuffer, *points, interpolated() != 0, asPublished};
       if (isDiffuse)
         std::tie(shown.diffuse, shown.diffusePosition) =
             diffuseOverTriangles(frame, inputs, light->diffuse, light->diffusePosition);

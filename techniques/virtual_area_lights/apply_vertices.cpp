@@ -56,7 +56,7 @@ gpu::BufferRef atVertices(PassContext& frame, const VertexInputs& inputs, int lo
                                            : Variant::interpolateAveraged};
   frame.dispatchList(
       frame.program(variant, interpolate_vertices::Constants{.neighbours = inputs.points.neighbours}),
-      {interpolate_vertices::parameters({static_cast<int>(count), sides}),
+      {interpolate_vertices::parameters({static_cast<int>(count), sides, inputs.published}),
        SceneBinding(frame, nullptr, nullptr), SurfacePointsBinding(inputs.points),
        interpolate_vertices::lights(lights, gpu::Sampling::nearest),
        interpolate_vertices::places(places, gpu::Sampling::nearest),

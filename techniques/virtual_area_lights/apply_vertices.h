@@ -10,7 +10,8 @@ namespace lumivox::virtual_area_lights {
 struct VertexInputs {
   const GBuffer& gbuffer;
   const SurfacePoints& points;
-  bool plain;  ///< what points reflect in place of their lights
+  bool plain;      ///< what points reflect in place of their lights
+  bool published;  ///< Eq. 13 as printed of glossy lights too
 };
 
 /// The averaged light of points, mixed at the vertices of all meshes and interpolated over the triangles that

@@ -206,8 +206,9 @@ void addAreaLight(LightSet& set, const AreaLight& areaLight, int count, int& seq
     // Nearer than the radius of its patch the inverse square law of a point does not hold for a sample.
     const float patchRadius = std::sqrt(area / glm::pi<float>());
     set.samples.push_back({position, LightSampleKind::area, emitter.normal,
-                           static_cast<int>(set.views.size()), emitter.radiance * area, kCubeViews, 0.0f,
-                           0.0f, texelPerMetre(glm::radians(45.0f), shadowSize), patchRadius * patchRadius});
+                           static_cast<int>(set.views.size()), emitter.radiance * area, kCubeViews,
+                           1.0f / static_cast<float>(count), 0.0f,
+                           texelPerMetre(glm::radians(45.0f), shadowSize), patchRadius * patchRadius});
     addCube(set, position, bounds, &emitter.normal);
   }
 }
