@@ -201,4 +201,21 @@ TEST_CASE("a number of lights or neighbours that there is no room for is refused
   CHECK_THAT(settingOf("neighbours=33"), Contains("neighbours") && Contains("32"));
   CHECK_THAT(settingOf("points=65537"), Contains("points") && Contains("65536"));
   CHECK_THAT(settingOf("lights=0"), Contains("lights") && Contains("65536"));
+  // A million lights, where there is room for a few.
+  const Pipeline many = Pipeline::parse(R"(pipeline "many lights" {
+  pass gbuffer direct_lighting.gbuffer { }
+  pass map reflective_shadow_maps.render { size 16 }
+  pass choose reflective_shadow_maps.choose { map map.map  lights 1048576 }
+  pass sum virtual_area_lights.brute_force { gbuffer gbuffer  lights choose.lights }
+  output indirect_diffuse sum.diffuse
+})",
+                                        "many_lights.pipeline");
+  const Scene scene = floorAndPanel(0.0f, 1.0f).scene;
+  gpu::Device tight({.memoryBytes = 16u << 20});
+  RenderOptions options;
+  options.width = options.height = 24;
+  PipelineExecutor executor(tight, techniques(), scene, many, options);
+  CHECK_THAT(
+      messageOf<Error>([&] { executor.render(0.0); }),
+      Contains("room for 1048576 lights on surfaces takes 48.0 MiB") && Contains("the largest that fits is"));
 }

@@ -100,6 +100,32 @@ TEST_CASE(
   CHECK(open({disc({0, 3.5f, 0}, 4.0f)}) == Approx(0.5).margin(1e-4));
 }
 
+TEST_CASE(
+    "what hides a light does not depend on where all of it lies, nor on who else is lit, and a dark point stays dark") {
+  const std::vector<SparsePoint> discs{SparsePoint{}, disc({0.2f, 2, 0.1f}, 0.3f),
+                                       disc({-0.2f, 3, 0.2f}, 0.4f)};
+  SparsePasses passes;
+  const auto openAt = [&](const glm::vec3& shift, const glm::vec3& light, const char* combine) {
+    std::vector<SparsePoint> moved = discs;
+    for (SparsePoint& point : moved) point.position += shift;
+    const std::vector<glm::vec4> places(3, glm::vec4(glm::vec3(0, 4, 0) + shift, 1));
+    const SparseLight lit{texels(std::vector<glm::vec4>(3, glm::vec4(light, 7)), {1024, 1}, "light"),
+                          texels(places, {1024, 1}, "place"), nullptr, nullptr};
+    return valuesOf(passes.occlude(pointsOf(moved), lit, {{"combine", std::string(combine)}}).diffuse, 3)
+        .front();
+  };
+  for (const char* combine : {"product", "sum", "nearest", "mask"}) {
+    CAPTURE(combine);
+    const glm::vec4 here = openAt(glm::vec3(0.0f), glm::vec3(1.0f), combine),
+                    there = openAt({3, -2, 5}, {2, 0, 0}, combine);
+    CHECK(here.x < 0.9f);
+    CHECK(here.x > 0.1f);
+    CHECK(there.x == Approx(2.0 * here.x).epsilon(1e-3));
+    CHECK(there.w == 7.0f);
+    CHECK(openAt(glm::vec3(0.0f), glm::vec3(0.0f), combine) == glm::vec4(0, 0, 0, 7));
+  }
+}
+
 TEST_CASE("of two discs in line a product hides twice, the nearest and the bits once, a sum the sum") {
   const float far = 0.5f * std::sqrt(2.0f);  // hides as much from twice the square of the distance
   const float one = open({disc({0, 1.5f, 0}, 0.25f)});

@@ -132,6 +132,14 @@ TEST_CASE(
   CHECK(valuesOf(passes.normalise(made, light).diffuse, 1).front().x == 0.0f);
   light.diffusePosition = texels({{1, 0.001, 0, 1}}, {1024, 1}, "place");  // cosine 1e-3
   CHECK(valuesOf(passes.normalise(made, light).diffuse, 1).front().x == Approx(2.0));
+  // Of coloured light the strongest channel decides, and the hue stays; however near the place is.
+  for (const glm::vec3& colour : {glm::vec3(1, 4, 2), glm::vec3(4, 1, 2), glm::vec3(1, 2, 4)}) {
+    SparseLight coloured = light;
+    coloured.diffuse = texels({{colour.x, colour.y, colour.z, 8}}, {1024, 1}, "light");
+    coloured.diffusePosition = texels({{0.1, 0.0001, 0, 1}}, {1024, 1}, "place");
+    const glm::vec4 found = valuesOf(passes.normalise(made, coloured).diffuse, 1).front();
+    for (int c = 0; c < 3; ++c) CHECK(found[c] == Approx(2.0 * colour[c]));
+  }
   light.diffuse = texels({{1, 1, 1, 100}}, {1024, 1}, "light");
   CHECK(valuesOf(passes.normalise(made, light).diffuse, 1).front().x == Approx(10.0));
   CHECK(valuesOf(passes.normalise(made, light, {{"amplification", 4.0}}).diffuse, 1).front().x ==
@@ -411,6 +419,15 @@ TEST_CASE(
     lit += expected > 0.01f ? 1 : 0;
   }
   CHECK(lit > 20);
+  // Without a lobe all in front of the mirror's plane counts in full, and a wide one widely.
+  for (const float exponent : {0.0f, 0.2f}) {
+    both.glossy = texels({{2, 3, 4, 1.0f + exponent}}, {1024, 1}, "light");
+    const glm::vec3 mirror = glm::reflect(glm::normalize(-eye), seen[5].normal);
+    const float cosine = glm::dot(mirror, glm::normalize(place));
+    REQUIRE(cosine > 0.0f);
+    CHECK(passes.apply(pointsOf({point}), both, seen).second.at(5, 0, 2) ==
+          Approx(4.0 * std::pow(cosine, exponent)).epsilon(1e-4));
+  }
   // Points of another exponent, and those that reflect nothing, leave it dark.
   point.exponent = 6.0f;
   CHECK(passes.apply(pointsOf({point}), both, seen).second.at(3, 3, 1) == 0.0f);
