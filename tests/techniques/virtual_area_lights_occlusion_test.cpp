@@ -98,6 +98,15 @@ TEST_CASE(
   CHECK(open({disc({2, 2, 0}, 0.2f)}) == 1.0f);  // beside it
   // Inside of it less and less: half way from its near side to its middle by half.
   CHECK(open({disc({0, 3.5f, 0}, 4.0f)}) == Approx(0.5).margin(1e-4));
+  CHECK(open({disc({0, 3.5f, 0}, 8.0f)}, "product", 2.0f) == Approx(0.75).margin(1e-4));
+  // A sphere without extent is hidden from right before it, and the bits of one disc are its share.
+  CHECK(open({disc({0, 3.5f, 0}, 4.0f)}, "product", 1e-4f) == Approx(0.0).margin(1e-4));
+  for (const float radius : {0.2f, 0.3f, 0.4f})
+    CHECK(open({disc({0, 2, 0}, radius)}, "mask") == Approx(open({disc({0, 2, 0}, radius)})).margin(0.13));
+  // One that is nearly seen from its edge still hides by its cosine.
+  const float edge = open({{{0, 2, 0}, glm::normalize(glm::vec3(1, -0.2f, 0)), 0.01f, 0.4f}});
+  const double cosine = 0.2 / std::sqrt(1.04), area = 0.16 * cosine / (4.0 + 0.16);
+  CHECK(edge == Approx(1.0 - area * 16.0).margin(1e-4));
 }
 
 TEST_CASE(
@@ -117,10 +126,10 @@ TEST_CASE(
   for (const char* combine : {"product", "sum", "nearest", "mask"}) {
     CAPTURE(combine);
     const glm::vec4 here = openAt(glm::vec3(0.0f), glm::vec3(1.0f), combine),
-                    there = openAt({3, -2, 5}, {2, 0, 0}, combine);
+                    there = openAt({3, -2, 5}, {0.2, 0, 0}, combine);
     CHECK(here.x < 0.9f);
     CHECK(here.x > 0.1f);
-    CHECK(there.x == Approx(2.0 * here.x).epsilon(1e-3));
+    CHECK(there.x == Approx(0.2 * here.x).epsilon(1e-3));
     CHECK(there.w == 7.0f);
     CHECK(openAt(glm::vec3(0.0f), glm::vec3(0.0f), combine) == glm::vec4(0, 0, 0, 7));
   }
