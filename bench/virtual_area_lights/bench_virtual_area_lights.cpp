@@ -132,22 +132,28 @@ std::vector<double> msOf(const std::vector<Times>& frames, const std::string& pa
   return result;
 }
 
-/// Exponents of the passes' times over lights, or over points. Rounds over all numbers in turns.
-void growth(Machine& machine, const Scene& scene, const std::vector<int>& numbers, bool ofLights, int other,
-            const char* occlusion = "occlusion=on") {
+/// Exponents of the passes' times over lights, or over points.
+void growth(Machine& machine, const Scene& scene, const std::vector<int>& numbers, bool ofLights, int other) {
   fmt::print("growth with {}, {} {}\n", ofLights ? "lights" : "points", other,
              ofLights ? "points" : "lights");
   const Pipeline pipeline = Pipeline::parse(kBoth, "bench.pipeline");
   Growth growth;
   for (const int number : numbers) {
-    Bench bench(machine, scene, pipeline,
-                settingsOf(ofLights ? number : other, ofLights ? other : number, occlusion), 64);
+    Bench bench(machine, scene, pipeline, settingsOf(ofLights ? number : other, ofLights ? other : number));
     const std::vector<Times> frames = bench.severalAfresh();
     for (const char* pass : {"gather", "occlude", "apply", "points"})
-      if (frames.front().at(pass) > 0.0)
-        growth.add(fmt::format("{}, ms", pass), number, spreadOf(msOf(frames, pass)).median);
+      growth.add(fmt::format("{}, ms", pass), number, spreadOf(msOf(frames, pass)).median);
   }
   growth.print();
+}
+
+/// A frame of as many points as nobody wants, once.
+void manyPoints(Machine& machine, const Scene& scene, int lights, int points) {
+  Bench bench(machine, scene, Pipeline::parse(kBoth, "bench.pipeline"),
+              settingsOf(lights, points, "occlusion=off"));
+  const Times frame = bench.afresh();
+  row(fmt::format("{} points, {} lights, no occlusion: spread, gathered, applied, ms", points, lights),
+      fmt::format("{:.0f}, {:.0f}, {:.0f}", frame.at("points"), frame.at("gather"), frame.at("apply")));
 }
 
 /// Times of passes with four times the pixels over those before.
@@ -265,9 +271,10 @@ int main(int argc, char** argv) {
       growth(machine, glossy, {32, 64, 128}, true, 64);
     } else {
       growth(machine, glossy, {1024, 4096, 16384}, true, 2048);
-      growth(machine, glossy, {1024, 4096, 16384}, false, 1024);
-      growth(machine, glossy, {65536, 131072, 262144}, false, 16, "occlusion=off");
+      growth(machine, glossy, {512, 2048, 8192}, false, 1024);
     }
+    for (const int many : quick ? std::vector{128} : std::vector{16384, 65536, 262144})
+      manyPoints(machine, glossy, 64, many);
     growthWithPixels(machine, glossy, quick ? 16 : 256);
     pointsOnce(machine, quick ? "cornell" : "dragon", quick ? 64 : 4096);
     allMoves(machine, glossy, settingsOf(quick ? 64 : 1024, points), quick ? 16 : 256);

@@ -2,6 +2,7 @@
 // their lights can give, and inputs that must be refused.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "lumivox/base/error.h"
 #include "support/virtual_area_lights.h"
@@ -114,6 +115,41 @@ TEST_CASE("a frame that nothing changes runs nothing") {
   for (const PassRecord& pass : executor.render(0.0, 1).passes) CHECK_FALSE(pass.ran);
 }
 
+TEST_CASE("a frame alone is the frame of a sequence, and the same bits twice, while a glossy panel turns") {
+  const Pipeline text = pipeline("virtual_area_lights");
+  Scene scene = floorAndPanel(0.5f, 20.0f).scene;
+  scene.objects[2].motion = RigidMotion{.angularSpeed = 0.5};
+  PipelineExecutor sequence(device(), techniques(), scene, text, few(text));
+  sequence.render(0.0, 0);
+  const FrameResult next = sequence.render(0.5, 1);
+  for (int time = 0; time < 2; ++time) {
+    PipelineExecutor alone(device(), techniques(), scene, text, few(text));
+    const FrameResult frame = alone.render(0.5, 1);
+    for (const auto& [name, image] : next.outputs) CHECK(same(frame, next, name));
+  }
+}
+
+TEST_CASE("the share of light that is clamped is told, of no more than the points that are") {
+  const Pipeline text = pipeline("virtual_area_lights");
+  const Scene scene = floorAndPanel(0.5f, 200.0f).scene;
+  RenderOptions options = few(text);
+  options.health = true;
+  const FrameResult frame = PipelineExecutor(device(), techniques(), scene, text, options).render(0.0);
+  int told = 0;
+  for (const std::string& note : frame.notes)
+    for (const char* lobe : {"diffuse", "glossy"}) {
+      double points = 0.0, lost = 0.0;
+      const std::string words = std::string("pass normalise: %lf %% of the points have their ") + lobe +
+                                " light clamped, %lf %% of it";
+      if (std::sscanf(note.c_str(), words.c_str(), &points, &lost) != 2) continue;
+      CAPTURE(note);
+      CHECK(lost <= points);
+      CHECK(points < 100.0);
+      ++told;
+    }
+  CHECK(told == 2);
+}
+
 TEST_CASE(
     "exponents 0, 1 and 10^5 in one picture, and a panel that deforms to nothing: no pixel beyond its lights") {
   const Pipeline text = pipeline("virtual_area_lights");
@@ -165,4 +201,21 @@ TEST_CASE("a number of lights or neighbours that there is no room for is refused
   CHECK_THAT(settingOf("neighbours=33"), Contains("neighbours") && Contains("32"));
   CHECK_THAT(settingOf("points=65537"), Contains("points") && Contains("65536"));
   CHECK_THAT(settingOf("lights=0"), Contains("lights") && Contains("65536"));
+  // A million lights, where there is room for a few.
+  const Pipeline many = Pipeline::parse(R"(pipeline "many lights" {
+  pass gbuffer direct_lighting.gbuffer { }
+  pass map reflective_shadow_maps.render { size 16 }
+  pass choose reflective_shadow_maps.choose { map map.map  lights 1048576 }
+  pass sum virtual_area_lights.brute_force { gbuffer gbuffer  lights choose.lights }
+  output indirect_diffuse sum.diffuse
+})",
+                                        "many_lights.pipeline");
+  const Scene scene = floorAndPanel(0.0f, 1.0f).scene;
+  gpu::Device tight({.memoryBytes = 16u << 20});
+  RenderOptions options;
+  options.width = options.height = 24;
+  PipelineExecutor executor(tight, techniques(), scene, many, options);
+  CHECK_THAT(
+      messageOf<Error>([&] { executor.render(0.0); }),
+      Contains("room for 1048576 lights on surfaces takes 48.0 MiB") && Contains("the largest that fits is"));
 }

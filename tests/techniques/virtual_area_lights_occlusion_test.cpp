@@ -98,6 +98,41 @@ TEST_CASE(
   CHECK(open({disc({2, 2, 0}, 0.2f)}) == 1.0f);  // beside it
   // Inside of it less and less: half way from its near side to its middle by half.
   CHECK(open({disc({0, 3.5f, 0}, 4.0f)}) == Approx(0.5).margin(1e-4));
+  CHECK(open({disc({0, 3.5f, 0}, 8.0f)}, "product", 2.0f) == Approx(0.75).margin(1e-4));
+  // A sphere without extent is hidden from right before it, and the bits of one disc are its share.
+  CHECK(open({disc({0, 3.5f, 0}, 4.0f)}, "product", 1e-4f) == Approx(0.0).margin(1e-4));
+  for (const float radius : {0.2f, 0.3f, 0.4f})
+    CHECK(open({disc({0, 2, 0}, radius)}, "mask") == Approx(open({disc({0, 2, 0}, radius)})).margin(0.13));
+  // One that is nearly seen from its edge still hides by its cosine.
+  const float edge = open({{{0, 2, 0}, glm::normalize(glm::vec3(1, -0.2f, 0)), 0.01f, 0.4f}});
+  const double cosine = 0.2 / std::sqrt(1.04), area = 0.16 * cosine / (4.0 + 0.16);
+  CHECK(edge == Approx(1.0 - area * 16.0).margin(1e-4));
+}
+
+TEST_CASE(
+    "what hides a light does not depend on where all of it lies, nor on who else is lit, and a dark point stays dark") {
+  const std::vector<SparsePoint> discs{SparsePoint{}, disc({0.2f, 2, 0.1f}, 0.3f),
+                                       disc({-0.2f, 3, 0.2f}, 0.4f)};
+  SparsePasses passes;
+  const auto openAt = [&](const glm::vec3& shift, const glm::vec3& light, const char* combine) {
+    std::vector<SparsePoint> moved = discs;
+    for (SparsePoint& point : moved) point.position += shift;
+    const std::vector<glm::vec4> places(3, glm::vec4(glm::vec3(0, 4, 0) + shift, 1));
+    const SparseLight lit{texels(std::vector<glm::vec4>(3, glm::vec4(light, 7)), {1024, 1}, "light"),
+                          texels(places, {1024, 1}, "place"), nullptr, nullptr};
+    return valuesOf(passes.occlude(pointsOf(moved), lit, {{"combine", std::string(combine)}}).diffuse, 3)
+        .front();
+  };
+  for (const char* combine : {"product", "sum", "nearest", "mask"}) {
+    CAPTURE(combine);
+    const glm::vec4 here = openAt(glm::vec3(0.0f), glm::vec3(1.0f), combine),
+                    there = openAt({3, -2, 5}, {0.2, 0, 0}, combine);
+    CHECK(here.x < 0.9f);
+    CHECK(here.x > 0.1f);
+    CHECK(there.x == Approx(0.2 * here.x).epsilon(1e-3));
+    CHECK(there.w == 7.0f);
+    CHECK(openAt(glm::vec3(0.0f), glm::vec3(0.0f), combine) == glm::vec4(0, 0, 0, 7));
+  }
 }
 
 TEST_CASE("of two discs in line a product hides twice, the nearest and the bits once, a sum the sum") {

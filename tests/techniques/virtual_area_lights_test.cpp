@@ -86,6 +86,7 @@ TEST_CASE("a hundredth of a texel above a light at most its exitance arrives, an
       CHECK(std::isfinite(found.x));
       CHECK(kPi * found.x >= 0.0);
       CHECK(kPi * found.x <= 1.0 + 1e-5);
+      if (height == 0.0f) CHECK(found.x == 0.0f);
     }
   }
 }
@@ -131,6 +132,14 @@ TEST_CASE(
   CHECK(valuesOf(passes.normalise(made, light).diffuse, 1).front().x == 0.0f);
   light.diffusePosition = texels({{1, 0.001, 0, 1}}, {1024, 1}, "place");  // cosine 1e-3
   CHECK(valuesOf(passes.normalise(made, light).diffuse, 1).front().x == Approx(2.0));
+  // Of coloured light the strongest channel decides, and the hue stays; however near the place is.
+  for (const glm::vec3& colour : {glm::vec3(1, 4, 2), glm::vec3(4, 1, 2), glm::vec3(1, 2, 4)}) {
+    SparseLight coloured = light;
+    coloured.diffuse = texels({{colour.x, colour.y, colour.z, 8}}, {1024, 1}, "light");
+    coloured.diffusePosition = texels({{0.1, 0.0001, 0, 1}}, {1024, 1}, "place");
+    const glm::vec4 found = valuesOf(passes.normalise(made, coloured).diffuse, 1).front();
+    for (int c = 0; c < 3; ++c) CHECK(found[c] == Approx(2.0 * colour[c]));
+  }
   light.diffuse = texels({{1, 1, 1, 100}}, {1024, 1}, "light");
   CHECK(valuesOf(passes.normalise(made, light).diffuse, 1).front().x == Approx(10.0));
   CHECK(valuesOf(passes.normalise(made, light, {{"amplification", 4.0}}).diffuse, 1).front().x ==
@@ -232,6 +241,94 @@ TEST_CASE("an even disc of lights is a sphere of its own radius, and one light a
         Approx(0.2).epsilon(0.001));
 }
 
+TEST_CASE(
+    "a lobe is no narrower than points as far apart as they are can show: a quarter of the squared distance over spacing") {
+  SparsePasses passes;
+  const SurfacePoints made = pointsOf({{{0, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, 1000.0f}}, 0.1f);
+  const SurfaceLights light = lightsOf({{{0, 0.5f, 0}, {0, -1, 0}, 1e-4f}});
+  const auto exponentBy = [&](const char* limit) {
+    return valuesOf(passes.gather(made, light, {{"exponent_limit", std::string(limit)}}).glossy, 1)
+               .front()
+               .w -
+           1.0f;
+  };
+  CHECK(exponentBy("spacing") == Approx(0.25 * 25.0).epsilon(1e-3));
+  CHECK(exponentBy("none") == Approx(1000.0).epsilon(1e-5));
+  // Lights that lie upon each other shine together.
+  SurfaceLights three = light;
+  three.overlapping = 3;
+  CHECK(valuesOf(passes.gather(made, three).diffuse, 1).front().w == Approx(3.0 / kPi));
+}
+
+TEST_CASE(
+    "where nothing arrives the averaged place is the mean of all places, and where something does theirs alone") {
+  const std::vector<SparsePoint> points{SparsePoint{}, {{0, 0, 0}, {0, -1, 0}}};
+  SparsePasses passes;
+  // One light overhead; one far away that faces the other way.
+  const std::vector<glm::vec4> places =
+      valuesOf(passes
+                   .gather(pointsOf(points),
+                           lightsOf({{{0, 1, 0}, {0, -1, 0}, 0.01f}, {{100, 1, 0}, {0, 1, 0}, 0.01f}}))
+                   .diffusePosition,
+               2);
+  CHECK(glm::distance(glm::vec3(places[0]), glm::vec3(0, 1, 0)) < 0.05f);
+  CHECK(glm::distance(glm::vec3(places[1]), glm::vec3(50, 1, 0)) < 0.01f);
+  // Of two that arrive each counts by its form factor: A / (pi d^2 + A) times the squared cosine, here 1/2.
+  const float wide = 0.4f, small = 0.1f, both = 2.0f * static_cast<float>(kPi);
+  const float x =
+      valuesOf(passes
+                   .gather(pointsOf(points),
+                           lightsOf({{{1, 1, 0}, {0, -1, 0}, wide}, {{-1, 1, 0}, {0, -1, 0}, small}}))
+                   .diffusePosition,
+               1)
+          .front()
+          .x;
+  const float first = wide / (both + wide), second = small / (both + small);
+  CHECK(x == Approx((first - second) / (first + second)).epsilon(1e-3));
+}
+
+TEST_CASE(
+    "a neighbour counts by one minus its distance over that of the farthest, times the cosine between the normals") {
+  // Lights 1, 2 and 5 so far away that all stand overhead.
+  const SparseLight light{texels({{1, 0, 0, 1}, {2, 0, 0, 1}, {5, 0, 0, 1}}, {1024, 1}, "light"),
+                          texels(std::vector<glm::vec4>(3, glm::vec4(0, 1e4, 0, 1)), {1024, 1}, "place"),
+                          nullptr, nullptr};
+  const std::vector<SparsePoint> seen(64);
+  SparsePasses passes;
+  const auto leaning = [](float cosine) { return glm::vec3(std::sqrt(1.0f - cosine * cosine), cosine, 0); };
+  // Both steep: their weights sum to little, and still no other rule takes over.
+  for (const auto& [one, other] : {std::pair(1.0f, 1.0f), {0.9f, 0.5f}, {0.2f, 0.1f}}) {
+    const float expected = (0.75f * one * 1.0f + 0.25f * other * 2.0f) / (0.75f * one + 0.25f * other);
+    CAPTURE(one, other);
+    CHECK(
+        passes
+            .apply(pointsOf({{{0.1f, 0, 0}, leaning(one)}, {{0, 0, 0.3f}, leaning(other)}, {{-0.4f, 0, 0}}}),
+                   light, seen)
+            .first.at(0, 0, 0) == Approx(expected).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("points farther than where all are told of count only where none is nearer") {
+  const auto lit = [](const std::vector<SparsePoint>& points) {
+    std::vector<glm::vec4> values;
+    for (const SparsePoint& point : points) values.emplace_back(point.position.x, 0, 0, 1);
+    return SparseLight{
+        texels(values, {1024, 1}, "light"),
+        texels(std::vector<glm::vec4>(points.size(), glm::vec4(0, 1e4, 0, 1)), {1024, 1}, "place"), nullptr,
+        nullptr};
+  };
+  const std::vector<SparsePoint> near{{{0.1f, 0, 0}}, {{0.2f, 0, 0}}, {{0.3f, 0, 0}}, {{0.4f, 0, 0}}},
+      far{{{0.3f, 0, 0}}, {{0.4f, 0, 0}}}, seen(64);
+  SparsePasses passes;
+  const auto shown = [&](const std::vector<SparsePoint>& points) {
+    SurfacePoints made = pointsOf(points);
+    made.farthest = 0.25f;
+    return passes.apply(made, lit(points), seen).first.at(0, 0, 0);
+  };
+  CHECK(shown(near) == Approx(0.1));  // the second is the farthest of those that count, and weighs nothing
+  CHECK(shown(far) == Approx(0.3));
+}
+
 TEST_CASE("lights in chunks and through group memory, and lights of two sources, come to the same sums") {
   const std::vector<SparsePoint> points = randomPoints(100, 30.0f);
   const SurfacePoints made = pointsOf(points);
@@ -247,6 +344,11 @@ TEST_CASE("lights in chunks and through group memory, and lights of two sources,
   const SparseLight shared = passes.gather(made, lightsOf(all), {{"method", std::string("shared")}}),
                     cached = passes.gather(made, lightsOf(all), {{"method", std::string("cached")}});
   same(shared, cached);
+  // More than a loop of a shader may take, the last one brighter than all.
+  std::vector<DiscLight> many(70000, all[3]);
+  many.back().exitance = glm::vec3(1e6f);
+  same(passes.gather(made, lightsOf(many), {{"method", std::string("shared")}}),
+       passes.gather(made, lightsOf(many), {{"method", std::string("cached")}}));
   // Two whole chunks from one source, the rest from the other.
   const SurfaceLights rest = lightsOf({all.begin() + 256, all.end()});
   for (const char* method : {"shared", "cached"})
@@ -317,11 +419,22 @@ TEST_CASE(
     lit += expected > 0.01f ? 1 : 0;
   }
   CHECK(lit > 20);
-  // Points of another exponent, and those that reflect nothing, leave it dark.
-  for (const float exponent : {6.0f, -1.0f}) {
-    point.exponent = exponent;
-    CHECK(passes.apply(pointsOf({point}), both, seen).second.at(3, 3, 1) == 0.0f);
+  // Without a lobe all in front of the mirror's plane counts in full, and a wide one widely.
+  for (const float exponent : {0.0f, 0.2f}) {
+    both.glossy = texels({{2, 3, 4, 1.0f + exponent}}, {1024, 1}, "light");
+    const glm::vec3 mirror = glm::reflect(glm::normalize(-eye), seen[5].normal);
+    const float cosine = glm::dot(mirror, glm::normalize(place));
+    REQUIRE(cosine > 0.0f);
+    CHECK(passes.apply(pointsOf({point}), both, seen).second.at(5, 0, 2) ==
+          Approx(4.0 * std::pow(cosine, exponent)).epsilon(1e-4));
   }
+  // Points of another exponent, and those that reflect nothing, leave it dark.
+  point.exponent = 6.0f;
+  CHECK(passes.apply(pointsOf({point}), both, seen).second.at(3, 3, 1) == 0.0f);
+  point.exponent = -1.0f;
+  for (SparsePoint& one : seen) one.exponent = 0.0f;
+  const ImageBuffer dark = passes.apply(pointsOf({point}), both, seen).second;
+  for (const float value : dark.values()) CHECK((value == 0.0f || value == 1.0f));  // alpha
 }
 
 TEST_CASE("no light gives none, and light of 10^6 : 1 or in a point's plane stays finite and not negative") {
