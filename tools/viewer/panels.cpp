@@ -222,6 +222,11 @@ Panel keepPanel(const Session& session) {
   panel.rows.push_back(button("save_exr", "all outputs as EXR", "save_image \"out/view.exr\""));
   panel.rows.push_back(button("shot", "the window as PNG", "shot \"out/window.png\""));
   panel.rows.push_back(button("record", "the panels as JSON", "record \"out/view.json\""));
+  panel.rows.push_back(button(
+      "save_pipeline", "parameters into the pipeline's text",
+      "save_pipeline " + quoted(session.state().sides.front().pipeline->file.string()), "asks before"));
+  panel.rows.push_back(button("save_scene", "edits and camera into the scene's text",
+                              "save_scene " + quoted(session.scene().file.string()), "asks before"));
   panel.rows.push_back(text("command", "command", session.command(), "repeats this picture"));
   panel.rows.push_back(heading("done so far, as a script"));
   const std::vector<std::string> history = session.history();
@@ -239,6 +244,8 @@ const char* wordOf(Kind kind) {
       return "text";
     case Kind::number:
       return "number";
+    case Kind::triple:
+      return "triple";
     case Kind::choice:
       return "choice";
     case Kind::toggle:
@@ -271,7 +278,8 @@ nlohmann::ordered_json recordOf(const Session& session) {
       if (!row.tooltip.empty()) one["tooltip"] = row.tooltip;
       if (!row.statement.empty()) one["statement"] = row.statement;
       if (!row.choices.empty()) one["choices"] = row.choices;
-      if (row.kind == Kind::number) one["range"] = {row.low, row.high};
+      if (row.kind == Kind::number || row.kind == Kind::triple) one["range"] = {row.low, row.high};
+      for (const Row::Reset& reset : row.resets) one["resets"][reset.word] = reset.statement;
       if (row.changed) one["changed"] = true;
       for (const Row::Mark& mark : row.marks)
         one["marks"].push_back({{"label", mark.label}, {"x", mark.x}, {"y", mark.y}});
@@ -279,11 +287,12 @@ nlohmann::ordered_json recordOf(const Session& session) {
     }
     panels[panel.name] = std::move(rows);
   }
-  return {{"problem", session.problem()},
-          {"message", session.message()},
-          {"settled", session.settled()},
-          {"judged", session.judgedNow()},
-          {"panels", std::move(panels)}};
+  return {{"problem", session.problem()},  {"message", session.message()},   {"settled", session.settled()},
+          {"judged", session.judgedNow()}, {"question", session.question()}, {"panels", std::move(panels)}};
+}
+
+std::string written(const std::array<double, 3>& numbers) {
+  return fmt::format("{} {} {}", numbers[0], numbers[1], numbers[2]);
 }
 
 std::string filledIn(const std::string& statement, const std::string& value) {

@@ -20,7 +20,7 @@ Word wordOf(const std::vector<std::string>& words, const std::string& text) {
 }  // namespace
 
 void Session::freeCamera(const std::function<Camera(Camera)>& change) {
-  Camera camera = change(cameraOf(state_, *scene_));
+  Camera camera = change(cameraOf(state_, *edited_));
   camera.name = "view";
   camera.keys.clear();
   snapshotFrom(*scene_, state_.time, camera, state_.width, state_.height);  // refuses one that looks nowhere
@@ -33,7 +33,7 @@ bool Session::doLook(const Action& action) {
     const std::vector<double> n = action.numbers();
     return glm::dvec3(n[0], n[1], n[2]);
   };
-  if (word == "camera") {
+  if (word == "camera" && action.property != nullptr) {
     state_.camera = scene_->camera(action.text()).name;
     state_.free.reset();
   } else if (word == "eye") {

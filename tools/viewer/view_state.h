@@ -23,7 +23,7 @@ const std::vector<std::string>& errorMapWords();
 const std::vector<std::string>& curveWords();
 
 struct ViewState {
-  std::string camera;          ///< of the scene
+  std::string camera;          ///< of the scene, as it is edited
   std::optional<Camera> free;  ///< in its place, once somebody has moved
   double time = 0.0, speed = 1.0;
   bool plays = false;
