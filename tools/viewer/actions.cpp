@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <numbers>
 
 #include "lumivox/base/error.h"
 #include "viewer/port_view.h"
@@ -13,6 +14,8 @@ namespace {
 
 using dsl::PropertySpecification;
 using dsl::PropertyType;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
 
 PropertySpecification one(std::string word, PropertyType type, std::string meaning) {
   PropertySpecification made;
@@ -58,6 +61,8 @@ std::vector<PropertySpecification> lookProperties() {
       measured("time", PropertyType::number, dsl::kTime, "the moment that is shown"),
       one("play", PropertyType::flag, "whether time goes on by itself"),
       ranged("speed", PropertyType::number, 1e-3, 1e3, "of time, beside that of the clock"),
+      measured("loop", PropertyType::number, dsl::kTime, "after which playing begins anew; 0: it goes on"),
+      one("frame", PropertyType::name, "steps back until an object is seen whole, or `all`"),
       one("size", PropertyType::resolution, "of the image"),
       one("output", PropertyType::name, "which output is shown; \"whole image\": the sum of all light"),
       one("port", PropertyType::name, "an output of a pass, as PASS.PORT, or `nothing`"),
@@ -88,7 +93,9 @@ std::vector<PropertySpecification> lookProperties() {
 
 std::vector<PropertySpecification> changeProperties() {
   return {
-      one("reset", PropertyType::name, "a parameter back to its default, or `all`"),
+      one("reset", PropertyType::name,
+          "a parameter back to its default, a part of the scene (\"light NAME\", \"material NAME\", "
+          "\"medium NAME\", \"camera NAME\", \"environment\") to its text, or `all`, or `scene`"),
       one("off", PropertyType::name,
           "switches a part of the scene off: \"light NAME\", \"gloss\", \"environment\" ..."),
       one("on", PropertyType::name, "switches it on again"),
@@ -103,22 +110,33 @@ std::vector<PropertySpecification> keepProperties() {
   return {
       one("save_image", PropertyType::name, "the picture (.png), or every output (.exr)"),
       one("save_pipeline", PropertyType::name, "the pipeline's text with the values as they are"),
-      one("save_scene", PropertyType::name, "the scene's text with the camera as it is, called `view`"),
+      one("save_scene", PropertyType::name,
+          "the scene's text with what was changed in it, and a free camera as `view`"),
+      chosen("answer", {"yes", "no"}, "whether a file that was there already is overwritten"),
+      one("export_grid", PropertyType::name, "the voxels of the port that is shown, a .vdb"),
+      one("add_point", PropertyType::name,
+          "measures the pipeline as it is, as `sweep` does, into a results store"),
       one("record", PropertyType::name, "what the panels show, as JSON"),
       one("shot", PropertyType::name, "the window as it is, a .png"),
   };
 }
 
 std::vector<PropertySpecification> windowProperties() {
-  PropertySpecification wait =
-      one("wait", PropertyType::any,
-          "for `frame`, `judged`, `problem`, `mended`, or `reference` and so many samples, at most a minute");
+  PropertySpecification wait = one(
+      "wait", PropertyType::any,
+      "for `frame`, `judged`, `problem`, `mended`, `kept`, or `reference` and so many samples, at most a minute");
   return {
       std::move(wait),
       one("click", PropertyType::name, "a control, by its name"),
       one("key", PropertyType::name, "presses a key, by its name"),
       one("panel", PropertyType::name, "opens a panel"),
       one("window", PropertyType::resolution, "size of the window"),
+      one("panels", PropertyType::flag, "shows the panels"),
+      ranged("panel_width", PropertyType::number, 120, 4000, "of the panels, in pixels of a scale of 1"),
+      ranged("scale", PropertyType::number, 0.25, 8,
+             "as a monitor of so many times the usual density has it"),
+      one("minimise", PropertyType::flag, "puts the window away, or brings it back"),
+      chosen("focus", {"picture", "panels"}, "which of the two the keyboard moves in"),
       ranged("random", PropertyType::integer, 1, 100000, "so many random actions, by the seed"),
       one("quit", PropertyType::flag, "closes the window"),
   };
@@ -147,8 +165,24 @@ std::vector<dsl::BlockSpecification> makeSpecifications() {
                          ranged("exponent", PropertyType::number, 0, 1e30, "of the Phong lobe"),
                          ranged("emission", PropertyType::oneOrThree, 0, 1e30, "radiance")};
   dsl::BlockSpecification light = block("light", dsl::HeaderUse::required, "another power of a light");
-  light.properties = {ranged("power", PropertyType::oneOrThree, 0, 1e30, "irradiance or intensity")};
-  view.blocks = {std::move(set), std::move(material), std::move(light)};
+  light.properties = {ranged("power", PropertyType::oneOrThree, 0, 1e30,
+                             "irradiance, intensity, or an area light's radiance")};
+  dsl::BlockSpecification medium = block("medium", dsl::HeaderUse::required, "another make of a medium");
+  PropertySpecification extinction =
+      measured("extinction", PropertyType::oneOrThree, dsl::kInverseLength, "at density 1");
+  extinction.low = 0.0;
+  medium.properties = {
+      std::move(extinction), ranged("albedo", PropertyType::oneOrThree, 0, 1, "scattering / extinction"),
+      ranged("anisotropy", PropertyType::number, -0.999, 0.999, "mean cosine of scattering")};
+  dsl::BlockSpecification camera =
+      block("camera", dsl::HeaderUse::required, "puts a camera of the scene elsewhere");
+  PropertySpecification fov = measured("fov", PropertyType::number, dsl::kAngle, "the full vertical angle");
+  fov.low = 0.1 * kDegree;
+  fov.high = 179.0 * kDegree;
+  camera.properties = {measured("eye", PropertyType::vector3, dsl::kLength, "where it is"),
+                       measured("target", PropertyType::vector3, dsl::kLength, "what it looks at"),
+                       std::move(fov)};
+  view.blocks = {std::move(set), std::move(material), std::move(light), std::move(medium), std::move(camera)};
   return {std::move(view)};
 }
 

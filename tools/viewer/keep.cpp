@@ -2,6 +2,9 @@
 // picture.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/experiment/report.h"
@@ -57,6 +60,17 @@ void requireSameFolder(const char* what, const fs::path& file, const fs::path& o
 
 bool Session::doKeep(const Action& action) {
   const std::string& word = action.word();
+  if (word == "answer") {
+    if (!waitsForAnswer_) throw Error("answer: nothing was asked");
+    const TextToWrite text = *std::exchange(waitsForAnswer_, std::nullopt);
+    if (action.text() == "yes")
+      write(text);
+    else
+      say(text.file.string() + " stays as it was", false);
+    return true;
+  }
+  if (word == "export_grid") return exportGrid(action.text()), true;
+  if (word == "add_point") return addPoint(action.text()), true;
   if (word != "save_image" && word != "save_pipeline" && word != "save_scene" && word != "record")
     return false;
   const fs::path file = action.text();
@@ -70,18 +84,55 @@ bool Session::doKeep(const Action& action) {
                                                              ? std::string("expected `wait frame` before")
                                                              : rendered_->sides.front().error));
     saveImage(file, rendered_->sides.front(), state_.output, exposure_, state_.curve);
-  } else if (word == "save_pipeline") {
-    const std::string text = textWithDefaults(*side.pipeline, side.values);
-    Pipeline::parse(text, file);  // what is written can be read
-    createParentDirectories(file);
-    writeFileAtomically(file, text);
   } else {
-    requireSameFolder("save_scene", file, options_.scene);
-    writeFileAtomically(
-        file, textWithCamera(options_.scene, cameraOf(state_, *scene_), state_.width, state_.height));
+    const bool isScene = word == "save_scene";
+    if (isScene) requireSameFolder("save_scene", file, options_.scene);
+    const TextToWrite text{file, isScene ? sceneText() : textWithDefaults(*side.pipeline, side.values)};
+    if (!isScene) Pipeline::parse(text.text, file);  // what is written can be read
+    if (!fs::exists(file)) {
+      write(text);
+    } else if (readFile(file) == text.text) {
+      say(file.string() + " says so already", false);
+    } else {
+      waitsForAnswer_ = text;
+      say({}, false);
+    }
+    return true;
   }
   say(file.string() + " written", false);
   return true;
+}
+
+std::string Session::question() const {
+  return waitsForAnswer_ ? waitsForAnswer_->file.string() + " is there already. Overwrite it?"
+                         : std::string();
+}
+
+std::string Session::sceneText() {
+  std::optional<Camera> view;
+  if (state_.free) {
+    view = state_.free;
+    view->width = state_.width;
+    view->height = state_.height;
+  }
+  return textWithEdits(*scene_, state_.edits, view ? &*view : nullptr, options_.sceneLoad);
+}
+
+void Session::write(const TextToWrite& text) {
+  createParentDirectories(text.file);
+  writeFileAtomically(text.file, text.text);
+  say(text.file.string() + " written", false);
+  std::error_code none;
+  if (!fs::equivalent(text.file, options_.scene, none)) return;
+  // What was changed is now what the text says: there is nothing more to be undone in the scene.
+  readChangedFiles();
+  const auto settle = [](ViewState& state) { state.edits = {}; };
+  settle(state_);
+  std::for_each(undo_.begin(), undo_.end(), settle);
+  std::for_each(redo_.begin(), redo_.end(), settle);
+  if (state_.free) state_.camera = state_.free->name;
+  state_.free.reset();
+  applyEdits();
 }
 
 std::string Session::command() const {

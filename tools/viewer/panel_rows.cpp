@@ -57,4 +57,15 @@ Row number(const std::string& name, const std::string& label, double value, doub
   return row;
 }
 
+Row triple(const std::string& name, const std::string& label, const std::array<double, 3>& values, double low,
+           double high, const std::string& statement, const std::string& tooltip) {
+  Row row = text(name, label, fmt::format("{:.4g} {:.4g} {:.4g}", values[0], values[1], values[2]), tooltip);
+  row.kind = Kind::triple;
+  row.numbers = values;
+  row.low = low;
+  row.high = high;
+  row.statement = statement;
+  return row;
+}
+
 }  // namespace lumivox::viewer

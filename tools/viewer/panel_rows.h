@@ -1,6 +1,7 @@
 // How the sources of the panels write rows.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ Row choice(const std::string& name, const std::string& label, const std::string&
            std::vector<std::string> choices, const std::string& statement, const std::string& tooltip = {});
 Row number(const std::string& name, const std::string& label, double value, double low, double high,
            bool integer, const std::string& statement, const std::string& tooltip = {});
+/// Three numbers in one control; between the limits each.
+Row triple(const std::string& name, const std::string& label, const std::array<double, 3>& values, double low,
+           double high, const std::string& statement, const std::string& tooltip = {});
 
 // The panels that stand in files of their own.
 Panel changePanel(const Session& session);

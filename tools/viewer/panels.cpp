@@ -74,6 +74,10 @@ Panel lookPanel(const Session& session) {
                         "W A S D Q E move, the left button turns, the right one orbits"));
   rows.push_back(number("time", "time, s", state.time, 0.0, 60.0, false, "time {}"));
   rows.push_back(toggle("play", "play", state.plays, "play {}"));
+  rows.push_back(number("loop", "loop after, s", state.loop, 0.0, 60.0, false, "loop {}", "0: time goes on"));
+  std::vector<std::string> frames{"all"};
+  for (const Object& object : session.scene().objects) frames.push_back(object.name);
+  rows.push_back(choice("frame", "frame", "", frames, "frame {}", "steps back until it is seen whole"));
   std::vector<std::string> outputs{kWholeImage};
   for (const Pipeline::Output& output : state.sides.front().pipeline->outputs) outputs.push_back(output.name);
   rows.push_back(choice("output", "output", state.output, outputs, "output {}"));
@@ -197,7 +201,17 @@ Panel keepPanel(const Session& session) {
   panel.rows.push_back(button("save_png", "picture as PNG", "save_image \"out/view.png\""));
   panel.rows.push_back(button("save_exr", "all outputs as EXR", "save_image \"out/view.exr\""));
   panel.rows.push_back(button("shot", "the window as PNG", "shot \"out/window.png\""));
+  if (session.state().port)
+    panel.rows.push_back(button("export_grid", "the port's voxels as VDB", "export_grid \"out/view.vdb\""));
+  panel.rows.push_back(button("add_point", "measure, into a results store",
+                              "add_point \"out/results.sqlite\"",
+                              "as `sweep` does: with errors, times and where they come from"));
   panel.rows.push_back(button("record", "the panels as JSON", "record \"out/view.json\""));
+  panel.rows.push_back(button(
+      "save_pipeline", "parameters into the pipeline's text",
+      "save_pipeline " + quoted(session.state().sides.front().pipeline->file.string()), "asks before"));
+  panel.rows.push_back(button("save_scene", "edits and camera into the scene's text",
+                              "save_scene " + quoted(session.scene().file.string()), "asks before"));
   panel.rows.push_back(text("command", "command", session.command(), "repeats this picture"));
   panel.rows.push_back(heading("done so far, as a script"));
   const std::vector<std::string> history = session.history();
@@ -215,6 +229,8 @@ const char* wordOf(Kind kind) {
       return "text";
     case Kind::number:
       return "number";
+    case Kind::triple:
+      return "triple";
     case Kind::choice:
       return "choice";
     case Kind::toggle:
@@ -249,7 +265,8 @@ nlohmann::ordered_json recordOf(const Session& session) {
       if (!row.tooltip.empty()) one["tooltip"] = row.tooltip;
       if (!row.statement.empty()) one["statement"] = row.statement;
       if (!row.choices.empty()) one["choices"] = row.choices;
-      if (row.kind == Kind::number) one["range"] = {row.low, row.high};
+      if (row.kind == Kind::number || row.kind == Kind::triple) one["range"] = {row.low, row.high};
+      for (const Row::Reset& reset : row.resets) one["resets"][reset.word] = reset.statement;
       if (row.changed) one["changed"] = true;
       for (const Row::Mark& mark : row.marks)
         one["marks"].push_back({{"label", mark.label}, {"x", mark.x}, {"y", mark.y}});
@@ -257,11 +274,12 @@ nlohmann::ordered_json recordOf(const Session& session) {
     }
     panels[panel.name] = std::move(rows);
   }
-  return {{"problem", session.problem()},
-          {"message", session.message()},
-          {"settled", session.settled()},
-          {"judged", session.judgedNow()},
-          {"panels", std::move(panels)}};
+  return {{"problem", session.problem()},  {"message", session.message()},   {"settled", session.settled()},
+          {"judged", session.judgedNow()}, {"question", session.question()}, {"panels", std::move(panels)}};
+}
+
+std::string written(const std::array<double, 3>& numbers) {
+  return fmt::format("{} {} {}", numbers[0], numbers[1], numbers[2]);
 }
 
 std::string filledIn(const std::string& statement, const std::string& value) {

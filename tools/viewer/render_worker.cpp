@@ -194,6 +194,8 @@ class Renderer {
     rendered.techniques = techniques_->available();
     executors_.resize(wish.sides.size());
     for (std::size_t i = 0; i < wish.sides.size(); ++i) rendered.sides.push_back(renderSide(wish, i));
+    for (const SkippedTechnique& one : techniques_->skipped())
+      rendered.skipped += (rendered.skipped.empty() ? "" : "\n") + one.library.string() + ": " + one.reason;
     if (wish.port && !executors_.empty() && executors_.front() != nullptr) {
       try {
         rendered.port = executors_.front()->port(*wish.port, snapshotOf(wish), [this]() -> VoxelView& {

@@ -81,6 +81,7 @@ struct Rendered {
   PortPicture port;                     ///< of RenderWish::port
   std::string portError, device;        ///< device: its renderer and how programs reach it
   std::vector<std::string> techniques;  ///< that are there
+  std::string skipped;                  ///< libraries that do not fit, and why: another one, or none, serves
   bool software = false;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "lumivox/base/error.h"
 #include "lumivox/experiment/report.h"
@@ -20,11 +21,11 @@ constexpr double kWatchSeconds = 0.25;  // between looks at the files
 constexpr std::size_t kMostUndo = 1000;
 
 /// Statements that change what is made or how it is judged, and so can be undone; looking around cannot.
-bool isUndoable(const std::string& word) {
+bool isUndoable(const Action& action) {
   static const std::set<std::string> words{
-      "set",   "reset",       "show",     "beside",          "swap", "off", "on",
-      "light", "environment", "material", "keep_everything", "seed"};
-  return words.count(word) != 0;
+      "set",         "reset",    "show",   "beside",          "swap", "off", "on", "light",
+      "environment", "material", "medium", "keep_everything", "seed"};
+  return words.count(action.word()) != 0 || (action.word() == "camera" && action.block != nullptr);
 }
 
 std::vector<std::shared_ptr<const Pipeline>> loadPipelines(const SessionOptions& options,
@@ -52,6 +53,7 @@ std::vector<std::shared_ptr<const Pipeline>> loadPipelines(const SessionOptions&
 Session::Session(const SessionOptions& options, std::function<void()> wake)
     : options_(options),
       techniques_(options.techniques, wake),
+      tools_(makeToolWork, wake),
       judge_(makeJudgeWork, wake),
       tracer_(makeReferenceWork, wake),
       renderer_([device = options.device] { return makeRenderWork(device); }, wake) {
@@ -76,7 +78,10 @@ void Session::loadScene(const fs::path& file) {
 }
 
 void Session::applyEdits() {
+  // What is as it was stays the very same scene: who holds it need not look at its contents.
+  if (editedFrom_ == scene_ && applied_ == state_.edits) return;
   edited_ = state_.edits.empty() ? scene_ : std::make_shared<const Scene>(edited(*scene_, state_.edits));
+  editedFrom_ = scene_;
   applied_ = state_.edits;
 }
 
@@ -88,11 +93,13 @@ void Session::say(const std::string& message, bool error) {
 
 std::string Session::problem() const {
   if (!textProblem_.empty()) return textProblem_;
+  if (!editProblem_.empty()) return editProblem_;
   if (!techniques_.errors().empty()) return techniques_.errors().begin()->second;
   if (rendered_ != nullptr) {
     for (const RenderedSide& side : rendered_->sides)
       if (!side.error.empty()) return side.error;
     if (!rendered_->portError.empty()) return rendered_->portError;
+    if (!rendered_->skipped.empty()) return rendered_->skipped;
   }
   if (reference_ != nullptr && !reference_->error.empty()) return "reference: " + reference_->error;
   return {};
@@ -120,11 +127,13 @@ bool Session::perform(const Action& action) {
     say(error.what(), true);
     return true;
   }
-  if (isUndoable(action.word())) {
-    undo_.push_back(before);
+  const bool joined = joins_ && isUndoable(action) && !undo_.empty() && !log_.empty();
+  if (isUndoable(action)) {
+    if (!joined) undo_.push_back(before);
     if (undo_.size() > kMostUndo) undo_.erase(undo_.begin());
     redo_.clear();
   }
+  if (joined) log_.pop_back();
   log_.push_back(action.written());
   stateChanged_ = pictureChanged_ = true;
   return true;
@@ -182,6 +191,7 @@ void Session::readChangedFiles() {
 bool Session::step(double seconds) {
   if (state_.plays) {
     state_.time += seconds * state_.speed;
+    if (state_.loop > 0.0 && state_.time >= state_.loop) state_.time = std::fmod(state_.time, state_.loop);
     stateChanged_ = true;
   }
   if (state_.layout == Layout::flicker || picture_.badPixels > 0) {
@@ -210,7 +220,13 @@ void Session::wantFrame() {
   // A frame at a time: while time goes on each would be passed over for the next.
   if (state_.plays && renderer_.busy()) return;
   stateChanged_ = false;
-  if (!(applied_ == state_.edits)) applyEdits();
+  try {
+    applyEdits();
+    editProblem_.clear();
+  } catch (const std::exception& error) {
+    editProblem_ = error.what();  // of edits that do not fit a text that has changed
+    return;
+  }
   std::set<std::string> used;
   for (const Side& side : state_.sides)
     for (const std::string& technique : side.pipeline->techniques()) used.insert(technique);
@@ -231,6 +247,22 @@ void Session::wantFrame() {
   wish.number = ++wishes_;
   asked_ = wish;
   renderer_.want(std::move(wish));
+}
+
+bool Session::stop(double seconds) {
+  tracer_.stop();
+  judge_.stop();
+  renderer_.stop();
+  techniques_.stop();
+  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (tracer_.busy() || judge_.busy() || renderer_.busy() || techniques_.compiles()) {
+    if (std::chrono::steady_clock::now() > until) {
+      techniques_.removeFiles();
+      return false;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
 }
 
 bool Session::settled() const {

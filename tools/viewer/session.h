@@ -18,6 +18,7 @@
 #include "viewer/reference_worker.h"
 #include "viewer/render_worker.h"
 #include "viewer/techniques.h"
+#include "viewer/tool_worker.h"
 #include "viewer/view_state.h"
 #include "viewer/watch.h"
 
@@ -59,6 +60,12 @@ struct TimedFrame {
   std::vector<std::vector<PassRecord>> sides;
 };
 
+/// A text for a file that was there already: it is asked for.
+struct TextToWrite {
+  std::filesystem::path file;
+  std::string text;
+};
+
 class Session {
  public:
   /// `wake` is called from other threads when something new is there. Error when a text is wrong.
@@ -74,7 +81,8 @@ class Session {
   bool step(double seconds);
 
   const ViewState& state() const { return state_; }
-  const Scene& scene() const { return *scene_; }
+  const Scene& scene() const { return *scene_; }  ///< as its text has it
+  const Scene& shownScene() const { return *edited_; }
   const std::vector<std::shared_ptr<const Pipeline>>& pipelines() const { return pipelines_; }
   RenderedResult rendered() const { return rendered_; }     ///< the last; null before the first
   ReferenceResult reference() const { return reference_; }  ///< of this view; null while there is none
@@ -91,6 +99,11 @@ class Session {
   const std::map<std::string, std::string>& technicalErrors() const { return techniques_.errors(); }
   const std::string& message() const { return message_; }  ///< the last thing that went wrong or was done
   bool messageIsError() const { return messageIsError_; }
+  /// What waits for `answer`, as a sentence; empty: nothing.
+  std::string question() const;
+  /// Whether changes from now on are one with the change before, to be undone together: those of one
+  /// movement of a hand.
+  void joinChanges(bool join) { joins_ = join; }
   void say(const std::string& message, bool error);
   /// What is wrong with the texts, the shaders or the frame now, over the last good picture; empty: nothing.
   std::string problem() const;
@@ -108,6 +121,10 @@ class Session {
   /// Whether something happens by itself: the picture must be asked for again soon.
   bool moves() const;
   bool tracing() const { return tracer_.busy(); }
+  bool keeping() const { return keeping_; }  ///< whether a program still writes what was asked for
+  /// Gives up whatever is under way; whether it ended before `seconds` were over. What did not can only be
+  /// left behind, with the process.
+  bool stop(double seconds);
 
  private:
   void doIt(const Action& action);
@@ -115,8 +132,19 @@ class Session {
   bool doLookAtPort(const Action& action);
   bool doChange(const Action& action);
   bool doKeep(const Action& action);
+  bool isAsInTexts() const;
+  std::vector<std::string> runWords(const std::string& camera) const;
+  void exportGrid(const std::filesystem::path& file);
+  void addPoint(const std::filesystem::path& store);
+  void startTool(ToolWish wish);
+  Camera framed(const Camera& camera, const std::string& what) const;
   void setParameters(const Action& action);
   void resetParameter(const std::string& name);
+  /// Whether the scene has such a part, which then is as its text has it.
+  bool resetScene(const std::string& name);
+  bool editScene(const Action& action);
+  std::string sceneText();
+  void write(const TextToWrite& text);
   void loadScene(const std::filesystem::path& file);
   void choosePipeline(std::size_t side, const std::string& name);
   void freeCamera(const std::function<Camera(Camera)>& change);
@@ -132,20 +160,20 @@ class Session {
   void noteTimes();
   void compose();
   Picture portPicture(const PictureLook& outputLook) const;
-  const Scene& shownScene() const { return *edited_; }
   void applyEdits();
 
   static constexpr double kFlickerSeconds = 0.5;  ///< a picture of two that flicker
 
   SessionOptions options_;
-  std::shared_ptr<const Scene> scene_, edited_;
+  std::shared_ptr<const Scene> scene_, edited_, editedFrom_;
   std::vector<std::shared_ptr<const Pipeline>> pipelines_;
   ViewState state_;
   SceneEdits applied_;
   std::vector<ViewState> undo_, redo_;
   std::vector<std::string> log_;
-  std::string message_, textProblem_;
-  bool messageIsError_ = false;
+  std::string message_, textProblem_, editProblem_;
+  bool messageIsError_ = false, joins_ = false;
+  std::optional<TextToWrite> waitsForAnswer_;
 
   Watch texts_;
   double sinceWatch_ = 0.0, flicker_ = 0.0;
@@ -162,7 +190,9 @@ class Session {
   Picture picture_;
   double exposure_ = 0.0;
 
+  bool keeping_ = false;
   LiveTechniques techniques_;
+  ToolWorker tools_;
   JudgeWorker judge_;
   ReferenceWorker tracer_;
   RenderWorker renderer_;
@@ -173,7 +203,5 @@ class Session {
 Pipeline withPassParameters(const Pipeline& pipeline, const std::string& pass, const dsl::Block& values);
 /// The pipeline's text with these defaults, in the canonical layout.
 std::string textWithDefaults(const Pipeline& pipeline, const ParameterValues& values);
-/// The scene's text with a camera `view` as its first.
-std::string textWithCamera(const std::filesystem::path& scene, const Camera& camera, int width, int height);
 
 }  // namespace lumivox::viewer

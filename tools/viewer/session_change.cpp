@@ -21,6 +21,22 @@ glm::vec3 colourOf(const dsl::Property& property) {
   return colourOf(Action{nullptr, &property, nullptr});
 }
 
+template <class Named>
+bool hasNamed(const std::vector<Named>& all, const std::string& name) {
+  return std::any_of(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
+}
+template <class Named>
+void requireNamed(const std::vector<Named>& all, const std::string& what, const std::string& name) {
+  if (hasNamed(all, name)) return;
+  std::vector<std::string> names;
+  for (const Named& one : all) names.push_back(one.name);
+  const std::string nearest = nearestWord(name, names);
+  throw Error(
+      fmt::format("{} '{}': the scene has none of that name; expected {}{}", what, name,
+                  names.empty() ? "nothing: there is none" : fmt::format("one of {}", fmt::join(names, ", ")),
+                  nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+}
+
 }  // namespace
 
 void Session::choosePipeline(std::size_t side, const std::string& name) {
@@ -70,12 +86,32 @@ void Session::resetParameter(const std::string& name) {
     for (const auto& pipeline : pipelines_)
       if (pipeline->file == side.pipeline->file) side = {pipeline, {}};
     side.values.clear();
-  } else {
+  } else if (!resetScene(name)) {
     if (side.values.erase(name) != 0) return;
     const auto& parameters = side.pipeline->parameters;
     if (std::none_of(parameters.begin(), parameters.end(), [&](const auto& one) { return one.name == name; }))
-      throw Error(fmt::format("reset {}: the pipeline has no such parameter", name));
+      throw Error(
+          fmt::format("reset {}: the pipeline has no such parameter, and the scene no such part", name));
   }
+}
+
+bool Session::resetScene(const std::string& name) {
+  SceneEdits& edits = state_.edits;
+  if (name == "scene") {
+    edits = {};
+    return true;
+  }
+  const std::size_t space = name.find(' ');
+  const std::string kind = name.substr(0, space),
+                    part = space == std::string::npos ? std::string() : name.substr(space + 1);
+  const std::vector<std::string> parts = partsOf(*scene_);
+  bool known = edits.off.erase(name) != 0 || std::find(parts.begin(), parts.end(), name) != parts.end();
+  if (kind == "environment") known = true, edits.environment.reset();
+  if (kind == "light") edits.powers.erase(part);
+  if (kind == "medium") edits.media.erase(part);
+  if (kind == "material") known = hasNamed(editableMaterials(*scene_), part), edits.materials.erase(part);
+  if (kind == "camera") known = hasNamed(scene_->cameras, part), edits.cameras.erase(part);
+  return known;
 }
 
 void Session::stepBack(std::vector<ViewState>& from, std::vector<ViewState>& to, int steps) {
@@ -91,6 +127,45 @@ void Session::stepBack(std::vector<ViewState>& from, std::vector<ViewState>& to,
     now.seed = before.seed;
     state_ = std::move(now);
   }
+  applyEdits();
+}
+
+bool Session::editScene(const Action& action) {
+  if (action.block == nullptr || action.word() == "set") return false;
+  const std::string& word = action.word();
+  const std::string name = action.block->header.front().text;
+  SceneEdits& edits = state_.edits;
+  if (word == "light") requireNamed(editableLights(*scene_), word, name);
+  if (word == "material") requireNamed(editableMaterials(*scene_), word, name);
+  if (word == "medium") requireNamed(scene_->media, word, name);
+  if (word == "camera") requireNamed(scene_->cameras, word, name);
+  for (const dsl::Item& item : action.block->items) {
+    const dsl::Property& property = *item.property;
+    const std::string& is = property.word;
+    const double number = property.values.front().inBaseUnits();
+    if (word == "light") edits.powers[name] = colourOf(property);
+    if (word == "material") {
+      MaterialEdit& edit = edits.materials[name];
+      if (is == "diffuse") edit.diffuse = colourOf(property);
+      if (is == "specular") edit.specular = colourOf(property);
+      if (is == "emission") edit.emission = colourOf(property);
+      if (is == "exponent") edit.exponent = static_cast<float>(number);
+    }
+    if (word == "medium") {
+      MediumEdit& edit = edits.media[name];
+      if (is == "extinction") edit.extinction = colourOf(property);
+      if (is == "albedo") edit.albedo = colourOf(property);
+      if (is == "anisotropy") edit.anisotropy = static_cast<float>(number);
+    }
+    if (word == "camera") {
+      CameraEdit& edit = edits.cameras[name];
+      const std::vector<double> values = dsl::numbersInBaseUnits(property);
+      if (is == "eye") edit.eye = glm::dvec3(values[0], values[1], values[2]);
+      if (is == "target") edit.target = glm::dvec3(values[0], values[1], values[2]);
+      if (is == "fov") edit.fov = number;
+    }
+  }
+  return true;
 }
 
 bool Session::doChange(const Action& action) {
@@ -130,24 +205,8 @@ bool Session::doChange(const Action& action) {
     state_.edits.off.erase(action.text());
   } else if (word == "environment") {
     state_.edits.environment = colourOf(action);
-  } else if (word == "light") {
-    const std::string name = action.block->header.front().text;
-    requirePart("light " + name);
-    for (const dsl::Item& item : action.block->items) state_.edits.powers[name] = colourOf(*item.property);
-  } else if (word == "material") {
-    const std::string name = action.block->header.front().text;
-    if (std::none_of(scene_->materials.begin(), scene_->materials.end(),
-                     [&](const Material& one) { return one.name == name; }))
-      throw Error(fmt::format("material '{}': the scene has none of that name", name));
-    MaterialEdit& edit = state_.edits.materials[name];
-    for (const dsl::Item& item : action.block->items) {
-      const dsl::Property& property = *item.property;
-      if (property.word == "diffuse") edit.diffuse = colourOf(property);
-      if (property.word == "specular") edit.specular = colourOf(property);
-      if (property.word == "emission") edit.emission = colourOf(property);
-      if (property.word == "exponent")
-        edit.exponent = static_cast<float>(property.values.front().inBaseUnits());
-    }
+  } else if (editScene(action)) {
+    applyEdits();  // refuses what a text could not say either
   } else if (word == "keep_everything") {
     state_.keepEverything = action.flag();
   } else if (word == "seed") {

@@ -71,6 +71,10 @@ void Session::takeResults() {
       pictureChanged_ = true;
     }
   }
+  if (const std::optional<ToolResult> kept = tools_.take()) {
+    keeping_ = false;
+    say(kept->message, kept->failed);
+  }
   if (auto judged = judge_.take()) {
     judged_ = std::move(*judged);
     noteTried();

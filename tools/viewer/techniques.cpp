@@ -55,6 +55,10 @@ LiveTechniques::LiveTechniques(std::vector<fs::path> directories, std::function<
 
 LiveTechniques::~LiveTechniques() {
   compiler_.stop();
+  removeFiles();
+}
+
+void LiveTechniques::removeFiles() {
   std::error_code ignored;
   fs::remove_all(folder_, ignored);
 }

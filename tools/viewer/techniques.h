@@ -42,6 +42,9 @@ class LiveTechniques {
   /// What the compiler found wrong, by technique; goes away when it is mended.
   const std::map<std::string, std::string>& errors() const { return errors_; }
   bool compiles() const { return compiler_.busy(); }
+  void stop() { compiler_.stop(); }
+  /// Those of changed techniques, which are of this process alone.
+  void removeFiles();
 
  private:
   std::filesystem::path libraryOf(const std::string& technique) const;

@@ -5,14 +5,10 @@
 
 #include "lumivox/base/error.h"
 #include "viewer/session.h"
+#include "viewer/text_items.h"
 
 namespace lumivox::viewer {
 namespace {
-
-/// A document without findings, to be changed: documents cannot be copied.
-dsl::Document parsedAgain(const dsl::Document& document) {
-  return dsl::parse(document.source, document.file);
-}
 
 dsl::Block* blockNamed(dsl::Document& document, const std::string& word, const std::string& name) {
   for (dsl::Item& top : document.items) {
@@ -23,23 +19,6 @@ dsl::Block* blockNamed(dsl::Document& document, const std::string& word, const s
         return item.block.get();
   }
   return nullptr;
-}
-
-dsl::Item propertyItem(const std::string& statement) {
-  dsl::Document made = dsl::parse("view \"made\" {\n" + statement + "\n}\n", "made");
-  if (!made.findings.empty()) throw DiagnosticsError(made.findings);
-  return std::move(made.items.front().block->items.front());
-}
-
-void replace(dsl::Block& block, const dsl::Property& property) {
-  for (dsl::Item& item : block.items)
-    if (item.property && item.property->word == property.word) {
-      item.property->values = property.values;
-      return;
-    }
-  dsl::Item added;
-  added.property = property;
-  block.items.push_back(std::move(added));
 }
 
 }  // namespace
@@ -56,7 +35,7 @@ Pipeline withPassParameters(const Pipeline& pipeline, const std::string& pass, c
                             nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
   }
   for (const dsl::Item& item : values.items)
-    if (item.property) replace(*block, *item.property);
+    if (item.property) replaceProperty(*block, *item.property);
   return Pipeline::parse(dsl::format(document), pipeline.file);
 }
 
@@ -71,35 +50,10 @@ std::string textWithDefaults(const Pipeline& pipeline, const ParameterValues& va
       // A number in base units, which needs one where angles are.
       std::string written = value->second.text();
       if (value->second.word.empty() && value->second.dimension == dsl::kAngle) written += " rad";
-      item.property->values[1] = propertyItem("value " + written).property->values.front();
+      item.property->values[1] = itemOf("value " + written).property->values.front();
     }
   }
   return dsl::format(document);
-}
-
-std::string textWithCamera(const std::filesystem::path& scene, const Camera& camera, int width, int height) {
-  dsl::Document document = dsl::parseFile(scene);
-  document = dsl::parse(document.source, scene);  // includes as they are written
-  if (!document.findings.empty()) throw DiagnosticsError(document.findings);
-  const auto vector = [](const glm::dvec3& value) {
-    return fmt::format("{} {} {}", value.x, value.y, value.z);
-  };
-  std::string text =
-      fmt::format("camera view {{\neye {}\ntarget {}\nup {}\nfov {} rad\nresolution {} {}\n",
-                  vector(camera.eye), vector(camera.target), vector(camera.up), camera.fov, width, height);
-  if (camera.aperture > 0.0) text += fmt::format("aperture {}\nfocus {}\n", camera.aperture, camera.focus);
-  dsl::Item item = propertyItem(text + "}");
-  for (dsl::Item& top : document.items) {
-    if (!top.block || top.block->word != "scene") continue;
-    std::vector<dsl::Item>& items = top.block->items;
-    std::erase_if(items, [](const dsl::Item& one) {
-      return one.block && one.block->word == "camera" && !one.block->header.empty() &&
-             one.block->header.front().text == "view";
-    });
-    items.insert(items.begin(), std::move(item));
-    return dsl::format(document);
-  }
-  throw Error(fmt::format("{}: no block `scene`", scene.string()));
 }
 
 }  // namespace lumivox::viewer

@@ -15,7 +15,9 @@ namespace lumivox::viewer {
 struct WindowOptions {
   int width = 1280, height = 800;
   double fpsLimit = 60.0;
-  std::filesystem::path layoutFile;  ///< where ImGui keeps its layout; empty: nowhere
+  /// Where the layout of this user is kept, a text of statements; empty: nowhere.
+  std::filesystem::path layoutFile;
+  bool restoresSize = true;  ///< that of the layout; else width and height
   std::string title = "Lumivox";
 };
 

@@ -10,6 +10,7 @@ namespace lumivox::viewer {
 namespace {
 
 constexpr float kPanelWidth = 420.0f;    // pixels at a scale of 1
+constexpr double kDragShare = 0.01;      // of the largest of three numbers, for a pixel
 constexpr double kTurnPerPixel = 0.005;  // rad
 constexpr double kZoomPerNotch = 0.9;
 
@@ -20,7 +21,10 @@ void Window::State::drawPicture(const ImVec2& low, const ImVec2& size) {
   ImGui::SetNextWindowSize(size);
   ImGui::Begin("picture", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse |
+                   ImGuiWindowFlags_NoNavInputs);
+  if (focus == "picture") ImGui::SetWindowFocus();
+  picturesKeyboard = ImGui::IsWindowFocused();
   const ImVec2 room = ImGui::GetContentRegionAvail();
   if (texture->width() > 0 && room.x >= 1.0f && room.y >= 1.0f) {
     const float factor = std::min(room.x / static_cast<float>(texture->width()),
@@ -50,6 +54,7 @@ void Window::State::drawPicture(const ImVec2& low, const ImVec2& size) {
   } else {
     ImGui::TextUnformatted(session->problem().empty() ? "the first picture is being made ..." : "no picture");
   }
+  drawLegend(ImVec2(low.x + 16.0f, low.y + size.y - 48.0f * scale), size.x - 32.0f);
   drawProblem(ImVec2(low.x + 8.0f, low.y + 8.0f), size.x - 16.0f);
   ImGui::End();
 }
@@ -116,6 +121,74 @@ void Window::State::drawChoice(const Panel& panel, const Row& row) {
   ImGui::EndCombo();
 }
 
+void Window::State::changeBy(const std::string& control, const std::string& statements) {
+  session->joinChanges(moves == control);
+  act(statements);
+  session->joinChanges(false);
+  // What the mouse goes on moving is one change.
+  moves = ImGui::IsMouseDown(ImGuiMouseButton_Left) ? control : std::string();
+}
+
+/// The two small buttons in front of a number: which was pressed, -1 or 1.
+int Window::State::drawSteps(const std::string& name) {
+  int pressed = 0;
+  if (ImGui::SmallButton("-")) pressed = -1;
+  controls[name + "/less"] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+  ImGui::SameLine();
+  if (ImGui::SmallButton("+")) pressed = 1;
+  controls[name + "/more"] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+  ImGui::SameLine();
+  return pressed;
+}
+
+void Window::State::drawNumber(const Row& row, const std::string& name) {
+  const auto change = [&](double value) {
+    value = std::clamp(row.integer ? std::round(value) : value, row.low, row.high);
+    if (value == row.number) return;
+    changeBy(name,
+             filledIn(row.statement, row.integer ? fmt::format("{:.0f}", value) : fmt::format("{}", value)));
+  };
+  const double step = row.integer && row.number <= 8.0 ? 1.0 : 0.0;
+  const int pressed = drawSteps(name);
+  if (pressed < 0) change(step > 0.0 ? row.number - step : row.number / (row.number < 0.0 ? 0.5 : 2.0));
+  if (pressed > 0)
+    change(row.number == 0.0                ? (row.integer ? 1.0 : row.high / 16.0)
+           : step > 0.0 && row.number < 8.0 ? row.number + step
+                                            : row.number * (row.number < 0.0 ? 0.5 : 2.0));
+  double value = row.number;
+  ImGui::SliderScalar(row.label.c_str(), ImGuiDataType_Double, &value, &row.low, &row.high,
+                      row.integer ? "%.0f" : "%.5g", row.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+  if (ImGui::IsItemEdited()) change(value);
+}
+
+void Window::State::drawTriple(const Row& row, const std::string& name) {
+  const auto change = [&](std::array<double, 3> values) {
+    for (double& value : values) value = std::clamp(value, row.low, row.high);
+    if (values != row.numbers) changeBy(name, filledIn(row.statement, written(values)));
+  };
+  std::array<double, 3> values = row.numbers;
+  if (const int pressed = drawSteps(name); pressed != 0) {
+    const bool none = values == std::array<double, 3>{};
+    for (double& value : values) value = none && pressed > 0 ? 1.0 / 16.0 : value * (pressed < 0 ? 0.5 : 2.0);
+    change(values);
+    return;
+  }
+  const double largest = std::max({std::abs(values[0]), std::abs(values[1]), std::abs(values[2]), 0.1});
+  ImGui::DragScalarN(row.label.c_str(), ImGuiDataType_Double, values.data(), 3,
+                     static_cast<float>(kDragShare * largest), &row.low, &row.high, "%.4g");
+  if (ImGui::IsItemEdited()) change(values);
+}
+
+/// Behind a control, what brings it back.
+void Window::State::drawResets(const Row& row, const std::string& name) {
+  for (const Row::Reset& reset : row.resets) {
+    ImGui::SameLine();
+    if (ImGui::SmallButton(reset.word.c_str())) act(reset.statement);
+    controls[name + "/" + reset.word] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", reset.statement.c_str());
+  }
+}
+
 void Window::State::drawRow(const Panel& panel, const Row& row) {
   ImGui::PushID(row.name.c_str());
   const std::string name = panel.name + "/" + row.name;
@@ -145,37 +218,24 @@ void Window::State::drawRow(const Panel& panel, const Row& row) {
       drawChoice(panel, row);
       place();
       break;
-    case Row::Kind::number: {
-      const auto change = [&](double value) {
-        value = std::clamp(value, row.low, row.high);
-        act(filledIn(row.statement, row.integer ? fmt::format("{:.0f}", value) : fmt::format("{}", value)));
-      };
-      const double less = row.integer && row.number <= 8.0 ? row.number - 1.0 : row.number / 2.0,
-                   more = row.number == 0.0                 ? (row.integer ? 1.0 : row.high / 16.0)
-                          : row.integer && row.number < 8.0 ? row.number + 1.0
-                                                            : row.number * 2.0;
-      if (ImGui::SmallButton("-")) change(row.integer ? std::floor(less) : less);
-      controls[name + "/less"] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
-      ImGui::SameLine();
-      if (ImGui::SmallButton("+")) change(more);
-      controls[name + "/more"] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
-      ImGui::SameLine();
-      double value = row.number;
-      const double low = row.low, high = row.high;
-      ImGui::SliderScalar(row.label.c_str(), ImGuiDataType_Double, &value, &low, &high,
-                          row.integer ? "%.0f" : "%.5g", row.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
-      if (ImGui::IsItemEdited() && value != row.number) change(row.integer ? std::round(value) : value);
+    case Row::Kind::number:
+      drawNumber(row, name);
       place();
       break;
-    }
+    case Row::Kind::triple:
+      drawTriple(row, name);
+      place();
+      break;
     case Row::Kind::bars:
     case Row::Kind::stacks:
     case Row::Kind::points:
       drawMarks(row);
       break;
   }
-  if (!row.tooltip.empty() && row.marks.empty() && ImGui::IsItemHovered())
+  const bool hovered = ImGui::IsItemHovered();
+  if (!row.tooltip.empty() && row.marks.empty() && hovered)
     ImGui::SetTooltip("%s", row.tooltip.c_str());
+  drawResets(row, name);
   ImGui::PopItemWidth();
   if (row.changed) ImGui::PopStyleColor();
   ImGui::PopID();
@@ -189,7 +249,7 @@ void Window::State::drawPanels() {
     controls["panel/" + panel.name] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
     if (!open) continue;
     openPanel = panel.name;
-    ImGui::BeginChild("rows");
+    ImGui::BeginChild("rows", ImVec2(0, 0), false, ImGuiWindowFlags_NavFlattened);
     for (const Row& row : panel.rows) drawRow(panel, row);
     ImGui::EndChild();
     ImGui::EndTabItem();
@@ -204,15 +264,18 @@ void Window::State::drawHelp() {
   ImGui::Begin("Keys", &showsHelp, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
   ImGui::TextUnformatted("W A S D  forward, left, back, right     Q E  down, up");
   ImGui::TextUnformatted("left button  turn     right button  orbit     wheel  nearer");
+  ImGui::TextUnformatted("arrows  turn     shift arrows  orbit     page up, page down  nearer, farther");
+  ImGui::TextUnformatted("1 to 7  the panels, by their order");
   for (const KeyStatement& one : keyStatements()) ImGui::Text("%-8s %s", one.name, one.meaning);
-  ImGui::TextUnformatted("Tab goes through the controls of a panel that has the focus, Enter changes one.");
+  ImGui::TextUnformatted(
+      "In the panels: arrows and Tab go through the controls, space presses one, Enter types a number.");
   ImGui::End();
 }
 
 void Window::State::draw() {
   controls.clear();
   const ImVec2 all = ImGui::GetIO().DisplaySize;
-  const float side = showsPanels ? std::min(kPanelWidth * scale, 0.6f * all.x) : 0.0f;
+  const float side = showsPanels ? std::min(panelWidth * scale, 0.6f * all.x) : 0.0f;
   drawPicture(ImVec2(0, 0), ImVec2(std::max(1.0f, all.x - side), std::max(1.0f, all.y)));
   if (showsPanels) {
     ImGui::SetNextWindowPos(ImVec2(all.x - side, 0));
@@ -220,10 +283,33 @@ void Window::State::draw() {
     ImGui::Begin("panels", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                      ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+    if (focus == "panels") ImGui::SetWindowFocus();
     drawPanels();
     ImGui::End();
   }
+  focus.clear();
   drawHelp();
+  drawQuestion();
+}
+
+void Window::State::drawQuestion() {
+  const std::string question = session->question();
+  if (question.empty()) return;
+  if (!ImGui::IsPopupOpen("question")) ImGui::OpenPopup("question");
+  if (!ImGui::BeginPopupModal(
+          "question", nullptr,
+          ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoTitleBar))
+    return;
+  ImGui::TextUnformatted(question.c_str());
+  for (const char* answer : {"no", "yes"}) {
+    if (ImGui::Button(answer) || (answer == std::string("no") && ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)))
+      act(std::string("answer ") + answer);
+    if (answer == std::string("no")) ImGui::SetItemDefaultFocus();
+    controls[std::string("question/") + answer] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+    ImGui::SameLine();
+  }
+  if (session->question().empty()) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
 }
 
 }  // namespace lumivox::viewer

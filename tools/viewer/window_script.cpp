@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <random>
+#include <set>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -15,6 +16,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kLongestWait = 60.0;  // s, of a script's `wait`
+constexpr int kFramesOfPress = 3;
 
 }  // namespace
 
@@ -27,6 +29,13 @@ void Window::State::feedClick() {
   if (++click->frame > 4) click.reset();
 }
 
+void Window::State::feedPress() {
+  if (!press) return;
+  ImGui::GetIO().KeysDown[press->key] = press->frame < kFramesOfPress;
+  soon = 3;
+  if (++press->frame > kFramesOfPress) press.reset();
+}
+
 bool Window::State::waitIsOver(const Action& action) {
   const std::string what = action.text();
   if (std::chrono::duration<double>(Clock::now() - waitsSince).count() > kLongestWait)
@@ -35,13 +44,17 @@ bool Window::State::waitIsOver(const Action& action) {
   if (what == "frame") return session->settled();
   if (what == "judged") return session->judgedNow();
   if (what == "problem") return !session->problem().empty();
+  if (what == "kept") {
+    if (!session->keeping() && session->messageIsError()) throw Error(session->message());
+    return !session->keeping();
+  }
   if (what == "mended") return session->problem().empty();
   if (what == "reference") {
     const ReferenceResult reference = session->reference();
     const int wanted = action.property->values.size() > 1 ? static_cast<int>(action.number(1)) : 2;
     return session->settled() && reference != nullptr && reference->samples >= wanted;
   }
-  throw Error(fmt::format("{}: wait {}: expected frame, judged, problem, mended or reference",
+  throw Error(fmt::format("{}: wait {}: expected frame, judged, problem, mended, kept or reference",
                           action.place().text(), what));
 }
 
@@ -69,6 +82,11 @@ bool Window::State::doInWindow(const Action& action) {
   } else if (word == "key") {
     for (const KeyStatement& one : keyStatements())
       if (one.name == action.text()) return key(one), true;
+    for (const auto& [name, code] : heldKeys())
+      if (name == action.text()) {
+        press = Press{code, 0};
+        return true;
+      }
     throw Error(fmt::format("{}: key '{}': nothing is bound to it", action.place().text(), action.text()));
   } else if (word == "panel") {
     wantedPanel = action.text();
@@ -78,6 +96,19 @@ bool Window::State::doInWindow(const Action& action) {
   } else if (word == "window") {
     const std::vector<double> n = action.numbers();
     resize(static_cast<int>(n[0]), static_cast<int>(n[1]));
+  } else if (word == "panels") {
+    showsPanels = action.flag();
+    soon = 4;
+  } else if (word == "panel_width") {
+    panelWidth = static_cast<float>(action.number());
+    soon = 4;
+  } else if (word == "scale") {
+    rescale(static_cast<float>(action.number()));
+  } else if (word == "minimise") {
+    minimise(action.flag());
+  } else if (word == "focus") {
+    focus = action.text();
+    soon = 4;
   } else if (word == "shot") {
     shoot(action.text());
   } else if (word == "random") {
@@ -92,24 +123,34 @@ bool Window::State::doInWindow(const Action& action) {
 
 void Window::State::randomActions(int count) {
   std::mt19937_64 random(session->state().seed);
+  int refused = 0;
   for (int i = 0; i < count; ++i) {
     panels = panelsOf(*session);
     const Panel& panel = panels[random() % panels.size()];
     if (panel.name == "keep" || panel.rows.empty()) continue;  // nothing is written
+    session->say({}, false);
     const Row& row = panel.rows[random() % panel.rows.size()];
     std::string statement = row.statement;
     if (row.kind == Row::Kind::choice && !row.choices.empty())
       statement = filledIn(statement, choiceValue(row.choices[random() % row.choices.size()]));
     if (row.kind == Row::Kind::toggle) statement = filledIn(statement, random() % 2 == 0 ? "on" : "off");
-    if (row.kind == Row::Kind::number) {
+    // Small values: a script of many is not to wait for the largest grid.
+    const auto value = [&] {
       const double share = static_cast<double>(random() % 1000) / 999.0;
-      // Small values: a script of many is not to wait for the largest grid.
-      const double high = std::min(row.high, row.low + 64.0), value = row.low + share * (high - row.low);
-      statement = filledIn(statement, row.integer ? fmt::format("{:.0f}", value) : fmt::format("{}", value));
-    }
+      return row.low + share * (std::min(row.high, row.low + 64.0) - row.low);
+    };
+    if (row.kind == Row::Kind::number)
+      statement =
+          filledIn(statement, row.integer ? fmt::format("{:.0f}", value()) : fmt::format("{}", value()));
+    if (row.kind == Row::Kind::triple) statement = filledIn(statement, written({value(), value(), value()}));
+    if (!row.resets.empty() && random() % 4 == 0)
+      statement = row.resets[random() % row.resets.size()].statement;
     if (!statement.empty()) act(statement);
+    // A control may ask for what is refused with a sentence: a surface that reflects more than it receives.
+    if (session->messageIsError()) ++refused;
     session->step(0.01);
   }
+  session->say(fmt::format("{} random actions, of which {} were refused", count, refused), false);
 }
 
 void Window::State::shoot(const std::filesystem::path& file) {
@@ -134,20 +175,22 @@ void Window::State::shoot(const std::filesystem::path& file) {
 
 /// Does what it can without waiting; whether there is something left.
 bool Window::State::advanceScript() {
-  while (done < script.size() && !click && soon == 0) {
+  while (done < script.size() && !busyWithHands() && soon == 0) {
     const Action& action = script[done];
+    static const std::set<std::string> looks{"answer", "click", "key", "record", "shot", "wait"};
+    if (!session->question().empty() && looks.count(action.word()) == 0)
+      throw Error(fmt::format("{}: {}: {} Expected `answer yes` or `answer no`", action.place().text(),
+                              action.written(), session->question()));
     if (action.word() == "wait") {
       if (!waits) waitsSince = Clock::now();
       waits = true;
       if (!waitIsOver(action)) return true;
       waits = false;
     } else {
-      const std::string before = session->message();
-      session->say({}, false);
+      session->say(session->message(), false);  // so that an error is this statement's
       if (!session->perform(action)) doInWindow(action);
       if (session->messageIsError())
         throw Error(fmt::format("{}: {}: {}", action.place().text(), action.written(), session->message()));
-      if (session->message().empty()) session->say(before, false);
       soon = std::max(soon, 2);
     }
     ++done;

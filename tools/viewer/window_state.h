@@ -50,6 +50,8 @@ struct KeyStatement {
 };
 /// What keys do, beside those that walk.
 const std::vector<KeyStatement>& keyStatements();
+/// Keys that scripts may press beside those: what walks, turns and moves in panels.
+const std::map<std::string, int>& heldKeys();
 
 struct Rectangle {
   ImVec2 low{0, 0}, high{0, 0};
@@ -60,12 +62,16 @@ struct Window::State {
   GLFWwindow* window = nullptr;
   float scale = 1.0f;
   bool touched = true;  ///< something came from hands or the display since the last drawing
-  std::string layoutFile;
   std::unique_ptr<ScreenTexture> texture;
   Session* session = nullptr;
   std::vector<Panel> panels;
   std::string openPanel = "look", wantedPanel;
+  std::string moves;  ///< the control that the mouse moves
   bool showsHelp = false, showsPanels = true;
+  bool minimised = false, picturesKeyboard = false;  ///< whether arrows turn the view
+  float panelWidth = 420.0f;                         ///< pixels at a scale of 1
+  std::string focus;                          ///< the part that is given the keyboard in the next frame
+  std::string layout;                         ///< as it was read or written last
   std::map<std::string, Rectangle> controls;  ///< of this frame, "panel/row"
   Rectangle image;                            ///< of the picture on the screen
 
@@ -79,22 +85,44 @@ struct Window::State {
     int frame = 0;
   };
   std::optional<Click> click;
+  /// A key that a script presses, for some frames.
+  struct Press {
+    int key = 0, frame = 0;
+  };
+  std::optional<Press> press;
   int soon = 3;  ///< frames that are drawn whatever happens: ImGui needs some to settle
 
   void act(const std::string& statements);
   void key(const KeyStatement& key);
   void walk(double seconds);
+  void look(double seconds);
+  void listen();
+  void rescale(float to);
+  void minimise(bool away);
+  void drawFrame(double seconds);
+  void readLayout();
+  void writeLayout();
+  std::string layoutText() const;
   void draw();
   void drawPicture(const ImVec2& low, const ImVec2& size);
   void drawPanels();
   void drawRow(const Panel& panel, const Row& row);
+  void changeBy(const std::string& control, const std::string& statements);
+  int drawSteps(const std::string& name);
+  void drawNumber(const Row& row, const std::string& name);
+  void drawTriple(const Row& row, const std::string& name);
+  void drawResets(const Row& row, const std::string& name);
+  void drawQuestion();
   void drawChoice(const Panel& panel, const Row& row);
   void drawMarks(const Row& row);
   void drawBars(const Row& row, const ImVec2& corner, float width) const;
   void drawStacks(const Row& row, const ImVec2& corner, float width) const;
+  void drawLegend(const ImVec2& corner, float width) const;
   void drawHelp();
   void drawProblem(const ImVec2& at, float width);
   void feedClick();
+  void feedPress();
+  bool busyWithHands() const { return click.has_value() || press.has_value(); }
   bool advanceScript();
   bool doInWindow(const Action& action);
   bool waitIsOver(const Action& action);

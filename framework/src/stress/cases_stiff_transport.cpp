@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "stress/case_tools.h"
+#include "stress/measures.h"
 
 namespace lumivox::stress {
 namespace {
