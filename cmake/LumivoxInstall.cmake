@@ -12,7 +12,8 @@ install(TARGETS lumivox lumivox_lab lumivox_command vdbexport shaderpack EXPORT 
 set_target_properties(lumivox_view PROPERTIES INSTALL_RPATH $ORIGIN/../lib/lumivox)
 install(TARGETS lumivox_view RUNTIME DESTINATION bin)
 install(TARGETS lumivox_volume LIBRARY DESTINATION lib/lumivox)
-install(FILES ${CMAKE_BINARY_DIR}/lib/shaders/device.shaderpack DESTINATION lib/lumivox/shaders)
+install(FILES ${CMAKE_BINARY_DIR}/lib/shaders/device.shaderpack ${CMAKE_BINARY_DIR}/lib/shaders/viewer.shaderpack
+  DESTINATION lib/lumivox/shaders)
 install(DIRECTORY framework/include/lumivox DESTINATION include FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY ${LUMIVOX_GENERATED_INCLUDE}/lumivox DESTINATION include)
 
@@ -55,7 +56,7 @@ install(CODE [[
 
 # Everything that is installed, and none of the tests: `ninja -C build sdk && cmake --install build`, or `cd build && cpack -G DEB`.
 get_property(techniques GLOBAL PROPERTY LUMIVOX_TECHNIQUES)
-add_custom_target(sdk DEPENDS lumivox_command lumivox_view vdbexport shaderpack lumivox_volume shaders_device ${techniques})
+add_custom_target(sdk DEPENDS lumivox_command lumivox_view vdbexport shaderpack lumivox_volume shaders_device shaders_viewer ${techniques})
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME lumivox)

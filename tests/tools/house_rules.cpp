@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <regex>
 
@@ -295,8 +296,8 @@ Violations dependentTechniques(const Sources& sources, const std::vector<std::st
 
 constexpr const char* kVoxelizers = "voxelizers";  // scenes/pipelines/voxelizers: what makes voxels alone
 
-constexpr const char* kDeviceShaders =
-    "device";  // shaders/device: the framework's own, which time the device
+// Shaders of no technique: what techniques share, the framework's own, which time the device, and the window's.
+constexpr std::array kOtherShaders{"common", "device", "viewer"};
 
 /// One name everywhere. `files` are all paths of the project; pipelines come with their text.
 Violations brokenNames(const std::set<std::string>& files, const std::vector<std::string>& techniques,
@@ -333,7 +334,7 @@ Violations brokenNames(const std::set<std::string>& files, const std::vector<std
   for (const std::string& file : files) {
     if (!startsWith(file, "shaders/")) continue;
     const std::string folder = file.substr(8, file.find('/', 8) - 8);
-    if (folder != "common" && folder != kDeviceShaders &&
+    if (std::find(kOtherShaders.begin(), kOtherShaders.end(), folder) == kOtherShaders.end() &&
         std::find(techniques.begin(), techniques.end(), folder) == techniques.end())
       found.push_back(file + ": there is no technique '" + folder + "'");
   }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "lumivox/base/error.h"
+#include "viewer/port_view.h"
 
 namespace lumivox::viewer {
 namespace {
@@ -64,7 +65,13 @@ std::vector<PropertySpecification> lookProperties() {
       one("output", PropertyType::name, "which output is shown; \"whole image\": the sum of all light"),
       one("port", PropertyType::name, "an output of a pass, as PASS.PORT, or `nothing`"),
       one("texture", PropertyType::name, "which texture of the port"),
-      ranged("level", PropertyType::integer, 0, 32, "which mip level of the port's texture"),
+      one("voxels", PropertyType::name,
+          "a field of the port's voxels, drawn as cubes, or `lobes` of its spherical harmonics; `nothing`: a "
+          "texture"),
+      ranged("above", PropertyType::number, 0, 1e30, "voxels whose values are not above it are left out"),
+      ranged("see_through", PropertyType::number, 0, 1, "how much of the picture is seen behind voxels"),
+      chosen("channel", channelWords(), "the components of the texture that are shown"),
+      ranged("level", PropertyType::integer, 0, 32, "which level of the port's texture or voxels"),
       ranged("slice", PropertyType::integer, 0, 65535, "which slice of a volume, or layer of an array"),
       chosen("layout", {"picture", "reference", "split", "side_by_side", "flicker", "error"},
              "what is shown of picture, second picture, reference and error"),
@@ -78,6 +85,7 @@ std::vector<PropertySpecification> lookProperties() {
       ranged("seed", PropertyType::integer, 0, 9007199254740992.0, "of the random numbers of techniques"),
       one("keep_everything", PropertyType::flag, "leaves nothing out"),
       one("times", PropertyType::flag, "whether each pass is timed"),
+      one("work", PropertyType::flag, "whether what each pass does and holds is counted"),
   };
 }
 

@@ -27,5 +27,6 @@ Row triple(const std::string& name, const std::string& label, const std::array<d
 // The panels that stand in files of their own.
 Panel changePanel(const Session& session);
 Panel scenePanel(const Session& session);
+Panel timePanel(const Session& session);
 
 }  // namespace lumivox::viewer

@@ -24,6 +24,39 @@ std::vector<std::string> stemsOf(const Session& session) {
   return names;
 }
 
+/// What is shown of a port, and what could be.
+void addPort(std::vector<Row>& rows, const Session& session, const std::vector<std::string>& textures,
+             const std::vector<std::string>& fields) {
+  const PortChoice& port = *session.state().port;
+  const RenderedResult rendered = session.rendered();
+  static const PortPicture nothing;
+  const PortPicture& shown = rendered == nullptr ? nothing : rendered->port;
+  if (!textures.empty())
+    rows.push_back(choice("texture", "texture", port.texture.empty() ? textures.front() : port.texture,
+                          textures, "texture {}"));
+  if (fields.size() > 1)
+    rows.push_back(choice("voxels", "voxels", port.field.empty() ? "nothing" : port.field, fields,
+                          "voxels {}", "a field of the voxels as cubes, or spherical harmonics as lobes"));
+  rows.push_back(number("level", "level", port.level, 0, std::max(0, shown.levels - 1), true, "level {}"));
+  if (!shown.brightness.empty()) {
+    rows.push_back(number("above", "voxels above", port.above, 0, 1, false, "above {}",
+                          "voxels whose values are not above it are left out"));
+    rows.push_back(number("see_through", "see through", session.state().seeThrough, 0, 1, false,
+                          "see_through {}", "how much of the picture is seen behind the voxels"));
+    const auto& brightness = shown.brightness.values();
+    const auto pixels =
+        brightness.size() - static_cast<std::size_t>(std::count(brightness.begin(), brightness.end(), 0.0f));
+    rows.push_back(text("voxel_pixels", "pixels with voxels", fmt::format("{}", pixels)));
+  } else {
+    rows.push_back(number("slice", "slice", port.slice, 0, std::max(0, shown.slices - 1), true, "slice {}"));
+    rows.push_back(choice("channel", "components", channelWords()[static_cast<std::size_t>(port.channel)],
+                          channelWords(), "channel {}"));
+  }
+  if (!shown.quantity.empty())
+    rows.push_back(text("quantity", shown.shown,
+                        shown.quantity + (shown.unit.empty() || shown.unit == "1" ? "" : ", " + shown.unit)));
+}
+
 Panel lookPanel(const Session& session) {
   const ViewState& state = session.state();
   Panel panel{"look", "Look", {}};
@@ -44,22 +77,19 @@ Panel lookPanel(const Session& session) {
   std::vector<std::string> outputs{kWholeImage};
   for (const Pipeline::Output& output : state.sides.front().pipeline->outputs) outputs.push_back(output.name);
   rows.push_back(choice("output", "output", state.output, outputs, "output {}"));
-  std::vector<std::string> ports{"nothing"}, textures;
+  std::vector<std::string> ports{"nothing"}, textures, fields{"nothing"};
   if (const RenderedResult rendered = session.rendered(); rendered != nullptr && !rendered->sides.empty())
     for (const PassContract& pass : rendered->sides.front().contracts)
       for (const PassContract::Port& port : pass.outputs) {
-        if (port.textures.empty()) continue;
+        if (port.textures.empty() && port.fields.empty()) continue;
         ports.push_back(pass.name + "." + port.name);
-        if (state.port && state.port->pass == pass.name && state.port->port == port.name)
-          textures = port.textures;
+        if (!state.port || state.port->pass != pass.name || state.port->port != port.name) continue;
+        textures = port.textures;
+        fields.insert(fields.end(), port.fields.begin(), port.fields.end());
       }
   rows.push_back(choice("port", "port", state.port ? state.port->pass + "." + state.port->port : "nothing",
                         ports, "port {}", "any texture of any output of a pass"));
-  if (state.port) {
-    rows.push_back(choice("texture", "texture", state.port->texture, textures, "texture {}"));
-    rows.push_back(number("level", "mip level", state.port->level, 0, 16, true, "level {}"));
-    rows.push_back(number("slice", "slice", state.port->slice, 0, 512, true, "slice {}"));
-  }
+  if (state.port) addPort(rows, session, textures, fields);
   rows.push_back(choice("layout", "layout", layoutWords()[static_cast<std::size_t>(state.layout)],
                         layoutWords(), "layout {}"));
   rows.push_back(number("split", "split", state.split, 0, 1, false, "split {}"));
@@ -113,7 +143,7 @@ Panel judgePanel(const Session& session) {
   chart.name = "tried";
   chart.label = "error of the whole image against time, ms";
   for (const TriedPoint& point : session.tried()) {
-    if (!point.error) continue;
+    if (!point.error || point.frameMs <= 0.0) continue;
     std::string statement = "show " + quoted(point.side.pipeline->file.stem().string());
     if (!point.side.values.empty()) {
       statement += "\nset {";
@@ -123,60 +153,6 @@ Panel judgePanel(const Session& session) {
     chart.marks.push_back({point.label, point.frameMs, point.error->value, statement});
   }
   panel.rows.push_back(std::move(chart));
-  return panel;
-}
-
-/// A bar of the passes' medians, a row for each, and what a frame costs once, while something moves, and
-/// always.
-void addPassTimes(std::vector<Row>& rows, const Session& session, std::size_t side,
-                  const std::string& prefix) {
-  const RenderedSide& rendered = session.rendered()->sides[side];
-  const std::vector<PassTimes> times = session.passTimes(side);
-  Row bars;
-  bars.kind = Kind::bars;
-  bars.name = prefix + "passes";
-  bars.label = "device time of passes, ms";
-  for (const PassTimes& pass : times) bars.marks.push_back({pass.name, pass.device.median, 0.0, {}});
-  rows.push_back(std::move(bars));
-  double host = 0.0, ofKind[3] = {0.0, 0.0, 0.0};
-  for (const PassTimes& pass : times) {
-    const auto record = std::find_if(rendered.times.begin(), rendered.times.end(),
-                                     [&](const PassRecord& one) { return one.name == pass.name; });
-    rows.push_back(text(
-        prefix + "pass " + pass.name, "  " + pass.name + (pass.onHost ? " (host)" : ""),
-        fmt::format("{:.3f} ms [{:.3f}, {:.3f}], host {:.3f} ms, {}", pass.device.median,
-                    pass.device.lowerQuartile, pass.device.upperQuartile, pass.host.median,
-                    formatBytes(record == rendered.times.end() ? 0 : record->bytes)),
-        fmt::format("median and quartiles of {} frames; runs {}", pass.device.repeats, wordOf(pass.when))));
-    host += pass.host.median;
-    ofKind[static_cast<std::size_t>(pass.when)] += pass.device.median;
-  }
-  for (const RunsWhen when : {RunsWhen::once, RunsWhen::somethingMoves, RunsWhen::everyFrame})
-    rows.push_back(text(prefix + "cost " + wordOf(when), std::string("cost ") + wordOf(when),
-                        fmt::format("{:.3f} ms", ofKind[static_cast<std::size_t>(when)])));
-  rows.push_back(text(prefix + "host", "host", fmt::format("{:.3f} ms in passes", host)));
-}
-
-Panel timePanel(const Session& session) {
-  Panel panel{"time", "Time", {}};
-  panel.rows.push_back(toggle("times", "time each pass", session.state().timesPasses, "times {}"));
-  const RenderedResult rendered = session.rendered();
-  if (rendered == nullptr) return panel;
-  panel.rows.push_back(text("device", "device", rendered->device));
-  for (std::size_t i = 0; i < rendered->sides.size(); ++i) {
-    const RenderedSide& side = rendered->sides[i];
-    const std::string prefix = i == 0 ? "" : "beside ";
-    if (!side.error.empty()) continue;
-    panel.rows.push_back(heading(prefix + rendered->wish.sides[i].pipeline->file.stem().string()));
-    panel.rows.push_back(text(prefix + "frame", "whole frame", fmt::format("{:.2f} ms", side.frame.frameMs)));
-    addPassTimes(panel.rows, session, i, prefix);
-    panel.rows.push_back(text(prefix + "bytes", "bytes on the device", formatBytes(side.bytes)));
-    std::string kept;
-    for (const PassRecord& pass : side.frame.passes)
-      if (!pass.ran) kept += (kept.empty() ? "" : ", ") + pass.name;
-    panel.rows.push_back(text(prefix + "kept", "kept from the frame before", kept.empty() ? "nothing" : kept,
-                              "passes whose inputs had not changed"));
-  }
   return panel;
 }
 
@@ -254,6 +230,8 @@ const char* wordOf(Kind kind) {
       return "button";
     case Kind::bars:
       return "bars";
+    case Kind::stacks:
+      return "stacks";
     case Kind::points:
       return "points";
   }

@@ -12,7 +12,7 @@ namespace lumivox::viewer {
 
 /// One line of a panel. Controls carry the statement that using them performs, with "{}" for the value.
 struct Row {
-  enum class Kind { heading, text, number, triple, choice, toggle, button, bars, points };
+  enum class Kind { heading, text, number, triple, choice, toggle, button, bars, stacks, points };
   Kind kind = Kind::text;
   std::string name;  ///< unique in its panel; what scripts click
   std::string label, value, tooltip;
@@ -26,7 +26,8 @@ struct Row {
     std::string word, statement;
   };
   std::vector<Reset> resets;
-  /// Of bars: label and length; of points: label, x and y, and the statement that goes back to it.
+  /// Of bars: label and length; of stacks: label, column and height, from the bottom up; of points: label, x
+  /// and y, and the statement that goes back to it.
   struct Mark {
     std::string label;
     double x = 0.0, y = 0.0;

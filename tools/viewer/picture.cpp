@@ -71,7 +71,10 @@ Picture pictureOf(const ImageBuffer& given, const PictureLook& look) {
     if (low > high) low = high = 0.0f;
     for (float& value : map.values()) value = high > low ? (value - low) / (high - low) : 0.0f * value;
     picture = framed(falseColour(map), {});
-    picture.legend = fmt::format("luminance {:.4g} to {:.4g}", low, high);
+    picture.legend =
+        fmt::format("{} {:.4g} to {:.4g}{}{}", given.channels() == 1 ? "value" : "luminance", low, high,
+                    look.unit.empty() || look.unit == "1" ? "" : " ", look.unit == "1" ? "" : look.unit);
+    picture.range = {low, high};
   } else {
     picture = framed(image, {look.exposure, toneOf(look.curve)});
   }
@@ -130,6 +133,22 @@ Picture splitPicture(const Picture& left, const Picture& right, double at) {
         picture.bytes.begin() + from);
     if (column > 0 && column < left.width)
       std::fill_n(picture.bytes.begin() + from, 3, static_cast<unsigned char>(255));
+  }
+  return picture;
+}
+
+Picture overlaid(const Picture& voxels, const ImageBuffer& brightness, const Picture& behind,
+                 double seeThrough) {
+  Picture picture = voxels;
+  const bool hasBehind = behind.width == voxels.width && behind.height == voxels.height;
+  for (std::size_t pixel = 0; pixel < brightness.pixelCount(); ++pixel) {
+    const auto surface = static_cast<double>(brightness.values()[pixel]);
+    const double share = surface > 0.0 ? seeThrough : 1.0;
+    for (std::size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) {
+      const double back = hasBehind ? behind.bytes[i] : 0.0;
+      picture.bytes[i] =
+          static_cast<unsigned char>(std::lround((1.0 - share) * surface * voxels.bytes[i] + share * back));
+    }
   }
   return picture;
 }

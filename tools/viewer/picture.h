@@ -22,13 +22,15 @@ struct PictureLook {
   Curve curve = Curve::srgb;
   /// Pixels that are NaN or infinite: magenta, or what is beneath; both in turn flash.
   bool marksBadPixels = true;
+  std::string unit{};  ///< of the values, for the legend
 };
 
 /// Red, green and blue, row by row from the top, as a screen takes them.
 struct Picture {
   int width = 0, height = 0;
   std::vector<unsigned char> bytes;
-  std::string legend;  ///< "0 .. 12.5 W/(sr m^2)"; empty: none
+  std::string legend;                            ///< "luminance 0 to 12.5 W/(sr m^2)"; empty: none
+  std::optional<std::pair<float, float>> range;  ///< that false colours run through
   std::size_t badPixels = 0;
   bool empty() const { return bytes.empty(); }
 };
@@ -38,6 +40,10 @@ Picture pictureOf(const ImageBuffer& image, const PictureLook& look);
 Picture errorPicture(const ImageBuffer& image, const ImageBuffer& reference, ErrorMap map);
 /// The first picture to the left of `at` (0..1 of the width), the second to the right, a line between.
 Picture splitPicture(const Picture& left, const Picture& right, double at);
+/// Voxels over what is behind them: `brightness` of their surfaces, 0 where there are none; `seeThrough` is
+/// the share of `behind`, black where there is none.
+Picture overlaid(const Picture& voxels, const ImageBuffer& brightness, const Picture& behind,
+                 double seeThrough);
 /// Side by side, with a gap.
 Picture besides(const Picture& left, const Picture& right);
 

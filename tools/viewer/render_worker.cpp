@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
+#include <functional>
 
 #include "lumivox/base/error.h"
 #include "lumivox/pipeline/pass.h"
@@ -28,7 +28,7 @@ PassContract contractOf(const PassText& text, const Pass& pass, TechniqueSource&
     contract.parameters.push_back(std::move(one));
   }
   for (const OutBase* output : pass.outputs()) {
-    PassContract::Port port{output->name(), output->kind().name, {}};
+    PassContract::Port port{output->name(), output->kind().name, {}, drawnFields(output->kind())};
     for (const PortResource& resource : output->kind().resources)
       if (resource.shape != "buffer") port.textures.push_back(resource.name);
     contract.outputs.push_back(std::move(port));
@@ -65,17 +65,24 @@ std::map<std::string, RunsWhen> whenPassesRun(const Pipeline& pipeline, const Pi
   return runs;
 }
 
+RenderOptions optionsOf(const RenderWish& wish, const Side& side) {
+  RenderOptions options;
+  options.parameters = side.values;
+  options.seed = wish.seed;
+  options.keepEverything = wish.keepEverything;
+  options.interactive = true;
+  return options;
+}
+
 /// One executor and what it was made for.
 class Executor {
  public:
   Executor(gpu::Device& device, TechniqueSource& techniques, const RenderWish& wish, const Side& side)
       : scene_(wish.scene), pipeline_(side.pipeline), keepsEverything_(wish.keepEverything) {
-    RenderOptions options;
-    options.parameters = values_ = side.values;
-    options.seed = seed_ = wish.seed;
-    options.keepEverything = wish.keepEverything;
-    options.interactive = true;
-    executor_ = std::make_unique<PipelineExecutor>(device, techniques, *scene_, *pipeline_, options);
+    values_ = side.values;
+    seed_ = wish.seed;
+    executor_ =
+        std::make_unique<PipelineExecutor>(device, techniques, *scene_, *pipeline_, optionsOf(wish, side));
     readContracts(techniques);
   }
 
@@ -113,26 +120,19 @@ class Executor {
     return side;
   }
 
-  ImageBuffer port(const PortChoice& choice, const SceneSnapshot& snapshot) {
-    const auto find = [&] {
-      const OutBase* output = executor_->output(choice.pass, choice.port);
-      return output != nullptr && output->hasValue() ? output : nullptr;
-    };
-    if (!(choice == kept_)) {
+  PortPicture port(const PortChoice& choice, const SceneSnapshot& snapshot,
+                   const std::function<VoxelView&()>& view) {
+    const auto which = std::pair(choice.pass, choice.port);
+    if (which != kept_) {
       executor_->keepOnly(choice.pass, choice.port);
-      kept_ = choice;
+      kept_ = which;
       executor_->render(snapshot, 0, PipelineExecutor::Images::no);
     }
-    const OutBase* output = find();
+    const OutBase* const output = executor_->output(choice.pass, choice.port);
     if (output == nullptr)
       throw Error(
           fmt::format("{}.{} was left out: nothing in the scene asks for it", choice.pass, choice.port));
-    const PortContents contents = output->contents();
-    for (const PortContents::Resource& resource : contents.resources())
-      if (resource.texture != nullptr && (choice.texture.empty() || resource.what->name == choice.texture))
-        return sliceOf(*resource.texture, choice.level, choice.slice);
-    throw Error(fmt::format("{}.{} has no texture{}", choice.pass, choice.port,
-                            choice.texture.empty() ? "" : " '" + choice.texture + "'"));
+    return pictureOfPort(output->contents(), choice, snapshot.camera, view);
   }
 
  private:
@@ -148,7 +148,7 @@ class Executor {
   bool keepsEverything_;
   ParameterValues values_;
   std::uint64_t seed_ = 1;
-  std::optional<PortChoice> kept_;
+  std::pair<std::string, std::string> kept_;  ///< the port that stays after a frame
   std::vector<PassRecord> times_;
   std::vector<PassContract> contracts_;
   std::map<std::string, RunsWhen> runs_;
@@ -192,7 +192,10 @@ class Renderer {
       rendered.skipped += (rendered.skipped.empty() ? "" : "\n") + one.library.string() + ": " + one.reason;
     if (wish.port && !executors_.empty() && executors_.front() != nullptr) {
       try {
-        rendered.port = executors_.front()->port(*wish.port, snapshotOf(wish));
+        rendered.port = executors_.front()->port(*wish.port, snapshotOf(wish), [this]() -> VoxelView& {
+          if (voxels_ == nullptr) voxels_ = std::make_unique<VoxelView>(*device_);
+          return *voxels_;
+        });
       } catch (const std::exception& error) {
         rendered.portError = error.what();
       }
@@ -215,7 +218,12 @@ class Renderer {
         executor.reset();  // gives its memory back first
         executor = std::make_unique<Executor>(*device_, *techniques_, wish, side);
       }
-      return executor->render(wish, snapshotOf(wish));
+      const SceneSnapshot snapshot = snapshotOf(wish);
+      RenderedSide rendered = executor->render(wish, snapshot);
+      if (wish.countsWork)
+        rendered.work =
+            countFrame(*device_, *techniques_, *wish.scene, *side.pipeline, snapshot, optionsOf(wish, side));
+      return rendered;
     } catch (const std::exception& error) {
       executor.reset();  // whatever state it is in, the next frame begins anew
       RenderedSide failed;
@@ -225,6 +233,7 @@ class Renderer {
   }
 
   std::unique_ptr<gpu::Device> device_;
+  std::unique_ptr<VoxelView> voxels_;  ///< once some were looked at
   std::string deviceError_;
   std::vector<std::unique_ptr<TechniqueSet>> earlier_;
   std::unique_ptr<TechniqueSet> techniques_;
@@ -250,44 +259,6 @@ RenderWorker::Work makeRenderWork(const gpu::DeviceOptions& options) {
   return [renderer = std::make_shared<Renderer>(options)](const RenderWish& wish, RenderWorker::Turn& turn) {
     turn.give(renderer->render(wish));
   };
-}
-
-ImageBuffer sliceOf(const gpu::Texture& texture, int level, int slice) {
-  const gpu::TextureDescription& is = texture.description();
-  if (level < 0 || level >= is.levels)
-    throw Error(
-        fmt::format("{} has no level {}; expected one of 0..{}", texture.label(), level, is.levels - 1));
-  const int width = std::max(1, is.width >> level), height = std::max(1, is.height >> level);
-  const int depth = is.kind == gpu::TextureKind::d3 ? std::max(1, is.depth >> level) : is.depth;
-  if (slice < 0 || slice >= depth)
-    throw Error(fmt::format("{} has no slice {}; expected one of 0..{}", texture.label(), slice, depth - 1));
-  const int components = gpu::componentCount(is.format), channels = components == 1 ? 1 : 3;
-  const bool integers = is.format == gpu::Format::r32ui || is.format == gpu::Format::rg32ui ||
-                        is.format == gpu::Format::rgba32ui;
-  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  const std::size_t first = pixels * static_cast<std::size_t>(slice) * static_cast<std::size_t>(components);
-  std::vector<float> values;
-  if (integers) {
-    const std::vector<std::byte> bytes = texture.download(level);
-    values.resize(bytes.size() / sizeof(std::uint32_t));
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      std::uint32_t word = 0;
-      std::memcpy(&word, bytes.data() + i * sizeof(word), sizeof(word));
-      values[i] = static_cast<float>(word);
-    }
-  } else {
-    values = texture.downloadFloats(level);
-  }
-  ImageBuffer image(width, height, channels);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      for (int c = 0; c < std::min(channels, components); ++c) {
-        const std::size_t pixel =
-            static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-        image.at(x, y, c) =
-            values[first + pixel * static_cast<std::size_t>(components) + static_cast<std::size_t>(c)];
-      }
-  return image;
 }
 
 }  // namespace lumivox::viewer

@@ -16,6 +16,8 @@
 #include "lumivox/pipeline/pipeline.h"
 #include "lumivox/scene/scene.h"
 #include "viewer/latest_worker.h"
+#include "viewer/pass_work.h"
+#include "viewer/port_view.h"
 
 namespace lumivox::viewer {
 
@@ -25,13 +27,6 @@ struct Side {
   ParameterValues values;  ///< over the defaults
 };
 
-/// An output of a pass that is looked at although no image needs it.
-struct PortChoice {
-  std::string pass, port, texture;  ///< texture: a resource of the port's kind; empty: its first texture
-  int level = 0, slice = 0;
-  bool operator==(const PortChoice&) const = default;
-};
-
 struct RenderWish {
   std::uint64_t number = 0;  ///< larger for later ones
   std::shared_ptr<const Scene> scene;
@@ -39,7 +34,7 @@ struct RenderWish {
   double time = 0.0;
   int width = 0, height = 0;
   std::uint64_t seed = 1;
-  bool keepEverything = false, timesPasses = false;
+  bool keepEverything = false, timesPasses = false, countsWork = false;
   std::vector<Side> sides;
   std::optional<PortChoice> port;  ///< of the first side
   /// Where technique libraries are sought; another list opens them anew.
@@ -58,7 +53,7 @@ struct PassContract {
   std::vector<PassParameter> parameters;
   struct Port {
     std::string name, kind;
-    std::vector<std::string> textures;
+    std::vector<std::string> textures, fields;  ///< fields: drawnFields()
   };
   std::vector<Port> outputs;
 };
@@ -76,12 +71,13 @@ struct RenderedSide {
   std::map<std::string, RunsWhen> runs;  ///< of passes
   std::uint64_t bytes = 0;
   std::vector<PassRecord> times;  ///< of the last frame whose passes were timed
+  FrameWork work;                 ///< once RenderWish::countsWork
   std::string error;              ///< why there is no frame; empty: there is one
 };
 struct Rendered {
   RenderWish wish;
   std::vector<RenderedSide> sides;
-  ImageBuffer port;                     ///< of RenderWish::port
+  PortPicture port;                     ///< of RenderWish::port
   std::string portError, device;        ///< device: its renderer and how programs reach it
   std::vector<std::string> techniques;  ///< that are there
   std::string skipped;                  ///< libraries that do not fit, and why: another one, or none, serves
@@ -92,9 +88,5 @@ using RenderWorker = LatestWorker<RenderWish, Rendered>;
 
 /// The work of such a worker. A device that cannot be opened is an error of every frame.
 RenderWorker::Work makeRenderWork(const gpu::DeviceOptions& options);
-
-/// A level and a slice of a texture as an image: of one component one channel, of more the first three.
-/// Integers are shown as numbers. Error for one that has no such level or slice.
-ImageBuffer sliceOf(const gpu::Texture& texture, int level, int slice);
 
 }  // namespace lumivox::viewer

@@ -238,6 +238,7 @@ void Session::wantFrame() {
   wish.seed = state_.seed;
   wish.keepEverything = state_.keepEverything;
   wish.timesPasses = state_.timesPasses && !state_.plays;
+  wish.countsWork = state_.countsWork && !state_.plays;
   wish.sides = state_.sides;
   wish.port = state_.port;
   wish.techniques = techniques_.directories();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -58,6 +59,12 @@ struct TextToWrite {
   std::string text;
 };
 
+/// The passes of a frame whose passes were timed, of each side.
+struct TimedFrame {
+  double seconds = 0.0;  ///< since the session began
+  std::vector<std::vector<PassRecord>> sides;
+};
+
 class Session {
  public:
   /// `wake` is called from other threads when something new is there. Error when a text is wrong.
@@ -81,6 +88,11 @@ class Session {
   std::shared_ptr<const Judged> judged() const { return judged_; }
   const Picture& picture() const { return picture_; }
   const std::vector<TriedPoint>& tried() const { return tried_; }
+  static constexpr double kFrameSeconds = 10.0;  ///< that timedFrames() go back
+  /// Of the last seconds before the newest, the oldest first.
+  const std::deque<TimedFrame>& timedFrames() const { return timedFrames_; }
+  /// From the program's start to the first picture; nothing before it.
+  std::optional<double> firstPictureSeconds() const { return firstPicture_; }
   /// Of the passes of one side as it is now, in their order.
   std::vector<PassTimes> passTimes(std::size_t side) const;
   const std::map<std::string, std::string>& technicalErrors() const { return techniques_.errors(); }
@@ -115,6 +127,7 @@ class Session {
  private:
   void doIt(const Action& action);
   bool doLook(const Action& action);
+  bool doLookAtPort(const Action& action);
   bool doChange(const Action& action);
   bool doKeep(const Action& action);
   void setParameters(const Action& action);
@@ -136,7 +149,9 @@ class Session {
   void wantReference();
   void wantJudgement();
   void noteTried();
+  void noteTimes();
   void compose();
+  Picture portPicture(const PictureLook& outputLook) const;
   void applyEdits();
 
   static constexpr double kFlickerSeconds = 0.5;  ///< a picture of two that flicker
@@ -162,6 +177,8 @@ class Session {
   std::optional<ReferenceWish> referenceWish_;
   std::shared_ptr<const Judged> judged_;
   std::vector<TriedPoint> tried_;
+  std::deque<TimedFrame> timedFrames_;
+  std::optional<double> firstPicture_;
   Picture picture_;
   double exposure_ = 0.0;
 

@@ -72,21 +72,6 @@ bool Session::doLook(const Action& action) {
       throw Error(fmt::format("output '{}': expected one of {}", name, fmt::join(names, ", ")));
     state_.output = name;
     state_.port.reset();
-  } else if (word == "port") {
-    const std::string name = action.text();
-    const std::size_t dot = name.find('.');
-    if (name == "nothing") {
-      state_.port.reset();
-    } else if (dot == std::string::npos) {
-      throw Error(fmt::format("port '{}': expected PASS.PORT, or nothing", name));
-    } else {
-      state_.port = PortChoice{name.substr(0, dot), name.substr(dot + 1), {}, 0, 0};
-    }
-  } else if (word == "texture" || word == "level" || word == "slice") {
-    if (!state_.port) throw Error(word + ": no port is shown; expected `port PASS.PORT` before");
-    if (word == "texture") state_.port->texture = action.text();
-    if (word == "level") state_.port->level = static_cast<int>(action.number());
-    if (word == "slice") state_.port->slice = static_cast<int>(action.number());
   } else if (word == "layout") {
     state_.layout = wordOf<Layout>(layoutWords(), action.text());
   } else if (word == "error_map") {
@@ -111,6 +96,40 @@ bool Session::doLook(const Action& action) {
     state_.traces = action.flag();
   } else if (word == "times") {
     state_.timesPasses = action.flag();
+  } else if (word == "work") {
+    state_.countsWork = action.flag();
+  } else {
+    return doLookAtPort(action);
+  }
+  return true;
+}
+
+bool Session::doLookAtPort(const Action& action) {
+  const std::string& word = action.word();
+  if (word == "see_through") {
+    state_.seeThrough = action.number();
+  } else if (word == "port") {
+    const std::string name = action.text();
+    const std::size_t dot = name.find('.');
+    if (name == "nothing") {
+      state_.port.reset();
+    } else if (dot == std::string::npos) {
+      throw Error(fmt::format("port '{}': expected PASS.PORT, or nothing", name));
+    } else {
+      state_.port.emplace();
+      state_.port->pass = name.substr(0, dot);
+      state_.port->port = name.substr(dot + 1);
+    }
+  } else if (word == "texture" || word == "voxels" || word == "channel" || word == "level" ||
+             word == "slice" || word == "above") {
+    if (!state_.port) throw Error(word + ": no port is shown; expected `port PASS.PORT` before");
+    PortChoice& port = *state_.port;
+    if (word == "texture") port.texture = action.text(), port.field.clear();
+    if (word == "voxels") port.field = action.text() == "nothing" ? std::string() : action.text();
+    if (word == "channel") port.channel = wordOf<Channel>(channelWords(), action.text());
+    if (word == "level") port.level = static_cast<int>(action.number());
+    if (word == "slice") port.slice = static_cast<int>(action.number());
+    if (word == "above") port.above = static_cast<float>(action.number());
   } else {
     return false;
   }

@@ -9,6 +9,11 @@
 #include "viewer/session.h"
 
 namespace lumivox::viewer {
+namespace {
+
+constexpr const char* kRadianceUnit = "W/(sr m^2)";
+
+}  // namespace
 
 void Session::compose() {
   if (lastGood_ == nullptr) return;
@@ -16,22 +21,24 @@ void Session::compose() {
     return side < lastGood_->sides.size() ? outputOf(lastGood_->sides[side].frame, state_.output)
                                           : ImageBuffer{};
   };
-  const bool showsPort = state_.port && !lastGood_->port.empty();
-  const ImageBuffer image = showsPort ? lastGood_->port : imageOfSide(0);
+  const bool showsPort = state_.port && !lastGood_->port.image.empty();
+  const ImageBuffer image = showsPort ? lastGood_->port.image : imageOfSide(0);
   if (image.empty()) {
     picture_ = {};
     return;
   }
   if (state_.exposure) {
     exposure_ = *state_.exposure;
-  } else if (!showsPort) {
-    const ImageBuffer whole = compositeImage(lastGood_->sides.front().frame);
-    exposure_ = whole.empty() ? 0.0 : displayExposure(whole);
+  } else if (const ImageBuffer whole = compositeImage(lastGood_->sides.front().frame); !whole.empty()) {
+    exposure_ = displayExposure(whole);
+  } else {
+    exposure_ = 0.0;
   }
   // Fractions are shown as they are.
   const bool fraction = image.channels() == 1 && !state_.exposure;
-  const PictureLook look{fraction ? 0.0 : exposure_, state_.curve, flicker_ < kFlickerSeconds};
-  const Picture main = pictureOf(image, look);
+  const PictureLook look{fraction ? 0.0 : exposure_, state_.curve, flicker_ < kFlickerSeconds,
+                         image.channels() == 1 ? std::string() : kRadianceUnit};
+  const Picture main = showsPort ? portPicture(look) : pictureOf(image, look);
   std::optional<ReferenceLayer> truth;
   if (reference_ != nullptr && !showsPort)
     truth = referenceLayer(reference_->image, layerOf(lastGood_->sides.front(), state_.output));
@@ -68,6 +75,37 @@ void Session::compose() {
   }
 }
 
+Picture Session::portPicture(const PictureLook& outputLook) const {
+  const PortPicture& port = lastGood_->port;
+  PictureLook look = outputLook;
+  look.unit = port.unit;
+  ImageBuffer values = port.image;
+  if (!state_.exposure && port.unit != kRadianceUnit) {
+    // Other quantities know nothing of the exposure of the picture: the largest value is white, colours that
+    // are pure numbers are shown as they are, and light in another unit has an exposure of its own.
+    const bool light = port.unit.find('W') != std::string::npos;
+    float largest = 0.0f;
+    for (const float value : values.values())
+      if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+    look.exposure =
+        values.channels() == 1 && largest > 0.0f
+            ? std::clamp(-std::log2(static_cast<double>(largest)), -kLargestExposure, kLargestExposure)
+        : light                                        ? displayExposure(values)
+        : port.unit.empty() && port.brightness.empty() ? outputLook.exposure
+                                                       : 0.0;
+  }
+  // Directions have negative components: 0 becomes the middle of what can be shown.
+  if (port.isDirection && state_.curve != Curve::falseColour)
+    for (float& value : values.values()) value = 0.5f + 0.5f * value;
+  Picture picture = pictureOf(values, look);
+  if (picture.legend.empty() && values.channels() == 1)
+    picture.legend = fmt::format("grey: 0 to {:.4g} {}", std::exp2(-look.exposure), port.unit);
+  if (port.brightness.empty()) return picture;
+  return overlaid(picture, port.brightness,
+                  pictureOf(outputOf(lastGood_->sides.front().frame, state_.output), outputLook),
+                  state_.seeThrough);
+}
+
 std::vector<std::string> Session::valuesAt(int x, int y) const {
   std::vector<std::string> lines;
   if (lastGood_ == nullptr || lastGood_->sides.empty()) return lines;
@@ -83,7 +121,9 @@ std::vector<std::string> Session::valuesAt(int x, int y) const {
   };
   const RenderedSide& side = lastGood_->sides.front();
   lines.push_back(fmt::format("pixel {} {}", x, y));
-  if (!lastGood_->port.empty()) add("port", lastGood_->port, {});
+  if (state_.port && !lastGood_->port.image.empty())
+    add(fmt::format("{}.{} {}", state_.port->pass, state_.port->port, lastGood_->port.shown),
+        lastGood_->port.image, {});
   for (const std::string& name : shownOutputs(side.frame)) {
     add(name, outputOf(side.frame, name), {});
     if (reference_ == nullptr) continue;

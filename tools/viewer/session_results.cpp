@@ -1,7 +1,12 @@
 // What comes back from the workers, and what is kept of it: pictures, references, judgements, times.
 #include <fmt/format.h>
+#include <time.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <sstream>
 
 #include "lumivox/measure/metrics.h"
 #include "viewer/session.h"
@@ -10,6 +15,22 @@ namespace lumivox::viewer {
 namespace {
 
 constexpr std::size_t kFramesKept = 64;  // of which times are told
+constexpr std::size_t kMostTimedFrames = 240;
+
+/// Since this process was started, with what the loader and the program did before the session.
+double secondsOfProcess() {
+  std::ifstream file("/proc/self/stat");
+  std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  // The name, in parentheses, may hold anything; the start is the 22nd word, in ticks since the system's
+  // start.
+  std::istringstream words(text.substr(std::min(text.size(), text.rfind(')') + 1)));
+  std::string word;
+  for (int i = 0; i < 20; ++i) words >> word;
+  timespec now{};
+  clock_gettime(CLOCK_BOOTTIME, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) -
+         std::strtod(word.c_str(), nullptr) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
 
 double medianOfTimes(std::vector<double> times) {
   return statisticsOf(std::move(times)).median;
@@ -37,6 +58,7 @@ void Session::takeResults() {
     if (std::all_of(rendered_->sides.begin(), rendered_->sides.end(),
                     [](const RenderedSide& side) { return side.error.empty(); }))
       lastGood_ = rendered_;
+    noteTimes();
     noteTried();
     wantReference();
     wantJudgement();
@@ -78,6 +100,17 @@ void Session::wantJudgement() {
   judge_.want({rendered_, reference_, state_.exposure});
 }
 
+void Session::noteTimes() {
+  const double now = secondsOfProcess();
+  if (!firstPicture_ && lastGood_ == rendered_) firstPicture_ = now;
+  if (!rendered_->wish.timesPasses) return;
+  TimedFrame frame{now, {}};
+  for (const RenderedSide& side : rendered_->sides) frame.sides.push_back(side.times);
+  timedFrames_.push_back(std::move(frame));
+  while (timedFrames_.size() > kMostTimedFrames || timedFrames_.front().seconds < now - kFrameSeconds)
+    timedFrames_.pop_front();
+}
+
 void Session::noteTried() {
   const bool judges = judged_ != nullptr && judged_->wish.rendered == rendered_;
   for (std::size_t i = 0; i < rendered_->sides.size(); ++i) {
@@ -100,7 +133,17 @@ void Session::noteTried() {
         last.push_back(pass);
         if (last.size() > kFramesKept) last.erase(last.begin());
       }
-    known->frameMs = known->times.empty() ? side.frame.frameMs : medianOfTimes(known->times);
+    if (!known->times.empty()) {
+      known->frameMs = medianOfTimes(known->times);
+    } else {
+      // Passes were timed one by one, with nothing kept; or nothing is known of the cost, 0.
+      known->frameMs = 0.0;
+      for (const auto& [pass, records] : known->passes) {
+        std::vector<double> times;
+        for (const PassRecord& record : records) times.push_back(record.deviceMs);
+        known->frameMs += medianOfTimes(std::move(times));
+      }
+    }
     if (judges)
       for (const JudgedOutput& output : judged_->sides[i])
         if (output.output == kWholeImage) known->error = output.error.rmse;

@@ -31,12 +31,13 @@ struct ViewState {
   std::vector<Side> sides;  ///< one or two
   std::string output;
   std::optional<PortChoice> port;
+  double seeThrough = 0.0;  ///< share of the picture that is seen behind voxels
   Layout layout = Layout::picture;
   ErrorMap errorMap = ErrorMap::relative;
   double split = 0.5;
   std::optional<double> exposure;  ///< EV; otherwise that of the picture
   Curve curve = Curve::srgb;
-  bool keepEverything = false, timesPasses = true, traces = true;
+  bool keepEverything = false, timesPasses = true, countsWork = false, traces = true;
   int samples = 1024;
   std::uint64_t seed = 1;
   SceneEdits edits;

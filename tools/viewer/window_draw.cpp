@@ -82,23 +82,8 @@ void Window::State::drawMarks(const Row& row) {
   ImDrawList* const list = ImGui::GetWindowDrawList();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float width = std::max(32.0f, ImGui::GetContentRegionAvail().x);
-  if (row.kind == Row::Kind::bars) {
-    double all = 0.0;
-    for (const Row::Mark& mark : row.marks) all += mark.x;
-    const float height = 18.0f * scale;
-    float at = corner.x;
-    for (std::size_t i = 0; i < row.marks.size() && all > 0.0; ++i) {
-      const float next = at + width * static_cast<float>(row.marks[i].x / all);
-      const ImU32 colour = ImColor::HSV(
-          static_cast<float>(i) * 0.618f - std::floor(static_cast<float>(i) * 0.618f), 0.6f, 0.8f);
-      list->AddRectFilled(ImVec2(at, corner.y), ImVec2(next, corner.y + height), colour);
-      if (ImGui::IsMouseHoveringRect(ImVec2(at, corner.y), ImVec2(next, corner.y + height)))
-        ImGui::SetTooltip("%s: %.3f ms", row.marks[i].label.c_str(), row.marks[i].x);
-      at = next;
-    }
-    ImGui::Dummy(ImVec2(width, height));
-    return;
-  }
+  if (row.kind == Row::Kind::bars) return drawBars(row, corner, width);
+  if (row.kind == Row::Kind::stacks) return drawStacks(row, corner, width);
   // Both axes logarithmic: equal factors are equal ways.
   const float height = 140.0f * scale;
   double lowX = 1e300, highX = 0.0, lowY = 1e300, highY = 0.0;
@@ -241,13 +226,13 @@ void Window::State::drawRow(const Panel& panel, const Row& row) {
       place();
       break;
     case Row::Kind::bars:
+    case Row::Kind::stacks:
     case Row::Kind::points:
       drawMarks(row);
       break;
   }
   const bool hovered = ImGui::IsItemHovered();
-  if (!row.tooltip.empty() && row.kind != Row::Kind::bars && row.kind != Row::Kind::points && hovered)
-    ImGui::SetTooltip("%s", row.tooltip.c_str());
+  if (!row.tooltip.empty() && row.marks.empty() && hovered) ImGui::SetTooltip("%s", row.tooltip.c_str());
   drawResets(row, name);
   ImGui::PopItemWidth();
   if (row.changed) ImGui::PopStyleColor();

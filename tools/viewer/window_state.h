@@ -113,6 +113,8 @@ struct Window::State {
   void drawQuestion();
   void drawChoice(const Panel& panel, const Row& row);
   void drawMarks(const Row& row);
+  void drawBars(const Row& row, const ImVec2& corner, float width) const;
+  void drawStacks(const Row& row, const ImVec2& corner, float width) const;
   void drawHelp();
   void drawProblem(const ImVec2& at, float width);
   void feedClick();
