@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <glm/gtc/matrix_inverse.hpp>
+#include <limits>
 #include <utility>
 
 #include "lumivox/scene/models.h"
@@ -55,24 +56,36 @@ class AtRest {
 class NearestList {
  public:
   explicit NearestList(int most) : most_(static_cast<std::size_t>(most)) {}
-  void clear() { found_.clear(); }
-  void offer(float distance, std::uint32_t point) {
-    if (found_.size() == most_ && distance >= found_.back().first) return;
+  void clear() {
+    found_.clear();
+    farthest_ = std::numeric_limits<float>::max();
+  }
+  bool takes(float distanceSquared) const { return distanceSquared < farthest_; }
+  void take(float distanceSquared, std::uint32_t point) {
     if (found_.size() == most_) found_.pop_back();
     const auto behind = [](float value, const auto& entry) { return value < entry.first; };
-    found_.insert(std::upper_bound(found_.begin(), found_.end(), distance, behind), {distance, point});
+    found_.insert(std::upper_bound(found_.begin(), found_.end(), distanceSquared, behind),
+                  {distanceSquared, point});
+    if (found_.size() == most_) farthest_ = found_.back().first;
   }
   /// None farther than `farthest`, unless it is the only one.
   void append(std::vector<std::uint32_t>& to, double farthest) const {
-    for (std::size_t i = 0; i < most_; ++i)
-      to.push_back(i < found_.size() && (i == 0 || found_[i].first <= static_cast<float>(farthest))
-                       ? found_[i].second
-                       : VertexNeighbours::kNone);
+    for (std::size_t i = 0; i < most_; ++i) {
+      const bool counts =
+          i < found_.size() && (i == 0 || static_cast<double>(found_[i].first) <= farthest * farthest);
+      to.push_back(counts ? found_[i].second : VertexNeighbours::kNone);
+    }
   }
 
  private:
   std::size_t most_;
+  float farthest_ = std::numeric_limits<float>::max();
   std::vector<std::pair<float, std::uint32_t>> found_;
+};
+
+/// The lists of one side of a vertex.
+struct SideLists {
+  NearestList any, glossy;
 };
 
 /// The material of every vertex, -1 for those of no triangle; of one that parts share the first glossy one's,
@@ -99,6 +112,9 @@ VertexNeighbours neighboursOfVertices(const Scene& scene, const SurfacePointSet&
   const SurfacePointGrid grid = gridOf(set, state);
   const std::vector<std::uint32_t> models = modelsOf(scene);
   const std::vector<int> materials = materialsOfVertices(scene);
+  const auto materialOf = [&](int index) -> const Material& {
+    return scene.materials[static_cast<std::size_t>(index)];
+  };
   const auto cellAt = [&](const glm::vec3& place) {
     const GridPlacement& placement = grid.placement;
     const glm::ivec3 cell = glm::clamp(glm::ivec3(glm::floor((place - placement.low) / placement.voxelSize)),
@@ -109,32 +125,37 @@ VertexNeighbours neighboursOfVertices(const Scene& scene, const SurfacePointSet&
   const std::size_t entries = scene.positions.size() * static_cast<std::size_t>(result.sides * neighbours);
   result.any.reserve(entries);
   result.glossy.reserve(entries);
-  NearestList any(neighbours), glossy(neighbours);
+  std::vector<SideLists> sides(static_cast<std::size_t>(result.sides),
+                               {NearestList(neighbours), NearestList(neighbours)});
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const Object& object = scene.objects[o];
     for (std::uint32_t vertex = object.firstVertex; vertex < object.firstVertex + object.vertexCount;
          ++vertex) {
       const glm::vec3 position = rest.position(o, vertex), normal = rest.normal(o, vertex);
-      const Material* material =
-          materials[vertex] < 0 ? nullptr : &scene.materials[static_cast<std::size_t>(materials[vertex])];
+      const int material = materials[vertex];
+      const bool isGlossy = material >= 0 && materialOf(material).glossy();
+      for (SideLists& side : sides) side.any.clear(), side.glossy.clear();
       const std::size_t cell = cellAt(position);
-      for (int side = 0; side < result.sides; ++side) {
-        any.clear();
-        glossy.clear();
-        for (std::uint32_t i = grid.first[cell]; i < grid.first[cell + 1]; ++i) {
-          const std::uint32_t index = grid.points[i];
-          const SurfacePoint& point = set.points[index];
-          const glm::vec3 facing = side == 0 ? normal : -normal;
-          if (point.model != models[o] || glm::dot(facing, state.normal[index]) < kOtherSideCosine) continue;
-          const float distance = glm::distance(position, state.position[index]);
-          any.offer(distance, index);
-          const Material& other = scene.materials[static_cast<std::size_t>(point.material)];
-          if (material != nullptr && material->glossy() && other.glossy() &&
-              other.exponent == material->exponent)
-            glossy.offer(distance, index);
+      for (std::uint32_t i = grid.first[cell]; i < grid.first[cell + 1]; ++i) {
+        const std::uint32_t index = grid.points[i];
+        const glm::vec3 path = state.position[index] - position;
+        const float distanceSquared = glm::dot(path, path);
+        float cosine = glm::dot(normal, state.normal[index]);
+        for (SideLists& side : sides) {
+          const bool isNear = side.any.takes(distanceSquared),
+                     mayShine = isGlossy && side.glossy.takes(distanceSquared);
+          const bool isOther = cosine < kOtherSideCosine;
+          cosine = -cosine;
+          if (!(isNear || mayShine) || isOther || set.points[index].model != models[o]) continue;
+          if (isNear) side.any.take(distanceSquared, index);
+          const Material& of = materialOf(set.points[index].material);
+          if (mayShine && of.glossy() && of.exponent == materialOf(material).exponent)
+            side.glossy.take(distanceSquared, index);
         }
-        any.append(result.any, set.farthest);
-        glossy.append(result.glossy, set.farthest);
+      }
+      for (const SideLists& side : sides) {
+        side.any.append(result.any, set.farthest);
+        side.glossy.append(result.glossy, set.farthest);
       }
     }
   }
