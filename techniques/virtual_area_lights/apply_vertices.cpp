@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "lumivox/scene/models.h"
 #include "lumivox/toolkit/visible_surface.h"
+#include "vertex_neighbours.h"
 #include "virtual_area_lights_shaders.h"
 
 namespace lumivox::virtual_area_lights {
@@ -12,55 +12,48 @@ using namespace shaders::virtual_area_lights;
 
 namespace {
 
-/// Mirror of VertexOwner in interpolate_vertices.comp (std430).
-struct VertexOwner {
-  std::uint32_t object = 0, material = 0;
-  float model = 0.0f;
+/// What does not change while the set of points stays.
+struct VertexBuffers {
+  int sides = 1;
+  gpu::BufferRef objects, any, glossy;
 };
 
-/// Whose vertex each is. Of one that parts share the first glossy one decides: a vertex has one glossy light.
-std::vector<VertexOwner> ownersOf(const Scene& scene) {
-  std::vector<VertexOwner> owners(scene.positions.size());
-  const std::vector<std::uint32_t> models = modelsOf(scene);
-  std::vector<bool> isGlossy(owners.size(), false);
-  for (std::size_t o = 0; o < scene.objects.size(); ++o)
-    for (const Part& part : scene.objects[o].parts)
-      for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; ++i) {
-        const std::uint32_t vertex = scene.indices[i];
-        if (isGlossy[vertex]) continue;
-        owners[vertex] = {static_cast<std::uint32_t>(o), static_cast<std::uint32_t>(part.material),
-                          static_cast<float>(models[o])};
-        isGlossy[vertex] = scene.materials[static_cast<std::size_t>(part.material)].glossy();
-      }
-  return owners;
-}
-
-int sidesOf(const SurfacePoints& points) {
-  return std::ranges::any_of(points.set->points, &SurfacePoint::back) ? 2 : 1;
+const VertexBuffers& buffersOf(PassContext& frame, const SurfacePoints& points) {
+  return frame.kept("neighbours of vertices", points.set, [&] {
+    const Scene& scene = frame.sceneDescription();
+    const VertexNeighbours found = neighboursOfVertices(scene, *points.set, points.neighbours);
+    std::vector<std::uint32_t> objects(scene.positions.size());
+    for (std::size_t o = 0; o < scene.objects.size(); ++o)
+      std::fill_n(objects.begin() + scene.objects[o].firstVertex, scene.objects[o].vertexCount,
+                  static_cast<std::uint32_t>(o));
+    return VertexBuffers{found.sides, frame.uploaded(objects, "objects of vertices"),
+                         frame.uploaded(found.any, "points of vertices"),
+                         frame.uploaded(found.glossy, "glossy points of vertices")};
+  });
 }
 
 /// VertexLight of interpolate_vertices.comp, for each side of each vertex.
 gpu::BufferRef atVertices(PassContext& frame, const VertexInputs& inputs, int lobe,
                           const gpu::TextureRef& lights, const gpu::TextureRef& places) {
-  const Scene& scene = frame.sceneDescription();
-  const auto count = static_cast<std::uint64_t>(scene.positions.size());
-  const int sides = sidesOf(inputs.points);
-  const gpu::BufferRef owners = frame.kept(
-      "owners of vertices", 0, [&] { return frame.uploaded(ownersOf(scene), "owners of vertices"); });
-  gpu::BufferRef result = frame.elements(interpolate_vertices::vertexLights,
-                                         count * static_cast<std::uint64_t>(sides), "light of vertices");
+  const VertexBuffers& buffers = buffersOf(frame, inputs.points);
+  const auto count = static_cast<std::uint64_t>(frame.sceneDescription().positions.size());
+  gpu::BufferRef result =
+      frame.elements(interpolate_vertices::vertexLights, count * static_cast<std::uint64_t>(buffers.sides),
+                     "light of vertices");
   using Variant = interpolate_vertices::Variant;
-  const Variant variant{.lobe = lobe,
-                        .interpolate = inputs.plain && lobe == Variant::lobeDiffuse
-                                           ? Variant::interpolatePlain
-                                           : Variant::interpolateAveraged};
+  const bool glossy = lobe == Variant::lobeGlossy;
   frame.dispatchList(
-      frame.program(variant, interpolate_vertices::Constants{.neighbours = inputs.points.neighbours}),
-      {interpolate_vertices::parameters({static_cast<int>(count), sides, inputs.published}),
+      frame.program(Variant{.lobe = lobe,
+                            .interpolate = inputs.plain && !glossy ? Variant::interpolatePlain
+                                                                   : Variant::interpolateAveraged},
+                    interpolate_vertices::Constants{.neighbours = inputs.points.neighbours}),
+      {interpolate_vertices::parameters({static_cast<int>(count), buffers.sides, inputs.published}),
        SceneBinding(frame, nullptr, nullptr), SurfacePointsBinding(inputs.points),
        interpolate_vertices::lights(lights, gpu::Sampling::nearest),
        interpolate_vertices::places(places, gpu::Sampling::nearest),
-       interpolate_vertices::vertexOwners(owners), interpolate_vertices::vertexLights(result)},
+       interpolate_vertices::vertexObjects(buffers.objects),
+       interpolate_vertices::vertexPoints(glossy ? buffers.glossy : buffers.any),
+       interpolate_vertices::vertexLights(result)},
       count);
   return result;
 }
@@ -68,7 +61,7 @@ gpu::BufferRef atVertices(PassContext& frame, const VertexInputs& inputs, int lo
 SeenLight overTriangles(PassContext& frame, const VertexInputs& inputs, const gpu::BufferRef& lights) {
   SeenLight result{frame.image("light over triangles"), frame.image("places of light over triangles")};
   drawVisible(frame, {result.first, result.second}, vertices::Variant{},
-              {vertices::parameters({sidesOf(inputs.points)}), vertices::vertexLights(lights),
+              {vertices::parameters({buffersOf(frame, inputs.points).sides}), vertices::vertexLights(lights),
                GBufferBinding(inputs.gbuffer)});
   return result;
 }

@@ -51,7 +51,7 @@ TEST_CASE("check tells everything that is wrong in a published table, each at it
         "did you mean 'gbuffer'", "wrong_references.reproduction:9:3: row 'b' does not say whose fragments",
         "wrong_references.reproduction:10:33: this is not an output of a pass",
         "wrong_references.reproduction:11:35: there is no file",
-        "wrong_references.reproduction:12:47: a frame rate is that of the whole frame"}) {
+        "wrong_references.reproduction:12:55: pipeline \"Direct lighting\" has no pass 'gbufer'"}) {
     INFO(finding << "\n" << references.errors);
     CHECK(contains(references.errors, finding));
   }

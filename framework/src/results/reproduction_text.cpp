@@ -45,7 +45,8 @@ constexpr const char* kReferenceLayers[] = {
 std::vector<PropertySpecification> setUpProperties() {
   PropertySpecification measures = property(
       "measures", PropertyType::word,
-      "what the published numbers are: time in ms, frame_rate in 1/s, fragments (voxel fragments of `output`), "
+      "what the published numbers are: time in ms, frame_rate in 1/s (of the whole frame, or of `passes` "
+      "where others are made in advance), fragments (voxel fragments of `output`), "
       "memory in MB of 10^6 bytes (of `passes`, of what `output` holds, or of the whole frame at its peak), "
       "voxel_bytes (of what `output` holds, for each of its finest voxels that has an opacity)");
   for (const PublishedQuantity quantity : kPublishedQuantities) measures.choices.push_back(name(quantity));
@@ -373,17 +374,11 @@ class ResultReader : TextFindings {
     target.pipeline = pipelineOf(*setting.pipeline);
     if (!target.pipeline) return;
     for (const dsl::Property* one : setting.settings) readSetting(*one, *target.pipeline, target.settings);
-    if (target.quantity == PublishedQuantity::frameRate) {
-      for (const dsl::Item& item : block.items)
-        if (item.property && item.property->word == "passes")
-          report(item.property->place, item.property->word, "a frame rate is that of the whole frame",
-                 "measures time, or no passes");
-    } else if (setting.passes != nullptr) {
+    if (setting.passes != nullptr)
       for (const dsl::Value& value : setting.passes->values.front().items) {
         requirePass(value, value.text, *target.pipeline);
         target.passes.push_back(value.text);
       }
-    }
     if (setting.output != nullptr) {
       const dsl::Value& value = setting.output->values.front();
       if (const auto parts = splitDotted(value)) {
