@@ -66,12 +66,6 @@ struct TextToWrite {
   std::string text;
 };
 
-/// The passes of a frame whose passes were timed, of each side.
-struct TimedFrame {
-  double seconds = 0.0;  ///< since the session began
-  std::vector<std::vector<PassRecord>> sides;
-};
-
 class Session {
  public:
   /// `wake` is called from other threads when something new is there. Error when a text is wrong.
