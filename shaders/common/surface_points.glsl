@@ -21,7 +21,6 @@ ivec2 pointTexel(uint point) { return ivec2(point % kPointsInRow, point / kPoint
 
 // Normals at a larger angle are of another side of the surface; C++ side: framework/include/lumivox/scene/surface_points.h.
 const float kOtherSideCosine = -0.5;
-bool onSameSide(vec3 normal, vec3 other) { return dot(normal, other) >= kOtherSideCosine; }
 
 #ifdef POINT_CANDIDATES
 layout(std430, binding = 6) readonly buffer PointCells { uint pointCellFirst[]; };  // of each cell, and one more

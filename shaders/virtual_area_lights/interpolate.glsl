@@ -35,9 +35,9 @@ void keep(inout Nearest nearest, uint point, float distanceSquared) {
   }
 }
 
-// The nearest points of the same model and side, none farther than where all are listed, unless it is the only one; with an exponent of 0
-// or more only those that reflect by it.
-Nearest nearestPoints(SeenSurface seen, float exponent) {
+// The nearest points of the same model whose normals are off by no more than the angle of cosine `alike`, none farther than where all are
+// listed, unless it is the only one; with an exponent of 0 or more only those that reflect by it.
+Nearest nearestAlike(SeenSurface seen, float alike, float exponent) {
   const float kNone = 3.4e38;
   Nearest nearest;
   for (int i = 0; i < neighbours; ++i) {
@@ -49,7 +49,7 @@ Nearest nearestPoints(SeenSurface seen, float exponent) {
     uint point = pointCandidates[i];
     ivec2 texel = pointTexel(point);
     vec4 normal = texelFetch(pointNormal, texel, 0);
-    if (normal.w != seen.model || !onSameSide(seen.normal, normal.xyz)) continue;
+    if (normal.w != seen.model || dot(seen.normal, normal.xyz) < alike) continue;
     if (exponent >= 0.0) {
       vec4 radius = texelFetch(pointRadius, texel, 0);
       if (radius.y != exponent || radius.z == 0.0) continue;
@@ -64,6 +64,18 @@ Nearest nearestPoints(SeenSurface seen, float exponent) {
       nearest.count = i + 1;
       nearest.farthestSquared = nearest.distancesSquared[i];
     }
+  return nearest;
+}
+
+// Those of the same side. Where these all lie on surfaces across an edge, which light nothing here (Eq. 12: a foot of a wall among the points
+// of the floor), those that face as what is seen does.
+Nearest nearestPoints(SeenSurface seen, float exponent) {
+  const float kAcrossAnEdge = 0.05;
+  Nearest nearest = nearestAlike(seen, kOtherSideCosine, exponent);
+  for (int i = 0; i < neighbours; ++i)
+    if (i < nearest.count && dot(seen.normal, texelFetch(pointNormal, pointTexel(nearest.points[i]), 0).xyz) >= kAcrossAnEdge) return nearest;
+  Nearest alike = nearestAlike(seen, kAcrossAnEdge, exponent);
+  if (alike.count > 0) return alike;
   return nearest;
 }
 

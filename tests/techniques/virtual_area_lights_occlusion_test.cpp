@@ -62,11 +62,9 @@ SparsePoint disc(const glm::vec3& position, float radius) {
 
 }  // namespace
 
-TEST_CASE("squares hide as much as circles do: within 0.05 for equal areas") {
-  for (const Shares& share : sharesOf(1.0)) CHECK(share.squares == Approx(share.circles).margin(0.09));
-  double mean = 0.0;
-  for (const Shares& share : sharesOf(1.0)) mean += (share.squares - share.circles) / 200.0;
-  CHECK(mean == Approx(0.0).margin(0.05));
+TEST_CASE("squares hide as much as circles do: within 0.05 for equal areas, 0.12 for twice the radius") {
+  for (const Shares& share : sharesOf(1.0)) CHECK(share.squares == Approx(share.circles).margin(0.05));
+  for (const Shares& share : sharesOf(2.0)) CHECK(share.squares == Approx(share.circles).margin(0.12));
 }
 
 TEST_CASE("a concentric square hides exactly the share of areas, and bits the same within 1/8") {

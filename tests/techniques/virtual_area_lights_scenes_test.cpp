@@ -1,40 +1,333 @@
-// Committed scenes against the path tracer.
+// Committed scenes against the path tracer, and against every light at every pixel.
 #include <cstdio>
+#include <random>
 
 #include "support/against_reference.h"
+#include "support/virtual_area_lights.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
 
 namespace {
 
+const char* const kBruteForce = "virtual_area_lights/virtual_area_lights_brute_force";
+
 Scene committed(const std::string& name) {
   return loadScene(sourceDirectory() / ("scenes/" + name + ".scene"));
+}
+
+/// Without the cache, which knows a scene by its text.
+LayeredImage tracedOf(const Scene& scene, const Picture& picture) {
+  ReferenceOptions options = quietly(picture.referenceSamples, 1);
+  options.width = picture.width;
+  options.height = picture.height;
+  return renderReference(scene, options);
 }
 
 struct Errors {
   Against diffuse, glossy;
 };
 
-Errors errorsOn(const std::string& name, const std::vector<std::string>& settings,
+Errors errorsOn(const Scene& scene, const std::vector<std::string>& settings,
                 const Picture& picture = {64, 64, 128}) {
-  const Scene scene = committed(name);
-  const LayeredImage reference = referenceOf(scene, picture);
+  const LayeredImage reference = tracedOf(scene, picture);
   const FrameResult frame = pictured(scene, picture, pipeline("virtual_area_lights"), settings);
   return {lightAgainst(reference, frame.outputs.at("indirect_diffuse")),
           against(reference, frame.outputs.at("indirect_glossy"), "one_bounce_glossy", 0.0f)};
 }
+Errors errorsOn(const std::string& name, const std::vector<std::string>& settings = {}) {
+  return errorsOn(committed(name), settings);
+}
+
+/// RMS of what two pictures differ by over that of the second, and the ratio of their means.
+Against beside(const ImageBuffer& image, const ImageBuffer& right) {
+  double squared = 0.0, all = 0.0, sum = 0.0, rightSum = 0.0;
+  for (std::size_t i = 0; i < image.values().size(); ++i) {
+    const auto a = static_cast<double>(image.values()[i]), b = static_cast<double>(right.values()[i]);
+    squared += (a - b) * (a - b);
+    all += b * b;
+    sum += a;
+    rightSum += b;
+  }
+  return {std::sqrt(squared / all), sum / rightSum};
+}
+
+Pipeline withoutLimit() {
+  const Pipeline text = pipeline("virtual_area_lights");
+  std::string source = text.document->source;
+  const std::string pass = "pass gather virtual_area_lights.gather {";
+  source.insert(source.find(pass) + pass.size(), "\n exponent_limit none\n");
+  return Pipeline::parse(source, text.file);
+}
+
+/// The glossy light of the panels of `exponents`, all of one exponent, beside that of all lights.
+Against ofExponent(float exponent, const std::vector<std::string>& settings, bool limited = true) {
+  Scene scene = committed("exponents");
+  for (Material& material : scene.materials)
+    if (material.glossy()) material.exponent = exponent;
+  const Picture picture{64, 64};
+  std::vector<std::string> all{"occlusion=off"};
+  all.insert(all.end(), settings.begin(), settings.end());
+  return beside(pictured(scene, picture, limited ? pipeline("virtual_area_lights") : withoutLimit(), all)
+                    .outputs.at("indirect_glossy"),
+                pictured(scene, picture, pipeline(kBruteForce), {}).outputs.at("indirect_glossy"));
+}
+
+/// The diffuse light of `cornell` beside that of all lights.
+Against ofPoints(int points, const std::vector<std::string>& lights = {}) {
+  const Scene scene = committed("cornell");
+  const Picture picture{64, 64};
+  std::vector<std::string> all{"occlusion=off", "points=" + std::to_string(points)};
+  all.insert(all.end(), lights.begin(), lights.end());
+  return beside(pictured(scene, picture, pipeline("virtual_area_lights"), all).outputs.at("indirect_diffuse"),
+                pictured(scene, picture, pipeline(kBruteForce), lights).outputs.at("indirect_diffuse"));
+}
+
+/// RMS of changes from frame to frame which the reference does not make, over the mean light.
+double flickerOn(const Scene& scene, const Pipeline& text, const std::vector<std::string>& settings,
+                 int frames = 4) {
+  const Picture picture{32, 32, 512};
+  RenderOptions options;
+  options.width = picture.width;
+  options.height = picture.height;
+  options.parameters = text.settings(settings);
+  PipelineExecutor executor(device(), techniques(), scene, text, options);
+  std::vector<ImageBuffer> images, references, variances;
+  for (int i = 0; i < frames; ++i) {
+    images.push_back(executor.render(i / 24.0, i).outputs.at("indirect_diffuse"));
+    ReferenceOptions path = quietly(picture.referenceSamples, 1);
+    path.width = picture.width;
+    path.height = picture.height;
+    path.time = i / 24.0;
+    path.seed = static_cast<std::uint64_t>(i + 1);
+    path.useCache = true;
+    const LayeredImage reference = cachedReference(scene, path);
+    references.push_back(reference.layers.at("one_bounce_diffuse"));
+    variances.push_back(reference.layers.at("one_bounce_diffuse.variance"));
+  }
+  double mean = 0.0;
+  for (const float value : references.front().values())
+    mean += static_cast<double>(value) / static_cast<double>(references.front().values().size());
+  return flicker(images, references, variances).value / mean;
+}
+
+/// Errors of `interpolate averaged` and `plain` over a plane of bumps as wide as the points are apart, beside
+/// every light at every place.
+struct Kept {
+  double averaged, plain;
+};
+Kept bumps(const std::vector<DiscLight>& discs) {
+  constexpr int kSide = 16, kPoints = 24;
+  std::mt19937 random(9);
+  std::uniform_real_distribution<float> jitter(0.2f, 0.8f);
+  constexpr float kSlope = 0.2f;  // of two waves, 8 and 9 cm long
+  const auto bump = [](float x, float z) {
+    return SparsePoint{{x, 0, z},
+                       glm::normalize(glm::vec3(-kSlope * std::cos(78.5f * x + 20.0f * z), 1.0f,
+                                                -kSlope * std::cos(70.0f * z - 15.0f * x)))};
+  };
+  std::vector<SparsePoint> points, seen;
+  for (int i = 0; i < kPoints * kPoints; ++i)
+    points.push_back(bump((static_cast<float>(i % kPoints) + jitter(random)) * 2.0f / kPoints - 1.0f,
+                          (static_cast<float>(i / kPoints) + jitter(random)) * 2.0f / kPoints - 1.0f));
+  for (int i = 0; i < kSide * kSide; ++i)
+    seen.push_back(bump(1.6f * (jitter(random) - 0.5f), 1.6f * (jitter(random) - 0.5f)));
+  SparsePasses passes({0, 1, 0}, kSide);
+  const SurfacePoints made = pointsOf(points, 2.0f / kPoints);
+  const SurfaceLights lights = lightsOf(discs);
+  const SparseLight light = passes.normalise(made, passes.gather(made, lights));
+  const ImageBuffer right = passes.bruteForce(lights, seen).first;
+  return {beside(passes.apply(made, light, seen).first, right).rmse,
+          beside(passes.apply(made, light, seen, {{"interpolate", std::string("plain")}}).first, right).rmse};
+}
+
+/// A patch beside the plane, and a dome over it which is brighter on one side by `tilt` of its mean.
+std::vector<DiscLight> patch() {
+  std::vector<DiscLight> lights;
+  for (int i = 0; i < 16; ++i)
+    lights.push_back(
+        {{1.4f, 0.5f + 0.1f * static_cast<float>(i / 4), -0.15f + 0.1f * static_cast<float>(i % 4)},
+         {-1, 0, 0},
+         0.01f});
+  return lights;
+}
+std::vector<DiscLight> dome(float tilt) {
+  std::vector<DiscLight> lights;
+  constexpr int kRings = 8, kSpokes = 32;
+  for (int i = 0; i < kRings * kSpokes; ++i) {
+    const float height = (static_cast<float>(i / kSpokes) + 0.5f) / kRings,
+                wide = std::sqrt(1.0f - height * height),
+                turn = 2.0f * static_cast<float>(kPi) * static_cast<float>(i % kSpokes) / kSpokes;
+    const glm::vec3 way(wide * std::cos(turn), height, wide * std::sin(turn));
+    lights.push_back({4.0f * way, -way, static_cast<float>(2.0 * kPi) * 16.0f / (kRings * kSpokes),
+                      glm::vec3(1.0f + tilt * way.x)});
+  }
+  return lights;
+}
 
 }  // namespace
 
+TEST_CASE("virtual area lights err on the Cornell box by at most 0.85 of what all texels unoccluded do",
+          "[slow]") {
+  const Scene scene = committed("cornell");
+  const Picture picture{32, 32, 256};
+  const LayeredImage reference = tracedOf(scene, picture);
+  const auto errorOf = [&](const Pipeline& text) {
+    return lightAgainst(reference, pictured(scene, picture, text, {}).outputs.at("indirect_diffuse"));
+  };
+  const Pipeline published = pipeline("reflective_shadow_maps");
+  std::string source = published.document->source;
+  const std::string pass = "pass gather reflective_shadow_maps.gather {";
+  source.insert(source.find(pass) + pass.size(), "\n method all\n map lights.map\n");
+  const Against ours = errorOf(pipeline("virtual_area_lights")),
+                all = errorOf(Pipeline::parse(source, published.file));
+  CAPTURE(ours.rmse, ours.ratio, all.rmse, all.ratio);
+  CHECK(ours.rmse <= 0.85 * all.rmse);
+  CHECK(ours.ratio >= 0.9);
+  CHECK(ours.ratio <= 1.15);
+}
+
+TEST_CASE("virtual area lights err on corridor, spinning box and arcade by what their card claims") {
+  const Against corridor = errorsOn("corridor").diffuse;
+  CAPTURE(corridor.rmse, corridor.ratio);
+  CHECK(corridor.rmse <= 0.6);
+  CHECK(corridor.ratio >= 0.7);
+  CHECK(corridor.ratio <= 1.4);
+  const Against spinning = errorsOn("spinning_box").diffuse;
+  CAPTURE(spinning.rmse);
+  CHECK(spinning.rmse < 0.53);
+  Scene arcade = committed("arcade");
+  const Against under = errorsOn(arcade, {}).diffuse;
+  CAPTURE(under.rmse, under.ratio);
+  CHECK(under.rmse <= 0.7);
+  arcade.environment = glm::vec3(0.0f);
+  const Against without = errorsOn(arcade, {}).diffuse;
+  CAPTURE(without.rmse, without.ratio);
+  CHECK(without.ratio >= 0.75);
+  CHECK(without.ratio <= 1.3);
+}
+
+TEST_CASE("glossy light of the Cornell box with a box of gold errs by at most half, energy within a fifth") {
+  const Against glossy = errorsOn("cornell_glossy").glossy;
+  CAPTURE(glossy.rmse, glossy.ratio);
+  CHECK(glossy.rmse <= 0.5);
+  CHECK(glossy.ratio >= 0.8);
+  CHECK(glossy.ratio <= 1.2);
+}
+
+TEST_CASE("lobes up to exponent 100 are those of all lights within half, narrower ones keep their energy") {
+  for (const auto& [exponent, most] :
+       {std::pair(10.0f, 0.3), {40.0f, 0.45}, {100.0f, 0.55}, {1e3f, 0.9}, {1e4f, 0.9}, {1e5f, 0.9}}) {
+    const Against found = ofExponent(exponent, {});
+    CAPTURE(exponent);
+    CHECK(found.rmse <= most);
+    CHECK(found.ratio >= 0.7);
+    CHECK(found.ratio <= 1.3);
+  }
+}
+
+TEST_CASE("more points come nearer to every light at every pixel") {
+  double before = 1.0;
+  for (const int points : {256, 512, 1024, 2048, 4096}) {
+    const double error = ofPoints(points).rmse;
+    CAPTURE(points, error);
+    CHECK(error < before);
+    before = error;
+  }
+  CHECK(before <= 0.06);
+}
+
+TEST_CASE("averaged lights keep the bumps of a surface lit from one side, and lose little under a dome") {
+  const Kept one = bumps(patch()), all = bumps(dome(1.0f));
+  CAPTURE(one.averaged, one.plain, all.averaged, all.plain);
+  CHECK(one.averaged <= 0.5 * one.plain);
+  CHECK(all.averaged <= 1.3 * all.plain);
+}
+
+TEST_CASE("a turning box flickers no more than with reflective shadow maps of as many lights") {
+  const Scene scene = committed("spinning_box");
+  const double ours = flickerOn(scene, pipeline("virtual_area_lights"), {}),
+               theirs = flickerOn(scene, pipeline("reflective_shadow_maps"), {"samples=1024"});
+  CAPTURE(ours, theirs);
+  CHECK(ours <= theirs);
+}
+
 TEST_CASE("table: errors by occlusion and its variants", "[.]") {
-  for (const char* name : {"cornell", "corridor", "cornell_glossy", "spinning_box", "arcade"})
+  for (const char* name :
+       {"cornell", "corridor", "stress/stacked_plates", "cornell_glossy", "spinning_box", "arcade"})
     for (const char* occlusion :
          {"occlusion=off", "combine=product", "combine=sum", "combine=nearest", "combine=mask"}) {
       const Errors errors = errorsOn(name, {occlusion});
-      std::printf("%-15s %-16s diffuse %.3f ratio %.3f  glossy %.3f ratio %.3f\n", name, occlusion,
+      std::printf("%-22s %-16s diffuse %.3f ratio %.3f  glossy %.3f ratio %.3f\n", name, occlusion,
                   errors.diffuse.rmse, errors.diffuse.ratio, errors.glossy.rmse, errors.glossy.ratio);
       std::fflush(stdout);
       CHECK(errors.diffuse.rmse < 9.0);
+    }
+}
+
+TEST_CASE("table: lobes beside all lights, by exponent and points", "[.]") {
+  for (const char* points : {"points=512", "points=2048", "points=8192"})
+    for (const float exponent : {1.0f, 10.0f, 40.0f, 100.0f, 1e3f, 1e4f, 1e5f}) {
+      const Against limited = ofExponent(exponent, {points}), free = ofExponent(exponent, {points}, false);
+      std::printf("%-12s exponent %6.0f: %.3f, %.2f; exponent_limit none: %.3f, %.2f\n", points,
+                  static_cast<double>(exponent), limited.rmse, limited.ratio, free.rmse, free.ratio);
+      std::fflush(stdout);
+      CHECK(limited.rmse < 2.0);
+    }
+}
+
+TEST_CASE("table: interpolation by points and lights", "[.]") {
+  for (const char* lights : {"lights=1024", "lights=4096", "lights=16384"})
+    for (int points = 256; points <= 16384; points *= 2) {
+      const Against found = ofPoints(points, {lights});
+      std::printf("%s points %5d: %.3f, %.3f\n", lights, points, found.rmse, found.ratio);
+      std::fflush(stdout);
+      CHECK(found.rmse < 1.0);
+    }
+}
+
+TEST_CASE("table: bumps and flicker", "[.]") {
+  const Kept one = bumps(patch());
+  std::printf("bumps, error averaged / plain: patch %.3f / %.3f", one.averaged, one.plain);
+  for (const float tilt : {0.0f, 0.3f, 0.6f, 1.0f}) {
+    const Kept all = bumps(dome(tilt));
+    std::printf("; dome of tilt %.1f %.3f / %.3f", static_cast<double>(tilt), all.averaged, all.plain);
+  }
+  std::printf("\n");
+  for (const char* name : {"spinning_box", "horse_gallop"}) {
+    const Scene scene = committed(name);
+    const double ours = flickerOn(scene, pipeline("virtual_area_lights"), {}, 6),
+                 theirs = flickerOn(scene, pipeline("reflective_shadow_maps"), {"samples=1024"}, 6);
+    std::printf("flicker of %s: %.4f, reflective shadow maps %.4f\n", name, ours, theirs);
+    CHECK(ours >= 0.0);
+  }
+}
+
+TEST_CASE("table: shares of the light that no virtual area light holds", "[.]") {
+  for (const char* name : {"cornell_glossy", "arcade", "exponents"}) {
+    const Scene scene = committed(name);
+    Scene without = scene;
+    without.environment = glm::vec3(0.0f);
+    const auto meanOf = [](const Scene& of, const char* layer) {
+      return estimateOf(tracedOf(of, {64, 64, 128}), layer).mean;
+    };
+    // What glossy surfaces send on: light that is left where they reflect nothing but diffusely.
+    Scene dull = without;
+    for (Material& material : dull.materials) material.specular = glm::vec3(0.0f);
+    const double all = meanOf(scene, "one_bounce_diffuse"), noSky = meanOf(without, "one_bounce_diffuse"),
+                 diffuse = meanOf(dull, "one_bounce_diffuse");
+    std::printf("%s: of the diffuse light %.3f from the environment, %.3f sent on by glossy surfaces\n", name,
+                1.0 - noSky / all, (noSky - diffuse) / all);
+    CHECK(all > 0.0);
+  }
+}
+
+TEST_CASE("table: discs in line on the bunny", "[.]") {
+  for (const char* combine : {"occlusion=off", "combine=product", "combine=nearest", "combine=mask"})
+    for (const char* points : {"points=1024", "points=4096"}) {
+      const Against found = errorsOn(committed("bunny"), {combine, points}).diffuse;
+      std::printf("bunny %s %s: %.3f, %.3f\n", combine, points, found.rmse, found.ratio);
+      std::fflush(stdout);
+      CHECK(found.rmse < 9.0);
     }
 }

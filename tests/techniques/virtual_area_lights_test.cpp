@@ -242,7 +242,7 @@ TEST_CASE("an even disc of lights is a sphere of its own radius, and one light a
 }
 
 TEST_CASE(
-    "a lobe is no narrower than points as far apart as they are can show: a quarter of the squared distance over spacing") {
+    "a lobe is no narrower than points as far apart as they are can show: twice the squared distance over spacing") {
   SparsePasses passes;
   const SurfacePoints made = pointsOf({{{0, 0, 0}, {0, 1, 0}, 0.01f, 0.1f, 1000.0f}}, 0.1f);
   const SurfaceLights light = lightsOf({{{0, 0.5f, 0}, {0, -1, 0}, 1e-4f}});
@@ -252,7 +252,7 @@ TEST_CASE(
                .w -
            1.0f;
   };
-  CHECK(exponentBy("spacing") == Approx(0.25 * 25.0).epsilon(1e-3));
+  CHECK(exponentBy("spacing") == Approx(2.0 * 25.0).epsilon(1e-3));
   CHECK(exponentBy("none") == Approx(1000.0).epsilon(1e-5));
   // Lights that lie upon each other shine together.
   SurfaceLights three = light;
