@@ -1,5 +1,5 @@
-// The averaged light as the surface takes it: Lensing & Broll 2013, Eq. 10. Deviates: no distance, which the print has in Eq. 10 and 11, so
-// that light between points falls off with the distance to a place where there is none.
+// The averaged light as the surface takes it: Lensing & Broll 2013, Eq. 10. Deviates: no squared distance, which
+// the print has in Eq. 10 and 11. At the points it cancels; between them a place of mean light is no place of light.
 #ifndef LUMIVOX_AVERAGED_LIGHT
 #define LUMIVOX_AVERAGED_LIGHT
 

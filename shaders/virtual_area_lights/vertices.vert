@@ -8,7 +8,7 @@ struct VertexLight {
   vec4 light;
   vec4 offset;  // w: 1 where there is light to be had
 };
-layout(std140, binding = 4) uniform Parameters {
+layout(std140, binding = 4) uniform VertexSides {
   int sides;  // 1: fronts alone have points
 };
 layout(std430, binding = 5) readonly buffer VertexLights { VertexLight vertexLights[]; };

@@ -61,7 +61,7 @@ gpu::BufferRef atVertices(PassContext& frame, const VertexInputs& inputs, int lo
 SeenLight overTriangles(PassContext& frame, const VertexInputs& inputs, const gpu::BufferRef& lights) {
   SeenLight result{frame.image("light over triangles"), frame.image("places of light over triangles")};
   drawVisible(frame, {result.first, result.second}, vertices::Variant{},
-              {vertices::parameters({buffersOf(frame, inputs.points).sides}), vertices::vertexLights(lights),
+              {vertices::vertexSides({buffersOf(frame, inputs.points).sides}), vertices::vertexLights(lights),
                GBufferBinding(inputs.gbuffer)});
   return result;
 }

@@ -314,8 +314,8 @@ TEST_CASE(
                          const std::string& apply, const std::string& normalise) {
     const std::string text = fmt::format(R"(pipeline "published" {{
       pass gbuffer direct_lighting.gbuffer {{ }}
-      pass points virtual_area_lights.points {{ points 128 }}
-      pass map reflective_shadow_maps.render {{ size 16 }}
+      pass points virtual_area_lights.points {{ points 64 }}
+      pass map reflective_shadow_maps.render {{ size 8 }}
       pass choose reflective_shadow_maps.choose {{ map map.map  lights 64  {} }}
       pass gather virtual_area_lights.gather {{ points points.points  lights choose.lights  {} }}
       pass normalise virtual_area_lights.normalise {{ points points.points  light gather.light  {} }}
@@ -334,7 +334,7 @@ TEST_CASE(
   RenderOptions options;
   const Pipeline committed = Pipeline::load(
       sourceDirectory() / "scenes/pipelines/virtual_area_lights/virtual_area_lights_as_published.pipeline");
-  options.parameters = committed.settings({"points=128", "map=16"});
+  options.parameters = committed.settings({"points=64", "map=8"});
   const auto pipelined = renderOnce(scene, committed, options).outputs;
   for (const char* output : {"indirect_diffuse", "indirect_glossy"}) {
     CAPTURE(output);
@@ -349,26 +349,38 @@ TEST_CASE(
 
 namespace {
 
-/// RMS difference of diffuse light at vertices to that at pixels, over the mean.
-double ofVertices(const Scene& scene, int points) {
-  std::string text = pipeline("virtual_area_lights").document->source;
-  const std::string last = "    light occlude.light\n";
-  const auto image = [&](const std::string& at) {
-    std::string with = text;
-    with.insert(with.find(last), "    at " + at + "\n");
-    const Pipeline chosen = Pipeline::parse(with, pipeline("virtual_area_lights").file);
-    return pictured(scene, {64, 64}, chosen,
-                    {"points=" + std::to_string(points), "occlusion=off", "lights=256"})
-        .outputs.at("indirect_diffuse");
-  };
-  const ImageBuffer pixels = image("pixels"), vertices = image("vertices");
+/// RMS difference over the mean of the second.
+double differenceOf(const ImageBuffer& image, const ImageBuffer& right) {
   double squares = 0.0, sum = 0.0;
-  for (std::size_t i = 0; i < pixels.values().size(); ++i) {
-    squares += std::pow(static_cast<double>(vertices.values()[i] - pixels.values()[i]), 2.0);
-    sum += static_cast<double>(pixels.values()[i]);
+  for (std::size_t i = 0; i < right.values().size(); ++i) {
+    squares += std::pow(static_cast<double>(image.values()[i] - right.values()[i]), 2.0);
+    sum += static_cast<double>(right.values()[i]);
   }
-  const auto count = static_cast<double>(pixels.values().size());
+  const auto count = static_cast<double>(right.values().size());
   return std::sqrt(squares / count) / (sum / count);
+}
+
+/// Diffuse light without occlusion, with words added to the passes `normalise` and `apply`.
+ImageBuffer diffuseWith(const Scene& scene, int points, const std::string& normalise,
+                        const std::string& apply) {
+  const Pipeline committed = pipeline("virtual_area_lights");
+  std::string text = committed.document->source;
+  const auto add = [&](const std::string& line, const std::string& words) {
+    REQUIRE(text.find(line) != std::string::npos);
+    text.replace(text.find(line), line.size() + std::string("    as_published $as_published\n").size(),
+                 line + words);
+  };
+  add("    light gather.light\n", normalise);
+  add("    light occlude.light\n", apply);
+  return pictured(scene, {64, 64}, Pipeline::parse(text, committed.file),
+                  {"points=" + std::to_string(points), "occlusion=off", "lights=256"})
+      .outputs.at("indirect_diffuse");
+}
+
+/// Light at vertices against that at pixels.
+double ofVertices(const Scene& scene, int points) {
+  return differenceOf(diffuseWith(scene, points, "", "    at vertices\n"),
+                      diffuseWith(scene, points, "", ""));
 }
 
 Scene finer(Scene scene, int times) {
@@ -397,6 +409,54 @@ TEST_CASE("table: light at vertices against light at pixels, by triangles", "[.]
                   difference);
       std::fflush(stdout);
       CHECK(difference < 9.0);
+    }
+  }
+}
+
+TEST_CASE("table: the squared distance of Eq. 10 and 11 as printed, against every light at every pixel",
+          "[.]") {
+  const std::string on = "    as_published on\n";
+  const Scene scene = finer(loadScene(sourceDirectory() / "scenes/cornell.scene"), 5);
+  const Pipeline all = Pipeline::load(
+      sourceDirectory() / "scenes/pipelines/virtual_area_lights/virtual_area_lights_brute_force.pipeline");
+  const ImageBuffer right = pictured(scene, {64, 64}, all, {"lights=256"}).outputs.at("indirect_diffuse");
+  for (const int points : {256, 1024, 4096}) {
+    const double ours = differenceOf(diffuseWith(scene, points, "", "    at vertices\n"), right),
+                 printed = differenceOf(diffuseWith(scene, points, on, on), right);
+    std::printf("%d points: without the distance %.3f, with it %.3f of the mean\n", points, ours, printed);
+    std::fflush(stdout);
+    CHECK(ours < 9.0);
+  }
+}
+
+TEST_CASE("table: light at the vertices of large models against that at pixels, on the models alone", "[.]") {
+  for (const auto& [name, albedo] : {std::pair("bunny", 0.72f), std::pair("dragon", 0.35f)}) {
+    const Scene scene = loadScene(sourceDirectory() / ("scenes/" + std::string(name) + ".scene"));
+    PassHarness seen(device(), techniques(), "direct_lighting", "gbuffer", scene,
+                     snapshotOf(scene, 0.0, {}, 64, 64));
+    seen.run();
+    const ImageBuffer albedos = imageOf(*seen.output<GBuffer>("gbuffer").diffuse);
+    for (const int points : {512, 2048, 8192}) {
+      ImageBuffer vertices = diffuseWith(scene, points, "", "    at vertices\n"),
+                  pixels = diffuseWith(scene, points, "", "");
+      std::vector<float> ofModel[2];
+      for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x)
+          for (int c = 0; c < 3; ++c)
+            if (std::abs(albedos.at(x, y, 0) - albedo) < 1e-4f) {
+              ofModel[0].push_back(vertices.at(x, y, c));
+              ofModel[1].push_back(pixels.at(x, y, c));
+            }
+      double squares = 0.0, sum = 0.0;
+      for (std::size_t i = 0; i < ofModel[0].size(); ++i) {
+        squares += std::pow(static_cast<double>(ofModel[0][i] - ofModel[1][i]), 2.0);
+        sum += static_cast<double>(ofModel[1][i]);
+      }
+      const auto count = static_cast<double>(ofModel[0].size());
+      std::printf("%s %5d points: %.3f of the mean of %zu values\n", name, points,
+                  std::sqrt(squares / count) / (sum / count), ofModel[0].size());
+      std::fflush(stdout);
+      CHECK(sum > 0.0);
     }
   }
 }
