@@ -133,6 +133,24 @@ TEST_CASE(
   }
 }
 
+TEST_CASE(
+    "a sphere aside is hidden by the disc that stands before it, as one overhead is, and not by one overhead") {
+  SparsePasses passes;
+  const auto openFrom = [&](const glm::vec3& direction, const SparsePoint& hides) {
+    const SparseLight light{texels({{1, 1, 1, 1}}, {1024, 1}, "light"),
+                            texels({glm::vec4(4.0f * direction, 1)}, {1024, 1}, "place"), nullptr, nullptr};
+    return valuesOf(passes.occlude(pointsOf({SparsePoint{}, hides}), light).diffuse, 1).front().x;
+  };
+  const SparsePoint overhead = disc({0, 2, 0}, 0.3f);
+  const float straight = openFrom({0, 1, 0}, overhead);
+  CHECK(straight == Approx(1.0 - 16.0 * 0.09 / 4.09).margin(1e-4));
+  for (const glm::vec3& way : {glm::vec3(1, 1, 0), {0, 0.4f, 1}, {-1, 0.5f, -1}}) {
+    const glm::vec3 direction = glm::normalize(way);
+    CHECK(openFrom(direction, disc(2.0f * direction, 0.3f)) == Approx(straight).margin(1e-4));
+    CHECK(openFrom(direction, overhead) == 1.0f);
+  }
+}
+
 TEST_CASE("of two discs in line a product hides twice, the nearest and the bits once, a sum the sum") {
   const float far = 0.5f * std::sqrt(2.0f);  // hides as much from twice the square of the distance
   const float one = open({disc({0, 1.5f, 0}, 0.25f)});
