@@ -61,6 +61,8 @@ std::vector<PropertySpecification> lookProperties() {
       measured("time", PropertyType::number, dsl::kTime, "the moment that is shown"),
       one("play", PropertyType::flag, "whether time goes on by itself"),
       ranged("speed", PropertyType::number, 1e-3, 1e3, "of time, beside that of the clock"),
+      measured("loop", PropertyType::number, dsl::kTime, "after which playing begins anew; 0: it goes on"),
+      one("frame", PropertyType::name, "steps back until an object is seen whole, or `all`"),
       one("size", PropertyType::resolution, "of the image"),
       one("output", PropertyType::name, "which output is shown; \"whole image\": the sum of all light"),
       one("port", PropertyType::name, "an output of a pass, as PASS.PORT, or `nothing`"),
@@ -111,15 +113,18 @@ std::vector<PropertySpecification> keepProperties() {
       one("save_scene", PropertyType::name,
           "the scene's text with what was changed in it, and a free camera as `view`"),
       chosen("answer", {"yes", "no"}, "whether a file that was there already is overwritten"),
+      one("export_grid", PropertyType::name, "the voxels of the port that is shown, a .vdb"),
+      one("add_point", PropertyType::name,
+          "measures the pipeline as it is, as `sweep` does, into a results store"),
       one("record", PropertyType::name, "what the panels show, as JSON"),
       one("shot", PropertyType::name, "the window as it is, a .png"),
   };
 }
 
 std::vector<PropertySpecification> windowProperties() {
-  PropertySpecification wait =
-      one("wait", PropertyType::any,
-          "for `frame`, `judged`, `problem`, `mended`, or `reference` and so many samples, at most a minute");
+  PropertySpecification wait = one(
+      "wait", PropertyType::any,
+      "for `frame`, `judged`, `problem`, `mended`, `kept`, or `reference` and so many samples, at most a minute");
   return {
       std::move(wait),
       one("click", PropertyType::name, "a control, by its name"),

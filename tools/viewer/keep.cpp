@@ -69,6 +69,8 @@ bool Session::doKeep(const Action& action) {
       say(text.file.string() + " stays as it was", false);
     return true;
   }
+  if (word == "export_grid") return exportGrid(action.text()), true;
+  if (word == "add_point") return addPoint(action.text()), true;
   if (word != "save_image" && word != "save_pipeline" && word != "save_scene" && word != "record")
     return false;
   const fs::path file = action.text();

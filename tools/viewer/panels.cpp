@@ -74,6 +74,10 @@ Panel lookPanel(const Session& session) {
                         "W A S D Q E move, the left button turns, the right one orbits"));
   rows.push_back(number("time", "time, s", state.time, 0.0, 60.0, false, "time {}"));
   rows.push_back(toggle("play", "play", state.plays, "play {}"));
+  rows.push_back(number("loop", "loop after, s", state.loop, 0.0, 60.0, false, "loop {}", "0: time goes on"));
+  std::vector<std::string> frames{"all"};
+  for (const Object& object : session.scene().objects) frames.push_back(object.name);
+  rows.push_back(choice("frame", "frame", "", frames, "frame {}", "steps back until it is seen whole"));
   std::vector<std::string> outputs{kWholeImage};
   for (const Pipeline::Output& output : state.sides.front().pipeline->outputs) outputs.push_back(output.name);
   rows.push_back(choice("output", "output", state.output, outputs, "output {}"));
@@ -197,6 +201,11 @@ Panel keepPanel(const Session& session) {
   panel.rows.push_back(button("save_png", "picture as PNG", "save_image \"out/view.png\""));
   panel.rows.push_back(button("save_exr", "all outputs as EXR", "save_image \"out/view.exr\""));
   panel.rows.push_back(button("shot", "the window as PNG", "shot \"out/window.png\""));
+  if (session.state().port)
+    panel.rows.push_back(button("export_grid", "the port's voxels as VDB", "export_grid \"out/view.vdb\""));
+  panel.rows.push_back(button("add_point", "measure, into a results store",
+                              "add_point \"out/results.sqlite\"",
+                              "as `sweep` does: with errors, times and where they come from"));
   panel.rows.push_back(button("record", "the panels as JSON", "record \"out/view.json\""));
   panel.rows.push_back(button(
       "save_pipeline", "parameters into the pipeline's text",

@@ -82,6 +82,12 @@ Picture pictureOf(const ImageBuffer& given, const PictureLook& look) {
   return picture;
 }
 
+std::vector<unsigned char> falseColourRamp(int steps) {
+  ImageBuffer map(steps, 1, 1);
+  for (int i = 0; i < steps; ++i) map.at(i, 0, 0) = static_cast<float>(i) / static_cast<float>(steps - 1);
+  return framed(falseColour(map), {}).bytes;
+}
+
 Picture errorPicture(const ImageBuffer& image, const ImageBuffer& reference, ErrorMap map) {
   if (image.empty() || !image.sameShape(reference)) return {};
   Picture picture;

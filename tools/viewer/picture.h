@@ -36,6 +36,8 @@ struct Picture {
 };
 
 Picture pictureOf(const ImageBuffer& image, const PictureLook& look);
+/// So many steps of the colours of false colour, from low to high: red, green and blue each.
+std::vector<unsigned char> falseColourRamp(int steps);
 /// Images of the same shape; other shapes give an empty picture.
 Picture errorPicture(const ImageBuffer& image, const ImageBuffer& reference, ErrorMap map);
 /// The first picture to the left of `at` (0..1 of the width), the second to the right, a line between.

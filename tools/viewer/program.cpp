@@ -2,12 +2,15 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cstring>
+#include <utility>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/installation.h"
@@ -16,7 +19,7 @@ extern char** environ;
 
 namespace lumivox::viewer {
 
-ProgramResult runProgram(const std::vector<std::string>& words) {
+ProgramResult runProgram(const std::vector<std::string>& words, const std::atomic<bool>* stop) {
   int messages[2];
   if (pipe2(messages, O_CLOEXEC) != 0)
     throw Error(fmt::format("{}: {}", words.front(), std::strerror(errno)));
@@ -39,7 +42,12 @@ ProgramResult runProgram(const std::vector<std::string>& words) {
   }
   ProgramResult result;
   std::array<char, 4096> buffer;
+  bool stopped = false;
   for (;;) {
+    if (stop != nullptr && *stop && !std::exchange(stopped, true)) kill(process, SIGTERM);
+    pollfd waits{messages[0], POLLIN, 0};
+    constexpr int kLookMs = 100;
+    if (stop != nullptr && poll(&waits, 1, kLookMs) == 0) continue;
     const ssize_t count = read(messages[0], buffer.data(), buffer.size());
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) break;

@@ -1,6 +1,7 @@
 // Other programs of Lumivox, run to their end.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -12,8 +13,9 @@ struct ProgramResult {
   std::string errors;  ///< what it wrote to standard error
 };
 
-/// Runs the words as a command line, without a shell. Error when it cannot be started.
-ProgramResult runProgram(const std::vector<std::string>& words);
+/// Runs the words as a command line, without a shell, and ends it early when `stop` becomes true. Error when
+/// it cannot be started.
+ProgramResult runProgram(const std::vector<std::string>& words, const std::atomic<bool>* stop = nullptr);
 
 /// The file of a program that lies beside this one; AbsentError that names it otherwise.
 std::filesystem::path programBeside(const std::string& name);

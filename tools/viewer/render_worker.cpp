@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <functional>
 
 #include "lumivox/base/error.h"
@@ -103,14 +104,9 @@ class Executor {
     if (wish.seed != seed_) executor_->setSeed(seed_ = wish.seed);
   }
 
-  RenderedSide render(const RenderWish& wish, const SceneSnapshot& snapshot) {
+  RenderedSide render(const SceneSnapshot& snapshot) {
     RenderedSide side;
     side.frame = executor_->render(snapshot, 0, PipelineExecutor::Images::yes);
-    if (wish.timesPasses) {
-      executor_->invalidate();
-      executor_->render(snapshot, 0, PipelineExecutor::Images::no, PipelineExecutor::Timing::passes);
-      for (std::vector<PassRecord>& frame : executor_->timedPasses()) times_ = std::move(frame);
-    }
     side.times = times_;
     side.explanation = executor_->explain();
     side.bounces = executor_->indirectBounces();
@@ -118,6 +114,16 @@ class Executor {
     side.contracts = contracts_;
     side.runs = runs_;
     return side;
+  }
+
+  /// Once more, with nothing kept and each pass timed.
+  void time(RenderedSide& side, const SceneSnapshot& snapshot) {
+    executor_->invalidate();
+    executor_->render(snapshot, 0, PipelineExecutor::Images::no, PipelineExecutor::Timing::passes);
+    for (std::vector<PassRecord>& frame : executor_->timedPasses()) times_ = std::move(frame);
+    side.times = times_;
+    side.timed = true;
+    side.explanation = executor_->explain();
   }
 
   PortPicture port(const PortChoice& choice, const SceneSnapshot& snapshot,
@@ -203,7 +209,35 @@ class Renderer {
     return rendered;
   }
 
+  /// Whether there is more to be told of a frame than its images; while others wait, now and then.
+  bool wantsMore(const Rendered& rendered, bool othersWait) const {
+    const RenderWish& wish = rendered.wish;
+    return (wish.timesPasses || wish.countsWork) && device_ != nullptr &&
+           (!othersWait || Clock::now() - measured_ > kLongestUntimed);
+  }
+  /// Times and counts what was rendered last.
+  void measure(Rendered& rendered) {
+    const RenderWish& wish = rendered.wish;
+    for (std::size_t i = 0; i < rendered.sides.size(); ++i) {
+      if (executors_[i] == nullptr) continue;
+      try {
+        const SceneSnapshot snapshot = snapshotOf(wish);
+        if (wish.timesPasses) executors_[i]->time(rendered.sides[i], snapshot);
+        if (wish.countsWork)
+          rendered.sides[i].work = countFrame(*device_, *techniques_, *wish.scene, *wish.sides[i].pipeline,
+                                              snapshot, optionsOf(wish, wish.sides[i]));
+      } catch (const std::exception& error) {
+        executors_[i].reset();
+        rendered.sides[i].error = error.what();
+      }
+    }
+    measured_ = Clock::now();
+  }
+
  private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::seconds kLongestUntimed{1};  // while somebody moves without a pause
+
   static SceneSnapshot snapshotOf(const RenderWish& wish) {
     return snapshotFrom(*wish.scene, wish.time, wish.camera, wish.width, wish.height);
   }
@@ -218,12 +252,7 @@ class Renderer {
         executor.reset();  // gives its memory back first
         executor = std::make_unique<Executor>(*device_, *techniques_, wish, side);
       }
-      const SceneSnapshot snapshot = snapshotOf(wish);
-      RenderedSide rendered = executor->render(wish, snapshot);
-      if (wish.countsWork)
-        rendered.work =
-            countFrame(*device_, *techniques_, *wish.scene, *side.pipeline, snapshot, optionsOf(wish, side));
-      return rendered;
+      return executor->render(snapshotOf(wish));
     } catch (const std::exception& error) {
       executor.reset();  // whatever state it is in, the next frame begins anew
       RenderedSide failed;
@@ -239,6 +268,7 @@ class Renderer {
   std::unique_ptr<TechniqueSet> techniques_;
   std::vector<std::filesystem::path> directories_;
   std::vector<std::unique_ptr<Executor>> executors_;
+  Clock::time_point measured_;
 };
 
 }  // namespace
@@ -257,7 +287,13 @@ const char* wordOf(RunsWhen when) {
 
 RenderWorker::Work makeRenderWork(const gpu::DeviceOptions& options) {
   return [renderer = std::make_shared<Renderer>(options)](const RenderWish& wish, RenderWorker::Turn& turn) {
-    turn.give(renderer->render(wish));
+    // The picture first: whoever moves does not wait for times.
+    Rendered rendered = renderer->render(wish);
+    if (renderer->wantsMore(rendered, turn.outdated())) {
+      turn.give(rendered);
+      renderer->measure(rendered);
+    }
+    turn.give(std::move(rendered));
   };
 }
 

@@ -71,7 +71,8 @@ struct RenderedSide {
   std::map<std::string, RunsWhen> runs;  ///< of passes
   std::uint64_t bytes = 0;
   std::vector<PassRecord> times;  ///< of the last frame whose passes were timed
-  FrameWork work;                 ///< once RenderWish::countsWork
+  bool timed = false;             ///< they are of this one
+  FrameWork work;                 ///< with RenderWish::countsWork
   std::string error;              ///< why there is no frame; empty: there is one
 };
 struct Rendered {

@@ -53,6 +53,7 @@ std::vector<std::shared_ptr<const Pipeline>> loadPipelines(const SessionOptions&
 Session::Session(const SessionOptions& options, std::function<void()> wake)
     : options_(options),
       techniques_(options.techniques, wake),
+      tools_(makeToolWork, wake),
       judge_(makeJudgeWork, wake),
       tracer_(makeReferenceWork, wake),
       renderer_([device = options.device] { return makeRenderWork(device); }, wake) {
@@ -190,6 +191,7 @@ void Session::readChangedFiles() {
 bool Session::step(double seconds) {
   if (state_.plays) {
     state_.time += seconds * state_.speed;
+    if (state_.loop > 0.0 && state_.time >= state_.loop) state_.time = std::fmod(state_.time, state_.loop);
     stateChanged_ = true;
   }
   if (state_.layout == Layout::flicker || picture_.badPixels > 0) {
@@ -237,7 +239,7 @@ void Session::wantFrame() {
   wish.height = state_.height;
   wish.seed = state_.seed;
   wish.keepEverything = state_.keepEverything;
-  wish.timesPasses = state_.timesPasses && !state_.plays;
+  wish.timesPasses = state_.timesPasses && showsPanels_ && !state_.plays;
   wish.countsWork = state_.countsWork && !state_.plays;
   wish.sides = state_.sides;
   wish.port = state_.port;

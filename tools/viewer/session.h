@@ -18,6 +18,7 @@
 #include "viewer/reference_worker.h"
 #include "viewer/render_worker.h"
 #include "viewer/techniques.h"
+#include "viewer/tool_worker.h"
 #include "viewer/view_state.h"
 #include "viewer/watch.h"
 
@@ -53,16 +54,16 @@ struct TriedPoint {
   std::optional<Measured> error;                          ///< RMSE of the whole image
 };
 
-/// A text for a file that was there already: it is asked for.
-struct TextToWrite {
-  std::filesystem::path file;
-  std::string text;
-};
-
 /// The passes of a frame whose passes were timed, of each side.
 struct TimedFrame {
   double seconds = 0.0;  ///< since the session began
   std::vector<std::vector<PassRecord>> sides;
+};
+
+/// A text for a file that was there already: it is asked for.
+struct TextToWrite {
+  std::filesystem::path file;
+  std::string text;
 };
 
 class Session {
@@ -100,6 +101,11 @@ class Session {
   bool messageIsError() const { return messageIsError_; }
   /// What waits for `answer`, as a sentence; empty: nothing.
   std::string question() const;
+  /// Passes are timed while somebody may look at the times.
+  void showPanels(bool shown) {
+    stateChanged_ = stateChanged_ || shown != showsPanels_;
+    showsPanels_ = shown;
+  }
   /// Whether changes from now on are one with the change before, to be undone together: those of one
   /// movement of a hand.
   void joinChanges(bool join) { joins_ = join; }
@@ -120,6 +126,7 @@ class Session {
   /// Whether something happens by itself: the picture must be asked for again soon.
   bool moves() const;
   bool tracing() const { return tracer_.busy(); }
+  bool keeping() const { return keeping_; }  ///< whether a program still writes what was asked for
   /// Gives up whatever is under way; whether it ended before `seconds` were over. What did not can only be
   /// left behind, with the process.
   bool stop(double seconds);
@@ -130,6 +137,12 @@ class Session {
   bool doLookAtPort(const Action& action);
   bool doChange(const Action& action);
   bool doKeep(const Action& action);
+  bool isAsInTexts() const;
+  std::vector<std::string> runWords(const std::string& camera) const;
+  void exportGrid(const std::filesystem::path& file);
+  void addPoint(const std::filesystem::path& store);
+  void startTool(ToolWish wish);
+  Camera framed(const Camera& camera, const std::string& what) const;
   void setParameters(const Action& action);
   void resetParameter(const std::string& name);
   /// Whether the scene has such a part, which then is as its text has it.
@@ -164,13 +177,13 @@ class Session {
   std::vector<ViewState> undo_, redo_;
   std::vector<std::string> log_;
   std::string message_, textProblem_, editProblem_;
-  bool messageIsError_ = false, joins_ = false;
+  bool messageIsError_ = false, joins_ = false, showsPanels_ = true;
   std::optional<TextToWrite> waitsForAnswer_;
 
   Watch texts_;
   double sinceWatch_ = 0.0, flicker_ = 0.0;
   bool stateChanged_ = true, pictureChanged_ = true;
-  std::uint64_t wishes_ = 0;
+  std::uint64_t wishes_ = 0, notedFrame_ = 0, notedTimes_ = 0;
   RenderWish asked_;
   RenderedResult rendered_, lastGood_;
   ReferenceResult reference_;
@@ -182,7 +195,9 @@ class Session {
   Picture picture_;
   double exposure_ = 0.0;
 
+  bool keeping_ = false;
   LiveTechniques techniques_;
+  ToolWorker tools_;
   JudgeWorker judge_;
   ReferenceWorker tracer_;
   RenderWorker renderer_;

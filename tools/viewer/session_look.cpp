@@ -27,6 +27,34 @@ void Session::freeCamera(const std::function<Camera(Camera)>& change) {
   state_.free = std::move(camera);
 }
 
+/// As the camera looks, from where all of an object, or of everything, is seen.
+Camera Session::framed(const Camera& camera, const std::string& what) const {
+  const SceneSnapshot snapshot = snapshotFrom(*edited_, state_.time, camera, state_.width, state_.height);
+  Bounds bounds;
+  std::vector<std::string> names{"all"};
+  for (std::size_t i = 0; i < edited_->objects.size(); ++i) {
+    const Object& object = edited_->objects[i];
+    names.push_back(object.name);
+    if (what != "all" && what != object.name) continue;
+    const ObjectState& state = snapshot.objects[i];
+    for (std::uint32_t v = 0; v < object.vertexCount; ++v) {
+      const glm::vec3& place =
+          state.positions.empty() ? edited_->positions[object.firstVertex + v] : state.positions[v];
+      bounds.grow(glm::vec3(state.toWorld * glm::vec4(place, 1.0f)));
+    }
+  }
+  if (bounds.empty)
+    throw Error(fmt::format("frame '{}': no such object; expected one of {}", what, fmt::join(names, ", ")));
+  const glm::dvec3 low(bounds.low), high(bounds.high), centre = snapshot.origin + 0.5 * (low + high);
+  // The sphere around the box touches the sides of the view.
+  const double up = std::tan(0.5 * camera.fov), across = up * state_.width / state_.height;
+  const double distance = 0.5 * glm::distance(low, high) / std::sin(std::atan(std::min(up, across)));
+  Camera result = camera;
+  result.eye = centre - distance * glm::normalize(camera.target - camera.eye);
+  result.target = centre;
+  return result;
+}
+
 bool Session::doLook(const Action& action) {
   const std::string& word = action.word();
   const auto vector = [&] {
@@ -59,6 +87,11 @@ bool Session::doLook(const Action& action) {
     state_.plays = action.flag();
   } else if (word == "speed") {
     state_.speed = action.number();
+  } else if (word == "loop") {
+    state_.loop = action.number();
+    if (!(state_.loop >= 0.0)) throw Error("loop: expected seconds from 0");
+  } else if (word == "frame") {
+    freeCamera([&](const Camera& camera) { return framed(camera, action.text()); });
   } else if (word == "size") {
     const std::vector<double> n = action.numbers();
     state_.width = static_cast<int>(n[0]);

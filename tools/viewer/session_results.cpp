@@ -71,6 +71,10 @@ void Session::takeResults() {
       pictureChanged_ = true;
     }
   }
+  if (const std::optional<ToolResult> kept = tools_.take()) {
+    keeping_ = false;
+    say(kept->message, kept->failed);
+  }
   if (auto judged = judge_.take()) {
     judged_ = std::move(*judged);
     noteTried();
@@ -103,7 +107,7 @@ void Session::wantJudgement() {
 void Session::noteTimes() {
   const double now = secondsOfProcess();
   if (!firstPicture_ && lastGood_ == rendered_) firstPicture_ = now;
-  if (!rendered_->wish.timesPasses) return;
+  if (!rendered_->sides.front().timed) return;
   TimedFrame frame{now, {}};
   for (const RenderedSide& side : rendered_->sides) frame.sides.push_back(side.times);
   timedFrames_.push_back(std::move(frame));
@@ -126,8 +130,8 @@ void Session::noteTried() {
     // A frame that found its results kept says nothing of the cost.
     const bool whole = std::all_of(side.frame.passes.begin(), side.frame.passes.end(),
                                    [](const PassRecord& pass) { return pass.ran; });
-    if (!judges && whole) known->times.push_back(side.frame.frameMs);
-    if (!judges && rendered_->wish.timesPasses)
+    if (rendered_->wish.number != notedFrame_ && whole) known->times.push_back(side.frame.frameMs);
+    if (rendered_->wish.number != notedTimes_ && side.timed)
       for (const PassRecord& pass : side.times) {
         std::vector<PassRecord>& last = known->passes[pass.name];
         last.push_back(pass);
@@ -148,6 +152,9 @@ void Session::noteTried() {
       for (const JudgedOutput& output : judged_->sides[i])
         if (output.output == kWholeImage) known->error = output.error.rmse;
   }
+  // A frame comes once with its images, and once more with its times.
+  notedFrame_ = rendered_->wish.number;
+  if (rendered_->sides.front().timed) notedTimes_ = rendered_->wish.number;
 }
 
 std::vector<PassTimes> Session::passTimes(std::size_t side) const {

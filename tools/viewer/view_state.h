@@ -26,6 +26,7 @@ struct ViewState {
   std::string camera;          ///< of the scene, as it is edited
   std::optional<Camera> free;  ///< in its place, once somebody has moved
   double time = 0.0, speed = 1.0;
+  double loop = 0.0;  ///< s, after which playing begins anew; 0: it goes on
   bool plays = false;
   int width = 0, height = 0;
   std::vector<Side> sides;  ///< one or two

@@ -49,6 +49,7 @@ Window::Window(const WindowOptions& options) : state_(std::make_unique<State>())
     throw AbsentError(
         fmt::format("no window with OpenGL 4.5 ({}); `lumivox render` makes images without one", why));
   }
+  s.listen();
   glfwMakeContextCurrent(s.window);
   glfwSwapInterval(1);
   IMGUI_CHECKVERSION();
@@ -61,7 +62,6 @@ Window::Window(const WindowOptions& options) : state_(std::make_unique<State>())
   float scale = 1.0f, scaleY = 1.0f;
   glfwGetWindowContentScale(s.window, &scale, &scaleY);
   s.rescale(scale);
-  glfwSetWindowUserPointer(s.window, &s);
   // Another monitor, or the same with another density.
   glfwSetWindowContentScaleCallback(s.window, [](GLFWwindow* window, float x, float) {
     static_cast<State*>(glfwGetWindowUserPointer(window))->rescale(x);
@@ -79,6 +79,25 @@ Window::~Window() {
   ImGui::DestroyContext();
   glfwDestroyWindow(state_->window);
   glfwTerminate();
+}
+
+/// Sets `touched` whenever hands or the display do something. Before ImGui listens, which calls those that it
+/// finds.
+void Window::State::listen() {
+  glfwSetWindowUserPointer(window, this);
+  static const auto touch = [](GLFWwindow* of) {
+    static_cast<State*>(glfwGetWindowUserPointer(of))->touched = true;
+  };
+  glfwSetCursorPosCallback(window, [](GLFWwindow* of, double, double) { touch(of); });
+  glfwSetCursorEnterCallback(window, [](GLFWwindow* of, int) { touch(of); });
+  glfwSetMouseButtonCallback(window, [](GLFWwindow* of, int, int, int) { touch(of); });
+  glfwSetScrollCallback(window, [](GLFWwindow* of, double, double) { touch(of); });
+  glfwSetKeyCallback(window, [](GLFWwindow* of, int, int, int, int) { touch(of); });
+  glfwSetCharCallback(window, [](GLFWwindow* of, unsigned) { touch(of); });
+  glfwSetWindowFocusCallback(window, [](GLFWwindow* of, int) { touch(of); });
+  glfwSetWindowRefreshCallback(window, [](GLFWwindow* of) { touch(of); });
+  glfwSetWindowSizeCallback(window, [](GLFWwindow* of, int, int) { touch(of); });
+  glfwSetFramebufferSizeCallback(window, [](GLFWwindow* of, int, int) { touch(of); });
 }
 
 void Window::State::rescale(float to) {
@@ -210,6 +229,9 @@ void Window::run(Session& session, std::vector<Action> script) {
       s.script.clear();
       s.done = 0;
     }
+    // Nothing is drawn where nothing has happened: the panels would look as they do.
+    if (s.soon == 0 && !s.touched && !s.busyWithHands() && s.script.empty()) continue;
+    s.touched = false;
     const ImGuiIO& io = ImGui::GetIO();
     const bool touched = io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f || ImGui::IsAnyMouseDown();
     s.drawFrame(std::min(seconds, kLongestStep));

@@ -54,6 +54,7 @@ void Window::State::drawPicture(const ImVec2& low, const ImVec2& size) {
   } else {
     ImGui::TextUnformatted(session->problem().empty() ? "the first picture is being made ..." : "no picture");
   }
+  drawLegend(ImVec2(low.x + 16.0f, low.y + size.y - 48.0f * scale), size.x - 32.0f);
   drawProblem(ImVec2(low.x + 8.0f, low.y + 8.0f), size.x - 16.0f);
   ImGui::End();
 }

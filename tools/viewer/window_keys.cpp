@@ -19,6 +19,7 @@ const std::vector<KeyStatement>& keyStatements() {
       {GLFW_KEY_K, false, "K", "keep_everything", "keep everything, or leave out"},
       {GLFW_KEY_SPACE, false, "space", "play", "play, or stand still"},
       {GLFW_KEY_PERIOD, false, ".", "step", "a frame on"},
+      {GLFW_KEY_HOME, false, "home", "frame \"all\"", "step back until all is seen"},
       {GLFW_KEY_P, false, "P", "layout picture", "the picture"},
       {GLFW_KEY_R, false, "R", "layout reference", "the reference"},
       {GLFW_KEY_B, false, "B", "layout side_by_side", "picture, reference and error side by side"},

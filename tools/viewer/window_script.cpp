@@ -44,13 +44,17 @@ bool Window::State::waitIsOver(const Action& action) {
   if (what == "frame") return session->settled();
   if (what == "judged") return session->judgedNow();
   if (what == "problem") return !session->problem().empty();
+  if (what == "kept") {
+    if (!session->keeping() && session->messageIsError()) throw Error(session->message());
+    return !session->keeping();
+  }
   if (what == "mended") return session->problem().empty();
   if (what == "reference") {
     const ReferenceResult reference = session->reference();
     const int wanted = action.property->values.size() > 1 ? static_cast<int>(action.number(1)) : 2;
     return session->settled() && reference != nullptr && reference->samples >= wanted;
   }
-  throw Error(fmt::format("{}: wait {}: expected frame, judged, problem, mended or reference",
+  throw Error(fmt::format("{}: wait {}: expected frame, judged, problem, mended, kept or reference",
                           action.place().text(), what));
 }
 
@@ -94,6 +98,7 @@ bool Window::State::doInWindow(const Action& action) {
     resize(static_cast<int>(n[0]), static_cast<int>(n[1]));
   } else if (word == "panels") {
     showsPanels = action.flag();
+    session->showPanels(showsPanels);
     soon = 4;
   } else if (word == "panel_width") {
     panelWidth = static_cast<float>(action.number());

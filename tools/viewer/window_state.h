@@ -61,6 +61,7 @@ struct Window::State {
   WindowOptions options;
   GLFWwindow* window = nullptr;
   float scale = 1.0f;
+  bool touched = true;  ///< something came from hands or the display since the last drawing
   std::unique_ptr<ScreenTexture> texture;
   Session* session = nullptr;
   std::vector<Panel> panels;
@@ -95,6 +96,7 @@ struct Window::State {
   void key(const KeyStatement& key);
   void walk(double seconds);
   void look(double seconds);
+  void listen();
   void rescale(float to);
   void minimise(bool away);
   void drawFrame(double seconds);
@@ -115,6 +117,7 @@ struct Window::State {
   void drawMarks(const Row& row);
   void drawBars(const Row& row, const ImVec2& corner, float width) const;
   void drawStacks(const Row& row, const ImVec2& corner, float width) const;
+  void drawLegend(const ImVec2& corner, float width) const;
   void drawHelp();
   void drawProblem(const ImVec2& at, float width);
   void feedClick();
