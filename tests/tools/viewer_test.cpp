@@ -182,11 +182,12 @@ TEST_CASE("a shader that is broken while it is shown says its line, and what is 
 TEST_CASE("two hundred random actions leave a window that works") {
   if (!canShowWindows()) return;
   const Workplace place;
-  const CommandResult done =
-      shown(place,
-            "seed 7\n wait frame\n random 200\n reset \"all\"\n camera main\n wait frame\n record " +
-                quotedFile(place, "record.json") + "\n quit on",
-            committedPipeline("reflective_shadow_maps"), "--resolution 8x8");
+  const CommandResult done = shown(
+      place,
+      "seed 7\n wait frame\n random 200\n play off\n beside nothing\n reset \"all\"\n reset scene\n camera main\n"
+      "wait frame\n record " +
+          quotedFile(place, "record.json") + "\n quit on",
+      committedPipeline("reflective_shadow_maps"), "--resolution 8x8");
   INFO(done.errors);
   CHECK(done.exitCode == 0);
   CHECK(Json::parse(place.read("record.json")).at("settled") == true);

@@ -233,8 +233,7 @@ void Window::State::drawRow(const Panel& panel, const Row& row) {
       break;
   }
   const bool hovered = ImGui::IsItemHovered();
-  if (!row.tooltip.empty() && row.marks.empty() && hovered)
-    ImGui::SetTooltip("%s", row.tooltip.c_str());
+  if (!row.tooltip.empty() && row.marks.empty() && hovered) ImGui::SetTooltip("%s", row.tooltip.c_str());
   drawResets(row, name);
   ImGui::PopItemWidth();
   if (row.changed) ImGui::PopStyleColor();

@@ -16,7 +16,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kLongestWait = 60.0;  // s, of a script's `wait`
-constexpr int kFramesOfPress = 3;
+constexpr int kFramesOfPress = 1;      // more of slow ones would count as keys that repeat
 
 }  // namespace
 
