@@ -17,7 +17,7 @@ class OccludePass : public Pass {
   In<SparseLight> unoccluded{this, "light", "averaged light, of normalise"};
   Param<bool> occlusion{this, "occlusion", true, "off: the light passes as it is"};
   Param<Combine> combine{
-      this, "combine", Combine::product,
+      this, "combine", Combine::mask,
       "how discs hide together; product: each its share of what is left (published); sum: of all; "
       "nearest: the nearest alone; mask: what 64 bits of the light's square say together"};
   Param<bool> asPublished{this, "as_published", false,

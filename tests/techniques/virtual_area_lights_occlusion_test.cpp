@@ -193,8 +193,10 @@ TEST_CASE(
       }
     const SparsePoint one{glm::vec3(centre), glm::vec3(normal), 0.01f, static_cast<float>(radius)};
     const SurfacePoints points = pointsOf({SparsePoint{}, one});
-    errors.push_back(
-        std::abs(1.0 - valuesOf(passes.occlude(points, ball()).diffuse, 1).front().x - hidden / all));
+    errors.push_back(std::abs(
+        1.0 -
+        valuesOf(passes.occlude(points, ball(), {{"combine", std::string("product")}}).diffuse, 1).front().x -
+        hidden / all));
   }
   std::sort(errors.begin(), errors.end());
   double squared = 0.0;

@@ -73,14 +73,19 @@ Against ofExponent(float exponent, const std::vector<std::string>& settings, boo
                 pictured(scene, picture, pipeline(kBruteForce), {}).outputs.at("indirect_glossy"));
 }
 
-/// The diffuse light of `cornell` beside that of all lights.
-Against ofPoints(int points, const std::vector<std::string>& lights = {}) {
+/// The diffuse light of `cornell` at points of growing number, beside that of all lights.
+std::vector<Against> ofPoints(const std::vector<int>& points, const std::string& lights) {
   const Scene scene = committed("cornell");
   const Picture picture{64, 64};
-  std::vector<std::string> all{"occlusion=off", "points=" + std::to_string(points)};
-  all.insert(all.end(), lights.begin(), lights.end());
-  return beside(pictured(scene, picture, pipeline("virtual_area_lights"), all).outputs.at("indirect_diffuse"),
-                pictured(scene, picture, pipeline(kBruteForce), lights).outputs.at("indirect_diffuse"));
+  const ImageBuffer right =
+      pictured(scene, picture, pipeline(kBruteForce), {lights}).outputs.at("indirect_diffuse");
+  std::vector<Against> found;
+  for (const int count : points)
+    found.push_back(beside(pictured(scene, picture, pipeline("virtual_area_lights"),
+                                    {"occlusion=off", "points=" + std::to_string(count), lights})
+                               .outputs.at("indirect_diffuse"),
+                           right));
+  return found;
 }
 
 /// RMS of changes from frame to frame which the reference does not make, over the mean light.
@@ -226,15 +231,13 @@ TEST_CASE("lobes up to exponent 100 are those of all lights within half, narrowe
   }
 }
 
-TEST_CASE("more points come nearer to every light at every pixel") {
-  double before = 1.0;
-  for (const int points : {256, 512, 1024, 2048, 4096}) {
-    const double error = ofPoints(points).rmse;
-    CAPTURE(points, error);
-    CHECK(error < before);
-    before = error;
-  }
-  CHECK(before <= 0.06);
+TEST_CASE("more points come nearer to every light at every pixel: 0.07 with 1024, 0.045 with 4096",
+          "[slow]") {
+  // Of so many lights that their discs are small where walls meet.
+  const std::vector<Against> found = ofPoints({256, 512, 1024, 2048, 4096}, "lights=16384");
+  for (std::size_t i = 1; i < found.size(); ++i) CHECK(found[i].rmse < found[i - 1].rmse);
+  CHECK(found[2].rmse <= 0.07);
+  CHECK(found[4].rmse <= 0.045);
 }
 
 TEST_CASE("averaged lights keep the bumps of a surface lit from one side, and lose little under a dome") {
@@ -244,7 +247,7 @@ TEST_CASE("averaged lights keep the bumps of a surface lit from one side, and lo
   CHECK(all.averaged <= 1.3 * all.plain);
 }
 
-TEST_CASE("a turning box flickers no more than with reflective shadow maps of as many lights") {
+TEST_CASE("a turning box flickers no more than with reflective shadow maps of as many lights", "[slow]") {
   const Scene scene = committed("spinning_box");
   const double ours = flickerOn(scene, pipeline("virtual_area_lights"), {}),
                theirs = flickerOn(scene, pipeline("reflective_shadow_maps"), {"samples=1024"});
@@ -277,13 +280,16 @@ TEST_CASE("table: lobes beside all lights, by exponent and points", "[.]") {
 }
 
 TEST_CASE("table: interpolation by points and lights", "[.]") {
-  for (const char* lights : {"lights=1024", "lights=4096", "lights=16384"})
-    for (int points = 256; points <= 16384; points *= 2) {
-      const Against found = ofPoints(points, {lights});
-      std::printf("%s points %5d: %.3f, %.3f\n", lights, points, found.rmse, found.ratio);
-      std::fflush(stdout);
+  const std::vector<int> points{256, 512, 1024, 2048, 4096, 8192, 16384};
+  for (const char* lights : {"lights=1024", "lights=4096", "lights=16384"}) {
+    std::printf("%s:", lights);
+    for (const Against& found : ofPoints(points, lights)) {
+      std::printf(" %.3f, %.3f;", found.rmse, found.ratio);
       CHECK(found.rmse < 1.0);
     }
+    std::printf("\n");
+    std::fflush(stdout);
+  }
 }
 
 TEST_CASE("table: bumps and flicker", "[.]") {
