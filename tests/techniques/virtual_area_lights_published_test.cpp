@@ -241,6 +241,47 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("a corner without a point near it leaves light and place to the other corners") {
+  const std::vector<glm::vec3> corners{{-1, 0, 0.5f}, {1.2f, 0, 0.3f}, {0.1f, 0, -1}};
+  const SceneBuilder builder = oneTriangle(corners, 1.2);
+  Shown shown(builder.scene);
+  const bool isFrontAbove = builder.scene.normals.front().y > 0.0f;
+  std::vector<SparsePoint> places;
+  std::vector<glm::vec4> lights, above;
+  auto set = std::make_shared<SurfacePointSet>();
+  // On both sides, as on all open surfaces.
+  for (const bool back : {false, true})
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      const float up = back == isFrontAbove ? -1.0f : 1.0f;
+      places.push_back({corners[i] - glm::vec3(shown.snapshot.origin), {0, up, 0}});
+      lights.emplace_back(2.0f);
+      above.emplace_back(places.back().position + glm::vec3(0, up, 0), 1.0f);
+      SurfacePoint point;
+      point.place = {0, static_cast<float>(i), 0.0f};
+      point.back = back;
+      point.area = 0.01f, point.radius = 0.1f, point.reach = 0.1f;
+      set->points.push_back(point);
+    }
+  set->area = 0.04;
+  SurfacePoints points = pointsOf(places, 0.1f, 1);
+  points.set = set;
+  const ImageBuffer image =
+      shown
+          .apply(points, {ofPoints(lights, "light"), ofPoints(above, "place"), nullptr, nullptr}, kAtVertices)
+          .first;
+  const ImageBuffer positions = imageOf(*shown.gbuffer().position, 4);
+  int seen = 0;
+  double worst = 0.0;
+  for (int y = 0; y < kPixels; ++y)
+    for (int x = 0; x < kPixels; ++x)
+      if (positions.at(x, y, 3) != 0.0f) {
+        ++seen;
+        worst = std::max(worst, std::abs(static_cast<double>(image.at(x, y, 0)) - 0.5 * 2.0));
+      }
+  CHECK(seen > 100);
+  CHECK(worst < 1e-4);
+}
+
 TEST_CASE(
     "one light of each model is at vertices what it is at pixels: hidden surfaces, turned, deformed, mirrored, cut "
     "away by masks") {
