@@ -76,6 +76,31 @@ TEST_CASE("a concentric square hides exactly the share of areas, and bits the sa
   }
 }
 
+TEST_CASE("a bit of the light's square is set where its middle lies in the occluder's, row by row") {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
+  std::vector<glm::vec4> inputs;
+  for (int i = 0; i < 200; ++i)
+    inputs.emplace_back(6.0f * unit(random), 6.0f * unit(random), 5.0f + 4.9f * unit(random), 0.0f);
+  // Two words of two halves; the light is 8 wide, so that its bits are 1 wide.
+  const std::vector<glm::vec4> found =
+      evaluated({"common/constants.glsl", "virtual_area_lights/squares.glsl"}, R"(
+        uvec2 bits = coveredBits(Square(vec2(2.0, -1.0), 8.0), Square(vec2(2.0, -1.0) + given.xy, given.z));
+        found = vec4(float(bits.x & 0xffffu), float(bits.x >> 16), float(bits.y & 0xffffu), float(bits.y >> 16));)",
+                inputs);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    std::uint64_t expected = 0, bits = 0;
+    for (int bit = 0; bit < 64; ++bit) {
+      const glm::vec2 middle(static_cast<float>(bit % 8) - 3.5f, static_cast<float>(bit / 8) - 3.5f);
+      const glm::vec2 away = glm::abs(middle - glm::vec2(inputs[i]));
+      if (std::max(away.x, away.y) < 0.5f * inputs[i].z) expected |= std::uint64_t{1} << bit;
+    }
+    for (int half = 0; half < 4; ++half) bits |= static_cast<std::uint64_t>(found[i][half]) << (16 * half);
+    CAPTURE(inputs[i].x, inputs[i].y, inputs[i].z);
+    CHECK(bits == expected);
+  }
+}
+
 TEST_CASE("bits of a square are those of its share, wherever it lies, within an eighth of its sides") {
   for (const double r : {0.3, 0.7, 1.0, 2.0})
     for (const Shares& share : sharesOf(r)) CHECK(share.bits == Approx(share.squares).margin(0.13));
@@ -215,4 +240,5 @@ TEST_CASE(
   CHECK(found[0].x == Approx(0.125));
   CHECK(found[0].x / found[0].y == Approx(1.25));
   CHECK(found[1].x == 1.0f);
+  CHECK(found[1].y == Approx(0.5 * 4.0 / 5.0));
 }
