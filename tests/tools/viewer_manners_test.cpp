@@ -186,3 +186,26 @@ TEST_CASE("a technique that throws while it is loaded anew is told, and the one 
   CHECK(contains(Json::parse(place.read("thrown.json")).at("problem"), "the table of directions is missing"));
   CHECK(place.has("back.exr"));
 }
+
+TEST_CASE("the script that makes the pictures of the guide runs, and makes each that the guide shows") {
+  if (!canShowWindows()) return;
+  const Workplace place;
+  const CommandResult done =
+      runCommand("cd '" + place.path().string() + "' && " +
+                 windowCommand("'" + (sourceDirectory() / "scenes/cornell.scene").string() + "' '" +
+                               committedPipeline("reflective_shadow_maps") + "' --resolution 8x8 --script '" +
+                               (sourceDirectory() / "docs/viewer_pictures.view").string() + "'"));
+  INFO(done.errors);
+  REQUIRE(done.exitCode == 0);
+  const std::string guide = readFile(sourceDirectory() / "docs/viewer.md");
+  int shown = 0;
+  for (std::size_t at = guide.find("](images/"); at != std::string::npos;
+       at = guide.find("](images/", at + 1)) {
+    const std::string name = guide.substr(at + 2, guide.find(')', at) - at - 2);
+    INFO(name);
+    ++shown;
+    CHECK(place.has("docs/" + name));
+    CHECK(fs::file_size(sourceDirectory() / "docs" / name) < 60000);
+  }
+  CHECK(shown == 7);
+}

@@ -30,17 +30,19 @@ TextKind kindOfText(const std::filesystem::path& file) {
   if (file.extension() == ".pipeline") return TextKind::pipeline;
   if (file.extension() == ".sweep") return TextKind::sweep;
   if (file.extension() == ".reproduction") return TextKind::reproduction;
+  if (file.extension() == ".view") return TextKind::view;
   const dsl::Document document = dsl::parse(readFile(file), file);
   // A pipeline may have sweeps before it.
   static const std::pair<const char*, TextKind> kBlocks[] = {{"scene", TextKind::scene},
                                                              {"pipeline", TextKind::pipeline},
                                                              {"sweep", TextKind::sweep},
-                                                             {"reproduction", TextKind::reproduction}};
+                                                             {"reproduction", TextKind::reproduction},
+                                                             {"view", TextKind::view}};
   for (const auto& [word, kind] : kBlocks)
     for (const dsl::Item& item : document.items)
       if (item.block && item.block->word == word) return kind;
   throw Error(fmt::format(
-      "{}: not a text of Lumivox; expected a block 'scene', 'pipeline', 'sweep' or 'reproduction'",
+      "{}: not a text of Lumivox; expected a block 'scene', 'pipeline', 'sweep', 'reproduction' or 'view'",
       file.string()));
 }
 

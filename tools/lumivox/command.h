@@ -40,7 +40,7 @@ void addViewCommand(Commands& commands);       // view
 
 void addHelpCommand(Commands& commands);  // help
 
-enum class TextKind { scene, pipeline, sweep, reproduction };
+enum class TextKind { scene, pipeline, sweep, reproduction, view };
 /// By the extension, else by the blocks; Error when it is none of them.
 TextKind kindOfText(const std::filesystem::path& file);
 

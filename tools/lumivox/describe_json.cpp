@@ -9,6 +9,7 @@
 #include "lumivox/pipeline/sweep_text.h"
 #include "lumivox/results/reproduction.h"
 #include "lumivox/scene/text.h"
+#include "viewer/actions.h"
 
 namespace lumivox::command {
 namespace {
@@ -239,8 +240,9 @@ std::vector<const PortKind*> portKinds(TechniqueSet& techniques, std::vector<std
 
 Json describedAsJson(TechniqueSet& techniques, const std::string& word) {
   Json found = Json::array();
-  for (const auto* specifications : {&sceneSpecifications(), &pipelineSpecifications(),
-                                     &sweepSpecifications(), &reproductionSpecifications()}) {
+  for (const auto* specifications :
+       {&sceneSpecifications(), &pipelineSpecifications(), &sweepSpecifications(),
+        &reproductionSpecifications(), &viewer::viewSpecifications()}) {
     std::vector<std::string> path;
     findInTexts(*specifications, word, path, found);
   }

@@ -19,6 +19,7 @@
 #include "lumivox/pipeline/sweep_text.h"
 #include "lumivox/results/reproduction.h"
 #include "lumivox/scene/text.h"
+#include "viewer/actions.h"
 
 namespace lumivox::command {
 namespace {
@@ -79,6 +80,9 @@ CheckedFile checkFile(const fs::path& file, const GlobalOptions& global, Techniq
         for (const std::string& note : notes) logInformation("{}", note);
         break;
       }
+      case TextKind::view:
+        viewer::readScript(file);
+        break;
       case TextKind::reproduction:
         checkReproduction(PublishedResult::load(file), techniques);
         break;
@@ -274,8 +278,9 @@ int describe(const std::string& word, bool asJson, const GlobalOptions& global) 
   TechniqueSet techniques = global.techniqueSet();
   std::vector<std::string> known;
   std::string text;
-  for (const auto* specifications : {&sceneSpecifications(), &pipelineSpecifications(),
-                                     &sweepSpecifications(), &reproductionSpecifications()}) {
+  for (const auto* specifications :
+       {&sceneSpecifications(), &pipelineSpecifications(), &sweepSpecifications(),
+        &reproductionSpecifications(), &viewer::viewSpecifications()}) {
     std::string found = dsl::describe(*specifications, word);
     if (!found.empty()) text += found + (found.back() == '\n' ? "\n" : "\n\n");
     for (const std::string& one : dsl::words(*specifications)) known.push_back(one);
@@ -364,7 +369,8 @@ int describeAsMarkdown(const GlobalOptions& global) {
   text += "## Scene texts\n\n" + dsl::describeAsMarkdown(sceneSpecifications()) + "\n";
   text += "## Pipeline texts\n\n" + dsl::describeAsMarkdown(pipelineSpecifications()) + "\n";
   text += "## Sweep texts\n\n" + dsl::describeAsMarkdown(sweepSpecifications()) + "\n";
-  text += "## Published tables\n\n" + dsl::describeAsMarkdown(reproductionSpecifications());
+  text += "## Published tables\n\n" + dsl::describeAsMarkdown(reproductionSpecifications()) + "\n";
+  text += "## Scripts of the window\n\n" + dsl::describeAsMarkdown(viewer::viewSpecifications());
   text += kindsAsMarkdown(techniques) + bindingsAsMarkdown(techniques) + "\n## Techniques\n";
   std::string technique;
   forEachPass(techniques, [&](const Technique& owner, const PassEntry& entry) {

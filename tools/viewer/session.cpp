@@ -244,7 +244,7 @@ void Session::wantFrame() {
   wish.height = state_.height;
   wish.seed = state_.seed;
   wish.keepEverything = state_.keepEverything;
-  wish.timesPasses = state_.timesPasses && !state_.plays;
+  wish.timesPasses = state_.timesPasses && showsPanels_ && !state_.plays;
   wish.countsWork = state_.countsWork && !state_.plays;
   wish.sides = state_.sides;
   wish.port = state_.port;

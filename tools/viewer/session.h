@@ -101,6 +101,11 @@ class Session {
   bool messageIsError() const { return messageIsError_; }
   /// What waits for `answer`, as a sentence; empty: nothing.
   std::string question() const;
+  /// Passes are timed while somebody may look at the times.
+  void showPanels(bool shown) {
+    stateChanged_ = stateChanged_ || shown != showsPanels_;
+    showsPanels_ = shown;
+  }
   /// Whether changes from now on are one with the change before, to be undone together: those of one
   /// movement of a hand.
   void joinChanges(bool join) { joins_ = join; }
@@ -172,7 +177,7 @@ class Session {
   std::vector<ViewState> undo_, redo_;
   std::vector<std::string> log_;
   std::string message_, textProblem_, editProblem_;
-  bool messageIsError_ = false, joins_ = false;
+  bool messageIsError_ = false, joins_ = false, showsPanels_ = true;
   std::optional<TextToWrite> waitsForAnswer_;
 
   Watch texts_;

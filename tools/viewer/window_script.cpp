@@ -98,6 +98,7 @@ bool Window::State::doInWindow(const Action& action) {
     resize(static_cast<int>(n[0]), static_cast<int>(n[1]));
   } else if (word == "panels") {
     showsPanels = action.flag();
+    session->showPanels(showsPanels);
     soon = 4;
   } else if (word == "panel_width") {
     panelWidth = static_cast<float>(action.number());
