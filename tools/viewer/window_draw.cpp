@@ -10,6 +10,7 @@ namespace lumivox::viewer {
 namespace {
 
 constexpr float kPanelWidth = 420.0f;    // pixels at a scale of 1
+constexpr float kControlShare = 0.42f;   // of the width; label and ways back need the rest
 constexpr double kDragShare = 0.01;      // of the largest of three numbers, for a pixel
 constexpr double kTurnPerPixel = 0.005;  // rad
 constexpr double kZoomPerNotch = 0.9;
@@ -197,7 +198,7 @@ void Window::State::drawRow(const Panel& panel, const Row& row) {
   const std::string name = panel.name + "/" + row.name;
   const auto place = [&] { controls[name] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()}; };
   if (row.changed) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(255, 200, 96, 255));
-  ImGui::PushItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
+  ImGui::PushItemWidth(kControlShare * ImGui::GetContentRegionAvail().x);
   switch (row.kind) {
     case Row::Kind::heading:
       ImGui::Separator();
