@@ -54,13 +54,12 @@ class Viewed {
 
   /// Until the frame of what was done is a picture.
   void frame() {
-    do {
-      session_.step(0.0);
-      if (session_.settled()) return;
+    const RenderedResult before = session_.rendered();
+    for (session_.step(0.0); session_.rendered() == before; session_.step(0.0)) {
       std::unique_lock lock(mutex_);
       changed_.wait(lock, [this] { return woken_; });
       woken_ = false;
-    } while (true);
+    }
   }
   void turn() { session_.perform("turn 0.01 rad 0 rad"); }
   const Session& session() const { return session_; }

@@ -33,7 +33,7 @@ const Edit& editOf(const std::map<std::string, Edit>& edits, const std::string& 
 /// A row of a part that can be edited: marked, and taken back to the text, when it was.
 Row ofPart(Row row, const std::string& part, bool changed) {
   row.changed = changed;
-  if (changed) row.resets.push_back({"as in the text", "reset " + quoted(part)});
+  if (changed) row.resets.push_back({"reset", "reset " + quoted(part)});
   return row;
 }
 

@@ -10,6 +10,7 @@ namespace lumivox::viewer {
 namespace {
 
 constexpr float kPanelWidth = 420.0f;    // pixels at a scale of 1
+constexpr float kControlShare = 0.42f;   // of the width; label and ways back need the rest
 constexpr double kDragShare = 0.01;      // of the largest of three numbers, for a pixel
 constexpr double kTurnPerPixel = 0.005;  // rad
 constexpr double kZoomPerNotch = 0.9;
@@ -38,7 +39,11 @@ void Window::State::drawPicture(const ImVec2& low, const ImVec2& size) {
     ImGui::InvisibleButton("hand", shown,
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     const ImGuiIO& io = ImGui::GetIO();
-    if (ImGui::IsItemActive() && (io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f))
+    const bool drags = ImGui::IsItemActive() && (io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f);
+    const bool splits = session->state().layout == Layout::split && ImGui::IsMouseDown(ImGuiMouseButton_Left);
+    if (drags && splits)
+      act(fmt::format("split {:.4f}", std::clamp((io.MousePos.x - corner.x) / shown.x, 0.0f, 1.0f)));
+    else if (drags)
       act(fmt::format("{} {} rad {} rad", ImGui::IsMouseDown(ImGuiMouseButton_Left) ? "turn" : "orbit",
                       io.MouseDelta.x * kTurnPerPixel, -io.MouseDelta.y * kTurnPerPixel));
     if (ImGui::IsItemHovered()) {
@@ -47,8 +52,7 @@ void Window::State::drawPicture(const ImVec2& low, const ImVec2& size) {
       const int x = static_cast<int>((io.MousePos.x - corner.x) / factor),
                 y = static_cast<int>((io.MousePos.y - corner.y) / factor);
       ImGui::BeginTooltip();
-      for (const std::string& line : session->valuesAt(x % session->state().width, y))
-        ImGui::TextUnformatted(line.c_str());
+      for (const std::string& line : session->valuesAt(x, y)) ImGui::TextUnformatted(line.c_str());
       ImGui::EndTooltip();
     }
   } else {
@@ -194,7 +198,7 @@ void Window::State::drawRow(const Panel& panel, const Row& row) {
   const std::string name = panel.name + "/" + row.name;
   const auto place = [&] { controls[name] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()}; };
   if (row.changed) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(255, 200, 96, 255));
-  ImGui::PushItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
+  ImGui::PushItemWidth(kControlShare * ImGui::GetContentRegionAvail().x);
   switch (row.kind) {
     case Row::Kind::heading:
       ImGui::Separator();
