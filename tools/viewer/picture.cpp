@@ -69,6 +69,7 @@ Picture pictureOf(const ImageBuffer& given, const PictureLook& look) {
     for (const float value : map.values())
       if (std::isfinite(value)) low = std::min(low, value), high = std::max(high, value);
     if (low > high) low = high = 0.0f;
+    if (low == high) low = std::min(0.0f, low);  // one value is far from nothing
     for (float& value : map.values()) value = high > low ? (value - low) / (high - low) : 0.0f * value;
     picture = framed(falseColour(map), {});
     picture.legend =

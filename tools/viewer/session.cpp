@@ -120,8 +120,12 @@ std::vector<Action> Session::perform(const std::string& statements) {
 
 bool Session::perform(const Action& action) {
   const ViewState before = state_;
+  bool keeps = false;  // what is there: nothing is rendered anew
   try {
-    if (!doLook(action) && !doChange(action) && !doKeep(action)) return false;
+    if (!doLook(action) && !doChange(action)) {
+      keeps = doKeep(action);
+      if (!keeps) return false;
+    }
   } catch (const std::exception& error) {
     state_ = before;
     say(error.what(), true);
@@ -135,7 +139,8 @@ bool Session::perform(const Action& action) {
   }
   if (joined) log_.pop_back();
   log_.push_back(action.written());
-  stateChanged_ = pictureChanged_ = true;
+  stateChanged_ = stateChanged_ || !keeps;
+  pictureChanged_ = true;
   return true;
 }
 

@@ -54,16 +54,16 @@ struct TriedPoint {
   std::optional<Measured> error;                          ///< RMSE of the whole image
 };
 
-/// The passes of a frame whose passes were timed, of each side.
-struct TimedFrame {
-  double seconds = 0.0;  ///< since the session began
-  std::vector<std::vector<PassRecord>> sides;
-};
-
 /// A text for a file that was there already: it is asked for.
 struct TextToWrite {
   std::filesystem::path file;
   std::string text;
+};
+
+/// The passes of a frame whose passes were timed, of each side.
+struct TimedFrame {
+  double seconds = 0.0;  ///< since the session began
+  std::vector<std::vector<PassRecord>> sides;
 };
 
 class Session {

@@ -109,6 +109,13 @@ Picture Session::portPicture(const PictureLook& outputLook) const {
 std::vector<std::string> Session::valuesAt(int x, int y) const {
   std::vector<std::string> lines;
   if (lastGood_ == nullptr || lastGood_->sides.empty()) return lines;
+  // Of pictures side by side, with gaps, all show the same pixels.
+  const bool showsPort = state_.port && !lastGood_->port.image.empty();
+  const int width = showsPort ? lastGood_->port.image.width() : lastGood_->wish.width;
+  const int pictures = std::max(1, picture_.width / width);
+  const int gap = pictures > 1 ? (picture_.width - pictures * width) / (pictures - 1) : 0;
+  x %= width + gap;
+  if (x >= width) return lines;
   const auto add = [&](const std::string& name, const ImageBuffer& image, const ImageBuffer& variance) {
     if (x < 0 || y < 0 || x >= image.width() || y >= image.height()) return;
     std::string text = name + ":";

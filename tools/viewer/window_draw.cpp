@@ -39,7 +39,11 @@ void Window::State::drawPicture(const ImVec2& low, const ImVec2& size) {
     ImGui::InvisibleButton("hand", shown,
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     const ImGuiIO& io = ImGui::GetIO();
-    if (ImGui::IsItemActive() && (io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f))
+    const bool drags = ImGui::IsItemActive() && (io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f);
+    const bool splits = session->state().layout == Layout::split && ImGui::IsMouseDown(ImGuiMouseButton_Left);
+    if (drags && splits)
+      act(fmt::format("split {:.4f}", std::clamp((io.MousePos.x - corner.x) / shown.x, 0.0f, 1.0f)));
+    else if (drags)
       act(fmt::format("{} {} rad {} rad", ImGui::IsMouseDown(ImGuiMouseButton_Left) ? "turn" : "orbit",
                       io.MouseDelta.x * kTurnPerPixel, -io.MouseDelta.y * kTurnPerPixel));
     if (ImGui::IsItemHovered()) {
@@ -48,8 +52,7 @@ void Window::State::drawPicture(const ImVec2& low, const ImVec2& size) {
       const int x = static_cast<int>((io.MousePos.x - corner.x) / factor),
                 y = static_cast<int>((io.MousePos.y - corner.y) / factor);
       ImGui::BeginTooltip();
-      for (const std::string& line : session->valuesAt(x % session->state().width, y))
-        ImGui::TextUnformatted(line.c_str());
+      for (const std::string& line : session->valuesAt(x, y)) ImGui::TextUnformatted(line.c_str());
       ImGui::EndTooltip();
     }
   } else {
