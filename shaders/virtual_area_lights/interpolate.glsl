@@ -56,19 +56,20 @@ Nearest nearestAlike(SeenSurface seen, float alike, float exponent, int neighbou
 // Those of the same side. Where these all lie on surfaces across an edge, which light nothing here (Eq. 12: a foot of a wall among the points
 // of the floor), those that face as what is seen does.
 Nearest nearestPoints(SeenSurface seen, float exponent, int neighbours) {
-  const float kAcrossAnEdge = 0.05;
   Nearest nearest = nearestAlike(seen, kOtherSideCosine, exponent, neighbours);
   for (int i = 0; i < nearest.count; ++i)
-    if (dot(seen.normal, texelFetch(pointNormal, pointTexel(nearest.points[i]), 0).xyz) >= kAcrossAnEdge) return nearest;
-  Nearest alike = nearestAlike(seen, kAcrossAnEdge, exponent, neighbours);
+    if (dot(seen.normal, texelFetch(pointNormal, pointTexel(nearest.points[i]), 0).xyz) >= kAlikeCosine) return nearest;
+  Nearest alike = nearestAlike(seen, kAlikeCosine, exponent, neighbours);
   if (alike.count > 0) return alike;
   return nearest;
 }
 
-// Weight of a neighbour by Eq. 12, or of its normal alone. Distances that differ by their rounding are equal.
+// Weight of a neighbour by Eq. 12, or of its normal alone. Distances that differ by their rounding are equal, and a neighbour across an edge
+// counts nothing: by rounding it would be all that counts where the only one that faces alike is the last.
 float neighbourWeight(SeenSurface seen, Nearest nearest, int i, bool byDistance) {
   const float kRounding = 1e-5;
-  float alike = max(0.0, dot(seen.normal, texelFetch(pointNormal, pointTexel(nearest.points[i]), 0).xyz));
+  float alike = dot(seen.normal, texelFetch(pointNormal, pointTexel(nearest.points[i]), 0).xyz);
+  if (alike < kAlikeCosine) return 0.0;
   if (!byDistance) return alike;
   float farthest = nearest.distancesSquared[nearest.count - 1];
   float near = farthest > 0.0 ? 1.0 - sqrt(nearest.distancesSquared[i] / farthest) : 0.0;
