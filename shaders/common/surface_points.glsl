@@ -21,6 +21,8 @@ ivec2 pointTexel(uint point) { return ivec2(point % kPointsInRow, point / kPoint
 
 // Normals at a larger angle are of another side of the surface; C++ side: framework/include/lumivox/scene/surface_points.h.
 const float kOtherSideCosine = -0.5;
+// From this cosine on normals face alike; less is across an edge. C++ side: framework/src/scene/surface_points.cpp.
+const float kAlikeCosine = 0.05;
 
 #ifdef POINT_CANDIDATES
 layout(std430, binding = 6) readonly buffer PointCells { uint pointCellFirst[]; };  // of each cell, and one more

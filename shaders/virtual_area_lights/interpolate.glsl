@@ -70,19 +70,20 @@ Nearest nearestAlike(SeenSurface seen, float alike, float exponent) {
 // Those of the same side. Where these all lie on surfaces across an edge, which light nothing here (Eq. 12: a foot of a wall among the points
 // of the floor), those that face as what is seen does.
 Nearest nearestPoints(SeenSurface seen, float exponent) {
-  const float kAcrossAnEdge = 0.05;
   Nearest nearest = nearestAlike(seen, kOtherSideCosine, exponent);
   for (int i = 0; i < neighbours; ++i)
-    if (i < nearest.count && dot(seen.normal, texelFetch(pointNormal, pointTexel(nearest.points[i]), 0).xyz) >= kAcrossAnEdge) return nearest;
-  Nearest alike = nearestAlike(seen, kAcrossAnEdge, exponent);
+    if (i < nearest.count && dot(seen.normal, texelFetch(pointNormal, pointTexel(nearest.points[i]), 0).xyz) >= kAlikeCosine) return nearest;
+  Nearest alike = nearestAlike(seen, kAlikeCosine, exponent);
   if (alike.count > 0) return alike;
   return nearest;
 }
 
-// Weight of a neighbour by Eq. 12, or of its normal alone. Distances that differ by their rounding are equal.
+// Weight of a neighbour by Eq. 12, or of its normal alone. Distances that differ by their rounding are equal, and a neighbour across an edge
+// counts nothing: by rounding it would be all that counts where the only one that faces alike is the last.
 float neighbourWeight(SeenSurface seen, uint point, float distanceSquared, float farthestSquared, bool byDistance) {
   const float kRounding = 1e-5;
-  float alike = max(0.0, dot(seen.normal, texelFetch(pointNormal, pointTexel(point), 0).xyz));
+  float alike = dot(seen.normal, texelFetch(pointNormal, pointTexel(point), 0).xyz);
+  if (alike < kAlikeCosine) return 0.0;
   if (!byDistance) return alike;
   float near = farthestSquared > 0.0 ? 1.0 - sqrt(distanceSquared / farthestSquared) : 0.0;
   return near > kRounding ? alike * near : 0.0;

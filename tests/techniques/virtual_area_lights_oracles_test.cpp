@@ -194,3 +194,17 @@ TEST_CASE("a sheet that is lit on one side is dark on the other") {
       CHECK(sum < 1e-6);
   }
 }
+
+TEST_CASE("at a foot of a wall, among nearer points of the floor, the wall's own points light it") {
+  std::vector<SparsePoint> points;
+  for (int i = 0; i < 9; ++i) points.push_back({{0.01f * static_cast<float>(i), 0, 0.01f}, {0, 0, 1}});
+  points.push_back({{0, 0.3f, 0}, {0, 1, 0}});
+  std::vector<glm::vec4> light(9, glm::vec4(100, 0, 0, 1));
+  light.emplace_back(2, 0, 0, 1);
+  const SparseLight made{texels(light, {1024, 1}, "light"),
+                         texels(std::vector<glm::vec4>(10, glm::vec4(0, 1e4, 0, 1)), {1024, 1}, "place"),
+                         nullptr, nullptr};
+  SparsePasses passes;
+  CHECK(passes.apply(pointsOf(points), made, std::vector<SparsePoint>(64, SparsePoint{})).first.at(0, 0, 0) ==
+        Approx(2.0));
+}

@@ -14,6 +14,10 @@
 namespace lumivox {
 namespace {
 
+/// From this cosine on normals face alike; less is across an edge. kAlikeCosine of
+/// shaders/common/surface_points.glsl.
+constexpr float kAlikeCosine = 0.05f;
+
 /// The points among `candidates` of one model, with what belongs to each of them.
 class ModelPoints {
  public:
@@ -76,9 +80,28 @@ class ModelPoints {
     }
     if (const float limit = std::min(last + 2.0f * beside, most); limit > radius)
       find(near, place, normal, limit);
+    bool anyAlike = false;
     for (const auto& [squared, number] : found_)
-      if (const float distance = std::sqrt(squared); distance <= last + 2.0f * beside)
+      if (const float distance = std::sqrt(squared); distance <= last + 2.0f * beside) {
         points_[number].reach = std::max(points_[number].reach, std::min(distance, last) + beside);
+        anyAlike = anyAlike || (distance <= last && alike(number, normal));
+      }
+    if (!anyAlike) reachAlike(near, place, normal, most, beside);
+  }
+
+  bool alike(std::uint32_t number, const glm::vec3& normal) const {
+    return glm::dot(normals_[number], normal) >= kAlikeCosine;
+  }
+
+  /// On a narrow face the nearest points may all lie across its edges: the nearest that faces alike reaches
+  /// there too.
+  void reachAlike(const NearPlaces& near, const glm::vec3& place, const glm::vec3& normal, float most,
+                  float beside) {
+    find(near, place, normal, most);
+    std::erase_if(found_, [&](const Neighbour& one) { return !alike(one.second, normal); });
+    if (found_.empty()) return;
+    const auto& [squared, number] = *std::min_element(found_.begin(), found_.end());
+    points_[number].reach = std::max(points_[number].reach, std::sqrt(squared) + beside);
   }
 
   void find(const NearPlaces& near, const glm::vec3& place, const glm::vec3& normal, float radius) {
