@@ -164,7 +164,12 @@ TEST_CASE(
   const auto openFrom = [&](const glm::vec3& direction, const SparsePoint& hides) {
     const SparseLight light{texels({{1, 1, 1, 1}}, {1024, 1}, "light"),
                             texels({glm::vec4(4.0f * direction, 1)}, {1024, 1}, "place"), nullptr, nullptr};
-    return valuesOf(passes.occlude(pointsOf({SparsePoint{}, hides}), light).diffuse, 1).front().x;
+    return valuesOf(
+               passes.occlude(pointsOf({SparsePoint{}, hides}), light, {{"combine", std::string("product")}})
+                   .diffuse,
+               1)
+        .front()
+        .x;
   };
   const SparsePoint overhead = disc({0, 2, 0}, 0.3f);
   const float straight = openFrom({0, 1, 0}, overhead);

@@ -151,7 +151,8 @@ TEST_CASE(
   const double printed = 0.25 / (4.0 + 0.25), ours = 0.25 / 4.0;
   CHECK(open({{"as_published", std::string("on")}, {"combine", std::string("sum")}}) ==
         Approx((1.0 - disc(1.0) / printed) * (1.0 - disc(1.2) / printed)).epsilon(1e-4));
-  CHECK(open({}) == Approx((1.0 - disc(1.0) / ours) * (1.0 - disc(1.2) / ours)).epsilon(1e-4));
+  CHECK(open({{"combine", std::string("product")}}) ==
+        Approx((1.0 - disc(1.0) / ours) * (1.0 - disc(1.2) / ours)).epsilon(1e-4));
 }
 
 TEST_CASE(
