@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "lumivox/base/error.h"
+#include "support/half_masked_sheet.h"
 #include "support/scene_builder.h"
 #include "support/surface_elements.h"
 
@@ -167,15 +168,7 @@ TEST_CASE(
     "of a sheet whose left half a mask cuts away only the rest is shown, and its corners without an element "
     "leave the value to the others") {
   SceneBuilder builder;
-  SurfaceTexture half;
-  half.width = 2, half.height = 1, half.mask = true;
-  half.values = {0.0f, 1.0f};
-  Material masked;
-  masked.diffuse = glm::vec3(0.5f);
-  masked.maskTexture = static_cast<int>(builder.scene.textures.size());
-  builder.scene.textures.push_back(half);
-  builder.quad({-1, 0.5f, 1}, {2, 0, 0}, {0, 0, -2}, builder.material(masked));
-  builder.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, builder.lambert(0.25f));
+  addHalfMaskedSheet(builder);
   builder.look({0, 3, 0}, {0, 0, 0}, {0, 0, -1}, 0.7, kPixels, kPixels);
   Shown shown(builder.scene);
   const auto lightAt = [](float height) { return height < 0.25f ? 8.0f : 4.0f; };

@@ -9,6 +9,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/experiment/voxelizers.h"
 #include "support/against_reference.h"
+#include "support/half_masked_sheet.h"
 #include "support/virtual_area_lights.h"
 
 using namespace lumivox;
@@ -319,15 +320,7 @@ TEST_CASE(
   }
   SECTION("of a sheet whose left half a mask cuts away") {
     SceneBuilder builder;
-    SurfaceTexture half;
-    half.width = 2, half.height = 1, half.mask = true;
-    half.values = {0.0f, 1.0f};
-    Material masked;
-    masked.diffuse = glm::vec3(0.5f);
-    masked.maskTexture = static_cast<int>(builder.scene.textures.size());
-    builder.scene.textures.push_back(half);
-    builder.quad({-1, 0.5f, 1}, {2, 0, 0}, {0, 0, -2}, builder.material(masked));
-    builder.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, builder.lambert(0.25f));
+    addHalfMaskedSheet(builder);
     builder.light(LightKind::point, glm::vec3(1.0f), {0, 1, 0});
     builder.look({0, 3, 0}, {0, 0, 0}, {0, 0, -1}, 0.7, kPixels, kPixels);
     check(builder.scene, 0.0);

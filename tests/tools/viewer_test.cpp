@@ -24,9 +24,10 @@ TEST_CASE(
       shown(place,
             "wait frame\n save_image " + quotedFile(place, "fixed.exr") +
                 "\n move 0.1 0.05 -0.2\n turn 5 deg -3 deg\n set { samples 2 }\n wait frame\n save_image " +
-                quotedFile(place, "free.exr") + "\n record " + quotedFile(place, "record.json") +
-                "\n save_scene " + quotedFile(place, "seen.scene") + "\n save_pipeline " +
-                quotedFile(place, "set.pipeline") + "\n quit on",
+                quotedFile(place, "free.exr") + "\n copy_command on\n record " +
+                quotedFile(place, "record.json") + "\n save_scene " + quotedFile(place, "seen.scene") +
+                "\n save_pipeline " + quotedFile(place, "set.pipeline") + "\n off \"light lamp\"\n record " +
+                quotedFile(place, "edited.json") + "\n quit on",
             committedPipeline("reflective_shadow_maps"));
   INFO(done.errors);
   REQUIRE(done.exitCode == 0);
@@ -38,6 +39,7 @@ TEST_CASE(
   // The command that the window tells, and the texts that it writes, repeat the other.
   std::string command = rowOf(Json::parse(place.read("record.json")), "keep", "command");
   REQUIRE(contains(command, "--eye"));
+  CHECK(contains(rowOf(Json::parse(place.read("edited.json")), "keep", "command"), "no command"));
   command.replace(command.find("out/view.exr"), 12, "'" + place.file("told.exr") + "'");
   const CommandResult told = runCommand(command);
   INFO(told.errors);

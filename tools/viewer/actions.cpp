@@ -135,6 +135,7 @@ std::vector<PropertySpecification> windowProperties() {
       ranged("panel_width", PropertyType::number, 120, 4000, "of the panels, in pixels of a scale of 1"),
       ranged("scale", PropertyType::number, 0.25, 8,
              "as a monitor of so many times the usual density has it"),
+      one("copy_command", PropertyType::flag, "puts the command that repeats the picture into the clipboard"),
       one("minimise", PropertyType::flag, "puts the window away, or brings it back"),
       chosen("focus", {"picture", "panels"}, "which of the two the keyboard moves in"),
       ranged("random", PropertyType::integer, 1, 100000, "so many random actions, by the seed"),

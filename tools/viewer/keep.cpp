@@ -1,5 +1,4 @@
-// What is taken out of the viewer: images, texts, the record of the panels, the command that repeats a
-// picture.
+// What is taken out of the viewer: images, texts, the record of the panels.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,15 +14,6 @@ namespace lumivox::viewer {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A word of a command line as a shell takes it.
-std::string shellWord(const std::string& word) {
-  static const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=:,+";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string result = "'";
-  for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
 
 void saveImage(const fs::path& file, const RenderedSide& side, const std::string& output, double exposure,
                Curve curve) {
@@ -133,31 +123,6 @@ void Session::write(const TextToWrite& text) {
   if (state_.free) state_.camera = state_.free->name;
   state_.free.reset();
   applyEdits();
-}
-
-std::string Session::command() const {
-  const Side& side = state_.sides.front();
-  std::vector<std::string> words{"lumivox", "render", options_.scene.string(), side.pipeline->file.string()};
-  for (const auto& [name, value] : side.values) {
-    words.emplace_back("--set");
-    words.push_back(name + "=" + value.text());
-  }
-  if (state_.free) {
-    const auto point = [](const glm::dvec3& value) {
-      return fmt::format("{},{},{}", value.x, value.y, value.z);
-    };
-    words.insert(words.end(), {"--eye", point(state_.free->eye), "--target", point(state_.free->target),
-                               "--fov", fmt::format("{}", state_.free->fov)});
-  }
-  if (!state_.camera.empty()) words.insert(words.end(), {"--camera", state_.camera});
-  words.insert(words.end(), {"--resolution", fmt::format("{}x{}", state_.width, state_.height)});
-  if (state_.time != 0.0) words.insert(words.end(), {"--time", fmt::format("{}", state_.time)});
-  if (state_.seed != 1) words.insert(words.end(), {"--seed", fmt::format("{}", state_.seed)});
-  if (state_.keepEverything) words.emplace_back("--keep-everything");
-  words.insert(words.end(), {"-o", "out/view.exr"});
-  std::string text;
-  for (const std::string& one : words) text += (text.empty() ? "" : " ") + shellWord(one);
-  return text;
 }
 
 }  // namespace lumivox::viewer

@@ -1,7 +1,9 @@
 // What is kept by other programs: the grid that is shown, by the exporter, so that the window needs no
-// OpenVDB; and a point of the results, measured as sweeps measure.
+// OpenVDB; a point of the results, measured as sweeps measure; and the command that repeats the picture.
 #include <fmt/format.h>
 #include <unistd.h>
+
+#include <algorithm>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -13,6 +15,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A word of a command line as a shell takes it.
+std::string shellWord(const std::string& word) {
+  static const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=:,+";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string result = "'";
+  for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
 /// A name beside a text, which finds what the text finds.
 fs::path nameBeside(const fs::path& text) {
   return text.parent_path() /
@@ -23,10 +34,13 @@ void add(std::vector<std::string>& words, const std::vector<std::string>& more) 
   words.insert(words.end(), more.begin(), more.end());
 }
 
-/// Of the command lines of all programs.
+/// Of the command lines of all programs, where they are not what they are by themselves.
 std::vector<std::string> globalWords(const SessionOptions& options) {
-  std::vector<std::string> words{"--quiet", "--device", options.device.device};
-  for (const fs::path& folder : options.techniques) add(words, {"--techniques", folder.string()});
+  std::vector<std::string> words;
+  if (options.device.device != gpu::DeviceOptions{}.device) words = {"--device", options.device.device};
+  const std::vector<fs::path> found = TechniqueSet::defaultDirectories({});
+  for (const fs::path& folder : options.techniques)
+    if (std::ranges::find(found, folder) == found.end()) add(words, {"--techniques", folder.string()});
   for (const fs::path& folder : options.sceneLoad.assetPath) add(words, {"--assets", folder.string()});
   if (options.device.shaderInput != gpu::ShaderInput::automatic)
     add(words, {"--shaders", options.device.shaderInput == gpu::ShaderInput::glsl ? "glsl" : "spirv"});
@@ -39,7 +53,38 @@ std::vector<std::string> globalWords(const SessionOptions& options) {
 
 bool Session::isAsInTexts() const {
   const Side& side = state_.sides.front();
-  return state_.edits.empty() && Pipeline::load(side.pipeline->file).hash == side.pipeline->hash;
+  if (!state_.edits.empty()) return false;
+  try {
+    return Pipeline::load(side.pipeline->file).hash == side.pipeline->hash;
+  } catch (const std::exception&) {  // a text that is gone or being written says nothing
+    return false;
+  }
+}
+
+std::string Session::command() const {
+  if (!isAsInTexts())
+    throw Error(
+        "no command: the texts do not say what is shown; expected `save_scene` or `save_pipeline` before");
+  const Side& side = state_.sides.front();
+  std::vector<std::string> words{"lumivox", "render", options_.scene.string(), side.pipeline->file.string()};
+  for (const auto& [name, value] : side.values) add(words, {"--set", name + "=" + value.text()});
+  if (state_.free) {
+    const auto point = [](const glm::dvec3& value) {
+      return fmt::format("{},{},{}", value.x, value.y, value.z);
+    };
+    add(words, {"--eye", point(state_.free->eye), "--target", point(state_.free->target), "--fov",
+                fmt::format("{}", state_.free->fov)});
+  }
+  if (!state_.camera.empty()) add(words, {"--camera", state_.camera});
+  add(words, {"--resolution", fmt::format("{}x{}", state_.width, state_.height)});
+  if (state_.time != 0.0) add(words, {"--time", fmt::format("{}", state_.time)});
+  if (state_.seed != 1) add(words, {"--seed", fmt::format("{}", state_.seed)});
+  if (state_.keepEverything) add(words, {"--keep-everything"});
+  add(words, globalWords(options_));
+  add(words, {"-o", "out/view.exr"});
+  std::string text;
+  for (const std::string& one : words) text += (text.empty() ? "" : " ") + shellWord(one);
+  return text;
 }
 
 std::vector<std::string> Session::runWords(const std::string& camera) const {
@@ -56,7 +101,7 @@ void Session::exportGrid(const fs::path& file) {
   if (file.extension() != ".vdb")
     throw Error(fmt::format("export_grid {}: expected a name that ends in .vdb", file.string()));
   createParentDirectories(file);
-  ToolWish wish{file.string() + " written", {programBeside("vdbexport").string()}, {}};
+  ToolWish wish{file.string() + " written", {programBeside("vdbexport").string(), "--quiet"}, {}};
   add(wish.words, globalWords(options_));
   fs::path scene = options_.scene, pipeline = state_.sides.front().pipeline->file;
   std::string camera = state_.camera;
@@ -85,7 +130,7 @@ void Session::addPoint(const fs::path& store) {
     throw Error(
         "add_point: results are of a camera of the scene; expected `camera NAME`, or `save_scene` before");
   createParentDirectories(store);
-  ToolWish wish{"a point was added to " + store.string(), {programBeside("lumivox").string()}, {}};
+  ToolWish wish{"a point was added to " + store.string(), {programBeside("lumivox").string(), "--quiet"}, {}};
   add(wish.words, globalWords(options_));
   add(wish.words,
       {"sweep", options_.scene.string(), "--pipeline", state_.sides.front().pipeline->file.string(),

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/reasons.h"
+#include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/results/text.h"
 #include "viewer/panel_rows.h"
@@ -212,7 +213,13 @@ Panel keepPanel(const Session& session) {
       "save_pipeline " + quoted(session.state().sides.front().pipeline->file.string()), "asks before"));
   panel.rows.push_back(button("save_scene", "edits and camera into the scene's text",
                               "save_scene " + quoted(session.scene().file.string()), "asks before"));
-  panel.rows.push_back(text("command", "command", session.command(), "repeats this picture"));
+  panel.rows.push_back(
+      button("copy_command", "the command that repeats this picture, to paste", "copy_command on"));
+  try {
+    panel.rows.push_back(text("command", "command", session.command(), "repeats this picture"));
+  } catch (const Error& why) {
+    panel.rows.push_back(text("command", "command", why.what()));
+  }
   panel.rows.push_back(heading("done so far, as a script"));
   const std::vector<std::string> history = session.history();
   constexpr std::size_t kShown = 20;

@@ -115,7 +115,7 @@ class Session {
   double exposure() const { return exposure_; }
   /// The image under a point of the picture, of each output and the reference's: lines of text.
   std::vector<std::string> valuesAt(int x, int y) const;
-  /// The command that repeats the picture.
+  /// The command that repeats the picture. Error where the texts do not say what is shown.
   std::string command() const;
   std::vector<std::string> history() const { return log_; }  ///< statements, as a script has them
   std::size_t undoable() const { return undo_.size(); }

@@ -28,6 +28,7 @@ const std::vector<KeyStatement>& keyStatements() {
       {GLFW_KEY_V, false, "V", "layout error", "the error"},
       {GLFW_KEY_Z, true, "ctrl Z", "undo 1", "undo"},
       {GLFW_KEY_Y, true, "ctrl Y", "redo 1", "redo"},
+      {GLFW_KEY_C, true, "ctrl C", "copy_command on", "the command that repeats the picture, to paste"},
       {GLFW_KEY_F5, false, "F5", "reload on", "read all texts and libraries again"},
       {GLFW_KEY_F2, false, "F2", "save_image \"out/view.exr\"", "keep all outputs"},
       {GLFW_KEY_H, false, "H", "panels", "show or hide the panels"},

@@ -105,6 +105,9 @@ bool Window::State::doInWindow(const Action& action) {
     soon = 4;
   } else if (word == "scale") {
     rescale(static_cast<float>(action.number()));
+  } else if (word == "copy_command") {
+    glfwSetClipboardString(window, session->command().c_str());
+    session->say("the command is in the clipboard", false);
   } else if (word == "minimise") {
     minimise(action.flag());
   } else if (word == "focus") {
