@@ -7,6 +7,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/plugin/loader.h"
 #include "viewer/program.h"
 #include "viewer/session.h"
 
