@@ -28,7 +28,7 @@ class GatherPass : public Pass {
   In<SurfaceLights> lights{this, "lights", Presence::optional, "virtual area lights", Needs::anyLight};
   In<SurfaceLights> moreLights{this, "more_lights", Presence::optional, "more of them, from elsewhere"};
   Param<Method> method{
-      this, "method", Method::cached,
+      this, "method", Method::shared,
       "how lights reach the points; cached: 128 in a dispatch, added to the targets (published); shared: "
       "through the memory of a work group"};
   Param<ExponentLimit> exponentLimit{
