@@ -26,7 +26,7 @@ TEST_CASE(
                 "\n move 0.1 0.05 -0.2\n turn 5 deg -3 deg\n set { samples 2 }\n wait frame\n save_image " +
                 quotedFile(place, "free.exr") + "\n copy_command on\n record " +
                 quotedFile(place, "record.json") + "\n save_scene " + quotedFile(place, "seen.scene") +
-                "\n save_pipeline " + quotedFile(place, "set.pipeline") + "\n off \"light lamp\"\n record " +
+                "\n save_pipeline " + quotedFile(place, "set.pipeline") + "\n off \"light bulb\"\n record " +
                 quotedFile(place, "edited.json") + "\n quit on",
             committedPipeline("reflective_shadow_maps"));
   INFO(done.errors);
