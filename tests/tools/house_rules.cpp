@@ -296,7 +296,8 @@ Violations dependentTechniques(const Sources& sources, const std::vector<std::st
 
 constexpr const char* kVoxelizers = "voxelizers";  // scenes/pipelines/voxelizers: what makes voxels alone
 
-// Shaders of no technique: what techniques share, the framework's own, which time the device, and the window's.
+// Shaders of no technique: what techniques share, the framework's own, which time the device, and the
+// window's.
 constexpr std::array kOtherShaders{"common", "device", "viewer"};
 
 /// One name everywhere. `files` are all paths of the project; pipelines come with their text.
