@@ -31,8 +31,7 @@ class NormalisePass : public Pass {
 
   Reads readsFrom() const override { return Reads::partOfCamera; }
   std::vector<float> readsOfCamera(const SceneSnapshot& snapshot) const override {
-    const glm::vec3& eye = snapshot.camera.eye;
-    return looksBack_ ? std::vector{eye.x, eye.y, eye.z} : std::vector<float>{};
+    return looksBack_ ? eyeOf(snapshot) : std::vector<float>{};
   }
 
   struct Normalised {

@@ -1,6 +1,8 @@
 // The technique's passes, file by file.
 #pragma once
 
+#include <vector>
+
 #include "lumivox/plugin/technique.h"
 
 namespace lumivox::virtual_area_lights {
@@ -11,5 +13,11 @@ void addNormalise(TechniqueRegistry& registry);
 void addOcclude(TechniqueRegistry& registry);
 void addApply(TechniqueRegistry& registry);
 void addBruteForce(TechniqueRegistry& registry);
+
+/// What a glossy lobe reads of the camera: neither where it looks nor how wide.
+inline std::vector<float> eyeOf(const SceneSnapshot& snapshot) {
+  const glm::vec3& eye = snapshot.camera.eye;
+  return {eye.x, eye.y, eye.z};
+}
 
 }  // namespace lumivox::virtual_area_lights

@@ -391,7 +391,8 @@ void addRenderCommand(Commands& commands) {
   };
   addPlace("--eye", options->eye, "where the camera stands, in metres, in place of the scene's");
   addPlace("--target", options->target, "what it looks at, in metres");
-  command->add_option("--fov", options->fov, "its full vertical angle, in radians")->check(CLI::Range(1e-3, 3.1));
+  command->add_option("--fov", options->fov, "its full vertical angle, in radians")
+      ->check(CLI::Range(1e-3, 3.1));
   options->display.addTo(*command);
   command->add_option("--frames", options->frames,
                       "FIRST..LAST: numbered images, out_0007.exr or a run of # in the name");
