@@ -22,7 +22,7 @@ configure_package_config_file(cmake/LumivoxConfig.cmake.in ${CMAKE_BINARY_DIR}/g
   INSTALL_DESTINATION ${package})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/generated/cmake/LumivoxConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/generated/cmake/LumivoxConfig.cmake ${CMAKE_BINARY_DIR}/generated/cmake/LumivoxConfigVersion.cmake
-  cmake/LumivoxTechniques.cmake DESTINATION ${package})
+  cmake/LumivoxTechniques.cmake cmake/LumivoxTechnique.map DESTINATION ${package})
 
 install(DIRECTORY shaders/common DESTINATION ${data}/shaders)
 install(DIRECTORY scenes templates examples DESTINATION ${data})
@@ -70,7 +70,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 # Libraries by what the programs and techniques link; besides them what is opened while they run, and what a technique is built with.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libgl1-mesa-dri, libjs-chart.js")
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libgl1, libopengl0, libgl1-mesa-dri, libjs-chart.js")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "g++, cmake (>= 3.25), ninja-build, libglm-dev, libfmt-dev, nlohmann-json3-dev, catch2 (<< 3)")
 set(CPACK_STRIP_FILES ON)
 include(CPack)

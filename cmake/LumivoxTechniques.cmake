@@ -49,7 +49,12 @@ function(lumivox_add_technique name)
   endif()
   add_library(technique_${name} MODULE ${sources})
   set_target_properties(technique_${name} PROPERTIES
-    OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${built} INSTALL_RPATH $ORIGIN/.. CXX_EXTENSIONS OFF)
+    OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${built} INSTALL_RPATH $ORIGIN/.. CXX_EXTENSIONS OFF
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  # Only its entry point is seen from outside. The compiler cannot hide templates of the standard library, so the linker does.
+  set(symbols ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/LumivoxTechnique.map)
+  target_link_options(technique_${name} PRIVATE LINKER:--version-script=${symbols})
+  set_property(TARGET technique_${name} APPEND PROPERTY LINK_DEPENDS ${symbols})
   target_link_libraries(technique_${name} PRIVATE Lumivox::lumivox ${technique_LIBRARIES})
   set_property(GLOBAL APPEND PROPERTY LUMIVOX_TECHNIQUES technique_${name})
   set(card ${built}/${name}.md)

@@ -34,8 +34,8 @@ struct ColumnSample {
 VoxelFragment fragmentOf(MaterialData material) {
   VoxelFragment fragment;
   fragment.voxel = fragment.offset = fragment.normal = 0u;
-  fragment.albedoRg = packHalf2x16(material.diffuse.rg);
-  fragment.albedoBCoverage = packHalf2x16(vec2(material.diffuse.b, 1.0));
+  fragment.albedoRg = packHalves(material.diffuse.rg);
+  fragment.albedoBCoverage = packHalves(vec2(material.diffuse.b, 1.0));
   fragment.emission = packShared(material.emission.rgb);
   return fragment;
 }
@@ -62,8 +62,8 @@ ColumnSample sampleColumn(mat3 corners, mat3 cornerNormals, vec2 cornerTexcoords
 #if MASKS
   coverage = textureGrad(maskTexture, texcoord, gradientX, gradientY).r;
 #endif
-  result.fragment.albedoRg = packHalf2x16(albedo.rg);
-  result.fragment.albedoBCoverage = packHalf2x16(vec2(albedo.b, coverage));
+  result.fragment.albedoRg = packHalves(albedo.rg);
+  result.fragment.albedoBCoverage = packHalves(vec2(albedo.b, coverage));
 #endif
   vec3 normal = cornerNormals * weights;
   result.fragment.normal = packNormal(dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0, 1.0, 0.0));

@@ -6,7 +6,7 @@
 // One surface sample: a triangle inside a voxel.
 struct VoxelFragment {
   uint voxel;     // i, j, k in 10 bits each
-  uint offset;    // position inside the voxel, 10 bits each
+  uint offset;    // position inside the voxel, 10 bits each; kSeenBehind
   uint normal;    // octahedral, two 16-bit signed normalised numbers; front side
   uint albedoRg;  // two halves
   uint albedoBCoverage;  // halves: blue albedo; covered fraction (alpha mask)
@@ -17,22 +17,42 @@ struct VoxelFragment {
 const float kNeedle = 1e-3;
 
 uint packVoxel(ivec3 voxel) { return uint(voxel.x) | uint(voxel.y) << 10 | uint(voxel.z) << 20; }
-ivec3 unpackVoxel(uint packed) { return ivec3(packed & 1023u, packed >> 10 & 1023u, packed >> 20 & 1023u); }
+ivec3 unpackVoxel(uint word) { return ivec3(word & 1023u, word >> 10 & 1023u, word >> 20 & 1023u); }
 
 uint packOffset(vec3 offset) {
   uvec3 steps = uvec3(clamp(offset, 0.0, 1.0) * 1023.0 + 0.5);
   return steps.x | steps.y << 10 | steps.z << 20;
 }
-vec3 unpackOffset(uint packed) { return vec3(unpackVoxel(packed)) / 1023.0; }
+vec3 unpackOffset(uint word) { return vec3(unpackVoxel(word)) / 1023.0; }
+
+// Two numbers of [-1, 1] as 16-bit signed normalised ones, the first in the low bits, and back (OpenGL 4.5, 2.3.5): the bits of the
+// built-in packSnorm2x16, which not every driver has.
+uint packSigned(vec2 value) {
+  ivec2 steps = ivec2(roundEven(clamp(value, -1.0, 1.0) * 32767.0));
+  return uint(steps.x) & 0xffffu | uint(steps.y) << 16;
+}
+vec2 unpackSigned(uint word) {
+  ivec2 steps = ivec2(int(word << 16), int(word)) >> 16;  // keeps the sign
+  return max(vec2(steps) / 32767.0, -1.0);
+}
+
+// packHalf2x16 of the nearest half-precision numbers, of two alike the even one. The built-in rounds as the driver likes, and one driver cuts
+// off what was just read from a texture.
+uint packHalves(vec2 value) {
+  const float kLeastNormal = 1.0 / 16384.0, kStepBelow = 1.0 / 16777216.0;
+  uvec2 bits = floatBitsToUint(value);
+  vec2 nearest = uintBitsToFloat(bits + 0xfffu + (bits >> 13 & 1u) & ~0x1fffu);  // the lowest 13 bits are gone
+  return packHalf2x16(mix(nearest, roundEven(value / kStepBelow) * kStepBelow, lessThan(abs(value), vec2(kLeastNormal))));
+}
 
 // Octahedral unit vectors (Cigolle et al. 2014, "Survey of efficient representations for independent unit vectors", Sec. 3.3).
 uint packNormal(vec3 normal) {
   vec2 p = normal.xy / (abs(normal.x) + abs(normal.y) + abs(normal.z));
   if (normal.z < 0.0) p = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
-  return packSnorm2x16(p);
+  return packSigned(p);
 }
-vec3 unpackNormal(uint packed) {
-  vec2 p = unpackSnorm2x16(packed);
+vec3 unpackNormal(uint word) {
+  vec2 p = unpackSigned(word);
   vec3 normal = vec3(p, 1.0 - abs(p.x) - abs(p.y));
   if (normal.z < 0.0) normal.xy = (1.0 - abs(normal.yx)) * vec2(normal.x >= 0.0 ? 1.0 : -1.0, normal.y >= 0.0 ? 1.0 : -1.0);
   return normalize(normal);
@@ -49,13 +69,15 @@ uint packShared(vec3 value) {
   uvec3 mantissa = uvec3(clamp(value * exp2(float(8 - exponent)) + 0.5, 0.0, 255.0));
   return mantissa.x | mantissa.y << 8 | mantissa.z << 16 | uint(exponent + 128) << 24;
 }
-vec3 unpackShared(uint packed) {
-  if (packed == 0u) return vec3(0.0);
-  float unit = exp2(float(int(packed >> 24) - 128 - 8));
-  return vec3(packed & 255u, packed >> 8 & 255u, packed >> 16 & 255u) * unit;
+vec3 unpackShared(uint word) {
+  if (word == 0u) return vec3(0.0);
+  float unit = exp2(float(int(word >> 24) - 128 - 8));
+  return vec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u) * unit;
 }
 
 // In place of the direct light that a fragment is known to reflect: a reader has to light it (VoxelFragments::kNotKnown).
 const uint kNotKnown = 0xffffffffu;
+// Bit of VoxelFragment::offset: what the fragment is known to reflect leaves it behind its normal, where the camera saw it.
+const uint kSeenBehind = 1u << 30;
 
 #endif

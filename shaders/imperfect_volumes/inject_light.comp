@@ -1,12 +1,18 @@
 #version 450
 // Mavridis & Papaioannou 2011, Sec. 3.1: the direct light that each fragment reflects diffusely, on both sides; and of each voxel the
-// brightest of it, in which inject_add.comp counts, so that a dark voxel beside a very bright one keeps its light.
+// brightest of it, in which inject_add.comp counts, so that a dark voxel beside a very bright one keeps its light. Sec. 3.2: where the image
+// has the light of a visible side, it is that (REFLECTED), and the lights shine on the other side alone.
+#pragma lumivox axis LIGHTS 0 1
+#pragma lumivox require LIGHTS || REFLECTED
 layout(local_size_x = 64) in;
 #include "common/constants.glsl"
+#if LIGHTS
 #define SHADOW_VIEWS
 #include "common/lights.glsl"
 #include "common/two_sided_light.glsl"
+#endif
 #include "common/fragments.glsl"
+#include "common/known_light.glsl"
 
 layout(std140, binding = 0) uniform Lighting {
   vec3 gridLow;        // m
@@ -24,13 +30,18 @@ void main() {
   VoxelFragment fragment = fragments[index];
   ivec3 voxel = unpackVoxel(fragment.voxel);
   vec3 posWorld = gridLow + (vec3(voxel) + unpackOffset(fragment.offset)) * voxelSize;
-  vec3 sides[2] = vec3[2](vec3(0.0), vec3(0.0));
-  addArriving(lightCount, posWorld, unpackNormal(fragment.normal), true, 0, sides[0], sides[1]);
+  vec3 front = vec3(0.0), back = vec3(0.0);
+  KnownLight known = knownLightOf(index, fragment, true);
+#if LIGHTS
+  addArrivingBeside(known, lightCount, posWorld, unpackNormal(fragment.normal), true, 0, front, back);
+#endif
   vec3 albedo = clamp(vec3(unpackHalf2x16(fragment.albedoRg), unpackHalf2x16(fragment.albedoBCoverage).x), 0.0, 1.0);
+  vec3 sides[2] = vec3[2](albedo / kPi * front, albedo / kPi * back);
+  sides[known.side] += known.radiance;
   float most = 0.0;
   for (int side = 0; side < 2; ++side)
     for (int channel = 0; channel < 3; ++channel) {
-      float radiance = min(albedo[channel] / kPi * sides[side][channel], mostRadiance);
+      float radiance = min(sides[side][channel], mostRadiance);
       radiances[6 * index + 3 * side + channel] = radiance;
       most = max(most, radiance);
     }

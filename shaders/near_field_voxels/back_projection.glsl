@@ -8,6 +8,9 @@ layout(binding = 5) uniform sampler2DArray rsmFlux;
 
 layout(constant_id = 0) const int taps = 1;       // 4: the four texels around the point, bilinearly
 layout(constant_id = 1) const int frontTest = 1;  // whether surfaces that look away from the receiver bring nothing
+// 1: the tests of Listing 4.49 as printed. The tolerance enlarges the texel's side alone, whose slant is that to the direction of a sun or a
+// spot and counts only with frontTest; the receiver is where it is, an offset off where its rays begin.
+layout(constant_id = 6) const int printedTests = 0;
 
 layout(std140, binding = 2) uniform BackProjection {
   float voxelDiagonal;  // m
@@ -28,9 +31,12 @@ vec3 radianceOfTexel(LightSample light, ivec3 texel, float depth, vec3 point, ve
     bool parallel = light.kind == kLightDirectional;
     vec3 toLight = parallel ? -light.direction : normalize(light.position - position.xyz);
     float width = light.texelWidth * (parallel ? 1.0 : depth);
-    float allowed = max(voxelDiagonal, width / max(dot(normalArea.xyz, toLight), leastCosine));
+    if (printedTests != 0 && light.kind == kLightSpot) toLight = -light.direction;
+    float slant = printedTests != 0 && frontTest == 0 ? 1.0 : max(dot(normalArea.xyz, toLight), leastCosine);
+    float side = width / slant;
+    float allowed = max(voxelDiagonal, printedTests != 0 ? tolerance * side : side);
     if (cap >= 0.0) allowed = min(allowed, cap);
-    if (distance(point, position.xyz) > tolerance * allowed) return vec3(0.0);
+    if (distance(point, position.xyz) > (printedTests != 0 ? 1.0 : tolerance) * allowed) return vec3(0.0);
   }
   // Exitance, the flux of the texel over its area, goes to all sides alike.
   return texelFetch(rsmFlux, texel, 0).rgb / (kPi * normalArea.w);

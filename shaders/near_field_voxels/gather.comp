@@ -100,6 +100,8 @@ vec3 startOf(vec3 posWorld, vec3 geometricNormal) {
 }
 
 #if RADIANCE != RADIANCE_NONE
+vec3 receiver;  // whose rays these are, posWorld
+
 vec3 hitPointOf(BitHit hit) {
   vec3 centre = vec3(hit.voxel) + 0.5, entry = bitOrigin + hit.t * bitDirection;
   if (hitPoint == kHitMiddle) return bitOrigin + 0.5 * (hit.t + max(leavesVoxel(hit.voxel), hit.t)) * bitDirection;
@@ -109,7 +111,8 @@ vec3 hitPointOf(BitHit hit) {
 
 vec3 radianceOf(BitHit hit) {
 #if RADIANCE == RADIANCE_MAP
-  return radianceAt(gridLow + voxelSize * hitPointOf(hit), -bitDirection);
+  vec3 point = gridLow + voxelSize * hitPointOf(hit);
+  return radianceAt(point, printedTests != 0 ? receiver - point : -bitDirection);
 #else
   vec4 value = texelFetch(radianceGrid, hit.voxel, 0);
   return value.a > 0.0 ? value.rgb * (radianceUnit / value.a) : vec3(0.0);
@@ -155,6 +158,9 @@ void main() {
     vec3 tangent = tangentTo(normal), bitangent = cross(normal, tangent);
     vec3 origin = startOf(position.xyz, texelFetch(gGeometricNormal, pixel, 0).xyz);
     uvec2 turn = turnOf(at);
+#if RADIANCE != RADIANCE_NONE
+    receiver = position.xyz;
+#endif
     for (int i = firstRay; i < firstRay + raysAtOnce; ++i) {
       vec3 direction = directionOf(pointOf(i, turn), tangent, bitangent, normal);
       follow(origin + start * direction, direction, sums);

@@ -17,7 +17,7 @@ layout(std140, binding = 0) uniform Parameters {
   vec3 spaceLow;  // m
   float spaceVoxelSize;
 };
-layout(std430, binding = 0) readonly buffer Offsets { vec4 offsets[]; };
+layout(std430, binding = 0) readonly buffer Offsets { float offsets[]; };  // x, y, z of each, in turn
 layout(binding = 0, r32ui) uniform uimage3D lowWords;
 layout(binding = 1, r32ui) uniform uimage3D highWords;
 #if SPACE
@@ -52,7 +52,8 @@ void add(ivec3 voxel, uint units) {
 void main() {
   uint index = listIndex();
   if (index >= count) return;
-  vec3 centre = source + offsets[index].xyz - gridLow;
+  vec3 offset = vec3(offsets[3u * index], offsets[3u * index + 1u], offsets[3u * index + 2u]);
+  vec3 centre = source + offset - gridLow;
 #if DEPOSIT == DEPOSIT_COUNTS
   ivec3 voxel = clamp(ivec3(floor(centre / voxelSize)), ivec3(0), resolution - 1);
   if (isFree(voxel)) add(voxel, kUnits);

@@ -15,10 +15,13 @@ layout(std140, binding = 0) uniform Parameters {
   float drift;  // m/s
   float rise;   // m/s
 };
-layout(std430, binding = 0) writeonly buffer Offsets { vec4 offsets[]; };
+layout(std430, binding = 0) writeonly buffer Offsets { float offsets[]; };  // x, y, z of each, in turn
 
 void main() {
   uint index = listIndex();
   if (index >= count) return;
-  offsets[index] = particleAt(index, seed, lives, share, life, spread, drift, rise);
+  vec3 offset = particleAt(index, seed, lives, share, life, spread, drift, rise).xyz;
+  offsets[3u * index] = offset.x;
+  offsets[3u * index + 1u] = offset.y;
+  offsets[3u * index + 2u] = offset.z;
 }

@@ -51,13 +51,14 @@ void main() {
   vec3 posWorld = gridLow + (vec3(voxel) + unpackOffset(fragment.offset)) * voxelSize, normal = unpackNormal(fragment.normal);
   vec3 albedo = vec3(unpackHalf2x16(fragment.albedoRg), unpackHalf2x16(fragment.albedoBCoverage).x);
   vec2 place = unitInterval(hash4(uvec4(fragment.voxel, fragment.offset, fragment.normal, 0u)).xy);
-  vec3 front = albedo * arrivingFrom(posWorld, normal, place);
-  vec3 back = twoSided != 0 ? albedo * arrivingFrom(posWorld, -normal, place) : vec3(0.0);
+  vec3 sides[2] = vec3[2](vec3(0.0), vec3(0.0));  // front, back
+  // One call for both: the march is inlined wherever it is called.
+  for (int side = 0; side <= min(twoSided, 1); ++side)
+    sides[side] = albedo * arrivingFrom(posWorld, side == 0 ? normal : -normal, place);
 #if DIRECTIONS
-  vec3 sides[2] = vec3[2](front, back);
   const uint kSides = 2u;
 #else
-  vec3 sides[1] = vec3[1](total(front) >= total(back) ? front : back);
+  if (total(sides[0]) < total(sides[1])) sides[0] = sides[1];
   const uint kSides = 1u;
 #endif
   float brightest = 0.0;

@@ -99,7 +99,7 @@ void put(ColumnSample s, ivec3 voxel, int axis, float share, uint masks) {
   fragment.voxel = packVoxel(unpermute(voxel, axis) - stackFirst[level].xyz + cornerInStack(level));
 #if SAMPLED
   vec2 blueCoverage = unpackHalf2x16(fragment.albedoBCoverage);
-  fragment.albedoBCoverage = packHalf2x16(vec2(blueCoverage.x, blueCoverage.y * share));
+  fragment.albedoBCoverage = packHalves(vec2(blueCoverage.x, blueCoverage.y * share));
   sideMasksOf[index] = masks;
 #endif
   fragments[index] = fragment;

@@ -3,7 +3,6 @@
 // C++ side: DirectLight in techniques/voxel_cone_tracing/direct_light.h.
 #pragma lumivox axis LIGHTS 0 1
 #pragma lumivox axis SHADOWS 0 1
-#pragma lumivox axis REFLECTED 0 1
 #pragma lumivox axis MEDIUM none even varying
 #pragma lumivox require (!SHADOWS || LIGHTS) && (!LIGHTS || SHADOWS)
 #pragma lumivox require MEDIUM == none || LIGHTS
@@ -22,6 +21,7 @@
 #include "common/two_sided_light.glsl"
 #endif
 #include "common/fragments.glsl"
+#include "common/known_light.glsl"
 
 layout(std140, binding = 0) uniform Grid {
   vec3 gridLow;     // m
@@ -37,10 +37,6 @@ layout(std140, binding = 0) uniform Grid {
 };
 layout(std430, binding = 2) writeonly buffer Radiances { float radiances[]; };  // W/(sr m^2): three of each fragment or of each side of one
 layout(std430, binding = 3) readonly buffer Bricks { Brick bricks[]; };
-#if REFLECTED
-// Direct light that fragments are known to reflect: a word for each of the first of them.
-layout(std430, binding = 7) readonly buffer Reflected { uint reflected[]; };
-#endif
 
 // The voxel of a fragment: its low corner in world space, and in w its width, m.
 #if defined(PLACES_CLIPMAP) && PLACES == PLACES_CLIPMAP  // programs without that axis have dense grids
@@ -57,31 +53,19 @@ vec4 voxelOfFragment(VoxelFragment fragment) { return vec4(gridLow + vec3(unpack
 float mostRadianceIn(ivec3 voxel) { return mostRadiance; }
 #endif
 
-// What a fragment is known to reflect of the light, W/(sr m^2); false where it has to be lit.
-bool isKnown(uint index, out vec3 radiance) {
-#if REFLECTED
-  uint known = index < uint(reflected.length()) ? reflected[index] : kNotKnown;
-  bool isIt = known != kNotKnown;
-  radiance = isIt ? unpackShared(known) : vec3(0.0);
-  return isIt;
-#else
-  radiance = vec3(0.0);
-  return false;
-#endif
-}
-
 // What the front of a fragment emits, W/(sr m^2).
 vec3 emittedBy(VoxelFragment fragment) { return emissive != 0 ? unpackShared(fragment.emission) : vec3(0.0); }
 
 #if LIGHTS
-void lightPoint(vec3 posWorld, vec3 normal, inout vec3 front, inout vec3 back) {
-  addArriving(lightCount, posWorld, normal, twoSided != 0, mediumSteps, front, back);
+void lightPoint(KnownLight known, vec3 posWorld, vec3 normal, inout vec3 front, inout vec3 back) {
+  addArrivingBeside(known, lightCount, posWorld, normal, twoSided != 0, mediumSteps, front, back);
 }
 #endif
 
-// Irradiance of both sides by the lights, W/m^2: at the fragment's point; or the mean over points of its plane in its voxel, so that the
-// edge of a shadow may lie in it. They fill the side of the voxel that the plane faces evenly (R2: Roberts 2018).
-void arrivingAt(VoxelFragment fragment, out vec3 front, out vec3 back) {
+// Irradiance by the lights of the sides of which nothing is known, W/m^2; of the others 0: at the fragment's point; or the mean over points of
+// its plane in its voxel, so that the edge of a shadow may lie in it. They fill the side of the voxel that the plane faces evenly (R2: Roberts
+// 2018).
+void arrivingAt(VoxelFragment fragment, KnownLight known, out vec3 front, out vec3 back) {
   front = vec3(0.0);
   back = vec3(0.0);
 #if LIGHTS
@@ -89,7 +73,7 @@ void arrivingAt(VoxelFragment fragment, out vec3 front, out vec3 back) {
   vec3 place = unpackOffset(fragment.offset);
   vec3 normal = unpackNormal(fragment.normal);
   if (lightSamples <= 1) {
-    lightPoint(voxel.xyz + place * voxel.w, normal, front, back);
+    lightPoint(known, voxel.xyz + place * voxel.w, normal, front, back);
     return;
   }
   const vec2 kR2 = vec2(0.75487766624669276, 0.56984029099805327);
@@ -105,13 +89,13 @@ void arrivingAt(VoxelFragment fragment, out vec3 front, out vec3 back) {
     point[axis] -= (normal[side] * (across.x - place[side]) + normal[up] * (across.y - place[up])) / normal[axis];
     if (point[axis] < 0.0 || point[axis] > 1.0) continue;
     inside += 1.0;
-    lightPoint(voxel.xyz + point * voxel.w, normal, front, back);
+    lightPoint(known, voxel.xyz + point * voxel.w, normal, front, back);
   }
   if (inside > 0.0) {
     front /= inside;
     back /= inside;
   } else {
-    lightPoint(voxel.xyz + place * voxel.w, normal, front, back);
+    lightPoint(known, voxel.xyz + place * voxel.w, normal, front, back);
   }
 #endif
 }

@@ -15,14 +15,15 @@ layout(constant_id = 0) const int coneCount = 6;
 layout(constant_id = 1) const int publishedCones = 0;
 layout(constant_id = 2) const int asPublished = 0;
 layout(constant_id = 3) const int glossyCones = 1;
+// No uniforms: a fourth block whose values alone decide something ends the process on a second driver (docs/gpu.md).
+layout(constant_id = 5) const int every = 1;    // one pixel of so many along each axis is gathered
+layout(constant_id = 6) const int pattern = 1;  // pixels in a square of this side have cones of their own
+layout(constant_id = 7) const int arrivingDiffuse = 0;  // 1: what arrives is written, for reconstruct.comp; 0: what is reflected
+layout(constant_id = 8) const int arrivingGlossy = 0;   // the same
 
 layout(std140, binding = 0) uniform Parameters {
   vec3 eyeWorld;
   float coneRatio;  // diameter of one of the five cones over its height
-  int every;        // one pixel of so many along each axis is gathered
-  int pattern;      // pixels in a square of this side have cones of their own
-  int arrivingDiffuse; // 1: what arrives is written, for reconstruct.comp; 0: what is reflected
-  int arrivingGlossy;  // the same
 };
 layout(binding = 0) uniform sampler2D gPosition;
 layout(binding = 1) uniform sampler2D gNormal;
@@ -45,66 +46,68 @@ vec2 placeInStratum() {
   uvec2 place = gl_GlobalInvocationID.xy % uint(pattern);
   return fract(0.5 + float(place.y * uint(pattern) + place.x) * kR2);
 }
+#endif
 
-// Mean of the arriving radiance over the hemisphere, weighted by the cosine; the weights sum to 1, but not those as published.
-vec3 gatherDiffuse(vec3 apex, vec3 normal) {
+// A cone of a pixel, and what its radiance counts for in a sum.
+struct Cone {
+  vec3 direction;
+  float tanHalfAngle;
+  float cosTheta;  // between the axis and the normal
+  float weight;
+};
+
+#if DIFFUSE
+// Thesis Listing 4.12: one cone along the normal and four at 45 degrees, weighted by the cosine.
+const int kPublishedCones = 5;
+const float kTilted = 0.70710678118654752440;
+bool fiveCones() { return asPublished != 0 || publishedCones != 0; }
+
+// Cone `i` of the hemisphere.
+Cone diffuseCone(int i, vec3 normal, vec2 place) {
   vec3 tangent = tangentTo(normal), bitangent = cross(normal, tangent);
-  // Listing 4.12: one cone along the normal and four at 45 degrees, weighted by the cosine.
-  if (asPublished != 0) {
+  Cone cone;
+  if (fiveCones()) {
     const float kPrintedWeight = 0.707;
-    vec3 sum = traceConeAsPublished(apex, normal, coneRatio, 0u);
-    for (int i = 0; i < 4; ++i) {
-      vec3 side = (i & 1) == 0 ? tangent : bitangent;
-      vec3 direction = normalize(normal + (i < 2 ? side : -side));
-      sum += kPrintedWeight * traceConeAsPublished(apex, direction, coneRatio, uint(i + 1));
-    }
-    return sum;
+    vec3 side = (i & 1) != 0 ? tangent : bitangent;
+    cone.direction = i == 0 ? normal : normalize(normal + (i <= 2 ? side : -side));
+    cone.tanHalfAngle = 0.5 * coneRatio;
+    cone.cosTheta = i == 0 ? 1.0 : kTilted;
+    cone.weight = i == 0 ? 1.0 : asPublished != 0 ? kPrintedWeight : kTilted;
+  } else {
+    cone.direction = cosineCone(i, coneCount, place, tangent, bitangent, normal, cone.cosTheta, cone.tanHalfAngle);
+    cone.weight = 1.0;
   }
-  if (publishedCones != 0) {
-    // Deviates: divided by the sum of the weights, 1 + 4 / sqrt 2, so that a constant environment keeps its radiance.
-    const float kTilted = 0.70710678118654752440;
-    float tanHalfAngle = 0.5 * coneRatio;
-    vec3 sum = traceCone(apex, normal, tanHalfAngle, 1.0, 0u);
-    for (int i = 0; i < 4; ++i) {
-      vec3 side = (i & 1) == 0 ? tangent : bitangent;
-      sum += kTilted * traceCone(apex, normalize(normal + (i < 2 ? side : -side)), tanHalfAngle, kTilted, uint(i + 1));
-    }
-    return sum / (1.0 + 4.0 * kTilted);
-  }
-  vec3 sum = vec3(0.0);
-  vec2 place = placeInStratum();
-  for (int i = 0; i < coneCount; ++i) {
-    float cosTheta, tanHalfAngle;
-    vec3 direction = cosineCone(i, coneCount, place, tangent, bitangent, normal, cosTheta, tanHalfAngle);
-    sum += traceCone(apex, direction, tanHalfAngle, cosTheta, uint(i));
-  }
-  return sum / float(coneCount);
+  return cone;
+}
+
+// By what the sum is divided. Those as published are not divided, so that a constant environment gains radiance; `cones published` deviates and
+// divides by the sum of the weights, 1 + 4 / sqrt 2.
+float diffuseWeights() {
+  return asPublished != 0 ? 1.0 : publishedCones != 0 ? 1.0 + 4.0 * kTilted : float(coneCount);
 }
 #endif
 
 #if GLOSSY
-// Mean over the Phong lobe cos^n around the mirror direction of the arriving radiance times the cosine of the surface: what the integral of
-// the lobe and the cosine comes to, over the specular albedo. One cone is as wide as the lobe's solid angle; several have equal shares of
-// the lobe, each as wide as its share, and those below the horizon bring nothing.
-vec3 gatherGlossy(vec3 apex, vec3 normal, vec3 mirror, float exponent) {
-  const uint kGlossyCone = 0xffffu;
-  if (asPublished != 0 || glossyCones == 1) {
-    float tanHalfAngle = tanOfHalfAngle(cosHalfAngleOfLobe(exponent)), cosMirror = max(dot(mirror, normal), 0.0);
-    return cosMirror * (asPublished != 0 ? traceConeAsPublished(apex, mirror, 2.0 * tanHalfAngle, kGlossyCone)
-                                         : traceCone(apex, mirror, tanHalfAngle, cosMirror, kGlossyCone));
-  }
-  vec3 tangent = tangentTo(mirror), bitangent = cross(mirror, tangent), sum = vec3(0.0);
-  for (int i = 0; i < glossyCones; ++i) {
+const uint kGlossyCone = 0xffffu;  // number of the first one
+int lobeCones() { return asPublished != 0 ? 1 : glossyCones; }
+
+// Cone `i` of the Phong lobe cos^n around the mirror direction. One cone is as wide as the lobe's solid angle; several have equal shares of the
+// lobe, each as wide as its share, and those below the horizon have no weight.
+Cone glossyCone(int i, vec3 normal, vec3 mirror, float exponent) {
+  Cone cone;
+  cone.direction = mirror;
+  float cosHalfAngle = cosHalfAngleOfLobe(exponent);
+  if (lobeCones() > 1) {
+    vec3 tangent = tangentTo(mirror), bitangent = cross(mirror, tangent);
     float share = (float(i) + 0.5) / float(glossyCones), angle = float(i) * kGoldenAngle;
     float cosAxis = pow(1.0 - share, 1.0 / (exponent + 1.0)), sinAxis = sqrt(max(1.0 - cosAxis * cosAxis, 0.0));
-    vec3 direction = mirror * cosAxis + (tangent * cos(angle) + bitangent * sin(angle)) * sinAxis;
-    float cosTheta = dot(direction, normal);
-    if (cosTheta <= 0.0) continue;
+    cone.direction = mirror * cosAxis + (tangent * cos(angle) + bitangent * sin(angle)) * sinAxis;
     // The density of the lobe there, (n + 1) / (2 pi) cos^n, times the solid angle 2 pi (1 - cos(half angle)) is the share.
-    float cosHalfAngle = max(1.0 - 1.0 / (float(glossyCones) * (exponent + 1.0) * pow(cosAxis, exponent)), 0.5);
-    sum += cosTheta * traceCone(apex, direction, tanOfHalfAngle(cosHalfAngle), cosTheta, kGlossyCone + uint(i));
+    cosHalfAngle = max(1.0 - 1.0 / (float(glossyCones) * (exponent + 1.0) * pow(cosAxis, exponent)), 0.5);
   }
-  return sum / float(glossyCones);
+  cone.tanHalfAngle = tanOfHalfAngle(cosHalfAngle);
+  cone.cosTheta = cone.weight = max(dot(cone.direction, normal), 0.0);
+  return cone;
 }
 #endif
 
@@ -115,6 +118,7 @@ void main() {
   vec4 position = texelFetch(gPosition, pixel, 0);
   vec3 diffuse = vec3(0.0), glossy = vec3(0.0);
   bool mirrors = false;
+  int diffuseCones = 0, lobes = 0;  // how many cones each sum has
   if (position.w > 0.0) {
     vec3 normal = texelFetch(gNormal, pixel, 0).xyz;
     vec3 apex = position.xyz;
@@ -122,15 +126,46 @@ void main() {
 #if DIFFUSE
     vec3 albedo = texelFetch(gDiffuse, pixel, 0).rgb;
     if (arrivingDiffuse != 0) albedo = vec3(1.0);
-    if (any(greaterThan(albedo, vec3(0.0)))) diffuse = albedo * gatherDiffuse(apex, normal);
+    vec2 place = placeInStratum();
+    if (any(greaterThan(albedo, vec3(0.0)))) diffuseCones = fiveCones() ? kPublishedCones : coneCount;
 #endif
 #if GLOSSY
     vec4 specular = texelFetch(gSpecular, pixel, 0);
     mirrors = any(greaterThan(specular.rgb, vec3(0.0)));
-    if (mirrors) {
-      vec3 mirror = reflect(normalize(position.xyz - eyeWorld), normal);
-      glossy = (arrivingGlossy != 0 ? vec3(1.0) : specular.rgb) * gatherGlossy(apex, normal, mirror, specular.w);
+    vec3 mirror = reflect(normalize(position.xyz - eyeWorld), normal);
+    if (mirrors) lobes = lobeCones();
+#endif
+    // Every cone passes through the one call of a march, which is inlined wherever it is called and is nearly all of the code.
+    for (int i = 0; i < diffuseCones + lobes; ++i) {
+      Cone cone;
+      uint number = uint(i);
+#if DIFFUSE
+      if (i < diffuseCones) cone = diffuseCone(i, normal, place);
+#endif
+#if GLOSSY
+      if (i >= diffuseCones) {
+        cone = glossyCone(i - diffuseCones, normal, mirror, specular.w);
+        number = kGlossyCone + uint(i - diffuseCones);
+      }
+#endif
+      if (cone.weight <= 0.0) continue;
+      vec3 arriving = cone.weight * (asPublished != 0
+                                         ? traceConeAsPublished(apex, cone.direction, 2.0 * cone.tanHalfAngle, number)
+                                         : traceCone(apex, cone.direction, cone.tanHalfAngle, cone.cosTheta, number));
+#if DIFFUSE
+      if (i < diffuseCones) diffuse += arriving;
+#endif
+#if GLOSSY
+      if (i >= diffuseCones) glossy += arriving;
+#endif
     }
+#if DIFFUSE
+    // Mean of the arriving radiance over the hemisphere, weighted by the cosine.
+    if (diffuseCones > 0) diffuse = albedo * (diffuse / diffuseWeights());
+#endif
+#if GLOSSY
+    // Mean over the lobe of the arriving radiance times the cosine of the surface: the integral of both over the specular albedo.
+    if (lobes > 0) glossy = (arrivingGlossy != 0 ? vec3(1.0) : specular.rgb) * (glossy / float(lobes));
 #endif
   }
 #if DIFFUSE

@@ -24,14 +24,15 @@ void main() {
   if (!takenFragment(index)) return;
   VoxelFragment fragment = fragments[index];
   vec3 albedo = albedoOf(fragment);
-  vec3 known, front = vec3(0.0), back = vec3(0.0), emitted = emittedBy(fragment);
-  if (!isKnown(index, known)) arrivingAt(fragment, front, back);
+  vec3 front, back, emitted = emittedBy(fragment);
+  KnownLight known = knownLightOf(index, fragment, twoSided != 0);
+  arrivingAt(fragment, known, front, back);
   ivec3 voxel = unpackVoxel(fragment.voxel);
   uint place = sumsAt(voxel);
   float most = mostRadianceIn(voxel);
 #if DIRECTIONS
-  // What is known does not tell the side.
-  vec3 sides[2] = vec3[2](albedo / kPi * (ambient + front) + known + emitted, albedo / kPi * (ambient + back) + known);
+  vec3 sides[2] = vec3[2](albedo / kPi * (ambient + front) + emitted, albedo / kPi * (ambient + back));
+  sides[known.side] += known.radiance;
   float brightest = 0.0;
   for (int side = 0; side < 2; ++side) {
     vec3 radiance = min(sides[side], most);
@@ -42,7 +43,7 @@ void main() {
   atomicMax(directions[place].brightest, floatBitsToUint(brightest));
 #else
   vec3 radiance = min(albedo / kPi * (ambient + front + back), most);  // ambient: thesis Fig. 66
-  radiance = min(radiance + known + emitted, most);
+  radiance = min(radiance + known.radiance + emitted, most);
   for (int channel = 0; channel < 3; ++channel) radiances[3 * index + channel] = radiance[channel];
   atomicAdd(sums[place].fragments, 1u);
   atomicMax(sums[place].brightest, floatBitsToUint(largest(radiance)));

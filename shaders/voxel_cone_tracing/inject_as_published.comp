@@ -50,7 +50,7 @@ void main() {
   VoxelFragment fragment = fragments[index];
   ivec3 voxel = unpackVoxel(fragment.voxel);
   vec3 front, back;
-  arrivingAt(fragment, front, back);
+  arrivingAt(fragment, kNoLightKnown, front, back);
   vec4 value = vec4(min(albedoOf(fragment) / kPi * (ambient + front) / mostRadiance, 1.0) * 255.0, 1.0);
   ADD_TO(averages)
 #if GRIDS == GRIDS_SIX

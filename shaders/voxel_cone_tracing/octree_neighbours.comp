@@ -1,15 +1,10 @@
 #version 450
-// The neighbours of each node: thesis 004, Sec. 4.2.2, Listing 4.18.
-// Deviates: one thread a node, after the whole tree is there, in place of one a fragment at every depth.
+// The neighbours of each node: thesis 004, Sec. 4.2.2.
+// Deviates from Listing 4.18, which octree_fragment_neighbours.comp has: one thread a node, after the whole tree is there.
 #define OCTREE_BUILD
 layout(local_size_x = 64) in;
 #include "octree_levels.glsl"
-
-uint neighbour(ivec3 place, int depth) {
-  if (any(greaterThanEqual(place, ivec3(1 << depth)))) return kNone;
-  uint node = nodeAt(place, depth);
-  return node != kNone && octreeNodes[node].brick != kNone ? node : kNone;
-}
+#include "octree_neighbours.glsl"
 
 void main() {
   uint brick = listIndex();
@@ -17,8 +12,5 @@ void main() {
   int depth = octreeDepth;
   while (octreeLevels[depth].firstBrick > brick) --depth;
   uint node = octreeBricks[brick].node;
-  ivec3 place = unpackVoxel(octreeBricks[brick].place);
-  octreeNodes[node].neighbourX = neighbour(place + ivec3(1, 0, 0), depth);
-  octreeNodes[node].neighbourY = neighbour(place + ivec3(0, 1, 0), depth);
-  octreeNodes[node].neighbourZ = neighbour(place + ivec3(0, 0, 1), depth);
+  findNeighbours(node, unpackVoxel(octreeBricks[brick].place), depth);
 }

@@ -7,12 +7,14 @@
 // linearly to both sides, and steps through it let exp(-2 / cos) through (see the card); so no wall is missed, while an opening has the
 // edges that filtering gives it. A uniform medium of opacity a lets (1-a)^lengths through either way, since the weights sum to 1.
 
+bool readsLayers() { return storeLayers != 0; }
+
 // No step skips a layer of the finer of the two levels that are read.
-float longestStep(float size) { return storeLayers != 0 ? storeVoxel * exp2(floor(log2(max(size / storeVoxel, 1.0)))) : kNoLimit; }
+float longestStep(float size) { return readsLayers() ? storeVoxel * exp2(floor(log2(max(size / storeVoxel, 1.0)))) : kNoLimit; }
 
 StoreSample readStore(vec3 at, vec3 direction, float size, float stride) {
   float blend, level = levelOf(max(size / storeVoxel, 1.0), storeCoarsest, blend);
-  if (storeLayers != 0) {
+  if (readsLayers()) {
     if (blend <= 0.0) {
       vec4 value = layers(at, direction, level, stride);
       return StoreSample(value, value.a);

@@ -2,6 +2,7 @@
 //   vec2 insideStore(vec3 origin, vec3 direction)   where a ray enters it and where it leaves it, m along the ray
 //   float finestVoxel(vec3 at)                      its finest voxels there, m
 //   float longestStep(float size)                   m, through voxels of `size` m
+//   bool readsLayers()                              the opacity of a sample is that of its step through layers of voxels; else that of voxels
 //   StoreSample readStore(vec3 at, vec3 direction, float size, float stride)
 //                                                   what a step of `stride` m through voxels of `size` m around a point looks like
 //   vec4 readStoreAsPublished(vec3 at, vec3 direction, float size)
@@ -25,7 +26,7 @@ layout(std140, binding = 1) uniform Store {
   float storeUnit;              // W/(sr m^2) that the value 1 stands for
   int storeOpacityOfFinestVoxel;  // 1: what RadianceGrid::Opacity::ofFinestVoxel says
   float storeFirstLevelOfFaces;   // directional: level of the grid that the faces begin with
-  int storeLayers;                // directional and clipmap: 1: voxels are read by layers; 0: filtered along all axes
+  int storeLayers;                // of six faces: 1: voxels are read by layers; 0: filtered along all axes
   vec3 storeVoxels;               // of the finest level
 };
 

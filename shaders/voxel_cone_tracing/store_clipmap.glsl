@@ -25,8 +25,10 @@ float finestVoxel(vec3 at) {
   return clipmapVoxel * exp2(float(level)) * (1.0 + share);
 }
 
+bool readsLayers() { return storeLayers != 0; }
+
 // No step skips a layer of the finer of the two levels that are read.
-float longestStep(float size) { return storeLayers != 0 ? storeVoxel * exp2(floor(log2(max(size / storeVoxel, 1.0)))) : kNoLimit; }
+float longestStep(float size) { return readsLayers() ? storeVoxel * exp2(floor(log2(max(size / storeVoxel, 1.0)))) : kNoLimit; }
 
 // Voxels of a level around a point: the block that they are read from.
 struct ClipmapBlock {
@@ -86,7 +88,7 @@ StoreSample readStore(vec3 at, vec3 direction, float size, float stride) {
   float finest, wanted = max(size / storeVoxel, 1.0);
   int asked = int(floor(log2(wanted))), there = finestLevel(at, asked, finest);
   float blend, level = levelOf(max(wanted, exp2(float(there)) * (1.0 + finest)), storeCoarsest, blend);
-  if (storeLayers != 0) {
+  if (readsLayers()) {
     vec4 value = layers(at, direction, int(level), stride);
     if (blend > 0.0) value = mix(value, layers(at, direction, int(level) + 1, stride), blend);
     return StoreSample(value, value.a);

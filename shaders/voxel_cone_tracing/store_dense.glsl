@@ -7,6 +7,8 @@ float finestVoxel(vec3 at) { return storeVoxel; }
 
 float longestStep(float size) { return kNoLimit; }
 
+bool readsLayers() { return false; }
+
 #ifdef LOBES
 #if LOBES
 // Lobes of the normals of lit surfaces: thesis 004, Sec. 3.1.2 and its part on indirect illumination. C++ side: NormalLobes.

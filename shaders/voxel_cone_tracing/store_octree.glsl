@@ -54,7 +54,7 @@ vec4 voxelIn(uint brick, ivec3 voxel) { return texelFetch(brickPool, texelOf(bri
 #endif
 
 // Voxels are filtered here and not by a sampler, whose coordinates are rounded by where in which pool the brick lies: a frame would differ
-// from the same frame alone.
+// from the same frame alone. Cones as published use the sampler in published bricks.
 #if LOOK_UP == LOOK_UP_OWN
 // No loops but the published reading of six faces: of all turns of all loops of a shader some drivers allow 65535, which many cones come to.
 // Those of a level around a point, `from` voxels from the middle of its voxel 0. Outside of the grid there is nothing.
@@ -110,11 +110,13 @@ vec4 inBrick(uint brick, vec3 at) {
   return mix(mix(alongX(brick, low, part.x), alongX(brick, low + ivec3(0, 1, 0), part.x), part.y),
              mix(alongX(brick, low + ivec3(0, 0, 1), part.x), alongX(brick, low + ivec3(0, 1, 1), part.x), part.y), part.z);
 }
+// The same by the hardware's filter (Listing 4.25).
+vec4 sampledInBrick(uint brick, vec3 at) { return textureLod(brickPool, (vec3(texelOf(brick)) + 0.5 + at) / vec3(textureSize(brickPool, 0)), 0.0); }
 #endif
 
 // Values of a level, `from` voxels from the middle of its voxel 0. False: the tree has no node of that level there. Below its voxel 0 lies one
-// with nothing in it.
-bool readVoxels(vec3 from, int level, out vec4 value) {
+// with nothing in it. `sampled`: published bricks by the hardware's filter.
+bool readVoxels(vec3 from, int level, bool sampled, out vec4 value) {
   int depth = octreeDepth - level;
 #if LOOK_UP == LOOK_UP_OWN
   value = amongVoxels(from, depth);
@@ -124,14 +126,16 @@ bool readVoxels(vec3 from, int level, out vec4 value) {
   ivec3 place = min(ivec3(inside) >> 1, ivec3((1 << depth) - 1));
   uint brick = brickOfNode(place, depth);
   vec3 border = clamp(1.0 + from, vec3(0.0), vec3(1.0));
-  value = brick == kNone ? vec4(0.0) : border.x * border.y * border.z * inBrick(brick, inside - vec3(2 * place));
+  vec3 at = inside - vec3(2 * place);
+  value = vec4(0.0);
+  if (brick != kNone) value = border.x * border.y * border.z * (sampled ? sampledInBrick(brick, at) : inBrick(brick, at));
   return brick != kNone;
 #endif
 }
 
 // The same around a point, finest voxels from storeLow.
-bool readLevel(vec3 at, int level, out vec4 value) {
-  return readVoxels(at * exp2(float(-level)) - firstVoxel * (firstVoxelGrows != 0.0 ? 1.0 : exp2(float(-level))), level, value);
+bool readLevel(vec3 at, int level, bool sampled, out vec4 value) {
+  return readVoxels(at * exp2(float(-level)) - firstVoxel * (firstVoxelGrows != 0.0 ? 1.0 : exp2(float(-level))), level, sampled, value);
 }
 
 #if FACES == FACES_SIX
@@ -139,8 +143,8 @@ vec4 interpolated(vec3 posWorld, vec3 direction, float level) {
   lookAtFaces(direction, faceWeights(direction));
   vec3 at = (posWorld - storeLow) / storeVoxel;
   vec4 finer, coarser = vec4(0.0);
-  readLevel(at, int(level), finer);
-  if (fract(level) > 0.0) readLevel(at, int(level) + 1, coarser);
+  readLevel(at, int(level), false, finer);
+  if (fract(level) > 0.0) readLevel(at, int(level) + 1, false, coarser);
   return mix(finer, coarser, fract(level));
 }
 
@@ -164,12 +168,14 @@ vec4 layers(vec3 posWorld, vec3 direction, float level, float stride) {
 #else
 float longestStep(float size) { return kNoLimit; }
 
+bool readsLayers() { return false; }
+
 StoreSample readStore(vec3 at, vec3 direction, float size, float stride) {
   float blend, level = levelOf(max(size / storeVoxel, 1.0), storeCoarsest, blend);
   vec3 voxel = (at - storeLow) / storeVoxel;
   vec4 finer, coarser = vec4(0.0);
-  readLevel(voxel, int(level), finer);
-  if (blend > 0.0) readLevel(voxel, int(level) + 1, coarser);
+  readLevel(voxel, int(level), false, finer);
+  if (blend > 0.0) readLevel(voxel, int(level) + 1, false, coarser);
   StoreSample result = StoreSample(mix(finer, coarser, blend), 0.0);
   if (result.value.a > 0.0) result.opacity = opacityOfStep(result.value.a, stride, level, blend);
   return result;
@@ -185,7 +191,7 @@ vec4 readStoreAsPublished(vec3 at, vec3 direction, float size) {
 #endif
   vec3 voxel = (at - storeLow) / storeVoxel;
   vec4 finer, coarser = vec4(0.0);
-  if (!readLevel(voxel, int(floor(coarseness)), finer)) return vec4(0.0);
-  if (fract(counted) > 0.0) readLevel(voxel, int(floor(coarseness)) + 1, coarser);
+  if (!readLevel(voxel, int(floor(coarseness)), true, finer)) return vec4(0.0);
+  if (fract(counted) > 0.0) readLevel(voxel, int(floor(coarseness)) + 1, true, coarser);
   return mix(finer, coarser, fract(counted));
 }

@@ -17,11 +17,7 @@ const Covering kOpen = Covering(1.0, 0.0);
 float cover(inout Covering cone, StoreSample found, float size, float stride) {
   const float kOneThing = 4.0;  // how often the opacity must fall for what follows to be another thing
   float opacity = found.value.a;
-  bool byLayers = false;
-#if STORE == STORE_DIRECTIONAL || STORE == STORE_CLIPMAP
-  byLayers = storeLayers != 0;
-#endif
-  if (byLayers) {
+  if (readsLayers()) {
     // Layers are not filtered across, and their value is that of the step; no longer step lies in one.
     if (opacity > 0.0) opacity = 1.0 - pow(max(1.0 - opacity, 0.0), longestStep(size) / stride);
   } else {

@@ -15,7 +15,7 @@ void main() {
   fragment.offset = packOffset(vec3(0.5));
   fragment.normal = packNormal(vec3(0.0, 1.0, 0.0));
   fragment.albedoRg = 0u;
-  fragment.albedoBCoverage = packHalf2x16(vec2(0.0, 1.0));
+  fragment.albedoBCoverage = packHalves(vec2(0.0, 1.0));
   fragment.emission = 0u;
   for (; bits != 0u; bits &= bits - 1u, ++index) {
     if (index >= uint(capacity)) return;

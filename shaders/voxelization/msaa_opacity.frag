@@ -60,7 +60,7 @@ void main() {
 #if TARGET == TARGET_LIST
     VoxelFragment fragment = fragmentAt(s, voxel, dominantAxis);
     float share = float(bitCount(inside)) / float(sampleCount * scale * scale);
-    fragment.albedoBCoverage = packHalf2x16(vec2(blueCoverage.x, blueCoverage.y * share));
+    fragment.albedoBCoverage = packHalves(vec2(blueCoverage.x, blueCoverage.y * share));
     uint index = atomicAdd(fragmentCount, 1u);
     if (index < uint(capacity)) fragments[index] = fragment;
 #else

@@ -1,7 +1,7 @@
 #version 450
 // Mavridis & Papaioannou 2011, Sec. 3.2: each pixel that sees a surface marks the voxel that the surface point lies in.
 // Deviates: the g-buffer holds positions, so that nothing has to be projected back from depth.
-// With REFLECTED a point brings the direct light along that the renderer computed there.
+// With REFLECTED a point brings the direct light along that the renderer computed there, and says which of its sides reflects it.
 #pragma lumivox axis EMISSION 0 1
 #pragma lumivox axis REFLECTED 0 1
 #include "fragment_list.glsl"
@@ -40,9 +40,12 @@ void main() {
   VoxelFragment fragment;
   fragment.voxel = packVoxel(voxel);
   fragment.offset = packOffset(posGrid - vec3(voxel));
+#if REFLECTED
+  if (facing.w <= 0.5) fragment.offset |= kSeenBehind;
+#endif
   fragment.normal = packNormal(facing.w > 0.5 ? facing.xyz : -facing.xyz);
-  fragment.albedoRg = packHalf2x16(albedo.rg);
-  fragment.albedoBCoverage = packHalf2x16(vec2(albedo.b, 1.0));
+  fragment.albedoRg = packHalves(albedo.rg);
+  fragment.albedoBCoverage = packHalves(vec2(albedo.b, 1.0));
   fragment.emission = packShared(radiance);
   fragments[index] = fragment;
 #if REFLECTED

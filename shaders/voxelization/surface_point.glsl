@@ -32,8 +32,8 @@ void appendPoint(int triangle, vec3 corners[3], vec3 weights) {
   fragment.voxel = packVoxel(voxel);
   fragment.offset = packOffset(posGrid - vec3(voxel));
   fragment.normal = packNormal(normal);
-  fragment.albedoRg = packHalf2x16(albedo.rg);
-  fragment.albedoBCoverage = packHalf2x16(vec2(albedo.b, painted.coverage));
+  fragment.albedoRg = packHalves(albedo.rg);
+  fragment.albedoBCoverage = packHalves(vec2(albedo.b, painted.coverage));
   fragment.emission = packShared(material.emission.rgb);
   fragments[index] = fragment;
 }

@@ -24,8 +24,8 @@ VoxelFragment sampleView() {
   VoxelFragment fragment;
   fragment.voxel = fragment.offset = 0u;
   fragment.normal = packNormal(dot(normalWorld, normalWorld) > 0.0 ? normalize(normalWorld) : vec3(0.0, 1.0, 0.0));
-  fragment.albedoRg = packHalf2x16(albedo.rg);
-  fragment.albedoBCoverage = packHalf2x16(vec2(albedo.b, coverage));
+  fragment.albedoRg = packHalves(albedo.rg);
+  fragment.albedoBCoverage = packHalves(vec2(albedo.b, coverage));
   fragment.emission = packShared(material.emission.rgb);
   return fragment;
 }

@@ -16,8 +16,9 @@ class InjectPass : public Pass {
   enum class Precision { float_, half };
 
   In<VoxelFragments> fragments{this, "fragments", "surface samples: the imperfect volume"};
-  In<ShadowMap> shadow{this, "shadow", Presence::optional,
-                       "lights and their visibility; without it only the environment shines"};
+  In<ShadowMap> shadow{
+      this, "shadow", Presence::optional,
+      "lights and their visibility; without it the environment shines, and direct light that fragments bring along"};
   Param<Lobe> lobe{
       this, "lobe", Lobe::hemisphere,
       "into which the lit side of a surface shines: alike over its half space, as a Lambert surface does; or a clamped cosine of the same flux; the paper does not say which"};
@@ -43,7 +44,7 @@ class InjectPass : public Pass {
     for (const gpu::TextureRef& volume : result.levels.front().coefficients) volume->clear(glm::vec4(0.0f));
     reflected = result;
     const LightBinding lights(shadow);
-    if (lights.count > 0) fill(frame, result, lights, most, half);
+    if (lights.count > 0 || fragments->reflected != nullptr) fill(frame, result, lights, most, half);
   }
 
   void fill(PassContext& frame, const ShGrid& result, const LightBinding& lights, float most, bool half) {
@@ -58,14 +59,17 @@ class InjectPass : public Pass {
                          brightest =
                              frame.emptyElements(inject_light::brightest, slots.room, "brightest of slots"),
                          sums = frame.emptyElements(inject_add::sums, slots.room, "sums of slots");
-    forEachFragment(frame, frame.program(inject_light::kProgram),
-                    {inject_light::lighting({.gridLow = grid.low,
-                                             .voxelSize = grid.voxelSize,
-                                             .lightCount = lights.count,
-                                             .mostRadiance = most}),
-                     inject_light::radiances(radiances), inject_light::brightest(brightest),
-                     inject_light::slots(slots.numbers), lights},
-                    *fragments);
+    const inject_light::Variant lighting{.lights = lights.count > 0,
+                                         .reflected = fragments->reflected != nullptr};
+    forEachFragment(
+        frame, frame.program(lighting),
+        {inject_light::lighting({.gridLow = grid.low,
+                                 .voxelSize = grid.voxelSize,
+                                 .lightCount = lights.count,
+                                 .mostRadiance = most}),
+         inject_light::radiances(radiances), inject_light::brightest(brightest),
+         inject_light::slots(slots.numbers), inject_light::reflected(fragments->reflected), lights},
+        *fragments);
     const shader::BindingSet summed{inject_add::fragmentsOfSlot(slots.fragments), inject_add::sums(sums),
                                     inject_add::brightest(brightest)};
     forEachFragment(frame, frame.program(inject_add::kProgram),

@@ -166,7 +166,7 @@ class Marching : public Pass {
 
 class MarchPass : public Marching {
   enum class Source { surface, harmonics };
-  enum class Feed { front, own };
+  enum class Feed { front, own, printed };
 
   In<ShGrid> reflected{this, "reflected", "radiance that the voxels send, of 'inject'"};
   In<AttributeGrid> attributes{this, "attributes", Presence::optional,
@@ -178,7 +178,7 @@ class MarchPass : public Marching {
   Param<int> bounces{this, "bounces", 1, within(1, 1024), "times that light was reflected"};
   Param<Feed> feed{
       this, "feed", Feed::front,
-      "between two bounces a voxel takes what arrives in front of both of its sides, as a surface in its middle; or its own coefficients"};
+      "between two bounces a voxel takes what arrives in front of both of its sides, as a surface in its middle; or its own coefficients; or, as published (Sec. 3.3), two buffers alternate: what arrives in a voxel is what it sends by 'source harmonics', whatever its albedo, and the last one is all that is read"};
   Out<ShGrid> incoming{this, "incoming", Contributes::nothing, Needs::anyLight,
                        "radiance that arrives in each voxel from all sides, of all bounces"};
 
@@ -187,13 +187,14 @@ class MarchPass : public Marching {
   bool uses(const InBase& input) const override {
     return Marching::uses(input) && (&input != &attributes || readsAttributes());
   }
-  bool readsAttributes() const { return source == Source::surface || bounces > 1; }
+  bool sendsBands() const { return source == Source::harmonics || feed == Feed::printed; }
+  bool readsAttributes() const { return !sendsBands() || bounces > 1; }
   bool readsOpacity() const override { return Marching::readsOpacity() || bounces > 1; }
 
   void markMore(PassContext& frame, const shader::BindingSet& marks) override {
     if (bounces == 1) return;
     frame.dispatch(frame.program(mark_voxels::Variant{},
-                                 neighbours.in(mark_voxels::Constants{.feedsOwn = feed == Feed::own})),
+                                 neighbours.in(mark_voxels::Constants{.feedsOwn = feed != Feed::front})),
                    {marks, mark_voxels::opacity(opacity->opacity, gpu::Sampling::nearest),
                     mark_voxels::meanNormals(attributes->normal, gpu::Sampling::nearest)},
                    grid().resolution);
@@ -214,6 +215,12 @@ class MarchPass : public Marching {
     result.readFor = from.readFor;
     result.levels.push_back({grid(), arriving(frame, sent, reflected->unit, from, 0)});
     const auto& sum = result.levels.front().coefficients;
+    if (feed == Feed::printed) {
+      for (int bounce = 1; bounce < bounces; ++bounce)
+        result.levels.front().coefficients = arriving(frame, result.levels.front(), 1.0f, from, bounce);
+      incoming = result;
+      return;
+    }
     ShGrid::Level before = result.levels.front();
     std::array<gpu::TextureRef, 3> passedOn;
     for (int bounce = 1; bounce < bounces; ++bounce) {
@@ -238,12 +245,13 @@ class MarchPass : public Marching {
                                           const Begins& from, int bounce) const {
     auto volumes = emptyVolumes(frame, "radiance that arrives");
     march::Constants choices = constants();
-    choices.harmonics = source == Source::harmonics;
+    choices.harmonics = sendsBands();
     const shader::BoundProgram& program = frame.program(variant(from, march::Variant::ofLight), choices);
     // Something must be bound where no normals are read.
     const gpu::TextureRef& normals = readsAttributes() ? attributes->normal : sent.coefficients[0];
-    // The sky was seen with the first bounce.
-    const glm::vec3 sky = bounce == 0 ? frame.sceneDescription().environment : glm::vec3(0.0f);
+    // The sky was seen with the first bounce; a buffer that replaces another sees it again.
+    const glm::vec3 sky =
+        bounce == 0 || feed == Feed::printed ? frame.sceneDescription().environment : glm::vec3(0.0f);
     sendRays(frame, program,
              {images(volumes), march::meanNormals(normals, gpu::Sampling::nearest),
               sampled(sent, gpu::Sampling::nearest)},

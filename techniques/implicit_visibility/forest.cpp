@@ -89,6 +89,13 @@ void sortLeaves(Origins& origins, ElementTree& tree) {
   origins = std::move(sorted);
 }
 
+void countCorners(const Origins& origins, ElementTree& tree) {
+  if (!origins.firstTriangle.empty()) return;
+  tree.firstCorner.push_back(0);
+  for (const Leaf& leaf : origins.leaves)
+    tree.firstCorner.push_back(tree.firstCorner.back() + leaf.outline.count);
+}
+
 void findVertices(const Scene& scene, const Origins& origins, ElementTree& tree) {
   if (origins.firstTriangle.empty()) return;
   tree.leafOfVertex.assign(scene.positions.size(), kNoElement);
@@ -270,6 +277,7 @@ Forest plantForest(const Scene& scene, Origins origins) {
   auto tree = std::make_shared<ElementTree>();
   sortLeaves(origins, *tree);
   findVertices(scene, origins, *tree);
+  countCorners(origins, *tree);
   addSegmentNodes(*tree);
   addGroups(scene, origins, *tree);
   forest.albedo = pulledUp(origins, *tree, [](const Leaf& leaf) { return glm::vec4(leaf.albedo, 1.0f); });

@@ -7,6 +7,7 @@ LUMIVOX_TECHNIQUE(registry) {
   registry.describe(
       "Light between surface elements, with visibility implied by the nearest link in bins of directions",
       "Dong, Kautz, Theobalt & Seidel 2007");
+  addHierarchy(registry);
   addElements(registry);
   addLinks(registry);
   addIlluminate(registry);

@@ -77,6 +77,7 @@ glm::dvec2 clamped(glm::dvec2 weights) {
 
 Leaf LeafMaterial::on(Leaf leaf) const {
   leaf.area *= covered;
+  for (glm::vec2& corner : leaf.outline.corners) corner *= std::sqrt(covered);
   leaf.albedo = albedo, leaf.specular = specular, leaf.emission = emission;
   return leaf;
 }

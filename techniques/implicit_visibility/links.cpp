@@ -114,7 +114,7 @@ class PushLinksPass : public Pass {
   In<ElementLinks> pairs{this, "links", "pairs of nodes, of create_links"};
   Param<Fill> fill{
       this, "fill", Fill::centre,
-      "centre: an element takes the bins whose middle ray meets its disc; one: the one bin of its middle "
+      "centre: an element takes the bins whose middle ray meets its outline; one: the one bin of its middle "
       "(published)"};
   Param<Push> push{
       this, "push", Push::rebinned,

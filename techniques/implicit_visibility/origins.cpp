@@ -190,6 +190,7 @@ void addTexels(const Scene& scene, const SurfaceAtlas& atlas, const SegmentMap& 
         Leaf leaf{o, texel.triangle, texel.second, texel.third};
         leaf.segment = map.segment[texel.triangle];
         leaf.area = texel.area;
+        leaf.outline = atlas.outlines[atlas.parts[part].firstTexel + i];
         leaf.place = map.byTexcoords[o] ? texcoordAt(scene, leaf) : glm::dvec2(texel.x, texel.y);
         const LeafMaterial material = materialOfPiece(scene, scene.objects[o].parts[p], leaf);
         if (material.covered > 0.0f) origins.leaves.push_back(material.on(leaf));
@@ -250,8 +251,8 @@ Origins findOrigins(const Scene& scene, const OriginSettings& settings) {
   if (scene.triangleCount() == 0) return origins;
   const bool atlasLeaves = settings.source == Source::atlas;
   const auto leaves = atlasLeaves ? static_cast<std::uint64_t>(settings.elements) : scene.positions.size();
-  // Of a leaf: itself, its texel twice, and its nodes with their states and textures.
-  constexpr std::uint64_t kBytesPerLeaf = 512;
+  // Of a leaf: itself, its texel and outline twice, and its nodes with their states and textures.
+  constexpr std::uint64_t kBytesPerLeaf = 1024;
   requireRoom({"places and trees", leaves, leaves * kBytesPerLeaf}, ofHost());
   // With vertices the atlas gives charts alone: texels as large as the objects are enough.
   const SurfaceAtlas atlas =

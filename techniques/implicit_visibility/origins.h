@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lumivox/scene/atlas.h"
 #include "lumivox/scene/element_tree.h"
 #include "lumivox/scene/scene.h"
 
@@ -31,8 +32,9 @@ struct Leaf {
   float second = 0.0f, third = 0.0f;  ///< barycentric coordinates of its second and third corner
   std::uint32_t vertex = kNoElement;  ///< of Source::vertices: index into Scene::positions
   float area = 0.0f;                  ///< m^2, less holes of masks
-  std::uint32_t segment = 0;          ///< numbers in no order; only leaves of one object share one
-  glm::dvec2 place{0.0};              ///< in the plane of its segment, in a unit that its neighbours share
+  AtlasOutline outline{};     ///< of Source::atlas; holes of masks make it smaller about the leaf's place
+  std::uint32_t segment = 0;  ///< numbers in no order; only leaves of one object share one
+  glm::dvec2 place{0.0};      ///< in the plane of its segment, in a unit that its neighbours share
   glm::vec3 albedo{0.0f};
   glm::vec4 specular{0.0f};  ///< Phong albedo; w exponent
   glm::vec3 emission{0.0f};  ///< W/(sr m^2), from the front

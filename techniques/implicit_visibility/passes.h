@@ -5,6 +5,7 @@
 
 namespace lumivox::implicit_visibility {
 
+void addHierarchy(TechniqueRegistry& registry);
 void addElements(TechniqueRegistry& registry);
 void addLinks(TechniqueRegistry& registry);
 void addIlluminate(TechniqueRegistry& registry);

@@ -20,6 +20,9 @@ constexpr float kSamePlace = 1e-5f;
 constexpr float kNearby = 3.0f;
 /// Discs are so much larger that rays through the corners of squares that touch do not slip between them.
 constexpr float kRounding = 1.0f + 1e-5f;
+/// Sides of polygons stand so much further out, of their radius: places and corners are rounded, and rays
+/// would slip between neighbours.
+constexpr float kSeam = 1e-4f;
 
 /// Where a disc begins and ends as seen through a face, as the ratio of the component x to the component z:
 /// planes through the eye that touch it. All of it must be before the face (z above 0).
@@ -39,7 +42,8 @@ float meetDisc(const glm::vec3& direction, const glm::vec3& normal, float radius
 
 }  // namespace
 
-DiscTree::DiscTree(const ElementTree& tree, const ElementState& state) : tree_(tree), nodes_(tree.nodeCount) {
+DiscTree::DiscTree(const ElementTree& tree, const ElementState& state)
+    : tree_(tree), nodes_(tree.nodeCount), sides_(state.corners.size()) {
   constexpr float kFlatNode = 0.9999f;  // length of a mean normal
   constexpr float kSquare = 1.02f;      // twice the reach squared over the area, of a square 1
   for (std::uint32_t i = 0; i < tree.nodeCount; ++i) {
@@ -50,10 +54,41 @@ DiscTree::DiscTree(const ElementTree& tree, const ElementState& state) : tree_(t
     if (flat) node.normal = state.normal[i] / length;
     node.radius = state.reach[i] * kRounding;
     if (tree.isLeaf(i))
-      node.filledSquared = node.radius * node.radius;
+      outline(i, state.outline(tree, i));
     else if (flat && 2.0f * state.reach[i] * state.reach[i] < kSquare * state.area[i])
       node.filledSquared = 0.24f * state.area[i];  // just within the circle in a square
   }
+}
+
+void DiscTree::outline(std::uint32_t leaf, std::span<const glm::vec3> corners) {
+  Node& node = nodes_[leaf];
+  node.filledSquared = node.radius * node.radius;
+  if (corners.empty()) return;
+  glm::vec3 across(0.0f);  // the polygon's area, along the normal that it is counter-clockwise to
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    across += glm::cross(corners[i], corners[(i + 1) % corners.size()]);
+  const float doubled = glm::length(across);
+  if (doubled > 0.0f) across /= doubled;
+  float nearest = node.radius;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::vec3& from = corners[i];
+    const glm::vec3 out = glm::cross(corners[(i + 1) % corners.size()] - from, across);
+    const float length = glm::length(out);
+    const glm::vec3 unit = length > 0.0f ? out / length : glm::vec3(0.0f);
+    const float distance = glm::dot(unit, from) + kSeam * node.radius;
+    sides_[tree_.firstCorner[leaf] + i] = glm::vec4(unit, distance);
+    nearest = std::min(nearest, distance);
+  }
+  nearest = std::max(nearest, 0.0f);
+  node.filledSquared = nearest * nearest;
+}
+
+bool DiscTree::covers(std::uint32_t leaf, const glm::vec3& away) const {
+  if (tree_.firstCorner.empty()) return true;
+  const auto first = sides_.begin() + tree_.firstCorner[leaf],
+             last = sides_.begin() + tree_.firstCorner[leaf + 1];
+  return std::all_of(first, last,
+                     [&](const glm::vec4& side) { return glm::dot(glm::vec3(side), away) <= side.w; });
 }
 
 float DiscTree::distanceTo(std::uint32_t node, const glm::vec3& eye, const glm::vec3& ray) const {
@@ -72,6 +107,10 @@ float DiscTree::distanceTo(std::uint32_t node, const glm::vec3& eye, const glm::
       const glm::vec3 away = distance * ray - direction;
       if (glm::dot(away, away) <= disc.filledSquared) {
         nearest = distance;
+        continue;
+      }
+      if (tree_.isLeaf(child)) {
+        if (covers(child, away)) nearest = distance;
         continue;
       }
     }
@@ -176,6 +215,7 @@ float Eye::meet(const Seen& seen, const glm::vec3& ray, float nearest) const {
     if (distance > nearest || distance == kNothing.distance) return kNothing.distance;
     const glm::vec3 away = distance * ray - seen.direction;
     if (glm::dot(away, away) <= seen.disc.filledSquared) return distance;
+    if (discs_.isLeaf(seen.node)) return discs_.covers(seen.node, away) ? distance : kNothing.distance;
   }
   return discs_.distanceTo(seen.node, position_, ray);
 }

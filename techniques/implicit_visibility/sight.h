@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lumivox/scene/direction_bins.h"
@@ -13,27 +14,36 @@ namespace lumivox::implicit_visibility {
 /// size, as published.
 enum class Fill { centre, one };
 
-/// Nodes as they are seen: the discs of leaves. An inner node is what its leaves are, in a disc (where it is
-/// flat) or a sphere around all of them.
+/// Nodes as they are seen: the polygons or discs of leaves. An inner node is what its leaves are, in a disc
+/// (where it is flat) or a sphere around all of them.
 class DiscTree {
  public:
   DiscTree(const ElementTree& tree, const ElementState& state);
 
   struct Node {
     glm::vec3 position{0.0f};
-    float radius = 0.0f;         ///< m: of the disc or sphere
+    float radius = 0.0f;         ///< m: of the disc or sphere, which holds a leaf's polygon
     glm::vec3 normal{0.0f};      ///< unit length; 0: a sphere
     float filledSquared = 0.0f;  ///< m^2: square of a radius within which there is no hole
     bool isSphere() const { return normal == glm::vec3(0.0f); }
   };
+  bool isLeaf(std::uint32_t node) const { return tree_.isLeaf(node); }
   const Node& operator[](std::uint32_t node) const { return nodes_[node]; }
+  /// Whether a point in the plane of a leaf, within its radius, lies in its outline. `away`: from its
+  /// position.
+  bool covers(std::uint32_t leaf, const glm::vec3& away) const;
   /// How far a ray of unit length from `eye` goes until it meets a leaf of an inner node; infinity: it meets
   /// none.
   float distanceTo(std::uint32_t node, const glm::vec3& eye, const glm::vec3& ray) const;
 
  private:
+  void outline(std::uint32_t leaf, std::span<const glm::vec3> corners);
+
   const ElementTree& tree_;
   std::vector<Node> nodes_;
+  /// Of the sides of leaves that are polygons, as ElementTree::firstCorner: xyz the way out, of unit length
+  /// in the leaf's plane; w its distance from the leaf's position, m.
+  std::vector<glm::vec4> sides_;
 };
 
 /// What is nearest in a bin. Ordered by distance, then by node, so that the nearest of many does not depend

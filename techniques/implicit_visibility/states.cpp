@@ -63,6 +63,7 @@ class StateMaker {
     state_.radius.resize(tree_.nodeCount);
     state_.reach.resize(tree_.nodeCount);
     state_.still.resize(tree_.nodeCount);
+    if (!tree_.firstCorner.empty()) state_.corners.resize(tree_.firstCorner.back());
   }
 
   ElementState make() {
@@ -110,6 +111,25 @@ class StateMaker {
     }
     state_.area[node] = areaOf(leaf, node, object, state_.normal[node]);
     state_.radius[node] = state_.reach[node] = std::sqrt(0.5f * state_.area[node]);
+    if (leaf.outline.count > 0) placeOutline(node, leaf, object);
+  }
+
+  /// Corners follow the triangle. Areas of the rest keep the size of the outline's: they scale it.
+  void placeOutline(std::uint32_t node, const Leaf& leaf, const PlacedObject& object) {
+    const auto [a, b, c] = object.corners(leaf.triangle);
+    float scale = state_.area[node] > 0.0f ? 1.0f : 0.0f;
+    if (scene_.objects[leaf.object].sequence && areas_ == Areas::rest && scale > 0.0f) {
+      const float now = 0.5f * glm::length(object.doubleArea(leaf.triangle));
+      scale = std::sqrt(forest_.restTriangleArea[node] / now);
+    }
+    float squared = 0.0f;
+    for (std::uint32_t i = 0; i < leaf.outline.count; ++i) {
+      const glm::vec2& at = leaf.outline.corners[i];
+      const glm::vec3 corner = scale * (at.x * (b - a) + at.y * (c - a));
+      state_.corners[tree_.firstCorner[node] + i] = corner;
+      squared = std::max(squared, glm::dot(corner, corner));
+    }
+    state_.reach[node] = std::sqrt(squared);
   }
 
   void average(std::uint32_t node) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <span>
 
+#include "lumivox/base/error.h"
 #include "lumivox/toolkit/light_bounds.h"
 #include "nested_grids.h"
 
@@ -188,6 +189,13 @@ class InjectVoxelsPass : public Inject {
     if (resolution > kLargestVoxelGrid)
       return fmt::format("resolution must be at most {} for voxels that are lit", kLargestVoxelGrid);
     return {};
+  }
+
+  void run(PassContext& frame) override {
+    if (fragments->reflected != nullptr)
+      throw Error(
+          "light_propagation_volumes.inject_voxels: input 'fragments' brings along direct light that the image has, and voxels are lit as a whole, by what their surfaces have in common; expected fragments without it ('direct' of voxelization.reproject left out)");
+    Inject::run(frame);
   }
 
   bool findsFaces() const override { return !asPublished; }

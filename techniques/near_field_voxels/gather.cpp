@@ -90,7 +90,7 @@ class GatherPass : public Pass {
   Param<bool> front{this, "front", true, "surfaces that look away from the receiver bring nothing"};
   Param<bool> asPublished{
       this, "as_published", false,
-      "Sec. 3.2.3 and Listings 4.45 to 4.49 with their slips: the estimator with one more 1 / pi, cosines to the light down to 0.001, and the printed choices of method, sequence, rotation, offset_unit, beyond and hit"};
+      "Sec. 3.2.3 and Listings 4.45 to 4.49 with their slips: the estimator with one more 1 / pi, cosines to the light down to 0.001, 'tolerance' on the side of the map's texel alone, before 'cap' and the voxel, and the printed choices of method, sequence, rotation, offset_unit, beyond and hit"};
   Out<Image> arriving{this, "arriving", Contributes::nothing, Needs::anyLight,
                       "E / pi at the pixels that send rays: mean radiance that arrives, W/(sr m^2)"};
   Out<Image> occlusion{this, "occlusion", Contributes::nothing, Needs::triangles,
@@ -168,7 +168,8 @@ class GatherPass : public Pass {
             .hitPoint = static_cast<int>(point),
             .rotation = static_cast<int>(turned),
             .hammersley = printed || sequence == Sequence::hammersley,
-            .offsetByDiagonal = printed || offsetUnit == OffsetUnit::diagonal};
+            .offsetByDiagonal = printed || offsetUnit == OffsetUnit::diagonal,
+            .printedTests = printed};
   }
 
   void run(PassContext& frame) override {

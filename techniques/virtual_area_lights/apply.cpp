@@ -20,6 +20,9 @@ class ApplyPass : public Pass {
   In<GBuffer> gbuffer{this, "gbuffer", "visible surfaces"};
   In<SurfacePoints> points{this, "points", "where light was gathered"};
   In<SparseLight> light{this, "light", Presence::optional, "averaged light of the points", Needs::anyLight};
+  In<VertexPoints> vertices{this, "vertices", Presence::optional,
+                            "with light at vertices: the points that these refer to, of the pass `vertices`",
+                            Needs::anyLight};
   Param<Interpolate> interpolate{
       this, "interpolate", Interpolate::averaged,
       "of the diffuse lobe; averaged: the points' lights, which the pixel's normal then meets; plain: what the "
@@ -40,9 +43,7 @@ class ApplyPass : public Pass {
   Reads readsFrom() const override {
     return atVertices() ? Reads::camera | Reads::geometry | Reads::materials : Reads::camera;
   }
-  bool uses(const InBase& input) const override {
-    return &input == &gbuffer || diffuse.wanted() || glossy.wanted();
-  }
+  bool uses(const InBase& input) const override { return &input != &vertices || atVertices(); }
 
   void run(PassContext& frame) override {
     const bool isGlossy =
@@ -55,7 +56,8 @@ class ApplyPass : public Pass {
     if (!isDiffuse && !isGlossy) return;
     SparseLight shown = *light;
     if (atVertices()) {
-      const VertexInputs inputs{*gbuffer, *points, interpolated() != 0, asPublished};
+      checkVertices();
+      const VertexInputs inputs{*gbuffer, *points, *vertices, interpolated() != 0, asPublished};
       if (isDiffuse)
         std::tie(shown.diffuse, shown.diffusePosition) =
             diffuseOverTriangles(frame, inputs, light->diffuse, light->diffusePosition);
@@ -77,6 +79,17 @@ class ApplyPass : public Pass {
   }
 
   bool atVertices() const { return asPublished || at == At::vertices; }
+  /// Error where they are missing, or refer to other points.
+  void checkVertices() const {
+    if (!vertices.present())
+      throw Error(
+          "virtual_area_lights.apply: light at vertices reads 'vertices'; expected it to be connected to a pass "
+          "virtual_area_lights.vertices");
+    if (vertices->set != points->set || vertices->neighbours != points->neighbours)
+      throw Error(
+          "virtual_area_lights.apply: 'vertices' refer to other points than 'points' are; expected those of one "
+          "pass virtual_area_lights.points");
+  }
   int interpolated() const {
     if (asPublished && interpolate == Interpolate::plain)
       throw Error(

@@ -4,12 +4,14 @@
 #include <utility>
 
 #include "lumivox/plugin/technique.h"
+#include "vertex_points.h"
 
 namespace lumivox::virtual_area_lights {
 
 struct VertexInputs {
   const GBuffer& gbuffer;
   const SurfacePoints& points;
+  const VertexPoints& vertices;
   bool plain;      ///< what points reflect in place of their lights
   bool published;  ///< Eq. 13 as printed of glossy lights too
 };

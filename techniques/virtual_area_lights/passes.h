@@ -8,6 +8,7 @@
 namespace lumivox::virtual_area_lights {
 
 void addPoints(TechniqueRegistry& registry);
+void addVertices(TechniqueRegistry& registry);
 void addGather(TechniqueRegistry& registry);
 void addNormalise(TechniqueRegistry& registry);
 void addOcclude(TechniqueRegistry& registry);

@@ -14,14 +14,13 @@ class PointsPass : public Pass {
   Param<int> points{this, "points", 2048, within(1, 262144), "most points, on both sides of open surfaces"};
   Param<int> neighbours{this, "neighbours", 8, within(1, 32),
                         "of how many nearest points the look-up grid tells, anywhere on the surface"};
-  Out<SurfacePoints> result{this, "points", "points spread evenly over the surfaces"};
+  Out<SurfacePoints> result{this, "points", Contributes::nothing, Needs::triangles,
+                            "points spread evenly over the surfaces"};
 
   Reads readsFrom() const override { return Reads::geometry | Reads::materials; }
   bool worksOnHost() const override { return true; }
 
   void run(PassContext& frame) override {
-    if (frame.sceneDescription().triangleCount() == 0)
-      throw Error("the scene has no triangle to put points on; expected at least one");
     const auto set = frame.kept("surface points", 0, [&] {
       requireRoom(frame, points, bytesOf, "surface points");
       return std::make_shared<const SurfacePointSet>(

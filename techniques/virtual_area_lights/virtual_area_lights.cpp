@@ -8,6 +8,7 @@ LUMIVOX_TECHNIQUE(registry) {
       "One bounce of virtual area lights, averaged to one light at each of a few surface points",
       "Lensing & Broll 2013");
   addPoints(registry);
+  addVertices(registry);
   addGather(registry);
   addNormalise(registry);
   addOcclude(registry);

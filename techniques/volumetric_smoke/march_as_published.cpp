@@ -10,6 +10,9 @@ using namespace shaders::volumetric_smoke;
 
 namespace {
 
+// Of tiny particles in huge voxels: still a number where their density vanishes.
+constexpr double kLargestAmount = 1e30;
+
 class MarchAsPublishedPass : public Pass {
   enum class Dither { asPublished, bayer };
   enum class Cosine { asPublished, unitVectors };
@@ -70,7 +73,8 @@ class MarchAsPublishedPass : public Pass {
       float& amount = parameters.amountPerDensity[i / 4][static_cast<glm::length_t>(i % 4)];
       amount = 1.0f;
       if (i < all.size() && all[i].particles > 0 && all[i].radius > 0.0)
-        amount = static_cast<float>(std::pow(double(medium.grid.voxelSize), 3.0) / particleMass(all[i]));
+        amount = static_cast<float>(
+            std::min(std::pow(double(medium.grid.voxelSize), 3.0) / particleMass(all[i]), kLargestAmount));
     }
     const march_as_published::Variant variant{bound.axis == MediaBinding::varying};
     frame.dispatch(

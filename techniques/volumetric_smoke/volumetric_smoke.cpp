@@ -15,6 +15,7 @@ using namespace shaders::volumetric_smoke;
 
 namespace {
 
+constexpr std::uint64_t kCoordinates = 3;         // of a particle, in a buffer of floats
 constexpr double kUnitsPerParticle = 16777216.0;  // kUnits in insert.comp
 
 /// Sec. 4.5: the particle system. Table 2 calls it particle update.
@@ -33,7 +34,7 @@ class ParticlesPass : public Pass {
       const ParticleClock clock = particleClock(medium, frame.snapshot().time);
       const auto count = static_cast<std::uint32_t>(medium.particles);
       Particles::Group group{static_cast<int>(i), medium.particles,
-                             frame.elements(particles::offsets, count, "particles")};
+                             frame.elements(particles::offsets, kCoordinates * count, "particles")};
       frame.dispatchList(frame.program(particles::kProgram),
                          {particles::parameters({.count = count,
                                                  .seed = medium.seed,

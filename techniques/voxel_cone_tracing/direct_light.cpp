@@ -41,8 +41,8 @@ void DirectLight::reflect(PassContext& frame, const VoxelFragments& fragments, c
   const inject::Variant variant{.directions = sums.directional,
                                 .lights = shadow.present(),
                                 .shadows = shadow.present(),
-                                .reflected = fragments.reflected != nullptr,
                                 .medium = bound.axis,
+                                .reflected = fragments.reflected != nullptr,
                                 .places = sums.kind,
                                 .changed = sums.changed != nullptr};
   forEachTaken(

@@ -80,11 +80,6 @@ class GatherPass : public Pass {
                                   .store = input.axis,
                                   .lookUp = input.lookUp,
                                   .faces = input.faces};
-    const gather::Constants constants{.coneCount = cones,
-                                      .publishedCones = distribution == Distribution::published,
-                                      .asPublished = asPublished,
-                                      .glossyCones = glossyCones,
-                                      .publishedLobes = coneLobe == ConeLobe::cosine};
     const int every = asPublished ? 1 : 1 << static_cast<int>(static_cast<Resolution>(resolution)),
               side = asPublished ? 1 : pattern;
     const glm::ivec3 gathered =
@@ -96,17 +91,21 @@ class GatherPass : public Pass {
     // Without a pattern, and a sample for each pixel, there is nothing to reconstruct.
     const bool arrivingDiffuse = variant.diffuse && (every > 1 || side > 1),
                arrivingGlossy = variant.glossy && every > 1;
+    const gather::Constants constants{.coneCount = cones,
+                                      .publishedCones = distribution == Distribution::published,
+                                      .asPublished = asPublished,
+                                      .glossyCones = glossyCones,
+                                      .publishedLobes = coneLobe == ConeLobe::cosine,
+                                      .every = every,
+                                      .pattern = side,
+                                      .arrivingDiffuse = arrivingDiffuse,
+                                      .arrivingGlossy = arrivingGlossy};
     Samples samples{arrivingDiffuse ? frame.texture(ofSamples, "gathered radiance") : textureOf(diffuse),
                     arrivingGlossy ? frame.texture(ofSamples, "gathered radiance") : textureOf(glossy)};
     shader::BindingSet ofLobes;
     if (lobes.present()) ofLobes.add(gather::lobeGrid(lobes->lobes, gpu::Sampling::linearMipsBorder));
     frame.dispatch(frame.program(variant, constants),
-                   {gather::parameters({.eyeWorld = frame.snapshot().camera.eye,
-                                        .coneRatio = coneRatio,
-                                        .every = every,
-                                        .pattern = side,
-                                        .arrivingDiffuse = arrivingDiffuse,
-                                        .arrivingGlossy = arrivingGlossy}),
+                   {gather::parameters({.eyeWorld = frame.snapshot().camera.eye, .coneRatio = coneRatio}),
                     GBufferBinding(*gbuffer), bound, input, ofLobes, march.binding(frame, input),
                     gather::diffuseImage(samples.diffuse), gather::glossyImage(samples.glossy)},
                    gathered);

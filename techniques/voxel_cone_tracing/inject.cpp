@@ -30,7 +30,7 @@ class Bounces {
   explicit Bounces(Pass* pass)
       : count_(
             pass, "bounces", 1, within(1, 256),
-            "times that light was reflected where the cones find it; beyond the first, as published, cones gather it for every fragment through the grid of the one before"),
+            "times that light was reflected where the cones find it: 1, as published; for each one more cones gather it for every fragment through the grid of the one before"),
         cones_(pass, "bounce_cones", 6, within(1, 256), "cones for each side of a fragment") {}
   int count() const { return count_; }
   int cones() const { return cones_; }

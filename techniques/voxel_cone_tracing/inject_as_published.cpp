@@ -40,6 +40,9 @@ class InjectAsPublishedPass : public Pass {
   Reads readsFrom() const override { return Reads::lights | Reads::materials; }
 
   void run(PassContext& frame) override {
+    if (fragments->reflected != nullptr)
+      throw Error(
+          "voxel_cone_tracing.inject_as_published: input 'fragments' brings along direct light that the image has, and Listing 4.8 lights every fragment; expected fragments without it ('direct' of voxelization.reproject left out)");
     VoxelAverages result;
     // As many voxels along all axes.
     result.grid = fragments->grid;

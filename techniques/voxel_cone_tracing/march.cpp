@@ -95,7 +95,8 @@ StoreBinding storeOf(const RadianceOctree& octree, bool descends, bool layers) {
   result.add(shader::UniformSlot<gather::OctreeStore>{"OctreeStore"}(
       {.firstVoxel = tree.firstVoxel(),
        .firstVoxelGrows = tree.voxels == VoxelOctree::Voxels::asGrid ? 1.0f : 0.0f}));
-  result.add(shader::SampledSlot{"brickPool"}(octree.radiance, gpu::Sampling::nearest));
+  // What is not read as published fetches texels.
+  result.add(shader::SampledSlot{"brickPool"}(octree.radiance, gpu::Sampling::linear));
   result.add(OctreeBinding(tree, octree.poolShift));
   return result;
 }

@@ -117,7 +117,7 @@ class OctreePass : public Pass {
       "where voxels lie: at all levels as in a dense grid; at the corners of nodes (Crassin et al. 2011); in the eighths of leaves, with only the nodes that fragments lie in (as published in the thesis)"};
   Param<bool> asPublished{
       this, "as_published", false,
-      "the nodes of one depth after another: every fragment searches its own from the root and tags it, and atomic counters give places (Listings 4.17 to 4.22); off: all depths at once, the same tree in an order of its own"};
+      "the nodes of one depth after another: every fragment searches its own from the root and tags it, and atomic counters give places; neighbours are found from the root by every fragment at every depth (Listings 4.17 to 4.22); off: all depths at once, the same tree in an order of its own"};
   Param<Bricks> bricks{
       this, "bricks", Bricks::own,
       "voxels of a brick: its own 2 x 2 x 2, each voxel held once, and neighbours' found by rank; or, as published, 3 x 3 x 3 with those that neighbours hold too. Own ones are those of 'voxels as_grid' with 'as_published off'; elsewhere bricks are as published"};
@@ -163,7 +163,7 @@ class OctreePass : public Pass {
       mark(frame, result, *fragments, tags, {});
       write(frame, result, tags, room_);
     }
-    if (result.bricksAre == Bricks::published)
+    if (result.bricksAre == Bricks::published && !asPublished)
       forEachBrick(frame, frame.program(octree_neighbours::kProgram), {OctreeBinding(result)}, result,
                    result.depth + 1, 1);
     judge(frame, result, room_);
@@ -291,6 +291,12 @@ class OctreePass : public Pass {
     frame.dispatch(frame.program(octree_arguments::Variant{.published = 1}),
                    {octree_arguments::room({brickRoom, tileRoom, room_.leaves}), bound},
                    {result.depth + 2, 1, 1});
+    // The print looks for them before each depth is tagged; here a node holds its place where its neighbours
+    // come to stand until it is subdivided.
+    for (int depth = 0; depth <= result.depth; ++depth)
+      forEachFragment(frame, frame.program(octree_fragment_neighbours::kProgram),
+                      {octree_fragment_neighbours::depth({depth, static_cast<int>(result.voxels)}), bound},
+                      *fragments);
   }
 
   static constexpr std::uint64_t kChunk = 64;  // words that a thread counts

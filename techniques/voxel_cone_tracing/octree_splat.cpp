@@ -72,9 +72,12 @@ class OctreeSplatPass : public Pass {
   RadianceOctree relit(PassContext& frame) {
     RadianceOctree result = *octree;
     const VoxelOctree& tree = result.tree;
-    if (!fragments.present() || tree.voxels != VoxelOctree::Voxels::inLeaves || tree.ranks == nullptr)
+    if (!fragments.present() || tree.voxels != VoxelOctree::Voxels::inLeaves)
       throw Error(
-          "voxel_cone_tracing.octree_splat: 'photons_are relit' is what the thesis does with the colours and normals in the corners of leaves; expected the input 'fragments', and 'voxels in_leaves' and 'as_published off' in voxel_cone_tracing.octree");
+          "voxel_cone_tracing.octree_splat: 'photons_are relit' is what the thesis does with the colours and normals in the corners of leaves; expected the input 'fragments', and 'voxels in_leaves' in voxel_cone_tracing.octree");
+    if (fragments->reflected != nullptr)
+      throw Error(
+          "voxel_cone_tracing.octree_splat: input 'fragments' brings along direct light that the image has, and Listing 4.24 lights all voxels by photons; expected fragments without it ('direct' of voxelization.reproject left out)");
     result.radiance = frame.volume(poolSize(*octree->radiance), octree->radiance->description().format,
                                    "octree bricks of photons");
     const OctreeBinding bound(tree, result.poolShift);

@@ -97,8 +97,9 @@ class FilterPass : public Pass {
 
 LUMIVOX_TECHNIQUE(registry) {
   using namespace lumivox::voxel_cone_tracing;
-  registry.describe("Voxel cone tracing on a dense isotropic grid",
-                    "Crassin et al. 2011; thesis Gomes 2015, Sec. 4.2.1");
+  registry.describe(
+      "Voxel cone tracing through dense grids, a sparse octree or a clipmap, with one value a voxel or six faces",
+      "Crassin et al. 2011; thesis Gomes 2015, Sec. 4.2.1");
   addInject(registry);
   addInjectAsPublished(registry);
   registry.add<FilterPass>("filter", "Pre-filtered coarser levels (Crassin et al. 2011, Sec. 5)");

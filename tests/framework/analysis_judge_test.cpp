@@ -248,3 +248,28 @@ TEST_CASE("a curve of two points, or with a point that stands in for another, al
   CHECK(judgeGrowth(substitute).exponent.value == Approx(1.0));
   CHECK(judgeGrowth(substitute).why == "another model");
 }
+
+TEST_CASE("a claim about two images is judged by which has less, so many times, and not by a stand-in") {
+  MeasuredClaim claim;
+  claim.name = "darker";
+  claim.lessValue = 1.0;
+  claim.thanValue = 2.0;
+  CHECK(judgeClaim(claim).verdict == Verdict::reproduced);
+  claim.times = 0.5;  // 1 is not less than 1
+  CHECK(judgeClaim(claim).verdict == Verdict::notReproduced);
+  claim.times = 0.51;
+  CHECK(judgeClaim(claim).verdict == Verdict::reproduced);
+  claim.thanValue = std::numeric_limits<double>::quiet_NaN();
+  CHECK(judgeClaim(claim).verdict == Verdict::notComparable);
+  CHECK(judgeClaim(claim).why == "there are no images to compare");
+  claim.thanValue = 2.0;
+  claim.whyNot = "it was sold";
+  CHECK(judgeClaim(claim).verdict == Verdict::notComparable);
+  CHECK(judgeClaim(claim).why == "it was sold");
+
+  ReproducedResult result;
+  result.claims = {claim};
+  const std::vector<ReproducedResult> again = judged({result});
+  REQUIRE(again.front().judgedClaims.size() == 1);
+  CHECK(again.front().judgedClaims.front().why == "it was sold");
+}

@@ -376,3 +376,51 @@ TEST_CASE("without a home the cache is a folder of this user that nobody else ma
                Contains("belongs to another user") && Contains("LUMIVOX_CACHE"));
   for (const auto& [name, value] : kept) value ? setenv(name, value->c_str(), 1) : unsetenv(name);
 }
+
+TEST_CASE("a name as long as a file system allows is written, and nothing stays beside it") {
+  const TemporaryDirectory directory;
+  const std::string longest = std::string(251, 'n') + ".csv";
+  requireWritable(directory.path() / longest);
+  writeFileAtomically(directory.path() / longest, "content");
+  CHECK(readFile(directory.path() / longest) == "content");
+  std::string umlauts = "x";
+  while (umlauts.size() + 2 <= 255) umlauts += "\xC3\xA4";
+  writeFileAtomically(directory.path() / umlauts, "content");
+  CHECK(readFile(directory.path() / umlauts) == "content");
+  CHECK(std::distance(std::filesystem::directory_iterator(directory.path()), {}) == 2);
+  CHECK_THAT(messageOf<Error>([&] { requireWritable(directory.path() / std::string(256, 'n')); }),
+             Contains("cannot write"));
+}
+
+TEST_CASE("a folder in which no file can be made is refused before the work, whatever its permissions say") {
+  for (const char* file : {"/proc/a.csv", "/proc/self/fdinfo/a.csv"}) {
+    CAPTURE(file);
+    CHECK_THAT(messageOf<Error>([&] { requireWritable(file); }), Contains("cannot write into"));
+  }
+}
+
+TEST_CASE("a file that was read is known by every name that leads to it, one that was not by none") {
+  const TemporaryDirectory directory;
+  const auto read = directory.write("read.txt", "content"), unread = directory.write("unread.txt", "content");
+  std::filesystem::create_symlink("read.txt", directory.path() / "link.txt");
+  std::filesystem::create_hard_link(read, directory.path() / "hard.txt");
+  CHECK_FALSE(wasRead(unread));
+  readFile(read);
+  for (const char* name : {"read.txt", "link.txt", "hard.txt"}) CHECK(wasRead(directory.path() / name));
+  CHECK_FALSE(wasRead(unread));
+  CHECK_FALSE(wasRead(directory.path() / "absent.txt"));
+}
+
+TEST_CASE("a cache that is a file is refused as what it is") {
+  const TemporaryDirectory directory;
+  const auto file = directory.write("file", "content");
+  const char* const before = std::getenv("LUMIVOX_CACHE");
+  const std::string kept = before == nullptr ? "" : before;
+  setenv("LUMIVOX_CACHE", file.c_str(), 1);
+  const std::string message = messageOf<Error>([] { cacheDirectory(); });
+  if (kept.empty())
+    unsetenv("LUMIVOX_CACHE");
+  else
+    setenv("LUMIVOX_CACHE", kept.c_str(), 1);
+  CHECK_THAT(message, Contains("is a regular file; expected a folder"));
+}

@@ -5,11 +5,14 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <thread>
 
+#include "base/child.h"
 #include "base/process.h"
+#include "lumivox/base/error.h"
+#include "lumivox/base/start_process.h"
 #include "support/support.h"
 
-using namespace lumivox;
 using namespace lumivox;
 using namespace lumivox::test;
 using namespace std::chrono_literals;
@@ -118,4 +121,70 @@ TEST_CASE("a process is told by its number and its start, and one that has ended
   waitpid(child, nullptr, 0);
   CHECK(startOf(static_cast<int>(child)) == 0);
   CHECK_FALSE(machineIdentity().empty());
+}
+
+TEST_CASE(
+    "a program that a thread started outlives the thread, and ends with its process, however that ends") {
+  int numbers[2];
+  REQUIRE(pipe(numbers) == 0);
+  const pid_t parent = fork();
+  REQUIRE(parent >= 0);
+  if (parent == 0) {
+    Child* child = nullptr;
+    std::thread([&] { child = new Child({"/bin/sh", "-c", "echo $$; exec sleep 600"}, {}); }).join();
+    const int number = std::stoi(child->receive(60.0).line);
+    if (write(numbers[1], &number, sizeof(number)) != sizeof(number)) _exit(1);
+    for (;;) pause();
+  }
+  int program = 0;
+  REQUIRE(read(numbers[0], &program, sizeof(program)) == sizeof(program));
+  close(numbers[0]);
+  close(numbers[1]);
+  std::this_thread::sleep_for(kAtOnce);  // the signal of a thread that ended would have come
+  CHECK(startOf(program) > 0);
+  kill(parent, SIGKILL);
+  waitpid(parent, nullptr, 0);
+  bool ended = false;
+  for (int i = 0; i < 500 && !ended; ++i) {
+    ended = startOf(program) == 0;
+    if (!ended) std::this_thread::sleep_for(20ms);
+  }
+  CHECK(ended);
+  if (!ended) kill(program, SIGKILL);
+}
+
+TEST_CASE("a program gets its words, environment and streams, and one that cannot be started is named") {
+  Child shell({"/bin/sh", "-c", "read line; echo \"$line $GREETING\"; echo aside >&2; exit 3"},
+              {"GREETING=hello"});
+  shell.send("world:");
+  CHECK(shell.receive(10.0).line == "world: hello");
+  CHECK(shell.receive(10.0).state == Child::State::ended);
+  CHECK(shell.ending() == "ended with exit code 3");
+  CHECK(shell.lastWords() == "aside");
+  CHECK(messageOf<Error>([] {
+          startProcess({{"/no/such/program"}, {}});
+        }) == "cannot start '/no/such/program': No such file or directory");
+  const TemporaryDirectory directory;
+  const std::string text = directory.write("text", "no program").string();  // nobody may execute it
+  CHECK(messageOf<Error>([&] {
+          startProcess({{text}, {}});
+        }) == "cannot start '" + text + "': Permission denied");
+  // Standard streams that are closed here are none of its troubles.
+  int status[2];
+  REQUIRE(pipe(status) == 0);
+  const pid_t bare = fork();
+  REQUIRE(bare >= 0);
+  if (bare == 0) {
+    for (const int stream : {0, 1, 2}) close(stream);
+    Child cat({"/bin/cat"}, {});
+    cat.send("through");
+    const char good = cat.receive(10.0).line == "through" ? 'y' : 'n';
+    _exit(write(status[1], &good, 1) == 1 ? 0 : 1);
+  }
+  char good = 0;
+  CHECK(read(status[0], &good, 1) == 1);
+  CHECK(good == 'y');
+  waitpid(bare, nullptr, 0);
+  close(status[0]);
+  close(status[1]);
 }

@@ -262,8 +262,7 @@ TEST_CASE("angles must carry their unit, lengths and times need not") {
 }
 
 TEST_CASE("a misspelt unit behind a blank is taken for a unit, not for a property") {
-  CHECK_THAT(camera("eye 1 2 3 cmm"),
-             Contains("unknown unit 'cmm'") && Contains("did you mean 'cm'?"));
+  CHECK_THAT(camera("eye 1 2 3 cmm"), Contains("unknown unit 'cmm'") && Contains("did you mean 'cm'?"));
 }
 
 TEST_CASE("values out of range are named with the range in the unit of readers") {
@@ -326,4 +325,41 @@ TEST_CASE("the reference holds every word of the tables") {
   for (const std::string& word : words(grammar())) CHECK_THAT(text, Contains("`" + word));
   const auto all = words(grammar());
   CHECK(std::is_sorted(all.begin(), all.end()));
+}
+
+TEST_CASE("a number that single precision does not hold is refused, whatever its table allows") {
+  const PropertySpecification any = specify("power", PropertyType::oneOrThree);
+  const auto found = [&](const std::string& values) {
+    const Document document = parse("block { power " + values + " }", "a.scene");
+    std::vector<Diagnostic> findings;
+    checkProperty(document, *document.items.at(0).block->items.at(0).property, any, findings);
+    return findings;
+  };
+  for (const char* good : {"0", "1e37", "-1e37", "1e-37", "0 0 0", "-0.0"}) {
+    CAPTURE(good);
+    CHECK(found(good).empty());
+  }
+  for (const char* wrong : {"1e39", "-1e200", "1e-38", "-1e-300", "1 1e39 1"}) {
+    CAPTURE(wrong);
+    REQUIRE(found(wrong).size() == 1);
+    CHECK_THAT(found(wrong).front().text(), Contains("has no value in single precision") &&
+                                                Contains("0, or a magnitude from 1e-37 to 1e+37"));
+  }
+}
+
+TEST_CASE("the range holds for every component in the unit that the last one gives for all") {
+  PropertySpecification eye = specify("eye", PropertyType::vector3, kLength);
+  eye.low = -1000;
+  eye.high = 1000;
+  const auto count = [&](const std::string& values) {
+    const Document document = parse("block { eye " + values + " }", "a.scene");
+    std::vector<Diagnostic> findings;
+    checkProperty(document, *document.items.at(0).block->items.at(0).property, eye, findings);
+    return findings.size();
+  };
+  CHECK(count("900 0 1") == 0);
+  CHECK(count("0.9 0 1 km") == 0);
+  CHECK(count("900 0 1 km") == 1);
+  CHECK(count("90000 0 1 cm") == 0);
+  CHECK(count("1100 m 0 m 1 m") == 1);
 }

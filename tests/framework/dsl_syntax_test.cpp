@@ -1,6 +1,7 @@
 // Lexer, parser and includes: what the grammar means, and one message for each way to get it wrong.
 #include <fmt/format.h>
 
+#include <ctime>
 #include <numbers>
 
 #include "lumivox/dsl/document.h"
@@ -279,4 +280,36 @@ TEST_CASE("includes that double at every level stop at a limit") {
 
 TEST_CASE("a missing text is an error that names it") {
   CHECK_THAT(test::messageOf<Error>([] { parseFile("no/such.scene"); }), Contains("no/such.scene"));
+}
+
+TEST_CASE("one line of the largest text is read once, whatever it is made of") {
+  /// Seconds of this process's own time; what is linear in a text's length takes a small part of these.
+  constexpr double kSoon = 30.0;
+  const auto secondsToParse = [](const std::string& part, std::size_t bytes) {
+    std::string text;
+    while (text.size() + part.size() <= bytes) text += part;
+    const std::clock_t start = std::clock();
+    parse(text, "a.scene");
+    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  };
+  for (const char* part : {"@", "'a' ", "'", "/*", "]", "1q ", "\"a\" ", "$ "}) {
+    CAPTURE(part);
+    CHECK(secondsToParse(part, kMaximumTextBytes) < kSoon);
+  }
+  CHECK(secondsToParse("word ", kMaximumTextBytes / 8) < kSoon);
+}
+
+TEST_CASE("strings in single quotes are found up to the end of their line, and no further") {
+  CHECK_THAT(only("scene 'x' { }"), Contains("a string in single quotes; expected \"x\""));
+  CHECK_THAT(only("scene x { ' }\n# don't\n"), Contains("unexpected character"));
+}
+
+TEST_CASE("the line of a finding is that of its own text, to the last one") {
+  const Document document = parse("scene x {\n  a 1\n}\n@", "a.scene");
+  REQUIRE(document.findings.size() == 1);
+  CHECK(document.findings.front().sourceLine == "@");
+  CHECK(document.line(1) == "scene x {");
+  CHECK(document.line(3) == "}");
+  CHECK(document.line(5).empty());
+  CHECK(document.line(0).empty());
 }

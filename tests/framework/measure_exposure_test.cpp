@@ -86,6 +86,14 @@ TEST_CASE("an image of nothing, of lamps alone and of fractions has an exposure 
   CHECK_THROWS_AS(displayExposure(ImageBuffer(4, 4, 2)), Error);
 }
 
+TEST_CASE("radiance is displayed as it is asked for, and what is no radiance as it is") {
+  const Display wanted{3.12, Tone::filmic};
+  CHECK(displayOf(ImageBuffer(4, 4, 3, 0.1f), wanted).exposure == 3.12);
+  CHECK(displayOf(ImageBuffer(4, 4, 3, 0.1f), wanted).tone == Tone::filmic);
+  CHECK(displayOf(ImageBuffer(4, 4, 1, 0.9f), wanted).exposure == 0.0);
+  CHECK(displayOf(ImageBuffer(4, 4, 1, 0.9f), wanted).tone == Tone::srgb);
+}
+
 TEST_CASE("several images share one exposure, to which each adds what is lit in it") {
   ExposureMeter meter;
   CHECK(meter.exposure() == 0.0);

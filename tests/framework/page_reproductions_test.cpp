@@ -86,6 +86,27 @@ int ink(const ImageBuffer& sheet, int left, int top, int width, int height) {
 
 }  // namespace
 
+TEST_CASE("what is no radiance is shown as it is beside radiance that is exposed, and told without a unit") {
+  ReproducedResult result = figure();
+  result.published.columns = 2;
+  result.panels = {panel("light", 200, 100, 0.02f), panel("openness", 200, 100, 0.5f)};
+  result.panels[1].image = ImageBuffer(200, 100, 1, 0.5f);
+  result.panels[1].radiance = false;
+  result.exposure = 3.0;
+  const ImageBuffer sheet = contactSheet(result);
+  CHECK(sheet.at(100, 60, 0) == 0.16f);
+  for (int c = 0; c < 3; ++c) CHECK(sheet.at(206 + 100, 60, c) == 0.5f);
+  const std::string text = reproductionsAsMarkdown({result});
+  CHECK_THAT(text, Contains("Panel light, mean 0.02 W/(sr m²)"));
+  CHECK_THAT(text, Contains("Panel openness, mean 0.5\n"));
+  CHECK_THAT(text, Contains("Exposure of all panels of radiance: +3.00 EV"));
+  const test::TemporaryDirectory directory;
+  const std::vector<ReproducedResult> read =
+      readReproductions(directory.write("kept.json", reproductionsAsJson({result})));
+  CHECK(read.at(0).panels.at(0).radiance);
+  CHECK_FALSE(read.at(0).panels.at(1).radiance);
+}
+
 TEST_CASE("a sheet shows all panels under one exposure, side by side, each with its name below") {
   ReproducedResult result;
   result.published.id = "sheet";
@@ -254,7 +275,8 @@ TEST_CASE("kept results that no longer fit their text are told apart") {
   CHECK_THAT(stale([](auto& t) { t.rows.pop_back(); }), Contains("5 rows"));
   CHECK_THAT(stale([](auto& t) { t.rows[0].absent = "gone"; }), Contains("'a'") && Contains("absent"));
   CHECK_THAT(stale([](auto& t) { t.rows[1].substitute = "another"; }), Contains("substitute"));
-  CHECK_THAT(stale([](auto& t) { t.differences = {"nothing"}; }), Contains("differences are not those of the text"));
+  CHECK_THAT(stale([](auto& t) { t.differences = {"nothing"}; }),
+             Contains("differences are not those of the text"));
   CHECK_THAT(stale([](auto& t) { t.panels.emplace_back(); }), Contains("panels"));
   CHECK_THAT(stale([](auto& t) { t.curves.emplace_back(); }), Contains("curves"));
   CHECK_THAT(staleReproductions({}, {text})[0], Contains("table-1: nothing is recorded"));

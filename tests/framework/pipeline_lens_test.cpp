@@ -50,7 +50,7 @@ TEST_CASE("a pipeline without a pass that sees through the lens says that its im
   LogCapture log;
   executor.render(0.0);
   CHECK_THAT(log.text(), Contains("pipeline \"test\" leaves out the lens of camera 'main', 0.05 m wide") &&
-                             Contains("its image is that of a pinhole"));
+                             Contains("the image is that of a pinhole"));
   const Explanation explanation = executor.explain();
   const LeftOut* lens = lensLeftOut(explanation);
   REQUIRE(lens != nullptr);
@@ -74,7 +74,7 @@ TEST_CASE(
   PipelineExecutor pinhole = fixture.executor(kPinhole);
   pinhole.render(0.0);
   CHECK(lensLeftOut(pinhole.explain()) == nullptr);
-  CHECK(log.text().empty());
+  CHECK_THAT(log.text(), !Contains("lens") && !Contains("pinhole"));
 }
 
 TEST_CASE("the pass that sees through the lens counts only where it runs") {
@@ -106,4 +106,79 @@ TEST_CASE("another lens runs again what sees through it, and nothing else") {
   snapshot.camera.eye.x += 1.0f;
   executor.render(snapshot);
   CHECK(fixture.techniques.takeRan() == std::vector<std::string>{"paint_camera"});
+}
+
+// ---- other traits ----------------------------------------------------------------------------------------
+
+namespace {
+
+/// Sees media and the environment.
+class PaintAir : public Toy {
+ public:
+  using Toy::Toy;
+  Out<Image> radiance{this, "radiance", Contributes::scattered};
+  Out<Image> occlusion{this, "occlusion", Contributes::ambientOcclusion};
+  Reads readsFrom() const override { return Reads::media | Reads::environment; }
+  void run(PassContext& frame) override {
+    note();
+    if (radiance.wanted()) radiance = paint(frame, 0.0f);
+    if (occlusion.wanted()) occlusion = paint(frame, 1.0f);
+  }
+};
+
+struct AirFixture : Fixture {
+  AirFixture() {
+    techniques.add<PaintAir>("toy", "paint_air");
+    scene.environment = glm::vec3(1.0f);
+    for (const char* name : {"mist", "fog"}) {
+      scene.media.emplace_back();
+      scene.media.back().name = name;
+    }
+  }
+};
+
+constexpr const char* kAir =
+    "pass view toy.paint_camera { }\npass air toy.paint_air { }\n"
+    "output direct view.radiance\noutput scattered air.radiance\noutput occlusion air.occlusion";
+
+bool isLeftOut(const Explanation& explanation, const std::string& what) {
+  for (const LeftOut& one : explanation.leftOut)
+    if (one.level == LeftOut::Level::scene && one.what == what) return true;
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("media and environment that no pass reads are said once, by the frame and by the explanation") {
+  AirFixture fixture;
+  if (!fixture) return;
+  PipelineExecutor executor = fixture.executor(kPinhole);
+  LogCapture log;
+  executor.render(0.0);
+  CHECK_THAT(log.text(), Contains("leaves out media 'mist', 'fog': no pass reads media") &&
+                             Contains("leaves out the environment: no pass reads the environment"));
+  const Explanation explanation = executor.explain();
+  CHECK(isLeftOut(explanation, "media 'mist', 'fog'"));
+  CHECK(isLeftOut(explanation, "the environment"));
+}
+
+TEST_CASE("a trait counts as read by a pass that runs alone, and belongs to images of light alone") {
+  AirFixture fixture;
+  if (!fixture) return;
+  const auto said = [&](const std::vector<std::string>& wanted) {
+    RenderOptions options;
+    options.wanted = wanted;
+    PipelineExecutor executor = fixture.executor(kAir, options);
+    LogCapture log;
+    executor.render(0.0);
+    CHECK(isLeftOut(executor.explain(), "the environment") ==
+          (log.text().find("environment") != std::string::npos));
+    return log.text();
+  };
+  CHECK_THAT(said({}), !Contains("media") && !Contains("environment"));
+  CHECK_THAT(said({"direct"}), Contains("media 'mist', 'fog'") && Contains("the environment"));
+  CHECK_THAT(said({"occlusion"}), !Contains("media") && !Contains("environment") && !Contains("light"));
+  fixture.scene.media.clear();
+  fixture.scene.environment = glm::vec3(0.0f);
+  CHECK_THAT(said({"direct"}), !Contains("medi") && !Contains("environment"));
 }

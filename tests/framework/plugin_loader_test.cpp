@@ -1,6 +1,8 @@
 // Opening technique libraries: those that fit, and every way of not fitting.
+#include <cstddef>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -8,6 +10,7 @@
 #include "lumivox/pipeline/pass.h"
 #include "lumivox/plugin/loader.h"
 #include "lumivox/plugin/technique.h"
+#include "support/elf.h"
 #include "support/support.h"
 
 using namespace lumivox;
@@ -47,6 +50,28 @@ std::string reasonForContent(const std::string& content) {
   return reasonFor("fake", directory.path());
 }
 
+/// A copy of a library that ends the process when it is opened, with its record of versions changed.
+std::string reasonForRecord(const std::function<void(TechniqueVersionRecord&)>& change) {
+  std::string library = readFile(pluginFile("never_opened"));
+  const auto section = partOf<Elf64_Shdr>(library, headerOfSection(library, LUMIVOX_VERSION_SECTION));
+  REQUIRE(section.sh_size == sizeof(TechniqueVersionRecord));
+  auto record = partOf<TechniqueVersionRecord>(library, section.sh_offset);
+  CHECK(versionDifference(library.substr(section.sh_offset, section.sh_size)).empty());
+  change(record);
+  setPart(library, section.sh_offset, record);
+  return reasonForContent(library);
+}
+
+/// The same with the section's header changed.
+std::string reasonForSection(const std::function<void(std::string& file, Elf64_Shdr& section)>& change) {
+  std::string library = readFile(pluginFile("never_opened"));
+  const std::size_t header = headerOfSection(library, LUMIVOX_VERSION_SECTION);
+  auto section = partOf<Elf64_Shdr>(library, header);
+  change(library, section);
+  setPart(library, header, section);
+  return reasonForContent(library);
+}
+
 }  // namespace
 
 TEST_CASE("a technique library opens on first use and gives its passes") {
@@ -73,19 +98,145 @@ TEST_CASE("a technique library opens on first use and gives its passes") {
   CHECK(set.skipped().empty());
 }
 
-TEST_CASE("a library of another interface version is skipped before anything of it is called") {
-  CHECK_THAT(reasonFor("wrong_version"), Contains("built for another Lumivox: the API version is " +
-                                                  std::to_string(kTechniqueApiVersion + 1) + ", expected " +
-                                                  std::to_string(kTechniqueApiVersion)));
+TEST_CASE("a library of another interface version, compiler or headers is never opened, and both are named") {
+  CHECK_THAT(
+      reasonForRecord([](TechniqueVersionRecord& record) { ++record.apiVersion; }),
+      Contains("built for another Lumivox: the API version is " + std::to_string(kTechniqueApiVersion + 1) +
+               ", expected " + std::to_string(kTechniqueApiVersion)));
+  CHECK_THAT(reasonForRecord(
+                 [](TechniqueVersionRecord& record) { std::memcpy(record.headers, "0123456789abcdef", 16); }),
+             Contains("the hash of the public headers is '0123456789abcdef'") &&
+                 Contains(std::string("expected '") + kHeadersHash));
+  CHECK_THAT(reasonForRecord([](TechniqueVersionRecord& record) { record.sceneSize += 8; }),
+             Contains("the size of Scene is"));
 }
 
-TEST_CASE("a library of another compiler is skipped with both names") {
-  CHECK_THAT(reasonFor("wrong_build"), Contains("the compiler is 'xxx") && Contains("expected 'gcc"));
+TEST_CASE("words of a version record that lack their end, or are no text, are told as far as they go") {
+  const std::string reason = reasonForRecord(
+      [](TechniqueVersionRecord& record) { std::memset(record.compiler, 'x', sizeof(record.compiler)); });
+  CHECK_THAT(reason, Contains("the compiler is '" + std::string(64, 'x') + "', expected 'gcc"));
+  CHECK_THAT(
+      reasonForRecord([](TechniqueVersionRecord& record) { std::memcpy(record.headers, "a\x1b[31m\n", 8); }),
+      Contains("the hash of the public headers is 'a?[31m?"));
 }
 
-TEST_CASE("a library that was compiled with other headers is skipped, with both hashes") {
-  CHECK_THAT(reasonFor("stale_headers"), Contains("the hash of the public headers is '0123456789abcdef'") &&
-                                             Contains(std::string("expected '") + kHeadersHash));
+TEST_CASE(
+    "a version record that is absent, empty, short, long or of another size is refused, not read beyond") {
+  const auto rest = std::to_string(sizeof(TechniqueVersionRecord));
+  CHECK_THAT(reasonForSection([](std::string&, Elf64_Shdr& section) { section.sh_name = 0; }),
+             Contains("it has no version record (ELF section .lumivox_version)"));
+  CHECK_THAT(reasonForSection([](std::string&, Elf64_Shdr& section) { section.sh_size = 0; }),
+             Contains("the version record has 0 bytes, expected " + rest));
+  CHECK_THAT(reasonForSection([](std::string&, Elf64_Shdr& section) { section.sh_type = SHT_NOBITS; }),
+             Contains("the version record has 0 bytes, expected " + rest));
+  // The section names bytes that the file does not have.
+  CHECK_THAT(reasonForSection([](std::string&, Elf64_Shdr& section) { section.sh_offset = ~0ull - 4; }),
+             Contains("it has no version record"));
+  CHECK_THAT(reasonForSection([](std::string&, Elf64_Shdr& section) { section.sh_size = ~0ull; }),
+             Contains("it has no version record"));
+  CHECK_THAT(reasonForRecord([](TechniqueVersionRecord& record) { record = {}; }),
+             Contains("the version record says that it has 0 bytes, but " + rest + " are there"));
+  CHECK_THAT(reasonForRecord([](TechniqueVersionRecord& record) { record.recordSize = 0xffffffffu; }),
+             Contains("the version record says that it has 4294967295 bytes, but " + rest + " are there"));
+  // Shorter and longer ones of other versions, at the end of the file.
+  for (const std::uint32_t size :
+       {3u, 8u, 12u, 40u, static_cast<std::uint32_t>(sizeof(TechniqueVersionRecord) + 24)}) {
+    for (const std::uint32_t version : {kTechniqueApiVersion, kTechniqueApiVersion + 3}) {
+      const std::string reason = reasonForSection([&](std::string& file, Elf64_Shdr& section) {
+        std::string record(size, 'y');
+        const std::uint32_t start[] = {size, version};
+        std::memcpy(record.data(), start, std::min<std::size_t>(size, sizeof(start)));
+        section.sh_offset = file.size();
+        section.sh_size = size;
+        file += record;
+      });
+      INFO(size << " bytes, version " << version << ": " << reason);
+      if (size < 8)
+        CHECK_THAT(reason, Contains("the version record has 3 bytes, expected " + rest));
+      else if (version != kTechniqueApiVersion)
+        CHECK_THAT(reason, Contains("the API version is " + std::to_string(version)));
+      else
+        CHECK_THAT(reason, Contains("the size of the version record is " + std::to_string(size)));
+    }
+  }
+}
+
+TEST_CASE("a library whose table of sections is broken has no version record") {
+  const std::string whole = readFile(pluginFile("never_opened"));
+  const auto changed = [&](const std::function<void(Elf64_Ehdr&)>& change) {
+    std::string library = whole;
+    auto header = partOf<Elf64_Ehdr>(library, 0);
+    change(header);
+    setPart(library, 0, header);
+    return reasonForContent(library);
+  };
+  CHECK_THAT(changed([](Elf64_Ehdr& header) { header.e_shnum = 0; }), Contains("no version record"));
+  CHECK_THAT(changed([](Elf64_Ehdr& header) { header.e_shstrndx = 0xfff0; }), Contains("no version record"));
+  CHECK_THAT(changed([](Elf64_Ehdr& header) { header.e_shstrndx = 0; }), Contains("no version record"));
+  CHECK_THAT(changed([](Elf64_Ehdr& header) { header.e_shentsize = 8; }), Contains("no version record"));
+  CHECK_THAT(changed([](Elf64_Ehdr& header) { header.e_shoff = 16; }), Contains("no version record"));
+}
+
+TEST_CASE("a refused library of the same name changes nothing in the one that is accepted") {
+  const LogCapture log;
+  const TemporaryDirectory before;
+  std::string other = readFile(pluginDirectory("shared_value_4") / "libshared_value.so");
+  const auto section = partOf<Elf64_Shdr>(other, headerOfSection(other, LUMIVOX_VERSION_SECTION));
+  other[section.sh_offset + offsetof(TechniqueVersionRecord, headers)] = 'x';
+  before.write("libshared_value.so", other);
+  const auto defaultOf = [](TechniqueSet& set) {
+    const Technique* technique = set.technique("shared_value");
+    REQUIRE(technique != nullptr);
+    return technique->find("paint")->make()->parameters()[0]->defaultText();
+  };
+  TechniqueSet both({before.path(), pluginDirectory("shared_value_24")});
+  CHECK(defaultOf(both) == "24");
+  CHECK(both.skipped().size() == 1);
+  CHECK_THAT(log.text(), Contains("skipped"));
+  // Two that both fit keep their own: the window opens a changed library beside the one before it.
+  TechniqueSet earlier({pluginDirectory("shared_value_4")}), later({pluginDirectory("shared_value_24")});
+  CHECK(defaultOf(earlier) == "4");
+  CHECK(defaultOf(later) == "24");
+  CHECK(defaultOf(earlier) == "4");
+}
+
+TEST_CASE("strict refuses a library that would be skipped, each time it is asked for") {
+  const TemporaryDirectory broken;
+  broken.write("libgood.so", "no library");
+  TechniqueSet set({broken.path(), pluginDirectory("good")}, true);
+  for (int i = 0; i < 2; ++i)
+    CHECK_THAT(
+        messageOf<Error>([&] { set.technique("good"); }),
+        Contains((broken.path() / "libgood.so").string() + ": not a shared library") && Contains("--strict"));
+  CHECK(set.skipped().empty());
+  TechniqueSet sound({pluginDirectory("good")}, true);
+  CHECK(sound.technique("good") != nullptr);
+  CHECK(sound.technique("absent") == nullptr);
+}
+
+TEST_CASE("technique libraries export their entry point alone, and nothing that a process would share") {
+  const fs::path folder = binaryDirectory() / "lib/techniques";
+  int seen = 0;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() != ".so") continue;
+    ++seen;
+    INFO(entry.path());
+    const std::vector<ElfSymbol> symbols = exportedSymbols(readFile(entry.path(), kLargestLibraryFile));
+    REQUIRE(symbols.size() == 1);
+    CHECK(symbols[0].name == "lumivox_technique_register");
+    CHECK(ELF64_ST_BIND(symbols[0].entry.st_info) == STB_GLOBAL);
+  }
+  CHECK(seen > 0);
+  // What the reading above rests on: a library that hides nothing shows more.
+  CHECK(
+      exportedSymbols(readFile(pluginDirectory("shared_value_4") / "libshared_value.so", kLargestLibraryFile))
+          .size() > 1);
+  for (const char* library : {"liblumivox.so", "liblumivox_lab.so"}) {
+    INFO(library);
+    for (const ElfSymbol& symbol :
+         exportedSymbols(readFile(binaryDirectory() / "lib" / library, kLargestLibraryFile)))
+      if (ELF64_ST_BIND(symbol.entry.st_info) == STB_GNU_UNIQUE) FAIL_CHECK(symbol.name);
+  }
 }
 
 TEST_CASE("a program that is older than its library is told so before it does anything") {
@@ -99,8 +250,12 @@ TEST_CASE("a program that is older than its library is told so before it does an
   CHECK_THAT(messageOf<Error>([&] { requireLibraryOf(program); }), Contains("the size of the ports is"));
 }
 
-TEST_CASE("a shared library that is no technique is skipped with the symbol that it lacks") {
-  CHECK(reasonFor("no_entry") == "the symbol lumivox_technique_version is missing");
+TEST_CASE("a shared library that is no technique, or lacks the entry point, is skipped with what it lacks") {
+  CHECK_THAT(reasonFor("no_entry"), Contains("it has no version record"));
+  std::string library = readFile(pluginFile("good"));
+  for (std::size_t at = 0; (at = library.find("lumivox_technique_register", at)) != std::string::npos; ++at)
+    library[at] = 'L';
+  CHECK(reasonForContent(library) == "the symbol lumivox_technique_register is missing");
 }
 
 TEST_CASE("a library that needs a function which nobody has is skipped with that function") {
@@ -142,10 +297,10 @@ TEST_CASE("a library whose headers are damaged is skipped") {
 
 TEST_CASE("one bad library does not keep the others from loading") {
   const LogCapture log;
-  TechniqueSet set({pluginDirectory("no_entry"), pluginDirectory("good"), pluginDirectory("wrong_version")});
-  CHECK(set.available() == std::vector<std::string>{"good", "no_entry", "wrong_version"});
+  TechniqueSet set({pluginDirectory("no_entry"), pluginDirectory("good"), pluginDirectory("no_passes")});
+  CHECK(set.available() == std::vector<std::string>{"good", "no_entry", "no_passes"});
   CHECK(set.technique("no_entry") == nullptr);
-  CHECK(set.technique("wrong_version") == nullptr);
+  CHECK(set.technique("no_passes") == nullptr);
   CHECK(set.technique("good") != nullptr);
   CHECK(set.skipped().size() == 2);
   // Asked again, it is neither opened nor reported again.

@@ -18,13 +18,16 @@ void execute(const std::filesystem::path& file, const std::string& sql) {
   sqlite3_close(handle);
 }
 
-/// Undoes schema 7.
-const std::string kWithout7 = "DROP TABLE voxels; ";
+/// Undoes schema 8.
+const std::string kWithout8 = "DROP TABLE wanted; DROP TABLE reports; ";
 
-/// Undoes schemas 7 and 6.
+/// Undoes schemas 8 and 7.
+const std::string kWithout7 = kWithout8 + "DROP TABLE voxels; ";
+
+/// Undoes schemas 8 to 6.
 const std::string kWithout6 = kWithout7 + "ALTER TABLE runs DROP COLUMN complete; ";
 
-/// Undoes schemas 7 to 5.
+/// Undoes schemas 8 to 5.
 const std::string kWithout5 =
     kWithout6 +
     "ALTER TABLE images RENAME COLUMN reference TO truth; ALTER TABLE images RENAME TO pictures; "
@@ -35,7 +38,7 @@ const std::string kWithout5 =
     "UPDATE metrics SET name = 'non_finite_truth' WHERE name = 'non_finite_reference'; "
     "UPDATE metrics SET name = 'non_finite_picture' WHERE name = 'non_finite_image'; ";
 
-/// Undoes schemas 7 to 4.
+/// Undoes schemas 8 to 4.
 const std::string kWithout4 =
     kWithout5 +
     "DROP TABLE notes; DROP TABLE pictures; DROP TABLE controls; DROP TABLE claims; "
@@ -94,7 +97,7 @@ TEST_CASE("a store of the schema before is read as it is, and gets the new table
     store.add({cellNumber(1)});
     CHECK(store.stressCells().size() == 1);
   }
-  CHECK(schemaOf(file) == 7);
+  CHECK(schemaOf(file) == 8);
   CHECK(ResultsStore(file, ResultsStore::Mode::read).runs().size() == 1);
 }
 
@@ -130,7 +133,7 @@ TEST_CASE("the RMSE of a store of schema 3 is that over the seeds with both unce
   merged.merge(ResultsStore(file, ResultsStore::Mode::read));
   check(merged.runs().at(0));
   ResultsStore upgraded(file);
-  CHECK(schemaOf(file) == 7);
+  CHECK(schemaOf(file) == 8);
   check(upgraded.runs().at(0));
   upgraded.add(runNumber(2));
   CHECK(upgraded.runs().at(1).point.errors.at(0).everyMetricPerSeed);
@@ -155,7 +158,7 @@ TEST_CASE("a store without work is read as it is, and keeps work when it is writ
   }
   CHECK(schemaOf(file) == 2);
   ResultsStore store(file);
-  CHECK(schemaOf(file) == 7);
+  CHECK(schemaOf(file) == 8);
   CHECK(store.add(runNumber(2)));
   const std::vector<StoredRun> runs = store.runs();
   REQUIRE(runs.size() == 2);
@@ -201,7 +204,7 @@ TEST_CASE("a store of schema 4, which had other words for the same things, is re
   check(merged);
   CHECK(schemaOf(file) == 4);
   ResultsStore upgraded(file);
-  CHECK(schemaOf(file) == 7);
+  CHECK(schemaOf(file) == 8);
   check(upgraded);
 }
 
@@ -223,7 +226,7 @@ TEST_CASE("a store of schema 5 has no runs without times, and gets them when it 
   }
   CHECK(schemaOf(file) == 5);
   ResultsStore store(file);
-  CHECK(schemaOf(file) == 7);
+  CHECK(schemaOf(file) == 8);
   store.addUntimed(runNumber(2));
   CHECK(store.runs().size() == 1);
   CHECK(store.findUntimed(runNumber(2).identity.key()));
@@ -244,7 +247,7 @@ TEST_CASE("a store of schema 6 has no voxels beside its errors, and keeps them w
   }
   CHECK(schemaOf(file) == 6);
   ResultsStore store(file);
-  CHECK(schemaOf(file) == 7);
+  CHECK(schemaOf(file) == 8);
   store.add(runNumber(2));
   CHECK_FALSE(store.runs().at(0).point.voxels);
   CHECK(store.runs().at(1).point.voxels);

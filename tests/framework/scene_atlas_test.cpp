@@ -259,3 +259,123 @@ TEST_CASE("an object has texels of its own size; placed at middles they fill a r
       CHECK(along - std::floor(along) == Approx(0.5).margin(1e-5));
   }
 }
+
+namespace {
+
+/// Of the unit square, mapped to a plane: how many outlines hold a random point, over points and outlines.
+struct Tiling {
+  int holes = 0, overlaps = 0;
+  double area = 0.0;  ///< of all outlines, m^2
+};
+Tiling tilingOf(const Scene& scene, double texelSize) {
+  const SurfaceAtlas atlas =
+      makeSurfaceAtlas(scene, std::vector<double>(scene.objects.size(), texelSize), AtlasPlaces::middles);
+  REQUIRE(atlas.outlines.size() == atlas.texels.size());
+  std::vector<std::vector<glm::dvec2>> polygons;  // x and z
+  Tiling tiling;
+  for (std::size_t i = 0; i < atlas.texels.size(); ++i) {
+    const AtlasTexel& texel = atlas.texels[i];
+    const glm::dvec3 e1 = corner(scene, texel.triangle, 1) - corner(scene, texel.triangle, 0),
+                     e2 = corner(scene, texel.triangle, 2) - corner(scene, texel.triangle, 0);
+    std::vector<glm::dvec2>& polygon = polygons.emplace_back();
+    REQUIRE(atlas.outlines[i].count >= 3);
+    for (std::uint32_t k = 0; k < atlas.outlines[i].count; ++k) {
+      const glm::dvec2 step(atlas.outlines[i].corners[k]);
+      const glm::dvec3 at = place(scene, texel) + step.x * e1 + step.y * e2;
+      polygon.emplace_back(at.x, at.z);
+    }
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      const glm::dvec2 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+      tiling.area += 0.5 * (a.y * b.x - a.x * b.y);  // counter-clockwise as seen from above
+    }
+  }
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int i = 0; i < 4000; ++i) {
+    const auto t =
+        static_cast<std::uint32_t>(uniform(generator) * static_cast<double>(scene.triangleCount()));
+    const double root = std::sqrt(uniform(generator)), across = uniform(generator);
+    const glm::dvec3 point = (1.0 - root) * corner(scene, t, 0) +
+                             root * (1.0 - across) * corner(scene, t, 1) +
+                             root * across * corner(scene, t, 2);
+    int inside = 0, near = 0;
+    for (const std::vector<glm::dvec2>& polygon : polygons) {
+      double least = 1e9;
+      for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const glm::dvec2 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()], side = b - a;
+        least = std::min(least, (side.y * (point.x - a.x) - side.x * (point.z - a.y)) / glm::length(side));
+      }
+      inside += least >= 0.0;
+      near += std::abs(least) < 1e-6;
+    }
+    tiling.holes += inside == 0 && near == 0;
+    tiling.overlaps += inside > 1 && near == 0;
+  }
+  return tiling;
+}
+
+}  // namespace
+
+TEST_CASE("outlines tile a flat piece of surface, at borders that cut texels and over many triangles") {
+  // Fronts are seen from above: x, then -z, is counter-clockwise.
+  const auto shear = [](double u, double v) { return glm::vec3(2.0 * u + 0.3 * v, 0, -0.7 * v - 0.45 * u); };
+  SceneBuilder triangle, disc;
+  triangle.mesh({{0, 0, 0}, {1.3f, 0, -0.2f}, {0.4f, 0, -1.1f}}, triangle.lambert(0.5f));
+  std::vector<glm::vec3> places{{0, 0, 0}};
+  std::vector<std::uint32_t> corners;
+  constexpr std::uint32_t kSectors = 64;
+  for (std::uint32_t i = 0; i < kSectors; ++i) {
+    const double angle = 2.0 * kPi * i / kSectors;
+    places.emplace_back(std::cos(angle), 0.0, -std::sin(angle));
+    corners.insert(corners.end(), {0, 1 + i, 1 + (i + 1) % kSectors});
+  }
+  addTriangles(disc.scene, places, corners);
+  const double discArea = 0.5 * kSectors * std::sin(2.0 * kPi / kSectors);
+  for (const double size : {0.07, 0.3, 0.9}) {
+    CAPTURE(size);
+    for (const auto& [scene, area] : {std::pair(gridOf(1, shear), 1.265),
+                                      {gridOf(7, shear), 1.265},
+                                      {triangle.scene, 0.675},
+                                      {disc.scene, discArea}}) {
+      CAPTURE(area);
+      const Tiling tiling = tilingOf(scene, size);
+      CHECK(tiling.area == Approx(area).epsilon(1e-5));
+      // With so large texels a piece of the disc's border has more corners than are kept.
+      if (size > 0.5 && area == discArea) continue;
+      CHECK(tiling.holes == 0);
+      CHECK(tiling.overlaps == 0);
+    }
+  }
+}
+
+TEST_CASE("an outline has the area of its surface where that is not convex") {
+  // A square without a quarter, in one texel.
+  SceneBuilder builder;
+  addTriangles(builder.scene,
+               {{0, 0, 0}, {1, 0, 0}, {1, 0, -0.5f}, {0.5f, 0, -0.5f}, {0.5f, 0, -1}, {0, 0, -1}},
+               {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 5});
+  CHECK(tilingOf(builder.scene, 3.0).area == Approx(0.75).epsilon(1e-5));
+}
+
+TEST_CASE("a texel in which the surface bends has no outline, and every other one has") {
+  // A roof whose ridge lies at x = 1, of slopes that one chart holds; and the same, flat.
+  constexpr double kTexel = 0.3;
+  for (const double height : {0.0, 0.2}) {
+    const Scene scene = gridOf(2, [&](double u, double v) {
+      return glm::vec3(2.0 * u, height * (1.0 - std::abs(2.0 * u - 1.0)), -v);
+    });
+    const SurfaceAtlas atlas = makeSurfaceAtlas(scene, {kTexel}, AtlasPlaces::middles);
+    REQUIRE(atlas.chartCount == 1);
+    REQUIRE(atlas.outlines.size() == atlas.texels.size());
+    std::size_t bent = 0;
+    for (std::size_t i = 0; i < atlas.texels.size(); ++i) {
+      if (atlas.outlines[i].count > 0) continue;
+      ++bent;
+      CAPTURE(height, i);
+      CHECK(std::abs(place(scene, atlas.texels[i]).x - 1.0) < kTexel);
+    }
+    CAPTURE(height, bent, atlas.texels.size());
+    CHECK((bent > 0) == (height > 0.0));
+    CHECK(2 * bent < atlas.texels.size());
+  }
+}

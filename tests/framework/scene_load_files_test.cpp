@@ -218,6 +218,12 @@ TEST_CASE("each way in which an MTL file can be wrong gives one error with its l
   CHECK_THAT(errorOf("newmtl a\nKd 0.5 red 0\n"), Contains("m.mtl:2: 'Kd' of material 'a' is 'red'"));
   CHECK_THAT(errorOf("newmtl a\nKe nan 0 0\n"), Contains("'Ke' of material 'a' is 'nan'"));
   CHECK_THAT(errorOf("newmtl a\nKs 1 1 -1\n"), Contains("'Ks' of material 'a' is negative"));
+  CHECK_THAT(errorOf("newmtl a\nKe 0 1e30 0\n"),
+             Contains("'Ke' of material 'a' is 1e30") && Contains("at most 1e+15"));
+  CHECK_THAT(errorOf("newmtl a\nNs 1e30\n"),
+             Contains("'Ns' of material 'a' is 1e30") && Contains("at most 1e+06"));
+  CHECK_THAT(errorOf("newmtl a\nKd 1e30 0 0\n"),
+             Contains("'Kd' of material 'a' is 1e30") && Contains("at most 1000"));
   CHECK_THAT(errorOf("Kd 1 1 1\n"), Contains("m.mtl:1: 'Kd' before the first newmtl"));
   CHECK_THAT(errorOf("newmtl\n"), Contains("m.mtl:1: newmtl without a name"));
   CHECK_THAT(errorOf(std::string("newmtl a\n\0\0", 11)), Contains("m.mtl: contains a zero byte"));

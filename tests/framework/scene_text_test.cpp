@@ -1,9 +1,11 @@
 // Scene texts: what the grammar accepts, and one message for each way to get it wrong.
+#include <cmath>
 #include <functional>
 #include <numbers>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
+#include "lumivox/results/reproduction.h"
 #include "lumivox/scene/scene.h"
 #include "lumivox/scene/text.h"
 #include "support/support.h"
@@ -329,4 +331,114 @@ TEST_CASE("every default in the scene tables is a value that its own table accep
         for (const dsl::BlockSpecification& inner : block.blocks) visit(inner);
       };
   visit(sceneSpecifications().front());
+}
+
+namespace {
+
+/// Calls back for every property of the tables, with the words of the blocks around it.
+void forEachProperty(
+    const std::vector<dsl::BlockSpecification>& blocks, const std::string& around,
+    const std::function<void(const dsl::PropertySpecification&, const std::string&)>& visit) {
+  for (const dsl::BlockSpecification& block : blocks) {
+    const std::string here = around + " " + block.word;
+    for (const dsl::PropertySpecification& property : block.properties) visit(property, here);
+    for (const auto& [kind, properties] : block.kindProperties)
+      for (const dsl::PropertySpecification& property : properties) visit(property, here + " " + kind);
+    forEachProperty(block.blocks, here, visit);
+  }
+}
+
+bool takesNumbers(const dsl::PropertySpecification& property) {
+  switch (property.type) {
+    case dsl::PropertyType::number:
+    case dsl::PropertyType::integer:
+    case dsl::PropertyType::vector2:
+    case dsl::PropertyType::vector3:
+    case dsl::PropertyType::oneOrThree:
+    case dsl::PropertyType::axisAndNumber:
+    case dsl::PropertyType::resolution:
+    case dsl::PropertyType::range:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("every number of a scene and of a published table has a range") {
+  int numbers = 0;
+  for (const auto* tables : {&sceneSpecifications(), &reproductionSpecifications()})
+    forEachProperty(*tables, "", [&](const dsl::PropertySpecification& property, const std::string& around) {
+      if (!takesNumbers(property)) return;
+      ++numbers;
+      CAPTURE(around, property.word);
+      CHECK(std::isfinite(property.low));
+      CHECK(std::isfinite(property.high));
+      CHECK(property.low < property.high);
+    });
+  CHECK(numbers > 40);
+}
+
+TEST_CASE("light, places, speeds and directions that no renderer could compute with are refused") {
+  for (const char* block :
+       {"light l directional { direction 1e200 -1e200 0  irradiance 1 }",
+        "light l directional { direction 1e-20 0 0  irradiance 1 }",
+        "light l directional { direction 0 -1 0  irradiance 1e39 }",
+        "light l directional { direction 0 -1 0  irradiance 1 1e16 1 }",
+        "light l directional { direction 0 -1 0  irradiance 1e-40 }",
+        "light l point { position 0 0 0  intensity 1e39 }",
+        "light l point { position 1e30 0 0  intensity 1 }",
+        "light l point { position 2e6 0 0 km  intensity 1 }",
+        "light l spot { position 0 0 0  direction 1e200 0 0  intensity 1  inner 1 deg  outer 2 deg }",
+        "light l area { mesh room  radiance 1e39 }",
+        "material b { emission 1e39 }",
+        "environment { radiance 1e39 }",
+        "camera b { eye 1e200 0 0  target 0 0 0 }",
+        "camera b { eye 0 0 0  target 0 0 1e-20 }",
+        "camera b { eye 0 0 1  target 0 0 0  up 1e200 0 0 }",
+        "camera b { key { time 1e30  eye 0 0 1  target 0 0 0 } }",
+        "animate room { rotate 1e200 0 0  30 deg/s }",
+        "animate room { rotate 0 1 0  1e30 deg/s }",
+        "animate room { translate 1e30 0 0 }",
+        "animate room { translate 1 0 0  about 1e30 0 0 }",
+        "mesh b { file \"m.obj\"  translate 1e30 0 0 }",
+        "mesh b { file \"m.obj\"  rotate 0 1 0  1e30 deg }",
+        "mesh b { file \"m.obj\"  rotate 1e200 0 0  30 deg }",
+        "medium s { extinction 1e39 /m }",
+        "medium s { extinction 1 /m  low 0 0 0  high 1e30 1 1 }",
+        "medium s { extinction 1 /m  particles 9  radius 1e30 }",
+        "medium s { extinction 1 /m  particles 9  radius 1e-9 }",
+        "medium s { extinction 1 /m  particles 9  radius 1  rise 1e30 m/s }",
+        "medium s { extinction 1 /m  particles 9  radius 1  drift 1e30 m/s }",
+        "medium s { extinction 1 /m  particles 9  radius 1  spread 1e30 }",
+        "medium s { extinction 1 /m  particles 9  radius 1  source 0 1e30 0 }"}) {
+    CAPTURE(block);
+    const std::string text = sceneWith(block);
+    CHECK(count(text, "a.scene:4:") >= 1);
+    CHECK_THAT(text, Contains("expected"));
+  }
+}
+
+TEST_CASE("what is at the ends of the ranges is read") {
+  const test::TemporaryDirectory directory;
+  directory.write("m.obj", kTriangle);
+  checkScene(directory.write(
+      "a.scene",
+      "scene \"x\" {\ncamera main { eye 0 0 1e9  target 0 0 0 }\nmesh room { file \"m.obj\"  scale 1e9 }\n"
+      "light a point { position -1e6 1e6 1e6 km  intensity 1e15 }\n"
+      "light b directional { direction 1e-6 -1e9 0  irradiance 1e15 }\n}\n"));
+}
+
+TEST_CASE("as many particles as a scene may have fit into the block that every device has") {
+  constexpr double kPromisedBlock = 1
+                                    << 27;  // bytes: MAX_SHADER_STORAGE_BLOCK_SIZE of OpenGL 4.5, table 23.64
+  constexpr double kBytesOfParticle = 3 * sizeof(float);
+  double most = 0.0;
+  forEachProperty(sceneSpecifications(), "",
+                  [&](const dsl::PropertySpecification& property, const std::string&) {
+                    if (property.word == "particles") most = property.high;
+                  });
+  CHECK(most >= 1e7);
+  CHECK(most * kBytesOfParticle <= kPromisedBlock);
 }

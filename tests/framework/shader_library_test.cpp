@@ -153,13 +153,13 @@ TEST_CASE("fast arithmetic takes the marks that forbid contraction, and nothing 
   };
   std::size_t all = 0;
   for (const shader::PackedCode& code : shader::readShaderPack(packFile()).codes) {
-    const std::vector<std::uint32_t> fast = shader::withoutContractionMarks(code.spirv);
+    const std::vector<std::uint32_t> spirv = code.spirv(), fast = shader::withoutContractionMarks(spirv);
     CHECK(marks(fast) == 0);
-    CHECK(fast.size() + 3 * marks(code.spirv) == code.spirv.size());
-    all += marks(code.spirv);
-    const std::string text = shader::withoutContractionMarks(code.glsl);
+    CHECK(fast.size() + 3 * marks(spirv) == spirv.size());
+    all += marks(spirv);
+    const std::string text = shader::withoutContractionMarks(code.glsl());
     CHECK(text.find("precise ") == std::string::npos);
-    std::string without = code.glsl;
+    std::string without = code.glsl();
     for (std::size_t at = 0; (at = without.find("precise ", at)) != std::string::npos;) without.erase(at, 8);
     CHECK(text == without);
   }

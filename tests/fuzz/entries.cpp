@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -17,6 +18,7 @@
 #include "lumivox/scene/scene.h"
 #include "lumivox/shader/pack.h"
 #include "scene/obj_model.h"
+#include "scene/volume_file.h"
 
 namespace lumivox::fuzz {
 namespace {
@@ -130,7 +132,7 @@ void shaderPack(std::string_view input) {
     const std::string_view content = input.substr(kContent.size());
     const ContentHash hash = hashOf(content);
     const std::uint64_t size = content.size();
-    const std::uint32_t version = 1;
+    const std::uint32_t version = 2;
     pack = "LVXSHPK\n";
     pack.append(reinterpret_cast<const char*>(&version), sizeof version);
     pack.append(reinterpret_cast<const char*>(&size), sizeof size);
@@ -148,6 +150,10 @@ void shaderPack(std::string_view input) {
         for (const shader::PackedStage& stage : variant.stages)
           require(stage.code < read.codes.size(), "every stage has its code");
       }
+    }
+    for (const shader::PackedCode& code : read.codes) {
+      code.spirv();
+      code.glsl();
     }
     const fs::path copy = folder().write("copy.shaderpack", "");
     shader::writeShaderPack(copy, read);
@@ -170,12 +176,26 @@ void exrImage(std::string_view input) {
   });
 }
 
+void volumeFile(std::string_view input) {
+  const LogCapture silent;
+  const fs::path file = folder().write("input.vdb", input);
+  taken([&] {
+    Hasher hasher;
+    const DensityVolume volume = readVolumeFile(file, "", hasher);
+    const auto size = glm::u64vec3(volume.resolution);
+    require(volume.values.size() == size.x * size.y * size.z && !volume.values.empty(), "every voxel has its density");
+    require(volume.voxelSize > 0.0, "voxels have an extent");
+    for (const float value : volume.values) require(std::isfinite(value) && value >= 0.0f, "densities are finite and not negative");
+  });
+}
+
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> all{{"scene_text", sceneText},
                                       {"pipeline_text", pipelineText},
                                       {"obj_model", objModel},
                                       {"shader_pack", shaderPack},
-                                      {"exr_image", exrImage}};
+                                      {"exr_image", exrImage},
+                                      {"volume_file", volumeFile}};
   return all;
 }
 

@@ -110,7 +110,7 @@ inline constexpr double kAmbient = kPi;
 /// The finest level of an octree whose fragments reflect their albedo.
 inline RadianceOctree leavesOf(const VoxelFragments& list, const char* voxels = "as_grid",
                                const char* precision = "float", const char* bricks = "own",
-                               const char* faces = "one") {
+                               const char* faces = "one", bool treeAsPublished = false) {
   const Scene scene = cones::emptyScene();
   PassHarness inject(device(), techniques(), "voxel_cone_tracing", "octree_inject", scene,
                      snapshotOf(scene, 0.0));
@@ -118,7 +118,7 @@ inline RadianceOctree leavesOf(const VoxelFragments& list, const char* voxels = 
   inject.setParameter("precision", std::string(precision));
   inject.setParameter("faces", std::string(faces));
   inject.setInput("fragments", list);
-  inject.setInput("tree", treeOf(list, voxels, false, bricks));
+  inject.setInput("tree", treeOf(list, voxels, treeAsPublished, bricks));
   inject.run();
   return inject.output<RadianceOctree>("radiance");
 }

@@ -218,6 +218,40 @@ TEST_CASE("a voxel passes on what arrives on both of its sides, each into its ow
 }
 
 TEST_CASE(
+    "as printed the buffers alternate: a black room passes on all of its light, and the last pass is all there is") {
+  constexpr int kSide = 12;
+  const auto middle = [&](const char* feed, double bounces, double albedo, double sky) {
+    Volume volume({kSide, kSide, kSide});
+    // Walls that shine 2 to all sides; with a sky through a hole in the roof.
+    const auto wall = [&](const glm::ivec3& voxel) {
+      const bool hole = sky > 0.0 && voxel.y == kSide - 1 && voxel.x > 3 && voxel.x < 8;
+      return !hole && (glm::any(glm::equal(voxel, glm::ivec3(0))) ||
+                       glm::any(glm::equal(voxel, glm::ivec3(kSide - 1))));
+    };
+    volume.occupyWhere(
+        wall, [](const glm::ivec3&) { return glm::dvec3(0, 1, 0); }, 2.0, 2.0, albedo);
+    return coefficientsIn(
+               arriving(volume,
+                        {{"rays", 256}, {"bounces", bounces}, {"source", 0, "harmonics"}, {"feed", 0, feed}},
+                        sky),
+               glm::ivec3(kSide / 2))
+        .x;
+  };
+  const double first = middle("printed", 1, 0.0, 0.0);
+  CHECK(first == Approx(middle("own", 1, 0.0, 0.0)).epsilon(1e-6));
+  CHECK(middle("own", 3, 0.0, 0.0) == Approx(first).epsilon(1e-6));  // nothing is reflected again
+  for (const double bounces : {2.0, 3.0}) {
+    const double printed = middle("printed", bounces, 0.0, 0.0);
+    CAPTURE(bounces, first, printed);
+    CHECK(printed == Approx(middle("printed", bounces, 0.7, 0.0)).epsilon(1e-6));
+    CHECK(printed > 0.5 * first);  // in place of nothing
+    CHECK(printed < 1.5 * first);  // and not the sum of the passes, each of which is at least half of it
+  }
+  // A pass that replaces the one before sees the sky itself.
+  CHECK(middle("printed", 2, 0.0, 50.0) > 2.0 * middle("printed", 2, 0.0, 1e-3));
+}
+
+TEST_CASE(
     "what leaves a voxel again is albedo / pi of what arrives on the side that is seen, voxel by voxel") {
   Clutter clutter(5);
   std::mt19937 random(5);

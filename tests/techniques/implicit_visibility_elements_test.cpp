@@ -6,6 +6,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
+#include "support/half_masked_sheet.h"
 #include "support/scene_builder.h"
 #include "support/surface_elements.h"
 
@@ -43,6 +44,21 @@ double areaOf(const Elements& elements) {
   for (std::uint32_t leaf = 0; leaf < elements.tree().leafCount; ++leaf)
     sum += static_cast<double>(elements.state().area[leaf]);
   return sum;
+}
+
+void checkOutlineAreas(const Elements& made) {
+  REQUIRE(made.tree().leafCount > 0);
+  for (std::uint32_t leaf = 0; leaf < made.tree().leafCount; ++leaf) {
+    const std::span<const glm::vec3> corners = made.state().outline(made.tree(), leaf);
+    REQUIRE(corners.size() >= 3);
+    glm::vec3 twice(0.0f);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      twice += glm::cross(corners[i], corners[(i + 1) % corners.size()]);
+      CHECK(std::abs(glm::dot(corners[i], made.state().normal[leaf])) < 1e-4f * made.state().reach[leaf]);
+      CHECK(glm::length(corners[i]) <= made.state().reach[leaf]);
+    }
+    CHECK(0.5f * glm::length(twice) == Approx(made.state().area[leaf]).epsilon(1e-4));
+  }
 }
 
 /// A sphere of radius 1 in `rings` rings of twice as many sectors, with vertices of its own for each
@@ -165,6 +181,26 @@ TEST_CASE("areas of elements sum to that of the surface, by texels of the atlas 
   CHECK(vertices.tree().leafCount == scene.positions.size());
 }
 
+TEST_CASE(
+    "outlines of elements have the areas of their elements, turned, stretched, and with holes of masks") {
+  Scene stretched = deforming({sheetCorners(1.0f), sheetCorners(3.0f)});
+  for (const char* areas : {"now", "rest"})
+    for (const double count : {16.0, 100.0}) {
+      const Elements made = elementsOf(stretched, {{"elements", count}, {"areas", areas}}, 0.7);
+      checkOutlineAreas(made);
+    }
+  Scene turned = boxAndSphere();
+  turned.objects.pop_back();  // the sphere bends within its texels, which keep their discs
+  RigidMotion motion;
+  motion.axis = glm::normalize(glm::dvec3(1, 2, 3));
+  motion.angularSpeed = 0.9;
+  for (Object& object : turned.objects) object.motion = motion;
+  checkOutlineAreas(elementsOf(turned, {{"elements", 150.0}}, 0.7));
+  SceneBuilder builder;
+  addHalfMaskedSheet(builder);
+  checkOutlineAreas(elementsOf(builder.scene, {{"elements", 150.0}}));
+}
+
 TEST_CASE("about as many elements are made as were asked for, an object's part by a power of its area") {
   const Scene scene = boxAndSphere();
   for (const double count : {500.0, 4096.0, 30000.0}) {
@@ -202,7 +238,8 @@ TEST_CASE("objects too small for an element have one each, and leave a large one
   CHECK(std::count(counts.begin() + 1, counts.end(), 1) == kObjects);
 }
 
-TEST_CASE("a node lies at the middle of its leaves, by area, and reaches over all of their discs") {
+TEST_CASE(
+    "a node lies at the middle of its leaves, by area, and reaches over all of their outlines and discs") {
   const Elements made = elementsOf(boxAndSphere(), {{"elements", 700.0}});
   const ElementTree& tree = made.tree();
   const ElementState& state = made.state();
@@ -211,6 +248,12 @@ TEST_CASE("a node lies at the middle of its leaves, by area, and reaches over al
     for (std::uint32_t node = leaf; node != kNoElement; node = tree.parents[node])
       leaves[node].push_back(leaf);
   REQUIRE(leaves[tree.root].size() == tree.leafCount);
+  // The box has outlines; the sphere bends within most of its texels and has discs there.
+  const auto isDisc = [&](std::uint32_t leaf) { return state.outline(tree, leaf).empty(); };
+  std::uint32_t discs = 0;
+  for (std::uint32_t leaf = 0; leaf < tree.leafCount; ++leaf) discs += isDisc(leaf) ? 1u : 0u;
+  CHECK(discs > tree.leafCount / 10);
+  CHECK(discs < tree.leafCount);
   for (std::uint32_t node = 0; node < tree.nodeCount; ++node) {
     glm::dvec3 middle(0.0);
     double area = 0.0;
@@ -220,9 +263,14 @@ TEST_CASE("a node lies at the middle of its leaves, by area, and reaches over al
     }
     CHECK(state.area[node] == Approx(area).epsilon(1e-4));
     CHECK(glm::length(middle / area - glm::dvec3(state.position[node])) < 1e-4);
-    for (const std::uint32_t leaf : leaves[node])
-      CHECK(glm::distance(state.position[leaf], state.position[node]) + state.radius[leaf] <=
-            state.reach[node] * 1.0001f);
+    for (const std::uint32_t leaf : leaves[node]) {
+      for (const glm::vec3& corner : state.outline(tree, leaf))
+        CHECK(glm::distance(state.position[leaf] + corner, state.position[node]) <=
+              state.reach[node] * 1.0001f);
+      if (isDisc(leaf))
+        CHECK(glm::distance(state.position[leaf], state.position[node]) + state.radius[leaf] <=
+              state.reach[node] * 1.0001f);
+    }
   }
 }
 

@@ -1,4 +1,5 @@
 // Form factors over links against closed forms, and what elements see against rays.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -97,6 +98,81 @@ void checkFormFactors(const std::vector<std::pair<int, int>>& sizes) {
       }
 }
 
+/// A fan of triangles 2 m up that faces down, of a convex polygon in x and z.
+std::vector<glm::vec3> lampCorners(const std::vector<glm::dvec2>& polygon) {
+  std::vector<glm::vec3> result;
+  const auto at = [&](std::size_t i) { return glm::vec3(polygon[i].x, 2.0, polygon[i].y); };
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) result.insert(result.end(), {at(0), at(i), at(i + 1)});
+  return result;
+}
+
+/// A floor of 4 m, object 0, and a lamp over it, object 1.
+Scene floorAndLamp(const std::vector<glm::vec3>& lamp) {
+  SceneBuilder builder;
+  const int grey = builder.lambert(0.5f);
+  builder.quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, grey);
+  builder.mesh(lamp, grey);
+  return builder.scene;
+}
+
+/// Elements of one size on all objects.
+LinkedScene linkedBySize(const Scene& scene, double elements, double time = 0.0) {
+  return linked(scene, {{{"elements", elements}, {"share", 1.0}}, {{"bins", 64.0}}, {}}, time);
+}
+
+int leavesOf(const LinkedScene& scene, std::uint32_t object) {
+  const std::vector<std::uint32_t>& objects = scene.tree().objectOfNode;
+  return static_cast<int>(std::count(objects.begin(), objects.begin() + scene.tree().leafCount, object));
+}
+
+/// Triangles of an object, relative to the snapshot's origin.
+std::vector<glm::dvec3> placedAt(const Scene& scene, double time) {
+  const SceneSnapshot snapshot = snapshotOf(scene, time);
+  const Object& lamp = scene.objects[1];
+  std::vector<glm::dvec3> result;
+  for (const Part& part : lamp.parts)
+    for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; ++i) {
+      const std::uint32_t vertex = scene.indices[i];
+      const ObjectState& state = snapshot.objects[1];
+      const glm::vec3 local =
+          state.positions.empty() ? scene.positions[vertex] : state.positions[vertex - lamp.firstVertex];
+      result.emplace_back(state.toWorld * glm::vec4(local, 1.0f));
+    }
+  return result;
+}
+
+/// Lambert's form factor of triangles above a plane, from a point of it: the half sum of the angles that
+/// their sides take times the cosine of these angles' planes, over pi.
+double lambertFactor(const glm::dvec3& point, const glm::dvec3& normal,
+                     const std::vector<glm::dvec3>& triangles) {
+  double sum = 0.0;
+  for (std::size_t t = 0; t < triangles.size(); t += 3) {
+    double ofTriangle = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const glm::dvec3 a = glm::normalize(triangles[t + k] - point),
+                       b = glm::normalize(triangles[t + (k + 1) % 3] - point), across = glm::cross(a, b);
+      ofTriangle += std::acos(glm::dot(a, b)) * glm::dot(normal, glm::normalize(across));
+    }
+    sum += std::abs(ofTriangle) / (2.0 * kPi);
+  }
+  return sum;
+}
+
+/// What the floor sees of the lamp, over what it should.
+double overLambert(const LinkedScene& scene, const std::vector<glm::dvec3>& lamp) {
+  const BinWeights weights(scene.links);
+  double seen = 0.0, exact = 0.0;
+  for (std::uint32_t leaf = 0; leaf < scene.tree().leafCount; ++leaf) {
+    if (scene.tree().objectOfNode[leaf] != 0) continue;
+    const glm::vec3 normal = scene.state().normal[leaf];
+    for (const ElementLink& link : scene.seenBy(leaf))
+      if (scene.tree().objectOfNode[link.node] == 1)
+        seen += std::max(weights(normal, link.bin()), 0.0) * weights.scale(normal) / kPi;
+    exact += lambertFactor(glm::dvec3(scene.state().position[leaf]), glm::dvec3(normal), lamp);
+  }
+  return seen / exact;
+}
+
 /// The first triangle that a ray meets, in double precision.
 struct Hit {
   double distance = std::numeric_limits<double>::infinity();
@@ -122,6 +198,66 @@ Hit firstHit(const Scene& scene, const glm::dvec3& origin, const glm::dvec3& dir
 
 TEST_CASE("form factors hold in closed form, whatever the sizes of elements and bins, aligned and turned") {
   checkFormFactors({{12, 8}, {24, 12}, {12, 32}, {48, 8}});
+}
+
+TEST_CASE(
+    "a lamp of 1, 4 or 9 elements over a floor has Lambert's form factor within 2 %, aligned and turned") {
+  for (const int side : {1, 2, 3})
+    for (const bool isTurned : {false, true}) {
+      const Scene flat = floorAndLamp(lampCorners({{-0.25, 0}, {0.25, 0}, {0.25, 0.5}, {-0.25, 0.5}})),
+                  scene = isTurned ? turned(flat) : flat;
+      const LinkedScene made = linkedBySize(scene, 64.0 * side * side);
+      CAPTURE(side, isTurned);
+      REQUIRE(leavesOf(made, 1) == side * side);
+      CHECK(overLambert(made, placedAt(scene, 0.0)) == Approx(1.0).epsilon(0.02));
+    }
+}
+
+TEST_CASE("a single element has the form factor of its shape within 2 %, whatever that is") {
+  struct Shape {
+    const char* name;
+    std::vector<glm::dvec2> outline;
+  };
+  std::vector<glm::dvec2> circle;
+  for (int i = 0; i < 64; ++i)
+    circle.push_back(0.3 * glm::dvec2(std::cos(2.0 * kPi * i / 64), std::sin(2.0 * kPi * i / 64)));
+  for (const Shape& shape : {Shape{"triangle", {{-0.3, 0}, {0.4, 0.1}, {-0.1, 0.6}}},
+                             // Slanted, since lines of bins would meet one that lies along them all or not at all.
+                             Shape{"strip", {{-0.8, -0.2}, {0.92, 0.33}, {0.89, 0.43}, {-0.83, -0.1}}},
+                             Shape{"trapezoid", {{-0.5, 0}, {0.5, 0}, {0.1, 0.4}, {-0.1, 0.4}}},
+                             Shape{"disc of 64 corners", circle}})
+    for (const bool isTurned : {false, true}) {
+      const Scene flat = floorAndLamp(lampCorners(shape.outline)), scene = isTurned ? turned(flat) : flat;
+      const LinkedScene made = linkedBySize(scene, 16.0);
+      CAPTURE(shape.name, isTurned);
+      REQUIRE(leavesOf(made, 1) == 1);
+      CHECK(overLambert(made, placedAt(scene, 0.0)) == Approx(1.0).epsilon(0.02));
+    }
+}
+
+TEST_CASE("a single element that turns, travels, stretches and shears takes its form factor along") {
+  Scene scene = floorAndLamp(lampCorners({{-0.25, 0}, {0.25, 0}, {0.25, 0.5}, {-0.25, 0.5}}));
+  SECTION("of a body") {
+    RigidMotion motion;
+    motion.axis = {0, 1, 0};
+    motion.angularSpeed = 0.8;
+    motion.velocity = {0.3, -0.4, 0.2};
+    scene.objects[1].motion = motion;
+  }
+  SECTION("of a sheet that deforms") {
+    const Object& lamp = scene.objects[1];
+    VertexSequence sequence;
+    sequence.framesPerSecond = 1.0;
+    const auto* first = &scene.positions[lamp.firstVertex];
+    sequence.positions.assign(2, std::vector<glm::vec3>(first, first + lamp.vertexCount));
+    for (glm::vec3& place : sequence.positions[1])
+      place = glm::vec3(2.0f * place.x + 0.7f * place.z, place.y + 0.3f * place.x, 0.5f * place.z);
+    sequence.normals.assign(2, std::vector<glm::vec3>(lamp.vertexCount, glm::vec3(0, -1, 0)));
+    scene.objects[1].sequence = sequence;
+  }
+  const LinkedScene made = linkedBySize(scene, 64.0, 1.0);
+  REQUIRE(leavesOf(made, 1) == 1);
+  CHECK(overLambert(made, placedAt(scene, 1.0)) == Approx(1.0).epsilon(0.02));
 }
 
 TEST_CASE("form factors hold in closed form for every size of elements and bins", "[.]") {

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "support/element_light.h"
+#include "support/surface_elements.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -36,6 +37,34 @@ SceneBuilder floorSeen(const Material& material, int pixels = 16) {
   builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.material(material));
   builder.look({0, 3, 0}, {0, 0, 0}, {0, 0, -1}, 0.3, pixels, pixels);
   return builder;
+}
+
+/// What arrives at the front of object 0, one element, of lamps over links as printed (Eq. 5), W/m^2. A large
+/// floor far below takes the other elements, so that each small object has one.
+double printedIrradiance(SceneBuilder builder, const std::string& fill, int bins) {
+  builder.quad({-500, -50, -500}, {0, 0, 1000}, {1000, 0, 0}, builder.lambert(0.0f));
+  const LinkedScene made =
+      linked(builder.scene, {{{"elements", 64.0}}, {{"bins", static_cast<double>(bins)}}, {{"fill", fill}}});
+  REQUIRE(std::count(made.tree().objectOfNode.begin(),
+                     made.tree().objectOfNode.begin() + made.tree().leafCount, 0u) == 1);
+  PassHarness illuminate(device(), techniques(), "implicit_visibility", "illuminate", builder.scene,
+                         snapshotOf(builder.scene, 0.0));
+  illuminate.setInput("elements", made.elements);
+  illuminate.setInput("links", made.links);
+  illuminate.setParameter("weight", std::string("element"));
+  illuminate.setParameter("area_light", std::string("links"));
+  illuminate.run();
+  const std::vector<float> floats =
+      illuminate.output<ElementLight>("light").directIrradiance->downloadFloats(0);
+  for (std::uint32_t leaf = 0; leaf < made.tree().leafCount; ++leaf)
+    if (made.tree().objectOfNode[leaf] == 0) return LitElements::leafValue(floats, leaf, 0);
+  return -1.0;
+}
+
+/// A square whose middle is at `middle`, in a plane of constant y.
+void addSquare(SceneBuilder& builder, const glm::vec3& middle, float side, bool up, int material) {
+  const glm::vec3 x(side, 0, 0), z(0, 0, side);
+  builder.quad(middle - 0.5f * (x + z), up ? z : x, up ? x : z, material);
 }
 
 std::string number(const char* name, int value) {
@@ -82,6 +111,33 @@ TEST_CASE("a plane under a sky of radiance L has the irradiance pi L, and its ba
   // Each pixel reflects albedo L.
   for (const float value : {lit.frame.outputs.at("indirect_diffuse").at(3, 4, 0)})
     CHECK(value == Approx(0.5 * 2.0).epsilon(1e-4));
+}
+
+TEST_CASE(
+    "as printed a link brings L cos cos A / r^2 of the nearest element in its bin (Eq. 5), derived by hand") {
+  // A lamp of 0.1 m and radiance 3, 1 m from the middle of the floor's element at (0.6, 0.8, 0): both cosines
+  // are 0.8, and 3 * 0.8 * 0.8 * 0.01 / 1 arrives. It takes one bin, or several that share its weight.
+  const double oneLamp = 0.0192;
+  const auto scene = [](bool faceDown) {
+    SceneBuilder builder;
+    addSquare(builder, {0, 0, 0}, 0.2f, true, builder.lambert(0.5f));
+    addSquare(builder, {0.6f, 0.8f, 0}, 0.1f, !faceDown, builder.lambert(0.0f, 3.0f));
+    return builder;
+  };
+  for (const auto& [fill, bins] : {std::pair<std::string, int>("one", 8), {"one", 16}, {"centre", 64}}) {
+    CAPTURE(fill, bins);
+    CHECK(printedIrradiance(scene(true), fill, bins) == Approx(oneLamp).epsilon(1e-4));
+    // Lamps shine from their fronts alone.
+    CHECK(printedIrradiance(scene(false), fill, bins) == 0.0);
+    // A second one in another direction, 2 m away at (-1.2, 1.6, 0), brings 5 * 0.64 * 0.01 / 4 more.
+    SceneBuilder two = scene(true);
+    addSquare(two, {-1.2f, 1.6f, 0}, 0.1f, false, two.lambert(0.0f, 5.0f));
+    CHECK(printedIrradiance(two, fill, bins) == Approx(oneLamp + 0.008).epsilon(1e-4));
+    // Where it stands behind the first one, in the same bins, nothing of it arrives: only the nearest counts.
+    SceneBuilder behind = scene(true);
+    addSquare(behind, {1.2f, 1.6f, 0}, 0.1f, false, behind.lambert(0.0f, 5.0f));
+    CHECK(printedIrradiance(behind, fill, bins) == Approx(oneLamp).epsilon(1e-4));
+  }
 }
 
 TEST_CASE(

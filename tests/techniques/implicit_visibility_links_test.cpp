@@ -117,7 +117,8 @@ TEST_CASE("as published, pushed as made and in one bin each, a closed room has h
   const LinkSettings kept{{{"elements", 1000.0}}, {{"split", 1.0}}, {{"push", "kept"}}};
   const RowSums sums = rowSums(linked(closedCube(), kept));
   CAPTURE(sums.mean, sums.least);
-  CHECK(sums.mean > 0.98);
+  CHECK(sums.mean > 0.97);
+  CHECK(sums.mean < 0.99);
   CHECK(sums.most < 1.00001);
 }
 

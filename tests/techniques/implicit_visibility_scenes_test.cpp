@@ -1,10 +1,13 @@
 // Committed scenes against the path tracer.
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 
 #include "support/against_reference.h"
+#include "support/kept_table.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -40,14 +43,15 @@ Errors errorsOn(const std::string& name, const std::vector<std::string>& setting
 
 }  // namespace
 
+// Limits are the card's figures (behind them) and a third or so.
 TEST_CASE(
-    "the Cornell box has at most 0.15 of the error of no indirect light, with 0.93 to 1.07 of its energy") {
+    "the Cornell box has at most 0.08 of the error of no indirect light, with 0.96 to 1.04 of its energy") {
   const Errors errors = errorsOn("cornell", {}, {64, 64, 128});
   CAPTURE(errors.diffuse.rmse, errors.diffuse.ratio);
-  CHECK(errors.diffuse.rmse <= 0.15);
-  CHECK(errors.diffuse.ratio == Approx(1.0).margin(0.07));
+  CHECK(errors.diffuse.rmse <= 0.08);  // 0.058
+  CHECK(errors.diffuse.ratio == Approx(1.0).margin(0.04));
   CAPTURE(errors.openness);
-  CHECK(errors.openness <= 0.06);
+  CHECK(errors.openness <= 0.03);  // 0.022
 }
 
 TEST_CASE("eight bounces in the Cornell box are full indirect light within 0.15 of its error") {
@@ -63,76 +67,88 @@ TEST_CASE("eight bounces in the Cornell box are full indirect light within 0.15 
   CHECK(error.rmse <= 0.15);
 }
 
-TEST_CASE("the arcade has at most 0.45 of the error of no indirect light") {
+TEST_CASE("the arcade has at most 0.42 of the error of no indirect light") {
   const Errors errors = errorsOn("arcade", {}, {64, 64, 128});
   CAPTURE(errors.diffuse.rmse, errors.diffuse.ratio);
-  CHECK(errors.diffuse.rmse <= 0.45);
-  CHECK(errors.diffuse.ratio >= 0.7);
-  CHECK(errors.diffuse.ratio <= 0.9);
+  CHECK(errors.diffuse.rmse <= 0.42);  // 0.36
+  // Elements are coarser than what is between them: light is missing (0.89 is left), and none may come of
+  // nothing.
+  CHECK(errors.diffuse.ratio >= 0.8);
+  CHECK(errors.diffuse.ratio <= 1.05);
 }
 
-TEST_CASE("in the corridor, where all light comes around a corner, the error is at most 0.5 of no light") {
+TEST_CASE(
+    "in the corridor, where all light comes around a corner, the error is at most a third of no light") {
   const Errors errors = errorsOn("corridor", {}, {96, 96, 128});
   CAPTURE(errors.diffuse.rmse, errors.diffuse.ratio);
-  CHECK(errors.diffuse.rmse <= 0.5);
-  CHECK(errors.diffuse.ratio == Approx(1.0).margin(0.2));
+  CHECK(errors.diffuse.rmse <= 1.0 / 3.0);  // 0.255
+  CHECK(errors.diffuse.ratio == Approx(1.05).margin(0.08));
 }
 
-TEST_CASE("the spinning box has at most 0.3 of the error of no indirect light") {
+TEST_CASE("the spinning box has at most a quarter of the error of no indirect light") {
   const Errors errors = errorsOn("spinning_box", {}, {64, 64, 128});
   CAPTURE(errors.diffuse.rmse, errors.diffuse.ratio);
-  CHECK(errors.diffuse.rmse <= 0.3);
-  CHECK(errors.diffuse.ratio == Approx(1.0).margin(0.15));
+  CHECK(errors.diffuse.rmse <= 0.25);  // 0.19
+  CHECK(errors.diffuse.ratio == Approx(0.98).margin(0.08));
 }
 
-TEST_CASE("glossy surfaces of the Cornell box have at most 0.4 of the error of no glossy light") {
+TEST_CASE("glossy surfaces of the Cornell box have at most a third of the error of no glossy light") {
   const Errors errors = errorsOn("cornell_glossy", {}, {64, 64, 128});
   CAPTURE(errors.glossy.rmse, errors.glossy.ratio);
-  CHECK(errors.glossy.rmse <= 0.4);
-  CHECK(errors.glossy.ratio == Approx(1.0).margin(0.2));
+  CHECK(errors.glossy.rmse <= 1.0 / 3.0);  // 0.245
+  CHECK(errors.glossy.ratio == Approx(1.0).margin(0.1));
 }
 
 TEST_CASE("the printed words, each alone and all together, cost what the card says", "[.]") {
   struct Words {
-    const char* name;
+    const char* row;
     std::vector<std::string> settings;
   };
   const std::string element = "weight=element", one = "fill=one", kept = "push=kept";
-  for (const char* elements : {"elements=1024", "elements=4096"})
-    for (const Words& words : {Words{"ours", {}}, Words{"weight", {element}}, Words{"fill", {one}},
-                               Words{"push", {kept}}, Words{"all", {element, one, kept}}}) {
+  KeptTable table("implicit_visibility.printed_words", {{"error", 3, 0.01}, {"ratio", 3, 0.01}});
+  for (const int column : {0, 1}) {
+    const char* elements = column == 0 ? "elements=1024" : "elements=4096";
+    double ours = 0.0;
+    for (const Words& words :
+         {Words{"defaults", {}}, Words{"`weight element`", {element}}, Words{"`fill one`", {one}},
+          Words{"`push kept`", {kept}}, Words{"all three: as published", {element, one, kept}}}) {
       std::vector<std::string> settings = words.settings;
       settings.push_back(elements);
       const Errors errors = errorsOn("cornell", settings, {64, 64, 128});
-      std::printf("%s %-7s diffuse %.3f ratio %.3f\n", elements, words.name, errors.diffuse.rmse,
-                  errors.diffuse.ratio);
-      std::fflush(stdout);
+      table.row(std::string(elements) + ", " + words.row, {errors.diffuse.rmse, errors.diffuse.ratio});
+      CAPTURE(elements, words.row);
       if (words.settings.empty())
-        CHECK(errors.diffuse.rmse < 0.12);
+        ours = errors.diffuse.rmse;
       else
-        CHECK(errors.diffuse.rmse > 0.05);
+        CHECK(errors.diffuse.rmse > 1.1 * ours);  // each of them costs something
     }
+  }
 }
 
 TEST_CASE("table: errors of indirect light by elements and bins", "[.]") {
+  KeptTable table("implicit_visibility.errors", {{"diffuse", 3, 0.01, 0.02},
+                                                 {"ratio of diffuse", 3, 0.01},
+                                                 {"glossy", 3, 0.01, 0.02},
+                                                 {"ratio of glossy", 3, 0.01},
+                                                 {"occlusion", 3, 0.01, 0.02},
+                                                 {"openness", 3, 0.005}});
   for (const char* name : {"cornell", "arcade", "corridor", "spinning_box", "cornell_glossy"})
     for (const char* elements : {"elements=1024", "elements=4096", "elements=16384"})
       for (const char* bins : {"bins=8", "bins=12", "bins=16"}) {
         if (std::string(elements) == "elements=16384" && std::string(bins) == "bins=16")
           continue;  // the device's buffers
         const Errors errors = errorsOn(name, {elements, bins});
-        std::printf(
-            "%-15s %-15s %-8s diffuse %.3f ratio %.3f  glossy %.3f ratio %.3f  occlusion %.3f absolute %.3f\n",
-            name, elements, bins, errors.diffuse.rmse, errors.diffuse.ratio, errors.glossy.rmse,
-            errors.glossy.ratio, errors.occlusion.rmse, errors.openness);
-        std::fflush(stdout);
-        CHECK(errors.diffuse.rmse < 0.9);
+        table.row(std::string(name) + ", " + elements + ", " + bins,
+                  {errors.diffuse.rmse, errors.diffuse.ratio, errors.glossy.rmse, errors.glossy.ratio,
+                   errors.occlusion.rmse, errors.openness});
+        CHECK(errors.diffuse.rmse < 0.5);  // the worst of the card has 0.41
       }
 }
 
 TEST_CASE("table: errors of ambient occlusion by scene, elements and bins", "[.]") {
   const Picture picture{64, 64, 128};
   const auto text = pipeline("implicit_visibility");
+  KeptTable table("implicit_visibility.openness", {{"error of 1", 3, 0.005}, {"ratio", 3, 0.01}});
   for (const char* name : {"cornell", "corridor", "spinning_box", "chess", "teapot_sky", "vase", "arcade"}) {
     const Scene scene = committed(name);
     const LayeredImage reference = referenceOf(scene, picture);
@@ -141,23 +157,23 @@ TEST_CASE("table: errors of ambient occlusion by scene, elements and bins", "[.]
         if (std::string(elements) == "elements=16384" && std::string(bins) == "bins=16") continue;
         const FrameResult frame = pictured(scene, picture, text, {elements, bins});
         const ImageBuffer& openness = frame.outputs.at("ambient_occlusion");
-        std::printf("%-15s %-15s %-8s RMS %.3f mean ratio %.3f\n", name, elements, bins,
-                    opennessError(reference, openness), occlusionAgainst(reference, openness).ratio);
-        std::fflush(stdout);
-        CHECK(opennessError(reference, openness) < 0.3);
+        table.row(std::string(name) + ", " + elements + ", " + bins,
+                  {opennessError(reference, openness), occlusionAgainst(reference, openness).ratio});
+        CHECK(opennessError(reference, openness) < 0.2);  // the worst of the card has 0.164
       }
   }
 }
 
 TEST_CASE("table: errors with glossy elements by the directions in which they pass light on", "[.]") {
+  KeptTable table("implicit_visibility.directions", {{"diffuse", 3, 0.01},
+                                                     {"ratio of diffuse", 3, 0.01},
+                                                     {"glossy", 3, 0.01},
+                                                     {"ratio of glossy", 3, 0.01}});
   for (const char* directions : {"directions=0", "directions=2", "directions=4", "directions=8"}) {
-    const auto start = std::chrono::steady_clock::now();
     const Errors errors = errorsOn("cornell_glossy", {directions});
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    std::printf("%s diffuse %.3f ratio %.3f  glossy %.3f ratio %.3f  %.2f s\n", directions,
-                errors.diffuse.rmse, errors.diffuse.ratio, errors.glossy.rmse, errors.glossy.ratio,
-                seconds.count());
-    std::fflush(stdout);
-    CHECK(errors.diffuse.rmse < 0.5);
+    table.row(directions,
+              {errors.diffuse.rmse, errors.diffuse.ratio, errors.glossy.rmse, errors.glossy.ratio});
+    // Elements that pass nothing on have 0.446 of the error, by the card; all others half of that.
+    CHECK(errors.diffuse.rmse < (directions == std::string("directions=0") ? 0.5 : 0.25));
   }
 }

@@ -3,6 +3,7 @@
 #include "lumivox/measure/metrics.h"
 #include "lumivox/reference/path_tracer.h"
 #include "lumivox/reference/voxel_transport.h"
+#include "support/kept_table.h"
 #include "support/near_field_scene.h"
 #include "support/scene_builder.h"
 
@@ -99,6 +100,9 @@ TEST_CASE("gathering differs from the reference of the boxes by noise alone") {
 // The three differences of the card; minutes.
 TEST_CASE("the differences between technique, boxes and triangles", "[.]") {
   constexpr int kSide = 32;
+  KeptTable table(
+      "near_field_voxels.differences",
+      {{"technique to boxes", 3, 0.01}, {"boxes to triangles", 3, 0.01}, {"with larger maps", 3, 0.01}});
   for (const char* name : {"cornell", "arcade"}) {
     const Scene scene = committed(name);
     ReferenceOptions options = quietly(1024, 1);
@@ -127,8 +131,8 @@ TEST_CASE("the differences between technique, boxes and triangles", "[.]") {
       // Voxels make the error, neither noise nor the maps.
       CHECK(noise < boxes);
       CHECK(withLargeMaps == Approx(boxes).epsilon(0.1));
-      WARN(name << " " << resolution << ": technique against boxes " << noise << ", boxes against triangles "
-                << boxes << ", with maps of four times the resolution " << withLargeMaps);
+      table.row(std::string(name) + ", " + std::to_string(resolution) + " voxels",
+                {noise, boxes, withLargeMaps});
     }
   }
 }

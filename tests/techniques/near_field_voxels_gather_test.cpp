@@ -250,6 +250,51 @@ TEST_CASE("without a cap a slanted texel reaches further, and with the largest t
   }
 }
 
+TEST_CASE(
+    "as printed the tolerance enlarges the texel's side alone: neither the voxel's diagonal nor the cap") {
+  constexpr int kSide = 128;
+  const OneVoxel voxel;
+  const Scene scene = lightOf("directional");
+  const glm::dvec3 way = -glm::normalize(glm::dvec3(0.1, -1, 0.2)),
+                   side = glm::normalize(glm::cross(way, glm::dvec3(0, 0, 1)));
+  const double diagonal = std::sqrt(3.0),
+               width = sampleLights(scene, snapshotOf(scene, 0.0), 1, kSide).samples.front().texelWidth;
+  // The receiver looks down, so that what faces the sun faces it too. No component is 0, by which the printed
+  // walk divides.
+  const glm::dvec3 down = glm::normalize(glm::dvec3(0.01, -1, 0.013)), centre(voxel.centre);
+  const double toFace = (centre.y + 0.5 - 12.0) / down.y;
+  const glm::dvec3 above = centre - (12.0 - centre.y) / -down.y * down;
+  struct Case {
+    double cosine, tolerance;
+    const char* front;
+    double ours, printed;  ///< epsilon, m
+  };
+  const double slanted = 2.5 * diagonal;
+  REQUIRE(1.5 * width < diagonal);
+  const double cosine = width / slanted;
+  for (const Case& one :
+       {Case{1.0, 1.5, "on", 1.5 * diagonal, diagonal}, Case{cosine, 1.5, "on", 1.5 * slanted, 1.5 * slanted},
+        Case{cosine, 3.0, "on", 3.0 * slanted, 4.0 * diagonal},
+        Case{cosine, 0.6, "on", 0.6 * slanted, 0.6 * slanted}, Case{cosine, 1.0, "off", slanted, diagonal}}) {
+    const glm::dvec3 normal = one.cosine * way + std::sqrt(1.0 - one.cosine * one.cosine) * side;
+    for (const bool printed : {false, true})
+      for (const double share : {0.9, 1.1}) {
+        // Printed hits have x and y of the entry, off by up to a tenth, and z of the middle.
+        const glm::dvec3 entry = above + toFace * down,
+                         hit = printed ? glm::dvec3(entry.x, entry.y, centre.z) : centre;
+        const glm::dvec3 place = hit - share * (printed ? one.printed : one.ours) * way;
+        Gatherer gatherer = voxel.gatherer(mapOf(scene, kSide, glm::vec4(glm::vec3(place), 1.0f),
+                                                 glm::vec4(glm::vec3(normal), 1.0f), fluxOf(5.0f)));
+        gatherer.at(above, down)
+            .with({{"tolerance", one.tolerance},
+                   {"front", 0, one.front},
+                   {"as_published", 0, printed ? "on" : "off"}});
+        CAPTURE(one.cosine, one.tolerance, one.front, printed, share, width);
+        CHECK((gatherer.run()[0] > 0.0f) == (share < 1.0));
+      }
+  }
+}
+
 TEST_CASE("surfaces that look away from the receiver bring nothing, unless they may") {
   const OneVoxel voxel;
   const Scene scene = lightOf("point");

@@ -1,5 +1,6 @@
 // Near-field voxels on committed scenes: errors against the path-traced reference, texels that rays read, and
 // what the printed walk finds otherwise.
+#include <cmath>
 #include <map>
 #include <random>
 #include <set>
@@ -7,6 +8,7 @@
 #include "lumivox/pipeline/pass.h"
 #include "support/against_reference.h"
 #include "support/floor_patch.h"
+#include "support/kept_table.h"
 #include "support/near_field_scene.h"
 
 using namespace lumivox;
@@ -50,8 +52,9 @@ Against ofOcclusion(const Scene& scene, const Picture& picture, const std::vecto
 TEST_CASE("near-field voxels err on the Cornell box and the arcade by less than what is asked of them") {
   const Scene cornell = committed("cornell");
   const Against light = ofLight(cornell, {64, 64}, {"rays=64", "resolution=64"});
-  CHECK(light.rmse < 0.25);
-  CHECK(light.ratio == Approx(1.0).epsilon(0.1));
+  // The card's figures and a third more: 0.145, 1.00.
+  CHECK(light.rmse < 0.2);
+  CHECK(light.ratio == Approx(1.0).epsilon(0.05));
   CHECK(ofOcclusion(cornell, {64, 64}, {"rays=64", "resolution=128"}).rmse < 0.45);
   CHECK(ofLight(committed("arcade"), {80, 45}, {"rays=64", "resolution=64"}).rmse < 0.45);
 }
@@ -75,29 +78,23 @@ TEST_CASE("with a thousand rays what is left of the error is bias, which falls f
 // The numbers of the card; minutes.
 TEST_CASE("errors of light and of occlusion by voxels and rays", "[.]") {
   struct Row {
-    const char *settings[2], *effect;
-    double cornell, cornellRatio, arcade, arcadeRatio;
+    const char *resolution, *rays, *effect;
   };
-  const Row rows[] = {{{"resolution=32", "rays=64"}, "light", 0.226, 0.98, 0.564, 0.83},
-                      {{"resolution=32", "rays=1024"}, "light", 0.197, 0.98, 0.551, 0.83},
-                      {{"resolution=64", "rays=64"}, "light", 0.145, 1.00, 0.428, 0.82},
-                      {{"resolution=64", "rays=1024"}, "light", 0.100, 0.99, 0.414, 0.82},
-                      {{"resolution=128", "rays=64"}, "light", 0.138, 1.00, 0.369, 0.85},
-                      {{"resolution=128", "rays=1024"}, "light", 0.091, 1.00, 0.351, 0.84},
-                      {{"resolution=64", "rays=256"}, "occlusion", 0.52, 0.0, 1.01, 0.0},
-                      {{"resolution=128", "rays=256"}, "occlusion", 0.33, 0.0, 0.69, 0.0}};
+  const Row rows[] = {{"32", "64", "light"},      {"32", "1024", "light"},    {"64", "64", "light"},
+                      {"64", "1024", "light"},    {"128", "64", "light"},     {"128", "1024", "light"},
+                      {"64", "256", "occlusion"}, {"128", "256", "occlusion"}};
+  KeptTable table("near_field_voxels.errors", {{"error", 3, 0.02}, {"ratio", 2, 0.015}});
   for (const auto& [name, picture] :
        {std::pair<const char*, Picture>("cornell", {64, 64, 1024}), {"arcade", {80, 45, 1024}}}) {
     const Scene scene = committed(name);
-    const bool closed = std::string(name) == "cornell";
     for (const Row& row : rows) {
-      const std::vector<std::string> settings{row.settings[0], row.settings[1]};
+      const std::vector<std::string> settings{std::string("resolution=") + row.resolution,
+                                              std::string("rays=") + row.rays};
       const bool light = std::string(row.effect) == "light";
       const Against found = light ? ofLight(scene, picture, settings) : ofOcclusion(scene, picture, settings);
-      WARN(name << ", " << row.effect << ", " << settings[0] << " " << settings[1] << ": " << found.rmse
-                << ", ratio " << found.ratio);
-      CHECK(found.rmse == Approx(closed ? row.cornell : row.arcade).margin(0.02));
-      if (light) CHECK(found.ratio == Approx(closed ? row.cornellRatio : row.arcadeRatio).margin(0.015));
+      table.row(
+          std::string(name) + ", " + row.effect + ", " + row.resolution + " voxels, " + row.rays + " rays",
+          {found.rmse, light ? found.ratio : NAN});
     }
   }
 }
@@ -176,9 +173,13 @@ TEST_CASE("the printed walk misses voxels and finds others, as its card says") {
   }
   REQUIRE(all > 20000);
   CAPTURE(all, 1.0 * missed / all, 1.0 * other / all, invented);
-  CHECK(missed > 0);
-  CHECK(missed < 0.02 * all);
-  CHECK(other < 0.1 * all);
+  // The card's figures, of the same rays on every device but for rounding: half as much again, or half of it.
+  constexpr double kMissed = 0.0004, kOther = 0.068, kMargin = 1.5;
+  CHECK(all == Approx(45151).epsilon(0.01));
+  CHECK(missed < kMargin * kMissed * all);
+  CHECK(missed > kMissed / kMargin * all);
+  CHECK(other < kMargin * kOther * all);
+  CHECK(other > kOther / kMargin * all);
 }
 
 namespace {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "support/glsl_functions.h"
+#include "support/kept_table.h"
 #include "support/scene_builder.h"
 
 using namespace lumivox;
@@ -218,14 +219,17 @@ TEST_CASE("a hemisphere of discs of radiance 1 is reflected as at most 1.05 of t
 }
 
 TEST_CASE("table: how far discs off their axis are from the closed forms", "[.]") {
+  KeptTable table("virtual_area_lights.discs_off_axis", {{"of the closed form", 3, 0.002}});
   for (const double radius : {0.1, 0.5, 1.0})
     for (const bool perpendicular : {false, true})
       for (const double angle : {0.3, 0.6, 0.785398, 0.9, 1.2}) {
         const double height = std::cos(angle), off = std::sin(angle);
         if (perpendicular && radius >= off) continue;
         const float found = formFactors({{radius, height, off, perpendicular ? 1.0 : 0.0}}).front().x;
-        std::printf("r/d %.1f %s angle %.2f: %.3f\n", radius, perpendicular ? "perpendicular" : "parallel",
-                    angle, found / exactFormFactor(radius, height, off, perpendicular));
+        std::ostringstream name;
+        name << "r/d " << radius << ", " << (perpendicular ? "perpendicular" : "parallel") << ", angle "
+             << std::setprecision(2) << angle;
+        table.row(name.str(), {found / exactFormFactor(radius, height, off, perpendicular)});
         CHECK(found > 0.0);
         CHECK(found <= 1.0);
       }

@@ -1,5 +1,6 @@
 // The points pass: what it hands to the device, when it runs, and what it refuses.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -142,9 +143,31 @@ TEST_CASE(
   CHECK_FALSE(ran(still.render(0.5, 1), "points"));
 }
 
-TEST_CASE("points without a triangle, or more than there is room for, are refused before anything is taken") {
-  const Scene nothing = SceneBuilder().scene;
-  CHECK_THAT(messageOf<Error>([&] { pointsOf(nothing, 10); }), Contains("has no triangle"));
+TEST_CASE(
+    "where there is no triangle all light of points is left out, or nothing, when nothing is left out") {
+  const Scene nothing = loadScene(sourceDirectory() / "scenes/stress/no_triangles.scene");
+  const Pipeline ours = pipeline("virtual_area_lights"),
+                 published = Pipeline::load(
+                     sourceDirectory() /
+                     "scenes/pipelines/virtual_area_lights/virtual_area_lights_as_published.pipeline");
+  for (const Pipeline* made : {&ours, &published})
+    for (const bool everything : {false, true}) {
+      RenderOptions options = small();
+      options.keepEverything = everything;
+      PipelineExecutor executor(device(), techniques(), nothing, *made, options);
+      const FrameResult frame = executor.render(0.0);
+      CAPTURE(made->name, everything);
+      // The environment alone.
+      const ImageBuffer image = frame.outputs.at("final"), light = frame.outputs.at("indirect_diffuse");
+      for (int c = 0; c < 3; ++c)
+        CHECK(image.at(7, 7, c) == Approx(std::array{0.25, 0.5, 1.0}[static_cast<std::size_t>(c)]));
+      for (const float value : light.values()) CHECK(value == 0.0f);
+      CHECK(ran(frame, "points") == everything);
+    }
+  CHECK(pointsOf(nothing, 10).count == 0);
+}
+
+TEST_CASE("more points than there is room for are refused before anything is taken") {
   const Scene scene = floorAndPanel();
   gpu::Device tight({.memoryBytes = 8u << 20});
   PassHarness harness(tight, techniques(), "virtual_area_lights", "points", scene, snapshotOf(scene, 0.0));

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include "../../techniques/virtual_area_lights/vertex_points.h"
 #include "lumivox/base/error.h"
 #include "lumivox/experiment/voxelizers.h"
 #include "support/against_reference.h"
 #include "support/half_masked_sheet.h"
+#include "support/kept_table.h"
 #include "support/virtual_area_lights.h"
 
 using namespace lumivox;
@@ -39,6 +41,12 @@ struct Shown {
     pass.run();
     return pass.output<SurfacePoints>("points");
   }
+  virtual_area_lights::VertexPoints vertices(const SurfacePoints& points) const {
+    PassHarness pass(device(), techniques(), "virtual_area_lights", "vertices", scene, snapshot);
+    pass.setInput("points", points);
+    pass.run();
+    return pass.output<virtual_area_lights::VertexPoints>("vertices");
+  }
   /// Diffuse and, where the scene has glossy surfaces, glossy.
   std::pair<ImageBuffer, ImageBuffer> apply(const SurfacePoints& points, const SparseLight& light,
                                             const PassSettings& settings) {
@@ -48,6 +56,7 @@ struct Shown {
     pass.setInput("gbuffer", gbuffer());
     pass.setInput("points", points);
     pass.setInput("light", light);
+    pass.setInput("vertices", vertices(points));
     pass.run();
     return {imageOf(*pass.output<Image>("diffuse").texture),
             light.glossy ? imageOf(*pass.output<Image>("glossy").texture) : ImageBuffer()};
@@ -342,6 +351,59 @@ TEST_CASE(
       shown.apply(points, light, {{"at", std::string("vertices")}, {"interpolate", std::string("plain")}}));
 }
 
+TEST_CASE("light at vertices without their points, or with those of other points, is refused") {
+  const SceneBuilder builder = oneTriangle({{-1, 0, 0.5f}, {1.2f, 0, 0.3f}, {0.1f, 0, -1}}, 1.2);
+  Shown shown(builder.scene);
+  const SurfacePoints points = shown.points(16), others = shown.points(8);
+  const std::vector<glm::vec4> ones(static_cast<std::size_t>(points.count), glm::vec4(1.0f));
+  PassHarness pass(device(), techniques(), "virtual_area_lights", "apply", shown.scene, shown.snapshot);
+  pass.setParameter("at", std::string("vertices"));
+  pass.setInput("gbuffer", shown.gbuffer());
+  pass.setInput("points", points);
+  pass.setInput("light", SparseLight{ofPoints(ones, "light"), ofPoints(ones, "place"), nullptr, nullptr});
+  CHECK_THAT(messageOf<Error>([&] { pass.run(); }), Catch::Contains("reads 'vertices'; expected it"));
+  pass.setInput("vertices", shown.vertices(others));
+  CHECK_THAT(messageOf<Error>([&] { pass.run(); }), Catch::Contains("refer to other points"));
+  pass.setInput("vertices", shown.vertices(points));
+  CHECK_NOTHROW(pass.run());
+}
+
+TEST_CASE("what vertices refer to is found once, by a pass of its own that light at pixels leaves out") {
+  SceneBuilder builder;
+  builder.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, builder.lambert(0.5f));
+  builder.quad({-0.5f, 0.25f, 0}, {1, 0, 0}, {0, 1, 0}, builder.lambert(0.4f)).motion =
+      RigidMotion{.angularSpeed = 1.0};
+  builder.light(LightKind::point, glm::vec3(1.0f), {0, 1, 0.4});
+  builder.look({0, 0.5, 3}, {0, 0.4, 0}, {0, 1, 0}, 0.7, 16, 16);
+  const Pipeline committed = pipeline("virtual_area_lights");
+  RenderOptions options;
+  options.width = options.height = 16;
+  options.parameters = committed.settings({"points=64", "lights=64"});
+  const auto ran = [](const FrameResult& frame, const std::string& pass) {
+    return std::any_of(frame.passes.begin(), frame.passes.end(),
+                       [&](const PassRecord& record) { return record.name == pass && record.ran; });
+  };
+  {
+    PipelineExecutor pixels(device(), techniques(), builder.scene, committed, options);
+    const FrameResult frame = pixels.render(0.0, 0);
+    CHECK(ran(frame, "apply"));
+    CHECK_FALSE(ran(frame, "vertices"));
+  }
+  options.parameters = committed.settings({"points=64", "lights=64", "as_published=on"});
+  PipelineExecutor vertices(device(), techniques(), builder.scene, committed, options);
+  vertices.keepOutput("vertices", "vertices");
+  const auto buffer = [&] {
+    return dynamic_cast<const Out<virtual_area_lights::VertexPoints>&>(
+               *vertices.output("vertices", "vertices"))
+        .value()
+        .any;
+  };
+  CHECK(ran(vertices.render(0.0, 0), "vertices"));
+  const gpu::BufferRef found = buffer();
+  vertices.render(0.5, 1);  // what moved still refers to the same points
+  CHECK(buffer() == found);
+}
+
 TEST_CASE(
     "'as_published' in every pass is the same image as the printed words set one by one, and as its pipeline") {
   Scene scene = litRoom(kPixels, kPixels);
@@ -350,12 +412,13 @@ TEST_CASE(
     const std::string text = fmt::format(R"(pipeline "published" {{
       pass gbuffer direct_lighting.gbuffer {{ }}
       pass points virtual_area_lights.points {{ points 64 }}
+      pass vertices virtual_area_lights.vertices {{ points points.points }}
       pass map reflective_shadow_maps.render {{ size 8 }}
       pass choose reflective_shadow_maps.choose {{ map map.map  lights 64  {} }}
       pass gather virtual_area_lights.gather {{ points points.points  lights choose.lights  {} }}
       pass normalise virtual_area_lights.normalise {{ points points.points  light gather.light  {} }}
       pass occlude virtual_area_lights.occlude {{ points points.points  light normalise.light  {} }}
-      pass apply virtual_area_lights.apply {{ gbuffer gbuffer  points points.points  light occlude.light  {} }}
+      pass apply virtual_area_lights.apply {{ gbuffer gbuffer  points points.points  light occlude.light  vertices vertices.vertices  {} }}
       output indirect_diffuse apply.diffuse
       output indirect_glossy apply.glossy
     }})",
@@ -406,7 +469,7 @@ ImageBuffer diffuseWith(const Scene& scene, int points, const std::string& norma
                  line + words);
   };
   add("    light gather.light\n", normalise);
-  add("    light occlude.light\n", apply);
+  add("    light occlude.light\n    vertices vertices.vertices\n", apply);
   return pictured(scene, {64, 64}, Pipeline::parse(text, committed.file),
                   {"points=" + std::to_string(points), "occlusion=off", "lights=256"})
       .outputs.at("indirect_diffuse");
@@ -435,15 +498,15 @@ TEST_CASE(
 }
 
 TEST_CASE("table: light at vertices against light at pixels, by triangles", "[.]") {
+  KeptTable table("virtual_area_lights.vertices", {{"difference over the mean", 3, 0.005, 0.02}});
   const Scene cornell = loadScene(sourceDirectory() / "scenes/cornell.scene");
   for (int times = 0; times <= 5; ++times) {
     const Scene scene = finer(cornell, times);
     for (const int points : {512, 2048, 8192}) {
       const double difference = ofVertices(scene, points);
-      std::printf("cornell %6zu triangles %5d points: %.3f of the mean\n", scene.indices.size() / 3, points,
-                  difference);
-      std::fflush(stdout);
-      CHECK(difference < 9.0);
+      table.row("cornell, " + std::to_string(scene.indices.size() / 3) + " triangles, " +
+                    std::to_string(points) + " points",
+                {difference});
     }
   }
 }
@@ -451,6 +514,8 @@ TEST_CASE("table: light at vertices against light at pixels, by triangles", "[.]
 TEST_CASE("table: the squared distance of Eq. 10 and 11 as printed, against every light at every pixel",
           "[.]") {
   const std::string on = "    as_published on\n";
+  KeptTable table("virtual_area_lights.squared_distance",
+                  {{"without the distance", 3, 0.005, 0.02}, {"with it", 3, 0.005, 0.02}});
   const Scene scene = finer(loadScene(sourceDirectory() / "scenes/cornell.scene"), 5);
   const Pipeline all = Pipeline::load(
       sourceDirectory() / "scenes/pipelines/virtual_area_lights/virtual_area_lights_brute_force.pipeline");
@@ -458,13 +523,12 @@ TEST_CASE("table: the squared distance of Eq. 10 and 11 as printed, against ever
   for (const int points : {256, 1024, 4096}) {
     const double ours = differenceOf(diffuseWith(scene, points, "", "    at vertices\n"), right),
                  printed = differenceOf(diffuseWith(scene, points, on, on), right);
-    std::printf("%d points: without the distance %.3f, with it %.3f of the mean\n", points, ours, printed);
-    std::fflush(stdout);
-    CHECK(ours < 9.0);
+    table.row(std::to_string(points) + " points", {ours, printed});
   }
 }
 
 TEST_CASE("table: light at the vertices of large models against that at pixels, on the models alone", "[.]") {
+  KeptTable table("virtual_area_lights.vertices_of_models", {{"difference over the mean", 3, 0.005, 0.02}});
   for (const auto& [name, albedo] : {std::pair("bunny", 0.72f), std::pair("dragon", 0.35f)}) {
     const Scene scene = loadScene(sourceDirectory() / ("scenes/" + std::string(name) + ".scene"));
     PassHarness seen(device(), techniques(), "direct_lighting", "gbuffer", scene,
@@ -488,10 +552,9 @@ TEST_CASE("table: light at the vertices of large models against that at pixels, 
         sum += static_cast<double>(ofModel[1][i]);
       }
       const auto count = static_cast<double>(ofModel[0].size());
-      std::printf("%s %5d points: %.3f of the mean of %zu values\n", name, points,
-                  std::sqrt(squares / count) / (sum / count), ofModel[0].size());
-      std::fflush(stdout);
       CHECK(sum > 0.0);
+      table.row(std::string(name) + ", " + std::to_string(points) + " points",
+                {std::sqrt(squares / count) / (sum / count)});
     }
   }
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "support/cones.h"
+#include "support/kept_table.h"
 #include "support/marching.h"
 
 using namespace lumivox;
@@ -57,9 +58,12 @@ TEST_CASE("in a closed box of albedo a the bounces add up to 1 + a + a^2 + ..., 
     }
 }
 
-// Minutes on a software rasteriser: named by hand, as the card says.
+// Minutes on a software rasteriser.
 TEST_CASE("in a closed box of albedo 0.9 at 64 voxels 48 bounces come within 5 % of 1 / (1 - a)", "[.]") {
-  CHECK(seenInBox(0.9f, 64, 48) == Approx(9.0).epsilon(0.05));
+  const double seen = seenInBox(0.9f, 64, 48);
+  CHECK(seen == Approx(9.0).epsilon(0.05));
+  KeptTable table("voxel_cone_tracing.bounces", {{"of a / (1 - a)", 3, 0.003}});
+  table.row("48 bounces, 64 voxels, albedo 0.9", {seen / 9.0});
 }
 
 TEST_CASE("further bounces in one grid lose what comes through walls of sheets each time") {

@@ -7,11 +7,12 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/measure/metrics.h"
-#include "support/cones.h"
+#include "support/sheets.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
 using Catch::Matchers::Contains;
+using cones::inputOf;
 
 namespace {
 
@@ -33,12 +34,13 @@ Scene seenThrough(const Lens& lens, const glm::vec3& environment = glm::vec3(0.0
   return builder.scene;
 }
 
-ImageBuffer seen(const Scene& scene, const RadianceGrid& grid, const Lens& lens, double step = 0.125) {
+template <class Store>
+ImageBuffer seen(const Scene& scene, const Store& grid, const Lens& lens, double step = 0.125) {
   PassHarness harness(device(), techniques(), "voxel_cone_tracing", "lens", scene, snapshotOf(scene, 0.0));
   harness.setParameter("width", std::string(lens.width));
   harness.setParameter("opacity", std::string(lens.opacity));
   harness.setParameter("step", step);
-  harness.setInput("grid", grid);
+  harness.setInput(inputOf(grid), grid);
   harness.run();
   return imageOf(*harness.output<Image>("radiance").texture);
 }
@@ -85,6 +87,20 @@ TEST_CASE(
       CHECK(image.at(kSide / 2, kSide / 2, 0) == Approx(3.0 * (1.0 - left) + 0.5 * left).epsilon(0.01));
     }
   }
+}
+
+TEST_CASE(
+    "of a sheet of opacity a the lens sees a of its light and 1 - a of what is behind, in every store") {
+  // The middle pixel looks along the sheet's normal; the sheet sends 0.5 W/(sr m^2), the environment 2.
+  const float opacity = GENERATE(0.2f, 0.5f, 0.8f);
+  const double a = static_cast<double>(opacity);
+  cones::forSheets(2, opacity, [&](const auto& store, const char* name) {
+    CAPTURE(name, opacity);
+    const ImageBuffer image = seen(seenThrough({}, glm::vec3(2.0f)), store, {});
+    CHECK(image.at(kSide / 2, kSide / 2, 0) == Approx(0.5 * a + 2.0 * (1.0 - a)).margin(0.06));
+    const ImageBuffer dark = seen(seenThrough({}), store, {});
+    CHECK(dark.at(kSide / 2, kSide / 2, 0) == Approx(0.5 * a).margin(0.03));
+  });
 }
 
 TEST_CASE("an edge out of focus is as blurred as its circle of confusion") {

@@ -85,14 +85,16 @@ ReflectiveShadowMap photonsOnA(int photons, const std::vector<float>& irradiance
   return map;
 }
 
-RadianceOctree relit(const VoxelFragments& list, const ReflectiveShadowMap& map) {
+RadianceOctree relit(const VoxelFragments& list, const ReflectiveShadowMap& map,
+                     bool treeAsPublished = false) {
   const Scene scene = cones::emptyScene();
   PassHarness splat(device(), techniques(), "voxel_cone_tracing", "octree_splat", scene,
                     snapshotOf(scene, 0.0));
   splat.setParameter("photons_are", std::string("relit"));
   splat.setInput("photons", map);
   splat.setInput("fragments", list);
-  splat.setInput("octree", filteredOctree(leavesOf(list, "in_leaves"), "average", "averaged"));
+  splat.setInput("octree", filteredOctree(leavesOf(list, "in_leaves", "float", "own", "one", treeAsPublished),
+                                          "average", "averaged"));
   splat.run();
   return splat.output<RadianceOctree>("radiance");
 }
@@ -152,23 +154,26 @@ TEST_CASE(
   };
   const float pi = static_cast<float>(kPi);
   for (const Row& row : {Row{1, {pi}, 1.0}, Row{4, {pi}, 1.0}, Row{4, {pi, 3 * pi}, 2.0},
-                         Row{3, {pi, 3 * pi}, 5.0 / 3.0}, Row{0, {pi}, 0.0}}) {
-    const RadianceOctree octree = relit(twoVoxels(), photonsOnA(row.photons, row.irradiances));
-    const double light = mean * row.light;
-    const auto leaves = bricksOf(octree, 0);
-    CAPTURE(row.photons, row.light);
-    for (int i = 0; i < 9; ++i) {
-      const int y = i % 3, z = i / 3;
-      const double across = kLast[static_cast<std::size_t>(y)] * kLast[static_cast<std::size_t>(z)];
-      CHECK(at(leaves, {0, 0, 0}, 1, y, z).x == Approx(0.5 * light * across).margin(1e-6));
-      CHECK(at(leaves, {0, 0, 0}, 2, y, z).x == Approx(0.5 * light * across).margin(1e-6));
-      CHECK(at(leaves, {1, 0, 0}, 0, y, z).x == Approx(0.5 * light * across).margin(1e-6));
-      CHECK(at(leaves, {1, 0, 0}, 1, y, z).x == 0.0f);
-      // What is opaque stays so, whether light falls on it or not.
-      CHECK(at(leaves, {1, 0, 0}, 1, y, z).w == Approx(0.5 * across).margin(1e-6));
+                         Row{3, {pi, 3 * pi}, 5.0 / 3.0}, Row{0, {pi}, 0.0}})
+    // By ranks, and from the root of a tree that was made depth after depth.
+    for (const bool treeAsPublished : {false, true}) {
+      const RadianceOctree octree =
+          relit(twoVoxels(), photonsOnA(row.photons, row.irradiances), treeAsPublished);
+      const double light = mean * row.light;
+      const auto leaves = bricksOf(octree, 0);
+      CAPTURE(row.photons, row.light, treeAsPublished);
+      for (int i = 0; i < 9; ++i) {
+        const int y = i % 3, z = i / 3;
+        const double across = kLast[static_cast<std::size_t>(y)] * kLast[static_cast<std::size_t>(z)];
+        CHECK(at(leaves, {0, 0, 0}, 1, y, z).x == Approx(0.5 * light * across).margin(1e-6));
+        CHECK(at(leaves, {0, 0, 0}, 2, y, z).x == Approx(0.5 * light * across).margin(1e-6));
+        CHECK(at(leaves, {1, 0, 0}, 0, y, z).x == Approx(0.5 * light * across).margin(1e-6));
+        CHECK(at(leaves, {1, 0, 0}, 1, y, z).x == 0.0f);
+        // What is opaque stays so, whether light falls on it or not.
+        CHECK(at(leaves, {1, 0, 0}, 1, y, z).w == Approx(0.5 * across).margin(1e-6));
+      }
+      checkRoot(octree, {0.5 * light, 1.5 * light, 0.0});
     }
-    checkRoot(octree, {0.5 * light, 1.5 * light, 0.0});
-  }
 }
 
 TEST_CASE(
@@ -195,4 +200,13 @@ TEST_CASE("relighting is refused without the fragments, and where voxels do not 
   };
   refused(filteredOctree(leavesOf(list, "in_leaves"), "average", "averaged"), false);
   refused(filteredOctree(leavesOf(list)), true);
+}
+
+TEST_CASE("photons relight all voxels, and refuse fragments that bring their light along") {
+  VoxelFragments list = twoVoxels();
+  const std::array<std::uint32_t, 2> words{VoxelFragments::kNotKnown, VoxelFragments::kNotKnown};
+  list.reflected = std::make_shared<gpu::Buffer>(device(), sizeof(words), "reflected");
+  list.reflected->uploadValues(std::span<const std::uint32_t>(words));
+  CHECK_THROWS_WITH(relit(list, photonsOnA(1, {static_cast<float>(kPi)})),
+                    Catch::Matchers::Contains("octree_splat: input 'fragments' brings along direct light"));
 }

@@ -54,6 +54,9 @@ const Store kStores[] = {
      "voxel_cone_tracing.filter_directional { finest finest.radiance }", "directions"},
     {"octree", "voxel_cone_tracing.octree_inject { fragments voxels.fragments tree tree.tree $ }",
      "voxel_cone_tracing.octree_filter { radiance finest.radiance }", "octree"},
+    {"octree of six faces",
+     "voxel_cone_tracing.octree_inject { fragments voxels.fragments tree tree.tree faces six $ }",
+     "voxel_cone_tracing.octree_filter { radiance finest.radiance }", "octree"},
     {"clipmap", "voxel_cone_tracing.clipmap { resolution 64 levels 1 $ }",
      "voxel_cone_tracing.clipmap_filter { radiance finest.radiance }", "clipmap"}};
 
@@ -186,10 +189,10 @@ TEST_CASE("soft shadows, and what a lens sees, are through every store what they
         error;  // of the mean, for other stores than the octree, whose voxels are those of the grid
   };
   // A lamp in six grids shines to the side that it faces alone, and voxels have edges: of its light, which is
-  // nearly all that the lens sees, a tenth lies elsewhere.
+  // nearly all that the lens sees, a tenth lies elsewhere (of the octree's of six faces 0.107).
   for (const Way& way :
        {Way{"voxel_cone_tracing.soft_shadows { gbuffer gbuffer  lights lights.lights ", "", 0.003, 0.02},
-        Way{"voxel_cone_tracing.lens { ", "shadow shadow.depth  emission on", 0.1, 1.0}}) {
+        Way{"voxel_cone_tracing.lens { ", "shadow shadow.depth  emission on", 0.12, 1.0}}) {
     const ImageBuffer one = directLight(scene, way.tracing, way.injecting, nullptr);
     for (const Store& store : kStores) {
       CAPTURE(way.tracing, store.name);

@@ -63,9 +63,9 @@ TEST_CASE("every program that compares its depth with that of another has a posi
       for (const shader::PackedStage& stage : variant.stages) {
         if (stage.stage != gpu::Stage::vertex) continue;
         ++variants;
-        CHECK(hasInvariantPosition(pack->codes[stage.code].spirv));
+        CHECK(hasInvariantPosition(pack->codes[stage.code].spirv()));
         // For drivers that take text.
-        CHECK(pack->codes[stage.code].glsl.find("invariant gl_Position") != std::string::npos);
+        CHECK(pack->codes[stage.code].glsl().find("invariant gl_Position") != std::string::npos);
       }
   }
   CHECK(variants >= 8);  // of depth peeling: textures, masks, first layer

@@ -1,6 +1,7 @@
 // Work that takes hours is kept as it is done: reports go on where they were interrupted, sweeps share a
 // store, and a point or a cell that fails costs itself alone.
 #include <algorithm>
+#include <memory>
 
 #include "lumivox/results/store.h"
 #include "support/drawn_page.h"
@@ -111,6 +112,163 @@ TEST_CASE(
   const ResultsStore stored(place.file("results.sqlite"), ResultsStore::Mode::read);
   CHECK(stored.controls(stored.runs().front().identity).size() == 1);
   checkRefused(place.run("report", {"slow"}, {"--budget", "0"}), "--budget");
+}
+
+namespace {
+
+/// A pipeline of its own with a sweep over these values, which rests in every frame.
+void writeSlow(const Place& place, const std::string& name, const std::string& values) {
+  place.write(name + ".pipeline",
+              "pipeline \"" + name +
+                  "\" {\n  param value 1 in 0..10\n  pass paint hostile.paint { deed rest  value $value "
+                  "}\n\n  output direct paint.radiance\n}\n\nsweep values { value [" +
+                  values + "] }\n");
+}
+
+std::vector<double> valuesIn(const std::string& store) {
+  std::vector<double> values;
+  for (const StoredRun& run : ResultsStore(store, ResultsStore::Mode::read).runs())
+    values.push_back(run.point.parameters.at("value").number);
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("another report on the same page leaves an interrupted one its points, and it goes on with them") {
+  const Place place;
+  const std::string checkpoint = place.file("page.unfinished.sqlite");
+  const std::vector<std::string> toPage{"-o", place.file("page.html")};
+  // Killed with one point done and two that lack their times; Ctrl-C tells how to go on.
+  for (const int signal : {SIGKILL, SIGINT}) {
+    CAPTURE(signal);
+    for (const std::string& earlier : {checkpoint, place.file("said.txt")}) std::filesystem::remove(earlier);
+    {
+      Started report(place.words("report", {"slow"}, toPage), place.file("said.txt"), "4");
+      REQUIRE(becomes([&] { return place.has("said.txt") && contains(place.read("said.txt"), "value=4"); }));
+      report.signalAfter(std::chrono::milliseconds(0), signal);
+      report.wait();
+    }
+    if (signal == SIGINT)
+      CHECK(contains(place.read("said.txt"), checkpoint + " keeps 1 point, and 2 more but for their times; "
+                                                          "to go on: lumivox"));
+    // One that shares no point, and one that takes up a point of the other and adds one of its own.
+    const CommandResult foreign = place.run("report", {"fast"}, toPage);
+    INFO(foreign.errors);
+    CHECK(foreign.exitCode == 0);
+    CHECK(contains(foreign.output, "page.html"));
+    CHECK_FALSE(contains(foreign.output, "taken up"));
+    REQUIRE(place.has("page.unfinished.sqlite"));
+    CHECK(contains(unwrapped(foreign.errors),
+                   "page.unfinished.sqlite: stays, it keeps 3 points of an interrupted report; to go on: "
+                   "lumivox --techniques"));
+    const CommandResult sharing =
+        place.run("report", {"slow", "fast"}, {"-o", place.file("page.html"), "--no-sweep"});
+    INFO(sharing.errors);
+    CHECK(sharing.exitCode == 0);
+    CHECK(contains(sharing.output, "1 of 2 points were taken up"));
+    {
+      const ResultsStore kept(checkpoint, ResultsStore::Mode::read);
+      CHECK(kept.count().runs == 1);
+      CHECK(kept.count().untimed == 2);
+    }
+    CHECK(valuesIn(checkpoint) == std::vector<double>{1.0});
+    const CommandResult resumed = place.run("report", {"slow"}, toPage);
+    INFO(resumed.errors);
+    CHECK(resumed.exitCode == 0);
+    CHECK(contains(resumed.output, "1 of 4 points were taken up"));
+    CHECK(contains(resumed.errors, "value=3: taken up from"));
+    CHECK_FALSE(contains(resumed.errors, "stays, "));
+    CHECK_FALSE(std::filesystem::exists(checkpoint));
+    CHECK(Json::parse(place.read("page.json")).at("scenes").at(0).at("points").size() == 4);
+  }
+}
+
+TEST_CASE("an interrupted report goes on under another command with the same points, and leaves nothing") {
+  const Place place;
+  {
+    Started report(place.words("report", {"slow"}, {"-o", place.file("page.html")}), place.file("said.txt"),
+                   "4");
+    REQUIRE(becomes([&] { return place.has("said.txt") && contains(place.read("said.txt"), "value=4"); }));
+  }
+  const CommandResult again =
+      place.run("report", {"slow"}, {"--brief", "--equal-time", "16ms", "-o", place.file("page.html")});
+  INFO(again.errors);
+  CHECK(again.exitCode == 0);
+  CHECK(contains(again.output, "1 of 4 points were taken up"));
+  CHECK_FALSE(place.has("page.unfinished.sqlite"));
+}
+
+TEST_CASE("of two reports at once on one page the first to end takes no point from the other") {
+  const Place place;
+  const std::string checkpoint = place.file("page.unfinished.sqlite");
+  writeSlow(place, "long", "1 2 3 4 5 6 7 8 9");
+  const std::vector<std::string> toPage{"-o", place.file("page.html")};
+  std::vector<std::string> stored = toPage;
+  stored.insert(stored.end(), {"--store", place.file("results.sqlite")});
+  // Held at its last point but one, until the other has ended.
+  Started slow(place.words("report", {"long"}, toPage), place.file("long.txt"), "5");
+  REQUIRE(becomes([&] { return place.has("long.txt") && contains(place.read("long.txt"), "value=5"); }));
+  // With a cache of its own, and so a lock: it could take no times beside one that is held at work.
+  setenv("LUMIVOX_CACHE", place.file("other_cache").c_str(), 1);
+  const CommandResult other = place.run("report", {"fast"}, stored);
+  setenv("LUMIVOX_CACHE", place.file("cache").c_str(), 1);
+  INFO(other.errors);
+  CHECK(other.exitCode == 0);
+  // It adds its own points to its store, and none of the other's.
+  CHECK(runsIn(place.file("results.sqlite")) == 4);
+  REQUIRE(std::filesystem::exists(checkpoint));
+  CHECK(contains(unwrapped(other.errors), "page.unfinished.sqlite: stays, process "));
+  const std::size_t before = ResultsStore(checkpoint, ResultsStore::Mode::read).count().untimed;
+  CHECK(before == 3);
+  slow.signalAfter(std::chrono::milliseconds(0), SIGKILL);
+  slow.wait();
+  // The killed one is gone on with; meanwhile another on the same page begins and ends.
+  Started resumed(place.words("report", {"long"}, toPage), place.file("resumed.txt"));
+  REQUIRE(becomes([&] { return place.has("resumed.txt") && contains(place.read("resumed.txt"), "value="); }));
+  CHECK(place.run("report", {"fast"}, toPage).exitCode == 0);
+  const int status = resumed.wait();
+  INFO(place.read("resumed.txt"));
+  CHECK(status == 0);
+  CHECK_FALSE(contains(place.read("resumed.txt"), "readonly"));
+  CHECK(contains(place.read("resumed.txt"), "value=2: taken up from"));
+  CHECK_FALSE(std::filesystem::exists(checkpoint));
+  const Json points = Json::parse(place.read("page.json")).at("scenes").at(0).at("points");
+  CHECK(points.size() == 9);
+  for (const Json& point : points) CHECK_FALSE(point.contains("failure"));
+}
+
+TEST_CASE("two reports of the same points at once share them, and both pages are whole") {
+  const Place place;
+  const std::vector<std::string> words = place.words("report", {"slow"}, {"-o", place.file("page.html")});
+  Started first(words, place.file("first.txt")), second(words, place.file("second.txt"));
+  const int firstStatus = first.wait(), secondStatus = second.wait();
+  INFO(place.read("first.txt") << "\n" << place.read("second.txt"));
+  CHECK(firstStatus == 0);
+  CHECK(secondStatus == 0);
+  CHECK_FALSE(place.has("page.unfinished.sqlite"));
+  CHECK(Json::parse(place.read("page.json")).at("scenes").at(0).at("points").size() == 4);
+}
+
+TEST_CASE("reports that begin while others on the page end lose no point, whoever removes the file") {
+  const Place place;
+  constexpr int kAtOnce = 3, kRounds = 4;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<std::unique_ptr<Started>> reports;
+    for (int i = 0; i < kAtOnce; ++i) {
+      const std::string seed = std::to_string(1 + round * kAtOnce + i);
+      reports.push_back(std::make_unique<Started>(
+          place.words("report", {"fast"}, {"--no-sweep", "--seed", seed, "-o", place.file("page.html")}),
+          place.file("said" + std::to_string(i))));
+    }
+    for (int i = 0; i < kAtOnce; ++i) {
+      const int status = reports[static_cast<std::size_t>(i)]->wait();
+      INFO(place.read("said" + std::to_string(i)));
+      CHECK(status == 0);
+    }
+    CHECK_FALSE(place.has("page.unfinished.sqlite"));
+    CHECK(Json::parse(place.read("page.json")).at("scenes").at(0).at("points").size() == 1);
+  }
 }
 
 TEST_CASE("a report of a wrong text leaves no checkpoint") {

@@ -36,14 +36,15 @@ std::vector<std::string> linksOf(const std::string& markdown) {
   return links;
 }
 
-/// A text without what stands from "<!-- reproduced" to "<!-- end -->".
+/// A text without what stands from "<!-- reproduced" or "<!-- measured" to "<!-- end -->".
 std::string withoutGenerated(std::string text) {
-  static const std::string kBegin = "<!-- reproduced ", kEnd = "<!-- end -->";
-  for (std::size_t from = text.find(kBegin); from != std::string::npos; from = text.find(kBegin, from)) {
-    const std::size_t end = text.find(kEnd, from);
-    if (end == std::string::npos) break;
-    text.erase(from, end + kEnd.size() - from);
-  }
+  static const std::string kEnd = "<!-- end -->";
+  for (const std::string begin : {"<!-- reproduced ", "<!-- measured "})
+    for (std::size_t from = text.find(begin); from != std::string::npos; from = text.find(begin, from)) {
+      const std::size_t end = text.find(kEnd, from);
+      if (end == std::string::npos) break;
+      text.erase(from, end + kEnd.size() - from);
+    }
   return text;
 }
 
@@ -261,6 +262,8 @@ TEST_CASE("a paper card begins with an image of the technique and its three head
     CHECK(fs::file_size(card.parent_path() / image[1].str()) < 60'000);
     for (const char* number : {"\n1. **", "\n2. **", "\n3. **"}) CHECK(top.find(number) != std::string::npos);
     CHECK(top.find("\n4. ") == std::string::npos);
+    // And says what of its sources is not built.
+    CHECK(contains(text, "\n## Not built\n\n- "));
   }
 }
 

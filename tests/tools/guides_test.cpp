@@ -324,7 +324,7 @@ TEST_CASE("texts of scenes and pipelines are checked, formatted and measured as 
                     words = scene.of("describe material").output;
   for (const char* block : {"camera NAME", "mesh NAME", "light [NAME]", "medium NAME", "animate NAME"})
     CHECK(contains(blocks, block));
-  for (const char* word : {"exponent", "emission", "W/(sr m^2)", "at least 0", "default"}) {
+  for (const char* word : {"exponent", "emission", "W/(sr m^2)", "from 0 to 1", "default"}) {
     INFO(word << "\n" << words);
     CHECK(contains(words, word));
   }

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "lumivox/base/file.h"
+#include "support/elf.h"
 #include "tools/cli_support.h"
 #include "tools/installation.h"
 
@@ -75,6 +76,12 @@ TEST_CASE(
     INFO(file);
     CHECK(mentionsOfTree(lab / file).empty());
   }
+  // As the tree's own, its library exports the entry point alone, and shares no variable with another one.
+  const std::vector<ElfSymbol> symbols =
+      exportedSymbols(readFile(lab / "build/lib/techniques/libglow.so", kLargestLibraryFile));
+  REQUIRE(symbols.size() == 1);
+  CHECK(symbols.front().name == "lumivox_technique_register");
+  CHECK(contains(readFile(lab / "build/build.ninja"), "-fno-gnu-unique"));
 
   const std::string furnace = (installed.data() / "scenes/furnace.scene").string();
   const std::string more = " --techniques build/lib/techniques --resolution 16x16 ";
@@ -147,7 +154,7 @@ TEST_CASE("the Debian package names its dependencies and holds programs, headers
   REQUIRE(from != std::string::npos);
   const std::string depends = information.output.substr(from, information.output.find('\n', from) - from);
   for (const char* dependency : {"libc6", "libepoxy0", "libembree3-3", "libopenvdb", "libsqlite3-0", "libfmt",
-                                 "libegl1", "libgl1-mesa-dri", "libjs-chart.js"}) {
+                                 "libegl1", "libgl1,", "libopengl0", "libgl1-mesa-dri", "libjs-chart.js"}) {
     INFO(depends << "\nlacks " << dependency);
     CHECK(contains(depends, dependency));
   }

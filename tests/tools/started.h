@@ -45,6 +45,7 @@ class Started {
     std::this_thread::sleep_for(delay);
     kill(pid_, signal);
   }
+  int process() const { return pid_; }
   /// The status as waitpid gives it.
   int wait() {
     int status = 0;

@@ -88,7 +88,7 @@ TEST_CASE("a grid that is shown is exported, and a point is measured into a stor
       committedPipeline("voxel_cone_tracing"), "--resolution 8x8");
   INFO(done.errors);
   CHECK(done.exitCode != 0);  // by the last statement alone
-  CHECK(contains(done.errors, "grid.obj: expected a name that ends in .vdb"));
+  CHECK(contains(done.errors, "grid.obj': expected a name that ends in .vdb"));
   CHECK(contains(Json::parse(place.read("exported.json")).at("message"), "grid.vdb written"));
   const CommandResult listed = runCommand("'" + (binaryDirectory() / "bin/vdbexport").string() +
                                           "' --list '" + place.file("grid.vdb") + "'");

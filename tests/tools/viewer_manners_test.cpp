@@ -128,7 +128,7 @@ TEST_CASE("a window that is closed while a reference is traced ends within a sec
   const auto last = std::chrono::file_clock::to_sys(fs::last_write_time(place.file("last.json")));
   const double seconds = std::chrono::duration<double>(ended - last).count();
   INFO("it took " << seconds << " s");
-  // With the end of the display's own server, on a machine that may be busy.
+  // On a machine that may be busy.
   CHECK(seconds < 5.0);
 }
 

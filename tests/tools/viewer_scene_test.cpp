@@ -5,7 +5,6 @@
 #include "tools/viewer_support.h"
 #include "viewer/panels.h"
 #include "viewer/scene_edits.h"
-#include "viewer/session.h"
 
 using namespace lumivox;
 using namespace lumivox::test;
@@ -45,14 +44,6 @@ Scene writtenAndRead(const Scene& scene, const SceneEdits& edits, std::string* t
   CHECK(dsl::format(dsl::parse(written, "written")) == written);  // the canonical layout
   if (text != nullptr) *text = written;
   return loadSceneText(written, scene.file);
-}
-
-std::unique_ptr<Session> sessionOf(const std::string& scene, const std::string& pipeline) {
-  SessionOptions options;
-  options.scene = scene;
-  options.pipelines = {committedPipeline(pipeline)};
-  options.techniques = {binaryDirectory() / "lib/techniques"};
-  return std::make_unique<Session>(options, [] {});
 }
 
 const Row& rowOf(const std::vector<Panel>& panels, const std::string& panel, const std::string& name) {

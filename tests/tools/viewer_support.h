@@ -2,28 +2,51 @@
 #pragma once
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "lumivox/base/image.h"
 #include "tools/cli_support.h"
+#include "tools/display.h"
+#include "viewer/session.h"
 
 namespace lumivox::test {
 
 using Json = nlohmann::json;
 
+/// A variable of the environment while it lives.
+class Variable {
+ public:
+  Variable(const char* name, const std::string& value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    setenv(name, value.c_str(), 1);
+  }
+  ~Variable() {
+    if (before_)
+      setenv(name_, before_->c_str(), 1);
+    else
+      unsetenv(name_);
+  }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
 inline bool canShowWindows() {
-  if (runCommand("command -v xvfb-run && command -v xauth").exitCode == 0 &&
-      std::filesystem::exists(binaryDirectory() / "bin/lumivox-view"))
-    return true;
-  skip("xvfb-run or xauth is not installed");
+  if (std::filesystem::exists(binaryDirectory() / "bin/lumivox-view") && display().there()) return true;
+  skip("Xvfb is not installed");
   return false;
 }
 
+/// On that display.
 inline std::string windowCommand(const std::string& options) {
-  return "xvfb-run -a -s '-screen 0 1400x1000x24' '" + (binaryDirectory() / "bin/lumivox-view").string() +
-         "' " + options;
+  return "'" + (binaryDirectory() / "bin/lumivox-view").string() + "' " + options;
 }
 
 /// The little room with a pipeline in a window, and what a script does there.
@@ -32,6 +55,15 @@ inline CommandResult shown(const Workplace& place, const std::string& script, co
   place.write("script.view", "view \"a test\" {\n" + script + "\n}\n");
   return runCommand(windowCommand("'" + place.scene() + "' '" + pipeline + "' " + options + " --script '" +
                                   place.file("script.view") + "'"));
+}
+
+/// What happens in the window, without one.
+inline std::unique_ptr<viewer::Session> sessionOf(const std::string& scene, const std::string& pipeline) {
+  viewer::SessionOptions options;
+  options.scene = scene;
+  options.pipelines = {std::filesystem::exists(pipeline) ? pipeline : committedPipeline(pipeline)};
+  options.techniques = {binaryDirectory() / "lib/techniques"};
+  return std::make_unique<viewer::Session>(options, [] {});
 }
 
 inline std::string quotedFile(const Workplace& place, const std::string& name) {

@@ -14,9 +14,12 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "lumivox/dsl/document.h"
+#include "lumivox/scene/text.h"
 
 namespace lumivox::command {
 namespace {
+
+constexpr double kSlowestRate = 1e-3, kFastestRate = 1e6;  // frames per second
 
 const CLI::App& programOf(const CLI::App& command) {
   const CLI::App* app = &command;
@@ -82,7 +85,6 @@ std::string unknownCommand(const CLI::App& app, const std::string& word) {
 std::string wrongWords(const CLI::App& app) {
   const CLI::App* command = &app;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().back();
-  if (command->get_prefix_command()) return {};  // another program reads them
   for (const std::string& word : app.remaining(true)) {
     if (word == "--") continue;
     if (word.size() < 2 || word[0] != '-')
@@ -178,7 +180,7 @@ std::unique_ptr<gpu::Device> GlobalOptions::openDevice() const {
 }
 
 TechniqueSet GlobalOptions::techniqueSet() const {
-  return TechniqueSet(TechniqueSet::defaultDirectories(techniques));
+  return TechniqueSet(TechniqueSet::defaultDirectories(techniques), strict);
 }
 
 void RunOptions::addTo(CLI::App& app) {
@@ -233,13 +235,19 @@ std::optional<double> DisplayOptions::given() const {
   return number;
 }
 
+std::string inSingleQuotes(const std::string& argument) {
+  std::string text = "'";
+  for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
 std::string asTyped(const std::string& program, int count, char** arguments) {
   std::string line;
   for (int i = 0; i < count; ++i) {
     const std::string argument = i == 0 ? program : std::string(arguments[i]);
     const bool plain =
         !argument.empty() && argument.find_first_of(" \t\n'\"\\$`*?#&|;<>(){}[]!~") == std::string::npos;
-    line += (i == 0 ? "" : " ") + (plain ? argument : "'" + argument + "'");
+    line += (i == 0 ? "" : " ") + (plain ? argument : inSingleQuotes(argument));
   }
   return line;
 }
@@ -316,9 +324,10 @@ CLI::Option* addRepeatable(CLI::App& app, const std::string& names,
 
 double secondsOf(const std::string& option, const std::string& text) {
   const std::optional<double> seconds = quantityOf(text, dsl::kTime, true);
-  if (seconds && *seconds > 0.0) return *seconds;
-  throw Error(fmt::format("{} '{}': expected a time above 0 with its unit ({}), such as 16ms or 0.5s", option,
-                          text, dsl::unitNames(dsl::kTime)));
+  if (seconds && *seconds > 0.0 && *seconds <= kLongestTime) return *seconds;
+  throw Error(fmt::format(
+      "{} '{}': expected a time above 0 with its unit ({}), such as 16ms or 0.5s, of at most {:g} s", option,
+      text, dsl::unitNames(dsl::kTime), kLongestTime));
 }
 
 namespace {
@@ -352,9 +361,10 @@ CLI::Option* addTime(CLI::App& app, double& seconds) {
                  "when in the scene's animation, such as 300ms; without a unit in seconds",
                  [&seconds](const std::string& value) {
                    const std::optional<double> read = quantityOf(value, dsl::kTime, false);
-                   if (!read)
-                     throw Error(fmt::format("--time '{}': expected a time in {}, such as 300ms or 0.5s",
-                                             value, dsl::unitNames(dsl::kTime)));
+                   if (!read || std::abs(*read) > kLongestTime)
+                     throw Error(fmt::format(
+                         "--time '{}': expected a time in {} from {:g} to {:g} s, such as 300ms or 0.5s",
+                         value, dsl::unitNames(dsl::kTime), -kLongestTime, kLongestTime));
                    seconds = *read;
                  });
 }
@@ -362,11 +372,25 @@ CLI::Option* addTime(CLI::App& app, double& seconds) {
 CLI::Option* addLength(CLI::App& app, const std::string& names, double& metres, const std::string& text) {
   return addText(app, names, "LENGTH", text, [names, &metres](const std::string& value) {
     const std::optional<double> read = quantityOf(value, dsl::kLength, false);
-    if (!read || *read < 0.0)
-      throw Error(fmt::format("{} '{}': expected a length of at least 0 in {}, such as 0.5m", names, value,
-                              dsl::unitNames(dsl::kLength)));
+    if (!read || *read < 0.0 || *read > kFarthestPlace)
+      throw Error(fmt::format("{} '{}': expected a length in {} from 0 to {:g} m, such as 0.5m", names, value,
+                              dsl::unitNames(dsl::kLength), kFarthestPlace));
     metres = *read;
   });
+}
+
+CLI::Validator numberBetween(double low, double high) {
+  return {[=](std::string& text) {
+            const std::optional<double> number = quantityOf(text, dsl::kNoDimension, false);
+            if (number && *number >= low && *number <= high) return std::string();
+            return fmt::format("'{}': expected a number from {:g} to {:g}", text, low, high);
+          },
+          fmt::format("FLOAT in [{:g} - {:g}]", low, high)};
+}
+
+CLI::Option* addFrameRate(CLI::App& app, double& framesPerSecond) {
+  return app.add_option("--fps", framesPerSecond, "frames per second of --frames (default 24)")
+      ->check(numberBetween(kSlowestRate, kFastestRate));
 }
 
 CLI::Option* addSeed(CLI::App& app, std::uint64_t& seed, const std::string& text) {
@@ -378,32 +402,43 @@ CLI::Option* addSeed(CLI::App& app, std::uint64_t& seed, const std::string& text
   });
 }
 
-std::pair<int, int> parseResolution(const std::string& text) {
-  int width = 0, height = 0, used = 0;
-  constexpr int kMost = 65536;
-  if (text.size() > 16 || std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) != 2 ||
-      static_cast<std::size_t>(used) != text.size() || width < 1 || height < 1 || width > kMost ||
-      height > kMost)
-    throw Error(fmt::format(
-        "--resolution '{}': expected WIDTHxHEIGHT in pixels, each in 1..{}, such as 640x360", text, kMost));
-  return {width, height};
+namespace {
+
+/// Two whole numbers with `between` between them; nothing for anything else.
+std::optional<std::pair<int, int>> twoNumbers(const std::string& text, const std::string& between) {
+  const std::size_t at = text.find(between);
+  if (at == std::string::npos) return std::nullopt;
+  std::pair<int, int> numbers;
+  const auto read = [](const char* first, const char* last, int& number) {
+    const auto result = std::from_chars(first, last, number);
+    return result.ec == std::errc() && result.ptr == last;
+  };
+  const char* text0 = text.data();
+  if (!read(text0, text0 + at, numbers.first) ||
+      !read(text0 + at + between.size(), text0 + text.size(), numbers.second))
+    return std::nullopt;
+  return numbers;
 }
 
-void requirePng(const std::string& option, const std::filesystem::path& file) {
-  if (file.extension() != ".png")
-    throw Error(fmt::format("{} '{}': expected a name that ends in .png", option, file.string()));
+}  // namespace
+
+std::pair<int, int> parseResolution(const std::string& text, const std::string& option) {
+  constexpr int kMost = 65536;
+  const auto size = twoNumbers(text, "x");
+  if (!size || size->first < 1 || size->second < 1 || size->first > kMost || size->second > kMost)
+    throw Error(fmt::format("{} '{}': expected WIDTHxHEIGHT in pixels, each in 1..{}, such as 640x360",
+                            option, text, kMost));
+  return *size;
 }
 
 std::pair<int, int> parseFrames(const std::string& option, const std::string& text) {
-  int first = 0, last = 0, used = 0;
-  const auto whole = [&] { return text.size() <= 24 && static_cast<std::size_t>(used) == text.size(); };
-  if (std::sscanf(text.c_str(), "%d..%d%n", &first, &last, &used) == 2 && whole() && first >= 0 &&
-      last >= first)
-    return {first, last};
-  used = 0;
-  if (std::sscanf(text.c_str(), "%d%n", &first, &used) == 1 && whole() && first >= 0) return {first, first};
-  throw Error(
-      fmt::format("{} '{}': expected FIRST..LAST, whole numbers from 0, such as 0..47", option, text));
+  constexpr int kLastFrame = 9999999;
+  const auto frames =
+      text.find("..") == std::string::npos ? twoNumbers(text + ".." + text, "..") : twoNumbers(text, "..");
+  if (!frames || frames->first < 0 || frames->second < frames->first || frames->second > kLastFrame)
+    throw Error(fmt::format("{} '{}': expected FIRST..LAST, whole numbers from 0 to {}, such as 0..47",
+                            option, text, kLastFrame));
+  return *frames;
 }
 
 std::filesystem::path numberedName(const std::filesystem::path& output, int frame) {

@@ -71,6 +71,9 @@ struct DisplayOptions {
 /// Of an EXR file: EV at which its scene is displayed.
 inline constexpr const char* kExposureAttribute = "lumivox.exposure_ev";
 
+/// A word for a shell, in single quotes. A quote within ends them, stands behind a backslash, and begins them
+/// again.
+std::string inSingleQuotes(const std::string& argument);
 /// This command line as a shell would read it, with the program's plain name in front.
 std::string asTyped(const std::string& program, int count, char** arguments);
 
@@ -106,13 +109,17 @@ CLI::Option* addLength(CLI::App& app, const std::string& names, double& metres, 
 CLI::Option* addSeed(CLI::App& app, std::uint64_t& seed,
                      const std::string& text = "of the random numbers of techniques");
 
-/// "640x360"; Error otherwise.
-std::pair<int, int> parseResolution(const std::string& text);
+/// Of options that take a number, or several: a finite one within these ends, without a unit. The only check
+/// of such options: CLI::Range lets "nan" through.
+CLI::Validator numberBetween(double low, double high);
+/// --fps: within what a text may give a deforming mesh, and more.
+CLI::Option* addFrameRate(CLI::App& app, double& framesPerSecond);
 
-/// Refuses (Error that names the option) a name that does not end in .png.
-void requirePng(const std::string& option, const std::filesystem::path& file);
+/// "640x360"; Error that names the option otherwise.
+std::pair<int, int> parseResolution(const std::string& text, const std::string& option = "--resolution");
 
-/// Frames of an animation: "3..9" or "3"; both ends belong to it. `option` is named in the Error otherwise.
+/// Frames of an animation: "3..9" or "3"; both ends belong to it, and have at most seven digits. `option` is
+/// named in the Error otherwise.
 std::pair<int, int> parseFrames(const std::string& option, const std::string& text);
 
 /// The numbered name of a frame: a run of # in the file's name is the number, else it goes before the

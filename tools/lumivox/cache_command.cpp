@@ -97,7 +97,7 @@ void addCacheCommand(Commands& commands) {
       "keep at most this much, such as 500MiB (default: $LUMIVOX_CACHE_LIMIT, else 4GiB)");
   pruning
       ->add_option("--unused-for", options->unusedDays, "also remove references not used for this many days")
-      ->check(CLI::Range(0.0, 36500.0));
+      ->check(numberBetween(0.0, 36500.0));
   pruning->add_flag("--all", options->all, "keep nothing")->excludes(limit);
   pruning->add_flag("--dry-run", options->dryRun, "only report what would be removed");
   commands.onChosen(pruning, [=] { return prune(*options); });

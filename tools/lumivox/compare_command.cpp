@@ -5,6 +5,7 @@
 #include <span>
 
 #include "command.h"
+#include "common/outputs.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/image.h"
@@ -28,6 +29,7 @@ struct CompareCommand {
 /// A layer of the image and the layer of the reference that it is compared with.
 using LayerPair = std::pair<std::string, std::string>;
 
+constexpr double kLargestError = 1e37;
 constexpr const char* kMainLayer = "main";  // how the command line names the layer without a name
 constexpr const char* kVariance = ".variance";
 
@@ -156,10 +158,7 @@ void addPanels(Sheet& sheet, const LayerPair& pair, const ImageBuffer& image, co
 }
 
 int compareFiles(const CompareCommand& command) {
-  if (!command.sheet.empty()) {
-    requirePng("--sheet", command.sheet);
-    requireWritable(command.sheet);
-  }
+  Outputs().add("--sheet", command.sheet, {".png"}).check({command.image, command.reference});
   const LayeredImage image = readExr(command.image), reference = readExr(command.reference);
   const std::vector<LayerPair> pairs = pairsOf(command, image, reference);
   const Shown display = exposureOf(command, reference, pairs);
@@ -186,7 +185,7 @@ int compareFiles(const CompareCommand& command) {
     const auto variance = reference.layers.find((pair.second == kMainLayer ? "" : pair.second) + kVariance);
     const bool known = variance != reference.layers.end() && variance->second.sameShape(right);
     // Occlusion, a fraction, is shown as it is.
-    const bool asItIs = right.channels() == 1 && !command.display.given();
+    const bool asItIs = !isRadiance(right) && !command.display.given();
     asTheyAre = asTheyAre || asItIs;
     const Display layerDisplay = asItIs ? Display{} : Display{display.exposure, command.display.toneCurve()};
     SeedsError compared = compareSeeds(std::span(&left, 1), right, known ? variance->second : ImageBuffer{},
@@ -234,7 +233,7 @@ void addCompareCommand(Commands& commands) {
       "this layer of both, or A=B: A of the first with B of the second; 'main' is the layer without a name "
       "(default: all that both have)");
   command->add_option("--rmse-at-most", options->rmseAtMost, "exit code 1 when an RMSE is larger")
-      ->check(CLI::NonNegativeNumber);
+      ->check(numberBetween(0.0, kLargestError));
   options->display.addTo(*command);
   command->add_option("--sheet", options->sheet,
                       "a .png with image, reference and FLIP map of every layer side by side");

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "command.h"
+#include "common/outputs.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/image.h"
@@ -23,10 +24,8 @@ struct ReferenceCommand {
 
 int reference(ReferenceCommand command, const GlobalOptions& global) {
   const std::string extension = command.output.extension().string();
-  if (extension != ".exr" && extension != ".png")
-    throw Error(fmt::format("{}: unknown kind of image; expected a name that ends in .exr or .png",
-                            command.output.string()));
-  requireWritable(command.output);
+  const Outputs outputs = Outputs().add("-o", command.output, {".exr", ".png"});
+  outputs.check({command.scene});
   const std::optional<double> given = command.display.given();
   if (!command.resolution.empty())
     std::tie(command.options.width, command.options.height) = parseResolution(command.resolution);
@@ -34,6 +33,7 @@ int reference(ReferenceCommand command, const GlobalOptions& global) {
   command.options.progress = !global.quiet;
   const Scene scene = global.loadScene(command.scene);
   scene.camera(command.options.camera);
+  outputs.requireUnread();
   InterruptionNote interruption;
   interruption.say("interrupted: nothing of a reference is kept before it is done; from the start: " +
                    global.commandLine);

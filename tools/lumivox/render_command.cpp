@@ -7,6 +7,7 @@
 #include <set>
 
 #include "command.h"
+#include "common/outputs.h"
 #include "lumivox/base/background_writer.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -15,8 +16,10 @@
 #include "lumivox/base/log.h"
 #include "lumivox/base/video.h"
 #include "lumivox/experiment/report.h"
+#include "lumivox/measure/exposure.h"
 #include "lumivox/page/contact_sheet.h"
 #include "lumivox/scene/free_camera.h"
+#include "lumivox/scene/text.h"
 
 namespace lumivox::command {
 namespace {
@@ -180,7 +183,7 @@ class Files {
  private:
   /// Occlusion and the like, fractions, are shown as they are, unless somebody says how.
   Display displayOf(const ImageBuffer& image) const {
-    return image.channels() == 1 && !command_.display.given() ? Display{} : display_;
+    return command_.display.given() ? display_ : lumivox::displayOf(image, display_);
   }
 
   void addToSheet(int frame, const FrameResult& result) {
@@ -242,18 +245,16 @@ std::string keptText(const RenderCommand& command, int frame, int last, const Di
                      global.commandLine);
 }
 
-/// What can be wrong in the options, before any work.
-void checkFiles(const RenderCommand& command, int first, int last) {
+/// What can be wrong in the options, before any work. The files that are written.
+Outputs checkFiles(const RenderCommand& command, int first, int last) {
   if (command.output.empty() && command.sheet.empty() && command.video.empty())
     throw Error("nothing to write; expected --out, --sheet or --video");
-  const std::string extension = command.output.extension().string();
-  if (!command.output.empty() && extension != ".exr" && extension != ".png")
-    throw Error(fmt::format("{}: unknown kind of image; expected a name that ends in .exr or .png",
-                            command.output.string()));
-  if (!command.sheet.empty()) requirePng("--sheet", command.sheet);
+  Outputs outputs;
+  outputs.add("-o", command.output.empty() ? fs::path() : command.fileOf(first), {".exr", ".png"});
+  if (first != last && !command.output.empty()) outputs.add("-o", command.fileOf(last), {".exr", ".png"});
+  outputs.add("--sheet", command.sheet, {".png"}).add("--video", command.video, {".mp4"});
+  outputs.check({command.scene, command.pipeline});
   if (!command.video.empty()) {
-    if (command.video.extension() != ".mp4")
-      throw Error(fmt::format("--video '{}': expected a name that ends in .mp4", command.video.string()));
     if (!command.isAnimation())
       throw Error("--video: expected --frames FIRST..LAST too, the frames of the video");
     try {
@@ -262,19 +263,14 @@ void checkFiles(const RenderCommand& command, int first, int last) {
       throw AbsentError(fmt::format("--video: {}", absent.what()));
     }
   }
-  if (!(command.framesPerSecond > 0.0) || !std::isfinite(command.framesPerSecond))
-    throw Error("--fps: expected a number above 0");
-  if (!command.output.empty())
-    for (const int frame : {first, last}) requireWritable(command.fileOf(frame));
-  for (const fs::path& file : {command.sheet, command.video})
-    if (!file.empty()) requireWritable(file);
+  return outputs;
 }
 
 int render(const RenderCommand& command, const GlobalOptions& global) {
   const auto [first, last] =
       command.isAnimation() ? parseFrames("--frames", command.frames) : std::pair(0, 0);
   const std::optional<double> given = command.display.given();
-  checkFiles(command, first, last);
+  const Outputs outputs = checkFiles(command, first, last);
 
   if (command.scene.extension() == ".pipeline" && command.pipeline.extension() == ".scene")
     throw Error(fmt::format(
@@ -306,6 +302,11 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
         camera = cameraOf(command, scene);
         break;
       }
+  outputs.requireUnread();
+  for (const int frame : {first, last})
+    if (std::abs(command.timeOf(frame)) > kLongestTime)
+      throw Error(fmt::format("--frames '{}': frame {} is at {:g} s; expected one within {:g} s",
+                              command.frames, frame, command.timeOf(frame), kLongestTime));
   const auto device = global.openDevice();
   PipelineExecutor executor(*device, techniques, scene, pipeline, options);
 
@@ -387,16 +388,20 @@ void addRenderCommand(Commands& commands) {
   command->add_option("--video", options->video, "a .mp4 of the frames; needs ffmpeg");
   options->run.addTo(*command);
   const auto addPlace = [&](const char* name, std::vector<double>& place, const char* text) {
-    command->add_option(name, place, text)->delimiter(',')->expected(3)->type_name("X,Y,Z");
+    command->add_option(name, place, text)
+        ->delimiter(',')
+        ->expected(3)
+        ->type_name("X,Y,Z")
+        ->check(numberBetween(-kFarthestPlace, kFarthestPlace).description(""));
   };
   addPlace("--eye", options->eye, "where the camera stands, in metres, in place of the scene's");
   addPlace("--target", options->target, "what it looks at, in metres");
   command->add_option("--fov", options->fov, "its full vertical angle, in radians")
-      ->check(CLI::Range(1e-3, 3.1));
+      ->check(numberBetween(1e-3, 3.1));
   options->display.addTo(*command);
   command->add_option("--frames", options->frames,
                       "FIRST..LAST: numbered images, out_0007.exr or a run of # in the name");
-  command->add_option("--fps", options->framesPerSecond, "frames per second of --frames (default 24)");
+  addFrameRate(*command, options->framesPerSecond);
   command->add_option("--output", options->onlyOutput, "only this output of the pipeline, as the main layer");
   command->add_flag("--keep-everything", options->keepEverything, "leave nothing out");
   command->add_flag("--health", options->health,

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/outputs.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/page/page.h"
@@ -100,6 +101,14 @@ int report(const ReportCommand& command, const GlobalOptions& global) {
   for (const std::string& text : command.equalErrors)
     options.equalErrors.push_back(positiveNumberOf("--equal-error", text));
   const ReportFiles files = reportFiles(options.output);
+  std::vector<std::filesystem::path> inputs = options.scenes;
+  inputs.insert(inputs.end(), options.pipelines.begin(), options.pipelines.end());
+  inputs.push_back(options.store);
+  Outputs()
+      .add("-o", files.page, {".html", ".htm"}, Outputs::Endings::otherKindsRefused)
+      .add("-o", files.csv, {".csv"})
+      .add("-o", files.json, {".json"})
+      .check(inputs);
   options.output = files.page;  // also where points are kept meanwhile
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();

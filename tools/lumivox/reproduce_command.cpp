@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "command.h"
+#include "common/outputs.h"
 #include "lumivox/analysis/judge.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -15,6 +16,7 @@
 #include "lumivox/experiment/report.h"
 #include "lumivox/experiment/reproduce.h"
 #include "lumivox/page/contact_sheet.h"
+#include "lumivox/page/measured_passages.h"
 #include "lumivox/page/reproduction_page.h"
 #include "measure_options.h"
 #include "results_text.h"
@@ -110,6 +112,8 @@ std::string resultText(const ReproducedResult& result, const std::vector<fs::pat
         fmt::format("{}: {}\n", result.curves[i].name, curveText(result.curves[i], result.judgedCurves[i]));
   for (const ShownPanel& panel : result.panels)
     if (!panel.whyNot.empty()) text += fmt::format("{}: {}\n", panel.name, panel.whyNot);
+  for (std::size_t i = 0; i < result.claims.size(); ++i)
+    text += claimText(result.claims[i], result.judgedClaims[i]) + "\n";
   for (const fs::path& file : files) text += "Written: " + file.string() + "\n";
   for (const std::string& note : reproductionNotes(result)) text += note + "\n";
   const std::string verdict = verdictText(result);
@@ -180,8 +184,12 @@ int writeCards(const ReproduceCommand& command) {
       for (const auto& entry : fs::recursive_directory_iterator(project / folder))
         if (entry.path().extension() == ".md" && entry.path() != page) quoting.push_back(entry.path());
   std::sort(quoting.begin(), quoting.end());
+  const fs::path tables = project / "docs/benchmarks/measured_tables.json";
+  const std::vector<MeasuredTable> measured =
+      fs::exists(tables) ? readMeasuredTables(tables) : std::vector<MeasuredTable>();
   for (const fs::path& file : quoting)
-    texts.emplace_back(file, withReproducedPassages(readFile(file), file, results));
+    texts.emplace_back(
+        file, withMeasuredPassages(withReproducedPassages(readFile(file), file, results), file, measured));
 
   bool good = true;
   const auto complain = [&](const std::string& what) {
@@ -224,13 +232,13 @@ std::string keptText(const ReproduceCommand& command, const std::vector<Publishe
 }
 
 int measure(const ReproduceCommand& command, const GlobalOptions& global) {
-  if (!command.output.empty()) {
-    if (command.output.extension() != ".md" && command.output.extension() != ".html")
-      throw Error(fmt::format("{}: the results are written as .html or .md", command.output.string()));
-    requireWritable(command.output);
-  }
+  std::vector<fs::path> inputs{command.store};
+  inputs.insert(inputs.end(), command.names.begin(), command.names.end());
+  Outputs()
+      .add("-o", command.output, {".html", ".md"})
+      .add("--record", command.record, {".json"}, Outputs::Endings::otherKindsRefused)
+      .check(inputs);
   if (!command.record.empty()) {
-    requireWritable(command.record);
     if (fs::exists(command.record)) readReproductions(command.record);  // before the work, not after it
   }
   const std::vector<PublishedResult> chosen = chosenTables(command.names);
@@ -301,7 +309,7 @@ void addReproduceCommand(Commands& commands) {
           "--scale", all->options.scale,
           "reduces image sides and grids by this factor (default: 1, or what the text says for a software "
           "rasteriser)")
-      ->check(CLI::Range(1.0 / 64, 1.0));
+      ->check(numberBetween(1.0 / 64, 1.0));
   command->add_option("--repeats", all->options.repeats, "timed frames of each set-up (default 5)")
       ->check(CLI::Range(1, 10000));
   addSeed(*command, all->options.seed);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "command.h"
+#include "common/outputs.h"
 #include "comparison_text.h"
 #include "lumivox/analysis/changes.h"
 #include "lumivox/analysis/comparison.h"
@@ -196,7 +197,9 @@ int comparePipelinesOf(const ResultsCommand& command, ComparisonTable table) {
 }
 
 int exportResults(const ResultsCommand& command) {
-  if (!command.output.empty()) requireWritable(command.output);
+  Outputs()
+      .add("-o", command.output, {"." + command.format}, Outputs::Endings::otherKindsRefused)
+      .check({command.file()});
   const ResultsStore store(command.file(), ResultsStore::Mode::read);
   std::string text, count;
   if (command.stress) {

@@ -92,7 +92,7 @@ int printProgram(const ShadersCommand& command, const GlobalOptions& global) {
   std::string text;
   for (const shader::PackedStage& stage : chosen->stages)
     text += fmt::format("// {}, {}: {}\n{}\n", command.program, stageName(stage.stage),
-                        variantText(program, chosen->values), technique->shaders.codes.at(stage.code).glsl);
+                        variantText(program, chosen->values), technique->shaders.codes.at(stage.code).glsl());
   print(text);
   return kGood;
 }

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "command.h"
+#include "common/outputs.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/interruption.h"
@@ -72,6 +73,15 @@ int tell(const StressSummary& summary, bool json) {
   return summary.sound() ? kGood : kNotGood;
 }
 
+/// Refuses, before the work, a folder in which the page or the cells beside it cannot be written.
+void checkOutput(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& inputs) {
+  if (folder.empty()) return;
+  Outputs()
+      .add("-o", folder / "index.html", {".html"})
+      .add("-o", folder / "index.json", {".json"})
+      .check(inputs);
+}
+
 /// Prints the contents of a store without running anything.
 int tellStored(const StressCommand& command, const GlobalOptions& global) {
   const StressOptions& options = command.options;
@@ -85,10 +95,9 @@ int tellStored(const StressCommand& command, const GlobalOptions& global) {
   summary.cells = newestCells(ResultsStore(command.from, ResultsStore::Mode::read).stressCells(filter));
   if (summary.cells.empty())
     throw Error(command.from.string() + ": the store has no such cells of the stress battery");
-  if (!options.output.empty()) {
-    requireWritable(options.output / "index.html");
+  checkOutput(options.output, {command.from});
+  if (!options.output.empty())
     summary.page = writeStressPage(options.output, summary.cells, global.commandLine);
-  }
   return tell(summary, command.json);
 }
 
@@ -111,6 +120,9 @@ int stress(const StressCommand& command, const GlobalOptions& global) {
     return kGood;
   }
   if (command.list) return listCases(options, techniques, command.json);
+  std::vector<std::filesystem::path> inputs = options.pipelines;
+  inputs.push_back(options.store);
+  checkOutput(options.output, inputs);
   Progress progress("stress", 0, "cells");
   options.progress = [&progress](const StressCell& cell, std::size_t done, std::size_t total,
                                  double secondsLeft) {

@@ -94,11 +94,10 @@ CheckedFile checkFile(const fs::path& file, const GlobalOptions& global, Techniq
   }
   // Pipelines of a sweep may bring the same warning at every point.
   std::vector<Diagnostic> findings = checked.findings;
-  for (const Diagnostic& warning : collector.findings()) {
-    const bool known = std::any_of(findings.begin(), findings.end(),
-                                   [&](const Diagnostic& one) { return one.text() == warning.text(); });
-    if (!known) findings.push_back(warning);
-  }
+  std::set<std::string> known;
+  for (const Diagnostic& finding : findings) known.insert(finding.text());
+  for (const Diagnostic& warning : collector.findings())
+    if (known.insert(warning.text()).second) findings.push_back(warning);
   checked.findings = DiagnosticsError(std::move(findings)).diagnostics();  // in the order of the text
   return checked;
 }
@@ -116,13 +115,17 @@ int check(const std::vector<fs::path>& files, bool json, const GlobalOptions& gl
     if (!checked.good()) ++bad;
     if (json) {
       Json findings = Json::array();
-      for (const Diagnostic& finding : checked.findings) findings.push_back(findingAsJson(finding));
+      const std::size_t shown = shownFindings(checked.findings.size());
+      for (std::size_t i = 0; i < shown; ++i) findings.push_back(findingAsJson(checked.findings[i]));
       if (!checked.message.empty())
         findings.push_back({{"file", file.string()}, {"severity", "error"}, {"what", checked.message}});
-      list.push_back({{"file", file.string()}, {"good", checked.good()}, {"findings", std::move(findings)}});
+      list.push_back({{"file", file.string()},
+                      {"good", checked.good()},
+                      {"findings", std::move(findings)},
+                      {"more_findings", checked.findings.size() - shown}});
       continue;
     }
-    for (const Diagnostic& finding : checked.findings) std::cerr << finding.text() << "\n";
+    if (!checked.findings.empty()) std::cerr << DiagnosticsError(checked.findings).what() << "\n";
     if (!checked.message.empty()) std::cerr << "lumivox: " << checked.message << "\n";
     if (checked.good() && !global.quiet)
       print(file.string() + ": good" + warningsText(checked.warnings()) + "\n");

@@ -1,6 +1,7 @@
 // tune: the best technique and parameters within a time or an error.
 #include <fmt/format.h>
 
+#include "common/outputs.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/experiment/tune.h"
@@ -10,6 +11,8 @@
 
 namespace lumivox::command {
 namespace {
+
+constexpr double kLargestErrorLimit = 1e37;
 
 struct TuneCommand {
   MeasureOptions measure;
@@ -67,7 +70,10 @@ int tuneScene(const TuneCommand& command, const GlobalOptions& global) {
   options.measure = command.measure.asked(global, "tuning", "points at most");
   if (command.budgetSeconds > 0.0) options.budgetMs = 1000.0 * command.budgetSeconds;
   if (command.hasError) options.errorLimit = command.error;
-  if (!command.output.empty()) requireWritable(command.output);
+  std::vector<std::filesystem::path> inputs = options.measure.scenes;
+  inputs.insert(inputs.end(), options.measure.pipelines.begin(), options.measure.pipelines.end());
+  inputs.push_back(options.measure.store.empty() ? ResultsStore::defaultFile() : options.measure.store);
+  Outputs().add("-o", command.output, {".pipeline"}, Outputs::Endings::otherKindsRefused).check(inputs);
   ResultsStore store(options.measure.store.empty() ? ResultsStore::defaultFile() : options.measure.store);
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();
@@ -104,6 +110,7 @@ void addTuneCommand(Commands& commands) {
         all->hasError = true;
       },
       "error limit, in the unit of the metric");
+  error->check(numberBetween(0.0, kLargestErrorLimit));
   budget->excludes(error);
   command->add_option("--metric", all->tune.metric,
                       "flip (default), rmse, relative_mse, percentile95, flip_ldr, ...");

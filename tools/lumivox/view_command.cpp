@@ -3,20 +3,21 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
 #include "command.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/installation.h"
+#include "viewer/options.h"
 
 namespace lumivox::command {
 namespace {
 
 constexpr const char* kProgram = "lumivox-view";
 
-int view(const std::vector<std::string>& words) {
+/// In place of this program: the window's, with these words.
+int view(std::vector<std::string> words) {
   const auto here = programFile();
   const std::filesystem::path program =
       here ? here->parent_path() / kProgram : std::filesystem::path(kProgram);
@@ -25,10 +26,9 @@ int view(const std::vector<std::string>& words) {
     throw AbsentError(fmt::format(
         "{} is not there: this Lumivox was built without its window (`lumivox render` makes images without one)",
         program.string()));
-  std::vector<std::string> copies{program.string()};
-  copies.insert(copies.end(), words.begin(), words.end());
+  words.insert(words.begin(), program.string());
   std::vector<char*> pointers;
-  for (std::string& word : copies) pointers.push_back(word.data());
+  for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   execv(program.c_str(), pointers.data());
   throw Error(fmt::format("{}: cannot be started, {}", program.string(), std::strerror(errno)));
@@ -37,16 +37,19 @@ int view(const std::vector<std::string>& words) {
 }  // namespace
 
 void addViewCommand(Commands& commands) {
-  auto* command = commands.app.add_subcommand(
-      "view", "shows a scene in a window: techniques are looked at, judged and changed while they run");
-  command->prefix_command();
-  command->footer("Its options: lumivox-view --help");
-  // Options of every command may stand before its name; the window's program knows them too.
-  std::vector<std::string>& words = commands.words;
-  commands.onChosen(command, [&words] {
+  auto* command = commands.app.add_subcommand("view", viewer::kViewMeaning);
+  // Read here as by the window's program, so that a wrong word is refused by the same sentence as anywhere.
+  auto options = std::make_shared<viewer::ViewOptions>();
+  options->addTo(*command);
+  // Options of every command may stand before `view`; the window's program knows them too. The words behind
+  // it are counted, since one before it may be called the same.
+  auto behind = std::make_shared<std::size_t>(0);
+  command->preparse_callback([behind](std::size_t left) { *behind = left; });
+  const std::vector<std::string>& words = commands.words;
+  commands.onChosen(command, [options, behind, &words] {
     std::vector<std::string> given = words;
-    given.erase(std::find(given.begin(), given.end(), "view"));
-    return view(given);
+    given.erase(given.end() - static_cast<std::ptrdiff_t>(*behind) - 1);
+    return view(std::move(given));
   });
 }
 

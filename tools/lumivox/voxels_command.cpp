@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "command.h"
+#include "common/outputs.h"
 #include "lumivox/analysis/scaling.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -85,13 +86,17 @@ int voxels(const VoxelsCommand& command, const GlobalOptions& global) {
   constexpr int kScalingSubdivisions = 2;  // 4 and 16 times the triangles
   VoxelizerOptions options = command.options;
   if (!command.resolutions.empty()) options.resolutions = resolutionsOf(command.resolutions);
-  if (!command.image.empty()) std::tie(options.width, options.height) = parseResolution(command.image);
+  if (!command.image.empty()) std::tie(options.width, options.height) = parseResolution(command.image, "--image");
   if (command.repeats) options.repeats = options.repeatsOfLongFrames = *command.repeats;
   options.openSweeps = !command.noSweep;
   if (command.scaling) options.subdivisions = kScalingSubdivisions;
   const VoxelizerFiles files = voxelizerFiles(command.output);
   if (!command.output.empty())
-    for (const auto& file : {files.page, files.csv, files.json}) requireWritable(file);
+    Outputs()
+        .add("-o", files.page, {".html"})
+        .add("-o", files.csv, {".csv"})
+        .add("-o", files.json, {".json"})
+        .check(command.scenes);
 
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();

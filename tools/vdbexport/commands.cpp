@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/outputs.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
@@ -20,6 +21,8 @@ using command::GlobalOptions;
 using command::Json;
 namespace fs = std::filesystem;
 
+constexpr double kLargestTolerance = 1e37;
+
 void Options::addTo(CLI::App& app) {
   app.add_option(
          "INPUTS", inputs,
@@ -29,7 +32,7 @@ void Options::addTo(CLI::App& app) {
   run.addTo(app);
   app.add_option("--frames", frames,
                  "F or FIRST..LAST: a range gives numbered files, out_0007.vdb or a run of # in the name");
-  app.add_option("--fps", framesPerSecond, "frames per second of --frames (default 24)");
+  command::addFrameRate(app, framesPerSecond);
   auto* grid = command::addRepeatable(app, "--grid", grids,
                                       "an output PASS.PORT to export (default: all); with --diff a grid's "
                                       "name, or NAME=NAME for two with different names; may be repeated");
@@ -41,7 +44,8 @@ void Options::addTo(CLI::App& app) {
   app.add_flag("--half", half, "store floats with 16 bits");
   auto* listing = app.add_flag("--list", list, "list what can be exported, or what a .vdb file contains");
   app.add_flag("--diff", diff, "compare two .vdb files grid by grid, voxel by voxel")->excludes(listing);
-  app.add_option("--tolerance", tolerance, "of --diff: differences up to this are ignored (default 0)");
+  app.add_option("--tolerance", tolerance, "of --diff: differences up to this are ignored (default 0)")
+      ->check(command::numberBetween(0.0, kLargestTolerance));
   app.add_flag("--json", json, "print JSON (--list, --diff)");
 }
 
@@ -130,10 +134,7 @@ std::vector<openvdb::GridBase::ConstPtr> convert(Session& session, const GlobalO
 
 int exportGrids(const Options& options, const GlobalOptions& global) {
   requireInputs(options, 2, "SCENE PIPELINE");
-  if (options.output.extension() != ".vdb")
-    throw Error(fmt::format("-o '{}': expected a name that ends in .vdb", options.output.string()));
-  if (!(options.framesPerSecond > 0.0) || !std::isfinite(options.framesPerSecond))
-    throw Error("--fps: expected a number above 0");
+  if (options.output.empty()) throw Error("-o: expected a name that ends in .vdb");
   const auto [first, last] =
       options.frames.empty() ? std::pair(0, 0) : command::parseFrames("--frames", options.frames);
   const bool sequence = options.frames.find("..") != std::string::npos;
@@ -141,15 +142,15 @@ int exportGrids(const Options& options, const GlobalOptions& global) {
     return sequence ? command::numberedName(options.output, frame) : options.output;
   };
   const std::vector<int> levels = levelsOf(options);
-  requireWritable(fileOf(first));
   options.display.given();  // refused before the work
-  if (!options.preview.empty()) {
-    command::requirePng("--preview", options.preview);
-    requireWritable(options.preview);
-  }
+  command::Outputs outputs;
+  outputs.add("-o", fileOf(first), {".vdb"}).add("--preview", options.preview, {".png"});
+  if (first != last) outputs.add("-o", fileOf(last), {".vdb"});
+  outputs.check(options.inputs);
 
   openvdb::initialize();
   Session session(options, global, levels);
+  outputs.requireUnread();
   Preview preview;
   for (int frame = first; frame <= last; ++frame) {
     const double time = options.run.time + frame / options.framesPerSecond;
@@ -355,7 +356,6 @@ std::string diffText(const Json& list) {
 
 int diff(const Options& options, const GlobalOptions&) {
   requireInputs(options, 2, "two .vdb files");
-  if (!(options.tolerance >= 0.0)) throw Error("--tolerance: expected a number from 0");
   const Grids first = readVdb(options.inputs[0]), second = readVdb(options.inputs[1]);
   const std::string what = options.inputs[0].string() + " and " + options.inputs[1].string();
   Json list = Json::array();

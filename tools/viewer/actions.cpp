@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cctype>
 #include <numbers>
+#include <set>
 
+#include "lumivox/base/display.h"
 #include "lumivox/base/error.h"
+#include "lumivox/scene/text.h"
 #include "viewer/port_view.h"
 
 namespace lumivox::viewer {
@@ -16,6 +19,14 @@ using dsl::PropertySpecification;
 using dsl::PropertyType;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kLongest = kLongestTime;          // s, either way
+constexpr double kLargestAngle = 360.0 * kDegree;  // of one turn
+constexpr double kLargestSide = 16384;             // pixels, of images and windows: what OpenGL 4.5 promises
+constexpr double kLeastFactor = 1e-3, kMostFactor = 1e3;
+constexpr double kBrightest = 1e30;       // W, per whatever the word is of
+constexpr double kDensest = 1e9;          // 1/m
+constexpr double kSharpest = 1e30;        // exponents of Phong lobes
+constexpr double kMostSamples = 1 << 20;  // of a pixel of the reference
 
 PropertySpecification one(std::string word, PropertyType type, std::string meaning) {
   PropertySpecification made;
@@ -38,6 +49,38 @@ PropertySpecification ranged(std::string word, PropertyType type, double low, do
   made.high = high;
   return made;
 }
+PropertySpecification between(double low, double high, PropertySpecification made) {
+  made.low = std::max(made.low, low);
+  made.high = std::min(made.high, high);
+  return made;
+}
+/// Within what the scene's text takes for a word of a block, or of a kind of it: what is edited in the window
+/// must be what the text can say.
+PropertySpecification asInScene(const std::string& block, const std::string& word,
+                                PropertySpecification made) {
+  const auto narrow = [&](const std::vector<PropertySpecification>& properties) {
+    for (const PropertySpecification& one : properties)
+      if (one.word == word) made = between(one.low, one.high, std::move(made));
+  };
+  for (const dsl::BlockSpecification& one : sceneSpecifications().front().blocks) {
+    if (one.word != block) continue;
+    narrow(one.properties);
+    for (const auto& [kind, properties] : one.kindProperties) narrow(properties);
+  }
+  return made;
+}
+/// A place, or a way, in metres.
+PropertySpecification place(std::string word, std::string meaning) {
+  return between(-kFarthest, kFarthest,
+                 measured(std::move(word), PropertyType::vector3, dsl::kLength, std::move(meaning)));
+}
+PropertySpecification angles(std::string word, std::string meaning) {
+  return between(-kLargestAngle, kLargestAngle,
+                 measured(std::move(word), PropertyType::vector2, dsl::kAngle, std::move(meaning)));
+}
+PropertySpecification fieldOfView(std::string meaning) {
+  return asInScene("camera", "fov", measured("fov", PropertyType::number, dsl::kAngle, std::move(meaning)));
+}
 PropertySpecification chosen(std::string word, std::vector<std::string> choices, std::string meaning) {
   PropertySpecification made = one(std::move(word), PropertyType::word, std::move(meaning));
   made.choices = std::move(choices);
@@ -51,26 +94,32 @@ std::vector<PropertySpecification> lookProperties() {
           "a second pipeline, `copy` of the first with values of its own, or `nothing`"),
       one("swap", PropertyType::flag, "exchanges the two"),
       one("camera", PropertyType::name, "looks through a camera of the scene"),
-      measured("eye", PropertyType::vector3, dsl::kLength, "where one looks from, with a free camera"),
-      measured("target", PropertyType::vector3, dsl::kLength, "what a free camera looks at"),
-      measured("fov", PropertyType::number, dsl::kAngle, "the full vertical angle of a free camera"),
-      measured("move", PropertyType::vector3, dsl::kLength, "right, up and forward, as the camera looks"),
-      measured("turn", PropertyType::vector2, dsl::kAngle, "to the right and up, about the eye"),
-      measured("orbit", PropertyType::vector2, dsl::kAngle, "to the right and up, about the target"),
-      ranged("zoom", PropertyType::number, 1e-3, 1e3, "distance from the target, as a factor"),
-      measured("time", PropertyType::number, dsl::kTime, "the moment that is shown"),
+      place("eye", "where one looks from, with a free camera"),
+      place("target", "what a free camera looks at"),
+      fieldOfView("the full vertical angle of a free camera"),
+      place("move", "right, up and forward, as the camera looks"),
+      angles("turn", "to the right and up, about the eye"),
+      angles("orbit", "to the right and up, about the target"),
+      ranged("zoom", PropertyType::number, kLeastFactor, kMostFactor,
+             "distance from the target, as a factor"),
+      between(-kLongest, kLongest,
+              measured("time", PropertyType::number, dsl::kTime, "the moment that is shown")),
       one("play", PropertyType::flag, "whether time goes on by itself"),
-      ranged("speed", PropertyType::number, 1e-3, 1e3, "of time, beside that of the clock"),
-      measured("loop", PropertyType::number, dsl::kTime, "after which playing begins anew; 0: it goes on"),
+      ranged("speed", PropertyType::number, kLeastFactor, kMostFactor, "of time, beside that of the clock"),
+      between(0, kLongest,
+              measured("loop", PropertyType::number, dsl::kTime,
+                       "after which playing begins anew; 0: it goes on")),
       one("frame", PropertyType::name, "steps back until an object is seen whole, or `all`"),
-      one("size", PropertyType::resolution, "of the image"),
+      asInScene("camera", "resolution",
+                ranged("size", PropertyType::resolution, 1, kLargestSide, "of the image")),
       one("output", PropertyType::name, "which output is shown; \"whole image\": the sum of all light"),
       one("port", PropertyType::name, "an output of a pass, as PASS.PORT, or `nothing`"),
       one("texture", PropertyType::name, "which texture of the port"),
       one("voxels", PropertyType::name,
           "a field of the port's voxels, drawn as cubes, or `lobes` of its spherical harmonics; `nothing`: a "
           "texture"),
-      ranged("above", PropertyType::number, 0, 1e30, "voxels whose values are not above it are left out"),
+      ranged("above", PropertyType::number, 0, kBrightest,
+             "voxels whose values are not above it are left out"),
       ranged("see_through", PropertyType::number, 0, 1, "how much of the picture is seen behind voxels"),
       chosen("channel", channelWords(), "the components of the texture that are shown"),
       ranged("level", PropertyType::integer, 0, 32, "which level of the port's texture or voxels"),
@@ -79,9 +128,10 @@ std::vector<PropertySpecification> lookProperties() {
              "what is shown of picture, second picture, reference and error"),
       chosen("error_map", {"relative", "flip", "squared"}, "which error is shown"),
       ranged("split", PropertyType::number, 0, 1, "where the picture ends and the reference begins"),
-      one("exposure", PropertyType::any, "in EV, or `auto`"),
+      one("exposure", PropertyType::any,
+          fmt::format("in EV, from {} to {}, or `auto`", -kLargestExposure, kLargestExposure)),
       chosen("tone", {"srgb", "linear", "filmic", "false_colour"}, "how radiance becomes colours"),
-      ranged("samples", PropertyType::integer, 2, 1 << 20,
+      ranged("samples", PropertyType::integer, 2, kMostSamples,
              "per pixel, at which the reference is good enough"),
       one("reference", PropertyType::flag, "whether a reference is traced in the background"),
       ranged("seed", PropertyType::integer, 0, 9007199254740992.0, "of the random numbers of techniques"),
@@ -99,7 +149,8 @@ std::vector<PropertySpecification> changeProperties() {
       one("off", PropertyType::name,
           "switches a part of the scene off: \"light NAME\", \"gloss\", \"environment\" ..."),
       one("on", PropertyType::name, "switches it on again"),
-      ranged("environment", PropertyType::oneOrThree, 0, 1e30, "radiance of the sky"),
+      asInScene("environment", "radiance",
+                ranged("environment", PropertyType::oneOrThree, 0, kBrightest, "radiance of the sky")),
       ranged("undo", PropertyType::integer, 1, 1000, "so many changes"),
       ranged("redo", PropertyType::integer, 1, 1000, "so many changes"),
       one("reload", PropertyType::flag, "reads all texts and libraries again"),
@@ -122,15 +173,18 @@ std::vector<PropertySpecification> keepProperties() {
 }
 
 std::vector<PropertySpecification> windowProperties() {
-  PropertySpecification wait = one(
-      "wait", PropertyType::any,
-      "for `frame`, `judged`, `problem`, `mended`, `kept`, or `reference` and so many samples, at most a minute");
+  PropertySpecification wait =
+      one("wait", PropertyType::any,
+          fmt::format(
+              "for `frame`, `judged`, `problem`, `mended`, `kept`, or `reference` and so many samples, 1 to "
+              "{:.0f}; at most a minute",
+              kMostSamples));
   return {
       std::move(wait),
       one("click", PropertyType::name, "a control, by its name"),
       one("key", PropertyType::name, "presses a key, by its name"),
       one("panel", PropertyType::name, "opens a panel"),
-      one("window", PropertyType::resolution, "size of the window"),
+      ranged("window", PropertyType::resolution, 1, kLargestSide, "size of the window"),
       one("panels", PropertyType::flag, "shows the panels"),
       ranged("panel_width", PropertyType::number, 120, 4000, "of the panels, in pixels of a scale of 1"),
       ranged("scale", PropertyType::number, 0.25, 8,
@@ -161,35 +215,149 @@ std::vector<dsl::BlockSpecification> makeSpecifications() {
   set.open = true;
   dsl::BlockSpecification material =
       block("material", dsl::HeaderUse::required, "other values of a material");
-  material.properties = {ranged("diffuse", PropertyType::oneOrThree, 0, 1, "albedo"),
-                         ranged("specular", PropertyType::oneOrThree, 0, 1, "Phong albedo"),
-                         ranged("exponent", PropertyType::number, 0, 1e30, "of the Phong lobe"),
-                         ranged("emission", PropertyType::oneOrThree, 0, 1e30, "radiance")};
+  const auto ofMaterial = [](const char* word, PropertyType type, double high, const char* meaning) {
+    return asInScene("material", word, ranged(word, type, 0, high, meaning));
+  };
+  material.properties = {ofMaterial("diffuse", PropertyType::oneOrThree, 1, "albedo"),
+                         ofMaterial("specular", PropertyType::oneOrThree, 1, "Phong albedo"),
+                         ofMaterial("exponent", PropertyType::number, kSharpest, "of the Phong lobe"),
+                         ofMaterial("emission", PropertyType::oneOrThree, kBrightest, "radiance")};
   dsl::BlockSpecification light = block("light", dsl::HeaderUse::required, "another power of a light");
-  light.properties = {ranged("power", PropertyType::oneOrThree, 0, 1e30,
-                             "irradiance, intensity, or an area light's radiance")};
+  PropertySpecification power = ranged("power", PropertyType::oneOrThree, 0, kBrightest,
+                                       "irradiance, intensity, or an area light's radiance");
+  for (const char* word : {"irradiance", "intensity", "radiance"})
+    power = asInScene("light", word, std::move(power));
+  light.properties = {std::move(power)};
   dsl::BlockSpecification medium = block("medium", dsl::HeaderUse::required, "another make of a medium");
-  PropertySpecification extinction =
-      measured("extinction", PropertyType::oneOrThree, dsl::kInverseLength, "at density 1");
-  extinction.low = 0.0;
   medium.properties = {
-      std::move(extinction), ranged("albedo", PropertyType::oneOrThree, 0, 1, "scattering / extinction"),
-      ranged("anisotropy", PropertyType::number, -0.999, 0.999, "mean cosine of scattering")};
+      asInScene(
+          "medium", "extinction",
+          between(0, kDensest,
+                  measured("extinction", PropertyType::oneOrThree, dsl::kInverseLength, "at density 1"))),
+      asInScene("medium", "albedo",
+                ranged("albedo", PropertyType::oneOrThree, 0, 1, "scattering / extinction")),
+      asInScene("medium", "anisotropy",
+                ranged("anisotropy", PropertyType::number, -1, 1, "mean cosine of scattering"))};
   dsl::BlockSpecification camera =
       block("camera", dsl::HeaderUse::required, "puts a camera of the scene elsewhere");
-  PropertySpecification fov = measured("fov", PropertyType::number, dsl::kAngle, "the full vertical angle");
-  fov.low = 0.1 * kDegree;
-  fov.high = 179.0 * kDegree;
-  camera.properties = {measured("eye", PropertyType::vector3, dsl::kLength, "where it is"),
-                       measured("target", PropertyType::vector3, dsl::kLength, "what it looks at"),
-                       std::move(fov)};
+  camera.properties = {asInScene("camera", "eye", place("eye", "where it is")),
+                       asInScene("camera", "target", place("target", "what it looks at")),
+                       fieldOfView("the full vertical angle")};
   view.blocks = {std::move(set), std::move(material), std::move(light), std::move(medium), std::move(camera)};
   return {std::move(view)};
 }
 
+/// Texts of pipelines bind parameters; nobody binds those of a script.
+void checkUnbound(const dsl::Document& document, const std::vector<dsl::Value>& values,
+                  std::vector<Diagnostic>& findings) {
+  for (const dsl::Value& value : values) {
+    checkUnbound(document, value.items, findings);
+    if (value.kind == dsl::ValueKind::parameter)
+      findings.push_back(document.finding(value.place, value.length,
+                                          fmt::format("'{}': scripts have no parameters", value.written()),
+                                          "the value itself"));
+  }
+}
+void checkUnbound(const dsl::Document& document, const dsl::Block& block, std::vector<Diagnostic>& findings) {
+  checkUnbound(document, block.header, findings);
+  for (const dsl::Item& item : block.items) {
+    if (item.property) checkUnbound(document, item.property->values, findings);
+    if (item.block) checkUnbound(document, *item.block, findings);
+  }
+}
+
+/// One value of a statement as if it were all of it.
+dsl::Property only(const dsl::Property& property, std::size_t value) {
+  dsl::Property one = property;
+  one.values = {property.values[value]};
+  return one;
+}
+
+/// Statements that take a word or a number, which no table says.
+void checkMixed(const dsl::Document& document, const dsl::Property& property,
+                std::vector<Diagnostic>& findings) {
+  const std::size_t count = property.values.size();
+  const auto report = [&](std::string what, std::string expected) {
+    const dsl::Value* last = count > 0 ? &property.values.back() : nullptr;
+    findings.push_back(
+        document.finding(last != nullptr ? last->place : property.place,
+                         last != nullptr ? last->length : static_cast<int>(property.word.size()),
+                         std::move(what), std::move(expected)));
+  };
+  if (property.word == "exposure") {
+    const bool isAuto =
+        count == 1 && property.values[0].kind == dsl::ValueKind::word && property.values[0].text == "auto";
+    if (count != 1 || (property.values[0].kind != dsl::ValueKind::number && !isAuto))
+      return report("'exposure' takes one value",
+                    fmt::format("auto, or a number from {} to {} EV", -kLargestExposure, kLargestExposure));
+    if (!isAuto)
+      dsl::checkProperty(document, property,
+                         ranged("exposure", PropertyType::number, -kLargestExposure, kLargestExposure, {}),
+                         findings);
+  }
+  if (property.word == "wait") {
+    const PropertySpecification what =
+        chosen("wait", {"frame", "judged", "problem", "mended", "kept", "reference"}, {});
+    if (count == 0) return report("'wait' has no value", dsl::expectation(what));
+    const std::size_t before = findings.size();
+    dsl::checkProperty(document, only(property, 0), what, findings);
+    if (count == 1 || findings.size() != before) return;
+    if (count > 2 || property.values[0].text != "reference")
+      return report(fmt::format("'wait {}' takes nothing more", property.values[0].text),
+                    "a number of samples behind `reference` alone");
+    dsl::checkProperty(document, only(property, 1),
+                       ranged("wait", PropertyType::integer, 1, kMostSamples, {}), findings);
+  }
+}
+
+/// A name that is empty would stand for the first of a kind, or for a file somewhere else.
+void checkNamed(const dsl::Document& document, const dsl::Property& property,
+                std::vector<Diagnostic>& findings) {
+  const auto& known = viewSpecifications().front().properties;
+  const auto found = std::ranges::find(known, property.word, &PropertySpecification::word);
+  if (found == known.end() || found->type != PropertyType::name) return;
+  for (const dsl::Value& value : property.values)
+    if (value.kind == dsl::ValueKind::text && value.text.empty())
+      findings.push_back(document.finding(value.place, value.length,
+                                          fmt::format("'{}' names nothing", property.word),
+                                          dsl::expectation(*found)));
+}
+
+/// Texts that describe something have a block of a name once; what is done in a script may be done again.
+void allowRepeated(const dsl::Document& document, std::vector<Diagnostic>& findings) {
+  for (const dsl::Item& item : document.items) {
+    if (!item.block) continue;
+    std::set<std::string> done;
+    for (const dsl::Item& statement : item.block->items) {
+      if (!statement.block) continue;
+      const auto& header = statement.block->header;
+      const std::string name = header.empty() ? std::string() : header.front().text;
+      if (done.insert(statement.block->word + ' ' + name).second) continue;
+      // Nothing else is found at the word of a block that is known and has its name, as the first of it had.
+      const SourcePlace& place = statement.block->place;
+      const auto& known = viewSpecifications().front().blocks;
+      if (std::ranges::find(known, statement.block->word, &dsl::BlockSpecification::word) != known.end())
+        std::erase_if(findings,
+                      [&](const Diagnostic& finding) { return finding.place.text() == place.text(); });
+    }
+  }
+}
+
 std::vector<Action> actionsOf(dsl::Document parsed) {
   std::vector<Diagnostic> findings = parsed.findings;
-  if (findings.empty()) dsl::check(parsed, viewSpecifications(), findings);
+  if (findings.empty()) {
+    dsl::check(parsed, viewSpecifications(), findings);
+    allowRepeated(parsed, findings);
+    for (const dsl::Item& item : parsed.items) {
+      if (!item.block) continue;
+      checkUnbound(parsed, *item.block, findings);
+      for (const dsl::Item& statement : item.block->items) {
+        if (!statement.property) continue;
+        checkMixed(parsed, *statement.property, findings);
+        checkNamed(parsed, *statement.property, findings);
+      }
+    }
+  }
   if (!findings.empty()) throw DiagnosticsError(std::move(findings));
   const auto document = std::make_shared<const dsl::Document>(std::move(parsed));
   std::vector<Action> actions;

@@ -9,8 +9,14 @@
 
 #include "lumivox/dsl/document.h"
 #include "lumivox/dsl/schema.h"
+#include "lumivox/scene/text.h"
 
 namespace lumivox::viewer {
+
+/// m, from the origin along each axis: nobody goes or looks farther.
+inline constexpr double kFarthest = kFarthestPlace;
+/// m, between a camera and its target: nearer, the direction between them is lost to rounding.
+inline constexpr double kNearest = 1e-9;
 
 /// The grammar: one block, `view NAME { ... }`, whose statements are done in their order.
 const std::vector<dsl::BlockSpecification>& viewSpecifications();

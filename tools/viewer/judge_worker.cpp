@@ -38,31 +38,48 @@ std::vector<int> bounceLayersOf(const Rendered& rendered) {
   return {layers.begin(), layers.end()};
 }
 
+namespace {
+
+/// What is known of the error of one side; nothing when another wish waits.
+std::optional<std::vector<JudgedOutput>> judged(const RenderedSide& side, const JudgeWish& wish,
+                                                const JudgeWorker::Turn& turn) {
+  std::vector<JudgedOutput> outputs;
+  if (!side.error.empty()) return outputs;
+  for (const std::string& name : shownOutputs(side.frame)) {
+    if (turn.outdated()) return std::nullopt;
+    const std::string layer = layerOf(side, name);
+    const std::optional<ReferenceLayer> reference =
+        layer.empty() ? std::nullopt : referenceLayer(wish.reference->image, layer);
+    const ImageBuffer image = outputOf(side.frame, name);
+    if (!reference || !reference->mean.sameShape(image)) continue;
+    JudgedOutput one{name, layer, compare(image, reference->mean, reference->variance, wish.exposure), 0.0};
+    const auto component = side.frame.components.find(name);
+    const ImageBuffer nothing =
+        neutralImage(image.width(), image.height(),
+                     component == side.frame.components.end() ? Contributes::final : component->second);
+    one.ofNothing = compare(nothing, reference->mean, reference->variance, wish.exposure).rmse.value;
+    outputs.push_back(std::move(one));
+  }
+  return outputs;
+}
+
+}  // namespace
+
 JudgeWorker::Work makeJudgeWork() {
   return [](const JudgeWish& wish, JudgeWorker::Turn& turn) {
-    auto judged = std::make_shared<Judged>();
-    judged->wish = wish;
-    for (const RenderedSide& side : wish.rendered->sides) {
-      std::vector<JudgedOutput>& outputs = judged->sides.emplace_back();
-      if (!side.error.empty()) continue;
-      for (const std::string& name : shownOutputs(side.frame)) {
-        if (turn.outdated()) return;
-        const std::string layer = layerOf(side, name);
-        const std::optional<ReferenceLayer> reference =
-            layer.empty() ? std::nullopt : referenceLayer(wish.reference->image, layer);
-        const ImageBuffer image = outputOf(side.frame, name);
-        if (!reference || !reference->mean.sameShape(image)) continue;
-        JudgedOutput one{name, layer, compare(image, reference->mean, reference->variance, wish.exposure),
-                         0.0};
-        const auto component = side.frame.components.find(name);
-        const ImageBuffer nothing =
-            neutralImage(image.width(), image.height(),
-                         component == side.frame.components.end() ? Contributes::final : component->second);
-        one.ofNothing = compare(nothing, reference->mean, reference->variance, wish.exposure).rmse.value;
-        outputs.push_back(std::move(one));
+    auto result = std::make_shared<Judged>();
+    result->wish = wish;
+    result->sides.resize(wish.rendered->sides.size());
+    try {
+      for (std::size_t i = 0; i < result->sides.size(); ++i) {
+        auto outputs = judged(wish.rendered->sides[i], wish, turn);
+        if (!outputs) return;
+        result->sides[i] = std::move(*outputs);
       }
+    } catch (const std::exception& error) {
+      result->error = error.what();  // of light so bright that squares of it are no numbers
     }
-    turn.give(std::move(judged));
+    turn.give(std::move(result));
   };
 }
 

@@ -33,6 +33,7 @@ struct JudgeWish {
 struct Judged {
   JudgeWish wish;
   std::vector<std::vector<JudgedOutput>> sides;
+  std::string error;  ///< why something could not be judged; empty: all of it was
 };
 using JudgeWorker = LatestWorker<JudgeWish, std::shared_ptr<const Judged>>;
 

@@ -2,11 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
+#include "common/outputs.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/experiment/report.h"
+#include "lumivox/measure/exposure.h"
 #include "viewer/panels.h"
 #include "viewer/session.h"
 
@@ -17,7 +20,6 @@ namespace fs = std::filesystem;
 
 void saveImage(const fs::path& file, const RenderedSide& side, const std::string& output, double exposure,
                Curve curve) {
-  createParentDirectories(file);
   if (file.extension() == ".png") {
     if (curve == Curve::falseColour)
       throw Error("save_image: false colour is of the window; expected another tone, or `shot`");
@@ -25,16 +27,30 @@ void saveImage(const fs::path& file, const RenderedSide& side, const std::string
     const Tone tone = curve == Curve::linear   ? Tone::linear
                       : curve == Curve::filmic ? Tone::filmic
                                                : Tone::srgb;
-    writePng(file, image, image.channels() == 1 ? Display{} : Display{exposure, tone});
-  } else if (file.extension() == ".exr") {
+    writePng(file, image, displayOf(image, {exposure, tone}));
+  } else {
     LayeredImage layered;
     for (const auto& [name, image] : side.frame.outputs)
       if (!image.empty()) layered.layers[name] = image;
     if (ImageBuffer whole = compositeImage(side.frame); !whole.empty()) layered.layers[""] = std::move(whole);
     writeExr(file, layered);
-  } else {
-    throw Error(fmt::format("save_image {}: expected a name that ends in .png or .exr", file.string()));
   }
+}
+
+/// What a statement writes is checked as the outputs of commands are, so that no record takes the place of a
+/// scene.
+void requireOutput(const std::string& word, const fs::path& file) {
+  using command::Outputs;
+  static const std::map<std::string, std::vector<std::string>> endings{{"save_image", {".png", ".exr"}},
+                                                                       {"save_pipeline", {".pipeline"}},
+                                                                       {"save_scene", {".scene"}},
+                                                                       {"record", {".json"}},
+                                                                       {"export_grid", {".vdb"}}};
+  const bool isStrict = word == "save_image" || word == "export_grid";
+  Outputs()
+      .add(word, file, endings.at(word),
+           isStrict ? Outputs::Endings::only : Outputs::Endings::otherKindsRefused)
+      .check({});
 }
 
 /// The folder of the original text, if a copy of it would not find what it names.
@@ -59,14 +75,19 @@ bool Session::doKeep(const Action& action) {
       say(text.file.string() + " stays as it was", false);
     return true;
   }
-  if (word == "export_grid") return exportGrid(action.text()), true;
+  if (word == "export_grid") return requireOutput(word, action.text()), exportGrid(action.text()), true;
   if (word == "add_point") return addPoint(action.text()), true;
   if (word != "save_image" && word != "save_pipeline" && word != "save_scene" && word != "record")
     return false;
   const fs::path file = action.text();
   const Side& side = state_.sides.front();
+  const bool isScene = word == "save_scene";
+  if (isScene) requireSameFolder("save_scene", file, options_.scene);
+  // A text may take its own place, whatever it is called: it is asked for.
+  const fs::path own = isScene ? options_.scene : word == "save_pipeline" ? side.pipeline->file : fs::path();
+  std::error_code none;
+  if (!fs::equivalent(file, own, none)) requireOutput(word, file);
   if (word == "record") {
-    createParentDirectories(file);
     writeFileAtomically(file, recordOf(*this).dump(2) + "\n");
   } else if (word == "save_image") {
     if (rendered_ == nullptr || !rendered_->sides.front().error.empty())
@@ -75,8 +96,6 @@ bool Session::doKeep(const Action& action) {
                                                              : rendered_->sides.front().error));
     saveImage(file, rendered_->sides.front(), state_.output, exposure_, state_.curve);
   } else {
-    const bool isScene = word == "save_scene";
-    if (isScene) requireSameFolder("save_scene", file, options_.scene);
     const TextToWrite text{file, isScene ? sceneText() : textWithDefaults(*side.pipeline, side.values)};
     if (!isScene) Pipeline::parse(text.text, file);  // what is written can be read
     if (!fs::exists(file)) {
@@ -115,14 +134,14 @@ void Session::write(const TextToWrite& text) {
   std::error_code none;
   if (!fs::equivalent(text.file, options_.scene, none)) return;
   // What was changed is now what the text says: there is nothing more to be undone in the scene.
-  readChangedFiles();
-  const auto settle = [](ViewState& state) { state.edits = {}; };
-  settle(state_);
-  std::for_each(undo_.begin(), undo_.end(), settle);
-  std::for_each(redo_.begin(), redo_.end(), settle);
-  if (state_.free) state_.camera = state_.free->name;
-  state_.free.reset();
-  applyEdits();
+  ViewState settled = state_;
+  settled.edits = {};
+  if (settled.free) settled.camera = settled.free->name;
+  settled.free.reset();
+  if (!takeTexts(std::move(settled))) return;
+  for (std::vector<ViewState>* states : {&undo_, &redo_})
+    for (ViewState& state : *states) state.edits = {};
+  say(text.file.string() + " written", false);
 }
 
 }  // namespace lumivox::viewer

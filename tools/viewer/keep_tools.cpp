@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "common/command_line.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
 #include "lumivox/plugin/loader.h"
@@ -20,9 +21,7 @@ namespace fs = std::filesystem;
 std::string shellWord(const std::string& word) {
   static const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=:,+";
   if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string result = "'";
-  for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
+  return command::inSingleQuotes(word);
 }
 
 /// A name beside a text, which finds what the text finds.
@@ -99,9 +98,6 @@ std::vector<std::string> Session::runWords(const std::string& camera) const {
 
 void Session::exportGrid(const fs::path& file) {
   if (!state_.port) throw Error("export_grid: no port is shown; expected `port PASS.PORT` before");
-  if (file.extension() != ".vdb")
-    throw Error(fmt::format("export_grid {}: expected a name that ends in .vdb", file.string()));
-  createParentDirectories(file);
   ToolWish wish{file.string() + " written", {programBeside("vdbexport").string(), "--quiet"}, {}};
   add(wish.words, globalWords(options_));
   fs::path scene = options_.scene, pipeline = state_.sides.front().pipeline->file;

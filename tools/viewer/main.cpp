@@ -9,7 +9,8 @@
 #include "common/manual.h"
 #include "lumivox/base/error.h"
 #include "lumivox/plugin/technique.h"
-#include "viewer/session.h"
+#include "viewer/ending_signals.h"
+#include "viewer/options.h"
 #include "viewer/window.h"
 
 namespace {
@@ -17,14 +18,6 @@ namespace {
 using namespace lumivox;
 using namespace lumivox::command;
 using namespace lumivox::viewer;
-
-struct ViewOptions {
-  std::filesystem::path scene, script, layout;
-  std::vector<std::filesystem::path> pipelines;
-  RunOptions run;
-  std::string windowSize;
-  double fpsLimit = 60.0;
-};
 
 /// Where the layout of the window is kept for this user: $XDG_STATE_HOME/lumivox/layout.view, else in
 /// ~/.local/state; nowhere without a home.
@@ -39,44 +32,40 @@ std::filesystem::path layoutFile() {
 }
 
 int view(const ViewOptions& options, const GlobalOptions& global) {
-  SessionOptions session;
-  session.scene = options.scene;
-  session.pipelines = options.pipelines;
-  session.settings = options.run.settings;
-  session.camera = options.run.camera;
-  session.time = options.run.time;
-  std::tie(session.width, session.height) = options.run.size();
-  session.techniques = TechniqueSet::defaultDirectories(global.techniques);
-  session.sceneLoad = global.sceneLoad();
-  session.device = global.deviceOptions();
+  const SessionOptions session = options.session(global);
   std::vector<Action> script;
   if (!options.script.empty()) script = readScript(options.script);
   WindowOptions window;
   window.restoresSize = options.windowSize.empty();
-  if (!window.restoresSize) std::tie(window.width, window.height) = parseResolution(options.windowSize);
+  if (!window.restoresSize)
+    std::tie(window.width, window.height) = parseResolution(options.windowSize, "--window");
   window.fpsLimit = options.fpsLimit;
   window.layoutFile = options.layout;
   if (options.layout.empty() && options.script.empty()) window.layoutFile = layoutFile();
   window.title = fmt::format("{} - Lumivox", options.scene.filename().string());
   // The session first: texts that are wrong open no window. Its threads begin when the window asks for a
   // picture.
-  Session looked(session, [] { Window::wake(); });
+  auto looked = std::make_unique<Session>(session, [] { Window::wake(); });
+  // What ends the program from outside closes the window, so that nothing stays among temporary files.
+  const EndingSignals signals;
+  window.ends = EndingSignals::came;
   {
     Window shown(window);
-    shown.run(looked, std::move(script));
+    shown.run(*looked, std::move(script));
   }
   // A frame, an error or a compilation may take long: nobody waits for it any more.
   constexpr double kLongestEnd = 0.5;  // s
-  if (!looked.stop(kLongestEnd)) {
-    std::fflush(nullptr);
-    std::_Exit(kGood);
-  }
+  const bool stopped = looked->stop(kLongestEnd);
+  if (stopped) looked.reset();
+  std::fflush(nullptr);
+  EndingSignals::endByIt();
+  if (!stopped) std::_Exit(kGood);
   return kGood;
 }
 
 int run(int count, char** arguments) {
   requireLibraryOf(techniqueVersionHere());
-  CLI::App app{"Shows a scene in a window: techniques are looked at, judged and changed while they run."};
+  CLI::App app{kViewMeaning};
   app.name("lumivox-view");
   app.set_version_flag("--version", std::string("lumivox-view ") + LUMIVOX_VERSION);
   app.option_defaults()->always_capture_default(false);
@@ -84,19 +73,7 @@ int run(int count, char** arguments) {
   global.commandLine = asTyped("lumivox view", count, arguments);
   global.addTo(app);
   ViewOptions options;
-  app.add_option("SCENE", options.scene, "the scene's text")->required();
-  app.add_option("PIPELINE", options.pipelines,
-                 "the pipelines' texts, the first shown (default: every committed one that suits the scene)");
-  options.run.addTo(app);
-  app.add_option("--window", options.windowSize,
-                 "WxH: size of the window (default: that of last time, or 1280x800)");
-  app.add_option("--fps-limit", options.fpsLimit,
-                 "most frames a second that the window draws (default 60; 0: no limit)")
-      ->check(CLI::Range(0.0, 10000.0));
-  app.add_option("--script", options.script, "a text of what is done in the window, in order");
-  app.add_option("--layout", options.layout,
-                 "where sizes and the open panel are kept (default: lumivox/layout.view in "
-                 "$XDG_STATE_HOME or ~/.local/state; with a script: nowhere)");
+  options.addTo(app);
   addDescriptionOptions(app, LUMIVOX_VERSION);
   if (const auto done = parseOptions(app, global, count, arguments)) return *done;
   return view(options, global);

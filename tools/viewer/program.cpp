@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -14,8 +13,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/installation.h"
-
-extern char** environ;
+#include "lumivox/base/start_process.h"
 
 namespace lumivox::viewer {
 
@@ -23,23 +21,15 @@ ProgramResult runProgram(const std::vector<std::string>& words, const std::atomi
   int messages[2];
   if (pipe2(messages, O_CLOEXEC) != 0)
     throw Error(fmt::format("{}: {}", words.front(), std::strerror(errno)));
-  std::vector<std::string> copies = words;
-  std::vector<char*> pointers;
-  for (std::string& word : copies) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&files, messages[1], STDERR_FILENO);
   pid_t process = -1;
-  const int failed = posix_spawn(&process, pointers.front(), &files, nullptr, pointers.data(), environ);
-  posix_spawn_file_actions_destroy(&files);
-  close(messages[1]);
-  if (failed != 0) {
+  try {
+    process = startProcess({words, {}, -1, -1, messages[1]});
+  } catch (const Error&) {
     close(messages[0]);
-    throw Error(fmt::format("{}: cannot be started, {}", words.front(), std::strerror(failed)));
+    close(messages[1]);
+    throw;
   }
+  close(messages[1]);
   ProgramResult result;
   std::array<char, 4096> buffer;
   bool stopped = false;

@@ -33,10 +33,13 @@ std::vector<std::shared_ptr<const Pipeline>> loadPipelines(const SessionOptions&
   std::vector<std::shared_ptr<const Pipeline>> pipelines;
   for (const fs::path& file : options.pipelines)
     pipelines.push_back(std::make_shared<const Pipeline>(Pipeline::load(file)));
+  TechniqueSet techniques(options.techniques, options.strict);
+  if (options.strict)  // before the window opens, which could only tell of it
+    for (const auto& pipeline : pipelines)
+      for (const std::string& name : pipeline->techniques()) techniques.technique(name);
   if (!pipelines.empty()) return pipelines;
   const auto scenes = committedScenes(options.scene.parent_path());
   if (!scenes) throw Error("no pipelines beside the scene or the program; name one: view SCENE PIPELINE...");
-  TechniqueSet techniques(options.techniques);
   const SceneTraits traits = SceneTraits::of(scene);
   for (const fs::path& file : pipelinesIn(*scenes / "pipelines")) {
     auto pipeline = std::make_shared<const Pipeline>(Pipeline::load(file));
@@ -57,11 +60,13 @@ Session::Session(const SessionOptions& options, std::function<void()> wake)
       judge_(makeJudgeWork, wake),
       tracer_(makeReferenceWork, wake),
       renderer_([device = options.device] { return makeRenderWork(device); }, wake) {
-  loadScene(options.scene);
+  scene_ = std::make_shared<const Scene>(loadScene(options.scene, options.sceneLoad));
+  edited_ = editedFrom_ = scene_;
   pipelines_ = loadPipelines(options, *scene_);
   const Camera& camera = scene_->camera(options.camera);
   state_.camera = camera.name;
   state_.time = options.time;
+  state_.seed = options.seed;
   state_.width = options.width > 0 ? options.width : camera.width;
   state_.height = options.height > 0 ? options.height : camera.height;
   state_.output = kWholeImage;
@@ -71,18 +76,17 @@ Session::Session(const SessionOptions& options, std::function<void()> wake)
 
 Session::~Session() = default;
 
-void Session::loadScene(const fs::path& file) {
-  scene_ = std::make_shared<const Scene>(lumivox::loadScene(file, options_.sceneLoad));
-  options_.scene = file;
-  applyEdits();
+std::shared_ptr<const Scene> Session::editedScene(const std::shared_ptr<const Scene>& scene,
+                                                  const SceneEdits& edits) const {
+  // What is as it was stays the very same scene: who holds it need not look at its contents.
+  if (editedFrom_ == scene && applied_ == edits) return edited_;
+  return edits.empty() ? scene : std::make_shared<const Scene>(edited(*scene, edits));
 }
 
-void Session::applyEdits() {
-  // What is as it was stays the very same scene: who holds it need not look at its contents.
-  if (editedFrom_ == scene_ && applied_ == state_.edits) return;
-  edited_ = state_.edits.empty() ? scene_ : std::make_shared<const Scene>(edited(*scene_, state_.edits));
+void Session::applyEdits(const SceneEdits& edits) {
+  edited_ = editedScene(scene_, edits);
   editedFrom_ = scene_;
-  applied_ = state_.edits;
+  applied_ = edits;
 }
 
 void Session::say(const std::string& message, bool error) {
@@ -93,7 +97,7 @@ void Session::say(const std::string& message, bool error) {
 
 std::string Session::problem() const {
   if (!textProblem_.empty()) return textProblem_;
-  if (!editProblem_.empty()) return editProblem_;
+  if (!frameProblem_.empty()) return frameProblem_;
   if (!techniques_.errors().empty()) return techniques_.errors().begin()->second;
   if (rendered_ != nullptr) {
     for (const RenderedSide& side : rendered_->sides)
@@ -102,6 +106,8 @@ std::string Session::problem() const {
     if (!rendered_->skipped.empty()) return rendered_->skipped;
   }
   if (reference_ != nullptr && !reference_->error.empty()) return "reference: " + reference_->error;
+  if (judged_ != nullptr && judged_->wish.rendered == rendered_ && !judged_->error.empty())
+    return "error of the picture: " + judged_->error;
   return {};
 }
 
@@ -126,6 +132,7 @@ bool Session::perform(const Action& action) {
       keeps = doKeep(action);
       if (!keeps) return false;
     }
+    applyEdits(state_.edits);  // refuses what a text could not say either
   } catch (const std::exception& error) {
     state_ = before;
     say(error.what(), true);
@@ -165,34 +172,6 @@ void Session::watchFiles() {
   techniques_.use(used);
 }
 
-void Session::readChangedFiles() {
-  try {
-    const std::shared_ptr<const Scene> before = scene_;
-    scene_ = std::make_shared<const Scene>(lumivox::loadScene(options_.scene, options_.sceneLoad));
-    if (scene_->hash == before->hash) scene_ = before;
-    applyEdits();
-    scene_->camera(state_.camera);
-    for (auto& pipeline : pipelines_) {
-      auto again = std::make_shared<const Pipeline>(Pipeline::load(pipeline->file));
-      if (again->hash == pipeline->hash) continue;
-      for (Side& side : state_.sides)
-        if (side.pipeline->file == pipeline->file) {
-          // What the text still knows of what was set.
-          ParameterValues values;
-          for (const auto& [name, value] : side.values)
-            for (const PipelineParameter& parameter : again->parameters)
-              if (parameter.name == name && parameter.misfit(value).empty()) values[name] = value;
-          side = {again, values};
-        }
-      pipeline = std::move(again);
-    }
-    textProblem_.clear();
-  } catch (const std::exception& error) {
-    textProblem_ = error.what();
-  }
-  stateChanged_ = pictureChanged_ = true;
-}
-
 bool Session::step(double seconds) {
   if (state_.plays) {
     state_.time += seconds * state_.speed;
@@ -213,6 +192,8 @@ bool Session::step(double seconds) {
     }
     if (techniques_.update()) stateChanged_ = pictureChanged_ = true;
   }
+  // Edits that kept a text from being taken may be gone.
+  if (!textProblem_.empty() && !(state_.edits == refusedWith_)) readChangedFiles();
   if (stateChanged_) wantFrame();
   takeResults();
   const bool news = pictureChanged_;
@@ -225,13 +206,21 @@ void Session::wantFrame() {
   // A frame at a time: while time goes on each would be passed over for the next.
   if (state_.plays && renderer_.busy()) return;
   stateChanged_ = false;
+  frameProblem_.clear();
+  RenderWish wish;
   try {
-    applyEdits();
-    editProblem_.clear();
+    applyEdits(state_.edits);
+    wish = wishNow();
   } catch (const std::exception& error) {
-    editProblem_ = error.what();  // of edits that do not fit a text that has changed
+    frameProblem_ = error.what();
     return;
   }
+  wish.number = ++wishes_;
+  asked_ = wish;
+  renderer_.want(std::move(wish));
+}
+
+RenderWish Session::wishNow() {
   std::set<std::string> used;
   for (const Side& side : state_.sides)
     for (const std::string& technique : side.pipeline->techniques()) used.insert(technique);
@@ -249,9 +238,7 @@ void Session::wantFrame() {
   wish.sides = state_.sides;
   wish.port = state_.port;
   wish.techniques = techniques_.directories();
-  wish.number = ++wishes_;
-  asked_ = wish;
-  renderer_.want(std::move(wish));
+  return wish;
 }
 
 bool Session::stop(double seconds) {
@@ -259,8 +246,9 @@ bool Session::stop(double seconds) {
   judge_.stop();
   renderer_.stop();
   techniques_.stop();
+  tools_.stop();
   const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  while (tracer_.busy() || judge_.busy() || renderer_.busy() || techniques_.compiles()) {
+  while (tracer_.busy() || judge_.busy() || renderer_.busy() || techniques_.compiles() || tools_.busy()) {
     if (std::chrono::steady_clock::now() > until) {
       techniques_.removeFiles();
       return false;

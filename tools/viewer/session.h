@@ -30,8 +30,10 @@ struct SessionOptions {
   std::vector<std::string> settings;             ///< "name=value" of the first pipeline
   std::string camera;
   double time = 0.0;
+  std::uint64_t seed = 1;     ///< of the random numbers of techniques
   int width = 0, height = 0;  ///< 0: the camera's
   std::vector<std::filesystem::path> techniques;
+  bool strict = false;  ///< a library of the first pipelines that does not fit is an Error
   SceneLoadOptions sceneLoad;
   gpu::DeviceOptions device;
 };
@@ -150,13 +152,14 @@ class Session {
   bool editScene(const Action& action);
   std::string sceneText();
   void write(const TextToWrite& text);
-  void loadScene(const std::filesystem::path& file);
   void choosePipeline(std::size_t side, const std::string& name);
   void freeCamera(const std::function<Camera(Camera)>& change);
   void rememberForUndo();
   void stepBack(std::vector<ViewState>& from, std::vector<ViewState>& to, int steps);
   void watchFiles();
-  void readChangedFiles();
+  bool readChangedFiles();
+  bool takeTexts(ViewState next);
+  RenderWish wishNow();
   void wantFrame();
   void takeResults();
   void wantReference();
@@ -165,7 +168,9 @@ class Session {
   void noteTimes();
   void compose();
   Picture portPicture(const PictureLook& outputLook) const;
-  void applyEdits();
+  std::shared_ptr<const Scene> editedScene(const std::shared_ptr<const Scene>& scene,
+                                           const SceneEdits& edits) const;
+  void applyEdits(const SceneEdits& edits);
 
   static constexpr double kFlickerSeconds = 0.5;  ///< a picture of two that flicker
 
@@ -174,9 +179,10 @@ class Session {
   std::vector<std::shared_ptr<const Pipeline>> pipelines_;
   ViewState state_;
   SceneEdits applied_;
+  SceneEdits refusedWith_;  ///< the edits with which textProblem_ came
   std::vector<ViewState> undo_, redo_;
   std::vector<std::string> log_;
-  std::string message_, textProblem_, editProblem_;
+  std::string message_, textProblem_, frameProblem_;
   bool messageIsError_ = false, joins_ = false, showsPanels_ = true;
   std::optional<TextToWrite> waitsForAnswer_;
 

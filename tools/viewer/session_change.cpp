@@ -115,19 +115,21 @@ bool Session::resetScene(const std::string& name) {
 }
 
 void Session::stepBack(std::vector<ViewState>& from, std::vector<ViewState>& to, int steps) {
-  for (int i = 0; i < steps && !from.empty(); ++i) {
-    ViewState before = std::move(from.back());
-    from.pop_back();
-    to.push_back(state_);
+  std::vector<ViewState> left = from, done = to;
+  ViewState now = state_;
+  for (int i = 0; i < steps && !left.empty(); ++i) {
+    done.push_back(now);
     // Where one looks from, and how, is nothing that is undone.
-    ViewState now = state_;
-    now.sides = std::move(before.sides);
-    now.edits = std::move(before.edits);
-    now.keepEverything = before.keepEverything;
-    now.seed = before.seed;
-    state_ = std::move(now);
+    now.sides = std::move(left.back().sides);
+    now.edits = std::move(left.back().edits);
+    now.keepEverything = left.back().keepEverything;
+    now.seed = left.back().seed;
+    left.pop_back();
   }
-  applyEdits();
+  applyEdits(now.edits);  // a text that has changed since may refuse them: then nothing is done
+  state_ = std::move(now);
+  from = std::move(left);
+  to = std::move(done);
 }
 
 bool Session::editScene(const Action& action) {
@@ -206,7 +208,7 @@ bool Session::doChange(const Action& action) {
   } else if (word == "environment") {
     state_.edits.environment = colourOf(action);
   } else if (editScene(action)) {
-    applyEdits();  // refuses what a text could not say either
+    // perform() refuses what a text could not say either.
   } else if (word == "keep_everything") {
     state_.keepEverything = action.flag();
   } else if (word == "seed") {

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "lumivox/base/error.h"
-#include "lumivox/measure/exposure.h"
 #include "lumivox/scene/free_camera.h"
 #include "viewer/session.h"
 
@@ -23,6 +22,17 @@ void Session::freeCamera(const std::function<Camera(Camera)>& change) {
   Camera camera = change(cameraOf(state_, *edited_));
   camera.name = "view";
   camera.keys.clear();
+  // Of many steps each is small.
+  for (const glm::dvec3& place : {camera.eye, camera.target})
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(std::abs(place[axis]) <= kFarthest))
+        throw Error(
+            fmt::format("the camera stays where it is: expected its eye and target within {:g} m of the "
+                        "origin along each axis",
+                        kFarthest));
+  if (!(glm::distance(camera.eye, camera.target) >= kNearest))
+    throw Error(
+        fmt::format("the camera stays where it is: expected its target at least {:g} m away", kNearest));
   snapshotFrom(*scene_, state_.time, camera, state_.width, state_.height);  // refuses one that looks nowhere
   state_.free = std::move(camera);
 }
@@ -69,9 +79,7 @@ bool Session::doLook(const Action& action) {
   } else if (word == "target") {
     freeCamera([&](Camera camera) { return camera.target = vector(), camera; });
   } else if (word == "fov") {
-    const double fov = action.number();
-    if (!(fov > 0.0) || !(fov < 3.1)) throw Error("fov: expected an angle between 0 and 177 deg");
-    freeCamera([&](Camera camera) { return camera.fov = fov, camera; });
+    freeCamera([&](Camera camera) { return camera.fov = action.number(), camera; });
   } else if (word == "move") {
     freeCamera([&](const Camera& camera) { return moved(camera, vector()); });
   } else if (word == "turn" || word == "orbit") {
@@ -89,7 +97,6 @@ bool Session::doLook(const Action& action) {
     state_.speed = action.number();
   } else if (word == "loop") {
     state_.loop = action.number();
-    if (!(state_.loop >= 0.0)) throw Error("loop: expected seconds from 0");
   } else if (word == "frame") {
     freeCamera([&](const Camera& camera) { return framed(camera, action.text()); });
   } else if (word == "size") {
@@ -112,15 +119,8 @@ bool Session::doLook(const Action& action) {
   } else if (word == "split") {
     state_.split = action.number();
   } else if (word == "exposure") {
-    const dsl::Value& value = action.property->values.front();
-    if (value.kind == dsl::ValueKind::word && value.text == "auto") {
-      state_.exposure.reset();
-    } else if (value.kind == dsl::ValueKind::number && std::abs(value.number) <= kLargestExposure) {
-      state_.exposure = value.number;
-    } else {
-      throw Error(fmt::format("exposure {}: expected auto, or EV of at most {} up or down", value.written(),
-                              kLargestExposure));
-    }
+    state_.exposure.reset();
+    if (action.text() != "auto") state_.exposure = action.number();
   } else if (word == "tone") {
     state_.curve = wordOf<Curve>(curveWords(), action.text());
   } else if (word == "samples") {

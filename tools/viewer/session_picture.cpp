@@ -35,9 +35,9 @@ void Session::compose() {
     exposure_ = 0.0;
   }
   // Fractions are shown as they are.
-  const bool fraction = image.channels() == 1 && !state_.exposure;
+  const bool fraction = !isRadiance(image) && !state_.exposure;
   const PictureLook look{fraction ? 0.0 : exposure_, state_.curve, flicker_ < kFlickerSeconds,
-                         image.channels() == 1 ? std::string() : kRadianceUnit};
+                         isRadiance(image) ? kRadianceUnit : std::string()};
   const Picture main = showsPort ? portPicture(look) : pictureOf(image, look);
   std::optional<ReferenceLayer> truth;
   if (reference_ != nullptr && !showsPort)

@@ -1,7 +1,6 @@
 #include "viewer/techniques.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -24,14 +23,15 @@ fs::path shadersOf(const std::string& technique, const fs::path& library) {
   return folder ? *folder : fs::path();
 }
 
-Compiled compiled(const CompileWish& wish) {
+Compiled compiled(const CompileWish& wish, const std::atomic<bool>& stop) {
   Compiled result{wish, {}};
   try {
     const fs::path program = programBeside("shaderpack");
     const ProgramResult done =
         runProgram({program.string(), "--technique", wish.technique, "--source", wish.source.string(),
                     "--include", wish.includes.string(), wish.common.string(), "--cache", wish.cache.string(),
-                    "--pack", wish.pack.string(), "--header", wish.header.string()});
+                    "--pack", wish.pack.string(), "--header", wish.header.string()},
+                   &stop);
     if (done.exitCode != 0) result.error = done.errors.empty() ? "shaderpack failed" : done.errors;
   } catch (const std::exception& error) {
     result.error = error.what();
@@ -44,23 +44,16 @@ Compiled compiled(const CompileWish& wish) {
 LiveTechniques::LiveTechniques(std::vector<fs::path> directories, std::function<void()> wake)
     : given_(directories),
       directories_(std::move(directories)),
-      folder_(fs::temp_directory_path() / fmt::format("lumivox_view_{}", getpid())),
       compiler_(
           [] {
             return [](const CompileWish& wish, LatestWorker<CompileWish, Compiled>::Turn& turn) {
-              turn.give(compiled(wish));
+              turn.give(compiled(wish, turn.outdated()));
             };
           },
           std::move(wake)) {}
 
 LiveTechniques::~LiveTechniques() {
   compiler_.stop();
-  removeFiles();
-}
-
-void LiveTechniques::removeFiles() {
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
 }
 
 fs::path LiveTechniques::libraryOf(const std::string& technique) const {
@@ -93,16 +86,32 @@ void LiveTechniques::use(const std::set<std::string>& techniques) {
 }
 
 void LiveTechniques::stage(const std::string& technique, const fs::path& pack) {
-  const fs::path folder = folder_ / fmt::format("{}_{}", technique, ++stages_);
+  dropLost();
+  const fs::path folder = folder_.path() / fmt::format("{}_{}", technique, ++stages_);
   fs::create_directories(folder);
   const fs::path library = libraryOf(technique);
   fs::copy_file(library, folder / library.filename());
   if (fs::exists(pack)) fs::copy_file(pack, folder / (technique + ".shaderpack"));
-  // Those that were staged before are as good as gone.
-  std::erase_if(directories_, [&](const fs::path& one) {
-    return one.parent_path() == folder_ && one.filename().string().starts_with(technique + "_");
-  });
+  // The one that was staged before is as good as gone.
+  fs::path& last = staged_[technique];
+  std::erase(directories_, last);
+  last = folder;
   directories_.insert(directories_.begin(), folder);
+  errors_.erase(technique);
+}
+
+bool LiveTechniques::dropLost() {
+  if (staged_.empty() || folder_.isSound()) return false;
+  // Whoever took the name may have put libraries there.
+  for (const auto& [technique, folder] : staged_) {
+    std::erase(directories_, folder);
+    errors_[technique] = fmt::format(
+        "{} is gone, or no longer this user's alone: {} is shown as it was built; save it again to see its "
+        "changes",
+        folder.parent_path().string(), technique);
+  }
+  staged_.clear();
+  return true;
 }
 
 void LiveTechniques::compile(const std::string& technique) {
@@ -111,7 +120,7 @@ void LiveTechniques::compile(const std::string& technique) {
   // What the build has compiled need not be compiled again.
   const fs::path built = libraryOf(technique).parent_path().parent_path().parent_path() / "shadercache";
   const fs::path cache = fs::is_directory(built) ? built : cacheDirectory() / "viewer_shaders";
-  const fs::path folder = folder_ / "compiled";
+  const fs::path folder = folder_.path() / "compiled";
   fs::create_directories(folder);
   compiler_.want({technique, source, source.parent_path(), common.value_or(source.parent_path()), cache,
                   folder / (technique + ".shaderpack"), folder / (technique + "_shaders.h")});
@@ -122,7 +131,6 @@ void LiveTechniques::changed(const std::string& technique, bool shaders) {
     if (shaders) {
       waiting_.insert(technique);
     } else {
-      errors_.erase(technique);
       const fs::path library = libraryOf(technique);
       stage(technique, library.parent_path() / (technique + ".shaderpack"));
     }
@@ -132,7 +140,7 @@ void LiveTechniques::changed(const std::string& technique, bool shaders) {
 }
 
 bool LiveTechniques::update() {
-  bool news = false;
+  bool news = dropLost();
   std::map<std::string, bool> which;  // whether shaders alone
   for (const fs::path& file : watch_.changed()) {
     const auto& [technique, shader] = files_.at(file);
@@ -150,7 +158,6 @@ bool LiveTechniques::update() {
   if (const auto done = compiler_.take()) {
     news = true;
     if (done->error.empty()) {
-      errors_.erase(done->wish.technique);
       try {
         stage(done->wish.technique, done->wish.pack);
       } catch (const std::exception& error) {
@@ -161,8 +168,14 @@ bool LiveTechniques::update() {
     }
   }
   if (!waiting_.empty() && !compiler_.busy()) {
-    compile(*waiting_.begin());
+    const std::string technique = *waiting_.begin();
     waiting_.erase(waiting_.begin());
+    try {
+      compile(technique);
+    } catch (const std::exception& error) {  // of a folder that cannot be made
+      errors_[technique] = error.what();
+      news = true;
+    }
   }
   return news;
 }

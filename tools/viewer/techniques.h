@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "viewer/latest_worker.h"
+#include "viewer/private_folder.h"
 #include "viewer/watch.h"
 
 namespace lumivox::viewer {
@@ -44,7 +45,7 @@ class LiveTechniques {
   bool compiles() const { return compiler_.busy(); }
   void stop() { compiler_.stop(); }
   /// Those of changed techniques, which are of this process alone.
-  void removeFiles();
+  void removeFiles() { folder_.remove(); }
 
  private:
   std::filesystem::path libraryOf(const std::string& technique) const;
@@ -52,15 +53,18 @@ class LiveTechniques {
   void stage(const std::string& technique, const std::filesystem::path& pack);
   void compile(const std::string& technique);
   void changed(const std::string& technique, bool shaders);
+  /// Whether staged techniques had to be given up, because their folder is no longer what was made.
+  bool dropLost();
 
   std::vector<std::filesystem::path> given_, directories_;
-  std::filesystem::path folder_;  ///< of staged techniques; removed at the end
+  PrivateFolder folder_;  ///< of staged techniques
   int stages_ = 0;
   std::set<std::string> used_, waiting_;
   Watch watch_;
   std::map<std::filesystem::path, std::pair<std::string, bool>>
       files_;  ///< technique, whether it is a shader
   std::map<std::string, std::string> errors_;
+  std::map<std::string, std::filesystem::path> staged_;  ///< by technique
   LatestWorker<CompileWish, Compiled> compiler_;
 };
 

@@ -1,18 +1,19 @@
 #include "viewer/watch.h"
 
-#include <system_error>
+#include <sys/stat.h>
 
 namespace lumivox::viewer {
 
 Watch::Stamp Watch::stampOf(const std::filesystem::path& file) {
-  Stamp stamp;
-  std::error_code failed;
-  stamp.time = std::filesystem::last_write_time(file, failed);
-  if (failed) return {};
-  stamp.size = std::filesystem::is_regular_file(file, failed) ? std::filesystem::file_size(file, failed) : 0;
-  if (failed) return {};
-  stamp.there = true;
-  return stamp;
+  struct stat found {};
+  if (stat(file.c_str(), &found) != 0) return {};
+  const auto nanoseconds = [](const timespec& time) { return time.tv_sec * 1'000'000'000LL + time.tv_nsec; };
+  return {true,
+          nanoseconds(found.st_mtim),
+          nanoseconds(found.st_ctim),
+          static_cast<std::uintmax_t>(found.st_size),
+          found.st_dev,
+          found.st_ino};
 }
 
 void Watch::set(const std::set<std::filesystem::path>& files) {

@@ -1,6 +1,8 @@
 // Files that somebody may change while they are shown.
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -9,7 +11,9 @@
 
 namespace lumivox::viewer {
 
-/// Compares times and sizes when asked: works on every file system, and sees files that are replaced.
+/// Compares what the file system says of a file when asked: works on every file system. A file that is
+/// replaced is seen by its number, since a kernel's clock stands still for milliseconds at a time, and a new
+/// file may be as long as the old one.
 class Watch {
  public:
   /// From now on these files, as they are now where they are new to the watch.
@@ -19,9 +23,12 @@ class Watch {
 
  private:
   struct Stamp {
-    std::filesystem::file_time_type time{};
-    std::uintmax_t size = 0;
     bool there = false;
+    std::int64_t modified = 0;  // nanoseconds
+    std::int64_t changed = 0;   // of the file or of what stands about it, nanoseconds
+    std::uintmax_t size = 0;
+    dev_t device = 0;
+    ino_t number = 0;
     bool operator==(const Stamp&) const = default;
   };
   static Stamp stampOf(const std::filesystem::path& file);

@@ -197,6 +197,18 @@ void Window::State::drawFrame(double seconds) {
   glfwSwapBuffers(window);
 }
 
+/// Whether what is seen has changed. What goes wrong there ends a script, but never a window with somebody's
+/// edits in it.
+bool Window::State::stepSession(double seconds, bool scripted) {
+  try {
+    return session->step(seconds);
+  } catch (const std::exception& error) {
+    if (scripted) throw;
+    session->say(error.what(), true);
+    return true;
+  }
+}
+
 void Window::wake() {
   glfwPostEmptyEvent();
 }
@@ -208,7 +220,7 @@ void Window::run(Session& session, std::vector<Action> script) {
   const bool scripted = !s.script.empty();
   s.readLayout();
   auto last = Clock::now();
-  while (!glfwWindowShouldClose(s.window)) {
+  while (!glfwWindowShouldClose(s.window) && !(s.options.ends && s.options.ends())) {
     const double shortest = s.options.fpsLimit > 0.0 ? 1.0 / s.options.fpsLimit : 0.0;
     if (s.minimised || (s.soon == 0 && !session.moves() && !s.busyWithHands())) {
       glfwWaitEventsTimeout(scripted ? 0.01 : kWatchInterval);
@@ -220,7 +232,7 @@ void Window::run(Session& session, std::vector<Action> script) {
     const auto now = Clock::now();
     const double seconds = std::chrono::duration<double>(now - last).count();
     last = now;
-    if (session.step(seconds)) {
+    if (s.stepSession(seconds, scripted)) {
       if (!session.picture().empty()) s.texture->show(session.picture());
       s.soon = std::max(s.soon, 1);
     }

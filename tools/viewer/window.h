@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,6 +20,7 @@ struct WindowOptions {
   std::filesystem::path layoutFile;
   bool restoresSize = true;  ///< that of the layout; else width and height
   std::string title = "Lumivox";
+  std::function<bool()> ends;  ///< asked again and again: whether to close; empty: never
 };
 
 class Window {

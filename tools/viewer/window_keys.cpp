@@ -55,7 +55,11 @@ const std::map<std::string, int>& heldKeys() {
 }
 
 void Window::State::act(const std::string& statements) {
-  for (const Action& action : session->perform(statements)) doInWindow(action);
+  try {
+    for (const Action& action : session->perform(statements)) doInWindow(action);
+  } catch (const std::exception& error) {
+    session->say(error.what(), true);  // as of what the session does itself
+  }
   soon = 3;
 }
 

@@ -5,8 +5,8 @@
 #include <random>
 #include <set>
 
+#include "common/outputs.h"
 #include "lumivox/base/error.h"
-#include "lumivox/base/file.h"
 #include "lumivox/base/image.h"
 #include "viewer/window_state.h"
 
@@ -158,6 +158,7 @@ void Window::State::randomActions(int count) {
 }
 
 void Window::State::shoot(const std::filesystem::path& file) {
+  command::Outputs().add("shot", file, {".png"}).check({});
   int width = 0, height = 0;
   glfwGetFramebufferSize(window, &width, &height);
   std::vector<unsigned char> bytes(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
@@ -173,7 +174,6 @@ void Window::State::shoot(const std::filesystem::path& file) {
                            static_cast<std::size_t>(x)) +
                       static_cast<std::size_t>(c)]) /
             255.0f;
-  createParentDirectories(file);
   writePng(file, pixels, {0.0, Tone::linear});
 }
 
@@ -192,7 +192,13 @@ bool Window::State::advanceScript() {
       waits = false;
     } else {
       session->say(session->message(), false);  // so that an error is this statement's
-      if (!session->perform(action)) doInWindow(action);
+      try {
+        if (!session->perform(action)) doInWindow(action);
+      } catch (const std::exception& error) {
+        const std::string what = error.what(), at = action.place().text();
+        if (what.starts_with(at)) throw;
+        throw Error(fmt::format("{}: {}: {}", at, action.written(), what));
+      }
       if (session->messageIsError())
         throw Error(fmt::format("{}: {}: {}", action.place().text(), action.written(), session->message()));
       soon = std::max(soon, 2);

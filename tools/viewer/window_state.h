@@ -99,6 +99,7 @@ struct Window::State {
   void listen();
   void rescale(float to);
   void minimise(bool away);
+  bool stepSession(double seconds, bool scripted);
   void drawFrame(double seconds);
   void readLayout();
   void writeLayout();

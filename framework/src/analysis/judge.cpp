@@ -152,6 +152,18 @@ const char* unit(PublishedQuantity quantity) {
   return "";
 }
 
+const char* name(ClaimedQuantity quantity) {
+  switch (quantity) {
+    case ClaimedQuantity::luminance:
+      return "luminance";
+    case ClaimedQuantity::colour:
+      return "colour";
+    case ClaimedQuantity::detail:
+      return "detail";
+  }
+  return "";
+}
+
 const char* name(Growth growth) {
   switch (growth) {
     case Growth::unsaid:
@@ -246,11 +258,25 @@ JudgedCurve judgeGrowth(const MeasuredCurve& curve) {
   return judged;
 }
 
+JudgedClaim judgeClaim(const MeasuredClaim& claim) {
+  JudgedClaim judged{Verdict::notComparable, claim.whyNot};
+  if (!judged.why.empty()) return judged;
+  if (!std::isfinite(claim.lessValue) || !std::isfinite(claim.thanValue)) {
+    judged.why = "there are no images to compare";
+    return judged;
+  }
+  judged.verdict =
+      claim.lessValue < claim.times * claim.thanValue ? Verdict::reproduced : Verdict::notReproduced;
+  return judged;
+}
+
 std::vector<ReproducedResult> judged(std::vector<ReproducedResult> results) {
   for (ReproducedResult& result : results) {
     result.judged = judge(result.rows);
     result.judgedCurves.clear();
     for (const MeasuredCurve& curve : result.curves) result.judgedCurves.push_back(judgeGrowth(curve));
+    result.judgedClaims.clear();
+    for (const MeasuredClaim& claim : result.claims) result.judgedClaims.push_back(judgeClaim(claim));
   }
   return results;
 }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,8 +14,7 @@
 #include <cstring>
 
 #include "lumivox/base/error.h"
-
-extern char** environ;
+#include "lumivox/base/start_process.h"
 
 namespace lumivox {
 namespace {
@@ -26,24 +24,6 @@ using Clock = std::chrono::steady_clock;
 /// The bytes of standard error that are kept.
 constexpr std::size_t kWordsKept = 4096;
 
-std::vector<char*> pointersTo(std::vector<std::string>& texts) {
-  std::vector<char*> pointers;
-  for (std::string& text : texts) pointers.push_back(text.data());
-  pointers.push_back(nullptr);
-  return pointers;
-}
-
-std::vector<std::string> environmentWith(const std::vector<std::string>& settings) {
-  std::vector<std::string> all = settings;
-  for (char** one = environ; *one != nullptr; ++one) {
-    const std::string name = std::string(*one).substr(0, std::strcspn(*one, "=")) + "=";
-    if (std::none_of(settings.begin(), settings.end(),
-                     [&](const std::string& setting) { return setting.rfind(name, 0) == 0; }))
-      all.emplace_back(*one);
-  }
-  return all;
-}
-
 }  // namespace
 
 Child::Child(const std::vector<std::string>& words, const std::vector<std::string>& environment) {
@@ -52,31 +32,20 @@ Child::Child(const std::vector<std::string>& words, const std::vector<std::strin
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, requests) != 0 || pipe2(answers, O_CLOEXEC) != 0 ||
       pipe2(messages, O_CLOEXEC) != 0)
     throw Error(fmt::format("cannot start '{}': {}", words.at(0), std::strerror(errno)));
-  std::vector<std::string> arguments = words, variables = environmentWith(environment);
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_adddup2(&files, requests[1], STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&files, answers[1], STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&files, messages[1], STDERR_FILENO);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  // A group of its own, so that what it starts ends with it.
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  const int failure = posix_spawn(&process_, arguments[0].c_str(), &files, &attributes,
-                                  pointersTo(arguments).data(), pointersTo(variables).data());
-  posix_spawn_file_actions_destroy(&files);
-  posix_spawnattr_destroy(&attributes);
-  close(requests[1]);
-  close(answers[1]);
-  close(messages[1]);
+  const auto closeAll = [](std::initializer_list<int> files) {
+    for (const int file : files) close(file);
+  };
+  try {
+    // A group of its own, so that what it starts ends with it.
+    process_ = startProcess({words, environment, requests[1], answers[1], messages[1], true});
+  } catch (const Error&) {
+    closeAll({requests[0], requests[1], answers[0], answers[1], messages[0], messages[1]});
+    throw;
+  }
+  closeAll({requests[1], answers[1], messages[1]});
   requests_ = requests[0];
   answers_ = answers[0];
   messages_ = messages[0];
-  if (failure != 0) {
-    for (const int file : {requests_, answers_, messages_}) close(file);
-    throw Error(fmt::format("cannot start '{}': {}", words.at(0), std::strerror(failure)));
-  }
 }
 
 Child::~Child() {

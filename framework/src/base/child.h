@@ -1,4 +1,5 @@
-// A process of its own that is fed through its standard input and answers line by line.
+// A process of its own that is fed through its standard input and answers line by line. It ends with this one
+// (lumivox/base/start_process.h).
 #pragma once
 
 #include <sys/types.h>

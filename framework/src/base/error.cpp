@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -35,11 +36,12 @@ std::string Diagnostic::text() const {
 namespace {
 std::string joined(const std::vector<Diagnostic>& diagnostics) {
   std::string text;
-  for (const Diagnostic& diagnostic : diagnostics) {
+  for (std::size_t i = 0; i < shownFindings(diagnostics.size()); ++i) {
     if (!text.empty()) text += '\n';
-    text += diagnostic.text();
+    text += diagnostics[i].text();
   }
-  return text;
+  const std::string more = moreFindingsText(diagnostics.size());
+  return more.empty() ? text : text + '\n' + more;
 }
 
 /// Checks run one after the other over the whole text; a reader goes from top to bottom. Files keep the order
@@ -58,29 +60,76 @@ std::vector<Diagnostic> inTextOrder(std::vector<Diagnostic> diagnostics) {
 DiagnosticsError::DiagnosticsError(std::vector<Diagnostic> diagnostics)
     : Error(joined(inTextOrder(diagnostics))), diagnostics_(inTextOrder(std::move(diagnostics))) {}
 
-std::string nearestWord(const std::string& word, const std::vector<std::string>& candidates) {
-  // Edit distance with neighbouring letters swapped counted as one slip (optimal string alignment).
-  const auto distance = [](const std::string& a, const std::string& b) {
-    std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-    for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-    for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-      for (std::size_t j = 1; j <= b.size(); ++j) {
+std::size_t shownFindings(std::size_t count) {
+  // One more is shown rather than counted.
+  return count <= kMostFindingsShown + 1 ? count : kMostFindingsShown;
+}
+
+std::string moreFindingsText(std::size_t count) {
+  const std::size_t shown = shownFindings(count);
+  return shown == count ? std::string()
+                        : fmt::format("and {} more findings; the first {} are shown", count - shown, shown);
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  constexpr std::size_t kMostListed = 100;
+  if (words.size() <= kMostListed + 1) return fmt::format("{}", fmt::join(words, ", "));
+  return fmt::format("{}, ... and {} more",
+                     fmt::join(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(kMostListed), ", "),
+                     words.size() - kMostListed);
+}
+
+namespace {
+
+constexpr std::size_t kLongestWord = 64;  ///< of which slips of the pen are looked for
+
+/// Edit distance with neighbouring letters swapped counted as one slip (optimal string alignment), where it
+/// is at most `limit`; any larger number where it is more. Words of at most kLongestWord letters.
+std::size_t slipsBetween(const std::string& a, const std::string& b, std::size_t limit) {
+  const std::size_t more = limit + 1;
+  if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > limit) return more;
+  // Rows of the table: this one and the two before it. Beyond the band around the diagonal lie only larger
+  // ones.
+  std::array<std::array<std::size_t, kLongestWord + 1>, 3> rows;
+  for (auto& row : rows) row.fill(more);
+  for (std::size_t j = 0; j <= std::min(b.size(), limit); ++j) rows[0][j] = j;
+  std::size_t leastBefore = 0;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    auto& row = rows[i % 3];
+    const auto &before = rows[(i + 2) % 3], &beforeThat = rows[(i + 1) % 3];
+    const std::size_t first = i > limit ? i - limit : 0, last = std::min(b.size(), i + limit);
+    std::size_t least = more;
+    if (first > 0) row[first - 1] = more;
+    if (last < b.size()) row[last + 1] = more;
+    for (std::size_t j = first; j <= last; ++j) {
+      if (j == 0) {
+        row[0] = i;
+      } else {
         const std::size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
-        d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + change});
+        row[j] = std::min({before[j] + 1, row[j - 1] + 1, before[j - 1] + change});
         if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-          d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+          row[j] = std::min(row[j], beforeThat[j - 2] + 1);
       }
+      least = std::min(least, row[j]);
     }
-    return d[a.size()][b.size()];
-  };
-  if (word.empty() || word.size() > 64) return {};
+    // A swap reaches over one row, and adds one.
+    if (least > limit && leastBefore >= limit) return more;
+    leastBefore = least;
+  }
+  return rows[a.size() % 3][b.size()];
+}
+
+}  // namespace
+
+std::string nearestWord(const std::string& word, const std::vector<std::string>& candidates) {
+  if (word.empty() || word.size() > kLongestWord) return {};
   std::string best;
   // A slip of the pen changes at most a third of the letters.
   std::size_t bestDistance = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
-    if (candidate == word || candidate.size() > 64) continue;
-    const std::size_t d = distance(word, candidate);
+    if (bestDistance == 1) break;  // none is nearer
+    if (candidate == word || candidate.size() > kLongestWord) continue;
+    const std::size_t d = slipsBetween(word, candidate, bestDistance - 1);
     if (d < bestDistance && d < std::max(word.size(), candidate.size())) {
       bestDistance = d;
       best = candidate;
@@ -96,6 +145,11 @@ std::string nearestWord(const std::string& word, const std::vector<std::string>&
   };
   if (std::count_if(candidates.begin(), candidates.end(), isBeginning) != 1) return {};
   return *std::find_if(candidates.begin(), candidates.end(), isBeginning);
+}
+
+std::string suggestionFor(const std::vector<Diagnostic>& findings, const std::string& word,
+                          const std::vector<std::string>& candidates) {
+  return findings.size() > kMostFindingsShown ? std::string() : nearestWord(word, candidates);
 }
 
 }  // namespace lumivox

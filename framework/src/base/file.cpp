@@ -15,11 +15,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <iostream>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <utility>
 
+#include "base/file_set.h"
 #include "lumivox/base/error.h"
 
 namespace lumivox {
@@ -45,11 +47,33 @@ class Descriptor {
 }
 
 const char* kindOf(mode_t mode) {
+  if (S_ISREG(mode)) return "a regular file";
   if (S_ISDIR(mode)) return "a directory";
   if (S_ISCHR(mode) || S_ISBLK(mode)) return "a device";
   if (S_ISFIFO(mode)) return "a FIFO";
   if (S_ISSOCK(mode)) return "a socket";
-  return "not a regular file";
+  return "no regular file";
+}
+
+/// The files that this process has read, by device and inode.
+class ReadFiles {
+ public:
+  void add(const struct stat& status) {
+    const std::lock_guard lock(mutex_);
+    files_.emplace(status.st_dev, status.st_ino);
+  }
+  bool contains(const struct stat& status) {
+    const std::lock_guard lock(mutex_);
+    return files_.count({status.st_dev, status.st_ino}) > 0;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::set<std::pair<dev_t, ino_t>> files_;
+};
+ReadFiles& filesRead() {
+  static ReadFiles files;
+  return files;
 }
 
 /// A regular file opened for reading. Without O_NONBLOCK the call itself would wait for the writer of a FIFO;
@@ -61,6 +85,7 @@ Descriptor openRegular(const std::filesystem::path& path, struct stat& status) {
   if (!S_ISREG(status.st_mode)) {
     throw Error(fmt::format("{}: is {}; expected a regular file", path.string(), kindOf(status.st_mode)));
   }
+  filesRead().add(status);
   return file;
 }
 
@@ -170,11 +195,97 @@ void writeThrough(const Target& target, std::span<const std::byte> bytes, const 
   writeAll(file.get(), bytes, path);
 }
 
-/// A name beside the target that no other process or thread uses.
+/// A name beside the target that no other process or thread uses. It begins like the target, and is short
+/// enough wherever the target's name is.
 std::filesystem::path besideName(const std::filesystem::path& path) {
   static std::atomic<unsigned> counter{0};
-  return path.parent_path() / fmt::format(".{}.{}.{}.new", path.filename().string(), getpid(), counter++);
+  constexpr std::size_t kKept = 64;  // bytes
+  std::string name = path.filename().string();
+  if (name.size() > kKept) {
+    std::size_t end = kKept;  // between two characters
+    while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xC0u) == 0x80u) --end;
+    name.resize(end);
+  }
+  return path.parent_path() / fmt::format(".{}.{}.{}.new", name, getpid(), counter++);
 }
+
+std::filesystem::path folderOf(const Target& target) {
+  return target.path.has_parent_path() ? target.path.parent_path() : std::filesystem::path(".");
+}
+
+/// The new content of a file, whole and on the disk before it takes the file's name.
+class StagedFile {
+ public:
+  /// Writes it beside the target, without a name where the file system can: an unnamed file vanishes by
+  /// itself when this process is killed.
+  StagedFile(const std::filesystem::path& path, std::span<const std::byte> bytes)
+      : path_(path), target_(targetOf(path)), bytes_(bytes) {
+    if (target_.isWrittenThrough()) return;
+    const std::filesystem::path folder = folderOf(target_);
+    unnamed_.emplace(open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, kMode));
+    if (unnamed_->get() >= 0)
+      write(*unnamed_);
+    else
+      writeNamed();
+  }
+  ~StagedFile() {
+    if (!beside_.empty()) unlink(beside_.c_str());
+  }
+  StagedFile(StagedFile&& other) noexcept
+      : path_(std::move(other.path_)),
+        target_(std::move(other.target_)),
+        bytes_(other.bytes_),
+        unnamed_(std::move(other.unnamed_)),
+        beside_(std::exchange(other.beside_, {})) {}
+  StagedFile& operator=(StagedFile&&) = delete;
+
+  /// Gives an unnamed file a name beside the target.
+  void nameBeside() {
+    if (target_.isWrittenThrough() || !beside_.empty()) return;
+    const std::filesystem::path beside = besideName(target_.path);
+    const std::string self = fmt::format("/proc/self/fd/{}", unnamed_->get());
+    if (linkat(AT_FDCWD, self.c_str(), AT_FDCWD, beside.c_str(), AT_SYMLINK_FOLLOW) == 0)
+      beside_ = beside;
+    else
+      writeNamed();
+  }
+  void writeThroughNow() const {
+    if (target_.isWrittenThrough()) writeThrough(target_, bytes_, path_);
+  }
+  void take() {
+    if (target_.isWrittenThrough()) return;
+    if (rename(beside_.c_str(), target_.path.c_str()) != 0) fail(path_, "write");
+    beside_.clear();
+  }
+
+ private:
+  static constexpr mode_t kMode = 0666;
+
+  void write(const Descriptor& file) const {
+    constexpr mode_t kPermissions = 0777;  // without set-user-identification and its kin
+    if (target_.status && fchmod(file.get(), target_.status->st_mode & kPermissions) != 0)
+      fail(path_, "write");
+    writeToDisk(file.get(), bytes_, path_);
+  }
+  void writeNamed() {
+    const std::filesystem::path beside = besideName(target_.path);
+    const Descriptor file(open(beside.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, kMode));
+    if (file.get() < 0) fail(path_, "write");
+    try {
+      write(file);
+    } catch (...) {
+      unlink(beside.c_str());
+      throw;
+    }
+    beside_ = beside;
+  }
+
+  std::filesystem::path path_;
+  Target target_;
+  std::span<const std::byte> bytes_;
+  std::optional<Descriptor> unnamed_;
+  std::filesystem::path beside_;  ///< empty: it has no name, or that of the target
+};
 
 }  // namespace
 
@@ -203,8 +314,14 @@ std::string readFileStart(const std::filesystem::path& path, std::uint64_t limit
 
 void requireRegularFile(const std::filesystem::path& path) {
   struct stat status {};
-  if (stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode)) return;
+  if (stat(path.c_str(), &status) != 0) return;
+  if (S_ISREG(status.st_mode)) return filesRead().add(status);
   throw Error(fmt::format("{}: is {}; expected a regular file", path.string(), kindOf(status.st_mode)));
+}
+
+bool wasRead(const std::filesystem::path& path) {
+  struct stat status {};
+  return stat(path.c_str(), &status) == 0 && filesRead().contains(status);
 }
 
 std::string readFileMaybeGzip(const std::filesystem::path& path, std::uint64_t limitBytes) {
@@ -257,63 +374,39 @@ void requireWritable(const std::filesystem::path& file) {
     if (access(target.path.c_str(), W_OK) != 0) fail(file, "write");
     return;
   }
-  const std::filesystem::path parent =
-      target.path.has_parent_path() ? target.path.parent_path() : std::filesystem::path(".");
+  const std::filesystem::path parent = folderOf(target);
   std::error_code failure;
   if (!std::filesystem::is_directory(parent, failure))
     throw Error(fmt::format("{}: {} is not a directory", file.string(), parent.string()));
-  if (access(parent.c_str(), W_OK | X_OK) != 0)
+  // Permissions do not tell all (a file system of the kernel, one mounted for reading): a file is made and
+  // removed.
+  const std::filesystem::path beside = besideName(target.path);
+  constexpr mode_t kOwnerOnly = 0600;
+  const Descriptor made(open(beside.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, kOwnerOnly));
+  if (made.get() < 0)
     throw Error(
         fmt::format("{}: cannot write into {}: {}", file.string(), parent.string(), std::strerror(errno)));
+  unlink(beside.c_str());
 }
 
 void writeFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  const Target target = targetOf(path);
-  if (target.isWrittenThrough()) return writeThrough(target, bytes, path);
-  const std::filesystem::path parent =
-      target.path.has_parent_path() ? target.path.parent_path() : std::filesystem::path(".");
-  const std::filesystem::path beside = besideName(target.path);
-  constexpr mode_t kMode = 0666;
-  const auto write = [&](const Descriptor& file) {
-    constexpr mode_t kPermissions = 0777;  // without set-user-identification and its kin
-    if (target.status && fchmod(file.get(), target.status->st_mode & kPermissions) != 0) fail(path, "write");
-    writeToDisk(file.get(), bytes, path);
-  };
-  // An unnamed file vanishes by itself when this process is killed; only a whole one ever gets a name.
-  if (const Descriptor file(open(parent.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, kMode)); file.get() >= 0) {
-    write(file);
-    const std::string self = fmt::format("/proc/self/fd/{}", file.get());
-    if (linkat(AT_FDCWD, self.c_str(), AT_FDCWD, beside.c_str(), AT_SYMLINK_FOLLOW) == 0) {
-      if (rename(beside.c_str(), target.path.c_str()) == 0) return;
-      const int reason = errno;
-      unlink(beside.c_str());
-      errno = reason;
-      fail(path, "write");
-    }
-  }
-  const Descriptor file(open(beside.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, kMode));
-  if (file.get() < 0) fail(path, "write");
-  try {
-    write(file);
-    if (rename(beside.c_str(), target.path.c_str()) != 0) fail(path, "write");
-  } catch (...) {
-    unlink(beside.c_str());
-    throw;
-  }
+  const NewFile file{path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
+  writeFilesAtomically({&file, 1});
+}
+
+void writeFilesAtomically(std::span<const NewFile> files) {
+  std::vector<StagedFile> staged;
+  staged.reserve(files.size());
+  for (const NewFile& file : files)
+    staged.emplace_back(file.path, std::as_bytes(std::span(file.content.data(), file.content.size())));
+  // What may still fail comes before the first file has its name.
+  for (StagedFile& file : staged) file.nameBeside();
+  for (StagedFile& file : staged) file.writeThroughNow();
+  for (StagedFile& file : staged) file.take();
 }
 
 void writeFileAtomically(const std::filesystem::path& path, std::string_view text) {
   writeFileAtomically(path, std::as_bytes(std::span(text.data(), text.size())));
-}
-
-std::uint64_t availableMemory() {
-  std::ifstream information("/proc/meminfo");
-  for (std::string line; std::getline(information, line);) {
-    unsigned long long kibibytes = 0;
-    if (std::sscanf(line.c_str(), "MemAvailable: %llu kB", &kibibytes) == 1)
-      return std::uint64_t{kibibytes} * 1024;
-  }
-  return ~std::uint64_t{0};
 }
 
 void requireMemory(std::uint64_t bytes, std::string_view what) {
@@ -358,7 +451,8 @@ std::filesystem::path cacheDirectory() {
   struct stat status {};
   if ((isFallback ? lstat : stat)(directory.c_str(), &status) != 0) refuse(std::strerror(errno));
   if (!S_ISDIR(status.st_mode))
-    refuse(fmt::format("is {}", S_ISLNK(status.st_mode) ? "a symbolic link" : kindOf(status.st_mode)));
+    refuse(fmt::format("is {}; expected a folder",
+                       S_ISLNK(status.st_mode) ? "a symbolic link" : kindOf(status.st_mode)));
   if (isFallback && status.st_uid != geteuid())
     refuse("it belongs to another user; name a folder of your own in LUMIVOX_CACHE");
   if (isFallback && (status.st_mode & 0077) != 0 && chmod(directory.c_str(), kOwnerOnly) != 0)

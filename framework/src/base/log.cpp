@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <limits>
 #include <mutex>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -25,8 +26,9 @@ std::string* captured = nullptr;
 /// What the terminal shows below the messages; empty: nothing.
 std::string statusLine;
 bool statusOnScreen = false;
-/// Warnings as they are written, in the order in which they came first.
+/// Warnings as they are written, in the order in which they came first, and where each stands in that order.
 std::vector<std::pair<std::string, std::uint64_t>> told;
+std::unordered_map<std::string, std::size_t> toldAt;
 thread_local WarningCollector* collector = nullptr;
 
 void clearStatus() {
@@ -43,14 +45,13 @@ void drawStatus() {
 }
 
 /// Whether the warning is told for the first time.
-bool isNews(std::string_view warning) {
-  for (auto& [text, times] : told)
-    if (text == warning) {
-      ++times;
-      return false;
-    }
-  told.emplace_back(warning, 1);
-  return true;
+bool isNews(const std::string& warning) {
+  const auto [at, isNew] = toldAt.emplace(warning, told.size());
+  if (isNew)
+    told.emplace_back(warning, 1);
+  else
+    ++told[at->second].second;
+  return isNew;
 }
 
 void writeLine(std::string_view line) {
@@ -109,6 +110,7 @@ void logRepeatedWarnings() {
   for (const auto& [text, times] : told)
     if (times > 1) writeLine(fmt::format("{} ({} times)", text.substr(0, text.find('\n')), times));
   told.clear();
+  toldAt.clear();
 }
 
 void clearProgressLine() {

@@ -14,7 +14,7 @@ void dropConsequences(const Document& document, std::vector<Diagnostic>& finding
   const auto follows = [&](const Diagnostic& finding) {
     const auto& own = document.findings;
     if (std::any_of(own.begin(), own.end(), [&](const Diagnostic& other) {
-          return other.place.text() == finding.place.text() && other.what == finding.what;
+          return other.what == finding.what && other.place.text() == finding.place.text();
         }))
       return false;
     const auto doubtful = doubts.from.find(finding.place.file);

@@ -4,16 +4,15 @@
 #include <algorithm>
 #include <string>
 
+#include "dsl/lexer.h"
+
 namespace lumivox::dsl {
 namespace {
 
-std::string lineOf(const std::string& source, int number) {
-  std::size_t start = 0;
-  for (int i = 1; i < number; ++i) {
-    start = source.find('\n', start);
-    if (start == std::string::npos) return {};
-    ++start;
-  }
+/// Counts lines from 1; empty behind the last.
+std::string lineOf(const std::string& source, const std::vector<std::size_t>& starts, int number) {
+  if (number < 1 || static_cast<std::size_t>(number) > starts.size()) return {};
+  const std::size_t start = starts[static_cast<std::size_t>(number) - 1];
   std::string line = source.substr(start, source.find('\n', start) - start);
   while (!line.empty() && line.back() == '\r') line.pop_back();
   return line;
@@ -63,13 +62,21 @@ std::string Block::title() const {
   return result;
 }
 
+std::vector<std::size_t> lineStartsOf(const std::string& source) {
+  std::vector<std::size_t> starts{0};
+  for (std::size_t end = source.find('\n'); end != std::string::npos; end = source.find('\n', end + 1))
+    starts.push_back(end + 1);
+  return starts;
+}
+
 std::string Document::line(int number) const {
-  return lineOf(source, number);
+  return lineOf(source, lineStarts, number);
 }
 
 std::string Document::line(const SourcePlace& place) const {
   const auto included = includedSources.find(place.file);
-  return lineOf(included != includedSources.end() ? included->second : source, place.line);
+  if (included == includedSources.end()) return line(place.line);
+  return lineOf(included->second, includedLineStarts.at(place.file), place.line);
 }
 
 Diagnostic Document::finding(const SourcePlace& place, int length, std::string what, std::string expected,
@@ -83,8 +90,7 @@ Diagnostic Document::finding(const SourcePlace& place, int length, std::string w
   result.suggestion = std::move(suggestion);
   result.length = std::max(1, length);
   if (place.line > 0 && place.column <= kLongestShownLine) {
-    result.sourceLine = line(place);
-    if (result.sourceLine.size() > kLongestShownLine) result.sourceLine.resize(kLongestShownLine);
+    result.sourceLine = line(place).substr(0, kLongestShownLine);  // a copy, which keeps no long line alive
     result.length =
         std::clamp(static_cast<int>(result.sourceLine.size()) + 1 - place.column, 1, result.length);
   }

@@ -94,6 +94,7 @@ class Splicer {
         root_.includedFiles.end()) {
       root_.includedFiles.push_back(target);
       root_.includedSources[target.string()] = part.source;
+      root_.includedLineStarts[target.string()] = part.lineStarts;
       for (Diagnostic& finding : part.findings) root_.findings.push_back(std::move(finding));
     }
     splice(part.items, target);

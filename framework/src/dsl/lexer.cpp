@@ -325,9 +325,10 @@ class Lexer {
       while (position_ < stop) peek() == '\n' ? newLine() : advance();
       return true;
     }
-    const std::size_t lineEnd = std::min(source_.find('\n', position_), source_.size());
-    const std::size_t quote = source_.find('\'', position_ + 1);
-    if (peek() != '\'' || quote >= lineEnd) return false;
+    // Looked for from a quote alone, and no further than the line, so that a line is read once.
+    if (peek() != '\'') return false;
+    const std::size_t quote = source_.find_first_of("'\n", position_ + 1);
+    if (quote == std::string::npos || source_[quote] == '\n') return false;
     begin(TokenKind::text);
     advance();
     while (position_ < quote) {

@@ -35,6 +35,9 @@ struct Token {
 /// All tokens; the last is `end`. Errors go to document.findings; what cannot be read is left out.
 std::vector<Token> lex(Document& document);
 
+/// Document::lineStarts of a text.
+std::vector<std::size_t> lineStartsOf(const std::string& source);
+
 const Unit* findUnit(const std::string& name);
 std::vector<std::string> unitNameList();
 

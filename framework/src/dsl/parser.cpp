@@ -27,9 +27,6 @@ class Parser {
 
  private:
   const Token& now() const { return tokens_[position_]; }
-  const Token& next(std::size_t ahead) const {
-    return tokens_[std::min(position_ + ahead, tokens_.size() - 1)];
-  }
   bool is(TokenKind kind) const { return now().kind == kind; }
   Token& take() {
     Token& token = tokens_[position_];
@@ -61,15 +58,17 @@ class Parser {
   /// The word of a block: words and strings that follow on the same line end in '{'. A '{' at the start of
   /// the next line is taken as a slip.
   bool blockStarts() {
-    std::size_t ahead = 1;
-    while ((next(ahead).kind == TokenKind::word || next(ahead).kind == TokenKind::text) &&
-           !next(ahead).startsLine) {
-      ++ahead;
+    // Every word of a line asks for the same end, which is looked for once.
+    if (headerEnd_ <= position_) {
+      headerEnd_ = position_ + 1;
+      while (headerEnd_ + 1 < tokens_.size() &&
+             (tokens_[headerEnd_].kind == TokenKind::word || tokens_[headerEnd_].kind == TokenKind::text) &&
+             !tokens_[headerEnd_].startsLine)
+        ++headerEnd_;
     }
-    if (next(ahead).kind != TokenKind::open) return false;
-    if (next(ahead).startsLine) {
-      report(next(ahead), "'{' starts a line", "'{' on the line of its block's word");
-    }
+    const Token& end = tokens_[std::min(headerEnd_, tokens_.size() - 1)];
+    if (end.kind != TokenKind::open) return false;
+    if (end.startsLine) report(end, "'{' starts a line", "'{' on the line of its block's word");
     return true;
   }
 
@@ -476,6 +475,7 @@ class Parser {
   std::vector<Token> tokens_;
   std::ptrdiff_t ofLexer_;  ///< findings
   std::size_t position_ = 0;
+  std::size_t headerEnd_ = 0;  ///< of blockStarts(): the first token behind the words of the last line it saw
   std::vector<OpenBlock> open_, unclosed_;
   std::optional<OpenBlock> unclosedHere_;  ///< the first block that seems to lack its '}'
   std::optional<OpenBlock> missingOpen_;   ///< the first statement that seems to lack its '{'
@@ -510,6 +510,7 @@ Doubts doubtsOf(const Document& document) {
     Document again;
     again.file = file;
     again.source = source;
+    again.lineStarts = lineStartsOf(source);
     if (source.size() > kMaximumTextBytes || firstControlCharacter(again)) return;
     std::vector<Token> tokens = lex(again);
     Parser parser(again, std::move(tokens));
@@ -526,6 +527,7 @@ Document parse(std::string source, std::filesystem::path file) {
   Document document;
   document.file = std::move(file);
   document.source = std::move(source);
+  document.lineStarts = lineStartsOf(document.source);
   const SourcePlace whole{document.file.string(), 0, 0};
   if (document.source.size() > kMaximumTextBytes) {
     document.findings.push_back(

@@ -10,6 +10,9 @@
 namespace lumivox::dsl {
 namespace {
 
+// Within what single precision holds as normal numbers, whose largest is 3.4e38 and smallest 1.2e-38.
+constexpr double kSmallestMagnitude = 1e-37, kLargestMagnitude = 1e37;
+
 bool mustCarryUnit(const Dimension& dimension) {
   return dimension == kAngle || dimension == kAngularSpeed;
 }
@@ -51,6 +54,7 @@ class PropertyChecker {
                     fmt::format("property '{}' has no value", property_.word), expectation(specification_));
     }
     if (!checkCount()) return;
+    sharedUnit_ = unitOfAll();
     for (std::size_t i = 0; i < property_.values.size(); ++i) checkValue(property_.values[i], i);
     checkUnitsOfVector();
   }
@@ -158,7 +162,7 @@ class PropertyChecker {
     if (choices.empty() || std::find(choices.begin(), choices.end(), value.text) != choices.end()) return;
     report(value.place, value.length,
            fmt::format("unknown value '{}' of property '{}'", value.text, property_.word), oneOf(choices),
-           nearestWord(value.text, choices));
+           suggestionFor(findings_, value.text, choices));
   }
 
   void checkList(const Value& value) {
@@ -207,14 +211,34 @@ class PropertyChecker {
                     fmt::format("{} of property '{}' has no unit", shown(value), property_.word),
                     quantity(dimension));
     }
-    const double number = value.inBaseUnits();
+    const double number =
+        sharedUnit_ != nullptr && !value.unit ? value.number * sharedUnit_->toBase : value.inBaseUnits();
     // Units are decimal fractions in binary: a bound itself must pass, whatever unit it was written in.
     const double tolerance = 1e-12 * std::abs(number);
     if (bounded && (number < specification_.low - tolerance || number > specification_.high + tolerance)) {
-      report(value.place, value.length,
-             fmt::format("{} of property '{}' is out of range", shown(value), property_.word),
-             expectation(specification_));
+      return report(value.place, value.length,
+                    fmt::format("{} of property '{}' is out of range", shown(value), property_.word),
+                    expectation(specification_));
     }
+    // Whatever a table allows: renderers compute in single precision.
+    const double magnitude = std::abs(number);
+    if (magnitude != 0.0 && !(magnitude >= kSmallestMagnitude && magnitude <= kLargestMagnitude)) {
+      report(
+          value.place, value.length,
+          fmt::format("{} of property '{}' has no value in single precision", shown(value), property_.word),
+          fmt::format("0, or a magnitude from {:g} to {:g} in base units", kSmallestMagnitude,
+                      kLargestMagnitude));
+    }
+  }
+
+  /// The unit behind the last component, when it holds for all.
+  const Unit* unitOfAll() const {
+    if (!isVector() || specification_.type == PropertyType::axisAndNumber || property_.values.size() < 2)
+      return nullptr;
+    const std::vector<Value>& values = property_.values;
+    const bool alone = std::none_of(values.begin(), values.end() - 1,
+                                    [](const Value& value) { return value.unit.has_value(); });
+    return alone && values.back().unit ? &*values.back().unit : nullptr;
   }
 
   /// Units on some components but not on the last would leave the others' meaning to guesswork.
@@ -233,6 +257,7 @@ class PropertyChecker {
   const Property& property_;
   const PropertySpecification& specification_;
   std::vector<Diagnostic>& findings_;
+  const Unit* sharedUnit_ = nullptr;
 };
 
 }  // namespace
@@ -244,7 +269,7 @@ void checkProperty(const Document& document, const Property& property,
 
 std::string oneOf(const std::vector<std::string>& words) {
   if (words.size() == 1) return "'" + words.front() + "'";
-  return fmt::format("one of {}", fmt::join(words, ", "));
+  return "one of " + listed(words);
 }
 
 std::string quantity(const Dimension& dimension) {

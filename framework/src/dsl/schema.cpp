@@ -93,7 +93,7 @@ class BlockChecker {
           ++i;
           continue;
         }
-        checkItem(*item.property);
+        checkItem(*item.property, i > 0 ? &block_.items[i - 1] : nullptr);
         if (findings_.size() > before) i += consequencesOf(*item.property, i + 1);
       }
     }
@@ -147,7 +147,7 @@ class BlockChecker {
       report(header.kind->place, header.kind->length,
              fmt::format("unknown kind '{}' of block '{}'", header.kind->text, block_.word), oneOf(kinds),
              namesSwapped(header) ? fmt::format("{} {} {}", block_.word, header.kind->text, header.name->text)
-                                  : nearestWord(header.kind->text, kinds));
+                                  : suggestionFor(findings_, header.kind->text, kinds));
     }
   }
 
@@ -177,7 +177,7 @@ class BlockChecker {
       if (unit.dimension == specification->dimension) units.push_back(unit.name);
     firstPlaces_.emplace(property.word, property.place);
     report(word.place, static_cast<int>(word.word.size()), fmt::format("unknown unit '{}'", word.word),
-           quantity(specification->dimension), nearestWord(word.word, units));
+           quantity(specification->dimension), suggestionFor(findings_, word.word, units));
     return true;
   }
 
@@ -194,11 +194,12 @@ class BlockChecker {
     return count;
   }
 
-  void checkItem(const Property& property) {
+  /// `before`: the item before it, if any.
+  void checkItem(const Property& property, const Item* before) {
     const auto found =
         std::find_if(properties_.begin(), properties_.end(),
                      [&](const PropertySpecification* one) { return one->word == property.word; });
-    if (found == properties_.end()) return reportUnknown(property);
+    if (found == properties_.end()) return reportUnknown(property, before);
     const auto [first, isNew] = firstPlaces_.emplace(property.word, property.place);
     if (!isNew && !(*found)->repeatable) {
       report(property.place, static_cast<int>(property.word.size()),
@@ -208,7 +209,7 @@ class BlockChecker {
     checkProperty(document_, property, **found, findings_);
   }
 
-  void reportUnknown(const Property& property) {
+  void reportUnknown(const Property& property, const Item* before) {
     if (specification_.open) return;
     const int length = static_cast<int>(property.word.size());
     strangers_.push_back({property.word, &property});
@@ -217,7 +218,7 @@ class BlockChecker {
                     fmt::format("{} ... {{ ... }}", property.word));
     }
     // Behind a number without a unit, on its line, a lone word was meant as a unit.
-    if (property.values.empty() && mayBeUnit(property)) {
+    if (property.values.empty() && mayBeUnit(property, before)) {
       const std::vector<std::string> units = unitNames();
       if (const std::string unit = nearestWord(property.word, units); !unit.empty()) {
         return report(property.place, length, fmt::format("unknown unit or property '{}'", property.word),
@@ -227,17 +228,13 @@ class BlockChecker {
     const std::vector<std::string> known = wordsOf(properties_, specification_.blocks);
     report(property.place, length,
            fmt::format("unknown property '{}' in block '{}'", property.word, block_.title()),
-           known.empty() ? "no property here" : oneOf(known), nearestWord(property.word, known));
+           known.empty() ? "no property here" : oneOf(known), suggestionFor(findings_, property.word, known));
   }
 
-  bool mayBeUnit(const Property& property) const {
-    for (std::size_t i = 1; i < block_.items.size(); ++i) {
-      if (!block_.items[i].property || &*block_.items[i].property != &property) continue;
-      const auto& before = block_.items[i - 1].property;
-      return before && !before->values.empty() && before->values.back().kind == ValueKind::number &&
-             !before->values.back().unit && before->values.back().place.line == property.place.line;
-    }
-    return false;
+  static bool mayBeUnit(const Property& property, const Item* before) {
+    if (before == nullptr || !before->property || before->property->values.empty()) return false;
+    const Value& last = before->property->values.back();
+    return last.kind == ValueKind::number && !last.unit && last.place.line == property.place.line;
   }
 
   static std::vector<std::string> unitNames() {
@@ -268,9 +265,9 @@ class BlockChecker {
       strangers_.push_back({inner.word, nullptr});
       std::vector<std::string> known;
       for (const BlockSpecification& one : specification_.blocks) known.push_back(one.word);
-      return report(inner.place, length,
-                    fmt::format("unknown block '{}' in block '{}'", inner.word, block_.title()),
-                    known.empty() ? "no block here" : oneOf(known), nearestWord(inner.word, known));
+      return report(
+          inner.place, length, fmt::format("unknown block '{}' in block '{}'", inner.word, block_.title()),
+          known.empty() ? "no block here" : oneOf(known), suggestionFor(findings_, inner.word, known));
     }
     checkDuplicate(inner, *specification);
     check(document_, inner, *specification, findings_);
@@ -358,15 +355,13 @@ void check(const Document& document, const Block& block, const BlockSpecificatio
 
 namespace {
 
-/// The block that an item at the top of a text belongs into, when the text has none of that kind.
-const BlockSpecification* missingAround(const Document& document, const std::string& word,
+/// The block that an item at the top of a text belongs into, when the text has none of that kind: `atTop` are
+/// the words that it has there.
+const BlockSpecification* missingAround(const std::set<std::string>& atTop, const std::string& word,
                                         const std::vector<BlockSpecification>& allowed) {
   for (const BlockSpecification& one : allowed) {
     const bool isInside = byWord(one.blocks, word) != nullptr || byWord(one.properties, word) != nullptr;
-    const bool present = std::any_of(document.items.begin(), document.items.end(), [&](const Item& item) {
-      return item.block ? item.block->word == one.word : item.property->word == one.word;
-    });
-    if (isInside && !present) return &one;
+    if (isInside && atTop.count(one.word) == 0) return &one;
   }
   return nullptr;
 }
@@ -380,14 +375,15 @@ void check(const Document& document, const std::vector<BlockSpecification>& allo
   std::set<std::string> present;
   bool whole = true;     // a text that was cut off lacks nothing
   bool outside = false;  // something stands outside that belongs inside of a missing block
-  std::set<std::string> misspelt;
+  std::set<std::string> misspelt, atTop;
+  for (const Item& item : document.items) atTop.insert(item.block ? item.block->word : item.property->word);
   for (const Item& item : document.items) {
     const std::string& word = item.block ? item.block->word : item.property->word;
     const SourcePlace& place = item.block ? item.block->place : item.property->place;
     const int length = static_cast<int>(word.size());
     const BlockSpecification* specification = byWord(allowed, word);
     if (specification == nullptr) {
-      const BlockSpecification* around = missingAround(document, word, allowed);
+      const BlockSpecification* around = missingAround(atTop, word, allowed);
       if (around != nullptr) {
         if (!std::exchange(outside, true)) reportOutside(document, item, around->word, findings);
         continue;
@@ -395,7 +391,7 @@ void check(const Document& document, const std::vector<BlockSpecification>& allo
       misspelt.insert(nearestWord(word, known));
       findings.push_back(document.finding(
           place, length, fmt::format("unknown {} '{}'", item.block ? "block" : "property", word),
-          oneOf(known), nearestWord(word, known)));
+          oneOf(known), suggestionFor(findings, word, known)));
       continue;
     }
     present.insert(word);

@@ -22,6 +22,7 @@ struct Judged {
   std::string output;
   Contributes component;
   std::vector<ImageBuffer> seeds;
+  bool deterministic = false;  ///< every seed gives the first image
 };
 
 void collect(std::vector<Judged>& judged, const std::string& output, Contributes component,
@@ -55,8 +56,7 @@ bool sameValues(const ImageBuffer& a, const ImageBuffer& b) {
 }
 
 bool sameInEverySeed(const Judged& judged) {
-  return judged.seeds.size() > 1 &&
-         std::all_of(judged.seeds.begin() + 1, judged.seeds.end(),
+  return std::all_of(judged.seeds.begin() + 1, judged.seeds.end(),
                      [&](const ImageBuffer& seed) { return sameValues(judged.seeds.front(), seed); });
 }
 
@@ -70,7 +70,7 @@ ComponentError errorAgainst(const Judged& judged, SceneReference& references, co
   record.reference = layer;
   record.bias = bias;
   record.seeds = static_cast<int>(judged.seeds.size());
-  record.deterministic = sameInEverySeed(judged);
+  record.deterministic = judged.deterministic;
   // Seeds that are the same bits are one image.
   SeedsError error =
       compareSeeds(std::span(judged.seeds).first(record.deterministic ? 1 : judged.seeds.size()),
@@ -195,27 +195,26 @@ bool isProgressive(const Pipeline& pipeline, TechniqueSource& techniques) {
 
 void measureErrors(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record) {
   RenderOptions options = renderOptionsOf(context, record.point);
+  options.interactive = true;
+  PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
   std::vector<Judged> judged;
-  std::map<std::string, int> bounces;
+  const auto sameInAll = [&] { return std::all_of(judged.begin(), judged.end(), sameInEverySeed); };
   for (int seed = 0; seed < std::max(1, context.options.seeds); ++seed) {
-    options.seed = context.options.seed + static_cast<std::uint64_t>(seed);
-    options.health = seed == 0;
-    options.interactive = true;
-    PipelineExecutor executor(context.device, context.techniques, context.scene, pipeline, options);
+    executor.setSeed(context.options.seed + static_cast<std::uint64_t>(seed));
+    executor.setHealth(seed == 0);
     FrameResult frame = renderFiltered(executor, snapshotAt(context, options, context.options.time),
                                        context.options.subpixels, 0, framesOf(record.point.parameters));
     if (seed == 0) {
-      bounces = bouncesOf(executor);
       record.point.healthFindings = frame.healthFindings;
       record.point.notes = frame.notes;
     }
     collectOutputs(judged, executor, std::move(frame));
-    // A technique without random numbers gives the same bits for every seed: two show it, more would only
-    // cost time.
-    if (seed == 1 && std::all_of(judged.begin(), judged.end(),
-                                 [](const Judged& one) { return sameValues(one.seeds[0], one.seeds[1]); }))
-      break;
+    // Nobody asks for the seed; or two seeds give the same bits, after which more would only cost time.
+    if (!executor.readsSeed() || (seed == 1 && sameInAll())) break;
   }
+  const std::map<std::string, int> bounces = bouncesOf(executor);
+  for (Judged& one : judged)
+    one.deterministic = !executor.readsSeed() || (one.seeds.size() > 1 && sameInEverySeed(one));
 
   for (const auto& [output, count] : bounces) context.reference.require(count);
   for (const Judged& one : judged) {

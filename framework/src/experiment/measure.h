@@ -83,7 +83,7 @@ std::map<std::string, int> bouncesOf(const PipelineExecutor& executor);
 /// nothing changes.
 bool isProgressive(const Pipeline& pipeline, TechniqueSource& techniques);
 
-/// Fills the errors, images and health of a point: executors of their own, one per seed.
+/// Fills the errors, images and health of a point, with an executor of its own.
 void measureErrors(const MeasureContext& context, const Pipeline& pipeline, PointRecord& record);
 /// Time between the frames whose flicker is measured, s.
 inline constexpr double kFlickerStep = 1.0 / 24.0;

@@ -7,6 +7,7 @@
 
 #include "experiment/measure.h"
 #include "lumivox/base/error.h"
+#include "lumivox/measure/exposure.h"
 #include "lumivox/reference/emission.h"
 
 namespace lumivox {
@@ -137,8 +138,8 @@ double SceneReference::exposure() {
 
 Display SceneReference::display(const std::string& name, Tone tone) {
   const ReferenceLayer* const reference = layer(name);
-  if (reference != nullptr && reference->mean.channels() == 1) return {};
-  return {exposure(), tone};
+  const Display ofRadiance{exposure(), tone};
+  return reference != nullptr ? displayOf(reference->mean, ofRadiance) : ofRadiance;
 }
 
 std::vector<ReferenceRecord> referenceRecords(SceneReference& reference, const std::set<std::string>& used,

@@ -18,6 +18,7 @@
 #include "lumivox/results/store.h"
 #include "lumivox/results/text.h"
 #include "lumivox/roofline/peak_rates.h"
+#include "results/unfinished_store.h"
 
 namespace lumivox {
 namespace {
@@ -34,27 +35,6 @@ std::vector<OutputImages> outputImages(std::vector<StoredImage> stored) {
   }
   return outputs;
 }
-
-/// Where points stay until the page is written: a store beside it, which goes when it is of no more use.
-class Checkpoint {
- public:
-  explicit Checkpoint(const std::filesystem::path& page)
-      : store(std::filesystem::path(page).replace_extension(".unfinished.sqlite")) {}
-  ~Checkpoint() {
-    try {
-      if (!finished && !store.runs().empty()) return;
-      std::filesystem::remove(store.file());
-    } catch (const std::exception& error) {
-      logWarning("{}: it is no longer needed, but cannot be removed: {}", store.file().string(),
-                 error.what());
-    }
-  }
-  Checkpoint(const Checkpoint&) = delete;
-  Checkpoint& operator=(const Checkpoint&) = delete;
-
-  ResultsStore store;
-  bool finished = false;
-};
 
 /// Time for measuring, from when it is made: after the references.
 class Budget {
@@ -89,6 +69,13 @@ class SceneReport {
     for (const LoadedPipeline* loaded : pipelines)
       for (PlannedPoint& planned : pointsFor(*loaded, techniques, options))
         points_.push_back({{loaded, std::move(planned)}});
+  }
+
+  /// Of all its points.
+  std::vector<std::string> keys() const {
+    std::vector<std::string> keys;
+    for (const Point& point : points_) keys.push_back(measurer_.key(point.wanted));
+    return keys;
   }
 
   void makeReference() {
@@ -285,11 +272,13 @@ class SceneReport {
 
 /// Measures all scenes: the default points of all pipelines first, then what leaving out saves; sweeps share
 /// what is left of the time.
-void measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options, const Budget& budget) {
+void measureAll(std::deque<SceneReport>& scenes, const ReportOptions& options, const Budget& budget,
+                results::UnfinishedStore& unfinished) {
   std::size_t finished = 0, total = 0;
   for (const SceneReport& scene : scenes) total += scene.missing();
   const auto done = [&](std::size_t points) {
     finished += points;
+    unfinished.renew();
     if (!options.progress || points == 0) return;
     const double each = budget.spent() / static_cast<double>(finished);
     options.progress(finished, total, budget.left(each * static_cast<double>(total - finished)));
@@ -350,21 +339,29 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
     pipelines.push_back(choice.forScene(scenes.back(), unsuited.back()));
   }
 
-  Checkpoint checkpoint(options.output);
+  results::UnfinishedStore unfinished(
+      std::filesystem::path(options.output).replace_extension(".unfinished.sqlite"), options.commandLine);
+  ResultsStore& checkpoint = unfinished.store();
   std::deque<SceneReport> reports;  // a measurer stays where it is
+  std::vector<std::string> keys;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
-    reports.emplace_back(device, techniques, options, checkpoint.store, std::move(scenes[i]),
+    reports.emplace_back(device, techniques, options, checkpoint, std::move(scenes[i]),
                          shownPath(options.scenes[i]), pipelines[i]);
-    reports.back().makeReference();
-    summary.takenUp += reports.back().takenUp();
+    const std::vector<std::string> ofScene = reports.back().keys();
+    keys.insert(keys.end(), ofScene.begin(), ofScene.end());
+  }
+  unfinished.want(keys);
+  for (SceneReport& report : reports) {
+    report.makeReference();
+    summary.takenUp += report.takenUp();
   }
   const Budget budget(options.budgetSeconds);
-  measureAll(reports, options, budget);
+  measureAll(reports, options, budget, unfinished);
   data.measuringSeconds = budget.spent();
-  if (store) store->merge(checkpoint.store);
+  if (store) store->merge(checkpoint, unfinished.wanted());
   std::set<std::string> pipelineFiles, techniqueNames;
   for (std::size_t i = 0; i < reports.size(); ++i) {
-    data.scenes.push_back(reports[i].record(data.peakRates, store ? *store : checkpoint.store));
+    data.scenes.push_back(reports[i].record(data.peakRates, store ? *store : checkpoint));
     data.scenes.back().unsuited = unsuited[i];
     if (options.voxelResolution > 0) {
       const std::vector<VoxelizerRecord> voxels = measureVoxelizers(
@@ -385,7 +382,7 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
   if (store) data.stress = newestCells(store->stressCells());
 
   write(data);
-  checkpoint.finished = true;
+  unfinished.finish();
 
   for (SceneRecord& scene : data.scenes) {
     for (PointRecord& point : scene.points) {

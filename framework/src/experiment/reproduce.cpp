@@ -12,6 +12,7 @@
 
 #include "base/process.h"
 #include "experiment/choice.h"
+#include "experiment/claimed_values.h"
 #include "experiment/gathered_voxels.h"
 #include "experiment/measure.h"
 #include "experiment/plan.h"
@@ -20,6 +21,7 @@
 #include "lumivox/base/error.h"
 #include "lumivox/base/log.h"
 #include "lumivox/experiment/voxelizers.h"
+#include "lumivox/measure/exposure.h"
 #include "lumivox/pipeline/pass.h"
 #include "lumivox/pipeline/ports.h"
 #include "lumivox/results/text.h"
@@ -91,6 +93,10 @@ class Reproduction {
     for (const PublishedPanel& panel : result_.published.panels) {
       result_.panels.push_back(show(panel));
       advance();
+    }
+    for (const PublishedClaim& claim : result_.published.claims) {
+      result_.claims.push_back(compared(claim));
+      result_.judgedClaims.push_back(judgeClaim(result_.claims.back()));
     }
     result_.exposure = meter_.exposure();
     return std::move(result_);
@@ -424,10 +430,38 @@ class Reproduction {
       meterImage(meter_, *scene, snapshotOf(*scene, panel.time, panel.camera, width, height), shown.image);
       const ImageBuffer bright = luminance(shown.image);
       const Health health = scanHealth(bright.values().data(), bright.values().size(), 1);
+      shown.radiance = isRadiance(shown.image);
       shown.meanLuminance =
           health.sum / static_cast<double>(bright.pixelCount() - health.nan - health.infinite);
     }
     return shown;
+  }
+
+  const ShownPanel& panelNamed(const std::string& name) const {
+    return *std::find_if(result_.panels.begin(), result_.panels.end(),
+                         [&](const ShownPanel& panel) { return panel.name == name; });
+  }
+
+  /// Both panels of a claim, by the same pixels.
+  MeasuredClaim compared(const PublishedClaim& claim) const {
+    MeasuredClaim measured;
+    static_cast<PublishedClaim&>(measured) = claim;
+    measured.lessValue = measured.thanValue = std::numeric_limits<double>::quiet_NaN();
+    const ShownPanel &less = panelNamed(claim.less), &than = panelNamed(claim.than),
+                     &dark = panelNamed(claim.darkIn.empty() ? claim.less : claim.darkIn);
+    for (const ShownPanel* panel : {&less, &than, &dark}) {
+      if (measured.whyNot.empty() && !panel->whyNot.empty())
+        measured.whyNot = fmt::format("panel '{}': {}", panel->name, panel->whyNot);
+      if (panel->image.empty()) return measured;
+      if (panel->image.width() != less.image.width() || panel->image.height() != less.image.height()) {
+        measured.whyNot = fmt::format("panels '{}' and '{}' have different sizes", less.name, panel->name);
+        return measured;
+      }
+    }
+    const std::vector<std::size_t> pixels = comparedPixels(dark.image, !claim.darkIn.empty());
+    measured.lessValue = claimedValue(less.image, pixels, claim.quantity);
+    measured.thanValue = claimedValue(than.image, pixels, claim.quantity);
+    return measured;
   }
 
   ImageBuffer rendered(const PublishedPanel& panel, const Scene& scene, ShownPanel& shown) {
@@ -464,7 +498,10 @@ class Reproduction {
     if (image == nullptr)
       throw Error(fmt::format("{}: {}.{} is not an image", panel.place.text(), panel.pass, panel.port));
     const gpu::Texture& texture = *image->value().texture;
-    return imageOf(texture, gpu::componentCount(texture.description().format) < 3 ? 1 : 3);
+    // One channel of what is a fraction, which no exposure belongs to.
+    const int channels =
+        gpu::componentCount(texture.description().format) < 3 ? 1 : channelsOf(output->contributes());
+    return imageOf(texture, channels);
   }
 
   ImageBuffer traced(const PublishedPanel& panel, const Scene& scene, ShownPanel& shown) {

@@ -117,7 +117,7 @@ void attach(GLuint framebuffer, GLenum point, const Texture& texture, int layer)
                           state.info.maxSamples));
 }
 
-void setRasterState(const RasterState& state) {
+void setRasterState(const RasterState& state, float depthBiasScale) {
   const auto enable = [](GLenum what, bool on) { on ? glEnable(what) : glDisable(what); };
   // Depth is written only while the test is on: without reading, it passes always.
   enable(GL_DEPTH_TEST, state.depthTest || state.depthWrite);
@@ -125,7 +125,7 @@ void setRasterState(const RasterState& state) {
   glDepthMask(state.depthWrite ? GL_TRUE : GL_FALSE);
   enable(GL_DEPTH_CLAMP, state.depthClamp);
   enable(GL_POLYGON_OFFSET_FILL, state.depthBiasSlope != 0.0f || state.depthBiasConstant != 0.0f);
-  glPolygonOffset(state.depthBiasSlope, state.depthBiasConstant);
+  glPolygonOffset(state.depthBiasSlope, state.depthBiasConstant * depthBiasScale);
 }
 
 void clearTargets(GLuint framebuffer, const RenderTargets& targets) {
@@ -319,6 +319,7 @@ Drawing Device::drawTo(const RenderTargets& targets, const RasterState& raster) 
   assert(!state.drawing && "one drawing at a time");
   assert(targets.samples == 1 || (targets.colours.empty() && targets.depth == nullptr));
   if (targets.samples < 1 || targets.samples > state.info.maxSamples) refuseSamples(state, targets.samples);
+  const float depthBiasScale = raster.depthBiasConstant != 0.0f ? state.depthBiasScale() : 1.0f;
   const glm::ivec2 size = sizeOf(targets);
   keyOf(targets, size, state.framebufferKey);
   std::optional<GLuint> known = state.framebuffers.find(state.framebufferKey);
@@ -334,7 +335,7 @@ Drawing Device::drawTo(const RenderTargets& targets, const RasterState& raster) 
     clearTargets(framebuffer, targets);
     state.transfers.cleared += clearedBytes(targets);
   }
-  setRasterState(raster);
+  setRasterState(raster, depthBiasScale);
   return Drawing(state_);
 }
 

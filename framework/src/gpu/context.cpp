@@ -33,6 +33,25 @@ std::string eglErrorName() {
   }
 }
 
+/// Empty, or why the dynamic loader cannot open it. What can be opened stays open, as epoxy would have it.
+std::string whyNotOpened(const char* library) {
+  if (dlopen(library, RTLD_LAZY | RTLD_LOCAL) != nullptr) return {};
+  const char* reason = dlerror();
+  return reason != nullptr ? reason : "the dynamic loader refused it";
+}
+
+/// epoxy ends the process when it cannot open these libraries; ask first.
+void requireLibraries() {
+  if (const std::string why = whyNotOpened("libEGL.so.1"); !why.empty())
+    throw AbsentError("no OpenGL: libEGL.so.1 (Debian package libegl1) cannot be opened: " + why);
+  // epoxy takes the functions of OpenGL from either.
+  if (const std::string why = whyNotOpened("libOpenGL.so.0");
+      !why.empty() && !whyNotOpened("libGL.so.1").empty())
+    throw AbsentError(
+        "no OpenGL: neither libOpenGL.so.0 (Debian package libopengl0) nor libGL.so.1 (libgl1) can be opened: " +
+        why);
+}
+
 bool hasWord(const char* words, std::string_view word) {
   if (words == nullptr) return false;
   const std::string_view text = words;
@@ -59,12 +78,37 @@ std::vector<EglDevice> eglDevices() {
   if (!eglQueryDevicesEXT(0, nullptr, &count) || count <= 0) return devices;
   std::vector<EGLDeviceEXT> handles(static_cast<std::size_t>(count));
   if (!eglQueryDevicesEXT(count, handles.data(), &count)) return devices;
+  // What a device says of itself is an extension of its own; without it the renderer's name tells, once there
+  // is a context.
+  const bool tells = epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_query") ||
+                     epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_base");
   for (EGLint i = 0; i < count; ++i) {
     const EGLDeviceEXT handle = handles[static_cast<std::size_t>(i)];
-    devices.push_back(
-        {handle, hasWord(eglQueryDeviceStringEXT(handle, EGL_EXTENSIONS), "EGL_MESA_device_software")});
+    devices.push_back({handle, tells && hasWord(eglQueryDeviceStringEXT(handle, EGL_EXTENSIONS),
+                                                "EGL_MESA_device_software")});
   }
   return devices;
+}
+
+/// With what EGL 1.5 calls robustness where the driver has it: a context that tells of a reset, and in a
+/// debug context accesses beyond a resource that are defined (they cost time, so others go without).
+EGLContext createContext(EGLDisplay display, EGLConfig config, bool debug) {
+  std::vector<EGLint> attributes{EGL_CONTEXT_MAJOR_VERSION,
+                                 4,
+                                 EGL_CONTEXT_MINOR_VERSION,
+                                 5,
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                 EGL_CONTEXT_OPENGL_DEBUG,
+                                 debug ? EGL_TRUE : EGL_FALSE,
+                                 EGL_NONE};
+  const std::vector<EGLint> plain = attributes;
+  attributes.pop_back();
+  attributes.insert(attributes.end(),
+                    {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET,
+                     EGL_CONTEXT_OPENGL_ROBUST_ACCESS, debug ? EGL_TRUE : EGL_FALSE, EGL_NONE});
+  const EGLContext robust = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+  return robust != EGL_NO_CONTEXT ? robust : eglCreateContext(display, config, EGL_NO_CONTEXT, plain.data());
 }
 
 EGLDisplay deviceDisplay(const EglDevice& device) {
@@ -104,16 +148,7 @@ bool Context::tryDisplay(void* display, const std::string& platform, std::string
   EGLint count = 0;
   if (!eglChooseConfig(display, configAttributes, &config, 1, &count) || count == 0)
     config = EGL_NO_CONFIG_KHR;
-  const EGLint contextAttributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                      4,
-                                      EGL_CONTEXT_MINOR_VERSION,
-                                      5,
-                                      EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                      EGL_CONTEXT_OPENGL_DEBUG,
-                                      debug_ ? EGL_TRUE : EGL_FALSE,
-                                      EGL_NONE};
-  EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, contextAttributes);
+  EGLContext context = createContext(display, config, debug_);
   if (context == EGL_NO_CONTEXT) return fail("no OpenGL 4.5 core context, " + eglErrorName());
   if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
     const std::string why = "eglMakeCurrent failed, " + eglErrorName();
@@ -127,11 +162,7 @@ bool Context::tryDisplay(void* display, const std::string& platform, std::string
 }
 
 Context::Context(const std::string& request, bool debug) : debug_(debug) {
-  // epoxy ends the process when this library is missing; ask first.
-  void* library = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL);
-  if (library == nullptr)
-    throw AbsentError("no OpenGL: libEGL.so.1 is not installed (Debian package libegl1)");
-
+  requireLibraries();
   const std::vector<EglDevice> devices = eglDevices();
   const auto platformOf = [](std::size_t index) { return fmt::format("EGL device {}", index); };
   std::string failures;

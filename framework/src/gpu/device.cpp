@@ -44,6 +44,8 @@ const char* errorName(GLenum error) {
       return "GL_INVALID_FRAMEBUFFER_OPERATION";
     case GL_OUT_OF_MEMORY:
       return "GL_OUT_OF_MEMORY";
+    case GL_CONTEXT_LOST:
+      return "GL_CONTEXT_LOST";
     default:
       return "an unknown error";
   }
@@ -118,7 +120,8 @@ void DeviceState::listen() {
 void DeviceState::requireLimits() const {
   const std::string unmet = unmetRequirements([](const Requirement& one) {
     GLint64 value = 0;
-    glGetInteger64v(one.limit, &value);
+    one.index < 0 ? glGetInteger64v(one.limit, &value)
+                  : glGetInteger64i_v(one.limit, static_cast<GLuint>(one.index), &value);
     return static_cast<std::int64_t>(value);
   });
   if (!unmet.empty())
@@ -142,6 +145,10 @@ void DeviceState::readLimits() {
   glGetIntegerv(GL_MAX_UNIFORM_BUFFER_BINDINGS, &limits.uniformUnits);
   glGetIntegerv(GL_MAX_FRAMEBUFFER_SAMPLES, &info.maxSamples);
   glGetIntegerv(GL_MAX_VERTEX_IMAGE_UNIFORMS, &info.vertexImages);
+  glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &limits.timestampBits);
+  GLint strategy = GL_NO_RESET_NOTIFICATION;
+  glGetIntegerv(GL_RESET_NOTIFICATION_STRATEGY, &strategy);
+  tellsResets = strategy == GL_LOSE_CONTEXT_ON_RESET;
   info.maxSamples = std::max(info.maxSamples, 1);
   info.maxTextureSize3d = limits.textureSize3d;
   info.maxStorageBytes = static_cast<std::uint64_t>(limits.storageBlockBytes);
@@ -187,13 +194,26 @@ void DeviceState::use() {
   currentState = this;
 }
 
+void DeviceState::requireContext(const std::string& what, bool errorTold) {
+  // A driver may tell of the reset while it lasts and then no more, but the context stays lost.
+  const GLenum status = tellsResets || errorTold ? glGetGraphicsResetStatus() : GL_NO_ERROR;
+  if (status != GL_NO_ERROR || errorTold)
+    lost = lost.value_or(status == GL_GUILTY_CONTEXT_RESET     ? Reset::own
+                         : status == GL_INNOCENT_CONTEXT_RESET ? Reset::others
+                                                               : Reset::unknown);
+  if (!lost) return;
+  messages.forgetErrors();
+  throw Error(what + ": " + lostContextText(*lost, pass));
+}
+
 void DeviceState::check(const std::string& what) {
   // A debug context has told of it already, and says more.
   GLenum error = glGetError();
+  requireContext(what, error == GL_CONTEXT_LOST);
   if (error != GL_NO_ERROR && !messages.hasErrors())
     messages.addError(fmt::format("{}{}", errorName(error),
                                   debug ? "" : " (with --debug-context it names the pass and the reason)"));
-  // A lost context repeats its error for ever.
+  // A device keeps a flag for each kind of error.
   for (int i = 0; i < 16 && error != GL_NO_ERROR; ++i) error = glGetError();
   if (messages.hasErrors()) throw Error(messages.takeErrors(what));
 }

@@ -36,4 +36,17 @@ std::string DriverMessages::takeErrors(const std::string& what) {
   return text;
 }
 
+std::string lostContextText(Reset reset, const std::string& pass) {
+  const char* why =
+      reset == Reset::own ? "GL_GUILTY_CONTEXT_RESET: the device was reset while it ran commands of "
+                            "this process, which took too long or reached beyond a resource"
+      : reset == Reset::others
+          ? "GL_INNOCENT_CONTEXT_RESET: the device was reset while it ran commands of another process"
+          : "GL_UNKNOWN_CONTEXT_RESET: the device was reset, and the driver does not know why";
+  const std::string where =
+      pass.empty() ? ""
+                   : fmt::format("; pass {} was under way, but an earlier command may be the cause", pass);
+  return fmt::format("the OpenGL context is lost with all that it held ({}{}); run it again", why, where);
+}
+
 }  // namespace lumivox::gpu

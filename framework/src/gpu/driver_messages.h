@@ -30,4 +30,10 @@ class DriverMessages {
   std::set<std::tuple<Kind, unsigned, unsigned>> told_;
 };
 
+/// Why a context was lost, as the driver tells it (OpenGL 4.5, 2.3.2): this process's own commands, somebody
+/// else's, or nobody knows.
+enum class Reset { own, others, unknown };
+/// "the OpenGL context is lost: ..."; the pass is the one under way, empty for none.
+std::string lostContextText(Reset reset, const std::string& pass);
+
 }  // namespace lumivox::gpu

@@ -143,6 +143,19 @@ ContentHash contentsOf(const std::string& name, std::span<const StageCode> stage
 
 }  // namespace
 
+GLuint linkProgram(std::initializer_list<std::pair<GLenum, std::vector<const char*>>> stages) {
+  const GLuint program = glCreateProgram();
+  for (const auto& [stage, texts] : stages) {
+    const GLuint shader = glCreateShader(stage);
+    glShaderSource(shader, static_cast<GLsizei>(texts.size()), texts.data(), nullptr);
+    glCompileShader(shader);
+    glAttachShader(program, shader);
+    glDeleteShader(shader);
+  }
+  glLinkProgram(program);
+  return program;
+}
+
 std::optional<ProgramCache::Linked> ProgramCache::hold(const ContentHash& contents) {
   const auto found = handles_.find(contents);
   if (found == handles_.end()) return std::nullopt;

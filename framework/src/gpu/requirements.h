@@ -9,9 +9,11 @@
 namespace lumivox::gpu {
 
 struct Requirement {
-  unsigned int limit;  ///< as glGetInteger64v takes it
-  const char* name;
+  unsigned int limit;  ///< as glGetInteger64v takes it, or glGetInteger64i_v with an index
+  int index;           ///< negative: the limit is one number
+  const char* name;    ///< with its index in brackets
   std::int64_t least;
+  std::int64_t promised;  ///< by OpenGL 4.5 of every device (tables 23.53 to 23.74)
   const char* why;
 };
 std::span<const Requirement> requirements();

@@ -5,6 +5,7 @@
 #include <epoxy/gl.h>
 
 #include <array>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -30,6 +31,10 @@ struct FormatTraits {
   const char* name;
 };
 const FormatTraits& traitsOf(Format format);
+
+/// A program of the device's own, from GLSL texts that every driver takes: of each stage the pieces of its
+/// text.
+GLuint linkProgram(std::initializer_list<std::pair<GLenum, std::vector<const char*>>> stages);
 
 /// An OpenGL 4.5 core context without a display.
 class Context {
@@ -155,6 +160,8 @@ struct DeviceLimits {
   GLint uniformBlockBytes = 0, uniformAlignment = 256;
   std::array<GLint, 3> groupCount{};
   GLint sampledUnits = 0, imageUnits = 0, storageUnits = 0, uniformUnits = 0;
+  GLint timestampBits = 0;  ///< of the counter behind time stamps; 0: there are none
+  std::uint64_t downloadBytes = std::numeric_limits<GLsizei>::max();  ///< of a texture, by one command
 };
 
 struct DeviceState {
@@ -170,6 +177,8 @@ struct DeviceState {
   void checkTold(const std::string& what) {
     if (messages.hasErrors()) check(what);
   }
+  /// Throws when the context was lost, of which the driver may have told by an error (GL_CONTEXT_LOST).
+  void requireContext(const std::string& what, bool errorTold);
   /// Refuses an allocation that does not fit into what the device has left, or into its limit together with
   /// what is held already.
   void requireDeviceMemory(std::uint64_t bytes, const std::string& what);
@@ -188,6 +197,9 @@ struct DeviceState {
   void forgetBindings();
   /// Compares timer queries with the fenced clock, once.
   void checkTimers();
+  /// What a depth bias in units of 2^(e - 23), e the exponent of the depth, is multiplied by for this driver,
+  /// which has a unit of its own. Found once; not while something is drawn.
+  float depthBiasScale();
 
   Context context;
   DeviceInfo info;
@@ -195,7 +207,9 @@ struct DeviceState {
   DeviceLimits limits;
   const std::uint64_t memoryBytes;  ///< limit of allocatedBytes; 0: none but the device's own
   std::string pass;
-  const bool debug;  ///< a debug context
+  const bool debug;             ///< a debug context
+  bool tellsResets = false;     ///< the context was made to tell when the device was reset
+  std::optional<Reset> lost{};  ///< the context is
   const Arithmetic arithmetic;
   DriverMessages messages;
   std::uint64_t allocatedBytes = 0, peakBytes = 0;
@@ -217,6 +231,7 @@ struct DeviceState {
   BindingCache cache;
   bool timersChecked = false;
   std::array<GLuint, 2> timestampQueries{};
+  std::optional<float> foundDepthBiasScale;
 
  private:
   void readLimits();

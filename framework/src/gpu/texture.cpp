@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "gpu/counters.h"
 #include "gpu/state.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -89,22 +90,22 @@ void uploadAs(GLuint handle, const TextureDescription& d, int level, GLenum type
   }
 }
 
+/// The size argument of OpenGL has 31 bits: in parts where all together are more.
 void downloadSlicesAs(GLuint handle, const TextureDescription& d, int level, GLenum type, int first,
-                      int count, void* data, std::size_t sizeBytes) {
+                      int count, void* data, std::size_t sizeBytes, std::uint64_t mostBytes) {
   const Extent e = extentOf(d, level);
-  // The size argument of OpenGL has 31 bits: slice by slice where all together are more.
-  const std::size_t slice = sizeBytes / static_cast<std::size_t>(count);
-  const int step = sizeBytes > static_cast<std::size_t>(std::numeric_limits<GLsizei>::max()) ? 1 : count;
-  for (int z = 0; z < count; z += step) {
-    glGetTextureSubImage(handle, level, 0, 0, first + z, e.width, e.height, step, traitsOf(d.format).external,
-                         type, static_cast<GLsizei>(slice * static_cast<std::size_t>(step)),
-                         static_cast<std::byte*>(data) + slice * static_cast<std::size_t>(z));
+  const std::uint64_t rowBytes =
+      sizeBytes / (static_cast<std::uint64_t>(count) * static_cast<std::uint64_t>(e.height));
+  for (const Rows& part : partsOf(count, e.height, rowBytes, mostBytes)) {
+    glGetTextureSubImage(handle, level, 0, part.firstRow, first + part.firstSlice, e.width, part.rows,
+                         part.slices, traitsOf(d.format).external, type, static_cast<GLsizei>(part.bytes),
+                         static_cast<std::byte*>(data) + part.offset);
   }
 }
 
 void downloadAs(GLuint handle, const TextureDescription& d, int level, GLenum type, void* data,
-                std::size_t sizeBytes) {
-  downloadSlicesAs(handle, d, level, type, 0, extentOf(d, level).depth, data, sizeBytes);
+                std::size_t sizeBytes, std::uint64_t mostBytes) {
+  downloadSlicesAs(handle, d, level, type, 0, extentOf(d, level).depth, data, sizeBytes, mostBytes);
 }
 
 }  // namespace
@@ -157,7 +158,8 @@ std::vector<std::byte> Texture::download(int level) const {
   const std::uint64_t bytes = texelsOf(extentOf(description_, level)) * bytesPerTexel(description_.format);
   DeviceState::requireHostMemory(bytes, label_);
   std::vector<std::byte> texels(bytes);
-  downloadAs(handle_, description_, level, traitsOf(description_.format).type, texels.data(), texels.size());
+  downloadAs(handle_, description_, level, traitsOf(description_.format).type, texels.data(), texels.size(),
+             device_->limits.downloadBytes);
   device_->downloaded(texels.size());
   device_->check("downloading " + label_);
   return texels;
@@ -171,7 +173,7 @@ void Texture::downloadSlices(int level, int first, int count, std::span<std::byt
   slices.depth = count;
   assert(texels.size() == texelsOf(slices) * bytesPerTexel(description_.format));
   downloadSlicesAs(handle_, description_, level, traitsOf(description_.format).type, first, count,
-                   texels.data(), texels.size());
+                   texels.data(), texels.size(), device_->limits.downloadBytes);
   device_->downloaded(texels.size());
   device_->check("downloading " + label_);
 }
@@ -195,7 +197,8 @@ std::vector<float> Texture::downloadFloats(int level) const {
       texelsOf(extentOf(description_, level)) * static_cast<std::size_t>(componentCount(description_.format));
   DeviceState::requireHostMemory(count * sizeof(float), label_);
   std::vector<float> values(count);
-  downloadAs(handle_, description_, level, GL_FLOAT, values.data(), values.size() * sizeof(float));
+  downloadAs(handle_, description_, level, GL_FLOAT, values.data(), values.size() * sizeof(float),
+             device_->limits.downloadBytes);
   device_->downloaded(values.size() * sizeof(float));
   device_->check("downloading " + label_);
   return values;

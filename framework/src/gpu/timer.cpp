@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "gpu/counters.h"
 #include "gpu/state.h"
 
 namespace lumivox::gpu {
@@ -16,6 +17,14 @@ using Clock = std::chrono::steady_clock;
 
 double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Between two time stamps; waits for both.
+double elapsedMs(GLuint first, GLuint second, GLint timestampBits) {
+  GLuint64 begin = 0, end = 0;
+  glGetQueryObjectui64v(first, GL_QUERY_RESULT, &begin);
+  glGetQueryObjectui64v(second, GL_QUERY_RESULT, &end);
+  return static_cast<double>(countedBetween(begin, end, timestampBits)) * 1e-6;
 }
 
 // Work that no compiler can shorten: the xorshift generator of Marsaglia 2003, "Xorshift RNGs", as often as
@@ -50,19 +59,6 @@ constexpr GLuint kGroups = kTargetSize * kTargetSize / 64;
 constexpr double kLeastMs = 5.0;  // far above the clock's resolution and the cost of waiting for the device
 constexpr double kTolerance = 0.25;  // how far the two clocks may differ
 constexpr GLuint kMostRounds = 1u << 26;
-
-GLuint linkProgram(std::initializer_list<std::pair<GLenum, std::vector<const char*>>> stages) {
-  const GLuint program = glCreateProgram();
-  for (const auto& [stage, texts] : stages) {
-    const GLuint shader = glCreateShader(stage);
-    glShaderSource(shader, static_cast<GLsizei>(texts.size()), texts.data(), nullptr);
-    glCompileShader(shader);
-    glAttachShader(program, shader);
-    glDeleteShader(shader);
-  }
-  glLinkProgram(program);
-  return program;
-}
 
 /// The same arithmetic in work groups and in pixels: a tiled software rasteriser keeps honest time stamps for
 /// the one, not the other.
@@ -115,8 +111,8 @@ struct Comparison {
   double fencedMs, queriedMs;
 };
 
-Comparison measure(const std::array<GLuint, 2>& queries, const BusyWork& work, BusyWork::Kind kind,
-                   GLuint rounds) {
+Comparison measure(const std::array<GLuint, 2>& queries, GLint timestampBits, const BusyWork& work,
+                   BusyWork::Kind kind, GLuint rounds) {
   glFinish();
   const auto start = Clock::now();
   glQueryCounter(queries[0], GL_TIMESTAMP);
@@ -124,26 +120,24 @@ Comparison measure(const std::array<GLuint, 2>& queries, const BusyWork& work, B
   glQueryCounter(queries[1], GL_TIMESTAMP);
   glFinish();
   const double fencedMs = millisecondsSince(start);
-  GLuint64 begin = 0, end = 0;
-  glGetQueryObjectui64v(queries[0], GL_QUERY_RESULT, &begin);
-  glGetQueryObjectui64v(queries[1], GL_QUERY_RESULT, &end);
-  return {fencedMs, (static_cast<double>(end) - static_cast<double>(begin)) * 1e-6};
+  return {fencedMs, elapsedMs(queries[0], queries[1], timestampBits)};
 }
 
 /// The comparison of the two clocks that differs most. Two amounts of work: a query that is right by chance
 /// for one is not for both.
-Comparison worstComparison(const std::array<GLuint, 2>& queries) {
+Comparison worstComparison(const std::array<GLuint, 2>& queries, GLint timestampBits) {
   const BusyWork work;
   Comparison worst{1.0, 1.0};
   const auto difference = [](const Comparison& c) { return std::abs(c.queriedMs - c.fencedMs) / c.fencedMs; };
   for (const auto kind : {BusyWork::Kind::compute, BusyWork::Kind::drawing}) {
-    measure(queries, work, kind, 1);  // warm-up
+    measure(queries, timestampBits, work, kind, 1);  // warm-up
     GLuint rounds = 256;
-    while (rounds < kMostRounds && measure(queries, work, kind, rounds).fencedMs < kLeastMs) rounds *= 2;
+    while (rounds < kMostRounds && measure(queries, timestampBits, work, kind, rounds).fencedMs < kLeastMs)
+      rounds *= 2;
     for (const GLuint amount : {rounds, rounds * 2}) {
       // The better of two, so that an interruption by another process does not condemn the driver.
-      const Comparison first = measure(queries, work, kind, amount),
-                       second = measure(queries, work, kind, amount);
+      const Comparison first = measure(queries, timestampBits, work, kind, amount),
+                       second = measure(queries, timestampBits, work, kind, amount);
       const Comparison& better = difference(first) < difference(second) ? first : second;
       if (difference(better) > difference(worst)) worst = better;
     }
@@ -159,14 +153,12 @@ void DeviceState::checkTimers() {
   timersChecked = true;
   use();
   info.timerQueriesTrusted = false;
-  GLint counterBits = 0;
-  glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &counterBits);
-  if (counterBits == 0) {
+  if (limits.timestampBits == 0) {
     info.timerNote = "fenced clock: the driver has no time stamps";
     return;
   }
 
-  const Comparison worst = worstComparison(timestampQueries);
+  const Comparison worst = worstComparison(timestampQueries, limits.timestampBits);
   const double difference = std::abs(worst.queriedMs - worst.fencedMs) / worst.fencedMs;
   forgetBindings();
   check("checking timer queries");
@@ -203,10 +195,7 @@ Device::Elapsed Device::time(const std::function<void()>& work) {
   work();
   glQueryCounter(queries[1], GL_TIMESTAMP);
   const double hostMs = millisecondsSince(start);
-  GLuint64 begin = 0, end = 0;
-  glGetQueryObjectui64v(queries[0], GL_QUERY_RESULT, &begin);
-  glGetQueryObjectui64v(queries[1], GL_QUERY_RESULT, &end);
-  return {hostMs, static_cast<double>(end - begin) * 1e-6};
+  return {hostMs, elapsedMs(queries[0], queries[1], state.limits.timestampBits)};
 }
 
 // ---- PassTimers
@@ -226,12 +215,9 @@ struct PassTimers::State {
   void read(Slot& slot) {
     if (!std::exchange(slot.pending, false)) return;
     Frame frame;
-    for (std::size_t part = 0; part < slot.parts; ++part) {
-      GLuint64 begin = 0, end = 0;
-      glGetQueryObjectui64v(slot.queries[2 * part], GL_QUERY_RESULT, &begin);
-      glGetQueryObjectui64v(slot.queries[2 * part + 1], GL_QUERY_RESULT, &end);
-      frame.push_back(static_cast<double>(end - begin) * 1e-6);
-    }
+    for (std::size_t part = 0; part < slot.parts; ++part)
+      frame.push_back(
+          elapsedMs(slot.queries[2 * part], slot.queries[2 * part + 1], device->limits.timestampBits));
     known.push_back(std::move(frame));
   }
 };

@@ -16,7 +16,7 @@ void ExposureMeter::add(const ImageBuffer& image, std::span<const unsigned char>
   if (!emitting.empty() && emitting.size() != image.pixelCount())
     throw Error(fmt::format("it is known of {} pixels whether they emit; expected {}", emitting.size(),
                             image.pixelCount()));
-  if (image.channels() == 1) return;
+  if (!isRadiance(image)) return;
   for (std::size_t pixel = 0; pixel < image.pixelCount(); ++pixel) {
     const auto luminance = static_cast<float>(luminanceAt(image, pixel));
     if (!std::isfinite(luminance) || luminance <= 0.0f) continue;
@@ -42,6 +42,14 @@ double ExposureMeter::exposure() const {
   constexpr double kSteps = 100.0;  // per EV
   const double exposure = std::round(kSteps * (std::log2(kKey) - sum / static_cast<double>(count))) / kSteps;
   return std::clamp(exposure, -kLargestExposure, kLargestExposure) + 0.0;  // no minus zero
+}
+
+bool isRadiance(const ImageBuffer& image) {
+  return image.channels() != 1;
+}
+
+Display displayOf(const ImageBuffer& image, const Display& ofRadiance) {
+  return isRadiance(image) ? ofRadiance : Display{};
 }
 
 double displayExposure(const ImageBuffer& image, std::span<const unsigned char> emitting) {

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "lumivox/base/error.h"
+#include "lumivox/measure/exposure.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wall"
@@ -175,9 +176,8 @@ ImageBuffer contactSheet(const ReproducedResult& result) {
       fmt::format("{}: {} ({})", result.published.id, result.published.title, exposureText(result.exposure));
   sheet.columns = result.published.columns;
   for (const ShownPanel& panel : result.panels)
-    sheet.panels.push_back({panel.name, panel.image,
-                            panel.image.channels() == 1 ? Display{} : Display{result.exposure, Tone::srgb},
-                            panel.whyNot});
+    sheet.panels.push_back(
+        {panel.name, panel.image, displayOf(panel.image, {result.exposure, Tone::srgb}), panel.whyNot});
   return contactSheet(sheet);
 }
 

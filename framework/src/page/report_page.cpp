@@ -1,6 +1,7 @@
 // The page of a report, with CSV and JSON beside it.
 #include <algorithm>
 
+#include "base/file_set.h"
 #include "lumivox/analysis/comparison.h"
 #include "lumivox/analysis/same_pipelines.h"
 #include "lumivox/analysis/slopes.h"
@@ -151,9 +152,9 @@ void writeReport(const ReportFiles& files, const ReportRecord& record, ReportDet
                           true,
                           {page::assets::kComparisonJs, page::assets::kImagesJs, page::assets::kVoxelsJs,
                            page::assets::kStressJs, page::assets::kReportJs}};
-  writeFileAtomically(files.json, textOf(document.data, 1) + "\n");
-  writeFileAtomically(files.csv, runsCsv(runsOf(record)));
-  writeFileAtomically(files.page, page::html(document));
+  const std::string json = textOf(document.data, 1) + "\n", csv = runsCsv(runsOf(record)),
+                    html = page::html(document);
+  writeFilesAtomically(std::vector<NewFile>{{files.json, json}, {files.csv, csv}, {files.page, html}});
 }
 
 }  // namespace lumivox

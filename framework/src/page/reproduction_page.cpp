@@ -52,7 +52,8 @@ std::string markdownCell(const std::string& text) {
 
 std::string panelText(const ShownPanel& panel) {
   std::string text = panel.name;
-  if (std::isfinite(panel.meanLuminance)) text += fmt::format(", mean {:.3g} W/(sr m²)", panel.meanLuminance);
+  if (std::isfinite(panel.meanLuminance))
+    text += fmt::format(", mean {:.3g}{}", panel.meanLuminance, panel.radiance ? " W/(sr m²)" : "");
   return panel.whyNot.empty() ? text : text + ": " + panel.whyNot;
 }
 
@@ -98,6 +99,21 @@ std::string curveText(const MeasuredCurve& curve, const JudgedCurve& judged) {
   return judged.why.empty() ? text : text + ": " + judged.why;
 }
 
+std::string claimText(const MeasuredClaim& claim, const JudgedClaim& judged) {
+  const char* unit = claim.quantity == ClaimedQuantity::luminance ? " W/(sr m²)"
+                     : claim.quantity == ClaimedQuantity::colour  ? " of the mean luminance between channels"
+                                                                  : " of the mean luminance between pixels";
+  std::string text = fmt::format("{}: {}", claim.name, name(judged.verdict));
+  if (std::isfinite(claim.lessValue) && std::isfinite(claim.thanValue)) {
+    text += fmt::format(" ('{}' {:.3g}, '{}' {:.3g}{}", claim.less, claim.lessValue, claim.than,
+                        claim.thanValue, unit);
+    if (claim.times != 1.0) text += fmt::format(", which counts {:g} times", claim.times);
+    if (!claim.darkIn.empty()) text += fmt::format(", where '{}' is darkest", claim.darkIn);
+    text += ")";
+  }
+  return judged.why.empty() ? text : text + ": " + judged.why;
+}
+
 std::vector<std::string> reproductionNotes(const ReproducedResult& result) {
   const PublishedResult& published = result.published;
   std::vector<std::string> notes;
@@ -123,8 +139,8 @@ std::string reproductionRule() {
       "comparable when the set-up is not here or is another one, or when the uncertainty reaches across the limit. A table "
       "is reproduced when a row is, none is not, and no two rows are in another order than published. Frame rates "
       "count as times of frames. Brackets behind times are quartiles. A curve grows as a power of what it is drawn over: less than linearly where the exponent, {1} "
-      "standard uncertainties to both sides, is below 1, linearly where from its first point to its last it grows as that does within the same factor. Images "
-      "have no verdict.",
+      "standard uncertainties to both sides, is below 1, linearly where from its first point to its last it grows as that does within the same factor. Of images "
+      "the paper's claims are judged, each by one number of two panels: which one has less. Images without a claim have no verdict.",
       kReproducedFactor, kReproducedSigmas);
 }
 
@@ -153,9 +169,14 @@ std::string reproductionsAsMarkdown(const std::vector<ReproducedResult>& results
         text += fmt::format("- {} {}\n", result.curves[i].over, pointText(result.curves[i], point));
       text += "\n";
     }
+    const bool fractions = std::any_of(result.panels.begin(), result.panels.end(),
+                                       [](const ShownPanel& panel) { return !panel.radiance; });
     for (const ShownPanel& panel : result.panels) text += "- Panel " + panelText(panel) + "\n";
+    for (std::size_t i = 0; i < result.claims.size(); ++i)
+      text += "- Claim: " + claimText(result.claims[i], result.judgedClaims[i]) + "\n";
     if (!result.panels.empty())
-      text += fmt::format("- Exposure of all panels: {}\n", exposureText(result.exposure));
+      text += fmt::format("- Exposure of all panels{}: {}\n", fractions ? " of radiance" : "",
+                          exposureText(result.exposure));
     for (const std::string& note : reproductionNotes(result)) text += "- " + note + "\n";
   }
   return text;
@@ -165,12 +186,14 @@ std::string reproductionsAsHtml(const std::vector<ReproducedResult>& results) {
   using Json = nlohmann::ordered_json;
   Json shown = Json::array(), images = Json::array();
   for (const ReproducedResult& result : results) {
-    Json rows = Json::array(), curves = Json::array(), panels = Json::array();
+    Json rows = Json::array(), curves = Json::array(), panels = Json::array(), claims = Json::array();
     for (std::size_t i = 0; i < result.rows.size(); ++i)
       rows.push_back(reproductionCells(result.rows[i], result.judged.rows[i]));
     for (std::size_t i = 0; i < result.curves.size(); ++i)
       curves.push_back(result.curves[i].name + ": " + curveText(result.curves[i], result.judgedCurves[i]));
     for (const ShownPanel& panel : result.panels) panels.push_back(panelText(panel));
+    for (std::size_t i = 0; i < result.claims.size(); ++i)
+      claims.push_back(claimText(result.claims[i], result.judgedClaims[i]));
     shown.push_back({{"heading", heading(result)},
                      {"title", result.published.title},
                      {"paper", result.published.paper},
@@ -178,6 +201,7 @@ std::string reproductionsAsHtml(const std::vector<ReproducedResult>& results) {
                      {"rows", std::move(rows)},
                      {"curves", std::move(curves)},
                      {"panels", std::move(panels)},
+                     {"claims", std::move(claims)},
                      {"notes", reproductionNotes(result)}});
     Json own = Json::object();
     if (!result.panels.empty()) own["sheet"] = base64(encodePng(contactSheet(result)));

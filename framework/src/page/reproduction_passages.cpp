@@ -9,57 +9,15 @@
 #include "lumivox/base/error.h"
 #include "lumivox/page/reproduction_page.h"
 #include "page/markup.h"
+#include "page/passages.h"
 
 namespace lumivox {
 namespace {
 
-constexpr const char* kOpening = "<!-- reproduced ";
-constexpr const char* kOpeningEnd = " -->";
-constexpr const char* kClosing = "<!-- end -->";
-
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-/// "ratios 004-table-3; isotropic, voxelization; isotropic, mipmap"
-struct Request {
-  std::string kind, id;
-  std::vector<std::string> names;
-};
-
-Request requestOf(const std::string& text) {
-  Request request;
-  std::vector<std::string> parts;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t to = std::min(text.find(';', from), text.size());
-    parts.push_back(trimmed(text.substr(from, to - from)));
-    from = to + 1;
-  }
-  const std::size_t space = std::min(parts.front().find(' '), parts.front().size());
-  request.kind = parts.front().substr(0, space);
-  request.id = trimmed(parts.front().substr(space));
-  request.names.assign(parts.begin() + 1, parts.end());
-  return request;
-}
-
-[[noreturn]] void refuse(const std::string& what, const std::string& name,
-                         const std::vector<std::string>& known) {
-  const std::string nearest = nearestWord(name, known);
-  throw Error(fmt::format("there is no {} '{}'; expected one of {}{}", what, name, fmt::join(known, ", "),
-                          nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
-}
-
-template <class Things, class Name>
-const auto& found(const Things& things, const char* what, const std::string& wanted, const Name& name) {
-  std::vector<std::string> known;
-  for (const auto& one : things) {
-    if (name(one) == wanted) return one;
-    known.push_back(name(one));
-  }
-  refuse(what, wanted, known);
-}
+using page::found;
+using page::refuse;
+using page::requireNames;
+using Request = page::PassageRequest;
 
 std::string ratio(double value) {
   return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-";
@@ -120,68 +78,41 @@ std::string curve(const ReproducedResult& result, const std::string& wanted) {
       curveText(one, result.judgedCurves[static_cast<std::size_t>(&one - result.curves.data())]), "|", "\\|");
 }
 
+std::string claim(const ReproducedResult& result, const std::string& wanted) {
+  const MeasuredClaim& one =
+      found(result.claims, "claim", wanted, [](const MeasuredClaim& claim) { return claim.name; });
+  return page::replaced(
+      claimText(one, result.judgedClaims[static_cast<std::size_t>(&one - result.claims.data())]), "|", "\\|");
+}
+
 std::string passage(const Request& request, const std::vector<ReproducedResult>& results) {
   const ReproducedResult& result =
       found(results, "result", request.id, [](const ReproducedResult& one) { return one.published.id; });
-  const auto requireNames = [&](std::size_t least, std::size_t most, const char* expected) {
-    if (request.names.size() < least || request.names.size() > most)
-      throw Error(
-          fmt::format("'{}' has {} names; expected {}", request.kind, request.names.size(), expected));
-  };
   if (request.kind == "table") {
-    requireNames(0, 0, "table ID");
+    requireNames(request, 0, 0, "table ID");
     return table(result);
   }
   if (request.kind == "ratios") {
-    requireNames(1, result.rows.size(), "ratios ID; ROW; ROW ...");
+    requireNames(request, 1, result.rows.size(), "ratios ID; ROW; ROW ...");
     return ratios(result, request.names);
   }
   if (request.kind == "curve") {
-    requireNames(1, 1, "curve ID; CURVE");
+    requireNames(request, 1, 1, "curve ID; CURVE");
     return curve(result, request.names.front());
   }
-  refuse("kind of passage", request.kind, {"table", "ratios", "curve"});
-}
-
-/// Within a fenced block, which shows how something is written.
-bool isFenced(const std::string& markdown, std::size_t at) {
-  bool fenced = markdown.rfind("```", 0) == 0;
-  for (std::size_t fence = markdown.find("\n```"); fence < at; fence = markdown.find("\n```", fence + 1))
-    fenced = !fenced;
-  return fenced;
+  if (request.kind == "claim") {
+    requireNames(request, 1, 1, "claim ID; CLAIM");
+    return claim(result, request.names.front());
+  }
+  refuse("kind of passage", request.kind, {"table", "ratios", "curve", "claim"});
 }
 
 }  // namespace
 
 std::string withReproducedPassages(const std::string& markdown, const std::filesystem::path& file,
                                    const std::vector<ReproducedResult>& results) {
-  std::string text;
-  std::size_t at = 0;
-  for (;;) {
-    std::size_t opening = markdown.find(kOpening, at);
-    while (opening != std::string::npos && isFenced(markdown, opening))
-      opening = markdown.find(kOpening, opening + 1);
-    if (opening == std::string::npos) return text + markdown.substr(at);
-    const auto lineNumber =
-        1 + std::count(markdown.begin(), markdown.begin() + static_cast<std::ptrdiff_t>(opening), '\n');
-    const auto fail = [&](const std::string& what) {
-      throw Error(fmt::format("{}:{}: {}", file.string(), lineNumber, what));
-    };
-    const std::size_t words = opening + std::string_view(kOpening).size(),
-                      wordsEnd = markdown.find(kOpeningEnd, words), closing = markdown.find(kClosing, words),
-                      next = markdown.find(kOpening, words);
-    if (wordsEnd == std::string::npos || closing == std::string::npos || closing < wordsEnd || next < closing)
-      fail(fmt::format("this passage of reproduced figures has no end; expected {} after it", kClosing));
-    const std::size_t inside = wordsEnd + std::string_view(kOpeningEnd).size();
-    text += markdown.substr(at, inside - at);
-    try {
-      text += passage(requestOf(markdown.substr(words, wordsEnd - words)), results);
-    } catch (const Error& error) {
-      fail(error.what());
-    }
-    text += kClosing;
-    at = closing + std::string_view(kClosing).size();
-  }
+  return page::withPassages(markdown, file, "reproduced",
+                            [&](const Request& request) { return passage(request, results); });
 }
 
 }  // namespace lumivox

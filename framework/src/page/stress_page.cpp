@@ -1,6 +1,6 @@
 #include "lumivox/page/stress_page.h"
 
-#include "lumivox/base/file.h"
+#include "base/file_set.h"
 #include "lumivox/results/json.h"
 #include "page/document.h"
 #include "page_assets.h"
@@ -21,8 +21,8 @@ std::filesystem::path writeStressPage(const std::filesystem::path& folder,
   document.data = {{"command", commandLine}, {"cells", std::move(list)}};
   document.scripts = {page::assets::kStressJs, page::assets::kStressPageJs};
   const std::filesystem::path file = folder / "index.html";
-  writeFileAtomically(folder / "index.json", stressCellsJson(cells));
-  writeFileAtomically(file, page::html(document));
+  const std::string json = stressCellsJson(cells), html = page::html(document);
+  writeFilesAtomically(std::vector<NewFile>{{folder / "index.json", json}, {file, html}});
   return file;
 }
 

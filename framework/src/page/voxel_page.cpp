@@ -3,8 +3,8 @@
 
 #include <limits>
 
+#include "base/file_set.h"
 #include "lumivox/analysis/scaling.h"
-#include "lumivox/base/file.h"
 #include "lumivox/results/csv.h"
 #include "lumivox/results/json.h"
 #include "page/document.h"
@@ -95,10 +95,9 @@ void writeVoxelizers(const VoxelizerFiles& files, const std::vector<VoxelizerRec
                    {"scaling", page::scalingJson(records)}};
   document.charts = true;
   document.scripts = {page::assets::kVoxelsJs, page::assets::kVoxelsPageJs};
-  const std::string html = page::html(document);
-  writeFileAtomically(files.json, voxelizersJson(records, device, commandLine));
-  writeFileAtomically(files.csv, page::recordsCsv(records, device));
-  writeFileAtomically(files.page, html);
+  const std::string html = page::html(document), json = voxelizersJson(records, device, commandLine),
+                    csv = page::recordsCsv(records, device);
+  writeFilesAtomically(std::vector<NewFile>{{files.json, json}, {files.csv, csv}, {files.page, html}});
 }
 
 }  // namespace lumivox

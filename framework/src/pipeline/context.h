@@ -34,7 +34,10 @@ class FrameContext : public PassContext {
   const SceneTraits& traits() const override { return traits_; }
   bool keepsEverything() const override { return keepsEverything_; }
   int frameIndex() const override { return frameIndex_; }
-  std::uint64_t seed() const override { return seed_; }
+  std::uint64_t seed() const override {
+    if (pass_ != nullptr) seeded_.insert(passName_);
+    return seed_;
+  }
   gpu::TextureRef texture(const gpu::TextureDescription& description, const std::string& label) override;
   gpu::BufferRef buffer(std::uint64_t sizeBytes, const std::string& label) override;
   void judgeLater(gpu::BufferRef counts, std::uint64_t offsetBytes, CountJudge judge) override;
@@ -51,6 +54,8 @@ class FrameContext : public PassContext {
   /// Another scene from now on. `uploads`: what the device has of the old one is of no use.
   void setScene(const Scene& scene, bool uploads);
   void setSeed(std::uint64_t seed) { seed_ = seed; }
+  /// Names of the passes that have asked for the seed in any frame so far.
+  const std::set<std::string>& seeded() const { return seeded_; }
   /// The device's copy of the scene follows when `geometryChanged`.
   void setFrame(SceneSnapshot snapshot, int frameIndex, bool geometryChanged);
   /// Whether histories are carried from frame to frame.
@@ -108,6 +113,7 @@ class FrameContext : public PassContext {
   int attempts_ = 0;                   ///< at this frame that had too little room
   std::vector<std::string> notes_;
   std::set<std::string> warnings_;
+  mutable std::set<std::string> seeded_;
   std::set<Reused> reusedParts_;
 };
 

@@ -271,21 +271,19 @@ void PipelineExecutor::State::runPass(std::size_t index, Instrument instrument, 
   result.passes.push_back(std::move(record));
 }
 
-/// What a user expects of an aperture is a blur, and the reference shows it.
-void PipelineExecutor::State::warnOfLens(const SceneSnapshot& snapshot) const {
-  const bool makesImages =
-      std::find(request.wanted.begin(), request.wanted.end(), true) != request.wanted.end();
-  if (!(snapshot.camera.aperture > 0.0f) || !makesImages || seesThroughLens(graph, *plan)) return;
-  logWarning(
-      "pipeline \"{}\" leaves out {}: no pass of it sees through a lens, so its image is that of a pinhole",
-      pipeline.name, lensText(scene->camera(options.camera)));
+/// What stands in a scene is expected in its image, and the reference shows it.
+void PipelineExecutor::State::warnOfUnreadTraits(const SceneSnapshot& snapshot) const {
+  Camera camera = scene->camera(options.camera);
+  camera.aperture = snapshot.camera.aperture;
+  for (const LeftOut& trait : unreadTraits({sceneTraits, *scene, camera}, graph, *plan, request))
+    logWarning("pipeline \"{}\" leaves out {}: {}", pipeline.name, trait.what, trait.why);
 }
 
 FrameResult PipelineExecutor::State::frame(SceneSnapshot snapshot, int frameIndex, Images images,
                                            Timing timing, Clock::time_point start) {
   const gpu::Charging charging(device, account);
   planned();
-  warnOfLens(snapshot);
+  warnOfUnreadTraits(snapshot);
   const Reads changed = changesSince(snapshot, frameIndex);
   const bool otherSize =
       last && (last->camera.width != snapshot.camera.width || last->camera.height != snapshot.camera.height);
@@ -460,9 +458,24 @@ void PipelineExecutor::setSeed(std::uint64_t seed) {
   State& s = *state_;
   if (seed == std::exchange(s.options.seed, seed)) return;
   s.context.setSeed(seed);
-  s.complete = false;
+  s.mustRun.resize(s.graph.passes.size(), false);
+  for (std::size_t pass = 0; pass < s.graph.passes.size(); ++pass) {
+    const std::string& name = s.graph.passes[pass].name;
+    if (!s.context.seeded().contains(name)) continue;
+    s.mustRun[pass] = true;
+    s.context.memory().forgetKept(name);
+  }
   s.emptyHistories();
   s.forEachCheck([&](PipelineExecutor& check) { check.setSeed(seed); });
+}
+
+void PipelineExecutor::setHealth(bool health) {
+  state_->options.health = health;
+  state_->context.setInspects(health);
+}
+
+bool PipelineExecutor::readsSeed() const {
+  return !state_->context.seeded().empty();
 }
 
 void PipelineExecutor::setScene(const Scene& scene) {
@@ -479,7 +492,8 @@ Explanation PipelineExecutor::explain() const {
                    s.context.shaders().packs(),
                    s.context.reusedParts(),
                    {},
-                   s.scene->camera(s.options.camera)};
+                   {s.sceneTraits, *s.scene, s.scene->camera(s.options.camera)},
+                   s.request};
   s.readTimes(s.timers.takeAll());
   for (const auto& [index, record] : s.lastRun) {
     if (const auto ms = s.lastMs.find(record.name); ms != s.lastMs.end()) run.passMs[index] = ms->second;

@@ -104,7 +104,7 @@ struct PipelineExecutor::State {
   /// Nothing when a pass had too little room for what it counts.
   std::optional<FrameResult> attempt(Reads changed, Instrument instrument, Clock::time_point start);
   void collectImages(FrameResult& result, Images images);
-  void warnOfLens(const SceneSnapshot& snapshot) const;
+  void warnOfUnreadTraits(const SceneSnapshot& snapshot) const;
   void checkReads(FrameResult& result);
 };
 

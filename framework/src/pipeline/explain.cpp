@@ -21,6 +21,8 @@ const char* name(LeftOut::Level level) {
       return "time";
     case LeftOut::Level::camera:
       return "camera";
+    case LeftOut::Level::scene:
+      return "scene";
   }
   return "";
 }
@@ -129,18 +131,83 @@ void explainTime(const ExplainedRun& run, Explanation& explanation) {
   }
 }
 
-constexpr const char* kWhyNoLens = "no pass sees through a lens: the image is that of a pinhole";
+/// A trait of a scene, the reads by which a pass sees it, and what an image is without.
+struct Trait {
+  Reads seenBy;
+  LeftOut::Level level;
+  enum class In { everyImage, radiance } shownIn;
+  std::string (*what)(const Seen&);  ///< empty: the scene has it not
+  const char* why;
+};
+
+std::string lensText(const Seen& seen) {
+  const Camera& camera = seen.camera;
+  return camera.aperture > 0.0
+             ? fmt::format("the lens of camera '{}', {:.3g} m wide", camera.name, camera.aperture)
+             : std::string();
+}
+
+std::string trianglesText(const Seen& seen) {
+  return seen.traits.triangles ? "the triangles" : "";
+}
+
+std::string materialsText(const Seen& seen) {
+  return seen.traits.triangles ? "the materials" : "";
+}
+
+std::string lightsText(const Seen& seen) {
+  const SceneTraits& traits = seen.traits;
+  const int lights = traits.areaLights + traits.directionalLights + traits.pointLights + traits.spotLights;
+  return lights == 0 ? "" : lights == 1 ? "the light" : fmt::format("the {} lights", lights);
+}
+
+std::string environmentText(const Seen& seen) {
+  return seen.traits.environment ? "the environment" : "";
+}
+
+std::string mediaText(const Seen& seen) {
+  std::vector<std::string> names;
+  for (const Medium& medium : seen.scene.media) names.push_back(fmt::format("'{}'", medium.name));
+  return names.empty() ? ""
+                       : fmt::format("{} {}", names.size() == 1 ? "medium" : "media", fmt::join(names, ", "));
+}
+
+constexpr Trait kTraits[] = {{Reads::lens, LeftOut::Level::camera, Trait::In::everyImage, lensText,
+                              "no pass sees through a lens: the image is that of a pinhole"},
+                             {Reads::geometry, LeftOut::Level::scene, Trait::In::everyImage, trianglesText,
+                              "no pass reads geometry: the image is that of an empty scene"},
+                             {Reads::materials, LeftOut::Level::scene, Trait::In::radiance, materialsText,
+                              "no pass reads materials: the image is that of surfaces without any"},
+                             {Reads::lights, LeftOut::Level::scene, Trait::In::radiance, lightsText,
+                              "no pass reads lights: the image is that of an unlit scene"},
+                             {Reads::environment, LeftOut::Level::scene, Trait::In::radiance, environmentText,
+                              "no pass reads the environment: the image is that of a black one"},
+                             {Reads::media, LeftOut::Level::scene, Trait::In::radiance, mediaText,
+                              "no pass reads media: the image is that of clear air"}};
 
 }  // namespace
 
-bool seesThroughLens(const BoundGraph& graph, const PrunePlan& plan) {
-  return std::any_of(plan.order.begin(), plan.order.end(), [&](int index) {
-    return reads(graph.passes[static_cast<std::size_t>(index)].object->readsFrom(), Reads::lens);
-  });
-}
-
-std::string lensText(const Camera& camera) {
-  return fmt::format("the lens of camera '{}', {:.3g} m wide", camera.name, camera.aperture);
+std::vector<LeftOut> unreadTraits(const Seen& seen, const BoundGraph& graph, const PrunePlan& plan,
+                                  const PruneRequest& request) {
+  bool anyImage = false, anyRadiance = false;
+  for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
+    const OutputIndex source = graph.outputs[i].source;
+    if (!request.wanted[i] || !plan.output(source).wanted) continue;
+    const Contributes held = graph.output(source).contributes();
+    anyImage = true;
+    anyRadiance = anyRadiance || (held != Contributes::nothing && held != Contributes::ambientOcclusion);
+  }
+  Reads read = Reads::nothing;
+  for (const int index : plan.order)
+    read = read | graph.passes[static_cast<std::size_t>(index)].object->readsFrom();
+  std::vector<LeftOut> unread;
+  for (const Trait& trait : kTraits) {
+    if (reads(read, trait.seenBy) || !(trait.shownIn == Trait::In::radiance ? anyRadiance : anyImage))
+      continue;
+    if (std::string what = trait.what(seen); !what.empty())
+      unread.push_back({trait.level, std::move(what), trait.why, {}});
+  }
+  return unread;
 }
 
 Explanation explainRun(const ExplainedRun& run) {
@@ -154,8 +221,8 @@ Explanation explainRun(const ExplainedRun& run) {
   explainVariants(run, explanation);
   explainResources(run, explanation);
   if (!run.keepEverything) explainTime(run, explanation);
-  if (run.camera.aperture > 0.0 && !seesThroughLens(run.graph, run.plan))
-    explanation.leftOut.push_back({LeftOut::Level::camera, lensText(run.camera), kWhyNoLens, {}});
+  for (LeftOut& trait : unreadTraits(run.seen, run.graph, run.plan, run.request))
+    explanation.leftOut.push_back(std::move(trait));
   return explanation;
 }
 

@@ -11,6 +11,13 @@
 
 namespace lumivox {
 
+/// What there is to be seen by a run.
+struct Seen {
+  const SceneTraits& traits;
+  const Scene& scene;
+  const Camera& camera;
+};
+
 struct ExplainedRun {
   const BoundGraph& graph;
   const PrunePlan& plan;
@@ -20,16 +27,18 @@ struct ExplainedRun {
   const std::map<std::string, shader::ShaderPack>& packs;
   const std::set<FrameContext::Reused>& reusedParts;
   std::map<int, double> passMs;  ///< per pass that ran so far, its last device time
-  const Camera& camera;
+  const Seen seen;
+  const PruneRequest& request;
   bool keepEverything = false;
   std::uint64_t poolBytes = 0, sharedBytes = 0;
 };
 
 Explanation explainRun(const ExplainedRun& run);
 
-/// Whether a pass that runs sees through the camera's lens (Reads::lens).
-bool seesThroughLens(const BoundGraph& graph, const PrunePlan& plan);
-/// "the lens of camera 'main', 0.05 m wide"
-std::string lensText(const Camera& camera);
+/// What the scene and the camera have that no pass which runs reads (Pass::readsFrom()), though an image is
+/// made that it belongs to: "the lens of camera 'main', 0.05 m wide", "no pass sees through a lens: the image
+/// is that of a pinhole". Nothing of a run without images.
+std::vector<LeftOut> unreadTraits(const Seen& seen, const BoundGraph& graph, const PrunePlan& plan,
+                                  const PruneRequest& request);
 
 }  // namespace lumivox

@@ -115,7 +115,7 @@ class Binder {
       std::vector<std::string> names;
       for (const PassEntry& one : technique->passes) names.push_back(one.name);
       report(place, fmt::format("technique '{}' has no pass '{}'", text.technique, text.pass),
-             oneOf(names, "nothing, since it has no passes"), nearestWord(text.pass, names));
+             oneOf(names, "nothing, since it has no passes"), suggestionFor(findings_, text.pass, names));
       return bound;
     }
     bound.object = entry->make();
@@ -181,7 +181,8 @@ class Binder {
       for (const std::string& name : namesOf(bound.object->parameters())) known.push_back(name);
       report(property,
              fmt::format("{}.{} has no input or parameter '{}'", bound.technique, bound.pass, property.word),
-             oneOf(known, "an empty block, since it has none"), nearestWord(property.word, known));
+             oneOf(known, "an empty block, since it has none"),
+             suggestionFor(findings_, property.word, known));
       return;
     }
     if (property.values.size() != 1) {
@@ -287,7 +288,7 @@ class Binder {
       // Every reader of a pass that is not there follows from one mistake.
       if (unknownReported_.insert(passName).second)
         report(place, length, fmt::format("unknown pass '{}'", passName), oneOf(names, "a pass"),
-               nearestWord(passName, names));
+               suggestionFor(findings_, passName, names));
       return {};
     }
     const Pass* pass = graph_.passes[static_cast<std::size_t>(source)].object.get();
@@ -296,7 +297,7 @@ class Binder {
     int port = portName.empty() ? -1 : indexOf(outputs, portName);
     if (!portName.empty() && port < 0) {
       report(place, length, fmt::format("pass '{}' has no output '{}'", passName, portName), portsText(*pass),
-             nearestWord(portName, namesOf(outputs)));
+             suggestionFor(findings_, portName, namesOf(outputs)));
       return {};
     }
     if (portName.empty()) {
@@ -384,7 +385,7 @@ class Binder {
     if (declared == nullptr) {
       const std::vector<std::string> names = parameterNames(pipeline_);
       report(value, fmt::format("unknown parameter '${}'", value.text),
-             oneOf(names, "a parameter declared with param"), nearestWord(value.text, names));
+             oneOf(names, "a parameter declared with param"), suggestionFor(findings_, value.text, names));
       return;
     }
     // Every value that a sweep will set must fit too, so that a report does not stop half-way.

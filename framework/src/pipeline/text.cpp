@@ -15,6 +15,10 @@ namespace lumivox {
 
 namespace {
 
+/// Passes, parameters, outputs and sweeps of one pipeline, each: far more than anybody writes, few enough
+/// that binding, which looks each up among all others, takes no time.
+constexpr std::size_t kMostOfAKind = 1000;
+
 dsl::PropertySpecification property(const std::string& word, dsl::PropertyType type,
                                     const std::string& meaning) {
   dsl::PropertySpecification specification;
@@ -79,14 +83,14 @@ class TextReader : TextFindings {
         report(item.property->place, item.property->word,
                fmt::format("unknown statement '{}'", item.property->word),
                "a pipeline or sweep block, or an include",
-               nearestWord(item.property->word, {"pipeline", "sweep"}));
+               suggestionFor(findings_, item.property->word, {"pipeline", "sweep"}));
       } else if (item.block->word == "pipeline") {
         if (main != nullptr)
           report(item.block->place, "pipeline", "a second pipeline in one text", "one per file");
         if (main == nullptr) main = item.block.get();
       } else if (item.block->word != "sweep") {
         report(item.block->place, item.block->word, fmt::format("unknown block '{}'", item.block->word),
-               "pipeline or sweep", nearestWord(item.block->word, {"pipeline", "sweep"}));
+               "pipeline or sweep", suggestionFor(findings_, item.block->word, {"pipeline", "sweep"}));
       }
     }
     if (main != nullptr) {
@@ -153,6 +157,7 @@ class TextReader : TextFindings {
                fmt::format("another name; the first is at {}", other.place.text()));
       }
     }
+    if (!hasRoom(pipeline_.passes, block.place, block.word)) return;
     pipeline_.passes.push_back({header[0].text, parts->first, parts->second, header[0].place, &block});
     for (const dsl::Item& item : block.items) {
       if (!item.property) continue;
@@ -160,6 +165,16 @@ class TextReader : TextFindings {
         if (value.kind == dsl::ValueKind::parameter) usedParameters_.insert(value.text);
       }
     }
+  }
+
+  /// Whether one more of a kind may follow; a finding at the first that may not.
+  template <class All>
+  bool hasRoom(const All& all, const SourcePlace& place, const std::string& word) {
+    if (all.size() < kMostOfAKind) return true;
+    if (full_.insert(word).second)
+      report(place, word, fmt::format("too many blocks or properties '{}'", word),
+             fmt::format("at most {} in a pipeline", kMostOfAKind));
+    return false;
   }
 
   /// A parameter whose declaration was refused is known all the same.
@@ -220,6 +235,7 @@ class TextReader : TextFindings {
         report(values[0].place, values[0].length, fmt::format("a second parameter named '{}'", other.name));
       }
     }
+    if (!hasRoom(pipeline_.parameters, property.place, property.word)) return;
     parameterPlaces_.push_back(values[0].place);
     pipeline_.parameters.push_back(std::move(parameter));
   }
@@ -241,6 +257,7 @@ class TextReader : TextFindings {
       report(values[1].place, values[1].length, "this is not an output of a pass", "pass.port");
       return;
     }
+    if (!hasRoom(pipeline_.outputs, property.place, property.word)) return;
     pipeline_.outputs.push_back({values[0].text, parts->first, parts->second, values[1].place});
   }
 
@@ -250,6 +267,7 @@ class TextReader : TextFindings {
       if (other.name == read.name)
         report(block.place, block.word, fmt::format("a second sweep named '{}'", read.name));
     }
+    if (!hasRoom(pipeline_.sweeps, block.place, block.word)) return;
     std::vector<const SweepAxis*> unknown;
     pipeline_.sweeps.push_back(fittedSweep(read, pipeline_, document_, findings_, unknown));
     const std::vector<std::string> names = parameterNames(pipeline_);
@@ -257,7 +275,7 @@ class TextReader : TextFindings {
       if (!refusedParameters_.contains(axis->parameter))
         report(axis->place, axis->parameter, fmt::format("unknown parameter '{}'", axis->parameter),
                oneOf(names, "a parameter, but this pipeline declares none"),
-               nearestWord(axis->parameter, names));
+               suggestionFor(findings_, axis->parameter, names));
   }
 
   void warnOfUnused() {
@@ -276,6 +294,7 @@ class TextReader : TextFindings {
   Pipeline& pipeline_;
   std::vector<SourcePlace> parameterPlaces_;
   std::set<std::string> usedParameters_, refusedParameters_;
+  std::set<std::string> full_;  ///< words of which there are too many
 };
 
 Pipeline pipelineOf(dsl::Document parsed) {
@@ -358,7 +377,7 @@ std::vector<std::string> parameterNames(const Pipeline& pipeline) {
 std::string oneOf(const std::vector<std::string>& words, const std::string& otherwise) {
   if (words.empty()) return otherwise;
   if (words.size() == 1) return words.front();
-  return fmt::format("one of {}", fmt::join(words, ", "));
+  return "one of " + listed(words);
 }
 
 std::string misfitExpectation(const std::string& misfit) {

@@ -23,6 +23,24 @@ bool inside(std::string_view bytes, std::uint64_t offset, std::uint64_t size) {
   return offset <= bytes.size() && size <= bytes.size() - offset;
 }
 
+/// A header of a section; nothing beyond the table or the file.
+std::optional<Elf64_Shdr> sectionHeader(std::string_view bytes, const Elf64_Ehdr& file, std::uint64_t index) {
+  const std::uint64_t offset = index * sizeof(Elf64_Shdr);
+  if (index >= file.e_shnum || file.e_shentsize != sizeof(Elf64_Shdr) || !inside(bytes, file.e_shoff, 0) ||
+      !inside(bytes, file.e_shoff + offset, sizeof(Elf64_Shdr)))
+    return std::nullopt;
+  Elf64_Shdr header;
+  std::memcpy(&header, bytes.data() + file.e_shoff + offset, sizeof(header));
+  return header;
+}
+
+/// Nothing where it lies outside of the file.
+std::optional<std::string_view> contentsOf(std::string_view bytes, const Elf64_Shdr& section) {
+  if (section.sh_type == SHT_NOBITS) return std::string_view();
+  if (!inside(bytes, section.sh_offset, section.sh_size)) return std::nullopt;
+  return bytes.substr(section.sh_offset, section.sh_size);
+}
+
 }  // namespace
 
 std::string sharedLibraryDefect(std::string_view bytes) {
@@ -54,6 +72,22 @@ std::string sharedLibraryDefect(std::string_view bytes) {
     return fmt::format("the file is truncated: {} of {} bytes", bytes.size(), needed);
   }
   return {};
+}
+
+std::optional<std::string_view> sectionOf(std::string_view bytes, std::string_view name) {
+  Elf64_Ehdr file;
+  if (bytes.size() < sizeof(file)) return std::nullopt;
+  std::memcpy(&file, bytes.data(), sizeof(file));
+  const auto namesHeader = sectionHeader(bytes, file, file.e_shstrndx);
+  const auto names = namesHeader ? contentsOf(bytes, *namesHeader) : std::nullopt;
+  if (!names) return std::nullopt;
+  for (std::uint64_t i = 0; i < file.e_shnum; ++i) {
+    const auto section = sectionHeader(bytes, file, i);
+    if (!section || section->sh_name >= names->size()) continue;
+    const std::string_view rest = names->substr(section->sh_name);
+    if (rest.substr(0, rest.find('\0')) == name) return contentsOf(bytes, *section);
+  }
+  return std::nullopt;
 }
 
 }  // namespace lumivox

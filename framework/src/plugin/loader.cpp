@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -61,20 +62,13 @@ std::unique_ptr<Technique> open(const std::string& name, const fs::path& library
   if (const std::string defect = sharedLibraryDefect(bytes); !defect.empty()) throw Unfit(defect);
   technique->hash = hashOf(bytes);
 
-  // The path holds a slash, so that the loader searches nowhere else. The handle stays open until the end of
-  // the program: passes and their functions live in it.
-  void* handle = dlopen(fs::absolute(library).c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (handle == nullptr) {
-    const char* reason = dlerror();
-    throw Unfit(reason != nullptr ? reason : "the dynamic loader refused it");
-  }
-  const std::string difference =
-      versionDifference(*symbol<const TechniqueVersionRecord*()>(handle, "lumivox_technique_version")());
-  if (!difference.empty()) throw Unfit("built for another Lumivox: " + difference);
-  Registry registry(*technique);
-  symbol<void(TechniqueRegistry*)>(handle, "lumivox_technique_register")(&registry);
-  if (technique->passes.empty()) throw Unfit("it registers no pass");
-
+  // Asked of the file: opening a library runs its code, and may bind the data of others to it.
+  const std::optional<std::string_view> version = sectionOf(bytes, LUMIVOX_VERSION_SECTION);
+  if (!version)
+    throw Unfit("it has no version record (ELF section " LUMIVOX_VERSION_SECTION
+                "): no technique library, or one for another Lumivox");
+  if (const std::string difference = versionDifference(*version); !difference.empty())
+    throw Unfit("built for another Lumivox: " + difference);
   fs::path pack = library.parent_path() / (name + ".shaderpack");
   if (fs::exists(pack)) {
     technique->shaders = shader::readShaderPack(pack);
@@ -83,6 +77,17 @@ std::unique_ptr<Technique> open(const std::string& name, const fs::path& library
           fmt::format("{} contains the shaders of '{}'", pack.string(), technique->shaders.technique));
     }
   }
+
+  // The path holds a slash, so that the loader searches nowhere else. The handle stays open until the end of
+  // the program: passes and their functions live in it.
+  void* handle = dlopen(fs::absolute(library).c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (handle == nullptr) {
+    const char* reason = dlerror();
+    throw Unfit(reason != nullptr ? reason : "the dynamic loader refused it");
+  }
+  Registry registry(*technique);
+  symbol<void(TechniqueRegistry*)>(handle, "lumivox_technique_register")(&registry);
+  if (technique->passes.empty()) throw Unfit("it registers no pass");
   return technique;
 }
 
@@ -96,12 +101,13 @@ bool isTechniqueName(const std::string& name) {
 
 struct TechniqueSet::State {
   std::vector<fs::path> directories;
+  bool strict = false;
   std::map<std::string, std::unique_ptr<Technique>> opened;  ///< null: absent or skipped
   std::vector<SkippedTechnique> skipped;
 };
 
-TechniqueSet::TechniqueSet(std::vector<fs::path> directories)
-    : state_(new State{std::move(directories), {}, {}}) {}
+TechniqueSet::TechniqueSet(std::vector<fs::path> directories, bool strict)
+    : state_(new State{std::move(directories), strict, {}, {}}) {}
 TechniqueSet::~TechniqueSet() = default;
 
 std::vector<fs::path> TechniqueSet::defaultDirectories(const std::vector<fs::path>& given) {
@@ -137,6 +143,10 @@ const Technique* TechniqueSet::technique(const std::string& name) {
       slot = open(name, library);
       return slot.get();
     } catch (const std::exception& error) {
+      if (s.strict) {
+        s.opened.erase(name);
+        throw Error(fmt::format("{}: {}; refused under --strict", library.string(), error.what()));
+      }
       s.skipped.push_back({library, error.what()});
       logWarning("skipped {}: {}", library.string(), error.what());
     }

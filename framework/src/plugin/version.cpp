@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "lumivox/base/error.h"
@@ -7,8 +8,29 @@
 
 namespace lumivox {
 
-std::string versionDifference(const TechniqueVersionRecord& theirs) {
+namespace {
+
+/// As it may be shown: a broken record may hold anything.
+template <std::size_t Size>
+std::string shown(const char (&text)[Size]) {
+  std::string word(text, strnlen(text, Size));
+  std::replace_if(
+      word.begin(), word.end(), [](unsigned char c) { return c < 0x20 || c > 0x7e; }, '?');
+  return word;
+}
+
+}  // namespace
+
+std::string versionDifference(std::string_view bytes) {
   static constexpr TechniqueVersionRecord ours = techniqueVersionHere();
+  constexpr std::size_t kFixed = offsetof(TechniqueVersionRecord, compiler);  // the same in every version
+  if (bytes.size() < kFixed)
+    return fmt::format("the version record has {} bytes, expected {}", bytes.size(), sizeof(ours));
+  TechniqueVersionRecord theirs{};
+  std::memcpy(&theirs, bytes.data(), std::min(bytes.size(), sizeof(theirs)));
+  if (theirs.recordSize != bytes.size())
+    return fmt::format("the version record says that it has {} bytes, but {} are there", theirs.recordSize,
+                       bytes.size());
   std::string difference;
   const auto number = [&](const char* what, std::uint32_t their, std::uint32_t our) {
     if (difference.empty() && their != our)
@@ -16,13 +38,12 @@ std::string versionDifference(const TechniqueVersionRecord& theirs) {
   };
   const auto word = [&](const char* what, const auto& their, const auto& our) {
     if (difference.empty() && std::strncmp(their, our, sizeof(our)) != 0)
-      difference = fmt::format("{} is '{}', expected '{}'", what,
-                               std::string_view(their, strnlen(their, sizeof(our))), our);
+      difference = fmt::format("{} is '{}', expected '{}'", what, shown(their), our);
   };
-  // The size first: with another one, nothing behind it can be trusted. The hash of the headers behind what
-  // tells more.
-  number("the size of the version record", theirs.recordSize, ours.recordSize);
+  // Behind a record of another version or size nothing can be trusted. The hash of the headers comes behind
+  // what tells more.
   number("the API version", theirs.apiVersion, ours.apiVersion);
+  number("the size of the version record", theirs.recordSize, ours.recordSize);
   word("the compiler", theirs.compiler, ours.compiler);
   word("the standard library", theirs.standardLibrary, ours.standardLibrary);
   word("the build type", theirs.buildType, ours.buildType);
@@ -37,7 +58,8 @@ std::string versionDifference(const TechniqueVersionRecord& theirs) {
 }
 
 void requireLibraryOf(const TechniqueVersionRecord& program) {
-  if (const std::string difference = versionDifference(program); !difference.empty())
+  const std::string_view bytes(reinterpret_cast<const char*>(&program), sizeof(program));
+  if (const std::string difference = versionDifference(bytes); !difference.empty())
     throw Error("the program and its library liblumivox were built from different sources: " + difference +
                 "; expected both from one build, such as that of the target 'laboratory'");
 }

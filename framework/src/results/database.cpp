@@ -41,6 +41,12 @@ std::int64_t Database::pragma(const char* name) const {
   return statement.step() ? statement.integer(0) : 0;
 }
 
+bool Database::isMoved() const {
+  int moved = 0;
+  if (sqlite3_file_control(handle_.get(), "main", SQLITE_FCNTL_HAS_MOVED, &moved) != SQLITE_OK) fail();
+  return moved != 0;
+}
+
 Statement::Statement(const Database& database, const char* sql) : database_(database) {
   sqlite3_stmt* statement = nullptr;
   if (sqlite3_prepare_v2(database.handle(), sql, -1, &statement, nullptr) != SQLITE_OK) database.fail();

@@ -72,6 +72,8 @@ class Database {
   std::int64_t lastRow() const { return sqlite3_last_insert_rowid(handle_.get()); }
   std::size_t changes() const { return static_cast<std::size_t>(sqlite3_changes(handle_.get())); }
   const std::filesystem::path& file() const { return file_; }
+  /// Whether the file was removed, renamed or replaced since it was opened.
+  bool isMoved() const;
   /// Throws Error with the file and what SQLite says.
   [[noreturn]] void fail() const;
   sqlite3* handle() const { return handle_.get(); }

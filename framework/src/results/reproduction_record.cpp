@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -116,17 +117,48 @@ MeasuredCurve readCurve(const Json& json) {
   return curve;
 }
 
+Json claimJson(const MeasuredClaim& claim, const JudgedClaim& judged) {
+  Json json{{"claim", claim.name}, {"of", name(claim.quantity)}, {"less", claim.less}, {"than", claim.than}};
+  if (!claim.darkIn.empty()) json["dark_in"] = claim.darkIn;
+  if (claim.times != 1.0) json["times"] = claim.times;
+  json["less_value"] = numberJson(claim.lessValue);
+  json["than_value"] = numberJson(claim.thanValue);
+  json["why_not"] = claim.whyNot;
+  json["verdict"] = name(judged.verdict);
+  json["why"] = judged.why;
+  return json;
+}
+
+MeasuredClaim readClaim(const Json& json) {
+  MeasuredClaim claim;
+  claim.name = json.at("claim");
+  for (const ClaimedQuantity quantity : kClaimedQuantities)
+    if (json.at("of") == name(quantity)) claim.quantity = quantity;
+  claim.less = json.at("less");
+  claim.than = json.at("than");
+  claim.darkIn = json.value("dark_in", "");
+  claim.times = json.value("times", 1.0);
+  claim.lessValue = numberOrNothing(json.at("less_value"));
+  claim.thanValue = numberOrNothing(json.at("than_value"));
+  claim.whyNot = json.at("why_not");
+  return claim;
+}
+
 Json resultJson(const ReproducedResult& result) {
-  Json rows = Json::array(), curves = Json::array(), panels = Json::array();
+  Json rows = Json::array(), curves = Json::array(), panels = Json::array(), claims = Json::array();
+  for (std::size_t i = 0; i < result.claims.size(); ++i)
+    claims.push_back(claimJson(result.claims[i], result.judgedClaims[i]));
   for (std::size_t i = 0; i < result.rows.size(); ++i)
     rows.push_back(rowJson(result.rows[i], result.judged.rows[i]));
   for (std::size_t i = 0; i < result.curves.size(); ++i)
     curves.push_back(curveJson(result.curves[i], result.judgedCurves[i]));
-  for (const ShownPanel& panel : result.panels)
+  for (const ShownPanel& panel : result.panels) {
     panels.push_back({{"panel", panel.name},
                       {"why_not", panel.whyNot},
                       {"failed", panel.failed},
                       {"mean_luminance", numberJson(panel.meanLuminance)}});
+    if (!panel.radiance) panels.back()["radiance"] = false;
+  }
   return {{"id", result.published.id},
           {"title", result.published.title},
           {"paper", result.published.paper},
@@ -144,6 +176,7 @@ Json resultJson(const ReproducedResult& result) {
           {"rows", std::move(rows)},
           {"curves", std::move(curves)},
           {"panels", std::move(panels)},
+          {"claims", std::move(claims)},
           {"exposure_ev", result.exposure},
           {"set_ups", result.setUps},
           {"differences", result.published.differences},
@@ -176,9 +209,12 @@ ReproducedResult readResult(const Json& json) {
     panel.name = one.at("panel");
     panel.whyNot = one.at("why_not");
     panel.failed = one.at("failed");
+    panel.radiance = one.value("radiance", true);
     panel.meanLuminance = numberOrNothing(one.at("mean_luminance"));
     result.panels.push_back(std::move(panel));
   }
+  // Results that were kept before there were claims have none.
+  for (const Json& one : json.value("claims", Json::array())) result.claims.push_back(readClaim(one));
   return result;
 }
 
@@ -224,6 +260,13 @@ void compareFigures(const ReproducedResult& kept, const PublishedResult& text,
   for (std::size_t i = 0; same && i < text.panels.size(); ++i)
     same = kept.panels[i].name == text.panels[i].name;
   if (!same) report("panels");
+  const auto told = [](const PublishedClaim& claim) {
+    return std::tie(claim.name, claim.less, claim.than, claim.darkIn, claim.quantity, claim.times);
+  };
+  same = kept.claims.size() == text.claims.size();
+  for (std::size_t i = 0; same && i < text.claims.size(); ++i)
+    same = told(kept.claims[i]) == told(text.claims[i]);
+  if (!same) report("claims");
 }
 
 }  // namespace

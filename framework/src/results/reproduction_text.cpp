@@ -10,6 +10,7 @@
 #include "lumivox/base/file.h"
 #include "lumivox/base/log.h"
 #include "lumivox/results/reproduction.h"
+#include "lumivox/scene/text.h"
 #include "pipeline/text_values.h"
 
 namespace lumivox {
@@ -35,6 +36,7 @@ PropertySpecification required(PropertySpecification specification) {
   return specification;
 }
 
+constexpr double kLargestPublished = 1e18;
 constexpr double kMostSubdivisions = 6;  // 4096 triangles of one
 /// Layers of the path tracer (reference/path_tracer.h).
 constexpr const char* kReferenceLayers[] = {
@@ -54,6 +56,7 @@ std::vector<PropertySpecification> setUpProperties() {
   PropertySpecification time = property("time", PropertyType::number, "of the scene");
   time.dimension = dsl::kTime;
   time.low = 0.0;
+  time.high = kLongestTime;
   time.defaultText = "0 s";
   PropertySpecification subdivisions =
       property("subdivisions", PropertyType::integer,
@@ -110,6 +113,7 @@ BlockSpecification rowSpecification() {
   PropertySpecification published =
       required(property("published", PropertyType::number, "the number, in the unit of `measures`"));
   published.low = 1e-9;
+  published.high = kLargestPublished;
   return partSpecification(
       "row", dsl::HeaderUse::required,
       "one published number. Properties that it lacks are those of the whole text.",
@@ -145,6 +149,35 @@ BlockSpecification panelSpecification() {
   return partSpecification("panel", dsl::HeaderUse::required,
                            "one image of a figure. Properties that it lacks are those of the whole text.",
                            {reference});
+}
+
+PropertySpecification claimedQuantity() {
+  PropertySpecification quantity = property(
+      "of", PropertyType::word,
+      "what is compared: luminance, the mean; colour, the mean difference of the largest and the smallest channel over "
+      "the mean luminance; detail, the mean difference of neighbouring pixels over it");
+  for (const ClaimedQuantity one : kClaimedQuantities) quantity.choices.push_back(name(one));
+  quantity.defaultText = name(ClaimedQuantity::luminance);
+  return quantity;
+}
+
+BlockSpecification claimSpecification() {
+  PropertySpecification times = property("times", PropertyType::number, "how many times `than` counts");
+  times.low = 1e-9;
+  times.high = 1e9;
+  times.defaultText = "1";
+  BlockSpecification claim;
+  claim.word = "claim";
+  claim.name = dsl::HeaderUse::required;
+  claim.meaning =
+      "`claim \"SENTENCE\" { ... }`: what the paper says of the images, held against the panels: one has less of something than another";
+  claim.properties = {
+      required(property("less", PropertyType::text, "the panel that has less")),
+      required(property("than", PropertyType::text, "the panel that has more")), claimedQuantity(), times,
+      property("dark_in", PropertyType::text,
+               "a panel: only the quarter of the pixels is compared that is darkest in it, where light "
+               "that leaks is seen")};
+  return claim;
 }
 
 BlockSpecification makeSpecification() {
@@ -191,7 +224,8 @@ BlockSpecification makeSpecification() {
       differs,
       columns};
   for (PropertySpecification& one : setUpProperties()) result.properties.push_back(std::move(one));
-  result.blocks = {setSpecification(), rowSpecification(), curveSpecification(), panelSpecification()};
+  result.blocks = {setSpecification(), rowSpecification(), curveSpecification(), panelSpecification(),
+                   claimSpecification()};
   return result;
 }
 
@@ -241,6 +275,7 @@ class ResultReader : TextFindings {
     readOver(block.blocks("row"));
     for (const dsl::Block* curve : block.blocks("curve")) readCurve(*curve, common);
     for (const dsl::Block* panel : block.blocks("panel")) readPanel(*panel, common);
+    for (const dsl::Block* claim : block.blocks("claim")) readClaim(*claim);
     if (result_.setUps().empty())
       report(main->place, main->word, fmt::format("reproduction '{}' has nothing to reproduce", result_.id),
              "a row, a curve or a panel");
@@ -352,6 +387,32 @@ class ResultReader : TextFindings {
     if (!panel.reference.empty()) setting.pipeline = setting.passes = setting.output = nullptr;
     readSetUp(block, setting, fmt::format("panel '{}'", panel.name), panel, panel.reference.empty());
     result_.panels.push_back(std::move(panel));
+  }
+
+  void readClaim(const dsl::Block& block) {
+    const dsl::CheckedBlock checked(block, part("claim"));
+    PublishedClaim claim;
+    claim.name = checked.name();
+    claim.times = checked.number("times", claim.times);
+    for (const ClaimedQuantity quantity : kClaimedQuantities)
+      if (checked.text("of", "") == name(quantity)) claim.quantity = quantity;
+    std::vector<std::string> panels;
+    for (const PublishedPanel& panel : result_.panels) panels.push_back(panel.name);
+    for (const auto& [word, target] :
+         {std::pair("less", &PublishedClaim::less), std::pair("than", &PublishedClaim::than),
+          std::pair("dark_in", &PublishedClaim::darkIn)}) {
+      claim.*target = checked.text(word, "");
+      const dsl::Property* property = checked.find(word);
+      if (property == nullptr || std::find(panels.begin(), panels.end(), claim.*target) != panels.end())
+        continue;
+      const dsl::Value& value = property->values.front();
+      report(value.place, value.length, fmt::format("there is no panel '{}'", value.text),
+             "the name of a panel", nearestWord(value.text, panels));
+    }
+    if (!claim.less.empty() && claim.less == claim.than)
+      report(block.place, block.word, fmt::format("claim '{}' compares a panel with itself", claim.name),
+             "two panels");
+    result_.claims.push_back(std::move(claim));
   }
 
   void readSetUp(const dsl::Block& block, const SetUp& setting, const std::string& what,

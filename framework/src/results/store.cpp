@@ -107,6 +107,7 @@ void ResultsStore::State::requireSchema() {
       database.execute(results::kSchema5);
       database.execute(results::kSchema6);
       database.execute(results::kSchema7);
+      database.execute(results::kSchema8);
       database.execute(fmt::format("PRAGMA user_version = {}", results::kSchemaVersion).c_str());
       database.execute(fmt::format("PRAGMA application_id = {}", results::kApplicationId).c_str());
     }
@@ -125,6 +126,7 @@ void ResultsStore::State::requireSchema() {
     if (schema < 5) database.execute(results::kSchema5);
     if (schema < 6) database.execute(results::kSchema6);
     if (schema < 7) database.execute(results::kSchema7);
+    if (schema < 8) database.execute(results::kSchema8);
     if (schema < results::kSchemaVersion)
       database.execute(fmt::format("PRAGMA user_version = {}", results::kSchemaVersion).c_str());
     transaction.commit();
@@ -484,7 +486,18 @@ std::size_t ResultsStore::remove(const RunFilter& filter) {
 }
 
 MergeCount ResultsStore::merge(const ResultsStore& other) {
-  const std::vector<StoredRun> theirs = other.runs();
+  return mergeRuns(other, other.runs());
+}
+
+MergeCount ResultsStore::merge(const ResultsStore& other, const std::vector<std::string>& keys) {
+  std::vector<StoredRun> theirs = other.runs();
+  std::erase_if(theirs, [&](const StoredRun& run) {
+    return std::find(keys.begin(), keys.end(), run.identity.key()) == keys.end();
+  });
+  return mergeRuns(other, theirs);
+}
+
+MergeCount ResultsStore::mergeRuns(const ResultsStore& other, const std::vector<StoredRun>& theirs) {
   const std::vector<StressCell> theirCells = other.stressCells();
   const std::vector<PeakRate> theirPeakRates = other.peakRates();
   Transaction transaction(state_->database);

@@ -14,7 +14,9 @@ namespace lumivox {
 using results::Statement;
 using results::Transaction;
 
-namespace {
+using results::ownClaim;
+
+namespace results {
 
 RunClaim ownClaim() {
   RunClaim claim;
@@ -26,14 +28,22 @@ RunClaim ownClaim() {
   return claim;
 }
 
+bool lives(const RunClaim& claim) {
+  if (claim.machine == machineIdentity())
+    return claim.started != 0 && startOf(claim.process) == claim.started;
+  return claim.expires > static_cast<std::int64_t>(std::time(nullptr));
+}
+
+}  // namespace results
+
+namespace {
+
 bool same(const RunClaim& a, const RunClaim& b) {
   return a.machine == b.machine && a.process == b.process && a.started == b.started;
 }
 
-/// A process on this machine is looked for; of one elsewhere only the clock tells.
 bool stands(const RunClaim& claim) {
-  if (claim.expires <= static_cast<std::int64_t>(std::time(nullptr))) return false;
-  return claim.machine != machineIdentity() || startOf(claim.process) == claim.started;
+  return claim.expires > static_cast<std::int64_t>(std::time(nullptr)) && results::lives(claim);
 }
 
 std::optional<RunClaim> claimIn(const results::Database& database, const std::string& key) {

@@ -5,7 +5,7 @@
 
 namespace lumivox::results {
 
-inline constexpr std::int64_t kSchemaVersion = 7;           // PRAGMA user_version
+inline constexpr std::int64_t kSchemaVersion = 8;           // PRAGMA user_version
 inline constexpr std::int64_t kApplicationId = 0x4c4d5658;  // PRAGMA application_id: "LMVX"
 
 inline constexpr const char* kSchema = R"sql(
@@ -252,6 +252,25 @@ CREATE TABLE voxels (
   recall REAL,
   precision REAL
 ) STRICT;
+)sql";
+
+/// What schema 8 adds to schema 7: the reports that share an unfinished store, and the runs that each wants.
+inline constexpr const char* kSchema8 = R"sql(
+CREATE TABLE reports (
+  id INTEGER PRIMARY KEY,
+  points TEXT NOT NULL,
+  command TEXT NOT NULL,
+  machine TEXT NOT NULL,
+  process INTEGER NOT NULL,
+  started INTEGER NOT NULL,
+  expires INTEGER NOT NULL
+) STRICT;
+CREATE TABLE wanted (
+  report INTEGER NOT NULL REFERENCES reports ON DELETE CASCADE,
+  key TEXT NOT NULL,
+  PRIMARY KEY (report, key)
+) STRICT, WITHOUT ROWID;
+CREATE INDEX wanted_by_key ON wanted (key);
 )sql";
 
 /// Shows the names of the last schema where an older store is only read: views of this connection, before

@@ -11,6 +11,12 @@ namespace lumivox::results {
 /// Whether a word of a filter stands for a file: its whole path as given, or its stem.
 bool namesFile(const std::string& wanted, const std::string& file);
 
+/// A claim of this process, from now on.
+RunClaim ownClaim();
+/// Whether the process of a claim still runs: on this machine it is looked for, of one elsewhere only the
+/// clock tells.
+bool lives(const RunClaim& claim);
+
 }  // namespace lumivox::results
 
 namespace lumivox {

@@ -12,6 +12,7 @@
 
 #include "lumivox/base/error.h"
 #include "lumivox/scene/topology.h"
+#include "polygon.h"
 
 namespace lumivox {
 namespace {
@@ -166,6 +167,8 @@ glm::dvec2 nearestIn(const Triangle2d& t, const glm::dvec2& point) {
 struct Piece {
   double area = 0.0;
   glm::dvec2 middle{0.0};
+  std::array<glm::dvec2, 8> corners;
+  std::size_t cornerCount = 0;
 };
 Piece pieceOf(const Triangle2d& t, const glm::dvec2& centre) {
   std::array<glm::dvec2, 8> corners{t[0], t[1], t[2]}, kept;
@@ -185,7 +188,7 @@ Piece pieceOf(const Triangle2d& t, const glm::dvec2& centre) {
       count = keptCount;
       if (count < 3) return {};
     }
-  Piece piece;
+  Piece piece{.corners = corners, .cornerCount = count};
   glm::dvec2 moment(0.0);
   for (std::size_t i = 1; i + 1 < count; ++i) {
     const glm::dvec2 a = corners[i] - corners[0], b = corners[i + 1] - corners[0];
@@ -242,6 +245,7 @@ class AtlasMaker {
  private:
   struct PlacedTexel {
     AtlasTexel texel;
+    AtlasOutline outline;  ///< with AtlasPlaces::middles
     std::uint32_t part;
   };
 
@@ -345,13 +349,32 @@ class AtlasMaker {
 
   /// Who owns the texels of a chart's rectangle.
   struct Ownership {
-    std::vector<std::uint32_t> owners;  ///< numbers in the chart, kNobody: nobody
-    std::vector<glm::dvec3> places;     ///< of the owner, m
-    std::vector<double> gaps;           ///< from the texel's centre to its owner, 0 inside
-    std::vector<double> areas;          ///< of the surface within the texel, m^2
-    std::vector<glm::dvec2> middles;    ///< of that surface, in the chart, times its area
+    std::vector<std::uint32_t> owners;             ///< numbers in the chart, kNobody: nobody
+    std::vector<glm::dvec3> places;                ///< of the owner, m
+    std::vector<double> gaps;                      ///< from the texel's centre to its owner, 0 inside
+    std::vector<double> areas;                     ///< of the surface within the texel, m^2
+    std::vector<glm::dvec2> middles;               ///< of that surface, in the chart, times its area
+    std::vector<glm::dvec3> normals;               ///< of that surface, times its area
+    std::vector<double> flat;                      ///< of that surface's projection, square texels
+    std::vector<std::vector<glm::dvec2>> corners;  ///< of that projection, at least its convex hull's
     explicit Ownership(std::size_t size)
-        : owners(size, kNobody), places(size), gaps(size, kUntouched), areas(size), middles(size) {}
+        : owners(size, kNobody),
+          places(size),
+          gaps(size, kUntouched),
+          areas(size),
+          middles(size),
+          normals(size),
+          flat(size),
+          corners(size) {}
+    void cover(std::size_t at, const Piece& piece) {
+      constexpr std::size_t kMany = 64;
+      flat[at] += piece.area;
+      corners[at].insert(corners[at].end(), piece.corners.begin(),
+                         piece.corners.begin() + static_cast<std::ptrdiff_t>(piece.cornerCount));
+      if (corners[at].size() > kMany) corners[at] = convexHull(std::move(corners[at]));
+    }
+    /// Normals that differ add up to less than their areas do.
+    bool isFlat(std::size_t at) const { return glm::length(normals[at]) >= (1.0 - 1e-6) * areas[at]; }
     static constexpr double kUntouched = std::numeric_limits<double>::infinity();
   };
 
@@ -388,6 +411,8 @@ class AtlasMaker {
       const double share = flat > 0.0 ? claim.piece.area / flat * area : 0.0;
       ownership.areas[claim.at] += share;
       ownership.middles[claim.at] += share * claim.piece.middle;
+      ownership.normals[claim.at] += share * patch.normals[chart.triangles[i]];
+      if (places_ == AtlasPlaces::middles) ownership.cover(claim.at, claim.piece);
       if (claim.gap >= ownership.gaps[claim.at]) continue;
       ownership.owners[claim.at] = i;
       ownership.places[claim.at] = claim.place;
@@ -419,13 +444,35 @@ class AtlasMaker {
           places_ == AtlasPlaces::middles ? ownership.middles[at] : glm::dvec2(x + 0.5, y + 0.5);
       const glm::dvec2 weights = nearestIn(chart.corners[owner], place);
       const std::uint32_t t = chart.triangles[owner];
-      texels_.push_back({{x, y, patch.welded.firstIndices[t] / 3, static_cast<float>(weights.x),
-                          static_cast<float>(weights.y), static_cast<float>(ownership.areas[at]), number},
-                         parts[t]});
+      PlacedTexel& placed = texels_.emplace_back(
+          PlacedTexel{{x, y, patch.welded.firstIndices[t] / 3, static_cast<float>(weights.x),
+                       static_cast<float>(weights.y), static_cast<float>(ownership.areas[at]), number},
+                      {},
+                      parts[t]});
+      if (places_ == AtlasPlaces::middles && ownership.isFlat(at))
+        placed.outline = outlineOf(chart.corners[owner], weights, ownership, at);
     }
     if (texels_.size() > kMostAtlasTexels) tooLarge(static_cast<double>(texels_.size()));
     charts_.push_back({chart.width, chart.height, first, texels_.size() - first});
     return rejected;
+  }
+
+  /// `weights`: barycentric coordinates of the texel's place in the triangle `t`.
+  static AtlasOutline outlineOf(const Triangle2d& t, const glm::dvec2& weights, Ownership& ownership,
+                                std::size_t at) {
+    const glm::dvec2 e1 = t[1] - t[0], e2 = t[2] - t[0];
+    const double doubleArea = cross(e1, e2);
+    std::vector<glm::dvec2> hull = convexHull(std::move(ownership.corners[at]));
+    AtlasOutline outline;
+    if (hull.size() < 3 || doubleArea == 0.0) return outline;
+    keepCorners(hull, AtlasOutline::kMostCorners);
+    const double scale = std::sqrt(ownership.flat[at] / polygonArea(hull));
+    for (const glm::dvec2& corner : hull) {
+      const glm::dvec2 p = corner - t[0];
+      const glm::dvec2 there(cross(p, e2) / doubleArea, cross(e1, p) / doubleArea);
+      outline.corners[outline.count++] = scale * (there - weights);
+    }
+    return outline;
   }
 
   /// Places texels at the middle of their surface, and gives each to the triangle there.
@@ -493,9 +540,14 @@ class AtlasMaker {
     for (std::size_t p = 1; p < atlas.parts.size(); ++p)
       atlas.parts[p].firstTexel = atlas.parts[p - 1].firstTexel + atlas.parts[p - 1].texelCount;
     atlas.texels.resize(texels_.size());
+    if (places_ == AtlasPlaces::middles) atlas.outlines.resize(texels_.size());
     std::vector<std::uint32_t> next;
     for (const AtlasPart& part : atlas.parts) next.push_back(part.firstTexel);
-    for (const PlacedTexel& placed : texels_) atlas.texels[next[placed.part]++] = placed.texel;
+    for (const PlacedTexel& placed : texels_) {
+      const std::uint32_t at = next[placed.part]++;
+      atlas.texels[at] = placed.texel;
+      if (!atlas.outlines.empty()) atlas.outlines[at] = placed.outline;
+    }
   }
 
   const Scene& scene_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
+#include <unordered_set>
 
 #include "lumivox/dsl/schema.h"
 #include "lumivox/scene/medium.h"
@@ -18,14 +19,19 @@ using dsl::BlockSpecification;
 using dsl::CheckedBlock;
 using dsl::Property;
 
+// Lengths of which a direction can be taken, and distances at which points are still two, with room for
+// squares.
+constexpr double kShortestDirection = 1e-9, kLongestDirection = 2e9;
+constexpr double kNearestTarget = 1e-9;     // m
+constexpr double kSmallestParticle = 1e-6;  // m: of smaller ones no volume is left in single precision
+
 const BlockSpecification& specificationOf(const BlockSpecification& outer, const std::string& word) {
   return *std::find_if(outer.blocks.begin(), outer.blocks.end(),
                        [&](const BlockSpecification& one) { return one.word == word; });
 }
 
 std::string nameList(const std::vector<std::string>& names) {
-  return names.empty() ? "one that is defined; there is none"
-                       : fmt::format("one of {}", fmt::join(names, ", "));
+  return names.empty() ? "one that is defined; there is none" : "one of " + listed(names);
 }
 
 /// Reads a text that the grammar accepts and checks what no table can say.
@@ -49,6 +55,15 @@ class Reader {
   }
 
  private:
+  struct Names {
+    std::vector<std::string> inOrder;
+    std::unordered_set<std::string> known;
+    void add(const std::string& name) {
+      inOrder.push_back(name);
+      known.insert(name);
+    }
+  };
+
   static bool known(const BlockSpecification& outer, const Block& block) {
     return std::any_of(outer.blocks.begin(), outer.blocks.end(),
                        [&](const BlockSpecification& one) { return one.word == block.word; });
@@ -91,16 +106,16 @@ class Reader {
       // A block that was written as a property is a finding of its own, as a misspelt one: its name is known.
       if (item.property && !item.property->values.empty()) {
         const std::string& name = item.property->values.front().text;
-        if (item.property->word == "material") materialNames_.push_back(name);
-        if (item.property->word == "mesh") meshNames_.push_back(name);
+        if (item.property->word == "material") materialNames_.add(name);
+        if (item.property->word == "mesh") meshNames_.add(name);
       }
       if (!item.block) continue;
       // A misspelt block is a finding of its own: its name is known all the same.
       std::string word = item.block->word;
-      if (!known(grammar_, *item.block)) word = nearestWord(word, {"material", "mesh"});
+      if (!known(grammar_, *item.block)) word = suggestionFor(findings_, word, {"material", "mesh"});
       if (word != "material" && word != "mesh") continue;
       const std::string name = CheckedBlock(*item.block, specificationOf(grammar_, word)).name();
-      if (!name.empty()) (word == "material" ? materialNames_ : meshNames_).push_back(name);
+      if (!name.empty()) (word == "material" ? materialNames_ : meshNames_).add(name);
     }
   }
 
@@ -152,13 +167,18 @@ class Reader {
     return property == nullptr ? std::nullopt : std::optional(placed(*property));
   }
 
-  /// Unit length; a zero vector is a finding.
+  /// Unit length; a finding where it is too short or too long to have a direction in numbers.
   glm::dvec3 direction(const CheckedBlock& block, const char* word, glm::dvec3 fallback) {
     const glm::dvec3 value = vector(block, word, fallback);
     const double length = glm::length(value);
-    if (length > 0) return value / length;
+    if (length >= kShortestDirection && length <= kLongestDirection) return value / length;
     if (const Property* property = block.find(word)) {
-      report(*property, fmt::format("'{}' has length zero", word), "a direction");
+      report(*property,
+             length == 0.0
+                 ? fmt::format("'{}' has length zero", word)
+                 : fmt::format("'{}' has a length of {:.6g}, of which no direction is left", word, length),
+             fmt::format("a direction, with a length from {:.6g} to {:.6g}", kShortestDirection,
+                         kLongestDirection));
     }
     return {0, 1, 0};
   }
@@ -217,8 +237,9 @@ class Reader {
   void checkView(const Block& block, const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up) {
     const glm::dvec3 forward = target - eye;
     const int length = static_cast<int>(block.word.size());
-    if (glm::length(forward) == 0) {
-      report(block.place, length, "eye and target are the same point", "two points");
+    if (glm::length(forward) < kNearestTarget) {
+      report(block.place, length, "eye and target are the same point",
+             fmt::format("two points, at least {:.6g} m apart", kNearestTarget));
     } else if (glm::length(glm::cross(glm::normalize(forward), up)) <
                1e-6) {  // half a thousandth of a pixel of roll
       report(block.place, length, "the camera looks along 'up'", "another up direction, such as 0 0 1");
@@ -246,16 +267,15 @@ class Reader {
   }
 
   void checkMaterialName(const PlacedText& name) {
-    if (std::find(materialNames_.begin(), materialNames_.end(), name.text) != materialNames_.end()) return;
-    report(name.place, name.length, fmt::format("unknown material '{}'", name.text), nameList(materialNames_),
-           nearestWord(name.text, materialNames_));
+    requireKnown(materialNames_, "material", name.text, name);
   }
 
-  void checkMeshName(const PlacedText& path) {
-    const std::string name = meshOf(path.text);
-    if (std::find(meshNames_.begin(), meshNames_.end(), name) != meshNames_.end()) return;
-    report(path.place, path.length, fmt::format("unknown mesh '{}'", name), nameList(meshNames_),
-           nearestWord(name, meshNames_));
+  void checkMeshName(const PlacedText& path) { requireKnown(meshNames_, "mesh", meshOf(path.text), path); }
+
+  void requireKnown(const Names& names, const char* what, const std::string& name, const PlacedText& at) {
+    if (names.known.contains(name)) return;
+    report(at.place, at.length, fmt::format("unknown {} '{}'", what, name), nameList(names.inOrder),
+           suggestionFor(findings_, name, names.inOrder));
   }
 
   /// A file of another format is refused by its name, before anything is read.
@@ -426,9 +446,9 @@ class Reader {
     constexpr double kDefaultLife = 4.0;
     medium.life = block.number("life", kDefaultLife);
     medium.seed = static_cast<std::uint32_t>(block.number("seed", 1));
-    if (medium.radius <= 0) {
+    if (medium.radius < kSmallestParticle) {
       report(block.block().place, static_cast<int>(block.block().word.size()), "particles without a radius",
-             "radius above 0");
+             fmt::format("radius of at least {:.6g} m", kSmallestParticle));
     }
   }
 
@@ -454,7 +474,7 @@ class Reader {
   std::vector<Diagnostic>& findings_;
   const BlockSpecification& grammar_;
   SceneDescription result_;
-  std::vector<std::string> materialNames_, meshNames_;
+  Names materialNames_, meshNames_;
 };
 
 }  // namespace

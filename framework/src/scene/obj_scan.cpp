@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "lumivox/base/error.h"
+#include "scene/limits.h"
 
 namespace lumivox {
 namespace {
@@ -411,6 +412,10 @@ std::set<std::string> scanMtl(std::string& text, const std::filesystem::path& fi
       if (value < 0)
         refuse(file, line, fmt::format("'{}' of material '{}' is negative", word, current),
                "numbers of at least 0");
+      const double most = word == "Ke" ? kMostLight : word == "Ns" ? kLargestExponent : kLargestGivenAlbedo;
+      if (value > most)
+        refuse(file, line, fmt::format("'{}' of material '{}' is {}", word, current, shown(number)),
+               fmt::format("at most {:g}", most));
     }
   }
   if (!any)

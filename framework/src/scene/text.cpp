@@ -2,6 +2,8 @@
 
 #include <numbers>
 
+#include "scene/limits.h"
+
 namespace lumivox {
 namespace {
 
@@ -14,9 +16,9 @@ using dsl::PropertyType;
 constexpr double kDegree = std::numbers::pi / 180.0;
 // The widest image of OpenGL 4.5's guaranteed minimum texture size.
 constexpr double kLargestImage = 16384;
-// Beyond it Phong lobes are narrower than single precision resolves: cos^n of one ulp below 1 is already
-// exp(-n 6e-8).
-constexpr double kLargestExponent = 1e6;
+constexpr double kMostExtinction = 1e9;
+constexpr double kFastest = 1e6;              // m/s
+constexpr double kLargestTurn = 360.0 * 1e3;  // deg, and deg/s
 constexpr double kLargestLens = 1e6, kNearestFocus = 1e-6, kFarthestFocus = 1e9;
 constexpr double kSmallestScale = 1e-9, kLargestScale = 1e9;
 // Sums over the particles of one voxel are 64-bit integers of a particle's 2^24 units; the limit is one of
@@ -35,13 +37,15 @@ struct Row {
     specification.dimension = dimension;
     specification.meaning = meaning;
   }
-  Row from(double low) const { return between(low, specification.high); }
   Row between(double low, double high) const {
     Row row = *this;
     row.specification.low = low;
     row.specification.high = high;
     return row;
   }
+  Row upTo(double high) const { return between(0, high); }
+  /// Of places, directions and speeds: the same far to both sides.
+  Row within(double high) const { return between(-high, high); }
   Row required() const {
     Row row = *this;
     row.specification.required = true;
@@ -69,16 +73,24 @@ BlockSpecification camera() {
   BlockSpecification key =
       block("key", HeaderUse::none,
             "a point of the camera's path; between keys eye and target move linearly, outside they stay",
-            {Row("time", PropertyType::number, "when the camera is there", dsl::kTime).required(),
-             Row("eye", PropertyType::vector3, "where it is", dsl::kLength).required(),
-             Row("target", PropertyType::vector3, "where it looks", dsl::kLength).required()});
+            {Row("time", PropertyType::number, "when the camera is there", dsl::kTime)
+                 .within(kLongestTime)
+                 .required(),
+             Row("eye", PropertyType::vector3, "where it is", dsl::kLength).within(kFarthestPlace).required(),
+             Row("target", PropertyType::vector3, "where it looks", dsl::kLength)
+                 .within(kFarthestPlace)
+                 .required()});
   BlockSpecification result = block(
       "camera", HeaderUse::required,
       "a camera with square pixels, a pinhole or a thin lens; the first one is used unless another is asked for",
-      {Row("eye", PropertyType::vector3, "position; required without keys", dsl::kLength),
+      {Row("eye", PropertyType::vector3, "position; required without keys", dsl::kLength)
+           .within(kFarthestPlace),
        Row("target", PropertyType::vector3, "the point in the middle of the image; required without keys",
-           dsl::kLength),
-       Row("up", PropertyType::vector3, "the direction that is up in the image").byDefault("0 1 0"),
+           dsl::kLength)
+           .within(kFarthestPlace),
+       Row("up", PropertyType::vector3, "the direction that is up in the image")
+           .within(kFarthestPlace)
+           .byDefault("0 1 0"),
        Row("fov", PropertyType::number, "full vertical angle of view", dsl::kAngle)
            .between(0.1 * kDegree, 179.0 * kDegree)
            .byDefault("40 deg"),
@@ -111,7 +123,7 @@ BlockSpecification material() {
            .byDefault("0"),
        Row("exponent", PropertyType::number, "Phong exponent n").between(0, kLargestExponent).byDefault("1"),
        Row("emission", PropertyType::oneOrThree, "radiance of the front side in W/(sr m^2)")
-           .from(0)
+           .upTo(kMostLight)
            .byDefault("0"),
        Row("texture", PropertyType::text, "image file that multiplies diffuse; sRGB values are made linear"),
        Row("mask", PropertyType::text,
@@ -148,8 +160,11 @@ BlockSpecification mesh() {
                  .between(kSmallestScale, kLargestScale)
                  .byDefault("1"),
              Row("rotate", PropertyType::axisAndNumber, "turn about an axis through the origin; done second",
-                 dsl::kAngle),
-             Row("translate", PropertyType::vector3, "shift; done last", dsl::kLength).byDefault("0 0 0"),
+                 dsl::kAngle)
+                 .within(kLargestTurn * kDegree),
+             Row("translate", PropertyType::vector3, "shift; done last", dsl::kLength)
+                 .within(kFarthestPlace)
+                 .byDefault("0 0 0"),
              Row("sequence", PropertyType::range,
                  "first and last frame of a deforming mesh with equal faces in all files")
                  .between(0, 1e6),
@@ -167,11 +182,11 @@ BlockSpecification light() {
       block("light", HeaderUse::optional, "a source of light; emissive materials shine too", {});
   result.kinds = {"area", "directional", "point", "spot"};
   const PropertySpecification position =
-      Row("position", PropertyType::vector3, "where it is", dsl::kLength).required();
+      Row("position", PropertyType::vector3, "where it is", dsl::kLength).within(kFarthestPlace).required();
   const PropertySpecification direction =
-      Row("direction", PropertyType::vector3, "the way the light travels").required();
+      Row("direction", PropertyType::vector3, "the way the light travels").within(kFarthestPlace).required();
   const PropertySpecification intensity =
-      Row("intensity", PropertyType::oneOrThree, "radiant intensity in W/sr").from(0).required();
+      Row("intensity", PropertyType::oneOrThree, "radiant intensity in W/sr").upTo(kMostLight).required();
   const auto halfAngle = [](const char* word, const char* meaning) {
     return Row(word, PropertyType::number, meaning, dsl::kAngle).between(0, 90.0 * kDegree).required();
   };
@@ -179,11 +194,13 @@ BlockSpecification light() {
       {"area",
        {Row("mesh", PropertyType::name, "MESH or MESH/OBJECT whose triangles shine from their front sides")
             .required(),
-        Row("radiance", PropertyType::oneOrThree, "emitted radiance in W/(sr m^2)").from(0).required()}},
+        Row("radiance", PropertyType::oneOrThree, "emitted radiance in W/(sr m^2)")
+            .upTo(kMostLight)
+            .required()}},
       {"directional",
        {direction,
         Row("irradiance", PropertyType::oneOrThree, "on a plane perpendicular to the light, in W/m^2")
-            .from(0)
+            .upTo(kMostLight)
             .required()}},
       {"point", {position, intensity}},
       {"spot",
@@ -201,7 +218,7 @@ BlockSpecification medium() {
            "extinction coefficient sigma_t: of an even medium; of particles in the middle of one cloud; of a "
            "file where its density is 1",
            dsl::kInverseLength)
-           .from(0)
+           .upTo(kMostExtinction)
            .required(),
        Row("albedo", PropertyType::oneOrThree, "scattering / extinction").between(0, 1).byDefault("0"),
        Row("anisotropy", PropertyType::number, "mean cosine g of the scattering angle")
@@ -209,26 +226,31 @@ BlockSpecification medium() {
            .byDefault("0"),
        Row("low", PropertyType::vector3,
            "lowest corner of the box of an even medium; without both corners it fills the bounds of the scene",
-           dsl::kLength),
-       Row("high", PropertyType::vector3, "highest corner of that box", dsl::kLength),
+           dsl::kLength)
+           .within(kFarthestPlace),
+       Row("high", PropertyType::vector3, "highest corner of that box", dsl::kLength).within(kFarthestPlace),
        Row("file", PropertyType::text,
            "volume file (.vdb) beside the scene text or on the asset path; its own transform gives its place"),
        Row("grid", PropertyType::name, "name of the file's float grid; not needed where it has only one"),
        Row("particles", PropertyType::integer, "number of particles; 0 for none")
            .between(0, kMostParticles)
            .byDefault("0"),
-       Row("source", PropertyType::vector3, "where particles start", dsl::kLength).byDefault("0 0 0"),
+       Row("source", PropertyType::vector3, "where particles start", dsl::kLength)
+           .within(kFarthestPlace)
+           .byDefault("0 0 0"),
        Row("spread", PropertyType::number, "farthest start of a particle from the source along each axis",
            dsl::kLength)
-           .from(0)
+           .upTo(kFarthestPlace)
            .byDefault("0"),
        Row("radius", PropertyType::number, "radius of a particle's cloud, whose density falls as (1 - q^2)^3",
            dsl::kLength)
-           .from(0)
+           .upTo(kFarthestPlace)
            .byDefault("0"),
-       Row("rise", PropertyType::number, "speed of particles upwards", dsl::kSpeed).byDefault("0"),
+       Row("rise", PropertyType::number, "speed of particles upwards", dsl::kSpeed)
+           .within(kFastest)
+           .byDefault("0"),
        Row("drift", PropertyType::number, "largest other speed of a particle along each axis", dsl::kSpeed)
-           .from(0)
+           .upTo(kFastest)
            .byDefault("0"),
        Row("life", PropertyType::number, "time after which a particle is reborn at the source", dsl::kTime)
            .between(kShortestLife, kLongestLife)
@@ -242,15 +264,17 @@ std::vector<BlockSpecification> makeSpecifications() {
   BlockSpecification environment =
       block("environment", HeaderUse::none,
             "constant radiance from all directions, seen by rays that miss everything",
-            {Row("radiance", PropertyType::oneOrThree, "in W/(sr m^2)").from(0).required()});
+            {Row("radiance", PropertyType::oneOrThree, "in W/(sr m^2)").upTo(kMostLight).required()});
   environment.repeatable = false;
   BlockSpecification animate =
       block("animate", HeaderUse::required,
             "rigid motion of MESH or MESH/OBJECT: turns about a point while it moves along a line",
-            {Row("rotate", PropertyType::axisAndNumber, "axis and angular speed", dsl::kAngularSpeed),
-             Row("translate", PropertyType::vector3, "velocity", dsl::kSpeed),
+            {Row("rotate", PropertyType::axisAndNumber, "axis and angular speed", dsl::kAngularSpeed)
+                 .within(kLargestTurn * kDegree),
+             Row("translate", PropertyType::vector3, "velocity", dsl::kSpeed).within(kFastest),
              Row("about", PropertyType::vector3,
-                 "a point on the axis; without it the centre of the bounds of what moves", dsl::kLength)});
+                 "a point on the axis; without it the centre of the bounds of what moves", dsl::kLength)
+                 .within(kFarthestPlace)});
   BlockSpecification scene =
       block("scene", HeaderUse::required,
             "a scene: metres, seconds, Y up, right-handed; all light is linear, in Rec. 709 primaries", {});

@@ -177,17 +177,18 @@ const BoundProgram& ShaderLibrary::program(const ProgramName& name, VariantKey v
                                 : "its constraints exclude it"));
   }
   std::vector<gpu::StageCode> stages;
-  // Codes that are not the pack's own; where they lie must not change.
-  std::vector<std::pair<std::vector<std::uint32_t>, std::string>> fast;
-  fast.reserve(found->stages.size());
+  // Expanded for as long as the program is made; where they lie must not change.
+  std::vector<std::pair<std::vector<std::uint32_t>, std::string>> codes;
+  codes.reserve(found->stages.size());
+  const bool takesText = state_->device.shaderInput() == gpu::ShaderInput::glsl;
   for (const PackedStage& stage : found->stages) {
-    const PackedCode& code = pack->second.codes[stage.code];
+    const PackedCode& packedCode = pack->second.codes[stage.code];
+    auto& [spirv, glsl] = codes.emplace_back(packedCode.spirv(), takesText ? packedCode.glsl() : std::string());
     if (state_->device.arithmetic() == gpu::Arithmetic::fast) {
-      fast.emplace_back(withoutContractionMarks(code.spirv), withoutContractionMarks(code.glsl));
-      stages.push_back({stage.stage, fast.back().first, fast.back().second});
-    } else {
-      stages.push_back({stage.stage, code.spirv, code.glsl});
+      spirv = withoutContractionMarks(spirv);
+      glsl = withoutContractionMarks(glsl);
     }
+    stages.push_back({stage.stage, spirv, glsl});
   }
   std::shared_ptr<CountingProgram> counting;
   if (state_->counts) {

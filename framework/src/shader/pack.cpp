@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstring>
 
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -13,7 +14,7 @@ namespace lumivox::shader {
 namespace {
 
 constexpr std::string_view kMagic{"LVXSHPK\n", 8};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kHeaderBytes = 8 + 4 + 8 + 16;  // magic, version, size and hash of the content
 constexpr std::uint64_t kLimitBytes = std::uint64_t{1} << 30;
 
@@ -49,6 +50,12 @@ void exchangeProgram(Archive& archive, Program& program) {
   });
 }
 
+template <class Archive, class Data>
+void exchangeDeflated(Archive& archive, Data& data) {
+  archive.value(data.expandedBytes);
+  archive.value(data.stream);
+}
+
 void writeContent(ByteWriter& out, const ShaderPack& pack) {
   out.value(pack.technique);
   out.each(pack.programs, [&](const PackedProgram& program) {
@@ -68,8 +75,8 @@ void writeContent(ByteWriter& out, const ShaderPack& pack) {
   out.each(pack.codes, [&](const PackedCode& code) {
     out.value(code.hash.high);
     out.value(code.hash.low);
-    out.value(code.spirv);
-    out.value(code.glsl);
+    exchangeDeflated(out, code.deflatedSpirv);
+    exchangeDeflated(out, code.deflatedGlsl);
   });
 }
 
@@ -117,8 +124,9 @@ void readContent(ByteReader& in, ShaderPack& pack) {
   in.each(pack.codes, [&](PackedCode& code) {
     in.value(code.hash.high);
     in.value(code.hash.low);
-    in.value(code.spirv);
-    in.value(code.glsl);
+    exchangeDeflated(in, code.deflatedSpirv);
+    exchangeDeflated(in, code.deflatedGlsl);
+    if (code.deflatedSpirv.expandedBytes % sizeof(std::uint32_t) != 0) throw OutOfRange{};
   });
   for (const PackedProgram& program : pack.programs) {
     for (const PackedVariant& variant : program.variants) {
@@ -171,6 +179,17 @@ std::string PackedProgram::text(const std::vector<int>& values) const {
     text += i < axes.size() ? axes[i].name + "=" + axes[i].text(values[i]) : std::to_string(values[i]);
   }
   return text;
+}
+
+PackedCode PackedCode::of(const ContentHash& hash, std::span<const std::uint32_t> spirv, std::string_view glsl) {
+  return {hash, Deflated::of({reinterpret_cast<const char*>(spirv.data()), spirv.size_bytes()}), Deflated::of(glsl)};
+}
+
+std::vector<std::uint32_t> PackedCode::spirv() const {
+  const std::string bytes = deflatedSpirv.expanded();
+  std::vector<std::uint32_t> words(bytes.size() / sizeof(std::uint32_t));
+  std::memcpy(words.data(), bytes.data(), words.size() * sizeof(std::uint32_t));
+  return words;
 }
 
 const PackedProgram& ShaderPack::program(const std::string& wanted) const {

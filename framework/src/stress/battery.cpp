@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "base/child.h"
+#include "base/memory_limits.h"
 #include "experiment/choice.h"
 #include "lumivox/base/error.h"
 #include "lumivox/base/file.h"
@@ -216,7 +217,7 @@ class Battery {
   std::vector<StressCell> cells_;
   const double limit_;
   const Clock::time_point start_ = Clock::now();
-  const std::uint64_t memoryAtStart_ = availableMemory();
+  const std::uint64_t memoryAtStart_ = sharedMemoryLeft();  // address space each worker has of its own
   std::size_t workers_ = 1;
   WorkerDevice device_{{}, {}, {}, true};
   std::atomic<int> failedStarts_ = 0;

@@ -1,7 +1,5 @@
 // The worker's side of the battery.
 #include <fmt/format.h>
-#include <signal.h>
-#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -57,8 +55,6 @@ std::string contentAnswer(Ground& ground, const ContentRequest& request) {
 }  // namespace
 
 void serveStress(const StressWorker& worker, TechniqueSource& techniques) {
-  // A battery that is killed takes its workers with it.
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
   Answers answers;
   // Those that come with the program: a project of one's own has other scenes, or none.
   const auto stress = programData("scenes/stress");

@@ -1,4 +1,4 @@
-// When a published table or curve counts as reproduced.
+// When a published table, curve or claim about images counts as reproduced.
 #pragma once
 
 #include <vector>
@@ -25,7 +25,11 @@ JudgedTable judge(const std::vector<MeasuredRow>& rows);
 /// factor of ratios.
 JudgedCurve judgeGrowth(const MeasuredCurve& curve);
 
-/// The results with every row, table and curve judged anew.
+/// A claim is reproduced when the panel that is to have less has less than the other one, so many times; not
+/// comparable when a panel is missing or a stand-in. Images have no uncertainty that is known.
+JudgedClaim judgeClaim(const MeasuredClaim& claim);
+
+/// The results with every row, table, curve and claim judged anew.
 std::vector<ReproducedResult> judged(std::vector<ReproducedResult> results);
 
 }  // namespace lumivox

@@ -42,7 +42,16 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// All findings of one or more text files, reported together.
+/// How many findings are shown at once; of the others their number is said.
+inline constexpr std::size_t kMostFindingsShown = 200;
+
+/// How many of so many findings are shown: all, or the first kMostFindingsShown.
+std::size_t shownFindings(std::size_t count);
+/// "and 24800 more findings; ..." below the ones that are shown; empty where all are.
+std::string moreFindingsText(std::size_t count);
+
+/// All findings of one or more text files, reported together; the message shows the first ones
+/// (shownFindings()), in the order of the text.
 class DiagnosticsError : public Error {
  public:
   explicit DiagnosticsError(std::vector<Diagnostic> diagnostics);
@@ -58,8 +67,15 @@ class AbsentError : public Error {
   using Error::Error;
 };
 
+/// "a, b, c"; of very many the first ones, and how many more there are.
+std::string listed(const std::vector<std::string>& words);
+
 /// The candidate nearest to `word` by edit distance, or an empty string when none is near enough to be a slip
 /// of the pen.
 std::string nearestWord(const std::string& word, const std::vector<std::string>& candidates);
+
+/// nearestWord() for a further finding: nothing where so many were found before that it will not be shown.
+std::string suggestionFor(const std::vector<Diagnostic>& findings, const std::string& word,
+                          const std::vector<std::string>& candidates);
 
 }  // namespace lumivox

@@ -33,6 +33,10 @@ std::string readFileStart(const std::filesystem::path& path, std::uint64_t limit
 /// themselves.
 void requireRegularFile(const std::filesystem::path& path);
 
+/// Whether this process has read the file, under this name or another that leads to it (by device and inode):
+/// what one of the functions above has opened, or allowed a library to open.
+bool wasRead(const std::filesystem::path& path);
+
 /// As readFile, but unpacks gzip (RFC 1952) when the name ends in ".gz"; the limit holds for the unpacked
 /// size. A truncated or corrupt stream is an Error.
 std::string readFileMaybeGzip(const std::filesystem::path& path, std::uint64_t limitBytes);
@@ -46,17 +50,18 @@ void writeFileAtomically(const std::filesystem::path& path, std::span<const std:
 void writeFileAtomically(const std::filesystem::path& path, std::string_view text);
 
 /// Refuses a file name that writeFileAtomically could not write to, and creates its parent directories:
-/// before work whose result would be lost.
+/// before work whose result would be lost. Makes a file beside it, and removes it.
 void requireWritable(const std::filesystem::path& file);
 
 /// Creates the parent directories of a file that is about to be written; Error when that fails.
 void createParentDirectories(const std::filesystem::path& file);
 
-/// Bytes that this machine has available now; the largest number where the system does not tell.
+/// Bytes that this process can still take: the least of what the machine has available, what its control groups
+/// (cgroup v1 and v2) leave, and what RLIMIT_AS leaves. The largest number where the system does not tell.
 std::uint64_t availableMemory();
 
 /// Refuses (Error naming `what`, the bytes needed and the bytes available) when `bytes` do not fit into the
-/// memory that this machine has available now. Call it before a large allocation.
+/// memory that is available now. Call it before a large allocation.
 void requireMemory(std::uint64_t bytes, std::string_view what);
 
 /// "1.5 MiB"

@@ -98,6 +98,9 @@ struct Document {
   std::vector<std::filesystem::path> includedFiles;  ///< each once, in the order of reading
   std::map<std::string, std::string>
       includedSources;  ///< their texts, by the file name that places in them carry
+  /// Where the lines of `source` and of `includedSources` begin, in bytes: of every text that was parsed.
+  std::vector<std::size_t> lineStarts;
+  std::map<std::string, std::vector<std::size_t>> includedLineStarts;
 
   std::string line(int number) const;  ///< of this file
   std::string line(

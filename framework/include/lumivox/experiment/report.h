@@ -62,8 +62,9 @@ struct ReportSummary {
 
 /// Measures, and gives the whole record to `write`, once. Error (before any work) when a text is wrong.
 /// Points are kept beside `options.output`, in a file with the extension .unfinished.sqlite, as soon as they
-/// are measured: when the report is interrupted, the next one takes them up, and removes the file when
-/// `write` has returned. A point that fails is one that says why.
+/// are measured: when the report is interrupted, the next one takes them up. When `write` has returned it
+/// removes those that no other report on this page wants, and the file when nothing is left in it. A point
+/// that fails is one that says why.
 ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
                          const std::function<Scene(const std::filesystem::path&)>& loadScene,
                          const std::function<void(const ReportRecord&)>& write);

@@ -22,6 +22,8 @@ std::string reproductionTable(const std::vector<MeasuredRow>& rows, const Judged
 std::string verdictText(const ReproducedResult& result);
 /// "triangles^0.93 ± 0.02 (published: sublinear), reproduced".
 std::string curveText(const MeasuredCurve& curve, const JudgedCurve& judged);
+/// "SENTENCE: reproduced ('a' 0.1, 'b' 0.2 W/(sr m²), where 'c' is darkest)".
+std::string claimText(const MeasuredClaim& claim, const JudgedClaim& judged);
 /// The rule in words.
 std::string reproductionRule();
 /// Devices, the reduction, what was measured and how it differs, for whoever reads the numbers.
@@ -37,6 +39,7 @@ std::string curvesAsSvg(const ReproducedResult& result);
 ///     table ID               all rows that were measured
 ///     ratios ID; ROW; ...    those rows as 1 : a : b, each divided by the first, as measured and as
 ///     published curve ID; CURVE        how it grows
+///     claim ID; CLAIM        what both panels have, and the verdict
 /// Error that names `file` and the line for a passage that is not closed, of an unknown kind, or whose
 /// result, row or curve is not there.
 std::string withReproducedPassages(const std::string& markdown, const std::filesystem::path& file,

@@ -169,9 +169,9 @@ struct FrameResult {
   std::vector<std::string> notes;
 };
 
-/// One thing that a run leaves out.
+/// One thing that a run leaves out. camera, scene: a trait of these that no pass of the run reads.
 struct LeftOut {
-  enum class Level { plugin, pass, variant, resource, time, camera } level;
+  enum class Level { plugin, pass, variant, resource, time, camera, scene } level;
   std::string what, why;
   std::string pass;              ///< the pass that it belongs to; empty for plugins, variants and the pool
   std::uint64_t savedBytes = 0;  ///< 0 when not known
@@ -222,8 +222,13 @@ class PipelineExecutor {
   /// keep what they made; images are those of a new executor, to the bit. Histories are emptied. Throws
   /// DiagnosticsError like the constructor, and then leaves everything as it was.
   void setParameters(const ParameterValues& values);
-  /// Another seed from now on: every pass runs again, and histories are emptied.
+  /// Another seed from now on: passes that have asked for it run again, with those that read them, and histories
+  /// are emptied.
   void setSeed(std::uint64_t seed);
+  /// From now on RenderOptions::health.
+  void setHealth(bool health);
+  /// Whether a pass has asked for the seed in a frame so far. If none has, every seed gives the same bits.
+  bool readsSeed() const;
   /// Another scene from now on, such as the same text after an edit; it must outlive the executor, the one
   /// before may go. Passes that read what differs run again, and histories are emptied. Error when it lacks
   /// the camera.

@@ -1,5 +1,5 @@
-// Opens technique libraries. A library that does not fit is skipped and reported with its path and the
-// reason; the others still load.
+// Opens technique libraries. A library whose file does not fit is never opened: it is skipped and reported with
+// its path and the reason; the others still load.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +16,9 @@ namespace lumivox {
 
 class TechniqueSet : public TechniqueSource {
  public:
-  /// Looks for lib<name>.so in `directories` in order; opens nothing yet.
-  explicit TechniqueSet(std::vector<std::filesystem::path> directories);
+  /// Looks for lib<name>.so in `directories` in order; opens nothing yet. `strict`: a library that does not
+  /// fit is an Error where it would be skipped.
+  explicit TechniqueSet(std::vector<std::filesystem::path> directories, bool strict = false);
   ~TechniqueSet() override;
 
   /// The default directories: --techniques, then $LUMIVOX_TECHNIQUES, then `techniques` beside the running

@@ -1,5 +1,6 @@
-// The border between the framework and a technique library. One C entry point hands over a version record
-// first; only when that agrees to the byte is anything of C++ exchanged.
+// The border between the framework and a technique library. The library's file carries a version record in an
+// ELF section of its own; only when that agrees to the byte is the library opened and its one entry point
+// called.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lumivox/pipeline/pass.h"
@@ -15,9 +17,10 @@
 
 namespace lumivox {
 
-inline constexpr std::uint32_t kTechniqueApiVersion = 5;
+inline constexpr std::uint32_t kTechniqueApiVersion = 6;
 
-/// Plain data, C layout: compared member by member before anything else is called.
+/// Plain data, C layout, compared member by member. The first two members stay what they are in every
+/// version.
 struct TechniqueVersionRecord {
   std::uint32_t recordSize;  ///< sizeof this struct
   std::uint32_t apiVersion;
@@ -28,9 +31,8 @@ struct TechniqueVersionRecord {
   std::uint32_t passSize, passContextSize, sceneSize, snapshotSize, deviceSize, portsSize;
 };
 
-/// The record of the code that includes this header. Evaluated by the compiler: an ordinary function would be
-/// merged with the framework's own when the library is opened, and would then describe the framework in place
-/// of the technique.
+/// The record of the code that includes this header. Evaluated by the compiler: the record is read from a
+/// file that is not opened.
 consteval TechniqueVersionRecord techniqueVersionHere() {
   TechniqueVersionRecord record{};
   record.recordSize = sizeof(TechniqueVersionRecord);
@@ -68,9 +70,10 @@ consteval TechniqueVersionRecord techniqueVersionHere() {
   return record;
 }
 
-/// Differences between a version record and the framework's own, in words: "the headers are '...', expected
-/// '...'"; empty when nothing does. Strings of a broken record may lack their end.
-std::string versionDifference(const TechniqueVersionRecord& theirs);
+/// What differs first between a version record and the framework's own: "the API version is 7, expected 6";
+/// empty when nothing does. The record is given as its bytes, which may be too few or too many, and whose
+/// strings may lack their end.
+std::string versionDifference(std::string_view theirs);
 
 /// For the start of a program: Error when it was compiled with other headers than the library that it runs
 /// with, as after building the library alone. Its numbers would be wrong without a word.
@@ -90,17 +93,25 @@ class TechniqueRegistry {
 
 }  // namespace lumivox
 
+/// The ELF section of a technique library that holds its version record and nothing else.
+#define LUMIVOX_VERSION_SECTION ".lumivox_version"
+
+// A linker that leaves out unused sections keeps this one.
+#if defined(__has_attribute) && __has_attribute(retain)
+#define LUMIVOX_KEPT used, retain
+#else
+#define LUMIVOX_KEPT used
+#endif
+
 /// In a technique's one source file, at namespace scope:
 ///   LUMIVOX_TECHNIQUE(registry) { registry.describe("...", "..."); registry.add<Gather>("gather", "..."); }
-#define LUMIVOX_TECHNIQUE(registry)                                                                \
-  static void lumivoxRegisterTechnique(::lumivox::TechniqueRegistry&(registry));                   \
-  extern "C" __attribute__((visibility("default"))) const ::lumivox::TechniqueVersionRecord*       \
-  lumivox_technique_version() {                                                                    \
-    static constexpr ::lumivox::TechniqueVersionRecord record = ::lumivox::techniqueVersionHere(); \
-    return &record;                                                                                \
-  }                                                                                                \
-  extern "C" __attribute__((visibility("default"))) void lumivox_technique_register(               \
-      ::lumivox::TechniqueRegistry* target) {                                                      \
-    lumivoxRegisterTechnique(*target);                                                             \
-  }                                                                                                \
+#define LUMIVOX_TECHNIQUE(registry)                                                                          \
+  static void lumivoxRegisterTechnique(::lumivox::TechniqueRegistry&(registry));                             \
+  __attribute__((section(LUMIVOX_VERSION_SECTION),                                                           \
+                 LUMIVOX_KEPT)) static constexpr ::lumivox::TechniqueVersionRecord lumivoxTechniqueVersion = \
+      ::lumivox::techniqueVersionHere();                                                                     \
+  extern "C" __attribute__((visibility("default"))) void lumivox_technique_register(                         \
+      ::lumivox::TechniqueRegistry* target) {                                                                \
+    lumivoxRegisterTechnique(*target);                                                                       \
+  }                                                                                                          \
   static void lumivoxRegisterTechnique(::lumivox::TechniqueRegistry&(registry))

@@ -32,7 +32,7 @@ struct ComponentError {
   int seeds = 1;  ///< that were run
   /// False: from a results store of schema 3 or before, where every number but the RMSE is of the first seed.
   bool everyMetricPerSeed = true;
-  bool deterministic = false;  ///< two seeds gave the same bits, so that there is no noise to average
+  bool deterministic = false;  ///< every seed gives the same bits, so that there is no noise to average
   double noiseRmse = 0.0;      ///< RMS of the image's own noise, from the differences between the seeds
   ErrorParts parts;            ///< mean square over seeds = bias² + noise² + the reference's noise²
   Measured flicker{std::numeric_limits<double>::quiet_NaN(),

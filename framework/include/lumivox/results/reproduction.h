@@ -1,6 +1,6 @@
 // Tables and figures of papers as texts: the published set-up is measured or shown. Numbers are compared as
 // ratios to the table's first row, since no two devices have the same times; curves by how they grow;
-// images by whoever looks at them.
+// images by what the paper claims of them, and by whoever looks at them.
 #pragma once
 
 #include <filesystem>
@@ -74,6 +74,25 @@ struct PublishedPanel : PublishedSetUp {
   std::string reference;  ///< layer of the path-traced reference in place of a pipeline; empty: none
 };
 
+/// What a panel is claimed to have less of than another one.
+enum class ClaimedQuantity {
+  luminance,  ///< mean, W/(sr m²)
+  colour,     ///< mean difference of the largest and the smallest channel, over the mean luminance
+  detail      ///< mean difference of neighbouring pixels, over the mean luminance: noise, bands, edges
+};
+inline constexpr ClaimedQuantity kClaimedQuantities[] = {ClaimedQuantity::luminance, ClaimedQuantity::colour,
+                                                         ClaimedQuantity::detail};
+const char* name(ClaimedQuantity quantity);
+
+/// A sentence of a paper about the images of a figure, as far as it says which one has less of something.
+struct PublishedClaim {
+  std::string name;        ///< the sentence
+  std::string less, than;  ///< panels
+  std::string darkIn;      ///< the panel whose darkest quarter of pixels is compared; empty: all pixels are
+  ClaimedQuantity quantity = ClaimedQuantity::luminance;
+  double times = 1.0;  ///< how many times `than` counts
+};
+
 /// A text `*.reproduction`: one published table or figure.
 struct PublishedResult {
   std::filesystem::path file;
@@ -87,6 +106,7 @@ struct PublishedResult {
   std::vector<PublishedRow> rows;
   std::vector<PublishedCurve> curves;
   std::vector<PublishedPanel> panels;
+  std::vector<PublishedClaim> claims;
   int columns = 0;  ///< of the sheet that holds the panels; 0: as square as it goes
   std::shared_ptr<const dsl::Document> document;
 
@@ -157,7 +177,18 @@ struct ShownPanel {
   ImageBuffer image;   ///< linear; empty where there is none
   std::string whyNot;  ///< why there is none, or its stand-in
   bool failed = false;
-  double meanLuminance = 0.0;  ///< W/(sr m²); NaN where there is no image
+  bool radiance = true;        ///< false: a fraction, which no exposure changes
+  double meanLuminance = 0.0;  ///< W/(sr m²), or a mean fraction; NaN where there is no image
+};
+
+/// A claim with what both panels have; NaN where there is no image.
+struct MeasuredClaim : PublishedClaim {
+  double lessValue = 0.0, thanValue = 0.0;
+  std::string whyNot;  ///< not comparable, measured or not
+};
+struct JudgedClaim {
+  Verdict verdict = Verdict::notComparable;
+  std::string why;
 };
 
 struct ReproducedResult {
@@ -167,6 +198,8 @@ struct ReproducedResult {
   std::vector<MeasuredCurve> curves;
   std::vector<JudgedCurve> judgedCurves;
   std::vector<ShownPanel> panels;
+  std::vector<MeasuredClaim> claims;
+  std::vector<JudgedClaim> judgedClaims;
   double exposure = 0.0;  ///< EV, one for all panels
   double scale = 1.0;
   std::vector<std::string> setUps;  ///< "scenes/a.scene, a.pipeline: resolution=64, 256 x 192 pixels"
@@ -182,8 +215,8 @@ std::string reproductionsAsJson(const std::vector<ReproducedResult>& results);
 /// does not write.
 std::vector<ReproducedResult> readReproductions(const std::filesystem::path& file);
 
-/// How kept results differ from the texts that they were measured by: rows, curves and published numbers.
-/// Empty: they fit.
+/// How kept results differ from the texts that they were measured by: rows, curves, claims and published
+/// numbers. Empty: they fit.
 std::vector<std::string> staleReproductions(const std::vector<ReproducedResult>& results,
                                             const std::vector<PublishedResult>& published);
 

@@ -14,6 +14,10 @@
 
 namespace lumivox {
 
+namespace results {
+class UnfinishedStore;
+}
+
 /// Who is measuring a point at present.
 struct RunClaim {
   std::string machine;  ///< and its start and name space of processes: where `process` means something
@@ -98,6 +102,8 @@ class ResultsStore {
   /// Takes over the runs of another store that are not here, its controls, and the cells and peak rates that
   /// are not here or are older here. In one transaction.
   MergeCount merge(const ResultsStore& other);
+  /// The same for the runs with these keys alone.
+  MergeCount merge(const ResultsStore& other, const std::vector<std::string>& keys);
 
   /// Cells of the stress battery. A cell with the same key takes the place of the older one.
   void add(const std::vector<StressCell>& cells);
@@ -114,7 +120,9 @@ class ResultsStore {
   static std::filesystem::path defaultFile();
 
  private:
+  friend class results::UnfinishedStore;
   struct State;
+  MergeCount mergeRuns(const ResultsStore& other, const std::vector<StoredRun>& theirs);
   std::unique_ptr<State> state_;
 };
 

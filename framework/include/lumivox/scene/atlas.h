@@ -1,6 +1,7 @@
 // A texture atlas of a whole scene: every piece of surface has texels of its own in one square.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -20,6 +21,20 @@ struct AtlasTexel {
   bool operator==(const AtlasTexel&) const = default;
 };
 
+/// The surface within a texel as a convex polygon in the plane of the texel's triangle: the hull of that
+/// surface, projected along the chart's axis onto that plane. Where the surface does not fill its hull, or
+/// the hull has more corners than are kept, the polygon is scaled about the texel's place to the surface's
+/// area. So whole texels and straight cuts of a flat chart tile it. On a surface that bends, polygons in planes
+/// of their own would leave gaps between them: there is none where the surface within the texel bends.
+struct AtlasOutline {
+  static constexpr std::size_t kMostCorners = 8;
+  /// From the texel's place, as steps of AtlasTexel::second and third, counter-clockwise along the chart's
+  /// axis. A corner may lie outside of the triangle.
+  std::array<glm::vec2, kMostCorners> corners{};
+  std::uint32_t count = 0;  ///< 3 to kMostCorners; 0: the surface bends within the texel or has no extent
+  bool operator==(const AtlasOutline&) const = default;
+};
+
 /// The texels of one part of one object.
 struct AtlasPart {
   std::uint32_t firstTexel = 0, texelCount = 0;
@@ -29,7 +44,8 @@ struct SurfaceAtlas {
   int side = 0;  ///< texels along a side of the square
   std::size_t chartCount = 0;
   std::vector<AtlasTexel> texels;  ///< those that lie on the surface, by parts; at most one for each place
-  std::vector<AtlasPart> parts;    ///< of all objects, in their order
+  std::vector<AtlasOutline> outlines;  ///< of `texels`, with AtlasPlaces::middles; else empty
+  std::vector<AtlasPart> parts;        ///< of all objects, in their order
   /// The chart of each triangle of Scene::indices; kNoChart for one that no object has.
   std::vector<std::uint32_t> chartOfTriangle;
   static constexpr std::uint32_t kNoChart = 0xffffffffu;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 namespace lumivox {
@@ -60,6 +61,9 @@ struct ElementTree {
   std::vector<std::uint32_t> segmentOfLeaf;
   /// Of each of Scene::positions, where leaves stand on vertices (kNoElement: none does); else empty.
   std::vector<std::uint32_t> leafOfVertex;
+  /// Of each leaf, where its corners begin in ElementState::corners, and one more; empty where leaves are
+  /// discs.
+  std::vector<std::uint32_t> firstCorner;
   std::vector<bool> emits;                  ///< of each node: whether a leaf of it shines
   std::vector<bool> glossy;                 ///< of each node: whether a leaf of it is glossy
   std::vector<std::uint32_t> objectOfNode;  ///< index into Scene::objects; kNoElement: a group of several
@@ -82,10 +86,19 @@ struct ElementState {
   std::vector<glm::vec3> normal;
   /// m: of discs sqrt(area / 2), half the diagonal of a square of that area.
   std::vector<float> radius;
-  std::vector<float>
-      reach;  ///< m: the farthest point of a leaf's disc from the node's position; of leaves: radius
+  std::vector<float> reach;  ///< m: the farthest point of a leaf from the node's position
+  /// m: of leaves that are polygons (ElementTree::firstCorner), from their positions; convex and in the plane
+  /// of the leaf's normal.
+  std::vector<glm::vec3> corners;
   /// Whether the node's leaves stand where they stood at rest, whatever the time: objects without motion.
   std::vector<bool> still;
+
+  /// Of a leaf; none: it is a disc of radius `reach`.
+  std::span<const glm::vec3> outline(const ElementTree& tree, std::uint32_t leaf) const {
+    if (tree.firstCorner.empty()) return {};
+    return std::span(corners).subspan(tree.firstCorner[leaf],
+                                      tree.firstCorner[leaf + 1] - tree.firstCorner[leaf]);
+  }
 };
 
 }  // namespace lumivox

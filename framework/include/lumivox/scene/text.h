@@ -11,6 +11,10 @@
 
 namespace lumivox {
 
+/// The ranges that texts and command lines share: a time, s, and a coordinate, m, lie within them to both
+/// sides. Squares of differences of such numbers still fit into single precision.
+inline constexpr double kLongestTime = 1e9, kFarthestPlace = 1e9;
+
 /// One block, `scene NAME { ... }`, with everything that it may contain.
 const std::vector<dsl::BlockSpecification>& sceneSpecifications();
 

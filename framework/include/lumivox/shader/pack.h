@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "lumivox/base/deflate.h"
 #include "lumivox/base/hash.h"
 #include "lumivox/gpu/device.h"
 #include "lumivox/shader/slots.h"
@@ -80,12 +82,15 @@ struct PackedProgram {
   std::string text(const std::vector<int>& values) const;
 };
 
-/// Code shared by all variants whose SPIR-V is the same.
+/// Code shared by all variants whose SPIR-V is the same. Both forms are kept deflated; who uses one expands it.
 struct PackedCode {
-  ContentHash hash;
-  std::vector<std::uint32_t> spirv;
-  std::string glsl;  ///< GLSL 4.50 by SPIRV-Cross from `spirv`; specialisation constants as
-                     ///< SPIRV_CROSS_CONSTANT_ID_n macros
+  ContentHash hash;  ///< of the SPIR-V
+  Deflated deflatedSpirv, deflatedGlsl;
+
+  static PackedCode of(const ContentHash& hash, std::span<const std::uint32_t> spirv, std::string_view glsl);
+  std::vector<std::uint32_t> spirv() const;
+  /// GLSL 4.50 by SPIRV-Cross from the SPIR-V; specialisation constants are SPIRV_CROSS_CONSTANT_ID_n macros.
+  std::string glsl() const { return deflatedGlsl.expanded(); }
 };
 
 struct ShaderPack {

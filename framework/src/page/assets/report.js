@@ -99,7 +99,7 @@
         named(point.pipeline), pointParameters(scene, point), broken(outputName(error.output)), broken(error.reference),
         oneReference ? "error" : error.kind === "bias" ? "bias" : "misses", pair("flip_hdr"), of(error.rmse), number(error.ratio_to_nothing),
         of(error.relative_mse), pair("percentile_95"), of(error.mean_ratio), of(error.mean_difference), pair("ssim"), pair("flip_ldr"),
-        number(error.reference_noise), error.seeds < 2 ? "one seed" : error.deterministic ? "none" : number(error.image_noise),
+        number(error.reference_noise), error.deterministic ? "none" : error.seeds < 2 ? "one seed" : number(error.image_noise),
         error.non_finite_image === 0 ? "0" : bad(error.non_finite_image)]);
     }));
     return [
@@ -127,7 +127,7 @@
         scene.points.flatMap(point => point.errors.map(error => rowOf(point, [
           named(point.pipeline), pointParameters(scene, point), broken(outputName(error.output)), broken(error.reference), of(error.rmse),
           error.seeds < 2 ? "one seed" : of(error.rms_bias),
-          error.seeds < 2 ? "one seed" : error.deterministic ? "none" : of(error.rms_noise), number(error.reference_noise),
+          error.deterministic ? "none" : error.seeds < 2 ? "one seed" : of(error.rms_noise), number(error.reference_noise),
           ...(moves ? [of(error.flicker)] : []), error.seeds]))))];
   }
 

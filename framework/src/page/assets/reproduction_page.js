@@ -10,6 +10,6 @@
       result.rows.length > 0 && table(columns, result.rows),
       shown.sheet && h("p", null, h("img", { alt: result.title, src: pngAddress(shown.sheet) })),
       shown.curves && h("div", null, h("img", { alt: "curves of " + result.title, src: "data:image/svg+xml;base64," + shown.curves })),
-      list([...result.curves, ...result.panels, ...result.notes])];
+      list([...result.curves, ...result.panels, ...result.claims, ...result.notes])];
   })));
 })();

@@ -10,10 +10,10 @@ struct VoxelFragments {
   GridPlacement grid;
   gpu::BufferRef fragments;
   gpu::BufferRef count;
-  /// Direct light that fragments are known to reflect, since a renderer computed it where the camera sees
-  /// them (Mavridis & Papaioannou 2011, Sec. 3.2). Null: of none. Else a word for each of the first
-  /// fragments: their reflected radiance in W/(sr m^2), packed as `packShared` does, or kNotKnown; those
-  /// behind the end of the buffer are not known either.
+  /// Direct light that fragments are known to reflect, as a renderer computed it where the camera sees them
+  /// (Mavridis & Papaioannou 2011, Sec. 3.2). Null: of none. Else a word for each of the first fragments: the
+  /// radiance in W/(sr m^2) that leaves the side seen (`kSeenBehind` in shaders/common/voxel.glsl), packed as
+  /// `packShared` does, or kNotKnown, as behind the buffer's end. Lights shine on the other side.
   gpu::BufferRef reflected;
   static constexpr std::uint32_t kNotKnown = 0xffffffffu;
   /// Where some of the scene moves and some stands still: the first fragments are those of what stands still,

@@ -1,0 +1,23 @@
+// Bytes that are kept deflated (zlib's format, RFC 1950) and expanded when they are asked for.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace lumivox {
+
+/// `bytes` as a zlib stream; level 1 (fast) to 12 (small), as libdeflate numbers them.
+std::string zlibStream(std::string_view bytes, int level);
+
+/// Deflated bytes that know how long they were.
+struct Deflated {
+  std::string stream;
+  std::uint64_t expandedBytes = 0;
+
+  static Deflated of(std::string_view bytes);
+  /// Error when the stream is damaged or holds another number of bytes.
+  std::string expanded() const;
+};
+
+}  // namespace lumivox

@@ -1,0 +1,42 @@
+// Direct light that fragments are known to reflect, by the side that the camera saw: Mavridis & Papaioannou 2011, Sec. 3.2. Included behind
+// common/fragments.glsl and, where the lights shine on sides of which nothing is known, behind common/two_sided_light.glsl.
+// C++ side: VoxelFragments::reflected in framework/include/lumivox/pipeline/ports/voxel_fragments.h.
+#pragma lumivox axis REFLECTED 0 1
+#ifndef LUMIVOX_KNOWN_LIGHT
+#define LUMIVOX_KNOWN_LIGHT
+
+#if REFLECTED
+layout(std430, binding = 7) readonly buffer Reflected { uint reflected[]; };  // a word for each of the first fragments
+#endif
+
+struct KnownLight {
+  bool known;     // of one side; false: of none
+  int side;       // 0: that of the normal; 1: the one behind it
+  vec3 radiance;  // that leaves that side, W/(sr m^2)
+};
+const KnownLight kNoLightKnown = KnownLight(false, 0, vec3(0.0));
+
+// With twoSided off backs reflect nothing, also where it is known.
+KnownLight knownLightOf(uint index, VoxelFragment fragment, bool twoSided) {
+#if REFLECTED
+  uint word = index < uint(reflected.length()) ? reflected[index] : kNotKnown;
+  if (word == kNotKnown) return kNoLightKnown;
+  int side = (fragment.offset & kSeenBehind) != 0u ? 1 : 0;
+  return KnownLight(true, side, side == 0 || twoSided ? unpackShared(word) : vec3(0.0));
+#else
+  return kNoLightKnown;
+#endif
+}
+
+#ifdef LUMIVOX_TWO_SIDED_LIGHT
+// As addArriving, for the sides of which nothing is known.
+void addArrivingBeside(KnownLight known, int lightCount, vec3 posWorld, vec3 normal, bool twoSided, int mediumSteps, inout vec3 front,
+                       inout vec3 back) {
+  vec3 ignored = vec3(0.0);
+  if (!known.known) addArriving(lightCount, posWorld, normal, twoSided, mediumSteps, front, back);
+  else if (known.side == 1) addArriving(lightCount, posWorld, normal, false, mediumSteps, front, ignored);
+  else if (twoSided) addArriving(lightCount, posWorld, -normal, false, mediumSteps, back, ignored);
+}
+#endif
+
+#endif

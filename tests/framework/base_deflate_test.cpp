@@ -1,0 +1,34 @@
+#include "lumivox/base/deflate.h"
+
+#include <catch2/catch.hpp>
+
+#include "lumivox/base/error.h"
+#include "support/support.h"
+
+using namespace lumivox;
+
+TEST_CASE("deflated bytes expand to what they were, and repeated text takes a tenth of its room") {
+  std::string text;
+  for (int i = 0; i < 1000; ++i) text += "layout(binding = " + std::to_string(i % 8) + ") uniform sampler3D grid;\n";
+  const Deflated deflated = Deflated::of(text);
+  CHECK(deflated.expanded() == text);
+  CHECK(deflated.expandedBytes == text.size());
+  CHECK(deflated.stream.size() * 10 < text.size());
+  CHECK(Deflated::of("").expanded().empty());
+}
+
+TEST_CASE("deflated bytes that are damaged, cut off or of another length are refused") {
+  const Deflated whole = Deflated::of("one two three one two three one two three");
+  const auto message = [](const Deflated& deflated) {
+    return test::messageOf<Error>([&] { deflated.expanded(); });
+  };
+  for (std::size_t at = 0; at < whole.stream.size(); ++at) {
+    Deflated damaged = whole;
+    damaged.stream[at] = static_cast<char>(damaged.stream[at] ^ 0x55);
+    CHECK_THAT(message(damaged), Catch::Contains("damaged"));
+    damaged.stream = whole.stream.substr(0, at);
+    CHECK_THAT(message(damaged), Catch::Contains("damaged"));
+  }
+  for (const std::uint64_t bytes : {whole.expandedBytes - 1, whole.expandedBytes + 1, std::uint64_t{1} << 62})
+    CHECK_THAT(message({whole.stream, bytes}), Catch::Contains("damaged"));
+}

@@ -1,0 +1,149 @@
+// Tables that slow tests measure: what counts as changed, how they are kept, and how cards quote them.
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "lumivox/base/error.h"
+#include "lumivox/base/file.h"
+#include "lumivox/page/measured_passages.h"
+#include "support/support.h"
+
+using namespace lumivox;
+using Catch::Contains;
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+MeasuredTable errors() {
+  MeasuredTable table;
+  table.name = "technique.errors";
+  table.test = "errors by \"voxels\", and rays";
+  table.device = "a rasteriser";
+  table.date = "2026-01-02";
+  table.seconds = 61.4;
+  table.columns = {{"light", 3, 0.02}, {"ratio", 2, 0.0, 0.1}, {"time", 1, 0.0, 0.5, true}};
+  table.rows = {
+      {"room, 32", {0.1234, 0.98, 2.0}}, {"room, 64", {0.1, 1.0, kNone}}, {"hall, 32", {0.5, 1.1, 3.0}}};
+  return table;
+}
+
+std::vector<std::string> changed(const std::function<void(MeasuredTable&)>& change,
+                                 const std::vector<std::string>& absent = {}) {
+  MeasuredTable now = errors();
+  change(now);
+  return differences(errors(), now, absent);
+}
+
+}  // namespace
+
+TEST_CASE("a figure is as before within margin and share of its column, and told with both numbers beyond") {
+  CHECK(changed([](MeasuredTable&) {}).empty());
+  CHECK(changed([](MeasuredTable& t) { t.rows[0].values[0] += 0.0199; }).empty());
+  CHECK(changed([](MeasuredTable& t) { t.rows[0].values[0] -= 0.0199; }).empty());
+  for (const double by : {0.0211, -0.0211}) {
+    const auto found = changed([&](MeasuredTable& t) { t.rows[0].values[0] += by; });
+    REQUIRE(found.size() == 1);
+    CHECK_THAT(found[0], Contains("technique.errors, 'room, 32', light: 0.1") && Contains("kept 0.123;") &&
+                             Contains("0.02"));
+  }
+  CHECK(changed([](MeasuredTable& t) { t.rows[2].values[1] *= 1.09; }).empty());
+  CHECK(changed([](MeasuredTable& t) { t.rows[2].values[1] *= 1.12; }).size() == 1);
+  // What is no number stays none.
+  CHECK(changed([](MeasuredTable& t) { t.rows[1].values[2] = 2.0; }).size() == 1);
+  CHECK(changed([](MeasuredTable& t) { t.rows[0].values[0] = kNone; }).size() == 1);
+}
+
+TEST_CASE("times are compared on the device alone that they were kept on") {
+  const auto slower = [](MeasuredTable& t) { t.rows[0].values[2] *= 3.0; };
+  CHECK(changed(slower).size() == 1);
+  CHECK(changed([&](MeasuredTable& t) {
+          slower(t);
+          t.device = "another";
+        }).empty());
+  CHECK(changed([](MeasuredTable& t) {
+          t.rows[0].values[0] = 1.0;
+          t.device = "another";
+        }).size() == 1);
+}
+
+TEST_CASE("rows that only one of two tables has are told, but for those that cannot be measured here") {
+  CHECK_THAT(changed([](MeasuredTable& t) { t.rows.pop_back(); }).at(0),
+             Contains("'hall, 32'") && Contains("was not measured"));
+  CHECK(changed([](MeasuredTable& t) { t.rows.pop_back(); }, {"hall"}).empty());
+  CHECK_THAT(changed([](MeasuredTable& t) {
+               t.rows.push_back({"vault", {1, 1, 1}});
+             }).at(0),
+             Contains("'vault'") && Contains("not kept"));
+  CHECK_THAT(changed([](MeasuredTable& t) { t.columns[1].name = "energy"; }).at(0), Contains("columns"));
+}
+
+TEST_CASE("measured tables are kept rounded, a line for each row, and read again") {
+  const test::TemporaryDirectory directory;
+  const std::string json = measuredTablesAsJson({errors(), errors()});
+  CHECK_THAT(json, Contains("\n   [\"room, 32\",0.123,0.98,2.0],\n   [\"room, 64\",0.1,1.0,null],\n"));
+  const auto file = directory.write("tables.json", json);
+  const std::vector<MeasuredTable> read = readMeasuredTables(file);
+  REQUIRE(read.size() == 2);
+  CHECK(differences(read[0], errors()).empty());
+  CHECK(read[0].test == errors().test);
+  CHECK(read[0].seconds == 62.0);
+  CHECK(read[0].columns[0].margin == 0.02);
+  CHECK(read[0].columns[1].share == 0.1);
+  CHECK(read[0].columns[2].ofTimes);
+  CHECK(measuredTablesAsJson(read) == json);
+  CHECK(readMeasuredTables(directory.write("none.json", measuredTablesAsJson({}))).empty());
+  for (const char* text : {"", "[", "{}", "{\"version\": 2, \"tables\": []}", "{\"version\": 1}",
+                           "{\"version\": 1, \"tables\": [{\"table\": 7}]}"})
+    CHECK_THAT(test::messageOf<Error>([&] { readMeasuredTables(directory.write("bad.json", text)); }),
+               Contains("bad.json"));
+  std::string shorter = json;
+  shorter.replace(shorter.find("0.123,"), 6, "");
+  CHECK_THAT(test::messageOf<Error>([&] { readMeasuredTables(directory.write("bad.json", shorter)); }),
+             Contains("'room, 32'") && Contains("2 values; expected 3"));
+}
+
+TEST_CASE("cards quote measured tables whole, in part, with scenes side by side, and single figures") {
+  const auto written = [](const std::string& text) {
+    return withMeasuredPassages(text, "card.md", {errors()});
+  };
+  CHECK(written("nothing") == "nothing");
+  CHECK(written("a <!-- measured value technique.errors; room, 64; ratio -->9<!-- end --> b") ==
+        "a <!-- measured value technique.errors; room, 64; ratio -->1.00<!-- end --> b");
+  CHECK(
+      written("<!-- measured table technique.errors; room -->\nold\n<!-- end -->") ==
+      "<!-- measured table technique.errors; room -->\n\n| | light | ratio | time |\n| --- | --- | --- | --- |\n"
+      "| room, 32 | 0.123 | 0.98 | 2.0 |\n| room, 64 | 0.100 | 1.00 | |\n\n<!-- end -->");
+  CHECK_THAT(written("<!-- measured table technique.errors --><!-- end -->"),
+             Contains("| hall, 32 | 0.500 |"));
+  const std::string across = written("<!-- measured across technique.errors; room; hall --><!-- end -->");
+  CHECK_THAT(across, Contains("| | room: light, ratio, time | hall: light, ratio, time |\n") &&
+                         Contains("| 32 | 0.123, 0.98, 2.0 | 0.500, 1.10, 3.0 |\n") &&
+                         Contains("| 64 | 0.100, 1.00 | |\n"));
+  CHECK(written(across) == across);
+  // Within an item of a list a table stays in it.
+  const std::string item =
+      written("- an item:\n\n  <!-- measured table technique.errors; hall -->x<!-- end -->\n- b");
+  CHECK_THAT(item, Contains(" -->\n\n  | | light | ratio | time |\n  | --- |") &&
+                       Contains("\n  | hall, 32 | 0.500 | 1.10 | 3.0 |\n\n  <!-- end -->\n- b"));
+  CHECK(written(item) == item);
+  // Passages of the other kind stay as they are.
+  const std::string other = "<!-- reproduced table x -->\n<!-- end -->";
+  CHECK(written(other) == other);
+  const auto refusal = [&](const std::string& text) {
+    return test::messageOf<Error>([&] { written("one\n" + text); });
+  };
+  CHECK_THAT(refusal("<!-- measured table technique.error --><!-- end -->"),
+             Contains("card.md:2: ") && Contains("did you mean 'technique.errors'"));
+  CHECK_THAT(refusal("<!-- measured table technique.errors -->"), Contains("no end"));
+  CHECK_THAT(refusal("<!-- measured table technique.errors; cave --><!-- end -->"), Contains("'cave'"));
+  CHECK_THAT(refusal("<!-- measured across technique.errors; roo --><!-- end -->"), Contains("'roo, '"));
+  CHECK_THAT(refusal("<!-- measured across technique.errors --><!-- end -->"), Contains("BEGINNING"));
+  CHECK_THAT(refusal("<!-- measured value technique.errors; room, 64; rato --><!-- end -->"),
+             Contains("'ratio'"));
+  CHECK_THAT(refusal("<!-- measured value technique.errors; room, 65; ratio --><!-- end -->"),
+             Contains("'room, 64'"));
+  CHECK_THAT(refusal("<!-- measured value technique.errors; room, 64 --><!-- end -->"), Contains("COLUMN"));
+  CHECK_THAT(refusal("<!-- measured values technique.errors --><!-- end -->"),
+             Contains("did you mean 'value'"));
+}

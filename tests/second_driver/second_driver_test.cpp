@@ -1,0 +1,184 @@
+// A second OpenGL driver: Mesa's zink over lavapipe (Debian package mesa-vulkan-drivers), which needs no
+// graphics processor and goes another way from SPIR-V to machine code than llvmpipe. Both are made in one
+// process: EGL looks at the environment when a display is first used, and the surfaceless platform and the
+// first software device are two displays.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "lumivox/base/error.h"
+#include "lumivox/scene/scene.h"
+#include "support/techniques.h"
+
+using namespace lumivox;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// RMS of the difference that a pipeline may have between the drivers, as a share of the mean.
+struct Agreement {
+  double most;
+  const char* why;
+};
+constexpr double kSame = 1e-5;
+// Reasons are explained in docs/gpu.md, "A second driver".
+const std::map<std::string, Agreement> kLessAlike = {
+    {"voxel_cone_tracing_depth_of_field",
+     {5e-5, "a cone ends at an opacity, and a lamp outshines what it ends at"}},
+};
+
+struct Drivers {
+  std::unique_ptr<gpu::Device> first, second;
+  std::string failures;  ///< why there is no second one
+};
+
+/// Where Mesa's packages put the description of lavapipe for the loader of Vulkan.
+bool isInstalled() {
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator("/usr/share/vulkan/icd.d", none))
+    if (entry.path().filename().string().starts_with("lvp_icd")) return true;
+  return false;
+}
+
+/// The second one is null where it is not installed.
+Drivers& drivers() {
+  static Drivers both = [] {
+    Drivers made;
+    made.first = std::make_unique<gpu::Device>(gpu::DeviceOptions{"surfaceless"});
+    setenv("MESA_LOADER_DRIVER_OVERRIDE", "zink", 1);
+    setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+    // EGL counts hardware devices first; there are few.
+    for (const char* index : {"0", "1", "2", "3"}) {
+      try {
+        auto device = std::make_unique<gpu::Device>(gpu::DeviceOptions{index});
+        if (device->info().renderer.rfind("zink", 0) != 0 || !device->info().software) continue;
+        made.second = std::move(device);
+        break;
+      } catch (const Error& error) {
+        // No such device, or one that lacks something.
+        made.failures += fmt::format("\n{}: {}", index, error.what());
+      }
+    }
+    return made;
+  }();
+  return both;
+}
+
+ImageBuffer imageBy(gpu::Device& device, const Scene& scene, const Pipeline& pipeline) {
+  constexpr int kPixels = 48;  // along a side: linking programs is what takes time
+  RenderOptions options;
+  options.width = options.height = kPixels;
+  FrameResult frame = PipelineExecutor(device, test::techniques(), scene, pipeline, options).render(0.0);
+  const auto whole = frame.outputs.find("final");
+  return whole != frame.outputs.end() ? whole->second : frame.outputs.begin()->second;
+}
+
+/// Root of the mean squared difference over the mean.
+double differenceOf(const ImageBuffer& image, const ImageBuffer& reference) {
+  REQUIRE(image.sameShape(reference));
+  double squares = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < image.values().size(); ++i) {
+    const double one = image.values()[i], other = reference.values()[i];
+    REQUIRE(std::isfinite(one));
+    squares += (one - other) * (one - other);
+    sum += other;
+  }
+  const auto count = static_cast<double>(image.values().size());
+  REQUIRE(sum > 0.0);
+  return std::sqrt(squares / count) / (sum / count);
+}
+
+void compare(const std::vector<std::string>& names) {
+  Drivers& both = drivers();
+  if (both.second == nullptr && isInstalled())
+    FAIL("the second driver is installed, and no device of it can be made:" << both.failures);
+  if (both.second == nullptr)
+    return test::skip(
+        "the second driver, zink over lavapipe, is not installed (Debian package mesa-vulkan-drivers)");
+  for (const char* place : {"cornell", "spinning_box", "smoke"}) {
+    const Scene scene = loadScene(test::sourceDirectory() / "scenes" / fmt::format("{}.scene", place));
+    for (const std::string& name : names) {
+      const Pipeline pipeline = test::pipeline(name);
+      const double difference =
+          differenceOf(imageBy(*both.second, scene, pipeline), imageBy(*both.first, scene, pipeline));
+      const auto listed = kLessAlike.find(name);
+      INFO(name << " on " << place << ": an RMS of " << difference << " of the mean");
+      if (std::getenv("LUMIVOX_PRINT_MEASURED") != nullptr)
+        fmt::print("{} {} {:.2g}\n", name, place, difference);
+      CHECK(difference <= (listed != kLessAlike.end() ? listed->second.most : kSame));
+    }
+  }
+}
+
+// Each pipeline stands in one case, so that none takes long. The last case finds those that stand in none.
+const std::map<std::string, std::vector<std::string>> kCases = {
+    {"direct light", {"direct_lighting", "screen_space", "reflective_shadow_maps", "virtual_area_lights"}},
+    {"imperfect volumes", {"imperfect_volumes", "imperfect_volumes_occlusion", "imperfect_volumes_visible"}},
+    {"imperfect volumes by propagation", {"imperfect_volumes_propagation"}},
+    {"implicit visibility", {"implicit_visibility", "implicit_visibility_lights"}},
+    {"light propagation volumes", {"light_propagation_volumes", "light_propagation_volumes_voxels"}},
+    {"near field voxels", {"near_field_voxels", "near_field_voxels_occlusion"}},
+    {"media", {"volumetric_smoke"}},
+    {"dense grids", {"voxel_cone_tracing", "voxel_cone_tracing_lobes", "voxel_cone_tracing_soft_shadows"}},
+    {"a lens", {"voxel_cone_tracing_depth_of_field"}},
+    {"directional grids", {"voxel_cone_tracing_directional", "voxel_cone_tracing_coarse_directional"}},
+    {"a clipmap", {"voxel_cone_tracing_clipmap"}},
+    {"octrees", {"voxel_cone_tracing_octree", "voxel_cone_tracing_octree_photons"}},
+    {"an octree of six faces", {"voxel_cone_tracing_octree_directional"}},
+};
+
+}  // namespace
+
+TEST_CASE("a second driver makes the same images: direct light and screen space") {
+  compare(kCases.at("direct light"));
+}
+TEST_CASE("a second driver makes the same images: imperfect volumes") {
+  compare(kCases.at("imperfect volumes"));
+}
+TEST_CASE("a second driver makes the same images: imperfect volumes by propagation") {
+  compare(kCases.at("imperfect volumes by propagation"));
+}
+TEST_CASE("a second driver makes the same images: implicit visibility") {
+  compare(kCases.at("implicit visibility"));
+}
+TEST_CASE("a second driver makes the same images: light propagation volumes") {
+  compare(kCases.at("light propagation volumes"));
+}
+TEST_CASE("a second driver makes the same images: near field voxels") {
+  compare(kCases.at("near field voxels"));
+}
+TEST_CASE("a second driver makes the same images: media") {
+  compare(kCases.at("media"));
+}
+TEST_CASE("a second driver makes the same images: cones in dense grids") {
+  compare(kCases.at("dense grids"));
+}
+TEST_CASE("a second driver makes the same images: a lens") {
+  compare(kCases.at("a lens"));
+}
+TEST_CASE("a second driver makes the same images: cones in directional grids") {
+  compare(kCases.at("directional grids"));
+}
+TEST_CASE("a second driver makes the same images: cones in a clipmap") {
+  compare(kCases.at("a clipmap"));
+}
+TEST_CASE("a second driver makes the same images: cones in octrees") {
+  compare(kCases.at("octrees"));
+}
+TEST_CASE("a second driver makes the same images: cones in an octree of six faces") {
+  compare(kCases.at("an octree of six faces"));
+}
+
+TEST_CASE("every committed pipeline is among those that the second driver renders") {
+  std::set<std::string> listed, committed;
+  for (const auto& [name, pipelines] : kCases) listed.insert(pipelines.begin(), pipelines.end());
+  for (const auto& entry : fs::directory_iterator(test::sourceDirectory() / "scenes/pipelines"))
+    if (entry.path().extension() == ".pipeline") committed.insert(entry.path().stem().string());
+  CHECK(listed == committed);
+  for (const auto& [name, agreement] : kLessAlike) CHECK(committed.contains(name));
+}
