@@ -409,6 +409,8 @@ TEST_CASE("a file that was read is known by every name that leads to it, one tha
   for (const char* name : {"read.txt", "link.txt", "hard.txt"}) CHECK(wasRead(directory.path() / name));
   CHECK_FALSE(wasRead(unread));
   CHECK_FALSE(wasRead(directory.path() / "absent.txt"));
+  writeFileAtomically(read, "of this process");
+  CHECK_FALSE(wasRead(read));
 }
 
 TEST_CASE("a cache that is a file is refused as what it is") {

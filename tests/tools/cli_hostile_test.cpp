@@ -158,6 +158,26 @@ TEST_CASE("an output that is an input, another output or a file of another kind 
   CHECK(runCommand(exported + quoted(place.file("runs"))).exitCode == 0);
   CHECK(runCommand(exported + "/dev/stdout").exitCode == 0);
 
+  // A store that is made only now is an input as well, and so is that in which points wait for their page.
+  const std::string room = " -q " + quoted(place.scene()) + " --pipeline " +
+                           quoted(committedPipeline("direct_lighting")) + " --store ";
+  for (const char* name : {"page.csv", "page.json"})
+    checkRefused(runCommand("lumivox report" + room + quoted(place.file(name)) + " -o " +
+                            quoted(place.file("page.html"))),
+                 "is read; expected another name");
+  checkRefused(runCommand("lumivox tune --budget 16ms" + room + quoted(place.file("own.pipeline")) + " -o " +
+                          quoted(place.file("own.pipeline"))),
+               "is read; expected another name");
+  const std::string waiting = place.file("page.unfinished.sqlite");
+  std::filesystem::copy_file(store, waiting);
+  checkRefused(
+      runCommand("lumivox report" + room + quoted(waiting) + " -o " + quoted(place.file("page.html"))),
+      "is read; expected another name");
+  CHECK(readFile(waiting) == before);
+  checkRefused(runCommand("lumivox report" + room + quoted(store) + " -o " +
+                          quoted(place.file(std::string(245, 'p') + ".html"))),
+               "too long");
+
   const std::string report = "lumivox report -q " + quoted(place.scene()) + " -o ";
   checkRefused(runCommand(report + quoted(place.file("page.png"))), "ends in .html");
   checkRefused(runCommand(report + quoted(place.scene())), "ends in .html");
@@ -182,11 +202,39 @@ TEST_CASE("an output that is an input, another output or a file of another kind 
           0);
   std::filesystem::create_symlink("map.png", place.path() / "other.png");
   const std::string map = place.read("map.png");
+  // Also in the midst of a sequence.
+  std::filesystem::create_symlink("map.png", place.path() / "frame_0001.png");
+  checkRefused(runCommand("lumivox render -q " + quoted(place.file("mapped.scene")) + " " +
+                          quoted(committedPipeline("direct_lighting")) + " --frames 0..2 -o " +
+                          quoted(place.file("frame_####.png"))),
+               "frame_0001.png': that file was read for the same work");
+  CHECK_FALSE(place.has("frame_0000.png"));
   for (const char* name : {"map.png", "other.png"})
     checkRefused(runCommand("lumivox render -q " + quoted(place.file("mapped.scene")) + " " +
                             quoted(committedPipeline("direct_lighting")) + " -o " + quoted(place.file(name))),
                  "was read for the same work");
   CHECK(place.read("map.png") == map);
+  // And what tune and report choose by themselves: a pipeline beside the scene, a text without an ending.
+  std::filesystem::create_directories(place.path() / "scenes/pipelines");
+  const std::string direct = readFile(committedPipeline("direct_lighting")),
+                    small = " --resolution 8x8 --spp 2 --store " + quoted(store);
+  place.write("scenes/pipelines/beside.pipeline", direct);
+  for (const char* name : {"room.obj", "room.mtl", "room.scene"})
+    std::filesystem::copy_file(place.path() / name, place.path() / "scenes" / name);
+  checkRefused(runCommand("lumivox tune -q --budget 16ms " + quoted(place.file("scenes/room.scene")) + small +
+                          " -o " + quoted(place.file("scenes/pipelines/beside.pipeline"))),
+               "was read for the same work");
+  CHECK(place.read("scenes/pipelines/beside.pipeline") == direct);
+  place.write("rest", "material grey { diffuse 0.5 }\n");
+  place.write(
+      "included.scene",
+      std::string(kRoomScene).replace(std::string(kRoomScene).rfind('}'), 1, "  include \"rest\"\n}"));
+  for (const char* command : {"tune --budget 16ms", "report"})
+    checkRefused(
+        runCommand(std::string("lumivox ") + command + " -q " + quoted(place.file("included.scene")) +
+                   " --pipeline " + quoted(committedPipeline("direct_lighting")) + small + " -o " +
+                   quoted(place.file("rest"))),
+        command[0] == 't' ? "was read for the same work" : "rest");
   CHECK_FALSE(place.has("page.png"));
   CHECK_FALSE(place.has("x.png"));
 }

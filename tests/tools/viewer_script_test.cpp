@@ -237,6 +237,16 @@ TEST_CASE("what a statement writes has the ending of its kind, and no text is lo
     CHECK(contains(session->message(), "': expected a name that ends in " + ending));
     CHECK(session->question().empty());
   }
+  // Nor is what the scene reads, whatever its ending; what the window wrote itself may be written again.
+  place.write("map.json", "");
+  readFile(place.path() / "map.json");
+  session->perform("record " + quotedFile(place, "map.json"));
+  CHECK(contains(session->message(), "was read for the same work"));
+  for (int time = 0; time < 2; ++time) {
+    session->perform("record " + quotedFile(place, "record.json"));
+    INFO(session->message());
+    CHECK_FALSE(session->messageIsError());
+  }
   CHECK(place.read("room.scene") == before);
   CHECK(place.read("own.pipeline") == pipeline);
   CHECK_FALSE(place.has("room.pipeline"));

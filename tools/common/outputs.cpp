@@ -60,7 +60,7 @@ void Outputs::check(const std::vector<fs::path>& inputs) const {
     const Output& output = outputs_[i];
     checkEnding(output);
     for (const fs::path& input : inputs)
-      if (isOneFile(output.file, input))
+      if (!input.empty() && willBeOneFile(output.file, input))
         throw Error(fmt::format("{} '{}': that is the file '{}', which is read; expected another name",
                                 output.option, output.file.string(), input.string()));
     requireWritable(output.file);
@@ -72,10 +72,13 @@ void Outputs::check(const std::vector<fs::path>& inputs) const {
 }
 
 void Outputs::requireUnread() const {
-  for (const Output& output : outputs_)
-    if (wasRead(output.file))
-      throw Error(fmt::format("{} '{}': that file was read for the same work; expected another name",
-                              output.option, output.file.string()));
+  for (const Output& output : outputs_) requireUnread(output.option, output.file);
+}
+
+void Outputs::requireUnread(const std::string& option, const fs::path& file) {
+  if (wasRead(file))
+    throw Error(fmt::format("{} '{}': that file was read for the same work; expected another name", option,
+                            file.string()));
 }
 
 }  // namespace lumivox::command

@@ -19,11 +19,13 @@ class Outputs {
 
   /// Refuses a wrong ending, a file that cannot be written (requireWritable(), which makes its folder), two
   /// outputs that are one file, and one that is among `inputs`: under the same name or another that leads to
-  /// it, by device and inode.
+  /// it, by device and inode. An input may be empty, or a file that is made before it is read: a new store.
   void check(const std::vector<std::filesystem::path>& inputs) const;
   /// Refuses an output that this process has read, by whatever name: a texture of the scene, an included
   /// text. Called once all is read, before the work.
   void requireUnread() const;
+  /// The same of one file: of a sequence only the first and the last are added.
+  static void requireUnread(const std::string& option, const std::filesystem::path& file);
 
  private:
   struct Output {

@@ -303,6 +303,8 @@ int render(const RenderCommand& command, const GlobalOptions& global) {
         break;
       }
   outputs.requireUnread();
+  if (!command.output.empty())
+    for (int frame = first + 1; frame < last; ++frame) Outputs::requireUnread("-o", command.fileOf(frame));
   for (const int frame : {first, last})
     if (std::abs(command.timeOf(frame)) > kLongestTime)
       throw Error(fmt::format("--frames '{}': frame {} is at {:g} s; expected one within {:g} s",

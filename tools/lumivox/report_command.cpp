@@ -104,12 +104,14 @@ int report(const ReportCommand& command, const GlobalOptions& global) {
   std::vector<std::filesystem::path> inputs = options.scenes;
   inputs.insert(inputs.end(), options.pipelines.begin(), options.pipelines.end());
   inputs.push_back(options.store);
-  Outputs()
-      .add("-o", files.page, {".html", ".htm"}, Outputs::Endings::otherKindsRefused)
-      .add("-o", files.csv, {".csv"})
-      .add("-o", files.json, {".json"})
-      .check(inputs);
-  options.output = files.page;  // also where points are kept meanwhile
+  const Outputs outputs = Outputs()
+                              .add("-o", files.page, {".html", ".htm"}, Outputs::Endings::otherKindsRefused)
+                              .add("-o", files.csv, {".csv"})
+                              .add("-o", files.json, {".json"})
+                              .add("-o", unfinishedStoreOf(files.page), {".sqlite"});
+  outputs.check(inputs);
+  options.allRead = [&] { outputs.requireUnread(); };
+  options.output = files.page;
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();
   const ReportSummary summary = makeReport(

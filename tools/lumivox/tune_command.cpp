@@ -73,7 +73,10 @@ int tuneScene(const TuneCommand& command, const GlobalOptions& global) {
   std::vector<std::filesystem::path> inputs = options.measure.scenes;
   inputs.insert(inputs.end(), options.measure.pipelines.begin(), options.measure.pipelines.end());
   inputs.push_back(options.measure.store.empty() ? ResultsStore::defaultFile() : options.measure.store);
-  Outputs().add("-o", command.output, {".pipeline"}, Outputs::Endings::otherKindsRefused).check(inputs);
+  const Outputs outputs =
+      Outputs().add("-o", command.output, {".pipeline"}, Outputs::Endings::otherKindsRefused);
+  outputs.check(inputs);
+  options.measure.allRead = [&] { outputs.requireUnread(); };
   ResultsStore store(options.measure.store.empty() ? ResultsStore::defaultFile() : options.measure.store);
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();

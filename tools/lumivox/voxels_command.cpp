@@ -86,17 +86,21 @@ int voxels(const VoxelsCommand& command, const GlobalOptions& global) {
   constexpr int kScalingSubdivisions = 2;  // 4 and 16 times the triangles
   VoxelizerOptions options = command.options;
   if (!command.resolutions.empty()) options.resolutions = resolutionsOf(command.resolutions);
-  if (!command.image.empty()) std::tie(options.width, options.height) = parseResolution(command.image, "--image");
+  if (!command.image.empty())
+    std::tie(options.width, options.height) = parseResolution(command.image, "--image");
   if (command.repeats) options.repeats = options.repeatsOfLongFrames = *command.repeats;
   options.openSweeps = !command.noSweep;
   if (command.scaling) options.subdivisions = kScalingSubdivisions;
   const VoxelizerFiles files = voxelizerFiles(command.output);
-  if (!command.output.empty())
+  if (!command.output.empty()) {
+    std::vector<std::filesystem::path> inputs = command.scenes;
+    inputs.insert(inputs.end(), options.pipelines.begin(), options.pipelines.end());
     Outputs()
         .add("-o", files.page, {".html"})
         .add("-o", files.csv, {".csv"})
         .add("-o", files.json, {".json"})
-        .check(command.scenes);
+        .check(inputs);
+  }
 
   TechniqueSet techniques = global.techniqueSet();
   const auto device = global.openDevice();

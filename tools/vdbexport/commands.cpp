@@ -151,6 +151,7 @@ int exportGrids(const Options& options, const GlobalOptions& global) {
   openvdb::initialize();
   Session session(options, global, levels);
   outputs.requireUnread();
+  for (int frame = first + 1; frame < last; ++frame) command::Outputs::requireUnread("-o", fileOf(frame));
   Preview preview;
   for (int frame = first; frame <= last; ++frame) {
     const double time = options.run.time + frame / options.framesPerSecond;

@@ -47,10 +47,11 @@ void requireOutput(const std::string& word, const fs::path& file) {
                                                                        {"record", {".json"}},
                                                                        {"export_grid", {".vdb"}}};
   const bool isStrict = word == "save_image" || word == "export_grid";
-  Outputs()
-      .add(word, file, endings.at(word),
-           isStrict ? Outputs::Endings::only : Outputs::Endings::otherKindsRefused)
-      .check({});
+  const Outputs outputs = Outputs().add(
+      word, file, endings.at(word), isStrict ? Outputs::Endings::only : Outputs::Endings::otherKindsRefused);
+  outputs.check({});
+  // A text that is there is asked for before it is written.
+  if (word != "save_pipeline" && word != "save_scene") outputs.requireUnread();
 }
 
 /// The folder of the original text, if a copy of it would not find what it names.

@@ -158,7 +158,9 @@ void Window::State::randomActions(int count) {
 }
 
 void Window::State::shoot(const std::filesystem::path& file) {
-  command::Outputs().add("shot", file, {".png"}).check({});
+  const command::Outputs outputs = command::Outputs().add("shot", file, {".png"});
+  outputs.check({});
+  outputs.requireUnread();
   int width = 0, height = 0;
   glfwGetFramebufferSize(window, &width, &height);
   std::vector<unsigned char> bytes(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));

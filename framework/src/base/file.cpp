@@ -62,6 +62,10 @@ class ReadFiles {
     const std::lock_guard lock(mutex_);
     files_.emplace(status.st_dev, status.st_ino);
   }
+  void remove(const struct stat& status) {
+    const std::lock_guard lock(mutex_);
+    files_.erase({status.st_dev, status.st_ino});
+  }
   bool contains(const struct stat& status) {
     const std::lock_guard lock(mutex_);
     return files_.count({status.st_dev, status.st_ino}) > 0;
@@ -256,6 +260,9 @@ class StagedFile {
     if (target_.isWrittenThrough()) return;
     if (rename(beside_.c_str(), target_.path.c_str()) != 0) fail(path_, "write");
     beside_.clear();
+    // It may have the number of a file that was read and is gone.
+    struct stat status {};
+    if (stat(target_.path.c_str(), &status) == 0) filesRead().remove(status);
   }
 
  private:

@@ -308,6 +308,10 @@ VoxelizerOptions voxelizerOptions(const ReportOptions& options, const SceneRecor
 
 }  // namespace
 
+std::filesystem::path unfinishedStoreOf(const std::filesystem::path& page) {
+  return std::filesystem::path(page).replace_extension(".unfinished.sqlite");
+}
+
 ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const ReportOptions& options,
                          const std::function<Scene(const std::filesystem::path&)>& loadScene,
                          const std::function<void(const ReportRecord&)>& write) {
@@ -339,8 +343,8 @@ ReportSummary makeReport(gpu::Device& device, TechniqueSet& techniques, const Re
     pipelines.push_back(choice.forScene(scenes.back(), unsuited.back()));
   }
 
-  results::UnfinishedStore unfinished(
-      std::filesystem::path(options.output).replace_extension(".unfinished.sqlite"), options.commandLine);
+  if (options.allRead) options.allRead();
+  results::UnfinishedStore unfinished(unfinishedStoreOf(options.output), options.commandLine);
   ResultsStore& checkpoint = unfinished.store();
   std::deque<SceneReport> reports;  // a measurer stays where it is
   std::vector<std::string> keys;

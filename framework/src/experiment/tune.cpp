@@ -306,6 +306,7 @@ TuneResult tune(gpu::Device& device, TechniqueSet& techniques, const TuneOptions
   if (outputs.count(options.output) == 0)
     throw Error(fmt::format("no pipeline has an output '{}'; expected one of {}", options.output,
                             fmt::join(outputs, ", ")));
+  if (options.measure.allRead) options.measure.allRead();
 
   Search search(techniques, options, measurer);
   // The defaults come first, so that few evaluations still see every technique.

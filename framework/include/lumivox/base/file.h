@@ -34,7 +34,8 @@ std::string readFileStart(const std::filesystem::path& path, std::uint64_t limit
 void requireRegularFile(const std::filesystem::path& path);
 
 /// Whether this process has read the file, under this name or another that leads to it (by device and inode):
-/// what one of the functions above has opened, or allowed a library to open.
+/// what one of the functions above has opened, or allowed a library to open. A file that the process has
+/// written since counts as its own.
 bool wasRead(const std::filesystem::path& path);
 
 /// As readFile, but unpacks gzip (RFC 1952) when the name ends in ".gz"; the limit holds for the unpacked
@@ -56,8 +57,9 @@ void requireWritable(const std::filesystem::path& file);
 /// Creates the parent directories of a file that is about to be written; Error when that fails.
 void createParentDirectories(const std::filesystem::path& file);
 
-/// Bytes that this process can still take: the least of what the machine has available, what its control groups
-/// (cgroup v1 and v2) leave, and what RLIMIT_AS leaves. The largest number where the system does not tell.
+/// Bytes that this process can still take: the least of what the machine has available, what its control
+/// groups (cgroup v1 and v2) leave, and what RLIMIT_AS leaves. The largest number where the system does not
+/// tell.
 std::uint64_t availableMemory();
 
 /// Refuses (Error naming `what`, the bytes needed and the bytes available) when `bytes` do not fit into the

@@ -39,6 +39,8 @@ struct ReportOptions {
   /// s, for measuring after the references; 0: no limit. The default points are measured in any case, what
   /// leaving out saves and the points of sweeps in turns as long as there is time.
   double budgetSeconds = 0.0;
+  /// Called once every text and every file of a scene is read, before the first image is rendered.
+  std::function<void()> allRead;
   /// Told after points were measured: how many of how many, and about how many seconds the rest will take.
   std::function<void(std::size_t done, std::size_t total, double secondsLeft)> progress;
   bool openSweeps = true;                         ///< false: only the default point
@@ -60,8 +62,11 @@ struct ReportSummary {
       leftOutPoints;  ///< "scene, pipeline: cones=6" for which there was no time, or what leaving out saves
 };
 
+/// The results store in which the points of a report on this page are kept until it is written.
+std::filesystem::path unfinishedStoreOf(const std::filesystem::path& page);
+
 /// Measures, and gives the whole record to `write`, once. Error (before any work) when a text is wrong.
-/// Points are kept beside `options.output`, in a file with the extension .unfinished.sqlite, as soon as they
+/// Points are kept in unfinishedStoreOf(options.output) as soon as they
 /// are measured: when the report is interrupted, the next one takes them up. When `write` has returned it
 /// removes those that no other report on this page wants, and the file when nothing is left in it. A point
 /// that fails is one that says why.
