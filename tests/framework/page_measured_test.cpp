@@ -121,6 +121,11 @@ TEST_CASE("cards quote measured tables whole, in part, with scenes side by side,
                          Contains("| 32 | 0.123, 0.98, 2.0 | 0.500, 1.10, 3.0 |\n") &&
                          Contains("| 64 | 0.100, 1.00 | |\n"));
   CHECK(written(across) == across);
+  CHECK_THAT(written("<!-- measured across technique.errors; of time, light; room; hall --><!-- end -->"),
+             Contains("| | room: time, light | hall: time, light |\n") &&
+                 Contains("| 32 | 2.0, 0.123 | 3.0, 0.500 |\n"));
+  CHECK_THAT(written("<!-- measured table technique.errors; of ratio; hall --><!-- end -->"),
+             Contains("\n\n| | ratio |\n| --- | --- |\n| hall, 32 | 1.10 |\n\n"));
   // Within an item of a list a table stays in it.
   const std::string item =
       written("- an item:\n\n  <!-- measured table technique.errors; hall -->x<!-- end -->\n- b");
@@ -139,6 +144,8 @@ TEST_CASE("cards quote measured tables whole, in part, with scenes side by side,
   CHECK_THAT(refusal("<!-- measured table technique.errors; cave --><!-- end -->"), Contains("'cave'"));
   CHECK_THAT(refusal("<!-- measured across technique.errors; roo --><!-- end -->"), Contains("'roo, '"));
   CHECK_THAT(refusal("<!-- measured across technique.errors --><!-- end -->"), Contains("BEGINNING"));
+  CHECK_THAT(refusal("<!-- measured across technique.errors; of light, rato; room --><!-- end -->"),
+             Contains("'ratio'"));
   CHECK_THAT(refusal("<!-- measured value technique.errors; room, 64; rato --><!-- end -->"),
              Contains("'ratio'"));
   CHECK_THAT(refusal("<!-- measured value technique.errors; room, 65; ratio --><!-- end -->"),

@@ -357,25 +357,59 @@ TEST_CASE("an outline has the area of its surface where that is not convex") {
   CHECK(tilingOf(builder.scene, 3.0).area == Approx(0.75).epsilon(1e-5));
 }
 
-TEST_CASE("a texel in which the surface bends has no outline, and every other one has") {
-  // A roof whose ridge lies at x = 1, of slopes that one chart holds; and the same, flat.
-  constexpr double kTexel = 0.3;
-  for (const double height : {0.0, 0.2}) {
+TEST_CASE("an outline is larger by what its surface bends, up to a disc's area, beyond which there is none") {
+  // A roof whose ridge lies at x = 5/6, in the middle of the third of six columns, of slopes that one chart
+  // holds.
+  constexpr double kTexel = 0.3, kRidge = 5.0 / 6.0;
+  CHECK(std::pow(1.0 + AtlasOutline::kOverlap * AtlasOutline::kMostBend, 2.0) ==
+        Approx(0.5 * kPi).epsilon(0.01));
+  for (const double slope : {0.0, 0.01, 0.2}) {
     const Scene scene = gridOf(2, [&](double u, double v) {
-      return glm::vec3(2.0 * u, height * (1.0 - std::abs(2.0 * u - 1.0)), -v);
+      const double x = u < 0.5 ? 2.0 * kRidge * u : kRidge + 2.0 * (2.0 - kRidge) * (u - 0.5);
+      return glm::vec3(x, slope * (1.0 - std::abs(x - kRidge)), -v);
+    });
+    const SurfaceAtlas atlas = makeSurfaceAtlas(scene, {kTexel}, AtlasPlaces::middles);
+    CAPTURE(slope);
+    REQUIRE(atlas.chartCount == 1);
+    REQUIRE(atlas.outlines.size() == atlas.texels.size());
+    const double most = slope / std::sqrt(1.0 + slope * slope);  // sine of the slope
+    double largest = 1.0;
+    std::size_t bent = 0;
+    for (std::size_t i = 0; i < atlas.texels.size(); ++i) {
+      const AtlasTexel& texel = atlas.texels[i];
+      const AtlasOutline& outline = atlas.outlines[i];
+      CAPTURE(slope, i);
+      double area = 0.0;
+      for (std::uint32_t k = 0; k < outline.count; ++k) {
+        const glm::dvec2 p(outline.corners[k]), q(outline.corners[(k + 1) % outline.count]);
+        area += 0.5 * (p.x * q.y - p.y * q.x);
+      }
+      const glm::dvec3 first = corner(scene, texel.triangle, 0);
+      const double ratio = area / static_cast<double>(texel.area) *
+                           glm::length(glm::cross(corner(scene, texel.triangle, 1) - first,
+                                                  corner(scene, texel.triangle, 2) - first));
+      if (std::abs(ratio - 1.0) < 1e-4) continue;
+      ++bent;
+      CHECK(std::abs(place(scene, texel).x - kRidge) < kTexel);
+      if (outline.count == 0) continue;
+      CHECK(ratio > 1.0);
+      CHECK(ratio <= std::pow(1.0 + AtlasOutline::kOverlap * most, 2.0) + 1e-4);
+      largest = std::max(largest, ratio);
+    }
+    CAPTURE(slope, bent, atlas.texels.size(), largest);
+    CHECK((bent > 0) == (slope > 0.0));
+    CHECK(2 * bent < atlas.texels.size());
+    // A ridge in the middle bends its texel's normals by the whole slope.
+    if (slope > 0.0) CHECK(largest > 1.0 + 1.7 * AtlasOutline::kOverlap * most);
+  }
+  // Folds, a tenth of a texel each: the sine of the slope is 0.2 or 0.37 everywhere.
+  for (const double slope : {0.2, 0.4}) {
+    const Scene scene = gridOf(60, [&](double u, double v) {
+      const double fold = 30.0 * u - std::floor(30.0 * u);
+      return glm::vec3(2.0 * u, slope / 15.0 * std::min(fold, 1.0 - fold), -v);
     });
     const SurfaceAtlas atlas = makeSurfaceAtlas(scene, {kTexel}, AtlasPlaces::middles);
     REQUIRE(atlas.chartCount == 1);
-    REQUIRE(atlas.outlines.size() == atlas.texels.size());
-    std::size_t bent = 0;
-    for (std::size_t i = 0; i < atlas.texels.size(); ++i) {
-      if (atlas.outlines[i].count > 0) continue;
-      ++bent;
-      CAPTURE(height, i);
-      CHECK(std::abs(place(scene, atlas.texels[i]).x - 1.0) < kTexel);
-    }
-    CAPTURE(height, bent, atlas.texels.size());
-    CHECK((bent > 0) == (height > 0.0));
-    CHECK(2 * bent < atlas.texels.size());
+    for (const AtlasOutline& outline : atlas.outlines) CHECK((outline.count == 0) == (slope > 0.3));
   }
 }

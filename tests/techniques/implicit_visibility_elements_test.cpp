@@ -240,7 +240,7 @@ TEST_CASE("objects too small for an element have one each, and leave a large one
 
 TEST_CASE(
     "a node lies at the middle of its leaves, by area, and reaches over all of their outlines and discs") {
-  const Elements made = elementsOf(boxAndSphere(), {{"elements", 700.0}});
+  const Elements made = elementsOf(boxAndSphere(), {{"elements", 150.0}});
   const ElementTree& tree = made.tree();
   const ElementState& state = made.state();
   std::vector<std::vector<std::uint32_t>> leaves(tree.nodeCount);
@@ -248,11 +248,12 @@ TEST_CASE(
     for (std::uint32_t node = leaf; node != kNoElement; node = tree.parents[node])
       leaves[node].push_back(leaf);
   REQUIRE(leaves[tree.root].size() == tree.leafCount);
-  // The box has outlines; the sphere bends within most of its texels and has discs there.
+  // The box has outlines; the sphere bends by more than they allow within many of its texels, which have
+  // discs.
   const auto isDisc = [&](std::uint32_t leaf) { return state.outline(tree, leaf).empty(); };
   std::uint32_t discs = 0;
   for (std::uint32_t leaf = 0; leaf < tree.leafCount; ++leaf) discs += isDisc(leaf) ? 1u : 0u;
-  CHECK(discs > tree.leafCount / 10);
+  CHECK(discs >= 5);
   CHECK(discs < tree.leafCount);
   for (std::uint32_t node = 0; node < tree.nodeCount; ++node) {
     glm::dvec3 middle(0.0);

@@ -106,6 +106,14 @@ std::vector<glm::vec3> lampCorners(const std::vector<glm::dvec2>& polygon) {
   return result;
 }
 
+/// Two quads that share the middle two of six places, facing down.
+std::vector<glm::vec3> lampSheet(const std::vector<glm::vec3>& places) {
+  std::vector<glm::vec3> result;
+  for (const std::size_t first : {0u, 2u})
+    for (const std::size_t corner : {0u, 2u, 3u, 0u, 3u, 1u}) result.push_back(places[first + corner]);
+  return result;
+}
+
 /// A floor of 4 m, object 0, and a lamp over it, object 1.
 Scene floorAndLamp(const std::vector<glm::vec3>& lamp) {
   SceneBuilder builder;
@@ -221,17 +229,38 @@ TEST_CASE("a single element has the form factor of its shape within 2 %, whateve
   std::vector<glm::dvec2> circle;
   for (int i = 0; i < 64; ++i)
     circle.push_back(0.3 * glm::dvec2(std::cos(2.0 * kPi * i / 64), std::sin(2.0 * kPi * i / 64)));
-  for (const Shape& shape : {Shape{"triangle", {{-0.3, 0}, {0.4, 0.1}, {-0.1, 0.6}}},
-                             // Slanted, since lines of bins would meet one that lies along them all or not at all.
-                             Shape{"strip", {{-0.8, -0.2}, {0.92, 0.33}, {0.89, 0.43}, {-0.83, -0.1}}},
-                             Shape{"trapezoid", {{-0.5, 0}, {0.5, 0}, {0.1, 0.4}, {-0.1, 0.4}}},
-                             Shape{"disc of 64 corners", circle}})
+  for (const Shape& shape :
+       {Shape{"triangle", {{-0.3, 0}, {0.4, 0.1}, {-0.1, 0.6}}},
+        // Slanted, since lines of bins would meet one that lies along them all or not at all.
+        Shape{"strip", {{-0.8, -0.2}, {0.92, 0.33}, {0.89, 0.43}, {-0.83, -0.1}}},
+        Shape{"trapezoid", {{-0.5, 0}, {0.5, 0}, {0.1, 0.4}, {-0.1, 0.4}}},
+        Shape{"disc of 64 corners", circle}})
     for (const bool isTurned : {false, true}) {
       const Scene flat = floorAndLamp(lampCorners(shape.outline)), scene = isTurned ? turned(flat) : flat;
       const LinkedScene made = linkedBySize(scene, 16.0);
       CAPTURE(shape.name, isTurned);
       REQUIRE(leavesOf(made, 1) == 1);
       CHECK(overLambert(made, placedAt(scene, 0.0)) == Approx(1.0).epsilon(0.02));
+    }
+}
+
+TEST_CASE(
+    "a piece that bends counts as its surface does, and no more than its bend adds, in any number of elements") {
+  // A lamp of half a metre whose middle line hangs lower or higher, by angles between its halves in degrees.
+  for (const double angle : {1.0, -1.0, 10.0, -30.0})
+    for (const int side : {1, 2, 3}) {
+      const auto drop = static_cast<float>(0.25 * std::tan(0.5 * angle * kPi / 180.0));
+      std::vector<glm::vec3> places;
+      for (const float x : {-0.25f, 0.0f, 0.25f})
+        for (const float z : {0.0f, 0.5f}) places.emplace_back(x, 2.0f - (x == 0.0f ? drop : 0.0f), z);
+      const Scene scene = floorAndLamp(lampSheet(places));
+      const LinkedScene made = linkedBySize(scene, 64.0 * side * side);
+      const double ratio = overLambert(made, placedAt(scene, 0.0));
+      CAPTURE(angle, side, leavesOf(made, 1), ratio);
+      // An outline is larger by the sine of what normals turn away from their mean, and a disc by pi/2.
+      const double larger = 1.0 + std::sin(0.5 * std::abs(angle) * kPi / 180.0);
+      CHECK(ratio > 0.97);
+      CHECK(ratio < 1.02 * std::min(larger * larger, 0.5 * kPi));
     }
 }
 

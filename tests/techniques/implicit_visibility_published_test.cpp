@@ -204,6 +204,41 @@ TEST_CASE("without a triangle nothing is shown at vertices") {
   for (const float value : image.values()) CHECK(value == 0.0f);
 }
 
+TEST_CASE("trees made once beforehand bring the image that trees made with the elements do, to the bit") {
+  for (const char* words : {"elements 300", "elements 300 share 0.5", "as_published on"}) {
+    const auto shown = [&](const std::string& hierarchy, const std::string& elements) {
+      Scene scene = litRoom(kPixels, kPixels);
+      scene.environment = {0.5f, 0.6f, 0.7f};
+      const std::string text = fmt::format(R"(pipeline "trees" {{
+        pass gbuffer direct_lighting.gbuffer {{ }}
+        pass shadow direct_lighting.shadow_map {{ }}
+        {}
+        pass elements implicit_visibility.elements {{ {} }}
+        pass pairs implicit_visibility.create_links {{ elements elements.elements }}
+        pass links implicit_visibility.push_links {{ elements elements.elements  links pairs.links }}
+        pass illuminate implicit_visibility.illuminate {{
+          elements elements.elements  links links.links  shadow shadow.depth
+        }}
+        pass display implicit_visibility.display {{
+          gbuffer gbuffer  elements elements.elements  links links.links  light illuminate.light
+        }}
+        output indirect_diffuse display.diffuse
+      }})",
+                                           hierarchy, elements);
+      return renderOnce(scene, Pipeline::parse(text, "trees.pipeline")).outputs.at("indirect_diffuse");
+    };
+    CAPTURE(words);
+    const ImageBuffer together = shown("", words);
+    // The pass's own words have no say where it is given trees, but for those of areas.
+    const std::string areas = words == std::string("as_published on") ? "as_published on" : "elements 50";
+    const ImageBuffer apart =
+        shown(fmt::format("pass hierarchy implicit_visibility.hierarchy {{ {} }}", words),
+              "hierarchy hierarchy.hierarchy  " + areas);
+    CHECK(together.values() == apart.values());
+    CHECK(*std::max_element(together.values().begin(), together.values().end()) > 0.0f);
+  }
+}
+
 TEST_CASE("'as_published' in every pass is the same image as the printed words set one by one") {
   const auto shown = [](const std::string& elements, const std::string& pairs, const std::string& links,
                         const std::string& illuminate, const std::string& display) {

@@ -76,13 +76,37 @@ std::string across(const MeasuredTable& measured, const std::vector<std::string>
   return text + "\n";
 }
 
-std::string passage(const page::PassageRequest& request, const std::vector<MeasuredTable>& tables) {
+/// The columns that a name "of COLUMN, COLUMN" chooses, which is taken from `names`; all without one.
+MeasuredTable narrowed(const MeasuredTable& measured, std::vector<std::string>& names) {
+  static const std::string kOf = "of ";
+  const auto chosen = std::find_if(names.begin(), names.end(),
+                                   [](const std::string& name) { return name.rfind(kOf, 0) == 0; });
+  if (chosen == names.end()) return measured;
+  MeasuredTable result = measured;
+  result.columns.clear();
+  for (MeasuredTable::Row& one : result.rows) one.values.clear();
+  for (std::size_t from = kOf.size(); from <= chosen->size();) {
+    const std::size_t end = std::min(chosen->find(", ", from), chosen->size());
+    const auto& column = page::found(measured.columns, "column", chosen->substr(from, end - from),
+                                     [](const MeasuredTable::Column& one) { return one.name; });
+    result.columns.push_back(column);
+    const auto index = static_cast<std::size_t>(&column - measured.columns.data());
+    for (std::size_t i = 0; i < result.rows.size(); ++i)
+      result.rows[i].values.push_back(measured.rows[i].values[index]);
+    from = end + 2;
+  }
+  names.erase(chosen);
+  return result;
+}
+
+std::string passage(page::PassageRequest request, const std::vector<MeasuredTable>& tables) {
   const MeasuredTable& measured =
       page::found(tables, "measured table", request.id, [](const MeasuredTable& one) { return one.name; });
-  if (request.kind == "table") return table(measured, request.names);
-  if (request.kind == "across") {
+  if (request.kind == "table" || request.kind == "across") {
+    const MeasuredTable columns = narrowed(measured, request.names);
+    if (request.kind == "table") return table(columns, request.names);
     page::requireNames(request, 1, measured.rows.size(), "across NAME; BEGINNING ...");
-    return across(measured, request.names);
+    return across(columns, request.names);
   }
   if (request.kind != "value") page::refuse("kind of passage", request.kind, {"table", "across", "value"});
   page::requireNames(request, 2, 2, "value NAME; ROW; COLUMN");

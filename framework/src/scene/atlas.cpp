@@ -373,8 +373,13 @@ class AtlasMaker {
                          piece.corners.begin() + static_cast<std::ptrdiff_t>(piece.cornerCount));
       if (corners[at].size() > kMany) corners[at] = convexHull(std::move(corners[at]));
     }
-    /// Normals that differ add up to less than their areas do.
-    bool isFlat(std::size_t at) const { return glm::length(normals[at]) >= (1.0 - 1e-6) * areas[at]; }
+    /// Sine of the angle between the surface's normals and their mean: normals that differ add up to less than
+    /// their areas do. 0: flat.
+    double bend(std::size_t at) const {
+      constexpr double kFlat = 1.0 - 1e-6;
+      const double cosine = areas[at] > 0.0 ? glm::length(normals[at]) / areas[at] : 1.0;
+      return cosine >= kFlat ? 0.0 : std::sqrt(1.0 - cosine * cosine);
+    }
     static constexpr double kUntouched = std::numeric_limits<double>::infinity();
   };
 
@@ -449,7 +454,7 @@ class AtlasMaker {
                        static_cast<float>(weights.y), static_cast<float>(ownership.areas[at]), number},
                       {},
                       parts[t]});
-      if (places_ == AtlasPlaces::middles && ownership.isFlat(at))
+      if (places_ == AtlasPlaces::middles && ownership.bend(at) <= AtlasOutline::kMostBend)
         placed.outline = outlineOf(chart.corners[owner], weights, ownership, at);
     }
     if (texels_.size() > kMostAtlasTexels) tooLarge(static_cast<double>(texels_.size()));
@@ -466,7 +471,8 @@ class AtlasMaker {
     AtlasOutline outline;
     if (hull.size() < 3 || doubleArea == 0.0) return outline;
     keepCorners(hull, AtlasOutline::kMostCorners);
-    const double scale = std::sqrt(ownership.flat[at] / polygonArea(hull));
+    const double scale = std::sqrt(ownership.flat[at] / polygonArea(hull)) *
+                         (1.0 + AtlasOutline::kOverlap * ownership.bend(at));
     for (const glm::dvec2& corner : hull) {
       const glm::dvec2 p = corner - t[0];
       const glm::dvec2 there(cross(p, e2) / doubleArea, cross(e1, p) / doubleArea);

@@ -24,14 +24,18 @@ struct AtlasTexel {
 /// The surface within a texel as a convex polygon in the plane of the texel's triangle: the hull of that
 /// surface, projected along the chart's axis onto that plane. Where the surface does not fill its hull, or
 /// the hull has more corners than are kept, the polygon is scaled about the texel's place to the surface's
-/// area. So whole texels and straight cuts of a flat chart tile it. On a surface that bends, polygons in planes
-/// of their own would leave gaps between them: there is none where the surface within the texel bends.
+/// area. So whole texels and straight cuts of a flat chart tile it. Where the surface's normals within the
+/// texel turn away from their mean by an angle, its edges lie up to sin(angle) / 4 of a side off the
+/// polygon's plane, and neighbours in planes of their own would leave gaps. So that polygon is larger by
+/// kOverlap sin(angle), which closes them as seen at slants of up to 63 degrees. There is none beyond
+/// kMostBend, where it would count as much as a disc of radius sqrt(A/2): (1 + kOverlap kMostBend)^2 is pi/2.
 struct AtlasOutline {
   static constexpr std::size_t kMostCorners = 8;
+  static constexpr double kOverlap = 1.0, kMostBend = 0.253;  ///< the latter a sine, of some 15 degrees
   /// From the texel's place, as steps of AtlasTexel::second and third, counter-clockwise along the chart's
   /// axis. A corner may lie outside of the triangle.
   std::array<glm::vec2, kMostCorners> corners{};
-  std::uint32_t count = 0;  ///< 3 to kMostCorners; 0: the surface bends within the texel or has no extent
+  std::uint32_t count = 0;  ///< 3 to kMostCorners; 0: the surface bends too much or has no extent
   bool operator==(const AtlasOutline&) const = default;
 };
 
