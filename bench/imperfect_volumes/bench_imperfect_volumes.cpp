@@ -77,6 +77,11 @@ pipeline "bench" {
   pass average voxelization.average { fragments voxels.fragments }
   pass inject imperfect_volumes.inject { fragments voxels.fragments  shadow shadow.depth }
   pass inject_half imperfect_volumes.inject { fragments voxels.fragments  shadow shadow.depth  precision half }
+  pass direct direct_lighting.shade { gbuffer gbuffer  shadow shadow.depth }
+  pass voxels_lit voxelization.reproject { gbuffer gbuffer  fragments points.fragments  direct direct.radiance }
+  pass inject_lit imperfect_volumes.inject { fragments voxels_lit.fragments  shadow shadow.depth }
+  pass cones voxel_cone_tracing.inject { fragments voxels.fragments  shadow shadow.depth }
+  pass cones_lit voxel_cone_tracing.inject { fragments voxels_lit.fragments  shadow shadow.depth }
 )";
 
 struct Choice {
@@ -117,6 +122,8 @@ void compareChoices(gpu::Device& device, TechniqueSet& techniques, const Scene& 
   PipelineExecutor executor(device, techniques, scene, pipeline, options);
   for (const Choice& march : kMarches) executor.keepOutput(march.name, "incoming");
   executor.keepOutput("occlude", "visibility");
+  executor.keepOutput("inject_lit", "reflected");
+  for (const char* cones : {"cones", "cones_lit"}) executor.keepOutput(cones, "radiance");
   const std::vector<Times> frames = timesOf(executor, repeats);
   fmt::print("{}, {} voxels: march {:.1f} ms, six {:.2f} ms\n", name, resolution, medianOf(frames, "march"),
              medianOf(frames, "six"));
@@ -130,6 +137,10 @@ void compareChoices(gpu::Device& device, TechniqueSet& techniques, const Scene& 
   row("openness, over a bounce", {"occlude"}, {"march"});
   row("six over eight, gather", {"six"}, {"eight"});
   row("six over eight, march", {"march"}, {"march_eight"});
+  // Sec. 3.2: what is seen was lit already.
+  row("light brought along, inject", {"inject_lit"}, {"inject"});
+  row("the same with reprojection", {"voxels_lit", "inject_lit"}, {"voxels", "inject"});
+  row("the same, cone tracing", {"voxels_lit", "cones_lit"}, {"voxels", "cones"});
   row("half over float, inject and march", {"inject_half", "march_half"}, {"inject", "march"});
   std::fflush(stdout);
 }

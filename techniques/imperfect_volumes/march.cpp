@@ -207,8 +207,6 @@ class MarchPass : public Marching {
     if (readsAttributes() && !attributes.present())
       throw Error("'source surface' and further bounces read 'attributes'; expected it to be connected");
     if (readsAttributes()) requireSameGrid("attributes", attributes->grid, "reflected", sent.grid);
-    if (!frame.sceneDescription().media.empty())
-      frame.warn("the scene has participating media, which do not dim the light between voxels");
     const Begins from = begins(frame);
     ShGrid result;
     result.quantity = ShGrid::Quantity::radiance;

@@ -295,6 +295,61 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("as printed a spot slants its texels by its one direction, and here by the way to it") {
+  constexpr int kSide = 8;
+  const OneVoxel voxel;
+  Scene scene = lightOf("spot");
+  Light& spot = scene.lights.front();
+  spot.direction = glm::normalize(glm::dvec3(-0.25, -1, -0.3));
+  const glm::dvec3 down = glm::normalize(glm::dvec3(0.01, -1, 0.013)), centre(voxel.centre),
+                   light(7, 14, 6.5), toLight = glm::normalize(light - centre),
+                   axis = -glm::dvec3(spot.direction);
+  const glm::dvec3 above = centre - (12.0 - centre.y) / -down.y * down;
+  // Beyond the way to the light, away from the axis: 30 degrees from the one and 70 from the other.
+  const glm::dvec3 aside = glm::normalize(toLight - glm::dot(toLight, axis) * axis);
+  const double between = std::acos(glm::dot(toLight, axis)), turned = between + kPi / 6.0;
+  const glm::dvec3 normal = std::cos(turned) * axis + std::sin(turned) * aside;
+  const double width = sampleLights(scene, snapshotOf(scene, 0.0), 1, kSide).samples.front().texelWidth *
+                       glm::dot(centre - light, -axis),
+               ours = width / std::cos(kPi / 6.0), printed = width / std::cos(turned);
+  REQUIRE(ours > std::sqrt(3.0));
+  REQUIRE(printed > 2.0 * ours);
+  REQUIRE(printed < 4.0 * std::sqrt(3.0));
+  for (const bool asPrinted : {false, true})
+    for (const double distance : {0.5 * ours, std::sqrt(ours * printed), 1.3 * printed}) {
+      Gatherer gatherer =
+          voxel.gatherer(mapOf(scene, kSide, glm::vec4(glm::vec3(centre - distance * toLight), 1.0f),
+                               glm::vec4(glm::vec3(normal), 1.0f), fluxOf(5.0f)));
+      gatherer.at(above, down)
+          .with({{"tolerance", 1.0}, {"front", 0, "on"}, {"as_published", 0, asPrinted ? "on" : "off"}});
+      CAPTURE(asPrinted, distance, ours, printed);
+      CHECK((gatherer.run()[0] > 0.0f) == (distance < (asPrinted ? printed : ours)));
+    }
+}
+
+TEST_CASE("as printed a surface must look to the receiver's place, and here to where the ray came from") {
+  const OneVoxel voxel;
+  const glm::dvec3 down = glm::normalize(glm::dvec3(0.01, -1, 0.013)), centre(voxel.centre);
+  const glm::dvec3 above = centre - (12.0 - centre.y) / -down.y * down;
+  // The printed hit has z of the voxel's middle, 0.0065 beyond the ray's entry: a surface along z that leans
+  // to the ray by a ninth of that over the five metres of the way looks to the ray, and not to the receiver.
+  for (const auto& [leaning, ours, printed] :
+       {std::tuple(0.0136, true, false), {0.02, true, true}, {0.012, false, false}}) {
+    const glm::dvec3 normal = glm::normalize(glm::dvec3(0, leaning, 1));
+    for (const bool asPrinted : {false, true}) {
+      Gatherer gatherer = voxel.gatherer(mapOf(lightOf("directional"), 8, glm::vec4(voxel.centre, 1.0f),
+                                               glm::vec4(glm::vec3(normal), 1.0f), fluxOf(5.0f)));
+      gatherer.at(above, down)
+          .with({{"tolerance", 1.0},
+                 {"cap", 0},
+                 {"front", 0, "on"},
+                 {"as_published", 0, asPrinted ? "on" : "off"}});
+      CAPTURE(leaning, asPrinted);
+      CHECK((gatherer.run()[0] > 0.0f) == (asPrinted ? printed : ours));
+    }
+  }
+}
+
 TEST_CASE("surfaces that look away from the receiver bring nothing, unless they may") {
   const OneVoxel voxel;
   const Scene scene = lightOf("point");

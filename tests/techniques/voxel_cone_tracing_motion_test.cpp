@@ -209,6 +209,8 @@ TEST_CASE(
        {"voxel_cone_tracing", "voxel_cone_tracing_directional", "voxel_cone_tracing_coarse_directional",
         "voxel_cone_tracing_octree", "voxel_cone_tracing_octree_directional", "voxel_cone_tracing_clipmap"})
     for (const char* resolution : {"64", "128", "256"}) {
+      // Its light would take 264 MiB of one buffer, twice what OpenGL promises.
+      if (name == std::string("voxel_cone_tracing_clipmap") && resolution == std::string("256")) continue;
       RenderOptions options;
       options.width = options.height = 8;
       options.parameters = pipeline(name).settings({std::string("resolution=") + resolution});

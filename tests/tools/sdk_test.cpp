@@ -81,7 +81,8 @@ TEST_CASE(
       exportedSymbols(readFile(lab / "build/lib/techniques/libglow.so", kLargestLibraryFile));
   REQUIRE(symbols.size() == 1);
   CHECK(symbols.front().name == "lumivox_technique_register");
-  CHECK(contains(readFile(lab / "build/build.ninja"), "-fno-gnu-unique"));
+  for (const char* option : {"-fno-gnu-unique", "-fvisibility=hidden", "-fvisibility-inlines-hidden"})
+    CHECK(contains(readFile(lab / "build/build.ninja"), option));
 
   const std::string furnace = (installed.data() / "scenes/furnace.scene").string();
   const std::string more = " --techniques build/lib/techniques --resolution 16x16 ";

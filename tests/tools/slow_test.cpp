@@ -123,9 +123,20 @@ TEST_CASE("every hidden test keeps a table, but for those that hold a closed for
       "light in a closed room of albedo 0.999 does not grow over a thousand bounces",
       "links grow as N log N with the number of elements, all pairs as its square",
       "what arrives in a voxel is what quadrature over a hundred thousand directions finds"};
+  const std::vector<MeasuredTable> kept =
+      readMeasuredTables(sourceDirectory() / "docs/benchmarks/measured_tables.json");
+  const std::regex declared("KeptTable \\w+\\(\\s*\"([^\"]+)\"");
   for (const auto& [name, body] : tests) {
     INFO(name);
     CHECK((contains(body, "KeptTable ") != ofLaws.contains(name)));
+    for (std::sregex_iterator found(body.begin(), body.end(), declared), none; found != none; ++found) {
+      const std::string table = (*found)[1];
+      INFO(table);
+      const auto known = std::find_if(kept.begin(), kept.end(),
+                                      [&](const MeasuredTable& one) { return one.name == table; });
+      REQUIRE(known != kept.end());
+      CHECK(known->seconds > 0.0);
+    }
   }
   for (const std::string& name : ofLaws) {
     INFO(name);
