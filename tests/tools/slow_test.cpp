@@ -132,8 +132,8 @@ TEST_CASE("every hidden test keeps a table, but for those that hold a closed for
     for (std::sregex_iterator found(body.begin(), body.end(), declared), none; found != none; ++found) {
       const std::string table = (*found)[1];
       INFO(table);
-      const auto known = std::find_if(kept.begin(), kept.end(),
-                                      [&](const MeasuredTable& one) { return one.name == table; });
+      const auto known =
+          std::find_if(kept.begin(), kept.end(), [&](const MeasuredTable& one) { return one.name == table; });
       REQUIRE(known != kept.end());
       CHECK(known->seconds > 0.0);
     }

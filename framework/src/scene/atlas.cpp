@@ -373,8 +373,8 @@ class AtlasMaker {
                          piece.corners.begin() + static_cast<std::ptrdiff_t>(piece.cornerCount));
       if (corners[at].size() > kMany) corners[at] = convexHull(std::move(corners[at]));
     }
-    /// Sine of the angle between the surface's normals and their mean: normals that differ add up to less than
-    /// their areas do. 0: flat.
+    /// Sine of the angle between the surface's normals and their mean: normals that differ add up to less
+    /// than their areas do. 0: flat.
     double bend(std::size_t at) const {
       constexpr double kFlat = 1.0 - 1e-6;
       const double cosine = areas[at] > 0.0 ? glm::length(normals[at]) / areas[at] : 1.0;
