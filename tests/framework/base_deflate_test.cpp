@@ -1,7 +1,6 @@
-#include "lumivox/base/deflate.h"
-
 #include <catch2/catch.hpp>
 
+#include "lumivox/base/deflate.h"
 #include "lumivox/base/error.h"
 #include "support/support.h"
 
@@ -9,7 +8,8 @@ using namespace lumivox;
 
 TEST_CASE("deflated bytes expand to what they were, and repeated text takes a tenth of its room") {
   std::string text;
-  for (int i = 0; i < 1000; ++i) text += "layout(binding = " + std::to_string(i % 8) + ") uniform sampler3D grid;\n";
+  for (int i = 0; i < 1000; ++i)
+    text += "layout(binding = " + std::to_string(i % 8) + ") uniform sampler3D grid;\n";
   const Deflated deflated = Deflated::of(text);
   CHECK(deflated.expanded() == text);
   CHECK(deflated.expandedBytes == text.size());

@@ -14,7 +14,8 @@ std::string zlibStream(std::string_view bytes, int level) {
       libdeflate_alloc_compressor(level), &libdeflate_free_compressor);
   if (!compressor) throw Error("no memory is left to deflate");
   std::string stream(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()), '\0');
-  stream.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), stream.data(), stream.size()));
+  stream.resize(
+      libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), stream.data(), stream.size()));
   return stream;
 }
 
@@ -28,7 +29,8 @@ std::string Deflated::expanded() const {
   // Deflate expands no byte to more than 1032 (its longest match in the fewest bits).
   constexpr std::uint64_t kMostExpansion = 1032;
   if (expandedBytes / kMostExpansion > stream.size())
-    throw Error(fmt::format("deflated data is damaged: {} bytes cannot hold {}", stream.size(), expandedBytes));
+    throw Error(
+        fmt::format("deflated data is damaged: {} bytes cannot hold {}", stream.size(), expandedBytes));
   const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(
       libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
   if (!decompressor) throw Error("no memory is left to expand deflated data");

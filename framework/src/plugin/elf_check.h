@@ -1,5 +1,5 @@
-// What the bytes of a library's file say before the dynamic loader gets them: it does not survive every broken
-// file, and runs the code of every whole one.
+// What the bytes of a library's file say before the dynamic loader gets them: it does not survive every
+// broken file, and runs the code of every whole one.
 #pragma once
 
 #include <optional>

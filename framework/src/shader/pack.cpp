@@ -181,8 +181,10 @@ std::string PackedProgram::text(const std::vector<int>& values) const {
   return text;
 }
 
-PackedCode PackedCode::of(const ContentHash& hash, std::span<const std::uint32_t> spirv, std::string_view glsl) {
-  return {hash, Deflated::of({reinterpret_cast<const char*>(spirv.data()), spirv.size_bytes()}), Deflated::of(glsl)};
+PackedCode PackedCode::of(const ContentHash& hash, std::span<const std::uint32_t> spirv,
+                          std::string_view glsl) {
+  return {hash, Deflated::of({reinterpret_cast<const char*>(spirv.data()), spirv.size_bytes()}),
+          Deflated::of(glsl)};
 }
 
 std::vector<std::uint32_t> PackedCode::spirv() const {

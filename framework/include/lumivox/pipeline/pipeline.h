@@ -222,8 +222,8 @@ class PipelineExecutor {
   /// keep what they made; images are those of a new executor, to the bit. Histories are emptied. Throws
   /// DiagnosticsError like the constructor, and then leaves everything as it was.
   void setParameters(const ParameterValues& values);
-  /// Another seed from now on: passes that have asked for it run again, with those that read them, and histories
-  /// are emptied.
+  /// Another seed from now on: passes that have asked for it run again, with those that read them, and
+  /// histories are emptied.
   void setSeed(std::uint64_t seed);
   /// From now on RenderOptions::health.
   void setHealth(bool health);

@@ -1,5 +1,5 @@
-// Opens technique libraries. A library whose file does not fit is never opened: it is skipped and reported with
-// its path and the reason; the others still load.
+// Opens technique libraries. A library whose file does not fit is never opened: it is skipped and reported
+// with its path and the reason; the others still load.
 #pragma once
 
 #include <filesystem>
